@@ -1,0 +1,84 @@
+/* loader.h - finds, opens and checks law libraries (libdl), for hosts in any language.
+ *
+ * Loading a library runs its code. Therefore a library is opened only from an explicit path or from the
+ * search path, never from the current folder, and ilaw_library_path says which file it was.
+ *
+ * Search path for a library given by name ("contact" -> "contact.so"), first match wins:
+ *   1. the folders of the environment variable ILAW_PATH, separated by ':' (empty and relative entries
+ *      are skipped),
+ *   2. the installed folder: lib/ilaw beside the bin/ of the running program, then the folder fixed when
+ *      the loader was built.
+ * A text with a '/' in it is an explicit path; anything else is a name.
+ *
+ * Threading: all functions may be called from any thread; one object is not to be closed while in use.
+ * Ownership: a library stays loaded until it was closed as often as opened, and every interface
+ * created from it is destroyed.
+ * Errors: functions return an ILAW_* code of ilaw.h; message (message_size bytes, may be null when 0)
+ * receives one line: which file, what was found, what was expected.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause
+ */
+#ifndef ILAW_LOADER_H
+#define ILAW_LOADER_H
+
+#include <ilaw/ilaw.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* An opened and checked library. */
+typedef struct ilaw_library ilaw_library;
+/* An instance of a law together with the library that it keeps loaded. */
+typedef struct ilaw_interface ilaw_interface;
+
+/* Opens a library by name or explicit path, checks its whole description, gives *library.
+ * Opening the same file again gives the same object.
+ * Returns ILAW_OK, ILAW_INVALID_ARGUMENT, ILAW_NOT_FOUND, ILAW_BAD_LIBRARY, ILAW_OUT_OF_MEMORY. */
+int32_t ilaw_library_open(const char* name_or_path, ilaw_library** library, char* message, size_t message_size);
+
+/* Gives back one opening; null is allowed. */
+void ilaw_library_close(ilaw_library* library);
+
+/* The checked description; valid while the library is open or an interface of it lives. */
+const ilaw_plugin* ilaw_library_plugin(const ilaw_library* library);
+
+/* Absolute path of the file that was loaded. */
+const char* ilaw_library_path(const ilaw_library* library);
+
+/* The law of that id, null when the library has none. */
+const ilaw_law* ilaw_library_law(const ilaw_library* library, const char* id);
+
+/* Creates an instance of a law; id = null takes the library's only law.
+ * Returns as ilaw_law.create, or ILAW_NOT_FOUND (the message lists the laws there are). */
+int32_t ilaw_interface_create(ilaw_library* library, const char* id, const ilaw_setup* setup,
+                              ilaw_interface** interface, char* message, size_t message_size);
+
+/* Ends an interface; null is allowed. */
+void ilaw_interface_destroy(ilaw_interface* interface);
+
+/* The law of an interface. */
+const ilaw_law* ilaw_interface_law(const ilaw_interface* interface);
+
+/* The instance, for hosts that call the law's functions themselves. */
+const ilaw_instance* ilaw_interface_instance(const ilaw_interface* interface);
+
+/* The law's info, initialise and evaluate (ilaw.h), for hosts that would rather not call through
+ * function pointers (Fortran). */
+int32_t ilaw_interface_info(const ilaw_interface* interface, ilaw_instance_info* info);
+int32_t ilaw_interface_initialise(const ilaw_interface* interface, const ilaw_batch* batch, ilaw_report* report);
+int32_t ilaw_interface_evaluate(const ilaw_interface* interface, const ilaw_batch* batch, ilaw_report* report);
+
+/* Calls visit(path, context) for every file *.so of the search path, in search order, files that an
+ * earlier folder hides left out. Opens none of them. Stops early when visit returns non-zero, and
+ * returns that value. */
+int32_t ilaw_search(int32_t (*visit)(const char* path, void* context), void* context);
+
+/* The folders searched, separated by ':', written to buffer (cut at size); returns the length needed. */
+size_t ilaw_search_path(char* buffer, size_t size);
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
+
+#endif /* ILAW_LOADER_H */
