@@ -123,8 +123,10 @@ enum { ILAW_MAY_BE_TABLE = 1 << 0, ILAW_MAY_BE_PER_NODE = 1 << 1 };
 /* Kind of a state variable. */
 enum {
   ILAW_STATE_SCALAR = 0,  /* one double */
-  ILAW_STATE_VECTOR = 1,  /* d doubles that turn with the frame of the batch */
-  ILAW_STATE_HISTORY = 2, /* any number of doubles, meaningful to the law alone; rotations are its affair */
+  ILAW_STATE_VECTOR = 1,  /* d doubles: components in the local frame of the node */
+  ILAW_STATE_HISTORY = 2, /* any number of doubles, meaningful to the law alone, in the local frame */
+  ILAW_STATE_AXIS = 3,    /* d doubles: a unit vector in the host's axes, the only kind that a host which turns
+                             its whole model must turn too; found in the global frame without tangents only */
 };
 
 /* Status of a node after a step. */
@@ -180,7 +182,7 @@ typedef struct ilaw_state_variable {
   const char* name; /* lower case, digits, underscore */
   const char* unit;
   const char* doc;
-  uint64_t count; /* doubles: 1 for SCALAR, d for VECTOR; known from the instance for HISTORY */
+  uint64_t count; /* doubles: 1 for SCALAR, d for VECTOR and AXIS; known from the instance for HISTORY */
 } ilaw_state_variable;
 
 /* A parameter with its value, for create. */

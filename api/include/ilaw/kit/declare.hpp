@@ -1,0 +1,185 @@
+// declare.hpp - how a law declares itself, and the ABI description made from it at compile time.
+//
+// A law is a struct whose members are its parameters (all double; a choice holds its index), with
+//   static constexpr law_card card;                       who it is, what it serves
+//   static constexpr parameter<Law> parameters[];         one per member
+//   template <class Node> void step(Node&) const;         its equations
+// and, where it needs them,
+//   struct state { double ...; };                         named memory, all double, vectors as three
+//   static constexpr state_variable state_variables[];    in the order of struct state
+//   std::uint32_t inputs() const;                         what these parameters read (default: card.inputs)
+//   const char* conflict() const;                         why parameters do not go together, or null
+//   template <class Node> void initialise(Node&) const;   first state (default: zeros)
+//   static constexpr state_variable memory;               declares a history, of
+//   std::int64_t memory_size(const setup&) const          doubles, which step reads as node.past and
+//   template <class Node> void record(const Node&, history) const   writes once the step is accepted
+//
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/node.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+namespace ilaw::kit {
+
+// ILAW_INPUT_* as unsigned numbers, to be combined freely.
+inline constexpr std::uint32_t reads_gap = ILAW_INPUT_GAP;
+inline constexpr std::uint32_t reads_v_previous = ILAW_INPUT_V_PREVIOUS;
+inline constexpr std::uint32_t reads_area = ILAW_INPUT_AREA;
+
+struct law_card {
+  const char* id;
+  const char* title;
+  const char* doc;
+  std::uint32_t dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3;
+  std::uint32_t delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL;
+  std::uint32_t inputs = reads_gap;
+  std::uint32_t capabilities = 0;
+};
+
+template <class Law>
+struct parameter {
+  double Law::*member;
+  const char* name;
+  const char* symbol = "";
+  const char* unit = "1";
+  const char* doc = "";
+  double default_value = 0.0;
+  double minimum = 0.0;
+  double maximum = std::numeric_limits<double>::max();
+  bool required = false;
+  bool minimum_excluded = false;
+  bool infinity_allowed = false;
+  bool whole = false;
+  const char* const* choices = nullptr;
+  std::uint32_t choice_count = 0;
+};
+
+struct state_variable {
+  const char* name;
+  const char* unit = "1";
+  const char* doc = "";
+  std::uint32_t kind = ILAW_STATE_SCALAR;
+};
+
+template <class Law>
+concept has_state = requires {
+  typename Law::state;
+};
+template <class Law>
+concept has_memory = requires {
+  Law::memory;
+};
+
+namespace detail {
+
+template <class Law>
+struct state_of {
+  using type = stateless;
+};
+template <has_state Law>
+struct state_of<Law> {
+  using type = typename Law::state;
+};
+
+}  // namespace detail
+
+template <class Law>
+using state_t = typename detail::state_of<Law>::type;
+
+// Doubles in struct state, vectors counted as three.
+template <class Law>
+inline constexpr int state_doubles = has_state<Law> ? static_cast<int>(sizeof(state_t<Law>) / sizeof(double))
+                                                    : 0;
+
+namespace detail {
+
+template <class Law>
+inline constexpr std::size_t parameter_count = std::size(Law::parameters);
+
+template <class T, std::size_t N>
+constexpr std::array<const T*, N> pointers_to(const std::array<T, N>& elements) {
+  std::array<const T*, N> pointers{};
+  for (std::size_t i = 0; i < N; ++i) pointers[i] = &elements[i];
+  return pointers;
+}
+
+template <class Law>
+constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
+  const std::uint32_t kind = p.choices ? ILAW_PARAMETER_CHOICE
+                             : p.whole ? ILAW_PARAMETER_COUNT
+                                       : ILAW_PARAMETER_NUMBER;
+  const bool varies = kind == ILAW_PARAMETER_NUMBER;
+  return {.struct_size = sizeof(ilaw_parameter),
+          .kind = kind,
+          .name = p.name,
+          .symbol = p.symbol,
+          .unit = p.unit,
+          .doc = p.doc,
+          .minimum = p.choices ? 0.0 : p.minimum,
+          .maximum = p.choices ? p.choice_count - 1.0 : p.maximum,
+          .default_value = p.default_value,
+          .required = p.required,
+          .minimum_excluded = p.minimum_excluded,
+          .infinity_allowed = p.infinity_allowed,
+          .may_be = varies ? std::uint32_t{ILAW_MAY_BE_TABLE | ILAW_MAY_BE_PER_NODE} : 0U,
+          .choices = p.choices,
+          .choice_count = p.choice_count,
+          .reserved = 0};
+}
+
+template <class Law>
+constexpr auto abi_parameters() {
+  std::array<ilaw_parameter, parameter_count<Law>> result{};
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = abi_parameter<Law>(Law::parameters[i]);
+  return result;
+}
+
+constexpr ilaw_state_variable abi_state_variable(const state_variable& v, std::uint64_t count) {
+  return {.struct_size = sizeof(ilaw_state_variable),
+          .kind = v.kind,
+          .name = v.name,
+          .unit = v.unit,
+          .doc = v.doc,
+          .count = count};
+}
+
+template <class Law>
+constexpr std::size_t declared_state_variables() {
+  if constexpr (has_state<Law>) return std::size(Law::state_variables);
+  return 0;
+}
+
+template <class Law>
+inline constexpr std::size_t state_variable_count = declared_state_variables<Law>() +
+                                                    (has_memory<Law> ? 1 : 0);
+
+template <class Law>
+constexpr auto abi_state_variables(std::uint64_t dimension, std::uint64_t memory_size) {
+  std::array<ilaw_state_variable, state_variable_count<Law>> result{};
+  std::size_t i = 0;
+  if constexpr (has_state<Law>)
+    for (const state_variable& v : Law::state_variables)
+      result[i++] = abi_state_variable(v, v.kind == ILAW_STATE_VECTOR ? dimension : 1);
+  if constexpr (has_memory<Law>) result[i] = abi_state_variable(Law::memory, memory_size);
+  return result;
+}
+
+// The ABI description of a law, all of it constant.
+template <class Law>
+struct description {
+  static constexpr auto parameters = abi_parameters<Law>();
+  static constexpr auto parameter_pointers = pointers_to(parameters);
+  static constexpr auto state_variables = abi_state_variables<Law>(3, 0);
+  static constexpr auto state_variable_pointers = pointers_to(state_variables);
+};
+
+}  // namespace detail
+}  // namespace ilaw::kit

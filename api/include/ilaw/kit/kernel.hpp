@@ -1,0 +1,181 @@
+// kernel.hpp - the loop over the nodes of a block: builds each node from its columns, steps it, writes
+// columns. One loop serves every layout and frame; it is compiled once per instruction set (dispatch.hpp).
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/declare.hpp>
+#include <ilaw/kit/gather.hpp>
+
+#include <bit>
+
+namespace ilaw::kit {
+
+// A block of nodes as columns in the local frame. Pointers may lead into the host's arrays.
+template <class Law>
+struct node_block {
+  static constexpr int states = state_doubles<Law>;
+
+  int count;
+  double time, velocity_step, position_step;
+  const double* v_free[3];
+  const double* v_previous[3];
+  const double* delassus[6];
+  const double *gap, *gap_offset, *area;
+  const double* state_in[states + 1];  // one more than needed: no array of length zero
+  double* history_values;              // in state_out, of the block's first node (of node 0 with an index)
+  std::int64_t history_node_stride, history_component_stride;
+  const std::int32_t* history_index;  // null: consecutive nodes
+  std::int32_t history_index_base;
+
+  double* impulse[3];
+  double* state_out[states + 1];
+  double* velocity[3];
+  double* energy[ILAW_ENERGY_COUNT];
+  double* status;
+  double* refused;  // 1 where the input was bad, else 0
+
+  std::int64_t history_offset(int i) const {
+    return (history_index ? std::int64_t{history_index[i]} - history_index_base : i) * history_node_stride;
+  }
+};
+
+template <class Law, class Delassus>
+struct stepped {
+  node<Delassus, state_t<Law>> result;
+  bool accepted;
+};
+
+namespace detail {
+
+template <class Delassus, std::size_t... K>
+Delassus delassus_at(const double* const* columns, int i, std::index_sequence<K...>) {
+  const double components[] = {columns[K][i]...};
+  return Delassus::from(components);
+}
+
+template <class Law, std::size_t... K>
+state_t<Law> state_at(const double* const* columns, int i, std::index_sequence<K...>) {
+  if constexpr (has_state<Law>)
+    return std::bit_cast<state_t<Law>>(std::array<double, sizeof...(K)>{columns[K][i]...});
+  else
+    return {};
+}
+
+template <class Law>
+bool finite_state(const state_t<Law>& state) {
+  if constexpr (has_state<Law>) {
+    double sum = 0.0;
+    for (double s : std::bit_cast<std::array<double, state_doubles<Law>>>(state)) sum += s - s;
+    return sum == 0.0;
+  }
+  return true;
+}
+
+}  // namespace detail
+
+// A node as it comes in.
+template <class Law, class Delassus>
+node<Delassus, state_t<Law>> load_node(const node_block<Law>& b, int i) {
+  using components = std::make_index_sequence<Delassus::components>;
+  return {.time = b.time,
+          .velocity_step = b.velocity_step,
+          .position_step = b.position_step,
+          .v_free = {b.v_free[0][i], b.v_free[1][i], b.v_free[2][i]},
+          .v_previous = {b.v_previous[0][i], b.v_previous[1][i], b.v_previous[2][i]},
+          .delassus = detail::delassus_at<Delassus>(b.delassus, i, components{}),
+          .gap = b.gap[i] - b.gap_offset[i],
+          .area = b.area[i],
+          .past = {has_memory<Law> ? b.history_values + b.history_offset(i) : nullptr,
+                   b.history_component_stride},
+          .impulse = {},
+          .state = detail::state_at<Law>(b.state_in, i, std::make_index_sequence<state_doubles<Law>>{})};
+}
+
+template <class Node>
+bool good_input(const Node& n) {
+  return finite(n.v_free) && n.delassus.positive() && finite(n.gap) && finite(n.v_previous) &&
+         finite(n.area) && n.area >= 0.0;
+}
+
+// Steps one node, and says whether its input was good and its result can be represented.
+template <class Law, class Delassus>
+stepped<Law, Delassus> step_node(const Law& law, const node_block<Law>& b, int i) {
+  auto n = load_node<Law, Delassus>(b, i);
+  bool accepted = good_input(n) && detail::finite_state<Law>(n.state);
+  law.step(n);
+  accepted =
+      accepted && n.refused == refusal::none && finite(n.impulse) && detail::finite_state<Law>(n.state);
+  return {n, accepted};
+}
+
+// Energy split of ilaw.h from the work of the impulse, -r.(v^- + v)/2, normal and tangential part apart. A
+// reaction that meets a node moving away does positive work, which the external force gives back within the
+// same step: that is no dissipation, hence the positive parts.
+struct energy_split {
+  double friction, impact, rupture, stored;
+};
+template <class Node>
+energy_split split_energy(const Node& n, vector v) {
+  const double normal = positive_part(-0.5 * n.impulse.n * (n.v_previous.n + v.n));
+  const double tangential = positive_part(
+      -0.5 * (n.impulse.t1 * (n.v_previous.t1 + v.t1) + n.impulse.t2 * (n.v_previous.t2 + v.t2)));
+  const bool broken = n.status == ILAW_BROKEN;
+  return {broken ? 0.0 : tangential, broken ? 0.0 : normal, broken ? normal + tangential : 0.0, n.stored};
+}
+
+template <class Law>
+void store_state(const node_block<Law>& b, int i, const state_t<Law>& state) {
+  if constexpr (has_state<Law>) {
+    const auto doubles = std::bit_cast<std::array<double, state_doubles<Law>>>(state);
+    for (int k = 0; k < state_doubles<Law>; ++k) b.state_out[k][i] = doubles[k];
+  }
+}
+
+template <class Node>
+void store_diagnostics(double* const* velocity, double* const* energy, double* status, int i, const Node& n,
+                       bool accepted) {
+  const vector v = n.v_free + n.delassus.times(n.impulse);
+  const energy_split e = split_energy(n, v);
+  velocity[0][i] = v.n;
+  velocity[1][i] = v.t1;
+  velocity[2][i] = v.t2;
+  energy[ILAW_ENERGY_FRICTION][i] = accepted ? e.friction : 0.0;
+  energy[ILAW_ENERGY_IMPACT][i] = accepted ? e.impact : 0.0;
+  energy[ILAW_ENERGY_RUPTURE][i] = accepted ? e.rupture : 0.0;
+  energy[ILAW_ENERGY_STORED][i] = accepted ? e.stored : 0.0;
+  status[i] = accepted ? n.status : ILAW_BAD_INPUT;
+}
+
+// Steps and writes node i; valid: what the caller knows of its parameters. Returns 1 if the node is refused.
+template <class Law, class Delassus, bool Diagnostics>
+double run_node(const Law& law, const node_block<Law>& b, int i, bool valid = true) {
+  auto [n, accepted] = step_node<Law, Delassus>(law, b, i);
+  accepted = accepted && valid;
+  b.impulse[0][i] = accepted ? n.impulse.n : 0.0;
+  b.impulse[1][i] = accepted ? n.impulse.t1 : 0.0;
+  b.impulse[2][i] = accepted ? n.impulse.t2 : 0.0;
+  if constexpr (Diagnostics) store_diagnostics(b.velocity, b.energy, b.status, i, n, accepted);
+  if constexpr (has_memory<Law>)
+    if (accepted) law.record(n, history{b.history_values + b.history_offset(i), b.history_component_stride});
+  if constexpr (has_state<Law>)
+    store_state<Law>(b, i, accepted ? n.state : load_node<Law, Delassus>(b, i).state);
+  b.refused[i] = accepted ? 0.0 : 1.0;
+  return b.refused[i];
+}
+
+// Runs a block with the same parameters at all nodes; returns the number of refused nodes.
+template <class Law, class Delassus, bool Diagnostics>
+double run_block(const Law& law, const node_block<Law>& block) {
+  const node_block<Law> b = block;  // local copies, so that no store can alias a pointer or a parameter
+  const Law l = law;
+  double refused = 0.0;
+  if constexpr (has_memory<Law>) {
+    for (int i = 0; i < b.count; ++i) refused += run_node<Law, Delassus, Diagnostics>(l, b, i);
+  } else {
+#pragma omp simd reduction(+ : refused)
+    for (int i = 0; i < b.count; ++i) refused += run_node<Law, Delassus, Diagnostics>(l, b, i);
+  }
+  return refused;
+}
+
+}  // namespace ilaw::kit

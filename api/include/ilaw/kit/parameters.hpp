@@ -1,0 +1,145 @@
+// parameters.hpp - fills a law's parameters from the arguments of create, and refuses what is wrong by name.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/declare.hpp>
+
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+
+namespace ilaw::kit {
+
+// One line for the caller of create; text that does not fit is cut.
+class message {
+ public:
+  message(char* text, std::size_t size) : text_(text), size_(text ? size : 0) {
+    if (size_ > 0) text_[0] = '\0';
+  }
+
+  [[gnu::format(printf, 2, 3)]] void add(const char* format, ...) {
+    if (used_ + 1 >= size_) return;
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = std::vsnprintf(text_ + used_, size_ - used_, format, arguments);
+    va_end(arguments);
+    if (length > 0) used_ += static_cast<std::size_t>(length);
+  }
+
+ private:
+  char* text_;
+  std::size_t size_, used_ = 0;
+};
+
+// A parameter given as a table in time.
+struct time_table {
+  const ilaw_parameter* parameter;
+  double* pairs;  // owned by the instance
+  std::uint64_t count;
+
+  // Piecewise linear, constant outside its ends.
+  double at(double time) const {
+    if (time <= pairs[0]) return pairs[1];
+    std::uint64_t low = 0, high = count - 1;
+    if (time >= pairs[2 * high]) return pairs[2 * high + 1];
+    while (high - low > 1) {
+      const std::uint64_t middle = (low + high) / 2;
+      (time < pairs[2 * middle] ? high : low) = middle;
+    }
+    const double t0 = pairs[2 * low], t1 = pairs[2 * high], y0 = pairs[2 * low + 1], y1 = pairs[2 * high + 1];
+    const double fraction = (time - t0) / (t1 - t0);
+    return y0 == y1 ? y0 : y0 * (1.0 - fraction) + y1 * fraction;
+  }
+};
+
+inline bool in_range(const ilaw_parameter& p, double value) {
+  if (value == infinity) return p.infinity_allowed != 0;
+  if (!(value <= p.maximum)) return false;
+  return p.minimum_excluded ? value > p.minimum : value >= p.minimum;
+}
+
+inline void add_range(message& text, const ilaw_parameter& p) {
+  text.add("%s%g, ", p.minimum_excluded ? "(" : "[", p.minimum);
+  if (p.infinity_allowed)
+    text.add("inf]");
+  else if (p.maximum == std::numeric_limits<double>::max())
+    text.add("inf)");
+  else
+    text.add("%g]", p.maximum);
+}
+
+inline void add_choices(message& text, const ilaw_parameter& p) {
+  for (std::uint32_t i = 0; i < p.choice_count; ++i) text.add("%s\"%s\"", i ? ", " : "", p.choices[i]);
+}
+
+// Checks one number against the range of its parameter.
+inline std::int32_t check_number(const char* law, const ilaw_parameter& p, double value, message& text) {
+  const bool whole = p.kind != ILAW_PARAMETER_COUNT || value == __builtin_floor(value);
+  if (in_range(p, value) && whole) return ILAW_OK;
+  text.add("law '%s': parameter '%s' = %.17g is not allowed: expected a %snumber in ", law, p.name, value,
+           p.kind == ILAW_PARAMETER_COUNT ? "whole " : "");
+  add_range(text, p);
+  return ILAW_INVALID_PARAMETER;
+}
+
+inline std::int32_t read_choice(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
+                                double& value, message& text) {
+  if (a.kind == ILAW_VALUE_TEXT && a.text)
+    for (std::uint32_t i = 0; i < p.choice_count; ++i)
+      if (std::strcmp(p.choices[i], a.text) == 0) {
+        value = i;
+        return ILAW_OK;
+      }
+  text.add("law '%s': parameter '%s' = ", law, p.name);
+  if (a.kind == ILAW_VALUE_TEXT && a.text)
+    text.add("\"%s\"", a.text);
+  else if (a.kind == ILAW_VALUE_NUMBER)
+    text.add("%.17g", a.number);
+  else
+    text.add("a table or array");
+  text.add(" is not allowed: expected one of ");
+  add_choices(text, p);
+  return ILAW_INVALID_PARAMETER;
+}
+
+inline std::int32_t read_number(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
+                                double& value, message& text) {
+  if (a.kind == ILAW_VALUE_NUMBER) {
+    value = a.number;
+    return check_number(law, p, value, text);
+  }
+  const char* given = a.kind == ILAW_VALUE_TEXT       ? "a text"
+                      : a.kind == ILAW_VALUE_TABLE    ? "a table in time"
+                      : a.kind == ILAW_VALUE_PER_NODE ? "a value per node"
+                                                      : "a value of unknown kind";
+  text.add("law '%s': parameter '%s' was given as %s", law, p.name, given);
+  if (a.kind == ILAW_VALUE_TEXT) text.add(" (\"%s\")", a.text ? a.text : "");
+  text.add(": expected a number in ");
+  add_range(text, p);
+  return ILAW_INVALID_PARAMETER;
+}
+
+// Checks a table: times finite and increasing, values in range.
+inline std::int32_t check_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
+                                message& text) {
+  if (!a.values || a.count == 0) {
+    text.add("law '%s': parameter '%s': the table has no (time, value) pair, expected at least 1", law,
+             p.name);
+    return ILAW_INVALID_PARAMETER;
+  }
+  for (std::uint64_t k = 0; k < a.count; ++k) {
+    const double time = a.values[2 * k];
+    if (!finite(time) || (k > 0 && time <= a.values[2 * k - 2])) {
+      text.add(
+          "law '%s': parameter '%s': time %.17g of pair %llu of the table is not allowed: expected finite, "
+          "increasing times",
+          law, p.name, time, static_cast<unsigned long long>(k));
+      return ILAW_INVALID_PARAMETER;
+    }
+    if (const std::int32_t code = check_number(law, p, a.values[2 * k + 1], text); code != ILAW_OK)
+      return code;
+  }
+  return ILAW_OK;
+}
+
+}  // namespace ilaw::kit

@@ -1,0 +1,55 @@
+// Signorini-Moreau contact with Newton restitution. See contact.md for the equations.
+#include <ilaw/kit.hpp>
+
+namespace {
+
+using namespace ilaw::kit;
+
+constexpr const char* activation_choices[] = {"moreau", "predictive"};
+constexpr double predictive = 1.0;
+
+struct contact {
+  double restitution;
+  double activation;
+
+  static constexpr law_card card{
+      .id = "contact",
+      .title = "Unilateral contact with restitution",
+      .doc =
+          "Signorini-Moreau contact without friction: open nodes get no impulse, closed ones are pushed so "
+          "that "
+          "the normal velocity after the step is at least -e times the one before.",
+      .inputs = reads_gap | reads_v_previous};
+
+  static constexpr const char* references[] = {
+      "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics",
+      "D. Doyen, A. Ern, S. Piperno, 2011, Time-integration schemes for the finite element dynamic Signorini "
+      "problem"};
+
+  static constexpr parameter<contact> parameters[] = {
+      {.member = &contact::restitution,
+       .name = "restitution",
+       .symbol = "e",
+       .doc = "Newton's coefficient: normal velocity after an impact over the one before, reversed.",
+       .maximum = 1.0},
+      {.member = &contact::activation,
+       .name = "activation",
+       .doc = "moreau: acts where the gap is closed; predictive: acts where the next gap would be negative.",
+       .choices = activation_choices,
+       .choice_count = 2}};
+
+  std::uint32_t inputs() const { return reads_gap | (restitution > 0.0 ? reads_v_previous : 0U); }
+
+  template <class Node>
+  void step(Node& node) const {
+    const contact_condition condition =
+        activation == predictive ? predict_contact(node, restitution) : moreau_contact(node, restitution);
+    const double normal = condition.active ? positive_part(-condition.excess / node.delassus.normal()) : 0.0;
+    node.impulse.n = normal;
+    node.status = normal > 0.0 ? ILAW_CLOSED : ILAW_FREE;
+  }
+};
+
+}  // namespace
+
+ILAW_PLUGIN("contact", "1.0.0", "ilaw", "BSD-3-Clause", contact)
