@@ -1,0 +1,284 @@
+! ilaw.f90 - hosts in Fortran 2008: the loader (<ilaw/loader.h>) and arrays that go in without a copy.
+!
+! Libraries and interfaces are opaque handles, type(c_ptr). Functions return an ILAW_* code of ilaw_abi;
+! message, where there is one, receives one blank-padded line that says what was found and what is allowed.
+! Threading and ownership are those of loader.h.
+!
+! SPDX-License-Identifier: BSD-3-Clause
+module ilaw
+  use, intrinsic :: iso_c_binding
+  use ilaw_abi
+  implicit none
+  private :: address, stride, blank_padded
+
+  ! The value of a parameter of a law, for ilaw_create. Made by ilaw_number, ilaw_choice, ilaw_table,
+  ! ilaw_per_node.
+  type :: ilaw_value
+    private
+    integer(c_int32_t) :: kind = ILAW_VALUE_NUMBER
+    character(:), allocatable :: name
+    real(c_double) :: number = 0
+    character(:), allocatable :: text
+    real(c_double), allocatable :: values(:, :)
+  end type
+
+  ! An array of the host as an argument of a batch. The array needs the target (or pointer) attribute, is not
+  ! copied, may be any section, and is used where it is for as long as the batch is.
+  !   a(:)    one value per node
+  !   a(:,:)  components first, (3,n); with nodes_first=.true. it is (n,3)
+  interface ilaw_input_of
+    procedure input_of_scalars, input_of_vectors
+  end interface
+  interface ilaw_output_of
+    procedure output_of_scalars, output_of_vectors
+  end interface
+
+  interface
+    subroutine ilaw_library_close(library) bind(c, name='ilaw_library_close')
+      import :: c_ptr
+      type(c_ptr), value :: library
+    end subroutine
+
+    ! Pointer to an ilaw_plugin.
+    type(c_ptr) function ilaw_library_plugin(library) bind(c, name='ilaw_library_plugin')
+      import :: c_ptr
+      type(c_ptr), value :: library
+    end function
+
+    ! Pointer to text.
+    type(c_ptr) function ilaw_library_path(library) bind(c, name='ilaw_library_path')
+      import :: c_ptr
+      type(c_ptr), value :: library
+    end function
+
+    subroutine ilaw_interface_destroy(interface) bind(c, name='ilaw_interface_destroy')
+      import :: c_ptr
+      type(c_ptr), value :: interface
+    end subroutine
+
+    ! Pointer to an ilaw_law.
+    type(c_ptr) function ilaw_interface_law(interface) bind(c, name='ilaw_interface_law')
+      import :: c_ptr
+      type(c_ptr), value :: interface
+    end function
+
+    integer(c_int32_t) function ilaw_interface_info(interface, info) bind(c, name='ilaw_interface_info')
+      import :: c_int32_t, c_ptr, ilaw_instance_info
+      type(c_ptr), value :: interface
+      type(ilaw_instance_info), intent(inout) :: info
+    end function
+
+    integer(c_int32_t) function ilaw_interface_initialise(interface, batch, report) &
+      bind(c, name='ilaw_interface_initialise')
+      import :: c_int32_t, c_ptr, ilaw_batch, ilaw_report
+      type(c_ptr), value :: interface
+      type(ilaw_batch), intent(in) :: batch
+      type(ilaw_report), intent(inout) :: report
+    end function
+
+    integer(c_int32_t) function ilaw_interface_evaluate(interface, batch, report) &
+      bind(c, name='ilaw_interface_evaluate')
+      import :: c_int32_t, c_ptr, ilaw_batch, ilaw_report
+      type(c_ptr), value :: interface
+      type(ilaw_batch), intent(in) :: batch
+      type(ilaw_report), intent(inout) :: report
+    end function
+  end interface
+
+contains
+
+  ! Opens a library by name or explicit path; null on failure. Trailing blanks of name do not count.
+  integer(c_int32_t) function ilaw_open(name, library, message) result(code)
+    character(*), intent(in) :: name
+    type(c_ptr), intent(out) :: library
+    character(*), intent(out) :: message
+    interface
+      integer(c_int32_t) function ilaw_library_open(name_or_path, library, message, message_size) &
+        bind(c, name='ilaw_library_open')
+        import :: c_int32_t, c_ptr, c_char, c_size_t
+        character(kind=c_char), intent(in) :: name_or_path(*)
+        type(c_ptr), intent(out) :: library
+        character(kind=c_char), intent(out) :: message(*)
+        integer(c_size_t), value :: message_size
+      end function
+    end interface
+    character(len(message) + 1, c_char) :: line
+
+    line = c_null_char
+    code = ilaw_library_open(trim(name)//c_null_char, library, line, len(line, c_size_t))
+    message = blank_padded(line)
+  end function
+
+  ! Creates an interface with a law of the library, of the given id (blank: the library's only law). values are
+  ! the parameters; arguments and argument_count of setup are set from them. Null on failure.
+  integer(c_int32_t) function ilaw_create(library, id, setup, values, interface, message) result(code)
+    type(c_ptr), intent(in) :: library
+    character(*), intent(in) :: id
+    type(ilaw_setup), intent(in) :: setup
+    type(ilaw_value), intent(in), target :: values(:)
+    type(c_ptr), intent(out) :: interface
+    character(*), intent(out) :: message
+    interface
+      integer(c_int32_t) function ilaw_interface_create(library, id, setup, interface, message, message_size) &
+        bind(c, name='ilaw_interface_create')
+        import :: c_int32_t, c_ptr, c_char, c_size_t, ilaw_setup
+        type(c_ptr), value :: library, id
+        type(ilaw_setup), intent(in) :: setup
+        type(c_ptr), intent(out) :: interface
+        character(kind=c_char), intent(out) :: message(*)
+        integer(c_size_t), value :: message_size
+      end function
+    end interface
+    type(ilaw_setup) :: filled
+    type(ilaw_argument), target :: arguments(size(values))
+    type(c_ptr), target :: argument_pointers(size(values))
+    character(len_trim(id) + 1, c_char), target :: law
+    character(len(message) + 1, c_char) :: line
+    integer :: k
+
+    do k = 1, size(values)
+      arguments(k)%kind = values(k)%kind
+      arguments(k)%name = c_loc(values(k)%name)
+      arguments(k)%number = values(k)%number
+      if (allocated(values(k)%text)) arguments(k)%text = c_loc(values(k)%text)
+      if (allocated(values(k)%values)) then
+        arguments(k)%values = c_loc(values(k)%values)
+        arguments(k)%count = size(values(k)%values, 2)
+      end if
+      argument_pointers(k) = c_loc(arguments(k))
+    end do
+    filled = setup
+    filled%arguments = c_loc(argument_pointers)
+    filled%argument_count = size(values)
+    law = trim(id)//c_null_char
+    line = c_null_char
+    code = ilaw_interface_create(library, merge(c_loc(law), c_null_ptr, len_trim(id) > 0), filled, interface, &
+                                 line, len(line, c_size_t))
+    message = blank_padded(line)
+  end function
+
+  ! A parameter given as a number.
+  function ilaw_number(name, number) result(made)
+    character(*), intent(in) :: name
+    real(c_double), intent(in) :: number
+    type(ilaw_value) :: made
+    made%name = trim(name)//c_null_char
+    made%number = number
+  end function
+
+  ! A parameter given as one of its choices.
+  function ilaw_choice(name, text) result(made)
+    character(*), intent(in) :: name, text
+    type(ilaw_value) :: made
+    made%kind = ILAW_VALUE_TEXT
+    made%name = trim(name)//c_null_char
+    made%text = trim(text)//c_null_char
+  end function
+
+  ! A parameter given as a table: (time, value) pairs, shape (2, pairs), times increasing.
+  function ilaw_table(name, pairs) result(made)
+    character(*), intent(in) :: name
+    real(c_double), intent(in) :: pairs(:, :)
+    type(ilaw_value) :: made
+    made%kind = ILAW_VALUE_TABLE
+    made%name = trim(name)//c_null_char
+    allocate (made%values, source=pairs)
+  end function
+
+  ! A parameter given with every batch, one value per node.
+  function ilaw_per_node(name) result(made)
+    character(*), intent(in) :: name
+    type(ilaw_value) :: made
+    made%kind = ILAW_VALUE_PER_NODE
+    made%name = trim(name)//c_null_char
+  end function
+
+  ! The text at a pointer of a description or a report; empty where the pointer is null.
+  function ilaw_text(pointer) result(text)
+    type(c_ptr), intent(in) :: pointer
+    character(:), allocatable :: text
+    character(kind=c_char), pointer :: characters(:)
+    integer :: k, length
+    interface
+      integer(c_size_t) function c_strlen(text) bind(c, name='strlen')
+        import :: c_size_t, c_ptr
+        type(c_ptr), value :: text
+      end function
+    end interface
+
+    text = ''
+    if (.not. c_associated(pointer)) return
+    length = int(c_strlen(pointer))
+    call c_f_pointer(pointer, characters, [length])
+    text = repeat(' ', length)
+    do k = 1, length
+      text(k:k) = characters(k)
+    end do
+  end function
+
+  function input_of_scalars(a) result(input)
+    real(c_double), intent(in), target :: a(:)
+    type(ilaw_input) :: input
+    if (size(a) == 0) return
+    input%values = c_loc(a(1))
+    if (size(a) > 1) input%node_stride = stride(c_loc(a(1)), c_loc(a(2)))
+  end function
+
+  function input_of_vectors(a, nodes_first) result(input)
+    real(c_double), intent(in), target :: a(:, :)
+    logical, intent(in), optional :: nodes_first
+    type(ilaw_input) :: input
+    integer(c_int64_t) :: strides(2)
+    if (size(a) == 0) return
+    strides = 0
+    if (size(a, 1) > 1) strides(1) = stride(c_loc(a(1, 1)), c_loc(a(2, 1)))
+    if (size(a, 2) > 1) strides(2) = stride(c_loc(a(1, 1)), c_loc(a(1, 2)))
+    if (present(nodes_first)) then
+      if (nodes_first) strides = strides([2, 1])
+    end if
+    input = ilaw_input(c_loc(a(1, 1)), strides(2), strides(1))
+  end function
+
+  function output_of_scalars(a) result(output)
+    real(c_double), intent(inout), target :: a(:)
+    type(ilaw_output) :: output
+    type(ilaw_input) :: same
+    same = input_of_scalars(a)
+    output = ilaw_output(same%values, same%node_stride, same%component_stride)
+  end function
+
+  function output_of_vectors(a, nodes_first) result(output)
+    real(c_double), intent(inout), target :: a(:, :)
+    logical, intent(in), optional :: nodes_first
+    type(ilaw_output) :: output
+    type(ilaw_input) :: same
+    same = input_of_vectors(a, nodes_first)
+    output = ilaw_output(same%values, same%node_stride, same%component_stride)
+  end function
+
+  ! One vector that is the same at every node, such as the normal of a plane.
+  function ilaw_uniform(a) result(input)
+    real(c_double), intent(in), target :: a(:)
+    type(ilaw_input) :: input
+    input = input_of_scalars(a)
+    input%component_stride = input%node_stride
+    input%node_stride = 0
+  end function
+
+  ! Doubles from one element to the next: asked of the addresses, so that any section goes in without a copy.
+  integer(c_int64_t) function stride(first, second)
+    type(c_ptr), intent(in) :: first, second
+    stride = (address(second) - address(first))/(storage_size(0._c_double)/8)
+  end function
+
+  integer(c_intptr_t) function address(pointer)
+    type(c_ptr), intent(in) :: pointer
+    address = transfer(pointer, address)
+  end function
+
+  function blank_padded(line) result(text)
+    character(*), intent(in) :: line
+    character(:), allocatable :: text
+    text = line(:index(line, c_null_char) - 1)
+  end function
+end module ilaw
