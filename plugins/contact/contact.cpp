@@ -5,9 +5,6 @@ namespace {
 
 using namespace ilaw::kit;
 
-constexpr const char* activation_choices[] = {"moreau", "predictive"};
-constexpr double predictive = 1.0;
-
 struct contact {
   double restitution;
   double activation;
@@ -42,11 +39,10 @@ struct contact {
 
   template <class Node>
   void step(Node& node) const {
-    const contact_condition condition =
-        activation == predictive ? predict_contact(node, restitution) : moreau_contact(node, restitution);
-    const double normal = condition.active ? positive_part(-condition.excess / node.delassus.normal()) : 0.0;
+    const contact_condition condition = contact_at(node, restitution, activation);
+    const double normal = condition.slack <= 0.0 ? positive_part(-condition.excess / node.delassus.normal()) : 0.0;
     node.impulse.n = normal;
-    node.status = normal > 0.0 ? ILAW_CLOSED : ILAW_FREE;
+    node.status = normal > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
   }
 };
 

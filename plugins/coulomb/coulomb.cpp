@@ -5,9 +5,6 @@ namespace {
 
 using namespace ilaw::kit;
 
-constexpr const char* activation_choices[] = {"moreau", "predictive"};
-constexpr double predictive = 1.0;
-
 struct coulomb {
   double friction;
   double restitution;
@@ -56,11 +53,10 @@ struct coulomb {
 
   template <class Node>
   void step(Node& node) const {
-    const contact_condition contact =
-        activation == predictive ? predict_contact(node, restitution) : moreau_contact(node, restitution);
+    const contact_condition contact = contact_at(node, restitution, activation);
     const vector q{contact.excess, node.v_free.t1 + tangential_restitution * node.v_previous.t1,
                    node.v_free.t2 + tangential_restitution * node.v_previous.t2};
-    apply_contact_friction(node, contact.active, q, friction);
+    apply_contact_friction(node, contact.slack, q, friction);
   }
 };
 

@@ -4,27 +4,28 @@
 
 #include <ilaw/kit/node.hpp>
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// Contact asks 0 <= excess + H_NN r_N _|_ r_N >= 0 where it is active, r_N = 0 elsewhere.
+// Values of the parameter "activation".
+inline constexpr const char* activation_choices[] = {"moreau", "predictive"};
+inline constexpr double moreau = 0.0, predictive = 1.0;
+
+// Contact asks 0 <= excess + H_NN r_N _|_ r_N >= 0 where slack <= 0, and r_N = 0 elsewhere.
 struct contact_condition {
-  bool active;
-  double excess;
+  double slack, excess;
 };
 
-// Closed gap: v_N + e v_N^- >= 0 (Moreau 1988).
+// moreau: where the gap is closed, v_N + e v_N^- >= 0 (Moreau 1988).
+// predictive: where the next gap would not be positive, v_N >= -g/h, so that it is never negative. An impact
+// with restitution leaves with -e v_N^- at once, which is larger. A gap that is negative already must not
+// grow; pushing it out would create energy.
 template <class Node>
-contact_condition moreau_contact(const Node& node, double restitution) {
-  return {node.gap <= 0.0, node.v_free.n + restitution * node.v_previous.n};
-}
-
-// Next gap: v_N >= -g/h, so that it is never negative. An impact with restitution leaves with -e v_N^- at
-// once, which is larger. A gap that is negative already must not grow; pushing it out would create energy.
-template <class Node>
-contact_condition predict_contact(const Node& node, double restitution) {
-  const double arrival = -positive_part(node.gap) / node.position_step;
+contact_condition contact_at(const Node& node, double restitution, double activation) {
   const double rebound = -restitution * node.v_previous.n;
-  return {node.v_free.n < arrival, node.v_free.n - (rebound > 0.0 ? rebound : arrival)};
+  const double arrival = -positive_part(node.gap) / node.position_step;
+  const double predicted = rebound > 0.0 ? rebound : arrival;
+  return {activation == predictive ? node.v_free.n - arrival : node.gap,
+          node.v_free.n - (activation == predictive ? predicted : rebound)};
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

@@ -27,7 +27,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // ILAW_INPUT_* as unsigned numbers, to be combined freely.
 inline constexpr std::uint32_t reads_gap = ILAW_INPUT_GAP;
@@ -182,4 +182,4 @@ struct description {
 };
 
 }  // namespace detail
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

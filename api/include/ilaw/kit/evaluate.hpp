@@ -4,8 +4,9 @@
 
 #include <ilaw/kit/frame.hpp>
 #include <ilaw/kit/instance.hpp>
+#include <ilaw/kit/kernel.hpp>
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // A batch read up to the size its writer knew; absent members are zero.
 inline ilaw_batch known_batch(const ilaw_batch& given) {
@@ -127,7 +128,7 @@ class batch_walk {
     fresh.time = batch_.time;
     fresh.area = area;
     if constexpr (requires { law.initialise(fresh); }) law.initialise(fresh);
-    if (!detail::finite_state<Law>(fresh.state)) return "the state overflows";
+    if (detail::state_defect<Law>(fresh.state) != 0.0) return "the state overflows";
     if constexpr (has_state<Law>) {
       const auto doubles = std::bit_cast<std::array<double, states>>(fresh.state);
       for (int k = 0; k < states; ++k)
@@ -165,6 +166,12 @@ class batch_walk {
     if (!made_.carries_frame) return;
     for (int i = 0; i < nodes_.count; ++i)
       if (block_.refused[i] == 0.0) keep_frame(i);
+  }
+
+  bool any_refused() const {
+    std::uint64_t bits = 0;  // an integer reduction vectorises; refused is 0.0 or 1.0
+    for (int i = 0; i < nodes_.count; ++i) bits |= std::bit_cast<std::uint64_t>(block_.refused[i]);
+    return bits != 0;
   }
 
   // Nothing happens to a refused node, also where turning it with a bad normal left a NaN.
@@ -345,17 +352,17 @@ struct tally {
 template <class Law, class Delassus>
 const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool global) {
   const auto n = load_node<Law, Delassus>(b, i);
-  if (!finite(n.v_free))
+  if (defect(n.v_free) != 0.0)
     return global ? "v_free is not finite, or the normal is not a unit vector" : "v_free is not finite";
-  if (!n.delassus.positive()) return "H is not finite and positive definite";
-  if (!finite(n.gap)) return "the gap is not finite";
-  if (!finite(n.v_previous)) return "v_previous is not finite";
+  if (n.delassus.positive_defect() != 0.0) return "H is not finite and positive definite";
+  if (defect(n.gap) != 0.0) return "the gap is not finite";
+  if (defect(n.v_previous) != 0.0) return "v_previous is not finite";
   if (!finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
-  if (!detail::finite_state<Law>(n.state)) return "the state is not finite";
-  const refusal refused = step_node<Law, Delassus>(law, b, i).result.refused;
-  if (refused == refusal::anisotropic_delassus)
+  if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
+  const double refused = step_node<Law, Delassus>(law, b, i).result.refused;
+  if (refused == anisotropic_delassus)
     return "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal";
-  if (refused == refusal::no_solution) return "the law's equations have no solution for this H";
+  if (refused == no_solution) return "the law's equations have no solution for this H";
   return "the impulse or the state overflows";
 }
 
@@ -382,26 +389,25 @@ struct evaluate_walk {
     tally found;
     for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
       walk.open(first);
-      const double refused = run(made, law, batch, walk);
-      if (refused > 0.0) explain(made, law, batch, walk, found);
+      run_nodes(made, law, batch, walk);
+      const bool refused = walk.any_refused();
+      if (refused) explain(made, law, batch, walk, found);
       walk.close();
       walk.keep_frames();
-      if (refused > 0.0) walk.restore_refused();
+      if (refused) walk.restore_refused();
     }
     return found;
   }
 
  private:
-  static double run(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
-                    batch_walk<Law>& walk) {
-    if constexpr (!Varying) return run_block<Law, Delassus, Diagnostics>(law, walk.block());
-    double refused = 0.0;
+  static void run_nodes(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
+                        batch_walk<Law>& walk) {
+    if constexpr (!Varying) run_block<Law, Delassus, Diagnostics>(law, walk.block());
     for (int i = 0; Varying && i < walk.nodes().count; ++i) {
       Law own = law;
       const bool valid = at_node(made, batch, walk.nodes().node(i), own);
-      refused += run_node<Law, Delassus, Diagnostics>(own, walk.block(), i, valid);
+      run_node<Law, Delassus, Diagnostics>(own, walk.block(), i, valid);
     }
-    return refused;
   }
 
   [[gnu::noinline, gnu::cold]] static void explain(const instance<Law>& made, const Law& law,
@@ -419,12 +425,27 @@ struct evaluate_walk {
 };
 
 template <class Law, class Delassus>
-tally evaluate_as(const instance<Law>& made, const ilaw_batch& batch) {
+tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
   if (made.per_node_count > 0) return evaluate_walk<Law, Delassus, true, true>::run(made, law, batch);
-  const bool diagnostics = batch.velocity.values || batch.energy.values || batch.status;
-  return diagnostics ? dispatch<evaluate_walk<Law, Delassus, true, false>>(made.level, made, law, batch)
-                     : dispatch<evaluate_walk<Law, Delassus, false, false>>(made.level, made, law, batch);
+  if (batch.velocity.values || batch.energy.values || batch.status)
+    return evaluate_walk<Law, Delassus, true, false>::run(made, law, batch);
+  return evaluate_walk<Law, Delassus, false, false>::run(made, law, batch);
+}
+
+// An ilaw_kit_walk: a checked batch from end to end, compiled for this level.
+template <class Law>
+void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
+  const auto& made = *static_cast<const instance<Law>*>(opaque);
+  // A diagonal H turned out of its axes is full.
+  const bool turned = made.frame == ILAW_FRAME_GLOBAL && made.dimension > 1;
+  auto& result = *static_cast<tally*>(found);
+  if (made.delassus_form == ILAW_DELASSUS_SCALAR)
+    result = walk_as<Law, scalar_delassus>(made, batch);
+  else if (made.delassus_form == ILAW_DELASSUS_DIAGONAL && !turned)
+    result = walk_as<Law, diagonal_delassus>(made, batch);
+  else
+    result = walk_as<Law, full_delassus>(made, batch);
 }
 
 inline std::int32_t give_report(ilaw_report* report, const tally& found) {
@@ -443,13 +464,9 @@ std::int32_t evaluate(const ilaw_instance* opaque, const ilaw_batch* given, ilaw
   const instance<Law>& made = of<Law>(opaque);
   const ilaw_batch batch = known_batch(*given);
   if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
-  // A diagonal H turned out of its axes is full.
-  const bool turned = made.frame == ILAW_FRAME_GLOBAL && made.dimension > 1;
-  if (made.delassus_form == ILAW_DELASSUS_SCALAR)
-    return give_report(report, evaluate_as<Law, scalar_delassus>(made, batch));
-  if (made.delassus_form == ILAW_DELASSUS_DIAGONAL && !turned)
-    return give_report(report, evaluate_as<Law, diagonal_delassus>(made, batch));
-  return give_report(report, evaluate_as<Law, full_delassus>(made, batch));
+  tally found;
+  (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
+  return give_report(report, found);
 }
 
 // First state of the nodes of a batch.
@@ -484,4 +501,4 @@ std::int32_t initialise(const ilaw_instance* opaque, const ilaw_batch* given, il
   return give_report(report, initialise_nodes(made, batch));
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

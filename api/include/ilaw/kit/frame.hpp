@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // Largest | |n|^2 - 1 | accepted: normals that went through single precision pass.
 inline constexpr double unit_tolerance = 1e-6;
@@ -113,4 +113,4 @@ inline void delassus_to_local(const frame_block& frame, int count, const double*
   for (int e = 0; e < 6; ++e) h[e] = room[e].values;
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

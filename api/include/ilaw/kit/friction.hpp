@@ -5,7 +5,7 @@
 #include <ilaw/kit/contact.hpp>
 #include <ilaw/kit/node.hpp>
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // Largest tangential impulse that friction can give: mu r_N, zero without pressure also when mu is infinite.
 constexpr double friction_limit(double friction, double normal_impulse) {
@@ -20,9 +20,10 @@ struct friction_result {
 // Solves q + H r = u, 0 <= u_N _|_ r_N >= 0, |r_T| <= mu r_N with r_T opposite to u_T where u_T != 0,
 // in closed form for H = diag(h_N, h_T, h_T): the normal row stands alone (Signorini), and the slip u_T is
 // parallel to q_T, so that sliding scales the sticking impulse back to the cone (de Saxce and Feng 1991).
+// Where slack > 0 the contact is open and r = 0.
 template <class Delassus>
-friction_result solve_contact_friction(const Delassus& delassus, vector q, double friction) {
-  const double normal = positive_part(-q.n / delassus.normal());
+friction_result solve_contact_friction(const Delassus& delassus, double slack, vector q, double friction) {
+  const double normal = slack <= 0.0 ? positive_part(-q.n / delassus.normal()) : 0.0;
   const double limit = friction_limit(friction, normal);
   const double speed = q.tangential_length();
   const bool slips = speed > limit * delassus.tangential();
@@ -30,16 +31,14 @@ friction_result solve_contact_friction(const Delassus& delassus, vector q, doubl
   return {{normal, -factor * q.t1, -factor * q.t2}, slips};
 }
 
-// The same where the contact may also be open; gives the node its impulse and status.
+// The same, giving the node its impulse and status.
 template <class Node>
-void apply_contact_friction(Node& node, bool active, vector q, double friction) {
-  const friction_result result = solve_contact_friction(node.delassus, q, friction);
-  const bool closed = active && result.impulse.n > 0.0;
-  node.impulse.n = closed ? result.impulse.n : 0.0;
-  node.impulse.t1 = closed ? result.impulse.t1 : 0.0;
-  node.impulse.t2 = closed ? result.impulse.t2 : 0.0;
-  node.status = closed ? (result.slips ? ILAW_SLIP : ILAW_STICK) : ILAW_FREE;
-  node.refused = node.delassus.tangentially_isotropic() ? refusal::none : refusal::anisotropic_delassus;
+void apply_contact_friction(Node& node, double slack, vector q, double friction) {
+  const friction_result result = solve_contact_friction(node.delassus, slack, q, friction);
+  node.impulse = result.impulse;
+  const double closed_status = result.slips ? double{ILAW_SLIP} : double{ILAW_STICK};
+  node.status = result.impulse.n > 0.0 ? closed_status : double{ILAW_FREE};
+  node.refused = node.delassus.anisotropy() == 0.0 ? not_refused : anisotropic_delassus;
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

@@ -4,10 +4,11 @@
 #pragma once
 
 #include <ilaw/ilaw.h>
+#include <ilaw/kit/level.hpp>
 
 #include <cstdint>
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // Nodes worked on together: enough to fill vectors and hide loop overhead, few enough to stay in the first
 // cache.
@@ -102,4 +103,4 @@ inline void scatter_vector(const ilaw_output& output, int dimension, const node_
   for (int k = 0; k < dimension; ++k) scatter(output, k, nodes, components[k]);
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

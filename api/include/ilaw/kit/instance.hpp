@@ -7,7 +7,7 @@
 
 #include <new>
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // The local frame is carried along in the state where a law remembers vectors and the host gives only
 // normals.
@@ -30,7 +30,7 @@ struct instance {
 
   Law law;
   std::uint32_t dimension, delassus_form, frame, tangent_given;
-  instruction_set level;
+  ilaw_kit_walk walk = nullptr;  // null: this level's own
   std::int64_t memory_size = 0;
   bool carries_frame = false;
   time_table tables[parameter_count + 1];
@@ -123,7 +123,6 @@ class instance_builder {
     made_.delassus_form = setup_.delassus_form;
     made_.frame = setup_.frame;
     made_.tangent_given = setup_.tangent_given;
-    made_.level = best_instruction_set();
     return ILAW_OK;
   }
 
@@ -305,4 +304,4 @@ std::int32_t info(const ilaw_instance* opaque, ilaw_instance_info* out) {
   return ILAW_OK;
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

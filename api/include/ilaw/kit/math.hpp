@@ -3,6 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/kit/level.hpp>
+
 #include <bit>
 #include <cstdint>
 #include <limits>
@@ -11,7 +13,7 @@
 #error "the kit needs IEEE arithmetic: compile without -ffast-math"
 #endif
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -65,4 +67,4 @@ inline double exp(double x) {
   return x == x ? result : x;
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

@@ -6,7 +6,7 @@
 #include <ilaw/ilaw.h>
 #include <ilaw/kit/math.hpp>
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // A vector in the local frame: normal, first and second tangential component.
 struct vector {
@@ -22,9 +22,14 @@ struct vector {
 // Smallest H allowed: below it 1/H overflows.
 inline constexpr double smallest_delassus = std::numeric_limits<double>::min();
 
-inline bool finite(vector a) { return finite(a.n) && finite(a.t1) && finite(a.t2); }
+// Checks give a defect: 0.0 where all is well, NaN where not. Defects add up, and need no branch and no
+// logical operation, which compilers vectorise less reliably than arithmetic.
+constexpr double defect(double x) { return x - x; }
+inline double defect(vector a) { return defect(a.n) + defect(a.t1) + defect(a.t2); }
+constexpr double defect_unless(bool good) { return good ? 0.0 : std::numeric_limits<double>::quiet_NaN(); }
 
-// The three forms of H, with the same operations: H r, H^-1 v, and whether H is positive definite.
+// The three forms of H, with the same operations: H r, H^-1 v, and the defect of one that is not
+// finite and positive definite. anisotropy() is zero where closed forms for H = diag(h_N, h_T, h_T) hold.
 struct scalar_delassus {
   static constexpr int components = 1;
   double h;
@@ -32,8 +37,8 @@ struct scalar_delassus {
   static scalar_delassus from(const double* c) { return {c[0]}; }
   double normal() const { return h; }
   double tangential() const { return h; }
-  bool tangentially_isotropic() const { return true; }
-  bool positive() const { return finite(h) && h >= smallest_delassus; }
+  double anisotropy() const { return 0.0; }
+  double positive_defect() const { return defect(h) + defect_unless(h >= smallest_delassus); }
   vector times(vector r) const { return h * r; }
   vector solve(vector v) const { return {v.n / h, v.t1 / h, v.t2 / h}; }
 };
@@ -45,10 +50,10 @@ struct diagonal_delassus {
   static diagonal_delassus from(const double* c) { return {c[0], c[1], c[2]}; }
   double normal() const { return n; }
   double tangential() const { return t1; }
-  bool tangentially_isotropic() const { return t1 == t2; }
-  bool positive() const {
-    return finite(n) && finite(t1) && finite(t2) && n >= smallest_delassus && t1 >= smallest_delassus &&
-           t2 >= smallest_delassus;
+  double anisotropy() const { return absolute(t1 - t2); }
+  double positive_defect() const {
+    return defect(n) + defect(t1) + defect(t2) + defect_unless(n >= smallest_delassus) +
+           defect_unless(t1 >= smallest_delassus) + defect_unless(t2 >= smallest_delassus);
   }
   vector times(vector r) const { return {n * r.n, t1 * r.t1, t2 * r.t2}; }
   vector solve(vector v) const { return {v.n / n, v.t1 / t1, v.t2 / t2}; }
@@ -61,8 +66,7 @@ struct full_delassus {
   static full_delassus from(const double* c) { return {c[0], c[1], c[2], c[3], c[4], c[5]}; }
   double normal() const { return nn; }
   double tangential() const { return t11; }
-  bool decoupled() const { return n1 == 0.0 && n2 == 0.0 && t12 == 0.0; }
-  bool tangentially_isotropic() const { return decoupled() && t11 == t22; }
+  double anisotropy() const { return absolute(t11 - t22) + absolute(n1) + absolute(n2) + absolute(t12); }
 
   // LDL^T: pivots and multipliers. H is positive definite exactly when the pivots are positive.
   struct factors {
@@ -74,10 +78,11 @@ struct full_delassus {
     const double l21 = (t12 - l20 * n1) / d1;
     return {nn, d1, (t22 - l20 * n2) - l21 * (t12 - l20 * n1), l10, l20, l21};
   }
-  bool positive() const {
+  double positive_defect() const {
     const factors f = factorise();
-    return finite(nn) && finite(f.d1) && finite(f.d2) && finite(f.l21) && f.d0 >= smallest_delassus &&
-           f.d1 >= smallest_delassus && f.d2 >= smallest_delassus;
+    return defect(f.d0) + defect(f.d1) + defect(f.d2) + defect(f.l21) +
+           defect_unless(f.d0 >= smallest_delassus) + defect_unless(f.d1 >= smallest_delassus) +
+           defect_unless(f.d2 >= smallest_delassus);
   }
   vector times(vector r) const {
     return {nn * r.n + n1 * r.t1 + n2 * r.t2, n1 * r.n + t11 * r.t1 + t12 * r.t2,
@@ -93,12 +98,10 @@ struct full_delassus {
   }
 };
 
-// Why a node is refused; the text goes into the report.
-enum class refusal : int {
-  none = 0,
-  anisotropic_delassus,  // the law has no closed form for this H
-  no_solution,           // the law's equations have none for this input
-};
+// Why a law refuses a node; the text goes into the report. A double, like the status, to stay in vector code.
+inline constexpr double not_refused = 0.0;
+inline constexpr double anisotropic_delassus = 1.0;  // the law has no closed form for this H
+inline constexpr double no_solution = 2.0;           // the law's equations have none for this input
 
 // Memory of a law beyond its named state: doubles of one node, wherever the host keeps them.
 struct const_history {
@@ -129,8 +132,8 @@ struct node {
   vector impulse;
   State state;          // comes in as it was, leaves as it is
   double stored = 0.0;  // energy stored by the interface at the end of the step
-  int status = ILAW_FREE;
-  refusal refused = refusal::none;
+  double status = ILAW_FREE;
+  double refused = not_refused;
 };
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

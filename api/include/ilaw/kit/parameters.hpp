@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstring>
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // One line for the caller of create; text that does not fit is cut.
 class message {
@@ -142,4 +142,4 @@ inline std::int32_t check_table(const char* law, const ilaw_parameter& p, const 
   return ILAW_OK;
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

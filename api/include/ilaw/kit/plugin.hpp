@@ -7,9 +7,23 @@
 #endif
 #include <ilaw/kit/evaluate.hpp>
 
-namespace ilaw::kit {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-template <class Law>
+// The walks of this level, in the order of the laws.
+template <class... Laws>
+inline constexpr ilaw_kit_walk walks[] = {walk_batch<Laws>...};
+
+// The place of a law in its library is not known to the law, so create is made per place.
+template <std::size_t Place, class Law>
+std::int32_t create_at(const ilaw_setup* setup, ilaw_instance** result, char* text, std::size_t text_size) {
+  const std::int32_t code = create<Law>(setup, result, text, text_size);
+  if (code == ILAW_OK)
+    if (const ilaw_kit_walk* best = best_walks())
+      reinterpret_cast<instance<Law>*>(*result)->walk = best[Place];
+  return code;
+}
+
+template <std::size_t Place, class Law>
 inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .dimensions = Law::card.dimensions,
                                   .delassus_forms = Law::card.delassus_forms,
@@ -26,7 +40,7 @@ inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .parameter_count = detail::parameter_count<Law>,
                                   .state_variable_count = detail::state_variable_count<Law>,
                                   .reserved = 0,
-                                  .create = create<Law>,
+                                  .create = create_at<Place, Law>,
                                   .destroy = destroy<Law>,
                                   .info = info<Law>,
                                   .initialise = initialise<Law>,
@@ -34,25 +48,41 @@ inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
 
 // The description of a library with these laws.
 template <class... Laws>
-const ilaw_plugin* describe(const char* name, const char* version, const char* vendor, const char* licence) {
-  static const ilaw_law* const laws[] = {&abi_law<Laws>...};
-  static const ilaw_plugin plugin{.struct_size = sizeof(ilaw_plugin),
-                                  .abi_major = ILAW_ABI_MAJOR,
-                                  .abi_minor = ILAW_ABI_MINOR,
-                                  .name = name,
-                                  .version = version,
-                                  .vendor = vendor,
-                                  .licence = licence,
-                                  .laws = laws,
-                                  .law_count = sizeof...(Laws),
-                                  .reserved = 0};
-  return &plugin;
-}
-
-}  // namespace ilaw::kit
-
-// ILAW_PLUGIN(name, version, vendor, licence, Law...) makes the one exported symbol of a law library.
-#define ILAW_PLUGIN(name, version, vendor, licence, ...)                     \
-  extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {               \
-    return ilaw::kit::describe<__VA_ARGS__>(name, version, vendor, licence); \
+class library {
+ public:
+  static const ilaw_plugin* describe(const char* name, const char* version, const char* vendor,
+                                     const char* licence) {
+    static const ilaw_plugin plugin{.struct_size = sizeof(ilaw_plugin),
+                                    .abi_major = ILAW_ABI_MAJOR,
+                                    .abi_minor = ILAW_ABI_MINOR,
+                                    .name = name,
+                                    .version = version,
+                                    .vendor = vendor,
+                                    .licence = licence,
+                                    .laws = pointers.data(),
+                                    .law_count = sizeof...(Laws),
+                                    .reserved = 0};
+    return &plugin;
   }
+
+ private:
+  template <std::size_t... Places>
+  static constexpr std::array<const ilaw_law*, sizeof...(Laws)> all(std::index_sequence<Places...>) {
+    return {&abi_law<Places, Laws>...};
+  }
+  static constexpr auto pointers = all(std::index_sequence_for<Laws...>{});
+};
+
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+
+// ILAW_PLUGIN(name, version, vendor, licence, Law...) makes the one exported symbol of a law library; at the
+// other levels, the hidden one that gives their walks.
+#if defined(ILAW_KIT_WALKS)
+#define ILAW_PLUGIN(name, version, vendor, licence, ...) \
+  extern "C" const ilaw_kit_walk* ILAW_KIT_WALKS() { return ilaw::kit::walks<__VA_ARGS__>; }
+#else
+#define ILAW_PLUGIN(name, version, vendor, licence, ...)                              \
+  extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {                        \
+    return ilaw::kit::library<__VA_ARGS__>::describe(name, version, vendor, licence); \
+  }
+#endif
