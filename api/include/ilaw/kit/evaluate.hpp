@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/frame.hpp>
 #include <ilaw/kit/instance.hpp>
 #include <ilaw/kit/kernel.hpp>
 
@@ -67,7 +66,7 @@ struct block_room {
   column v_free[3], v_previous[3], delassus[6], gap, gap_offset, area, normal[3], tangent[3];
   column impulse[3], velocity[3], energy[ILAW_ENERGY_COUNT], status, refused;
   column state_in[states + 1], state_out[states + 1];
-  frame_block frame;
+  column first_tangent[3], second_tangent[3];
 };
 
 // Entry of the host's state that holds double k of struct state; -1: a component beyond the dimension.
@@ -102,7 +101,7 @@ class batch_walk {
     block_.velocity_step = batch_.velocity_step;
     block_.position_step = batch_.position_step;
     gather_inputs();
-    if (made_.frame == ILAW_FRAME_GLOBAL) turn_to_local();
+    if (made_.frame == ILAW_FRAME_GLOBAL) gather_frame();
     open_state();
     aim_outputs();
   }
@@ -123,7 +122,7 @@ class batch_walk {
       at(batch_.state_out, node, c) = 0.0;
     const double area = block_.area[i];
     if (!finite(area) || area < 0.0) return "the area is not a finite number >= 0";
-    if (made_.carries_frame && !unit(room_.frame.normal(i))) return "the normal is not a unit vector";
+    if (made_.carries_frame && !unit(block_.axes.at(0, i))) return "the normal is not a unit vector";
     kit::node<scalar_delassus, state_t<Law>> fresh{};
     fresh.time = batch_.time;
     fresh.area = area;
@@ -144,13 +143,8 @@ class batch_walk {
 
   // Writes what the block computed to the host's arrays. Outputs that are absent are left out.
   void close() {
-    const bool global = made_.frame == ILAW_FRAME_GLOBAL;
-    if (global) to_global(room_.frame, nodes_.count, block_.impulse);
     scatter_vector(batch_.impulse, dimension_, nodes_, block_.impulse);
-    if (batch_.velocity.values) {
-      if (global) to_global(room_.frame, nodes_.count, block_.velocity);
-      scatter_vector(batch_.velocity, dimension_, nodes_, block_.velocity);
-    }
+    if (batch_.velocity.values) scatter_vector(batch_.velocity, dimension_, nodes_, block_.velocity);
     if (batch_.energy.values)
       for (int k = 0; k < ILAW_ENERGY_COUNT; ++k) scatter(batch_.energy, k, nodes_, block_.energy[k]);
     if (batch_.status)
@@ -174,16 +168,6 @@ class batch_walk {
     return bits != 0;
   }
 
-  // Nothing happens to a refused node, also where turning it with a bad normal left a NaN.
-  void restore_refused() {
-    for (int i = 0; i < nodes_.count; ++i)
-      for (int c = 0; block_.refused[i] != 0.0 && c < dimension_; ++c) {
-        const std::int64_t node = nodes_.node(i);
-        at(batch_.impulse, node, c) = 0.0;
-        if (batch_.velocity.values) at(batch_.velocity, node, c) = at(batch_.v_free, node, c);
-      }
-  }
-
  private:
   static const double& at(const ilaw_input& a, std::int64_t node, std::int64_t c) {
     return a.values[node * a.node_stride + c * a.component_stride];
@@ -193,7 +177,7 @@ class batch_walk {
   }
 
   void keep_frame(int i) {
-    const axis n = room_.frame.normal(i), t = room_.frame.first(i);
+    const axis n = block_.axes.at(0, i), t = block_.axes.at(3, i);
     const double entries[6] = {n.x, n.y, n.z, t.x, t.y, t.z};
     for (int k = 0; k < 6; ++k) at(batch_.state_out, nodes_.node(i), made_.frame_offset() + k) = entries[k];
   }
@@ -236,38 +220,34 @@ class batch_walk {
     if (dimension_ == 2) h[2] = h[1];
   }
 
+  // Columns of the axes. Frames that follow from the normal alone are left to the kernel in three dimensions.
   void gather_frame() {
-    const double* normal[3];
-    gather_vector(batch_.normal, dimension_, nodes_, room_.normal, normal);
-    room_.frame.nx = normal[0];
-    room_.frame.ny = normal[1];
-    room_.frame.nz = normal[2];
-    set_tangents();
-  }
-
-  void turn_to_local() {
-    gather_frame();
-    to_local(room_.frame, nodes_.count, block_.v_free, room_.v_free);
-    if (block_.v_previous[0] != zeros.values)
-      to_local(room_.frame, nodes_.count, block_.v_previous, room_.v_previous);
-    if (made_.delassus_form != ILAW_DELASSUS_SCALAR && dimension_ > 1)
-      delassus_to_local(room_.frame, nodes_.count, block_.delassus, room_.delassus);
-  }
-
-  void set_tangents() {
-    frame_block& frame = room_.frame;
-    if (dimension_ < 3) {
-      for (int i = 0; i < nodes_.count; ++i) frame.set(i, plane_tangent(dimension_, frame.normal(i)));
-    } else if (made_.tangent_given) {
-      const double* tangent[3];
-      gather_vector(batch_.tangent, dimension_, nodes_, room_.tangent, tangent);
-      for (int i = 0; i < nodes_.count; ++i) frame.set(i, {tangent[0][i], tangent[1][i], tangent[2][i]});
-    } else if (made_.carries_frame && batch_.state_in.values) {
-      for (int i = 0; i < nodes_.count; ++i) frame.set(i, carried_tangent(i));
-    } else {
-#pragma omp simd
-      for (int i = 0; i < nodes_.count; ++i) frame.set(i, any_tangent(frame.normal(i)));
+    gather_vector(batch_.normal, dimension_, nodes_, room_.normal, block_.axes.values);
+    if (!made_.stores_frame()) return;
+    for (int c = 0; c < 3; ++c) {
+      block_.axes.values[3 + c] = room_.first_tangent[c].values;
+      block_.axes.values[6 + c] = room_.second_tangent[c].values;
     }
+    if (made_.tangent_given && dimension_ == 3)
+      gather_vector(batch_.tangent, dimension_, nodes_, room_.tangent, block_.axes.values + 3);
+    for (int i = 0; i < nodes_.count; ++i) set_tangents(i);
+  }
+
+  void set_tangents(int i) {
+    const axis n = block_.axes.at(0, i), t1 = first_tangent(i), t2 = cross(n, t1);
+    const double first[] = {t1.x, t1.y, t1.z}, second[] = {t2.x, t2.y, t2.z};
+    for (int c = 0; c < 3; ++c) {
+      if (block_.axes.values[3 + c] == room_.first_tangent[c].values)
+        room_.first_tangent[c].values[i] = first[c];
+      room_.second_tangent[c].values[i] = second[c];
+    }
+  }
+
+  axis first_tangent(int i) const {
+    const axis n = block_.axes.at(0, i);
+    if (dimension_ < 3) return plane_tangent(dimension_, n);
+    if (made_.tangent_given) return block_.axes.at(3, i);
+    return made_.carries_frame && batch_.state_in.values ? carried_tangent(i) : any_tangent(n);
   }
 
   axis carried_tangent(int i) const {
@@ -275,7 +255,7 @@ class batch_walk {
     const double* in = s.values + nodes_.node(i) * s.node_stride + made_.frame_offset() * s.component_stride;
     const std::int64_t c = s.component_stride;
     return transported_tangent({in[0], in[c], in[2 * c]}, {in[3 * c], in[4 * c], in[5 * c]},
-                               room_.frame.normal(i));
+                               block_.axes.at(0, i));
   }
 
   void open_state() {
@@ -349,17 +329,18 @@ struct tally {
 };
 
 // Why a node was refused, from the same checks as step_node, in their order.
-template <class Law, class Delassus>
-const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool global) {
-  const auto n = load_node<Law, Delassus>(b, i);
-  if (defect(n.v_free) != 0.0)
-    return global ? "v_free is not finite, or the normal is not a unit vector" : "v_free is not finite";
+template <class Law, class Delassus, class Frame>
+const char* refusal_reason(const Law& law, const node_block<Law>& b, int i) {
+  const auto n = load_node<Law, Delassus, Frame>(b, i);
+  if constexpr (Frame::turns)
+    if (!unit(b.axes.at(0, i))) return "the normal is not a unit vector";
+  if (defect(n.v_free) != 0.0) return "v_free is not finite";
   if (n.delassus.positive_defect() != 0.0) return "H is not finite and positive definite";
   if (defect(n.gap) != 0.0) return "the gap is not finite";
   if (defect(n.v_previous) != 0.0) return "v_previous is not finite";
   if (!finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
   if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
-  const double refused = step_node<Law, Delassus>(law, b, i).result.refused;
+  const double refused = step_node<Law, Delassus, Frame>(law, b, i).result.refused;
   if (refused == anisotropic_delassus)
     return "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal";
   if (refused == no_solution) return "the law's equations have no solution for this H";
@@ -381,7 +362,7 @@ bool at_node(const instance<Law>& made, const ilaw_batch& batch, std::int64_t no
 }
 
 // The whole of a batch; Varying: with parameters per node, one node at a time.
-template <class Law, class Delassus, bool Diagnostics, bool Varying>
+template <class Law, class Delassus, class Frame, bool Diagnostics, bool Varying>
 struct evaluate_walk {
   static tally run(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
     block_room<Law> room;
@@ -394,7 +375,6 @@ struct evaluate_walk {
       if (refused) explain(made, law, batch, walk, found);
       walk.close();
       walk.keep_frames();
-      if (refused) walk.restore_refused();
     }
     return found;
   }
@@ -402,11 +382,11 @@ struct evaluate_walk {
  private:
   static void run_nodes(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
                         batch_walk<Law>& walk) {
-    if constexpr (!Varying) run_block<Law, Delassus, Diagnostics>(law, walk.block());
+    if constexpr (!Varying) run_block<Law, Delassus, Frame, Diagnostics>(law, walk.block());
     for (int i = 0; Varying && i < walk.nodes().count; ++i) {
       Law own = law;
       const bool valid = at_node(made, batch, walk.nodes().node(i), own);
-      run_node<Law, Delassus, Diagnostics>(own, walk.block(), i, valid);
+      run_node<Law, Delassus, Frame, Diagnostics>(own, walk.block(), i, valid);
     }
   }
 
@@ -417,35 +397,45 @@ struct evaluate_walk {
       if (walk.block().refused[i] == 0.0) continue;
       Law own = law;
       const bool valid = at_node(made, batch, walk.nodes().node(i), own);
-      found.add(walk.nodes().node(i),
-                valid ? refusal_reason<Law, Delassus>(own, walk.block(), i, made.frame == ILAW_FRAME_GLOBAL)
-                      : "a per-node parameter is out of range");
+      found.add(walk.nodes().node(i), valid ? refusal_reason<Law, Delassus, Frame>(own, walk.block(), i)
+                                            : "a per-node parameter is out of range");
     }
   }
 };
 
-template <class Law, class Delassus>
+template <class Law, class Delassus, class Frame>
 tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
-  if (made.per_node_count > 0) return evaluate_walk<Law, Delassus, true, true>::run(made, law, batch);
+  if (made.per_node_count > 0) return evaluate_walk<Law, Delassus, Frame, true, true>::run(made, law, batch);
   if (batch.velocity.values || batch.energy.values || batch.status)
-    return evaluate_walk<Law, Delassus, true, false>::run(made, law, batch);
-  return evaluate_walk<Law, Delassus, false, false>::run(made, law, batch);
+    return evaluate_walk<Law, Delassus, Frame, true, false>::run(made, law, batch);
+  return evaluate_walk<Law, Delassus, Frame, false, false>::run(made, law, batch);
+}
+
+// A diagonal H turned out of its axes is full.
+template <class Law>
+tally walk_turned(const instance<Law>& made, const ilaw_batch& batch) {
+  if (made.delassus_form != ILAW_DELASSUS_SCALAR)
+    return walk_as<Law, full_delassus, stored_frame>(made, batch);
+  return made.stores_frame() ? walk_as<Law, scalar_delassus, stored_frame>(made, batch)
+                             : walk_as<Law, scalar_delassus, normal_frame>(made, batch);
+}
+
+template <class Law>
+tally walk_local(const instance<Law>& made, const ilaw_batch& batch) {
+  if (made.delassus_form == ILAW_DELASSUS_SCALAR)
+    return walk_as<Law, scalar_delassus, local_frame>(made, batch);
+  return made.delassus_form == ILAW_DELASSUS_DIAGONAL
+             ? walk_as<Law, diagonal_delassus, local_frame>(made, batch)
+             : walk_as<Law, full_delassus, local_frame>(made, batch);
 }
 
 // An ilaw_kit_walk: a checked batch from end to end, compiled for this level.
 template <class Law>
 void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
   const auto& made = *static_cast<const instance<Law>*>(opaque);
-  // A diagonal H turned out of its axes is full.
-  const bool turned = made.frame == ILAW_FRAME_GLOBAL && made.dimension > 1;
-  auto& result = *static_cast<tally*>(found);
-  if (made.delassus_form == ILAW_DELASSUS_SCALAR)
-    result = walk_as<Law, scalar_delassus>(made, batch);
-  else if (made.delassus_form == ILAW_DELASSUS_DIAGONAL && !turned)
-    result = walk_as<Law, diagonal_delassus>(made, batch);
-  else
-    result = walk_as<Law, full_delassus>(made, batch);
+  *static_cast<tally*>(found) =
+      made.frame == ILAW_FRAME_GLOBAL ? walk_turned(made, batch) : walk_local(made, batch);
 }
 
 inline std::int32_t give_report(ilaw_report* report, const tally& found) {

@@ -1,11 +1,8 @@
-// frame.hpp - local frames of a block of nodes, from the normals (and tangents) that a host gives in its
+// frame.hpp - local frames of nodes, from the normals (and tangents) that a host gives in its
 // axes. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/gather.hpp>
-#include <ilaw/kit/math.hpp>
-
-#include <limits>
+#include <ilaw/kit/node.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
@@ -45,72 +42,49 @@ inline axis transported_tangent(axis before, axis tangent, axis n) {
           usable ? inverse * flat.z : fresh.z};
 }
 
-// Rows n, t1, t2 of the rotation from the host's axes to the local frame, a column per entry.
-struct frame_block {
-  const double *nx, *ny, *nz;
-  column t1[3], t2[3];
-
-  axis normal(int i) const { return {nx[i], ny[i], nz[i]}; }
-  axis first(int i) const { return {t1[0].values[i], t1[1].values[i], t1[2].values[i]}; }
-  axis second(int i) const { return {t2[0].values[i], t2[1].values[i], t2[2].values[i]}; }
-  void set(int i, axis first_tangent) {
-    const axis second_tangent = cross(normal(i), first_tangent);
-    t1[0].values[i] = first_tangent.x;
-    t1[1].values[i] = first_tangent.y;
-    t1[2].values[i] = first_tangent.z;
-    t2[0].values[i] = second_tangent.x;
-    t2[1].values[i] = second_tangent.y;
-    t2[2].values[i] = second_tangent.z;
-  }
-};
-
 // In the plane the tangent is the normal turned by a right angle; on the line it is never used.
 inline axis plane_tangent(int dimension, axis n) {
   return dimension == 2 ? axis{-n.y, n.x, 0.0} : axis{0.0, 1.0, 0.0};
 }
 
-// Turns vectors to the local frame. A normal that is no unit vector poisons its node, which is then refused.
-inline void to_local(const frame_block& frame, int count, const double** v, column* room) {
-  const double *vx = v[0], *vy = v[1], *vz = v[2];
-#pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    const axis a{vx[i], vy[i], vz[i]};
-    const double valid = unit(frame.normal(i)) ? 1.0 : std::numeric_limits<double>::quiet_NaN();
-    const double n = valid * dot(frame.normal(i), a);
-    const double first = dot(frame.first(i), a), second = dot(frame.second(i), a);
-    room[0].values[i] = n;
-    room[1].values[i] = first;
-    room[2].values[i] = second;
-  }
-  for (int k = 0; k < 3; ++k) v[k] = room[k].values;
-}
+// A local frame at a node, as the rows of a rotation.
+struct basis {
+  axis n, t1, t2;
 
-// Turns vectors, in place, back to the host's axes.
-inline void to_global(const frame_block& frame, int count, double* const* v) {
-  double *vx = v[0], *vy = v[1], *vz = v[2];
-#pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    const axis n = frame.normal(i), t1 = frame.first(i), t2 = frame.second(i);
-    const double a = vx[i], b = vy[i], c = vz[i];
-    vx[i] = a * n.x + b * t1.x + c * t2.x;
-    vy[i] = a * n.y + b * t1.y + c * t2.y;
-    vz[i] = a * n.z + b * t1.z + c * t2.z;
+  double unit_defect() const { return defect_unless(unit(n)); }
+  vector to_local(axis a) const { return {dot(n, a), dot(t1, a), dot(t2, a)}; }
+  axis to_global(vector a) const {
+    return {a.n * n.x + a.t1 * t1.x + a.t2 * t2.x, a.n * n.y + a.t1 * t1.y + a.t2 * t2.y,
+            a.n * n.z + a.t1 * t1.z + a.t2 * t2.z};
   }
-}
+  scalar_delassus to_local(scalar_delassus h) const { return h; }
+  full_delassus to_local(const full_delassus& h) const {  // B H B^T
+    const vector a = to_local(h.row_times(n)), b = to_local(h.row_times(t1)), c = to_local(h.row_times(t2));
+    return {a.n, b.t1, c.t2, a.t1, a.t2, b.t2};
+  }
+};
 
-// Turns a full symmetric H to the local frame, H' = B H B^T; order of the entries as in ilaw.h.
-inline void delassus_to_local(const frame_block& frame, int count, const double** h, column* room) {
-  for (int i = 0; i < count; ++i) {
-    const axis rows[3] = {
-        {h[0][i], h[3][i], h[4][i]}, {h[3][i], h[1][i], h[5][i]}, {h[4][i], h[5][i], h[2][i]}};
-    const axis basis[3] = {frame.normal(i), frame.first(i), frame.second(i)};
-    axis image[3];  // H times each basis vector
-    for (int k = 0; k < 3; ++k)
-      image[k] = {dot(rows[0], basis[k]), dot(rows[1], basis[k]), dot(rows[2], basis[k])};
-    constexpr int entries[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-    for (int e = 0; e < 6; ++e) room[e].values[i] = dot(basis[entries[e][0]], image[entries[e][1]]);
+// Columns of the axes of a block: three of the normal, then three each of the tangents where they are stored.
+struct axis_columns {
+  const double* values[9];
+
+  axis at(int first, int i) const { return {values[first][i], values[first + 1][i], values[first + 2][i]}; }
+};
+
+// The three ways in which a kernel gets its frames: none needed, from the normals alone, or stored.
+struct local_frame {
+  static constexpr bool turns = false;
+};
+struct normal_frame {
+  static constexpr bool turns = true;
+  static basis at(const axis_columns& axes, int i) {
+    const axis n = axes.at(0, i), t1 = any_tangent(n);
+    return {n, t1, cross(n, t1)};
   }
-  for (int e = 0; e < 6; ++e) h[e] = room[e].values;
-}
+};
+struct stored_frame {
+  static constexpr bool turns = true;
+  static basis at(const axis_columns& axes, int i) { return {axes.at(0, i), axes.at(3, i), axes.at(6, i)}; }
+};
 
 }  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

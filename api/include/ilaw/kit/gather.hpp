@@ -12,7 +12,7 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // Nodes worked on together: enough to fill vectors and hide loop overhead, few enough to stay in the first
 // cache.
-inline constexpr int block_size = 64;
+inline constexpr int block_size = 128;
 
 struct alignas(64) column {
   double values[block_size];

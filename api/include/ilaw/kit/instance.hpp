@@ -52,6 +52,11 @@ struct instance {
   std::int64_t frame_size() const { return carries_frame ? 6 : 0; }
   std::int64_t frame_offset() const { return static_cast<std::int64_t>(state_size) - frame_size(); }
 
+  // Whether kernels read all axes from columns, rather than build the frame from the normal.
+  bool stores_frame() const {
+    return dimension < 3 || tangent_given || carries_frame || delassus_form != ILAW_DELASSUS_SCALAR;
+  }
+
   std::uint32_t inputs() const {
     std::uint32_t mask = Law::card.inputs;
     if constexpr (requires { law.inputs(); })

@@ -4,19 +4,21 @@
 #pragma once
 
 #include <ilaw/kit/declare.hpp>
+#include <ilaw/kit/frame.hpp>
 #include <ilaw/kit/gather.hpp>
 
 #include <bit>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// A block of nodes as columns in the local frame. Pointers may lead into the host's arrays.
+// A block of nodes as columns. Pointers may lead into the host's arrays.
 template <class Law>
 struct node_block {
   static constexpr int states = state_doubles<Law>;
 
   int count;
   double time, velocity_step, position_step;
+  axis_columns axes;  // unused in the local frame
   const double* v_free[3];
   const double* v_previous[3];
   const double* delassus[6];
@@ -68,16 +70,28 @@ double state_defect(const state_t<Law>& state) {
 
 }  // namespace detail
 
-// A node as it comes in.
-template <class Law, class Delassus>
+// A node as it comes in, in its local frame. A normal that is no unit vector makes v_free a defect.
+template <class Law, class Delassus, class Frame>
 node<Delassus, state_t<Law>> load_node(const node_block<Law>& b, int i) {
   node<Delassus, state_t<Law>> n;
   n.time = b.time;
   n.velocity_step = b.velocity_step;
   n.position_step = b.position_step;
-  n.v_free = {b.v_free[0][i], b.v_free[1][i], b.v_free[2][i]};
-  n.v_previous = {b.v_previous[0][i], b.v_previous[1][i], b.v_previous[2][i]};
-  n.delassus = detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{});
+  const axis v_free{b.v_free[0][i], b.v_free[1][i], b.v_free[2][i]};
+  const axis v_previous{b.v_previous[0][i], b.v_previous[1][i], b.v_previous[2][i]};
+  const auto delassus =
+      detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{});
+  if constexpr (Frame::turns) {
+    const basis frame = Frame::at(b.axes, i);
+    n.v_free = frame.to_local(v_free);
+    n.v_free.n += frame.unit_defect();
+    n.v_previous = frame.to_local(v_previous);
+    n.delassus = frame.to_local(delassus);
+  } else {
+    n.v_free = {v_free.x, v_free.y, v_free.z};
+    n.v_previous = {v_previous.x, v_previous.y, v_previous.z};
+    n.delassus = delassus;
+  }
   n.gap = b.gap[i] - b.gap_offset[i];
   n.area = b.area[i];
   if constexpr (has_memory<Law>)
@@ -94,9 +108,9 @@ double input_defect(const Node& n) {
 }
 
 // Steps one node, and says whether its input was good and its result can be represented.
-template <class Law, class Delassus>
+template <class Law, class Delassus, class Frame>
 stepped<Law, Delassus> step_node(const Law& law, const node_block<Law>& b, int i) {
-  auto n = load_node<Law, Delassus>(b, i);
+  auto n = load_node<Law, Delassus, Frame>(b, i);
   const double before = input_defect(n) + detail::state_defect<Law>(n.state);
   law.step(n);
   const double after = defect(n.impulse) + detail::state_defect<Law>(n.state);
@@ -126,48 +140,56 @@ void store_state(const node_block<Law>& b, int i, const state_t<Law>& state) {
   }
 }
 
-template <class Node>
-void store_diagnostics(double* const* velocity, double* const* energy, double* status, int i, const Node& n,
-                       bool accepted) {
+// Writes a vector in the axes of the batch; where the node is refused, what the host is to find instead.
+template <class Law, class Frame>
+void store_vector(const node_block<Law>& b, double* const* columns, int i, vector a, bool accepted,
+                  axis otherwise) {
+  axis out{a.n, a.t1, a.t2};
+  if constexpr (Frame::turns) out = Frame::at(b.axes, i).to_global(a);
+  columns[0][i] = accepted ? out.x : otherwise.x;
+  columns[1][i] = accepted ? out.y : otherwise.y;
+  columns[2][i] = accepted ? out.z : otherwise.z;
+}
+
+template <class Law, class Frame, class Node>
+void store_diagnostics(const node_block<Law>& b, int i, const Node& n, bool accepted) {
   const vector v = n.v_free + n.delassus.times(n.impulse);
+  store_vector<Law, Frame>(b, b.velocity, i, v, accepted, {b.v_free[0][i], b.v_free[1][i], b.v_free[2][i]});
   const energy_split e = split_energy(n, v);
-  velocity[0][i] = v.n;
-  velocity[1][i] = v.t1;
-  velocity[2][i] = v.t2;
-  energy[ILAW_ENERGY_FRICTION][i] = accepted ? e.friction : 0.0;
-  energy[ILAW_ENERGY_IMPACT][i] = accepted ? e.impact : 0.0;
-  energy[ILAW_ENERGY_RUPTURE][i] = accepted ? e.rupture : 0.0;
-  energy[ILAW_ENERGY_STORED][i] = accepted ? e.stored : 0.0;
-  status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
+  b.energy[ILAW_ENERGY_FRICTION][i] = accepted ? e.friction : 0.0;
+  b.energy[ILAW_ENERGY_IMPACT][i] = accepted ? e.impact : 0.0;
+  b.energy[ILAW_ENERGY_RUPTURE][i] = accepted ? e.rupture : 0.0;
+  b.energy[ILAW_ENERGY_STORED][i] = accepted ? e.stored : 0.0;
+  b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
 }
 
 // Steps and writes node i; valid: what the caller knows of its parameters.
-template <class Law, class Delassus, bool Diagnostics>
+template <class Law, class Delassus, class Frame, bool Diagnostics>
 void run_node(const Law& law, const node_block<Law>& b, int i, bool valid = true) {
-  auto [n, accepted] = step_node<Law, Delassus>(law, b, i);
+  auto [n, accepted] = step_node<Law, Delassus, Frame>(law, b, i);
   accepted = accepted & valid;
-  b.impulse[0][i] = accepted ? n.impulse.n : 0.0;
-  b.impulse[1][i] = accepted ? n.impulse.t1 : 0.0;
-  b.impulse[2][i] = accepted ? n.impulse.t2 : 0.0;
-  if constexpr (Diagnostics) store_diagnostics(b.velocity, b.energy, b.status, i, n, accepted);
+  store_vector<Law, Frame>(b, b.impulse, i, n.impulse, accepted, {0.0, 0.0, 0.0});
+  if constexpr (Diagnostics) store_diagnostics<Law, Frame>(b, i, n, accepted);
   if constexpr (has_memory<Law>)
     if (accepted) law.record(n, history{b.history_values + b.history_offset(i), b.history_component_stride});
-  if constexpr (has_state<Law>)
-    store_state<Law>(b, i, accepted ? n.state : load_node<Law, Delassus>(b, i).state);
+  if constexpr (has_state<Law>) {
+    const state_t<Law> before = load_node<Law, Delassus, Frame>(b, i).state;
+    store_state<Law>(b, i, accepted ? n.state : before);
+  }
   b.refused[i] = accepted ? 0.0 : 1.0;
 }
 
 // Runs a block with the same parameters at all nodes. Not inlined: GCC vectorises this loop only where it
 // stands alone.
-template <class Law, class Delassus, bool Diagnostics>
+template <class Law, class Delassus, class Frame, bool Diagnostics>
 [[gnu::noinline, gnu::flatten]] void run_block(const Law& law, const node_block<Law>& block) {
   const node_block<Law> b = block;  // local copies, so that no store can alias a pointer or a parameter
   const Law l = law;
   if constexpr (has_memory<Law>) {
-    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Diagnostics>(l, b, i);
+    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Diagnostics>(l, b, i);
   } else {
 #pragma omp simd
-    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Diagnostics>(l, b, i);
+    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Diagnostics>(l, b, i);
   }
 }
 

@@ -88,6 +88,12 @@ struct full_delassus {
     return {nn * r.n + n1 * r.t1 + n2 * r.t2, n1 * r.n + t11 * r.t1 + t12 * r.t2,
             n2 * r.n + t12 * r.t1 + t22 * r.t2};
   }
+  // The same in the host's axes, where rows have no normal or tangential meaning yet.
+  template <class Axis>
+  Axis row_times(Axis a) const {
+    return {nn * a.x + n1 * a.y + n2 * a.z, n1 * a.x + t11 * a.y + t12 * a.z,
+            n2 * a.x + t12 * a.y + t22 * a.z};
+  }
   vector solve(vector v) const {
     const factors f = factorise();
     const double y1 = v.t1 - f.l10 * v.n;
