@@ -9,17 +9,28 @@ module ilaw
   use, intrinsic :: iso_c_binding
   use ilaw_abi
   implicit none
-  private :: address, stride, blank_padded
+  private :: address, stride, blank_padded, argument_of, append
 
-  ! The value of a parameter of a law, for ilaw_create. Made by ilaw_number, ilaw_choice, ilaw_table,
-  ! ilaw_per_node.
-  type :: ilaw_value
-    private
+  ! The value of a parameter of a law.
+  type, private :: value
     integer(c_int32_t) :: kind = ILAW_VALUE_NUMBER
     character(:), allocatable :: name
     real(c_double) :: number = 0
     character(:), allocatable :: text
-    real(c_double), allocatable :: values(:, :)
+    real(c_double), allocatable :: pairs(:, :)
+  end type
+
+  ! The parameters of a law, for ilaw_create.
+  !   call values%set('friction', 0.3_c_double)      a number
+  !   call values%set('activation', 'moreau')        one of its choices
+  !   call values%set('friction', pairs)             a table, (time, value) pairs of shape (2,n), times increasing
+  !   call values%set_per_node('friction')           comes with every batch, one value per node
+  type :: ilaw_values
+    type(value), allocatable, private :: list(:)
+  contains
+    generic :: set => set_number, set_choice, set_table
+    procedure :: set_per_node
+    procedure, private :: set_number, set_choice, set_table, append
   end type
 
   ! An array of the host as an argument of a batch. The array needs the target (or pointer) attribute, is not
@@ -109,13 +120,13 @@ contains
     message = blank_padded(line)
   end function
 
-  ! Creates an interface with a law of the library, of the given id (blank: the library's only law). values are
-  ! the parameters; arguments and argument_count of setup are set from them. Null on failure.
+  ! Creates an interface with a law of the library, of the given id (blank: the library's only law). The
+  ! arguments of the setup are those in values. Null on failure.
   integer(c_int32_t) function ilaw_create(library, id, setup, values, interface, message) result(code)
     type(c_ptr), intent(in) :: library
     character(*), intent(in) :: id
     type(ilaw_setup), intent(in) :: setup
-    type(ilaw_value), intent(in), target :: values(:)
+    type(ilaw_values), intent(in), target :: values
     type(c_ptr), intent(out) :: interface
     character(*), intent(out) :: message
     interface
@@ -130,26 +141,22 @@ contains
       end function
     end interface
     type(ilaw_setup) :: filled
-    type(ilaw_argument), target :: arguments(size(values))
-    type(c_ptr), target :: argument_pointers(size(values))
+    type(ilaw_argument), allocatable, target :: arguments(:)
+    type(c_ptr), allocatable, target :: argument_pointers(:)
     character(len_trim(id) + 1, c_char), target :: law
     character(len(message) + 1, c_char) :: line
     integer :: k
 
-    do k = 1, size(values)
-      arguments(k)%kind = values(k)%kind
-      arguments(k)%name = c_loc(values(k)%name)
-      arguments(k)%number = values(k)%number
-      if (allocated(values(k)%text)) arguments(k)%text = c_loc(values(k)%text)
-      if (allocated(values(k)%values)) then
-        arguments(k)%values = c_loc(values(k)%values)
-        arguments(k)%count = size(values(k)%values, 2)
-      end if
+    filled = setup
+    filled%argument_count = 0
+    if (allocated(values%list)) filled%argument_count = size(values%list)
+    allocate (arguments(filled%argument_count), argument_pointers(filled%argument_count))
+    do k = 1, size(arguments)
+      arguments(k) = argument_of(values%list(k))
       argument_pointers(k) = c_loc(arguments(k))
     end do
-    filled = setup
-    filled%arguments = c_loc(argument_pointers)
-    filled%argument_count = size(values)
+    filled%arguments = c_null_ptr
+    if (size(arguments) > 0) filled%arguments = c_loc(argument_pointers)
     law = trim(id)//c_null_char
     line = c_null_char
     code = ilaw_interface_create(library, merge(c_loc(law), c_null_ptr, len_trim(id) > 0), filled, interface, &
@@ -157,40 +164,69 @@ contains
     message = blank_padded(line)
   end function
 
-  ! A parameter given as a number.
-  function ilaw_number(name, number) result(made)
+  subroutine set_number(self, name, number)
+    class(ilaw_values), intent(inout) :: self
     character(*), intent(in) :: name
     real(c_double), intent(in) :: number
-    type(ilaw_value) :: made
-    made%name = trim(name)//c_null_char
-    made%number = number
-  end function
+    type(value) :: added
+    added%number = number
+    call self%append(name, added)
+  end subroutine
 
-  ! A parameter given as one of its choices.
-  function ilaw_choice(name, text) result(made)
+  subroutine set_choice(self, name, text)
+    class(ilaw_values), intent(inout) :: self
     character(*), intent(in) :: name, text
-    type(ilaw_value) :: made
-    made%kind = ILAW_VALUE_TEXT
-    made%name = trim(name)//c_null_char
-    made%text = trim(text)//c_null_char
-  end function
+    type(value) :: added
+    added%kind = ILAW_VALUE_TEXT
+    added%text = trim(text)//c_null_char
+    call self%append(name, added)
+  end subroutine
 
-  ! A parameter given as a table: (time, value) pairs, shape (2, pairs), times increasing.
-  function ilaw_table(name, pairs) result(made)
+  subroutine set_table(self, name, pairs)
+    class(ilaw_values), intent(inout) :: self
     character(*), intent(in) :: name
     real(c_double), intent(in) :: pairs(:, :)
-    type(ilaw_value) :: made
-    made%kind = ILAW_VALUE_TABLE
-    made%name = trim(name)//c_null_char
-    allocate (made%values, source=pairs)
-  end function
+    type(value) :: added
+    added%kind = ILAW_VALUE_TABLE
+    allocate (added%pairs, source=pairs)
+    call self%append(name, added)
+  end subroutine
 
-  ! A parameter given with every batch, one value per node.
-  function ilaw_per_node(name) result(made)
+  subroutine set_per_node(self, name)
+    class(ilaw_values), intent(inout) :: self
     character(*), intent(in) :: name
-    type(ilaw_value) :: made
-    made%kind = ILAW_VALUE_PER_NODE
-    made%name = trim(name)//c_null_char
+    type(value) :: added
+    added%kind = ILAW_VALUE_PER_NODE
+    call self%append(name, added)
+  end subroutine
+
+  subroutine append(self, name, added)
+    class(ilaw_values), intent(inout) :: self
+    character(*), intent(in) :: name
+    type(value), intent(in) :: added
+    type(value), allocatable :: longer(:)
+    integer :: count
+    count = 0
+    if (allocated(self%list)) count = size(self%list)
+    allocate (longer(count + 1))
+    if (count > 0) longer(:count) = self%list
+    longer(count + 1) = added
+    longer(count + 1)%name = trim(name)//c_null_char
+    call move_alloc(longer, self%list)
+  end subroutine
+
+  ! The argument points into the value.
+  function argument_of(given) result(argument)
+    type(value), intent(in), target :: given
+    type(ilaw_argument) :: argument
+    argument%kind = given%kind
+    argument%name = c_loc(given%name)
+    argument%number = given%number
+    if (allocated(given%text)) argument%text = c_loc(given%text)
+    if (allocated(given%pairs)) then
+      argument%values = c_loc(given%pairs)
+      argument%count = size(given%pairs, 2)
+    end if
   end function
 
   ! The text at a pointer of a description or a report; empty where the pointer is null.

@@ -21,7 +21,8 @@ static const double stiffness[BLOCKS] = {0.0, 0.0, 0.0, 50.0, 20.0, 100.0, 30.0}
 static const int32_t floor_nodes[FLOOR_NODES] = {0, 1, 2, 3, 4, 5};
 static const double up[3] = {0.0, 0.0, 1.0};
 
-static vectors u = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0.05}, {0.4, -0.3, 0}, {0.06, 0.08, 0}, {-0.24, 0.32, 0}, {0, 0, 0.1}};
+static vectors u = {{0, 0, 0},       {0, 0, 0},        {0, 0, 0.05}, {0.4, -0.3, 0},
+                    {0.06, 0.08, 0}, {-0.24, 0.32, 0}, {0, 0, 0.1}};
 static vectors v = {{0.72, 0.96, 0}, {-1.6, 1.2, 0}, {1.8, 2.4, 0}};
 static vectors v_previous, force, impulse;
 static double inverse_mass[BLOCKS], energy[BLOCKS][ILAW_ENERGY_COUNT], friction_work[BLOCKS];
@@ -46,7 +47,8 @@ static void kick(double step) {
 static ilaw_interface* create_interface(const char* library_name) {
   char message[512];
   ilaw_library* library;
-  if (ilaw_library_open(library_name, &library, message, sizeof message) != ILAW_OK) fail(library_name, message);
+  if (ilaw_library_open(library_name, &library, message, sizeof message) != ILAW_OK)
+    fail(library_name, message);
 
   const ilaw_argument friction = {.struct_size = sizeof friction, .name = "friction", .number = 0.3};
   const ilaw_argument activation = {
@@ -70,7 +72,8 @@ static ilaw_interface* create_interface(const char* library_name) {
 /* [batch] */
 static ilaw_batch describe_batch(const ilaw_instance_info* info, double* state) {
   const uint32_t given = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_NORMAL;
-  if ((info->inputs | info->energy_inputs) & ~given) fail("law", "reads an input that this code does not have");
+  if ((info->inputs | info->energy_inputs) & ~given)
+    fail("law", "reads an input that this code does not have");
   const int64_t state_size = (int64_t)info->state_size;
   return (ilaw_batch){.struct_size = sizeof(ilaw_batch),
                       .node_count = FLOOR_NODES,
@@ -128,7 +131,8 @@ int main(int argc, char** argv) {
   }
 
   for (int i = 0; i < BLOCKS; ++i)
-    printf("%2d %24.16E %24.16E %24.16E %24.16E %2d\n", i, u[i][0], u[i][1], u[i][2], friction_work[i], status[i]);
+    printf("%2d %24.16E %24.16E %24.16E %24.16E %2d\n", i, u[i][0], u[i][1], u[i][2], friction_work[i],
+           status[i]);
   free(state);
   ilaw_interface_destroy(interface);
   return 0;

@@ -50,6 +50,7 @@ program blocks
   do i = 1, blocks_count
     write (*, '(i2,4(1x,es24.16e2),1x,i2)') i - 1, u(:, i), friction_work(i), status(i)
   end do
+  deallocate (state)
   call ilaw_interface_destroy(interface)
 
 contains
@@ -59,6 +60,7 @@ contains
     character(512) :: library_name, message
     type(c_ptr) :: library
     type(ilaw_setup) :: setup
+    type(ilaw_values) :: values
 
     if (command_argument_count() /= 1) call fail('usage', 'blocks_fortran LIBRARY')
     call get_command_argument(1, library_name)
@@ -67,9 +69,9 @@ contains
     setup%delassus_form = ILAW_DELASSUS_SCALAR
     setup%frame = ILAW_FRAME_GLOBAL
     setup%velocity_step = h
-    if (ilaw_create(library, '', setup, [ilaw_number('friction', 0.3_c_double), &
-                                         ilaw_choice('activation', 'moreau')], interface, message) /= ILAW_OK) &
-      call fail(library_name, message)
+    call values%set('friction', 0.3_c_double)
+    call values%set('activation', 'moreau')
+    if (ilaw_create(library, '', setup, values, interface, message) /= ILAW_OK) call fail(library_name, message)
     call ilaw_library_close(library) ! the interface keeps it loaded
   end subroutine
   ! [create]
@@ -125,6 +127,6 @@ contains
   subroutine fail(what, why)
     character(*), intent(in) :: what, why
     write (error_unit, '(4a)') 'blocks_fortran: ', trim(what), ': ', trim(why)
-    error stop
+    stop 1
   end subroutine
 end program blocks

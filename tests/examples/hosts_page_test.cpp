@@ -1,0 +1,79 @@
+// The pages for hosts against what they quote: the code of docs/hosts.md stands in the example hosts, and
+// docs/abi.md names everything that the headers do.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+std::string read(const std::string& path) {
+  std::ifstream file(path);
+  EXPECT_TRUE(file) << path;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Pages and sources indent differently.
+std::string without_indentation(const std::string& text) {
+  return std::regex_replace(text, std::regex("(^|\n)[ ]+"), "$1");
+}
+
+struct code_block {
+  std::string language, text;
+};
+
+std::vector<code_block> code_blocks(const std::string& page) {
+  static const std::regex fence("```(\\w+)\n([^`]*)```");
+  std::vector<code_block> blocks;
+  for (std::sregex_iterator found(page.begin(), page.end(), fence), end; found != end; ++found)
+    blocks.push_back({(*found)[1], (*found)[2]});
+  return blocks;
+}
+
+TEST(HostsPage, QuotesCodeThatIsBuiltAndRun) {
+  const std::map<std::string, std::string> sources{
+      {"c", "blocks.c"}, {"cpp", "blocks.cpp"}, {"fortran", "blocks.f90"}};
+  std::set<std::string> languages;
+  for (const code_block& block : code_blocks(read(ILAW_DOCS "/hosts.md"))) {
+    ASSERT_TRUE(sources.contains(block.language)) << block.text;
+    languages.insert(block.language);
+    const std::string source = read(ILAW_EXAMPLES "/" + sources.at(block.language));
+    EXPECT_NE(without_indentation(source).find(without_indentation(block.text)), std::string::npos)
+        << "not in " << sources.at(block.language) << ":\n"
+        << block.text;
+  }
+  EXPECT_EQ(languages.size(), sources.size());
+}
+
+std::set<std::string> names(const std::string& text, const char* pattern) {
+  const std::regex name(pattern);
+  std::set<std::string> found;
+  for (std::sregex_iterator match(text.begin(), text.end(), name), end; match != end; ++match)
+    found.insert((*match)[1]);
+  return found;
+}
+
+void expect_named(const std::string& page, const std::set<std::string>& names, std::size_t at_least) {
+  EXPECT_GE(names.size(), at_least);
+  for (const std::string& name : names)
+    EXPECT_NE(page.find('`' + name + '`'), std::string::npos) << "docs/abi.md does not name " << name;
+}
+
+TEST(AbiPage, NamesEveryEnumeratorStructMemberAndFunction) {
+  const std::string page = read(ILAW_DOCS "/abi.md");
+  const std::string header = read(ILAW_INCLUDE "/ilaw/ilaw.h"), loader = read(ILAW_INCLUDE "/ilaw/loader.h");
+  expect_named(page, names(header, "(ILAW_[A-Z0-9_]+) = [-(0-9]"), 54);
+  expect_named(page, names(header, "typedef struct (ilaw_\\w+)"), 12);
+  expect_named(page, names(header, "\n  (?:const |u?int|double|ilaw_|char)[^\n;()]*?\\*?(\\w+);"), 60);
+  expect_named(page, names(header, "\\(\\*(\\w+)\\)\\("), 5);
+  expect_named(page, names(loader, "\n[a-z][^\n(]*?(ilaw_\\w+)\\("), 12);
+}
+
+}  // namespace

@@ -1,0 +1,202 @@
+// The example hosts in C99, C++ and Fortran 2008: their results against closed forms, and bit for bit against
+// each other. Their problem: blocks on springs on a floor, friction 0.3, gravity 10, h = 1e-3, three seconds.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <ilaw/ilaw.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+constexpr double h = 1e-3, g = 10.0, mu = 0.3, end = 3.0;
+constexpr double rounding = 1e-12;  // of three thousand additions of numbers around 1
+
+struct output {
+  int exit_code;
+  std::string text;
+};
+
+output run(const std::string& program, const std::string& arguments) {
+  setenv("ILAW_PATH", ILAW_PLUGINS, 1);
+  FILE* pipe = popen(("'" + program + "' " + arguments + " 2>&1").c_str(), "r");
+  std::string text;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text};
+}
+
+struct block {
+  int number;
+  double u[3], friction_work;
+  int status;
+};
+
+std::vector<block> blocks_of(const std::string& text) {
+  std::istringstream lines(text);
+  std::vector<block> blocks;
+  for (block b; lines >> b.number >> b.u[0] >> b.u[1] >> b.u[2] >> b.friction_work >> b.status;)
+    blocks.push_back(b);
+  return blocks;
+}
+
+class Host : public testing::TestWithParam<const char*> {
+ protected:
+  static const block& result(std::size_t number) {
+    static std::string program;
+    static std::vector<block> blocks;
+    if (program != GetParam()) {
+      program = GetParam();
+      blocks = blocks_of(run(program, "coulomb").text);
+    }
+    if (blocks.size() != 7) throw std::runtime_error(program + " did not print seven blocks");
+    return blocks[number];
+  }
+};
+
+void expect_at(const block& b, double x, double y, double tolerance) {
+  EXPECT_NEAR(b.u[0], x, tolerance);
+  EXPECT_NEAR(b.u[1], y, tolerance);
+}
+
+// Thrown along (cx, cy) with speed v0, a block decelerates by mu g and stops after v0^2/(2 mu g). In the
+// scheme V_{n+1/2} = v0 - mu g t_{n+1/2} from n = 1 on, since the first impulse makes up for the half kick of
+// gravity, and V_{1/2} = v0: so U_n is mu g h^2/2 beyond the exact parabola until the block sticks, at the
+// instant nearest to the exact one, where the parabola is at most mu g (h/2)^2/2 below its vertex.
+TEST_P(Host, SlidingBlockStopsWhereItMust) {
+  const double tolerance = mu * g * h * h / 2 + rounding;
+  const auto distance = [](double speed) { return speed * speed / (2 * mu * g); };
+  expect_at(result(0), 0.6 * distance(1.2), 0.8 * distance(1.2), tolerance);
+  expect_at(result(1), -0.8 * distance(2.0), 0.6 * distance(2.0), tolerance);
+}
+
+// Friction then took all of 1/2 m v0^2: the work of the impulse, r.(v^- + v)/2, telescopes.
+TEST_P(Host, SlidingBlockLosesItsEnergyToFriction) {
+  EXPECT_NEAR(result(0).friction_work, 0.5 * 1.0 * 1.44, rounding);
+  EXPECT_NEAR(result(1).friction_work, 0.5 * 2.5 * 4.0, 5 * rounding);
+  EXPECT_NEAR(result(2).friction_work, 0.5 * 0.7 * 9.0, 5 * rounding);
+}
+
+// Dropped from height z0 with speed v0 along the floor, it lands at t_f = sqrt(2 z0/g) and loses mu g t_f at
+// once, so that from then on it is as fast as if it had slid all the time; in flight it gained mu g t_f^2/2.
+// The code sees the landing at the first instant t_j >= t_f: the gain is mu g t_j^2/2, with t_j < t_f + h. Up
+// to a step is fallen too far.
+TEST_P(Host, DroppedBlockSlidesFarther) {
+  const double t_f = std::sqrt(2 * 0.05 / g);
+  const double distance = 9.0 / (2 * mu * g) + mu * g * t_f * t_f / 2;
+  const double tolerance = mu * g * (t_f * h + h * h / 2 + h * h / 8) + rounding;
+  expect_at(result(2), 0.6 * distance, 0.8 * distance, tolerance);
+  EXPECT_LE(result(2).u[2], 0.0);
+  EXPECT_GE(result(2).u[2], -g * (t_f + h) * h);
+}
+
+struct coulomb_oscillator {
+  double mass, stiffness, amplitude;
+  double friction_offset() const { return mu * mass * g / stiffness; }
+
+  // Each swing is half an oscillation about the friction offset on its own side: position a becomes 2 offset
+  // - a, until the spring is too weak to move the block.
+  struct stop {
+    double position;
+    int swings;
+  };
+  stop rest() const {
+    stop at{amplitude, 0};
+    for (; std::abs(at.position) > friction_offset(); ++at.swings)
+      at.position = std::copysign(2 * friction_offset(), at.position) - at.position;
+    return at;
+  }
+
+  // With a the largest acceleration: the missing friction of the half kick at the start moves the block by at
+  // most a h^2/2; a turn is seen at most half a step off, which is a h^2/8 of path, and the next swing then
+  // starts as if at rest half a step before, which makes it a h^2/8 wider.
+  double tolerance() const {
+    return (rest().swings / 4.0 + 0.5) * (stiffness / mass * amplitude + mu * g) * h * h;
+  }
+
+  // A block that turns round within a step leaves it no faster than a h; friction against that velocity works
+  // on the block, at most mu m g h (a h)/2, which is not dissipation and does not count.
+  double work_at_turns() const {
+    return rest().swings * mu * mass * g * h * (stiffness / mass * amplitude + mu * g) * h / 2;
+  }
+
+  // Discrete energy before the first impulse, 1/2 V_{1/2}^T M V_{1/2} + 1/2 U_0^T K U_1 with
+  // V_{1/2} = -(h/2) k U_0/m and U_1 = U_0 + h V_{1/2}, less that of the block at rest at u.
+  double loss(double u) const {
+    return 0.5 * stiffness * (amplitude * amplitude * (1 - h * h * stiffness / (4 * mass)) - u * u);
+  }
+};
+
+void expect_rest(const block& b, const coulomb_oscillator& o, double cx, double cy) {
+  expect_at(b, cx * o.rest().position, cy * o.rest().position, o.tolerance());
+  EXPECT_NEAR(b.u[0] * cy, b.u[1] * cx, rounding);  // the motion keeps its oblique line
+  const double loss = o.loss(std::hypot(b.u[0], b.u[1]));
+  EXPECT_GE(b.friction_work, loss - 5 * rounding);
+  EXPECT_LE(b.friction_work, loss + o.work_at_turns() + 5 * rounding);
+}
+
+TEST_P(Host, BlockOnSpringComesToRestWhereItMust) {
+  const coulomb_oscillator two_swings{2.0, 50.0, 0.5}, none{1.5, 20.0, 0.1}, seven{1.0, 100.0, 0.4};
+  ASSERT_EQ(two_swings.rest().swings, 2);
+  ASSERT_EQ(none.rest().swings, 0);
+  ASSERT_EQ(seven.rest().swings, 7);
+  expect_rest(result(3), two_swings, 0.8, -0.6);
+  expect_rest(result(4), none, 0.6, 0.8);
+  expect_rest(result(5), seven, -0.6, 0.8);
+}
+
+// The half kick of gravity at the start sinks a block by g h^2/2 before the first impulse, and no deeper.
+TEST_P(Host, FloorHoldsTheBlocks) {
+  for (const std::size_t number : {0, 1, 3, 4, 5}) {
+    EXPECT_NEAR(result(number).u[2], -g * h * h / 2, rounding);
+    EXPECT_EQ(result(number).status, ILAW_STICK);
+  }
+}
+
+// The last block hangs on its spring and is not in the index list: it swings freely about -m g/k, at the
+// frequency of central differences, sin(w_h h/2) = w h/2.
+TEST_P(Host, BlockOutsideTheIndexListIsLeftAlone) {
+  const double m = 0.8, k = 30.0, start = 0.1, middle = -m * g / k;
+  const double frequency = 2 / h * std::asin(std::sqrt(k / m) * h / 2);
+  EXPECT_NEAR(result(6).u[2], middle + (start - middle) * std::cos(frequency * end), 1e-10);
+  EXPECT_EQ(result(6).u[0], 0.0);
+  EXPECT_EQ(result(6).friction_work, 0.0);
+  EXPECT_EQ(result(6).status, 0);
+}
+
+// 17 significant digits: equal text is equal bits.
+TEST_P(Host, PrintsTheSameBitsAsTheHostInC) {
+  const output c = run(ILAW_blocks_c, "coulomb");
+  EXPECT_EQ(c.exit_code, 0);
+  EXPECT_EQ(run(GetParam(), "coulomb").text, c.text);
+}
+
+TEST_P(Host, PassesOnWhyALawIsRefused) {
+  const output missing = run(GetParam(), "no_such_law");
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_NE(missing.text.find("no_such_law"), std::string::npos) << missing.text;
+  const output frictionless = run(GetParam(), "contact");
+  EXPECT_EQ(frictionless.exit_code, 1);
+  EXPECT_NE(frictionless.text.find("friction"), std::string::npos) << frictionless.text;
+  EXPECT_NE(frictionless.text.find("restitution"), std::string::npos) << frictionless.text;
+}
+
+TEST_P(Host, AsksForALibrary) {
+  const output nothing = run(GetParam(), "");
+  EXPECT_EQ(nothing.exit_code, 1);
+  EXPECT_NE(nothing.text.find("LIBRARY"), std::string::npos) << nothing.text;
+}
+
+INSTANTIATE_TEST_SUITE_P(C, Host, testing::Values(ILAW_blocks_c));
+INSTANTIATE_TEST_SUITE_P(Cpp, Host, testing::Values(ILAW_blocks_cpp));
+#ifdef ILAW_blocks_fortran
+INSTANTIATE_TEST_SUITE_P(Fortran, Host, testing::Values(ILAW_blocks_fortran));
+#endif
+
+}  // namespace
