@@ -22,7 +22,8 @@ struct contact_condition {
 template <class Node>
 contact_condition contact_at(const Node& node, double restitution, double activation) {
   const double rebound = -restitution * node.v_previous.n;
-  const double arrival = -positive_part(node.gap) / node.position_step;
+  const double rate = 1.0 / node.position_step;  // the same for all nodes: divided once
+  const double arrival = -positive_part(node.gap) * rate;
   const double predicted = rebound > 0.0 ? rebound : arrival;
   return {activation == predictive ? node.v_free.n - arrival : node.gap,
           node.v_free.n - (activation == predictive ? predicted : rebound)};

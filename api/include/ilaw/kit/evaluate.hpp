@@ -58,6 +58,14 @@ inline std::int32_t refuse(ilaw_report* report, const char* reason) {
   return ILAW_INVALID_ARGUMENT;
 }
 
+// Whether the vectors that a kernel may read and write in place are (3,n) arrays.
+template <class Law>
+bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
+  const auto is_interleaved = [](const auto& a) { return a.node_stride == 3 && a.component_stride == 1; };
+  return made.dimension == 3 && !b.index && is_interleaved(b.v_free) && is_interleaved(b.impulse) &&
+         (made.frame == ILAW_FRAME_LOCAL || is_interleaved(b.normal));
+}
+
 // Columns of a block that are copies: where the host's arrays are not consecutive, or are turned to the local
 // frame.
 template <class Law>
@@ -83,10 +91,11 @@ int state_entry(int k, int dimension) {
   return -1;
 }
 
-template <class Law>
+template <class Law, class Layout>
 class batch_walk {
  public:
   static constexpr int states = state_doubles<Law>;
+  static constexpr bool in_place = std::is_same_v<Layout, interleaved>;
 
   batch_walk(const instance<Law>& made, const ilaw_batch& batch, block_room<Law>& room)
       : made_(made), batch_(batch), room_(room), dimension_(static_cast<int>(made.dimension)) {}
@@ -122,7 +131,7 @@ class batch_walk {
       at(batch_.state_out, node, c) = 0.0;
     const double area = block_.area[i];
     if (!finite(area) || area < 0.0) return "the area is not a finite number >= 0";
-    if (made_.carries_frame && !unit(block_.axes.at(0, i))) return "the normal is not a unit vector";
+    if (made_.carries_frame && !unit(columns::get(block_.axes, i))) return "the normal is not a unit vector";
     kit::node<scalar_delassus, state_t<Law>> fresh{};
     fresh.time = batch_.time;
     fresh.area = area;
@@ -143,7 +152,7 @@ class batch_walk {
 
   // Writes what the block computed to the host's arrays. Outputs that are absent are left out.
   void close() {
-    scatter_vector(batch_.impulse, dimension_, nodes_, block_.impulse);
+    if (!in_place) scatter_vector(batch_.impulse, dimension_, nodes_, block_.impulse);
     if (batch_.velocity.values) scatter_vector(batch_.velocity, dimension_, nodes_, block_.velocity);
     if (batch_.energy.values)
       for (int k = 0; k < ILAW_ENERGY_COUNT; ++k) scatter(batch_.energy, k, nodes_, block_.energy[k]);
@@ -177,7 +186,7 @@ class batch_walk {
   }
 
   void keep_frame(int i) {
-    const axis n = block_.axes.at(0, i), t = block_.axes.at(3, i);
+    const axis n = columns::get(block_.axes, i), t = columns::get(block_.axes + 3, i);
     const double entries[6] = {n.x, n.y, n.z, t.x, t.y, t.z};
     for (int k = 0; k < 6; ++k) at(batch_.state_out, nodes_.node(i), made_.frame_offset() + k) = entries[k];
   }
@@ -186,11 +195,21 @@ class batch_walk {
     return read && input.values ? gather(input, 0, nodes_, room.values) : zeros.values;
   }
 
+  // Vectors that may stay interleaved where the layout says so.
+  void gather_in_layout(const ilaw_input& input, column* room, const double** components) {
+    if constexpr (in_place) {
+      components[0] = input.values + 3 * nodes_.first;
+      prefetch_next(components[0], 3 * nodes_.count);
+    } else {
+      gather_vector(input, dimension_, nodes_, room, components);
+    }
+  }
+
   void gather_inputs() {
     const std::uint32_t reads = made_.inputs();
     const bool previous =
         batch_.v_previous.values && ((reads & ILAW_INPUT_V_PREVIOUS) || batch_.energy.values);
-    gather_vector(batch_.v_free, dimension_, nodes_, room_.v_free, block_.v_free);
+    gather_in_layout(batch_.v_free, room_.v_free, block_.v_free);
     if (previous)
       gather_vector(batch_.v_previous, dimension_, nodes_, room_.v_previous, block_.v_previous);
     else
@@ -222,31 +241,30 @@ class batch_walk {
 
   // Columns of the axes. Frames that follow from the normal alone are left to the kernel in three dimensions.
   void gather_frame() {
-    gather_vector(batch_.normal, dimension_, nodes_, room_.normal, block_.axes.values);
+    gather_in_layout(batch_.normal, room_.normal, block_.axes);
     if (!made_.stores_frame()) return;
     for (int c = 0; c < 3; ++c) {
-      block_.axes.values[3 + c] = room_.first_tangent[c].values;
-      block_.axes.values[6 + c] = room_.second_tangent[c].values;
+      block_.axes[3 + c] = room_.first_tangent[c].values;
+      block_.axes[6 + c] = room_.second_tangent[c].values;
     }
     if (made_.tangent_given && dimension_ == 3)
-      gather_vector(batch_.tangent, dimension_, nodes_, room_.tangent, block_.axes.values + 3);
+      gather_vector(batch_.tangent, dimension_, nodes_, room_.tangent, block_.axes + 3);
     for (int i = 0; i < nodes_.count; ++i) set_tangents(i);
   }
 
   void set_tangents(int i) {
-    const axis n = block_.axes.at(0, i), t1 = first_tangent(i), t2 = cross(n, t1);
+    const axis n = columns::get(block_.axes, i), t1 = first_tangent(i), t2 = cross(n, t1);
     const double first[] = {t1.x, t1.y, t1.z}, second[] = {t2.x, t2.y, t2.z};
     for (int c = 0; c < 3; ++c) {
-      if (block_.axes.values[3 + c] == room_.first_tangent[c].values)
-        room_.first_tangent[c].values[i] = first[c];
+      if (block_.axes[3 + c] == room_.first_tangent[c].values) room_.first_tangent[c].values[i] = first[c];
       room_.second_tangent[c].values[i] = second[c];
     }
   }
 
   axis first_tangent(int i) const {
-    const axis n = block_.axes.at(0, i);
+    const axis n = columns::get(block_.axes, i);
     if (dimension_ < 3) return plane_tangent(dimension_, n);
-    if (made_.tangent_given) return block_.axes.at(3, i);
+    if (made_.tangent_given) return columns::get(block_.axes + 3, i);
     return made_.carries_frame && batch_.state_in.values ? carried_tangent(i) : any_tangent(n);
   }
 
@@ -255,7 +273,7 @@ class batch_walk {
     const double* in = s.values + nodes_.node(i) * s.node_stride + made_.frame_offset() * s.component_stride;
     const std::int64_t c = s.component_stride;
     return transported_tangent({in[0], in[c], in[2 * c]}, {in[3 * c], in[4 * c], in[5 * c]},
-                               block_.axes.at(0, i));
+                               columns::get(block_.axes, i));
   }
 
   void open_state() {
@@ -291,7 +309,8 @@ class batch_walk {
 
   void aim_outputs() {
     for (int c = 0; c < 3; ++c) {
-      block_.impulse[c] = aim(batch_.impulse, c, c < dimension_, room_.impulse[c]);
+      block_.impulse[c] = in_place ? batch_.impulse.values + 3 * nodes_.first
+                                   : aim(batch_.impulse, c, c < dimension_, room_.impulse[c]);
       block_.velocity[c] = aim(batch_.velocity, c, c < dimension_, room_.velocity[c]);
     }
     for (int k = 0; k < ILAW_ENERGY_COUNT; ++k)
@@ -329,18 +348,18 @@ struct tally {
 };
 
 // Why a node was refused, from the same checks as step_node, in their order.
-template <class Law, class Delassus, class Frame>
+template <class Law, class Delassus, class Frame, class Layout>
 const char* refusal_reason(const Law& law, const node_block<Law>& b, int i) {
-  const auto n = load_node<Law, Delassus, Frame>(b, i);
+  const auto n = load_node<Law, Delassus, Frame, Layout>(b, i);
   if constexpr (Frame::turns)
-    if (!unit(b.axes.at(0, i))) return "the normal is not a unit vector";
+    if (!unit(Layout::get(b.axes, i))) return "the normal is not a unit vector";
   if (defect(n.v_free) != 0.0) return "v_free is not finite";
   if (n.delassus.positive_defect() != 0.0) return "H is not finite and positive definite";
   if (defect(n.gap) != 0.0) return "the gap is not finite";
   if (defect(n.v_previous) != 0.0) return "v_previous is not finite";
   if (!finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
   if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
-  const double refused = step_node<Law, Delassus, Frame>(law, b, i).result.refused;
+  const double refused = step_node<Law, Delassus, Frame, Layout>(law, b, i).result.refused;
   if (refused == anisotropic_delassus)
     return "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal";
   if (refused == no_solution) return "the law's equations have no solution for this H";
@@ -362,11 +381,11 @@ bool at_node(const instance<Law>& made, const ilaw_batch& batch, std::int64_t no
 }
 
 // The whole of a batch; Varying: with parameters per node, one node at a time.
-template <class Law, class Delassus, class Frame, bool Diagnostics, bool Varying>
+template <class Law, class Delassus, class Frame, class Layout, bool Diagnostics, bool Varying>
 struct evaluate_walk {
   static tally run(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
     block_room<Law> room;
-    batch_walk<Law> walk(made, batch, room);
+    batch_walk<Law, Layout> walk(made, batch, room);
     tally found;
     for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
       walk.open(first);
@@ -381,35 +400,45 @@ struct evaluate_walk {
 
  private:
   static void run_nodes(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
-                        batch_walk<Law>& walk) {
-    if constexpr (!Varying) run_block<Law, Delassus, Frame, Diagnostics>(law, walk.block());
+                        batch_walk<Law, Layout>& walk) {
+    if constexpr (!Varying) run_block<Law, Delassus, Frame, Layout, Diagnostics>(law, walk.block());
     for (int i = 0; Varying && i < walk.nodes().count; ++i) {
       Law own = law;
       const bool valid = at_node(made, batch, walk.nodes().node(i), own);
-      run_node<Law, Delassus, Frame, Diagnostics>(own, walk.block(), i, valid);
+      run_node<Law, Delassus, Frame, Layout, Diagnostics>(own, walk.block(), i, valid);
     }
   }
 
   [[gnu::noinline, gnu::cold]] static void explain(const instance<Law>& made, const Law& law,
-                                                   const ilaw_batch& batch, batch_walk<Law>& walk,
+                                                   const ilaw_batch& batch, batch_walk<Law, Layout>& walk,
                                                    tally& found) {
     for (int i = 0; i < walk.nodes().count; ++i) {
       if (walk.block().refused[i] == 0.0) continue;
       Law own = law;
       const bool valid = at_node(made, batch, walk.nodes().node(i), own);
-      found.add(walk.nodes().node(i), valid ? refusal_reason<Law, Delassus, Frame>(own, walk.block(), i)
-                                            : "a per-node parameter is out of range");
+      found.add(walk.nodes().node(i), valid
+                                          ? refusal_reason<Law, Delassus, Frame, Layout>(own, walk.block(), i)
+                                          : "a per-node parameter is out of range");
     }
   }
 };
 
+template <class Law, class Delassus, class Frame, class Layout>
+tally walk_laid_out(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
+  if (batch.velocity.values || batch.energy.values || batch.status)
+    return evaluate_walk<Law, Delassus, Frame, Layout, true, false>::run(made, law, batch);
+  return evaluate_walk<Law, Delassus, Frame, Layout, false, false>::run(made, law, batch);
+}
+
 template <class Law, class Delassus, class Frame>
 tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
-  if (made.per_node_count > 0) return evaluate_walk<Law, Delassus, Frame, true, true>::run(made, law, batch);
-  if (batch.velocity.values || batch.energy.values || batch.status)
-    return evaluate_walk<Law, Delassus, Frame, true, false>::run(made, law, batch);
-  return evaluate_walk<Law, Delassus, Frame, false, false>::run(made, law, batch);
+  if (made.per_node_count > 0)
+    return evaluate_walk<Law, Delassus, Frame, columns, true, true>::run(made, law, batch);
+  if constexpr (std::is_same_v<Delassus, scalar_delassus> && !std::is_same_v<Frame, stored_frame>)
+    if (all_interleaved(made, batch))
+      return walk_laid_out<Law, Delassus, Frame, interleaved>(made, law, batch);
+  return walk_laid_out<Law, Delassus, Frame, columns>(made, law, batch);
 }
 
 // A diagonal H turned out of its axes is full.
@@ -464,7 +493,7 @@ template <class Law>
 tally initialise_nodes(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
   block_room<Law> room;
-  batch_walk<Law> walk(made, batch, room);
+  batch_walk<Law, columns> walk(made, batch, room);
   tally found;
   for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
     walk.open_initial(first);

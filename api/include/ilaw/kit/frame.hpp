@@ -64,27 +64,44 @@ struct basis {
   }
 };
 
-// Columns of the axes of a block: three of the normal, then three each of the tangents where they are stored.
-struct axis_columns {
-  const double* values[9];
-
-  axis at(int first, int i) const { return {values[first][i], values[first + 1][i], values[first + 2][i]}; }
+// Where the three components of vector i stand: in three columns, or interleaved as in a (3,n) array, from
+// one pointer so that the compiler sees that they are neighbours.
+struct columns {
+  static axis get(const double* const* c, int i) { return {c[0][i], c[1][i], c[2][i]}; }
+  static void put(double* const* c, int i, axis a) {
+    c[0][i] = a.x;
+    c[1][i] = a.y;
+    c[2][i] = a.z;
+  }
+};
+struct interleaved {
+  static axis get(const double* const* c, int i) { return {c[0][3 * i], c[0][3 * i + 1], c[0][3 * i + 2]}; }
+  static void put(double* const* c, int i, axis a) {
+    c[0][3 * i] = a.x;
+    c[0][3 * i + 1] = a.y;
+    c[0][3 * i + 2] = a.z;
+  }
 };
 
-// The three ways in which a kernel gets its frames: none needed, from the normals alone, or stored.
+// The three ways in which a kernel gets its frames: none needed, from the normals alone, or stored. axes:
+// three columns of the normal, then three each of the tangents where they are stored.
 struct local_frame {
   static constexpr bool turns = false;
 };
 struct normal_frame {
   static constexpr bool turns = true;
-  static basis at(const axis_columns& axes, int i) {
-    const axis n = axes.at(0, i), t1 = any_tangent(n);
+  template <class Layout>
+  static basis at(const double* const* axes, int i) {
+    const axis n = Layout::get(axes, i), t1 = any_tangent(n);
     return {n, t1, cross(n, t1)};
   }
 };
 struct stored_frame {
   static constexpr bool turns = true;
-  static basis at(const axis_columns& axes, int i) { return {axes.at(0, i), axes.at(3, i), axes.at(6, i)}; }
+  template <class Layout>
+  static basis at(const double* const* axes, int i) {
+    return {columns::get(axes, i), columns::get(axes + 3, i), columns::get(axes + 6, i)};
+  }
 };
 
 }  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

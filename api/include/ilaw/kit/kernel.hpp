@@ -18,7 +18,7 @@ struct node_block {
 
   int count;
   double time, velocity_step, position_step;
-  axis_columns axes;  // unused in the local frame
+  const double* axes[9];  // normal, tangents; see frame.hpp
   const double* v_free[3];
   const double* v_previous[3];
   const double* delassus[6];
@@ -71,18 +71,17 @@ double state_defect(const state_t<Law>& state) {
 }  // namespace detail
 
 // A node as it comes in, in its local frame. A normal that is no unit vector makes v_free a defect.
-template <class Law, class Delassus, class Frame>
+template <class Law, class Delassus, class Frame, class Layout>
 node<Delassus, state_t<Law>> load_node(const node_block<Law>& b, int i) {
   node<Delassus, state_t<Law>> n;
   n.time = b.time;
   n.velocity_step = b.velocity_step;
   n.position_step = b.position_step;
-  const axis v_free{b.v_free[0][i], b.v_free[1][i], b.v_free[2][i]};
-  const axis v_previous{b.v_previous[0][i], b.v_previous[1][i], b.v_previous[2][i]};
+  const axis v_free = Layout::get(b.v_free, i), v_previous = columns::get(b.v_previous, i);
   const auto delassus =
       detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{});
   if constexpr (Frame::turns) {
-    const basis frame = Frame::at(b.axes, i);
+    const basis frame = Frame::template at<Layout>(b.axes, i);
     n.v_free = frame.to_local(v_free);
     n.v_free.n += frame.unit_defect();
     n.v_previous = frame.to_local(v_previous);
@@ -108,9 +107,9 @@ double input_defect(const Node& n) {
 }
 
 // Steps one node, and says whether its input was good and its result can be represented.
-template <class Law, class Delassus, class Frame>
+template <class Law, class Delassus, class Frame, class Layout>
 stepped<Law, Delassus> step_node(const Law& law, const node_block<Law>& b, int i) {
-  auto n = load_node<Law, Delassus, Frame>(b, i);
+  auto n = load_node<Law, Delassus, Frame, Layout>(b, i);
   const double before = input_defect(n) + detail::state_defect<Law>(n.state);
   law.step(n);
   const double after = defect(n.impulse) + detail::state_defect<Law>(n.state);
@@ -140,21 +139,18 @@ void store_state(const node_block<Law>& b, int i, const state_t<Law>& state) {
   }
 }
 
-// Writes a vector in the axes of the batch; where the node is refused, what the host is to find instead.
-template <class Law, class Frame>
-void store_vector(const node_block<Law>& b, double* const* columns, int i, vector a, bool accepted,
-                  axis otherwise) {
+// A vector in the axes of the batch; where the node is refused, what the host is to find instead.
+template <class Frame, class Layout>
+axis outgoing(const double* const* axes, int i, vector a, bool accepted, axis otherwise) {
   axis out{a.n, a.t1, a.t2};
-  if constexpr (Frame::turns) out = Frame::at(b.axes, i).to_global(a);
-  columns[0][i] = accepted ? out.x : otherwise.x;
-  columns[1][i] = accepted ? out.y : otherwise.y;
-  columns[2][i] = accepted ? out.z : otherwise.z;
+  if constexpr (Frame::turns) out = Frame::template at<Layout>(axes, i).to_global(a);
+  return {accepted ? out.x : otherwise.x, accepted ? out.y : otherwise.y, accepted ? out.z : otherwise.z};
 }
 
-template <class Law, class Frame, class Node>
+template <class Law, class Frame, class Layout, class Node>
 void store_diagnostics(const node_block<Law>& b, int i, const Node& n, bool accepted) {
   const vector v = n.v_free + n.delassus.times(n.impulse);
-  store_vector<Law, Frame>(b, b.velocity, i, v, accepted, {b.v_free[0][i], b.v_free[1][i], b.v_free[2][i]});
+  columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, Layout::get(b.v_free, i)));
   const energy_split e = split_energy(n, v);
   b.energy[ILAW_ENERGY_FRICTION][i] = accepted ? e.friction : 0.0;
   b.energy[ILAW_ENERGY_IMPACT][i] = accepted ? e.impact : 0.0;
@@ -164,16 +160,16 @@ void store_diagnostics(const node_block<Law>& b, int i, const Node& n, bool acce
 }
 
 // Steps and writes node i; valid: what the caller knows of its parameters.
-template <class Law, class Delassus, class Frame, bool Diagnostics>
+template <class Law, class Delassus, class Frame, class Layout, bool Diagnostics>
 void run_node(const Law& law, const node_block<Law>& b, int i, bool valid = true) {
-  auto [n, accepted] = step_node<Law, Delassus, Frame>(law, b, i);
+  auto [n, accepted] = step_node<Law, Delassus, Frame, Layout>(law, b, i);
   accepted = accepted & valid;
-  store_vector<Law, Frame>(b, b.impulse, i, n.impulse, accepted, {0.0, 0.0, 0.0});
-  if constexpr (Diagnostics) store_diagnostics<Law, Frame>(b, i, n, accepted);
+  Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
+  if constexpr (Diagnostics) store_diagnostics<Law, Frame, Layout>(b, i, n, accepted);
   if constexpr (has_memory<Law>)
     if (accepted) law.record(n, history{b.history_values + b.history_offset(i), b.history_component_stride});
   if constexpr (has_state<Law>) {
-    const state_t<Law> before = load_node<Law, Delassus, Frame>(b, i).state;
+    const state_t<Law> before = load_node<Law, Delassus, Frame, Layout>(b, i).state;
     store_state<Law>(b, i, accepted ? n.state : before);
   }
   b.refused[i] = accepted ? 0.0 : 1.0;
@@ -181,15 +177,15 @@ void run_node(const Law& law, const node_block<Law>& b, int i, bool valid = true
 
 // Runs a block with the same parameters at all nodes. Not inlined: GCC vectorises this loop only where it
 // stands alone.
-template <class Law, class Delassus, class Frame, bool Diagnostics>
+template <class Law, class Delassus, class Frame, class Layout, bool Diagnostics>
 [[gnu::noinline, gnu::flatten]] void run_block(const Law& law, const node_block<Law>& block) {
   const node_block<Law> b = block;  // local copies, so that no store can alias a pointer or a parameter
   const Law l = law;
   if constexpr (has_memory<Law>) {
-    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Diagnostics>(l, b, i);
+    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Diagnostics>(l, b, i);
   } else {
 #pragma omp simd
-    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Diagnostics>(l, b, i);
+    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Diagnostics>(l, b, i);
   }
 }
 
