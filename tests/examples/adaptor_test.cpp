@@ -1,0 +1,150 @@
+// A law in a velocity-Verlet code that has nothing but a nodal-force hook, against the scheme laws are
+// written for (central differences with velocities at half steps): the same half-step velocities, also at
+// variable steps. SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <ilaw/loader.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace {
+
+using vector = std::array<double, 3>;  // normal, then tangential components
+using interface_pointer = std::unique_ptr<ilaw_interface, decltype(&ilaw_interface_destroy)>;
+
+constexpr double mass = 1.7, stiffness = 40.0;
+constexpr vector gravity{-10.0, 0.0, 0.0}, start{0.2, 0.0, 0.1}, start_velocity{-0.5, 2.0, -1.0};
+constexpr int steps = 4000;
+
+double step_length(int n) { return 1e-3 * (1.0 + 0.4 * std::sin(n)); }
+
+interface_pointer coulomb_with_restitution() {
+  ilaw_argument friction{}, restitution{};
+  friction.struct_size = restitution.struct_size = sizeof(ilaw_argument);
+  friction.name = "friction";
+  friction.number = 0.3;
+  restitution.name = "restitution";
+  restitution.number = 0.5;
+  const ilaw_argument* arguments[] = {&friction, &restitution};
+  ilaw_setup setup{};
+  setup.struct_size = sizeof setup;
+  setup.dimension = 3;
+  setup.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.velocity_step = step_length(0);
+  setup.arguments = arguments;
+  setup.argument_count = 2;
+  char message[512];
+  ilaw_library* library = nullptr;
+  ilaw_interface* interface = nullptr;
+  if (ilaw_library_open(ILAW_PLUGINS "/coulomb.so", &library, message, sizeof message) != ILAW_OK ||
+      ilaw_interface_create(library, nullptr, &setup, &interface, message, sizeof message) != ILAW_OK)
+    throw std::runtime_error(message);
+  ilaw_library_close(library);
+  return {interface, &ilaw_interface_destroy};
+}
+
+vector impulse_of(const ilaw_interface* interface, const vector& v_free, const vector& v_previous, double gap,
+                  double time, double velocity_step, double position_step) {
+  const double inverse_mass = 1.0 / mass;
+  vector r;
+  ilaw_batch batch{};
+  batch.struct_size = sizeof batch;
+  batch.node_count = 1;
+  batch.time = time;
+  batch.velocity_step = velocity_step;
+  batch.position_step = position_step;
+  batch.v_free = {v_free.data(), 3, 1};
+  batch.v_previous = {v_previous.data(), 3, 1};
+  batch.delassus = {&inverse_mass, 1, 1};
+  batch.gap = {&gap, 1, 1};
+  batch.impulse = {r.data(), 3, 1};
+  if (ilaw_interface_evaluate(interface, &batch, nullptr) != ILAW_OK)
+    throw std::runtime_error("evaluate refused");
+  return r;
+}
+
+// A block on a spring over a floor: it falls, bounces, slides and is dragged back.
+vector force_at(const vector& u) {
+  return {mass * gravity[0], mass * gravity[1] - stiffness * u[1], mass * gravity[2] - stiffness * u[2]};
+}
+
+void advance(vector& a, double factor, const vector& b) {
+  for (std::size_t c = 0; c < 3; ++c) a[c] += factor * b[c];
+}
+
+// Central differences as in docs/abi.md; gives all half-step velocities.
+std::vector<vector> central_differences() {
+  const interface_pointer interface = coulomb_with_restitution();
+  std::vector<vector> velocities;
+  vector u = start, v = start_velocity;
+  double time = 0.0;
+  advance(v, step_length(0) / (2 * mass), force_at(u));
+  for (int n = 0; n < steps; ++n) {
+    velocities.push_back(v);
+    const double position_step = step_length(n + 1),
+                 velocity_step = (step_length(n) + step_length(n + 1)) / 2;
+    time += step_length(n);
+    advance(u, step_length(n), v);
+    vector v_free = v;
+    advance(v_free, velocity_step / mass, force_at(u));
+    const vector r = impulse_of(interface.get(), v_free, v, u[0], time, velocity_step, position_step);
+    v = v_free;
+    advance(v, 1.0 / mass, r);
+  }
+  return velocities;
+}
+
+// [hook]
+// Called when all other forces of step n are summed; v is still the half-step velocity. Adds the law's force.
+void force_hook(const ilaw_interface* interface, int n, double time, const vector& u, const vector& v,
+                vector& f) {
+  const double velocity_step = (step_length(n) + step_length(n + 1)) / 2;  // this and the next half kick
+  vector v_free = v;
+  advance(v_free, velocity_step / mass, f);
+  const vector r = impulse_of(interface, v_free, v, u[0], time, velocity_step, step_length(n + 1));
+  advance(f, 1.0 / velocity_step, r);
+}
+// [hook]
+
+std::vector<vector> velocity_verlet() {
+  const interface_pointer interface = coulomb_with_restitution();
+  std::vector<vector> velocities;
+  vector u = start, v = start_velocity, f = force_at(u);
+  double time = 0.0;
+  for (int n = 0; n < steps; ++n) {
+    advance(v, step_length(n) / (2 * mass), f);
+    velocities.push_back(v);
+    time += step_length(n);
+    advance(u, step_length(n), v);
+    f = force_at(u);
+    force_hook(interface.get(), n, time, u, v, f);
+    advance(v, step_length(n) / (2 * mass), f);
+  }
+  return velocities;
+}
+
+TEST(Adaptor, ForceHookInVelocityVerletIsTheSchemeItself) {
+  const std::vector<vector> expected = central_differences(), found = velocity_verlet();
+  double largest = 0.0;
+  for (int n = 0; n < steps; ++n)
+    for (std::size_t c = 0; c < 3; ++c)
+      largest = std::max(largest, std::abs(expected[static_cast<std::size_t>(n)][c] -
+                                           found[static_cast<std::size_t>(n)][c]));
+  EXPECT_LE(largest,
+            1e-11);  // rounding of four thousand steps; one impulse amiss is a thousand millions more
+}
+
+TEST(Adaptor, TheCaseBouncesSlidesAndComesToRest) {
+  const std::vector<vector> velocities = central_differences();
+  int bounces = 0;
+  for (std::size_t n = 1; n < velocities.size(); ++n)
+    bounces += velocities[n - 1][0] < 0.0 && velocities[n][0] > 0.0;
+  EXPECT_GE(bounces, 4);
+  EXPECT_LE(std::abs(velocities.back()[0]), 1e-2);
+  EXPECT_EQ(velocities.back()[1], 0.0);
+}
+
+}  // namespace
