@@ -178,9 +178,8 @@ void run_node(const Law& law, const node_block<Law>& b, int i, bool valid = true
 // Runs a block with the same parameters at all nodes. Not inlined: GCC vectorises this loop only where it
 // stands alone.
 template <class Law, class Delassus, class Frame, class Layout, bool Diagnostics>
-[[gnu::noinline, gnu::flatten]] void run_block(const Law& law, const node_block<Law>& block) {
-  const node_block<Law> b = block;  // local copies, so that no store can alias a pointer or a parameter
-  const Law l = law;
+[[gnu::noinline, gnu::flatten]] void run_block(const Law& law, const node_block<Law>& b) {
+  const Law l = law;  // a copy, so that no store can alias a parameter
   if constexpr (has_memory<Law>) {
     for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Diagnostics>(l, b, i);
   } else {
