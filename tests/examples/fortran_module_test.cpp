@@ -246,7 +246,7 @@ struct creation {
   std::string message;
 };
 
-creation create(int way, const char* library = ILAW_PLUGINS "/coulomb.so") {
+creation create(int way, const char* library = ILAW_PLUGIN_FOLDER "/coulomb.so") {
   creation made;
   char message[200];
   made.code = fortran_create(library, way, &made.per_node_count, message);

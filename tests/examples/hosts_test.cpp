@@ -24,7 +24,7 @@ struct output {
 };
 
 output run(const std::string& program, const std::string& arguments) {
-  setenv("ILAW_PATH", ILAW_PLUGINS, 1);
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   FILE* pipe = popen(("'" + program + "' " + arguments + " 2>&1").c_str(), "r");
   std::string text;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
