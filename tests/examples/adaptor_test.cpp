@@ -2,18 +2,16 @@
 // written for (central differences with velocities at half steps): the same half-step velocities, also at
 // variable steps. SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <ilaw/loader.h>
+#include <ilaw/loader.hpp>
 
 #include <array>
 #include <cmath>
-#include <memory>
 #include <stdexcept>
 #include <vector>
 
 namespace {
 
 using vector = std::array<double, 3>;  // normal, then tangential components
-using interface_pointer = std::unique_ptr<ilaw_interface, decltype(&ilaw_interface_destroy)>;
 
 constexpr double mass = 1.7, stiffness = 40.0;
 constexpr vector gravity{-10.0, 0.0, 0.0}, start{0.2, 0.0, 0.1}, start_velocity{-0.5, 2.0, -1.0};
@@ -21,7 +19,7 @@ constexpr int steps = 4000;
 
 double step_length(int n) { return 1e-3 * (1.0 + 0.4 * std::sin(n)); }
 
-interface_pointer coulomb_with_restitution() {
+ilaw::interface coulomb_with_restitution() {
   ilaw_argument friction{}, restitution{};
   friction.struct_size = restitution.struct_size = sizeof(ilaw_argument);
   friction.name = "friction";
@@ -36,18 +34,11 @@ interface_pointer coulomb_with_restitution() {
   setup.velocity_step = step_length(0);
   setup.arguments = arguments;
   setup.argument_count = 2;
-  char message[512];
-  ilaw_library* library = nullptr;
-  ilaw_interface* interface = nullptr;
-  if (ilaw_library_open(ILAW_PLUGIN_FOLDER "/coulomb.so", &library, message, sizeof message) != ILAW_OK ||
-      ilaw_interface_create(library, nullptr, &setup, &interface, message, sizeof message) != ILAW_OK)
-    throw std::runtime_error(message);
-  ilaw_library_close(library);
-  return {interface, &ilaw_interface_destroy};
+  return {ilaw::library(ILAW_PLUGIN_FOLDER "/coulomb.so"), "", setup};
 }
 
-vector impulse_of(const ilaw_interface* interface, const vector& v_free, const vector& v_previous, double gap,
-                  double time, double velocity_step, double position_step) {
+vector impulse_of(const ilaw::interface& interface, const vector& v_free, const vector& v_previous,
+                  double gap, double time, double velocity_step, double position_step) {
   const double inverse_mass = 1.0 / mass;
   vector r;
   ilaw_batch batch{};
@@ -61,8 +52,7 @@ vector impulse_of(const ilaw_interface* interface, const vector& v_free, const v
   batch.delassus = {&inverse_mass, 1, 1};
   batch.gap = {&gap, 1, 1};
   batch.impulse = {r.data(), 3, 1};
-  if (ilaw_interface_evaluate(interface, &batch, nullptr) != ILAW_OK)
-    throw std::runtime_error("evaluate refused");
+  if (interface.evaluate(batch) != ILAW_OK) throw std::runtime_error("evaluate refused");
   return r;
 }
 
@@ -77,7 +67,7 @@ void advance(vector& a, double factor, const vector& b) {
 
 // Central differences as in docs/abi.md; gives all half-step velocities.
 std::vector<vector> central_differences() {
-  const interface_pointer interface = coulomb_with_restitution();
+  const ilaw::interface interface = coulomb_with_restitution();
   std::vector<vector> velocities;
   vector u = start, v = start_velocity;
   double time = 0.0;
@@ -90,16 +80,15 @@ std::vector<vector> central_differences() {
     advance(u, step_length(n), v);
     vector v_free = v;
     advance(v_free, velocity_step / mass, force_at(u));
-    const vector r = impulse_of(interface.get(), v_free, v, u[0], time, velocity_step, position_step);
+    const vector r = impulse_of(interface, v_free, v, u[0], time, velocity_step, position_step);
     v = v_free;
     advance(v, 1.0 / mass, r);
   }
   return velocities;
 }
 
-// [hook]
 // Called when all other forces of step n are summed; v is still the half-step velocity. Adds the law's force.
-void force_hook(const ilaw_interface* interface, int n, double time, const vector& u, const vector& v,
+void force_hook(const ilaw::interface& interface, int n, double time, const vector& u, const vector& v,
                 vector& f) {
   const double velocity_step = (step_length(n) + step_length(n + 1)) / 2;  // this and the next half kick
   vector v_free = v;
@@ -107,10 +96,9 @@ void force_hook(const ilaw_interface* interface, int n, double time, const vecto
   const vector r = impulse_of(interface, v_free, v, u[0], time, velocity_step, step_length(n + 1));
   advance(f, 1.0 / velocity_step, r);
 }
-// [hook]
 
 std::vector<vector> velocity_verlet() {
-  const interface_pointer interface = coulomb_with_restitution();
+  const ilaw::interface interface = coulomb_with_restitution();
   std::vector<vector> velocities;
   vector u = start, v = start_velocity, f = force_at(u);
   double time = 0.0;
@@ -120,7 +108,7 @@ std::vector<vector> velocity_verlet() {
     time += step_length(n);
     advance(u, step_length(n), v);
     f = force_at(u);
-    force_hook(interface.get(), n, time, u, v, f);
+    force_hook(interface, n, time, u, v, f);
     advance(v, step_length(n) / (2 * mass), f);
   }
   return velocities;

@@ -43,12 +43,10 @@ static void kick(double step) {
     for (int c = 0; c < 3; ++c) v[i][c] += step * inverse_mass[i] * force[i][c];
 }
 
-/* [create] */
 static ilaw_interface* create_interface(const char* library_name) {
   char message[512];
   ilaw_library* library;
-  if (ilaw_library_open(library_name, &library, message, sizeof message) != ILAW_OK)
-    fail(library_name, message);
+  if (ilaw_library_open(library_name, &library, message, sizeof message) != ILAW_OK) fail("open", message);
 
   const ilaw_argument friction = {.struct_size = sizeof friction, .name = "friction", .number = 0.3};
   const ilaw_argument activation = {
@@ -63,13 +61,11 @@ static ilaw_interface* create_interface(const char* library_name) {
                             .argument_count = 2};
   ilaw_interface* interface;
   if (ilaw_interface_create(library, NULL, &setup, &interface, message, sizeof message) != ILAW_OK)
-    fail(library_name, message);
+    fail("create", message);
   ilaw_library_close(library); /* the interface keeps it loaded */
   return interface;
 }
-/* [create] */
 
-/* [batch] */
 static ilaw_batch describe_batch(const ilaw_instance_info* info, double* state) {
   const uint32_t given = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_NORMAL;
   if ((info->inputs | info->energy_inputs) & ~given)
@@ -92,9 +88,7 @@ static ilaw_batch describe_batch(const ilaw_instance_info* info, double* state) 
                       .status = status,
                       .status_stride = 1};
 }
-/* [batch] */
 
-/* [step] */
 static void step(const ilaw_interface* interface, ilaw_batch* batch, int n) {
   for (int i = 0; i < BLOCKS; ++i)
     for (int c = 0; c < 3; ++c) u[i][c] += h * v[i][c];
@@ -109,7 +103,6 @@ static void step(const ilaw_interface* interface, ilaw_batch* batch, int n) {
   for (int i = 0; i < BLOCKS; ++i)
     for (int c = 0; c < 3; ++c) v[i][c] += inverse_mass[i] * impulse[i][c];
 }
-/* [step] */
 
 int main(int argc, char** argv) {
   if (argc != 2) fail("usage", "blocks_c LIBRARY");

@@ -5,12 +5,11 @@
 // blocks.c is the same host in C and prints the same bits, though here components come first in the arrays.
 //
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ilaw/loader.h>
+#include <ilaw/loader.hpp>
 
 #include <array>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -43,51 +42,26 @@ void kick(double duration) {
     for (std::size_t i = 0; i < count; ++i) v[c][i] += duration * inverse_mass[i] * force[c][i];
 }
 
-// [create]
-struct ends_interface {
-  void operator()(ilaw_interface* interface) const { ilaw_interface_destroy(interface); }
-};
-using interface_pointer = std::unique_ptr<ilaw_interface, ends_interface>;
-
-interface_pointer create_interface(const char* library_name) {
-  char message[512];
-  ilaw_library* library = nullptr;
-  if (ilaw_library_open(library_name, &library, message, sizeof message) != ILAW_OK)
-    throw std::runtime_error(message);
-
+ilaw::interface create_interface(const char* library_name) {
   ilaw_argument friction{}, activation{};
-  friction = {.struct_size = sizeof friction,
-              .kind = ILAW_VALUE_NUMBER,
-              .name = "friction",
-              .number = 0.3,
-              .text = nullptr,
-              .values = nullptr,
-              .count = 0};
-  activation = {.struct_size = sizeof activation,
-                .kind = ILAW_VALUE_TEXT,
-                .name = "activation",
-                .number = 0.0,
-                .text = "moreau",
-                .values = nullptr,
-                .count = 0};
+  friction.struct_size = activation.struct_size = sizeof(ilaw_argument);
+  friction.name = "friction";
+  friction.number = 0.3;
+  activation.name = "activation";
+  activation.kind = ILAW_VALUE_TEXT;
+  activation.text = "moreau";
   const std::array<const ilaw_argument*, 2> arguments{&friction, &activation};
-  const ilaw_setup setup{.struct_size = sizeof setup,
-                         .dimension = 3,
-                         .delassus_form = ILAW_DELASSUS_SCALAR,
-                         .frame = ILAW_FRAME_GLOBAL,
-                         .velocity_step = h,
-                         .arguments = arguments.data(),
-                         .argument_count = arguments.size(),
-                         .tangent_given = 0};
-  ilaw_interface* interface = nullptr;
-  const int code = ilaw_interface_create(library, nullptr, &setup, &interface, message, sizeof message);
-  ilaw_library_close(library);  // an interface keeps it loaded
-  if (code != ILAW_OK) throw std::runtime_error(message);
-  return interface_pointer(interface);
+  ilaw_setup setup{};
+  setup.struct_size = sizeof setup;
+  setup.dimension = 3;
+  setup.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.frame = ILAW_FRAME_GLOBAL;
+  setup.velocity_step = h;
+  setup.arguments = arguments.data();
+  setup.argument_count = arguments.size();
+  return {ilaw::library(library_name), "", setup};  // the interface keeps the library loaded
 }
-// [create]
 
-// [batch]
 // An array with components first: the node stride is 1, the component stride the number of nodes.
 ilaw_input input_of(const components& a) { return {a.front().data(), 1, count}; }
 template <std::size_t N>
@@ -118,39 +92,35 @@ ilaw_batch describe_batch(const ilaw_instance_info& info, std::vector<double>& s
   batch.status_stride = 1;
   return batch;
 }
-// [batch]
 
-void step(const ilaw_interface* interface, ilaw_batch& batch, int n) {
+void step(const ilaw::interface& interface, ilaw_batch& batch, int n) {
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < count; ++i) u[c][i] += h * v[c][i];
   sum_forces();
   v_previous = v;
   kick(h);  // v is v_free now
 
-  ilaw_report report{
-      .struct_size = sizeof report, .reserved = 0, .bad_count = 0, .first_bad_node = -1, .reason = nullptr};
+  ilaw_report report{};
+  report.struct_size = sizeof report;
   batch.time = (n + 1) * h;
-  if (ilaw_interface_evaluate(interface, &batch, &report) != ILAW_OK) throw std::runtime_error(report.reason);
+  if (interface.evaluate(batch, &report) != ILAW_OK) throw std::runtime_error(report.reason);
 
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < count; ++i) v[c][i] += inverse_mass[i] * impulse[c][i];
 }
 
 void run(const char* library_name) {
-  const interface_pointer interface = create_interface(library_name);
-  ilaw_instance_info info{};
-  info.struct_size = sizeof info;
-  if (ilaw_interface_info(interface.get(), &info) != ILAW_OK) throw std::runtime_error("info refused");
+  const ilaw::interface interface = create_interface(library_name);
+  const ilaw_instance_info info = interface.info();
   std::vector<double> state(count * info.state_size);
   for (std::size_t i = 0; i < count; ++i) inverse_mass[i] = 1.0 / mass[i];
 
   ilaw_batch batch = describe_batch(info, state);
-  if (ilaw_interface_initialise(interface.get(), &batch, nullptr) != ILAW_OK)
-    throw std::runtime_error("initialise refused");
+  if (interface.initialise(batch) != ILAW_OK) throw std::runtime_error("initialise refused");
   sum_forces();
   kick(0.5 * h);  // V_1/2
   for (int n = 0; n < steps; ++n) {
-    step(interface.get(), batch, n);
+    step(interface, batch, n);
     for (std::size_t i = 0; i < count; ++i) friction_work[i] += energy[ILAW_ENERGY_FRICTION][i];
   }
   for (std::size_t i = 0; i < count; ++i)

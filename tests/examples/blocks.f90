@@ -55,7 +55,6 @@ program blocks
 
 contains
 
-  ! [create]
   subroutine create_interface()
     character(512) :: library_name, message
     type(c_ptr) :: library
@@ -64,19 +63,17 @@ contains
 
     if (command_argument_count() /= 1) call fail('usage', 'blocks_fortran LIBRARY')
     call get_command_argument(1, library_name)
-    if (ilaw_open(library_name, library, message) /= ILAW_OK) call fail(library_name, message)
+    if (ilaw_open(library_name, library, message) /= ILAW_OK) call fail('open', message)
     setup%dimension = 3
     setup%delassus_form = ILAW_DELASSUS_SCALAR
     setup%frame = ILAW_FRAME_GLOBAL
     setup%velocity_step = h
     call values%set('friction', 0.3_c_double)
     call values%set('activation', 'moreau')
-    if (ilaw_create(library, '', setup, values, interface, message) /= ILAW_OK) call fail(library_name, message)
+    if (ilaw_create(library, '', setup, values, interface, message) /= ILAW_OK) call fail('create', message)
     call ilaw_library_close(library) ! the interface keeps it loaded
   end subroutine
-  ! [create]
 
-  ! [batch]
   subroutine describe_batch()
     integer(c_int32_t), parameter :: given = ior(ior(ILAW_INPUT_GAP, ILAW_INPUT_V_PREVIOUS), ILAW_INPUT_NORMAL)
     if (iand(ior(info%inputs, info%energy_inputs), not(given)) /= 0) &
@@ -97,9 +94,7 @@ contains
     batch%status = c_loc(status)
     batch%status_stride = 1
   end subroutine
-  ! [batch]
 
-  ! [step]
   subroutine step(n)
     integer, intent(in) :: n
     u = u + h*v
@@ -113,7 +108,6 @@ contains
 
     v = v + spread(inverse_mass, 1, 3)*impulse
   end subroutine
-  ! [step]
 
   subroutine sum_forces()
     force = spread(gravity, 2, blocks_count)*spread(mass, 1, 3) - spread(stiffness, 1, 3)*u
