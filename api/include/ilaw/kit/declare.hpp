@@ -113,7 +113,7 @@ constexpr std::array<const T*, N> pointers_to(const std::array<T, N>& elements) 
 
 template <class Law>
 constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
-  const std::uint32_t kind = p.choices ? ILAW_PARAMETER_CHOICE
+  const std::uint32_t kind = p.choice_count > 0 ? ILAW_PARAMETER_CHOICE
                              : p.whole ? ILAW_PARAMETER_COUNT
                                        : ILAW_PARAMETER_NUMBER;
   const bool varies = kind == ILAW_PARAMETER_NUMBER;
@@ -123,8 +123,8 @@ constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
           .symbol = p.symbol,
           .unit = p.unit,
           .doc = p.doc,
-          .minimum = p.choices ? 0.0 : p.minimum,
-          .maximum = p.choices ? p.choice_count - 1.0 : p.maximum,
+          .minimum = p.choice_count > 0 ? 0.0 : p.minimum,
+          .maximum = p.choice_count > 0 ? p.choice_count - 1.0 : p.maximum,
           .default_value = p.default_value,
           .required = p.required,
           .minimum_excluded = p.minimum_excluded,

@@ -1,0 +1,60 @@
+// The `ilaw` program.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "describe.hpp"
+#include "plot.hpp"
+#include "run.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <string>
+
+int main(int argc, char** argv) {
+  using namespace ilaw::host;
+  CLI::App app{
+      "ilaw - interface laws in explicit dynamics: runs scenes, draws them, tells what laws there are"};
+  app.set_version_flag("--version", "ilaw " ILAW_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done; 1 the run failed (diverged, plugin error, interrupted); 2 bad usage or bad input, "
+      "before\n"
+      "anything ran.\nExample: ilaw run scene.json --out results && ilaw plot results");
+
+  std::string scene, folder;
+  CLI::App* run_command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
+  run_command->add_option("scene", scene, "Scene file (JSON)")->required();
+  run_command->add_option("--out", folder, "Folder for the results, made if it does not exist")->required();
+  run_command->footer("Example: ilaw run host_mock/scenes/bouncing_ball.json --out results");
+
+  std::string results;
+  CLI::App* plot_command =
+      app.add_subcommand("plot", "Draw the history of a run: history.png and history.svg");
+  plot_command->add_option("folder", results, "Folder that `ilaw run` wrote")->required();
+  plot_command->footer("Example: ilaw plot results");
+
+  CLI::App* list_command = app.add_subcommand("list", "List the laws on the search path");
+  list_command->footer("Example: ILAW_PATH=$HOME/my_laws ilaw list");
+
+  std::string law;
+  bool as_json = false;
+  CLI::App* describe_command =
+      app.add_subcommand("describe", "Describe a law: parameters, state, references");
+  describe_command->add_option("law", law, "Name of a law, or path of a library")->required();
+  describe_command->add_flag("--json", as_json, "Print JSON");
+  describe_command->footer("Example: ilaw describe coulomb --json");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_done : exit_bad_input;
+  }
+  try {
+    if (run_command->parsed()) return run(scene, folder);
+    if (plot_command->parsed()) return plot(results);
+    return list_command->parsed() ? list_laws() : describe(law, as_json);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ilaw: %s\n", error.what());
+    return exit_failed;
+  }
+}

@@ -1,0 +1,27 @@
+// progress.hpp - a bar with the remaining time, on a terminal only.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace ilaw::host {
+
+class Progress {
+ public:
+  explicit Progress(std::int64_t steps);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  // Draws at most ten times a second.
+  void show(std::int64_t done);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::int64_t steps_;
+  bool terminal_, drawn_ = false;
+  Clock::time_point start_, last_;
+};
+
+}  // namespace ilaw::host
