@@ -88,13 +88,13 @@ void draw_panel(std::ostream& script, const Panel& panel, const std::vector<std:
               "\"bonded\" 4, "
               "\"broken\" 5, \"healed\" 6)\n";
   else
-    script << "set yrange [*:*]\nset ytics autofreq\n";
+    script << "set yrange [*:*]\nset ytics autofreq\nset format y \"%.4g\"\n";
   script << "plot";
   for (std::size_t k = 0; k < panel.columns.size(); ++k) {
     const std::size_t column = panel.columns[k];
     script << (k ? ", " : " ") << "history using 1:" << column << " with "
            << (is_status || panel.label == "velocity" ? "steps"
-               : panel.label == "impulse"             ? "impulses"
+               : panel.label == "impulse"             ? "steps"
                                                       : "lines")
            << " linewidth 1.4 linecolor rgb " << quoted(palette[k % std::size(palette)]) << " title "
            << quoted(header[column - 1]);
@@ -104,12 +104,12 @@ void draw_panel(std::ostream& script, const Panel& panel, const std::vector<std:
 
 void draw(std::ostream& script, const std::filesystem::path& folder, const char* kind,
           const std::vector<std::string>& header, const std::vector<Panel>& panels) {
-  const std::size_t height = 60 + 170 * panels.size();
+  const std::size_t height = 100 + 170 * panels.size();
   script << "set terminal " << (std::string(kind) == "png" ? "pngcairo" : "svg") << " size 1000," << height
          << " font \"sans,11\" enhanced\n"
          << "set output " << quoted((folder / ("history." + std::string(kind))).string()) << "\n"
          << "set multiplot layout " << panels.size() << ",1 title " << quoted(title_of(folder))
-         << " font \",14\" noenhanced margins 0.11,0.80," << 45.0 / static_cast<double>(height) << ","
+         << " font \",14\" noenhanced margins 0.11,0.80," << 60.0 / static_cast<double>(height) << ","
          << 1.0 - 40.0 / static_cast<double>(height) << " spacing 0," << 16.0 / static_cast<double>(height)
          << "\n"
          << "set key outside right top noenhanced\nset grid linecolor rgb \"#dddddd\"\nset border 3\nset "

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Builds everything in Release, runs the shipped scenes and draws them.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+bash host_mock/setup.sh
+echo "build: build/release"
+cmake --preset release -DILAW_TESTS=OFF >/dev/null
+cmake --build --preset release -- --quiet
+
+for scene in host_mock/scenes/*.json; do
+  results=build/release/demo/$(basename "$scene" .json)
+  build/release/bin/ilaw run "$scene" --out "$results"
+  build/release/bin/ilaw plot "$results" >/dev/null
+done
+echo
+echo "Pictures: build/release/demo/*/history.png; open first build/release/demo/postit_test3/history.png"
