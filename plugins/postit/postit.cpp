@@ -1,0 +1,201 @@
+// Rigid, perfectly brittle adhesion that heals under pressure, with contact and friction. See postit.md.
+#include "window.hpp"
+
+#include <ilaw/kit.hpp>
+
+namespace {
+
+using namespace ilaw::kit;
+using postit_law::window;
+
+constexpr const char* rupture_choices[] = {"brittle", "saturated"};
+constexpr double saturated = 1.0;
+
+// A pull exactly at the limit holds, whatever the rounding of its windowed sum.
+constexpr double at_the_limit = 1.0 + 1e-12;
+
+struct postit {
+  double adhesion_limit;
+  double efficiency_decrease;
+  double memory_time;
+  double tangent_influence;
+  double friction;
+  double rupture;
+  double initial_adhesion;
+  double buckets;
+  double slots = 0.0;  // of the window, from the setup
+
+  static constexpr law_card card{
+      .id = "postit",
+      .title = "Healing brittle adhesion with friction",
+      .doc =
+          "Rigid bond that breaks when the impulses of the last memory exceed its adhesion, and forms again "
+          "under "
+          "pressure, each time less after a rupture; contact with Coulomb friction where it is not bonded.",
+      .inputs = reads_gap | reads_area,
+      .capabilities = ILAW_CAN_ADHERE};
+
+  static constexpr const char* references[] = {
+      "LaMCoS / Michelin, 2024, Post-it tests (slides), after hal-04146784: parameters, tests, windowed "
+      "rupture",
+      "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics"};
+
+  static constexpr parameter<postit> parameters[] = {
+      {.member = &postit::adhesion_limit,
+       .name = "adhesion_limit",
+       .symbol = "R_Y,max",
+       .unit = "N.s/m^2",
+       .doc = "Largest adhesion per area that pressing can give.",
+       .default_value = infinity,
+       .infinity_allowed = true},
+      {.member = &postit::efficiency_decrease,
+       .name = "efficiency_decrease",
+       .symbol = "n_b",
+       .doc = "Number of ruptures that divides the efficiency of pressing by e: eta = exp(-b/n_b).",
+       .default_value = infinity,
+       .minimum_excluded = true,
+       .infinity_allowed = true},
+      {.member = &postit::memory_time,
+       .name = "memory",
+       .symbol = "tau_Y",
+       .unit = "s",
+       .doc = "Duration over which impulses are summed; 0: the step's own impulse alone.",
+       .infinity_allowed = true},
+      {.member = &postit::tangent_influence,
+       .name = "tangent_influence",
+       .symbol = "lambda",
+       .doc = "Tangential adhesion over normal adhesion; inf: only the normal part breaks the bond.",
+       .default_value = infinity,
+       .minimum_excluded = true,
+       .infinity_allowed = true},
+      {.member = &postit::friction,
+       .name = "friction",
+       .symbol = "mu",
+       .doc = "Coefficient of friction.",
+       .infinity_allowed = true},
+      {.member = &postit::rupture,
+       .name = "rupture",
+       .doc = "brittle: the breaking step gives no adhesive impulse; saturated: it gives what was left up to "
+              "the "
+              "limit.",
+       .choices = rupture_choices,
+       .choice_count = 2},
+      {.member = &postit::initial_adhesion,
+       .name = "initial_adhesion",
+       .symbol = "R_Y,0",
+       .unit = "N.s/m^2",
+       .doc = "Adhesion per area at the start."},
+      {.member = &postit::buckets,
+       .name = "buckets",
+       .symbol = "B",
+       .doc = "Slots of the memory: the sum is exact when there are at least memory over time step.",
+       .default_value = 16.0,
+       .minimum = 1.0,
+       .maximum = 4096.0,
+       .whole = true}};
+
+  struct state {
+    double adhesion, ruptures;
+  };
+  static constexpr state_variable state_variables[] = {
+      {.name = "adhesion", .unit = "N.s", .doc = "Adhesion of the node; 0 when it is not bonded."},
+      {.name = "ruptures", .doc = "Number of ruptures so far."}};
+  static constexpr state_variable memory{
+      .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .kind = ILAW_STATE_HISTORY};
+
+  std::uint32_t inputs() const {
+    return reads_gap | (adhesion_limit < infinity || initial_adhesion > 0.0 ? reads_area : 0U);
+  }
+  const char* conflict() const {
+    return initial_adhesion > adhesion_limit
+               ? "parameter 'initial_adhesion' is larger than 'adhesion_limit', expected "
+                 "at most that"
+               : nullptr;
+  }
+  std::int64_t memory_size(const ilaw_setup& setup) {
+    slots = static_cast<double>(window::slot_count(memory_time, buckets, setup.velocity_step));
+    return window::doubles(static_cast<std::int64_t>(slots));
+  }
+
+  template <class Node>
+  void initialise(Node& node) const {
+    node.state.adhesion = initial_adhesion > 0.0 ? initial_adhesion * node.area : 0.0;
+  }
+
+  template <class Node>
+  void step(Node& node) const {
+    const vector past = sums().sum(node.past, node.time, node.velocity_step);
+    if (node.state.adhesion > 0.0)
+      step_bonded(node, past);
+    else
+      touch(node, node.v_free, {});
+    heal(node, node.status == double{ILAW_BROKEN} ? vector{} : past);
+  }
+
+  // A rupture clears the window; what it then holds is the impulse of this step.
+  template <class Node>
+  void record(const Node& node, history own) const {
+    if (node.status == double{ILAW_BROKEN}) sums().clear(own);
+    sums().add(own, node.time, node.velocity_step, node.impulse);
+  }
+
+ private:
+  window sums() const { return {memory_time, static_cast<std::int64_t>(slots)}; }
+
+  // (<-S_N>/R_Y)^2 + (<|S_T| - mu <S_N>>/(lambda R_Y))^2, which exceeds 1 at rupture.
+  double criterion(vector sum, double adhesion) const {
+    const double pull = positive_part(-sum.n) / adhesion;
+    const double held_by_friction = friction_limit(friction, sum.n);
+    const double shear =
+        positive_part(sum.tangential_length() - held_by_friction) / (tangent_influence * adhesion);
+    return pull * pull + shear * shear;
+  }
+
+  template <class Node>
+  void step_bonded(Node& node, vector past) const {
+    const vector trial = -node.delassus.solve(node.v_free);
+    if (criterion(past + trial, node.state.adhesion) <= at_the_limit) {
+      node.impulse = trial;
+      node.status = ILAW_BONDED;
+      return;
+    }
+    const vector held = rupture == saturated ? held_part(past, trial, node.state.adhesion) * trial : vector{};
+    node.state.adhesion = 0.0;
+    node.state.ruptures += 1.0;
+    touch(node, node.v_free + node.delassus.times(held), held);
+    node.status = ILAW_BROKEN;
+  }
+
+  // The part of the trial impulse that takes the sum to the limit; bisection to the last bit.
+  double held_part(vector past, vector trial, double adhesion) const {
+    double holds = 0.0, breaks = 1.0;
+    if (criterion(past, adhesion) > 1.0) return 0.0;
+    for (double middle = 0.5; middle > holds && middle < breaks; middle = 0.5 * (holds + breaks))
+      (criterion(past + middle * trial, adhesion) <= 1.0 ? holds : breaks) = middle;
+    return holds;
+  }
+
+  // Contact and friction, on top of what a breaking bond still gave.
+  template <class Node>
+  void touch(Node& node, vector velocity, vector held) const {
+    apply_contact_friction(node, node.gap, velocity, friction);
+    node.impulse = node.impulse + held;
+  }
+
+  // Pressing bonds: R_Y = max(R_Y, min(eta(b) <S_N>, R_Y,max)).
+  template <class Node>
+  void heal(Node& node, vector past) const {
+    if (!(node.impulse.n > 0.0)) return;
+    const double efficiency =
+        efficiency_decrease < infinity ? exp(-node.state.ruptures / efficiency_decrease) : 1.0;
+    const double limit = adhesion_limit < infinity ? adhesion_limit * node.area : infinity;
+    const double gained = smaller(efficiency * positive_part(past.n + node.impulse.n), limit);
+    const bool forms = node.state.adhesion == 0.0 && gained > 0.0 && node.status != double{ILAW_BROKEN};
+    node.state.adhesion = larger(node.state.adhesion, gained);
+    if (forms) node.status = ILAW_HEALED;
+  }
+};
+
+}  // namespace
+
+ILAW_PLUGIN("postit", "1.0.0", "ilaw", "BSD-3-Clause", postit)
