@@ -1,0 +1,175 @@
+// batch_runner.hpp - the same nodes through any layout of a batch, to compare results bit for bit.
+#pragma once
+
+#include "law_runner.hpp"
+
+#include <cstring>
+#include <random>
+
+namespace ilaw::testing {
+
+// Inputs of n nodes in canonical (AoS) order, drawn at random; every fourth node is open.
+struct Nodes {
+  explicit Nodes(std::int64_t n, int dimension = 3, int form_components = 1, unsigned seed = 1)
+      : count(n), d(dimension), hc(form_components) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    const auto fill = [&](std::vector<double>& values, std::int64_t size) {
+      values.resize(static_cast<std::size_t>(size));
+      for (double& value : values) value = uniform(random);
+    };
+    fill(v_free, n * d);
+    fill(v_previous, n * d);
+    fill(gap, n);
+    fill(area, n);
+    fill(normal, n * d);
+    delassus.resize(static_cast<std::size_t>(n * hc));
+    for (std::int64_t i = 0; i < n; ++i) {
+      for (int c = 0; c < hc; ++c) {
+        const bool on_diagonal = c < d;
+        delassus[static_cast<std::size_t>(i * hc + c)] = on_diagonal ? 2.0 : 0.0;
+      }
+      delassus[static_cast<std::size_t>(i * hc)] = 1.5 + uniform(random);
+      const auto k = static_cast<std::size_t>(i);
+      gap[k] = i % 4 == 3 ? 0.5 : -std::abs(gap[k]) * 1e-3;
+      area[k] = std::abs(area[k]);
+      double length = 0.0;
+      for (int c = 0; c < d; ++c) length += normal[k * d + c] * normal[k * d + c];
+      for (int c = 0; c < d; ++c) normal[k * d + c] /= std::sqrt(length);
+    }
+  }
+  std::int64_t count;
+  int d, hc;
+  std::vector<double> v_free, v_previous, gap, area, normal, delassus;
+};
+
+struct Results {
+  std::vector<double> impulse, velocity, energy, state;
+  std::vector<std::uint8_t> status;
+  std::int32_t code = 0;
+  ilaw_report report{};
+
+  bool operator==(const Results& other) const {
+    const auto same = [](const auto& a, const auto& b) {
+      return a.size() == b.size() &&
+             (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
+    };
+    return same(impulse, other.impulse) && same(velocity, other.velocity) && same(energy, other.energy) &&
+           same(state, other.state) && same(status, other.status);
+  }
+};
+
+// How the arrays of a batch are laid out.
+struct Layout {
+  std::int64_t node_stride = 0, component_stride = 0;  // 0: AoS
+  bool soa = false;
+  bool separate_state = false, outputs = true;
+  std::vector<std::int32_t> order{};  // index list; empty: none
+  std::int32_t index_base = 0;
+};
+
+// An array of n nodes with c components in some layout, with guard values between and around.
+class Laid {
+ public:
+  static constexpr double guard = 123456.75;
+  Laid(std::int64_t n, std::int64_t c, const Layout& layout) : n_(n), c_(c) {
+    node_ = layout.soa ? 1 : (layout.node_stride ? layout.node_stride * std::max<std::int64_t>(c, 1) : c);
+    component_ = layout.soa ? n + 3 : (layout.component_stride ? layout.component_stride : 1);
+    values_.assign(static_cast<std::size_t>(n * node_ + (c + 1) * component_ + 16), guard);
+  }
+  void put(const std::vector<double>& canonical) {
+    for (std::int64_t i = 0; i < n_; ++i)
+      for (std::int64_t k = 0; k < c_; ++k) at(i, k) = canonical[static_cast<std::size_t>(i * c_ + k)];
+  }
+  std::vector<double> get() const {
+    std::vector<double> canonical;
+    for (std::int64_t i = 0; i < n_; ++i)
+      for (std::int64_t k = 0; k < c_; ++k) canonical.push_back(values_[index(i, k)]);
+    return canonical;
+  }
+  // Whether everything outside the n c values still is the guard.
+  bool guarded() const {
+    std::vector<bool> used(values_.size());
+    for (std::int64_t i = 0; i < n_; ++i)
+      for (std::int64_t k = 0; k < c_; ++k) used[index(i, k)] = true;
+    for (std::size_t k = 0; k < values_.size(); ++k)
+      if (!used[k] && values_[k] != guard) return false;
+    return true;
+  }
+  ilaw_input in() const { return {values_.data(), node_, component_}; }
+  ilaw_output out() { return {values_.data(), node_, component_}; }
+
+ private:
+  std::size_t index(std::int64_t i, std::int64_t k) const {
+    return static_cast<std::size_t>(i * node_ + k * component_);
+  }
+  double& at(std::int64_t i, std::int64_t k) { return values_[index(i, k)]; }
+  std::int64_t n_, c_, node_, component_;
+  std::vector<double> values_;
+};
+
+// Initialises and runs some steps of a law over the nodes in a layout; v_free is halved at each step.
+inline Results run(const ilaw::interface& law, const Nodes& nodes, const Layout& layout, bool global = false,
+                   int steps = 3, std::int64_t first = 0, std::int64_t count = -1) {
+  const std::int64_t n = nodes.count, s = static_cast<std::int64_t>(law.info().state_size);
+  Laid v_free(n, nodes.d, layout), v_previous(n, nodes.d, layout), h(n, nodes.hc, layout), gap(n, 1, layout),
+      area(n, 1, layout), normal(n, nodes.d, layout), state(n, s, layout), next(n, s, layout),
+      r(n, nodes.d, layout), v(n, nodes.d, layout), energy(n, 4, layout);
+  v_previous.put(nodes.v_previous);
+  h.put(nodes.delassus);
+  gap.put(nodes.gap);
+  area.put(nodes.area);
+  normal.put(nodes.normal);
+  Results results;
+  results.status.assign(static_cast<std::size_t>(n), 99);
+  ilaw_batch b{};
+  b.struct_size = sizeof b;
+  b.node_count = layout.order.empty() ? n : static_cast<std::int64_t>(layout.order.size());
+  b.index = layout.order.empty() ? nullptr : layout.order.data();
+  std::vector<std::int32_t> part;
+  if (count >= 0) {  // a part of the batch only
+    for (std::int64_t i = first; i < first + count; ++i) part.push_back(static_cast<std::int32_t>(i));
+    b.index = part.data();
+    b.node_count = count;
+  }
+  b.index_base = layout.index_base;
+  b.velocity_step = b.position_step = 1e-3;
+  b.delassus = h.in();
+  b.gap = gap.in();
+  b.area = area.in();
+  b.v_previous = v_previous.in();
+  if (global) b.normal = normal.in();
+  b.state_out = state.out();
+  EXPECT_EQ(law.initialise(b), ILAW_OK);
+  std::vector<double> now = nodes.v_free;
+  for (int step = 1; step <= steps; ++step) {
+    v_free.put(now);
+    b.v_free = v_free.in();
+    b.time = step * 1e-3;
+    b.state_in = state.in();
+    b.state_out = layout.separate_state ? next.out() : state.out();
+    b.impulse = r.out();
+    if (layout.outputs) {
+      b.velocity = v.out();
+      b.energy = energy.out();
+      b.status = results.status.data();
+      b.status_stride = 1;
+    }
+    results.report.struct_size = sizeof results.report;
+    results.code = law.evaluate(b, &results.report);
+    if (layout.separate_state) std::swap(state, next);
+    for (double& value : now) value *= 0.5;
+  }
+  EXPECT_TRUE(r.guarded() && state.guarded() && v.guarded() && energy.guarded());
+  results.impulse = r.get();
+  results.state = state.get();
+  if (layout.outputs) {
+    results.velocity = v.get();
+    results.energy = energy.get();
+  } else {
+    results.status.clear();
+  }
+  return results;
+}
+
+}  // namespace ilaw::testing

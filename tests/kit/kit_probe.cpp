@@ -1,0 +1,51 @@
+// A law with scalar and vector state and a history: it remembers the sum of its tangential impulses in its
+// frame.
+#include <ilaw/kit.hpp>
+
+namespace {
+
+using namespace ilaw::kit;
+
+struct kit_probe {
+  double viscosity;
+
+  static constexpr law_card card{.id = "kit_probe",
+                                 .title = "Viscous contact that counts and sums",
+                                 .doc = "r = -c v where closed; remembers what it gave.",
+                                 .inputs = reads_gap};
+  static constexpr const char* references[] = {"none"};
+  static constexpr parameter<kit_probe> parameters[] = {
+      {.member = &kit_probe::viscosity, .name = "viscosity", .unit = "N.s/m", .doc = "c", .required = true}};
+  struct state {
+    double count;
+    double sum_n, sum_t1, sum_t2;
+  };
+  static constexpr state_variable state_variables[] = {
+      {.name = "count", .doc = "steps"},
+      {.name = "sum", .unit = "N.s", .doc = "impulses", .kind = ILAW_STATE_VECTOR}};
+  static constexpr state_variable memory{.name = "last", .doc = "last two v_N", .kind = ILAW_STATE_HISTORY};
+  std::int64_t memory_size(const ilaw_setup&) const { return 2; }
+
+  // r = -c (v_free + H r), solved for r, plus a pull along the remembered sum so that memory matters.
+  template <class Node>
+  void step(Node& n) const {
+    const double c = n.gap <= 0.0 ? viscosity : 0.0;
+    const double h = n.delassus.normal();
+    const double factor = -c / (1.0 + c * h);
+    n.impulse = factor * n.v_free - 0.125 * vector{n.past[0], n.state.sum_t1, n.state.sum_t2};
+    n.state.count += 1.0;
+    n.state.sum_n += n.impulse.n;
+    n.state.sum_t1 += n.impulse.t1;
+    n.state.sum_t2 += n.impulse.t2;
+    n.status = c > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
+  }
+  template <class Node>
+  void record(const Node& n, history own) const {
+    own[1] = own[0];
+    own[0] = n.v_free.n;
+  }
+};
+
+}  // namespace
+
+ILAW_PLUGIN("kit_probe", "1.0.0", "tests", "BSD-3-Clause", kit_probe)

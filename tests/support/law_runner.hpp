@@ -1,0 +1,144 @@
+// law_runner.hpp - drives a shipped law through the loader and the ABI, a few nodes at a time, in the local
+// frame.
+#pragma once
+
+#include <ilaw/loader.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace ilaw::testing {
+
+using Vector = std::array<double, 3>;
+
+inline std::string plugin_file(const std::string& law) {
+  return std::string(ILAW_PLUGIN_FOLDER) + "/" + law + ".so";
+}
+
+struct Parameters {
+  std::map<std::string, double> numbers;
+  std::map<std::string, std::string> texts;
+};
+
+// Setup with the storage that its pointers need.
+class SetupBuilder {
+ public:
+  explicit SetupBuilder(const Parameters& given, std::uint32_t dimension = 3,
+                        std::uint32_t form = ILAW_DELASSUS_SCALAR, std::uint32_t frame = ILAW_FRAME_LOCAL,
+                        double step = 1e-3, bool tangent = false)
+      : given_(given) {
+    for (const auto& [name, value] : given_.numbers) {
+      ilaw_argument& a = add(name, ILAW_VALUE_NUMBER);
+      a.number = value;
+    }
+    for (const auto& [name, text] : given_.texts) add(name, ILAW_VALUE_TEXT).text = text.c_str();
+    for (const ilaw_argument& a : arguments_) pointers_.push_back(&a);
+    setup.struct_size = sizeof setup;
+    setup.dimension = dimension;
+    setup.delassus_form = form;
+    setup.frame = frame;
+    setup.velocity_step = step;
+    setup.tangent_given = tangent;
+    setup.arguments = pointers_.data();
+    setup.argument_count = static_cast<std::uint32_t>(pointers_.size());
+  }
+  SetupBuilder(const SetupBuilder&) = delete;
+
+  ilaw_setup setup{};
+
+ private:
+  ilaw_argument& add(const std::string& name, std::uint32_t kind) {
+    ilaw_argument& a = arguments_.emplace_back();
+    a = {};
+    a.struct_size = sizeof a;
+    a.kind = kind;
+    a.name = name.c_str();
+    return a;
+  }
+  Parameters given_;
+  std::deque<ilaw_argument> arguments_;
+  std::vector<const ilaw_argument*> pointers_;
+};
+
+inline ilaw::interface make_law(const std::string& law, const SetupBuilder& builder) {
+  return {ilaw::library(plugin_file(law)), law, builder.setup};
+}
+
+// One node stepped in time, with all inputs as plain members; scalar H unless h has more values.
+struct NodeRun {
+  NodeRun(const std::string& law, const Parameters& parameters, double step = 1e-3,
+          std::uint32_t form = ILAW_DELASSUS_SCALAR)
+      : interface(make_law(law, SetupBuilder(parameters, 3, form, ILAW_FRAME_LOCAL, step))),
+        dt(step),
+        state(std::max<std::size_t>(interface.info().state_size, 1)) {
+    initialise();
+  }
+
+  void initialise() {
+    ilaw_batch b = batch();
+    b.state_out = {state.data(), 0, 1};
+    ASSERT_EQ(interface.initialise(b), ILAW_OK);
+  }
+
+  // A step with the given free velocity; returns the code of evaluate.
+  std::int32_t step(const Vector& free_velocity) {
+    v_free = free_velocity;
+    ilaw_batch b = batch();
+    b.state_in = {state.data(), 0, 1};
+    b.state_out = {state.data(), 0, 1};
+    b.impulse = {r.data(), 0, 1};
+    b.velocity = {v.data(), 0, 1};
+    b.energy = {energy.data(), 0, 1};
+    b.status = &status;
+    b.status_stride = 1;
+    report.struct_size = sizeof report;
+    const std::int32_t code = interface.evaluate(b, &report);
+    v_previous = v;
+    return code;
+  }
+
+  // The named state variable.
+  double named(const std::string& name) const {
+    const ilaw_instance_info info = interface.info();
+    std::size_t at = 0;
+    for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
+      if (info.state_variables[i]->name == name) return state[at];
+      at += info.state_variables[i]->count;
+    }
+    ADD_FAILURE() << "no state variable " << name;
+    return NAN;
+  }
+
+  ilaw_batch batch() const {
+    ilaw_batch b{};
+    b.struct_size = sizeof b;
+    b.node_count = 1;
+    b.time = time;
+    b.velocity_step = b.position_step = dt;
+    b.v_free = {v_free.data(), 0, 1};
+    b.delassus = {h.data(), 0, 1};
+    b.gap = {&gap, 0, 1};
+    b.v_previous = {v_previous.data(), 0, 1};
+    b.area = {&area, 0, 1};
+    return b;
+  }
+
+  ilaw::interface interface;
+  double time = 0.0, dt;
+  Vector v_free{}, v_previous{}, r{}, v{};
+  std::array<double, 6> h{1.0};
+  double gap = 0.0, area = 1.0;
+  std::array<double, 4> energy{};
+  std::uint8_t status = 0;
+  ilaw_report report{};
+  std::vector<double> state;
+};
+
+}  // namespace ilaw::testing
