@@ -1,0 +1,247 @@
+// The Post-it law through the ABI, against histories derived by hand.
+#include "law_runner.hpp"
+
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace ilaw::testing {
+namespace {
+
+constexpr double inf_value = std::numeric_limits<double>::infinity();
+
+// A unit point mass on the plane, with a pull F(t) and shocks: v_free = v + h F + shocks.
+struct Glued : NodeRun {
+  Glued(const Parameters& parameters, double step) : NodeRun("postit", parameters, step) {}
+
+  // One step of the point with this impulse from outside; returns the status.
+  int push(const Vector& impulse) {
+    ++steps;
+    time = static_cast<double>(steps) * dt;
+    for (std::size_t c = 0; c < 3; ++c) position[c] += dt * v[c];
+    gap = position[0];
+    const Vector free{v[0] + impulse[0], v[1] + impulse[1], v[2] + impulse[2]};
+    EXPECT_EQ(this->step(free), ILAW_OK);
+    return status;
+  }
+  Vector position{};
+  std::int64_t steps = 0;
+};
+
+// Time of the first rupture under a pull F(t) from time 0 after a press of impulse p; -1 if it holds until
+// end.
+template <class Pull>
+double rupture_time(const Parameters& parameters, double h, double press, Pull pull, double end) {
+  Glued node(parameters, h);
+  node.push({-press, 0, 0});
+  // Let the press leave the window first.
+  const auto rest = static_cast<std::int64_t>(std::ceil((parameters.numbers.at("memory") + h) / h));
+  for (std::int64_t k = 0; k < rest; ++k) node.push({0, 0, 0});
+  const auto steps = static_cast<std::int64_t>(std::llround(end / h));
+  for (std::int64_t k = 1; k <= steps; ++k)
+    if (node.push({h * pull(static_cast<double>(k) * h), 0, 0}) == ILAW_BROKEN)
+      return static_cast<double>(k) * h;
+  return -1.0;
+}
+
+// Constant pull F, adhesion R: the windowed impulse is F min(t, tau). It holds for ever when F tau <= R, else
+// breaks when F t = R, at R/F; in steps at the first n h F > R, so at most h late.
+TEST(Postit, ConstantPullBreaksAtAdhesionOverForce) {
+  const auto pull = [](double) { return 2.0; };
+  for (const double h : {0.01, 0.005, 0.0025, 0.00125}) {
+    EXPECT_EQ(rupture_time({{{"memory", 0.2}, {"buckets", 4096}}, {}}, h, 0.4, pull, 3.0), -1.0)
+        << "F tau = R holds";
+    EXPECT_EQ(rupture_time({{{"memory", 0.2}, {"buckets", 4096}}, {}}, h, 0.41, pull, 3.0), -1.0);
+    const double time = rupture_time({{{"memory", 0.2}, {"buckets", 4096}}, {}}, h, 0.39, pull, 3.0);
+    EXPECT_GE(time, 0.195 - 1e-12);
+    EXPECT_LE(time, 0.195 + h);
+  }
+}
+
+// Ramp F = a t: the windowed impulse is a (t^2 - (t - tau)^2)/2 = a tau (t - tau/2) for t > tau, so rupture
+// at t* = R/(a tau) + tau/2. The discrete window at t_n holds h a sum t_k = that + a tau h/2, so it reaches R
+// half a step early, and is then seen at most one step late: |error| <= h (C = 1). Errors of single steps are
+// ragged, so the order comes from least squares over seven halvings, each the mean over shifted adhesions.
+TEST(Postit, RuptureInstantConvergesWithTheStep) {
+  constexpr double a = 40.0, tau = 0.08;
+  std::vector<double> log_h, log_error;
+  double h = 4e-3;
+  for (int halving = 0; halving < 7; ++halving, h /= 2.0) {
+    double mean = 0.0;
+    constexpr int draws = 8;
+    for (int k = 0; k < draws; ++k) {
+      const double adhesion = 0.4 + 0.01 * k + 0.001 * std::sqrt(2.0) * k;
+      const double exact = adhesion / (a * tau) + 0.5 * tau;
+      const double found = rupture_time(
+          {{{"memory", tau}, {"buckets", 4096}}, {}}, h, adhesion, [](double t) { return a * t; }, 0.5);
+      EXPECT_LE(std::abs(found - exact), h) << "h = " << h;
+      mean += std::abs(found - exact) / draws;
+    }
+    log_h.push_back(std::log(h));
+    log_error.push_back(std::log(mean));
+  }
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  const auto n = static_cast<double>(log_h.size());
+  for (std::size_t k = 0; k < log_h.size(); ++k) {
+    sx += log_h[k];
+    sy += log_error[k];
+    sxx += log_h[k] * log_h[k];
+    sxy += log_h[k] * log_error[k];
+  }
+  EXPECT_GE((n * sxy - sx * sy) / (n * sxx - sx * sx), 0.9);
+}
+
+// Two shocks break together when within tau and p1 + p2 > R, and hold when farther apart.
+TEST(Postit, ShocksAddUpWithinTheWindowOnly) {
+  for (const auto& [distance, breaks] : {std::pair{50, true}, {79, true}, {80, false}, {200, false}}) {
+    Glued node({{{"memory", 0.08}, {"buckets", 80}}, {}}, 1e-3);
+    node.push({-0.4, 0, 0});
+    for (int k = 0; k < 100; ++k) node.push({0, 0, 0});
+    EXPECT_EQ(node.push({0.25, 0, 0}), ILAW_BONDED);
+    for (int k = 1; k < distance; ++k) EXPECT_EQ(node.push({0, 0, 0}), ILAW_BONDED);
+    EXPECT_EQ(node.push({0.25, 0, 0}) == ILAW_BROKEN, breaks) << distance;
+  }
+}
+
+// A single impulse p breaks iff p > R, whatever tau, also tau = 0 and tau = inf.
+TEST(Postit, ASingleShockBreaksIffItExceedsTheAdhesion) {
+  for (const double tau : {0.0, 1e-4, 1e-3, 0.02, 1.0})
+    for (const auto& [shock, breaks] : {std::pair{0.5, false}, {0.5000001, true}}) {
+      Glued node({{{"memory", tau}, {"buckets", 2000}}, {}}, 1e-3);
+      node.push({-0.5, 0, 0});
+      for (int k = 0; k < 1100; ++k) node.push({0, 0, 0});
+      EXPECT_EQ(node.push({shock, 0, 0}) == ILAW_BROKEN, breaks) << tau << " " << shock;
+    }
+}
+
+// After b ruptures a press of impulse p gives exp(-b/n_b) p, capped by R_Y,max times the area.
+TEST(Postit, AdhesionFollowsRupturesLimitAndArea) {
+  Glued node({{{"efficiency_decrease", 10.0}, {"adhesion_limit", 0.8}}, {}}, 1e-3);
+  node.area = 0.5;
+  for (int ruptures = 0; ruptures < 25; ++ruptures) {
+    const double press = 0.1 + 0.02 * ruptures;
+    node.position = {};
+    node.v = {};
+    EXPECT_EQ(node.push({-press, 0, 0}), ILAW_HEALED);
+    const double expected = std::min(std::exp(-ruptures / 10.0) * press, 0.4);
+    EXPECT_NEAR(node.named("adhesion"), expected, 4e-16);
+    EXPECT_EQ(node.push({0.99 * expected, 0, 0}), ILAW_BONDED);
+    EXPECT_EQ(node.push({1.01 * expected, 0, 0}), ILAW_BROKEN);
+    EXPECT_EQ(node.named("ruptures"), ruptures + 1.0);
+    EXPECT_EQ(node.named("adhesion"), 0.0);
+  }
+}
+
+// Pressed with S_N = p and sheared: friction carries mu p, the bond lambda R beyond it.
+TEST(Postit, ShearBreaksBeyondFrictionAndTangentialAdhesion) {
+  for (const auto& [shear, breaks] :
+       {std::pair{0.1 * 0.5 + 0.8 * 0.3 - 1e-6, false}, {0.1 * 0.5 + 0.8 * 0.3 + 1e-6, true}}) {
+    Glued node(
+        {{{"initial_adhesion", 0.3}, {"adhesion_limit", 0.3}, {"friction", 0.1}, {"tangent_influence", 0.8}},
+         {}},
+        1e-3);
+    EXPECT_EQ(node.push({-0.5, 0.6 * shear, 0.8 * shear}) == ILAW_BROKEN, breaks);
+    if (!breaks) continue;
+    // Then contact with friction: mu r_N against the slip, and the press bonds again.
+    EXPECT_NEAR(node.r[0], 0.5, 1e-15);
+    EXPECT_NEAR(node.r[1], -0.6 * 0.05, 1e-15);
+    EXPECT_NEAR(node.r[2], -0.8 * 0.05, 1e-15);
+    EXPECT_NEAR(node.named("adhesion"), 0.3, 1e-15);
+  }
+}
+
+// Pull and shear together: the ellipse (a/R)^2 + (b/(lambda R))^2 = 1.
+TEST(Postit, MixedModeFollowsTheEllipse) {
+  for (double angle = 0.0; angle < 1.58; angle += 0.1)
+    for (const double factor : {0.999999, 1.000001}) {
+      Glued node({{{"initial_adhesion", 2.0}, {"friction", 0.3}, {"tangent_influence", 0.5}}, {}}, 1e-3);
+      const Vector pull{factor * 2.0 * std::cos(angle), 0.0, -factor * 1.0 * std::sin(angle)};
+      EXPECT_EQ(node.push(pull) == ILAW_BROKEN, factor > 1.0) << angle;
+    }
+}
+
+// Saturated rupture hands over what was left: a pull p > R from rest leaves with p - R, and dissipates R v/2.
+TEST(Postit, SaturatedRuptureGivesWhatWasLeft) {
+  Glued node({{{"initial_adhesion", 0.3}}, {{"rupture", "saturated"}}}, 1e-3);
+  EXPECT_EQ(node.push({0.5, 0, 0}), ILAW_BROKEN);
+  EXPECT_NEAR(node.r[0], -0.3, 1e-15);
+  EXPECT_NEAR(node.v[0], 0.2, 1e-15);
+  EXPECT_NEAR(node.energy[ILAW_ENERGY_RUPTURE], 0.5 * 0.3 * 0.2, 1e-15);
+  Glued brittle({{{"initial_adhesion", 0.3}}, {}}, 1e-3);
+  EXPECT_EQ(brittle.push({0.5, 0, 0}), ILAW_BROKEN);
+  EXPECT_EQ(brittle.r[0], 0.0);
+}
+
+// Without adhesion the law is coulomb, bit for bit.
+TEST(Postit, WithoutAdhesionIsCoulomb) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-300.0, 150.0);
+  NodeRun glue("postit", {{{"adhesion_limit", 0.0}, {"friction", 0.4}}, {}});
+  NodeRun friction("coulomb", {{{"friction", 0.4}}, {}});
+  for (int k = 0; k < 100000; ++k) {
+    const double scale = std::pow(10.0, exponent(random));
+    const Vector v{scale * uniform(random), scale * uniform(random), scale * uniform(random)};
+    glue.gap = friction.gap = uniform(random);
+    glue.h[0] = friction.h[0] = 1.0 + 0.9 * uniform(random);
+    ASSERT_EQ(glue.step(v), ILAW_OK);
+    ASSERT_EQ(friction.step(v), ILAW_OK);
+    ASSERT_EQ(glue.r, friction.r);
+    ASSERT_EQ(glue.status, friction.status);
+  }
+}
+
+// Random histories: never negative dissipation, bonded nodes stand still, units and mirror images exact.
+TEST(Postit, RandomHistoriesKeepTheInvariants) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  constexpr double mass = 0x1p+20, length = 0x1p-13, duration = 0x1p+7;  // exact powers of two
+  const double impulse = mass * length / duration, area = length * length;
+  const auto parameters = [&](double unit_impulse, double unit_time) {
+    return Parameters{{{"adhesion_limit", 0.7 * unit_impulse},
+                       {"initial_adhesion", 0.2 * unit_impulse},
+                       {"friction", 0.3},
+                       {"tangent_influence", 0.8},
+                       {"efficiency_decrease", 5.0},
+                       {"memory", 0.02 * unit_time}},
+                      {}};
+  };
+  for (const char* rupture : {"brittle", "saturated"}) {
+    Parameters one = parameters(1.0, 1.0), scaled = parameters(impulse / area, duration);
+    one.texts["rupture"] = scaled.texts["rupture"] = rupture;
+    NodeRun a("postit", one, 1e-3), b("postit", scaled, 1e-3 * duration), mirror("postit", one, 1e-3);
+    a.h[0] = mirror.h[0] = 1.7;
+    b.h[0] = 1.7 / mass;
+    b.area = area;
+    b.initialise();
+    int statuses[ILAW_STATUS_COUNT] = {};
+    for (int k = 1; k <= 20000; ++k) {
+      const Vector v{uniform(random) - 0.1, uniform(random), uniform(random)};
+      const double speed = length / duration, gap = uniform(random);
+      a.time = mirror.time = k * 1e-3;
+      b.time = a.time * duration;
+      a.gap = mirror.gap = gap;
+      b.gap = gap * length;
+      ASSERT_EQ(a.step(v), ILAW_OK);
+      ASSERT_EQ(b.step({v[0] * speed, v[1] * speed, v[2] * speed}), ILAW_OK);
+      ASSERT_EQ(mirror.step({v[0], -v[1], v[2]}), ILAW_OK);
+      ++statuses[a.status];
+      ASSERT_EQ(a.status, b.status);
+      for (std::size_t c = 0; c < 3; ++c) {
+        ASSERT_EQ(a.r[c] * impulse, b.r[c]);
+        ASSERT_EQ(c == 1 ? -a.r[c] : a.r[c], mirror.r[c]);
+      }
+      for (const double energy : a.energy) ASSERT_GE(energy, 0.0);
+      ASSERT_LE(a.named("adhesion"), 0.7);
+      for (const double v_c : a.v) {
+        if (a.status == ILAW_BONDED) {
+          ASSERT_NEAR(v_c, 0.0, 4e-16);
+        }
+      }
+    }
+    for (const int status : {ILAW_FREE, ILAW_BONDED, ILAW_BROKEN, ILAW_HEALED})
+      EXPECT_GT(statuses[status], 100);
+  }
+}
+
+}  // namespace
+}  // namespace ilaw::testing
