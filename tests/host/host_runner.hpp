@@ -1,0 +1,53 @@
+// host_runner.hpp - scenes as text, run in the test's own process.
+#pragma once
+
+#include "integrator.hpp"
+#include "scene.hpp"
+#include "validation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace ilaw::host::testing {
+
+inline std::filesystem::path fresh_folder() {
+  static int number = 0;
+  const auto folder = std::filesystem::temp_directory_path() /
+                      ("ilaw_test_" + std::to_string(getpid()) + "_" + std::to_string(number++));
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+inline Scene scene_of(const std::string& text) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << text;
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  Scene scene = read_scene(folder / "scene.json");
+  std::filesystem::remove_all(folder);
+  return scene;
+}
+
+inline Integrator integrator_of(Scene& scene) {
+  return Integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
+}
+
+// Slope of log(error) over log(h) by least squares.
+inline double order(const std::vector<double>& h, const std::vector<double>& error) {
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  const auto n = static_cast<double>(h.size());
+  for (std::size_t k = 0; k < h.size(); ++k) {
+    const double x = std::log(h[k]), y = std::log(error[k]);
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    sxy += x * y;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+}  // namespace ilaw::host::testing

@@ -1,0 +1,199 @@
+// Motions with closed forms, at the level of scenes.
+#include "host_runner.hpp"
+
+#include <functional>
+
+namespace ilaw::host::testing {
+namespace {
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string ball(double restitution, double h, double end, double height) {
+  return R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 2.0, "position": [)" +
+         number(height) + R"(]}]}, "time": {"dt": )" + number(h) + R"(, "end": )" + number(end) +
+         R"(}, "loads": [{"type": "gravity", "acceleration": [-10.0]}], "interfaces": [{"law": "contact", "parameters": {"restitution": )" +
+         number(restitution) +
+         R"(}, "nodes": "all", "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})";
+}
+
+// Height of a ball dropped from h0 under gravity g: first fall t1 = sqrt(2 h0/g), then flights k of 2 e^k t1,
+// in which it starts with e^k g t1.
+double ball_height(double restitution, double height, double time) {
+  constexpr double g = 10.0;
+  const double fall = std::sqrt(2.0 * height / g);
+  if (time < fall) return height - 0.5 * g * time * time;
+  double start = fall, speed = restitution * g * fall;
+  while (speed > 1e-6 && time > start + 2.0 * speed / g) {
+    start += 2.0 * speed / g;
+    speed *= restitution;
+  }
+  if (speed <= 1e-6) return 0.0;
+  return speed * (time - start) - 0.5 * g * (time - start) * (time - start);
+}
+
+// Mean position error over the run, averaged over heights, since errors depend on where impacts fall in the
+// steps.
+double ball_error(double restitution, double h) {
+  double error = 0.0;
+  constexpr int draws = 40;
+  for (int draw = 0; draw < draws; ++draw) {
+    const double height = 1.0 + 0.01 * std::sqrt(2.0) * draw;
+    Scene scene = scene_of(ball(restitution, h, 2.5, height));
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) {
+      integrator.step();
+      error += std::abs(height + integrator.displacement()[0] -
+                        ball_height(restitution, height, integrator.time())) /
+               static_cast<double>(scene.steps * draws);
+    }
+  }
+  return error;
+}
+
+// First order: an impact is seen up to a step late, at speed up to 4.5, and each of three flights adds up: C
+// = 20.
+TEST(BouncingBall, ConvergesToItsParabolasForEveryRestitution) {
+  for (const double restitution : {0.0, 0.5, 1.0}) {
+    std::vector<double> steps, errors;
+    for (double h = 4e-3; h > 1e-4; h /= 2.0) {
+      steps.push_back(h);
+      errors.push_back(ball_error(restitution, h));
+      EXPECT_LE(errors.back(), 20.0 * h) << "e = " << restitution << ", h = " << h;
+    }
+    EXPECT_GE(order(steps, errors), 0.9) << "e = " << restitution;
+  }
+}
+
+// After k impacts the speed is e^k times that of the first, but for gravity over the step of the impact.
+TEST(BouncingBall, KeepsTheRestitutionToTheKthImpact) {
+  constexpr double h = 1e-4, e = 0.7;
+  Scene scene = scene_of(ball(e, h, 3.0, 1.0));
+  Integrator integrator = integrator_of(scene);
+  double before = 0.0;
+  int impacts = 0;
+  while (impacts < 5) {
+    const double v = integrator.velocity()[0];
+    integrator.step();
+    if (integrator.impulse()[0] > 0.0) {
+      EXPECT_NEAR(integrator.velocity()[0], -e * v, 1e-15);
+      if (impacts > 0) {
+        EXPECT_NEAR(-v, before, 2.0 * 10.0 * h + 10.0 * h);  // within the steps at both ends of the flight
+      }
+      before = -e * v;
+      ++impacts;
+    }
+  }
+}
+
+std::string block(const std::string& position, const std::string& velocity, double h,
+                  const std::string& gravity, const std::string& normal, double friction) {
+  const std::string d = std::to_string(1 + std::count(position.begin(), position.end(), ','));
+  return R"({"model": {"type": "points", "dimension": )" + d + R"(, "points": [{"mass": 3.0, "position": )" +
+         position + R"(, "velocity": )" + velocity + R"(}]}, "time": {"dt": )" + number(h) +
+         R"(, "end": 1.0}, "loads": [{"type": "gravity", "acceleration": )" + gravity +
+         R"(}], "interfaces": [{"law": "coulomb", "parameters": {"friction": )" + number(friction) +
+         R"(}, "nodes": "all", "obstacle": {"type": "plane", "point": )" + position + R"(, "normal": )" +
+         normal + "}}]}";
+}
+
+// Stops after v0^2/(2 mu g) along its direction. The first step sees gravity from half a step before, so the
+// speed it slides with is mu g h/2 less or more: error below v0 h = 2 h over the distance, C = 2.
+TEST(SlidingBlock, StopsAtItsDistanceAndKeepsItsDirection) {
+  std::vector<double> steps, errors;
+  for (double h = 7e-3; h > 2e-4; h /= 2.0) {
+    double error = 0.0;
+    for (const double friction : {0.4, 0.43, 0.47, 0.51}) {
+      Scene scene = scene_of(
+          block("[0.0, 0.0, 0.0]", "[1.2, 1.6, 0.0]", h, "[0.0, 0.0, -10.0]", "[0.0, 0.0, 1.0]", friction));
+      Integrator integrator = integrator_of(scene);
+      while (integrator.steps() < scene.steps) integrator.step();
+      const Dofs& u = integrator.displacement();
+      // Rounding of up to 4600 sums below 0.5.
+      EXPECT_NEAR(u[0] * 1.6, u[1] * 1.2, 4600 * 0.5 * 2.2e-16);
+      EXPECT_EQ(integrator.velocity().head(2).norm(), 0.0);
+      error += std::abs(std::hypot(u[0], u[1]) - 2.0 * 2.0 / (2.0 * friction * 10.0)) / 4.0;
+    }
+    steps.push_back(h);
+    errors.push_back(error);
+    EXPECT_LE(error, 2.0 * h);
+  }
+  EXPECT_GE(order(steps, errors), 0.9);
+}
+
+// On an incline a block sticks for tan(theta) <= mu, else accelerates at g (sin - mu cos).
+TEST(SlidingBlock, OnAnInclineSticksOrAccelerates) {
+  const double angle = 0.5, h = 1e-3;
+  const std::string normal = "[" + number(-std::sin(angle)) + ", " + number(std::cos(angle)) + "]";
+  for (const double friction : {0.3, 0.54, 0.55, 0.8}) {
+    Scene scene = scene_of(block("[0.0, 0.0]", "[0.0, 0.0]", h, "[0.0, -10.0]", normal, friction));
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) integrator.step();
+    const double down =
+        -(integrator.velocity()[0] * std::cos(angle) + integrator.velocity()[1] * std::sin(angle));
+    const bool sticks = std::tan(angle) <= friction;
+    const double acceleration = sticks ? 0.0 : 10.0 * (std::sin(angle) - friction * std::cos(angle));
+    // One second, and half a step of gravity without friction at the start.
+    EXPECT_NEAR(down, acceleration, sticks ? 1e-12 : 10.0 * h) << friction;
+  }
+}
+
+// A plane that moves carries a resting point along, also through a path; the point's gap stays closed.
+TEST(MovingPlane, CarriesItsPoint) {
+  for (const std::string motion : {R"("velocity": [0.5])", R"("path": [[0.0, 0.0], [2.0, 1.0]])"}) {
+    Scene scene = scene_of(
+        R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1.0, "position": [0.0]}]},
+      "time": {"dt": 1e-3, "end": 1.0}, "loads": [{"type": "gravity", "acceleration": [-10.0]}],
+      "interfaces": [{"law": "contact", "nodes": [0], "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0], )" +
+        motion + "}}]}");
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) integrator.step();
+    EXPECT_NEAR(integrator.displacement()[0], 0.5, 2e-3);
+    EXPECT_NEAR(integrator.velocity()[0], 0.5, 1e-12);
+    EXPECT_LE(integrator.energy().balance_error, 1e-12);
+  }
+}
+
+// A point in the corner of two planes that are not at right angles: each impulse moves it along the other
+// plane, and the sweep over both must leave it at rest.
+TEST(Corner, OfTwoPlanesHoldsAPoint) {
+  Scene scene = scene_of(R"({"model": {"type": "points", "dimension": 2,
+      "points": [{"mass": 1.0, "position": [0.0, 0.0], "velocity": [-1.0, -2.0]}]},
+    "time": {"dt": 1e-3, "end": 0.1}, "loads": [{"type": "gravity", "acceleration": [0.0, -10.0]}],
+    "interfaces": [{"law": "coulomb", "name": "floor", "parameters": {"friction": 0.1}, "nodes": [0],
+                    "obstacle": {"type": "plane", "point": [0.0, 0.0], "normal": [0.0, 1.0]}},
+                   {"law": "coulomb", "name": "wall", "parameters": {"friction": 0.1}, "nodes": [0],
+                    "obstacle": {"type": "plane", "point": [0.0, 0.0], "normal": [0.8, -0.6]}}]})");
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) integrator.step();
+  EXPECT_LE(integrator.velocity().norm(), 1e-12);
+  EXPECT_GT(integrator.sweeps_max(), 2);
+  EXPECT_LE(integrator.coupling_residual_max(), 1e-14);
+  EXPECT_LE(integrator.energy().balance_error, 1e-12);
+}
+
+// A shock at a multiple of dt enters exactly one step, the one that ends there, at any rounding of n dt.
+TEST(Shock, EntersExactlyOneStep) {
+  for (const double h : {0.1, 1e-3, 7e-4, 1.0 / 3.0})
+    for (int n = 1; n <= 300; n += 7) {
+      Scene scene = scene_of(
+          R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1.0, "position": [9.0]}]},
+        "time": {"dt": )" +
+          number(h) + R"(, "end": )" + number(310 * h) +
+          R"(}, "loads": [{"type": "shock", "nodes": [0], "time": )" + number(n * h) +
+          R"(, "impulse": [1.0]}], "interfaces": []})");
+      Integrator integrator = integrator_of(scene);
+      while (integrator.steps() < n - 1) integrator.step();
+      EXPECT_EQ(integrator.velocity()[0], 0.0);
+      integrator.step();
+      EXPECT_EQ(integrator.velocity()[0], 1.0);
+      while (integrator.steps() < 310) integrator.step();
+      EXPECT_EQ(integrator.velocity()[0], 1.0);
+    }
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
