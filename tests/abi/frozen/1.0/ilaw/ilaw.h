@@ -1,0 +1,384 @@
+/* ilaw.h - the interface-law ABI, version 1.0.
+ *
+ * An interface law answers one question per interface node of an explicit dynamics code: given the
+ * velocity v_free that the node would have without interface, and the local inverse mass H (the
+ * Delassus operator), which impulse r does the interface exert?
+ *
+ *     v = v_free + H r ,     R(v, r; gap, state) = 0
+ *
+ * A law library (plugin) exports the one symbol ILAW_ENTRY_NAME. It gives a constant description of the
+ * library and of its laws; each law has five functions (create, destroy, info, initialise, evaluate).
+ *
+ * Conventions, everywhere in this file
+ *  - Units are the host's own consistent units; parameter units are given for SI.
+ *  - The normal n points from the obstacle into the body. gap > 0 is open, v_N = n.v > 0 opens,
+ *    r_N > 0 pushes the body away, r_N < 0 is adhesive.
+ *  - In the local frame, component 0 is normal, components 1 and 2 are tangential.
+ *  - Ownership: the library owns every description and string it returns, for as long as it stays loaded.
+ *    The host owns every array of a batch; the library keeps no pointer past the call that received it.
+ *  - Every struct starts with struct_size, set by whoever fills the struct to the sizeof it was compiled
+ *    with. A reader must not touch a member beyond it: minor versions only append members, so that hosts
+ *    and libraries of different minor versions work together. A member that is absent counts as zero.
+ *    Pointers to arrays of structs are arrays of pointers, since an element may grow.
+ *  - No function throws, prints, exits, raises a signal or changes the floating-point environment.
+ *
+ * Pure C99, clean as C++17, needs nothing but <stdint.h> and <stddef.h>.
+ * Source of the formulation: Moreau (1988), Unilateral contact and dry friction in finite freedom
+ * dynamics; Fekak, Brun, Gravouil, Depale (2017), A new heterogeneous asynchronous explicit-implicit time
+ * integrator for nonsmooth dynamics (CD-Lagrange).
+ *
+ * SPDX-License-Identifier: BSD-3-Clause
+ */
+#ifndef ILAW_ILAW_H
+#define ILAW_ILAW_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ILAW_ABI_MAJOR 1
+#define ILAW_ABI_MINOR 0
+/* The major version is part of the name: a library for ABI 2 is not found by a host of ABI 1. */
+#define ILAW_ENTRY ilaw_plugin_v1
+#define ILAW_ENTRY_NAME "ilaw_plugin_v1"
+
+#if defined(_WIN32)
+#define ILAW_EXPORT __declspec(dllexport)
+#elif defined(__GNUC__)
+#define ILAW_EXPORT __attribute__((visibility("default")))
+#else
+#define ILAW_EXPORT
+#endif
+
+/* ---- enumerations ------------------------------------------------------------------------------- */
+
+/* What a function returns. Negative: nothing was done, and the message says why. */
+enum {
+  ILAW_OK = 0,
+  ILAW_BAD_NODES = 1,         /* evaluate: some nodes had bad input, see ilaw_report; the others are done */
+  ILAW_INVALID_ARGUMENT = -1, /* the call itself is wrong: null pointer, struct too small, count < 0 */
+  ILAW_INVALID_PARAMETER = -2, /* a parameter is unknown, missing, out of range or wrongly combined */
+  ILAW_UNSUPPORTED = -3,      /* dimension, form of H or input that this law does not serve */
+  ILAW_OUT_OF_MEMORY = -4,
+  ILAW_NOT_FOUND = -5,   /* loader: no such library or law */
+  ILAW_BAD_LIBRARY = -6, /* loader: not a law library, another major version, or a broken description */
+};
+
+/* Dimensions served, a bit mask. */
+enum { ILAW_DIMENSION_1 = 1 << 1, ILAW_DIMENSION_2 = 1 << 2, ILAW_DIMENSION_3 = 1 << 3 };
+
+/* Form of H at a node, with d the dimension. Components are stored in this order:
+ *   SCALAR    1 value:        H = h I (a lumped mass m gives h = 1/m)
+ *   DIAGONAL  d values:       H_00, H_11, H_22, in the axes of the vectors
+ *   FULL      d(d+1)/2 values: 1D H_00; 2D H_00 H_11 H_01; 3D H_00 H_11 H_22 H_01 H_02 H_12
+ * One bit each in masks of forms. */
+enum { ILAW_DELASSUS_SCALAR = 1, ILAW_DELASSUS_DIAGONAL = 2, ILAW_DELASSUS_FULL = 4 };
+
+/* Axes in which vectors and H are given. */
+enum {
+  ILAW_FRAME_LOCAL = 0,  /* component 0 normal, 1 and 2 tangential */
+  ILAW_FRAME_GLOBAL = 1, /* the host's axes; each node has a unit normal, and a unit tangent if it likes */
+};
+
+/* Arrays of a batch that a law reads, a bit mask. v_free and delassus are always read. */
+enum {
+  ILAW_INPUT_GAP = 1 << 0,
+  ILAW_INPUT_V_PREVIOUS = 1 << 1,
+  ILAW_INPUT_AREA = 1 << 2,
+  ILAW_INPUT_NORMAL = 1 << 3,  /* always, and only, in the global frame */
+  ILAW_INPUT_TANGENT = 1 << 4, /* the law tells its two tangential axes apart (global frame only) */
+};
+
+/* Optional arrays that a law can write, a bit mask. The impulse and the state are always written. */
+enum { ILAW_OUTPUT_VELOCITY = 1 << 0, ILAW_OUTPUT_STATUS = 1 << 1, ILAW_OUTPUT_ENERGY = 1 << 2 };
+
+/* What more a law can do, a bit mask. */
+enum {
+  ILAW_CAN_ADHERE = 1 << 0,        /* r_N may be negative */
+  ILAW_CAN_STORE_ENERGY = 1 << 1,  /* the stored part of the energy may be other than zero */
+  ILAW_CAN_ACT_AT_DISTANCE = 1 << 2, /* may give r != 0 at gap > 0 even from a freshly initialised state */
+};
+
+/* Kind of a parameter. */
+enum {
+  ILAW_PARAMETER_NUMBER = 0,
+  ILAW_PARAMETER_COUNT = 1,  /* a whole number, given as a double */
+  ILAW_PARAMETER_CHOICE = 2, /* one of the listed texts */
+};
+
+/* How the value of a parameter is given. */
+enum {
+  ILAW_VALUE_NUMBER = 0,
+  ILAW_VALUE_TEXT = 1,
+  ILAW_VALUE_TABLE = 2,    /* piecewise linear in time, constant outside its ends */
+  ILAW_VALUE_PER_NODE = 3, /* one value per node, given with every batch */
+};
+
+/* Ways in which a parameter may be given besides a constant, a bit mask. */
+enum { ILAW_MAY_BE_TABLE = 1 << 0, ILAW_MAY_BE_PER_NODE = 1 << 1 };
+
+/* Kind of a state variable. */
+enum {
+  ILAW_STATE_SCALAR = 0,  /* one double */
+  ILAW_STATE_VECTOR = 1,  /* d doubles: components in the local frame of the node */
+  ILAW_STATE_HISTORY = 2, /* any number of doubles, meaningful to the law alone, in the local frame */
+  ILAW_STATE_AXIS = 3,    /* d doubles: a unit vector in the host's axes, the only kind that a host which turns
+                             its whole model must turn too; found in the global frame without tangents only */
+};
+
+/* Status of a node after a step. */
+enum {
+  ILAW_FREE = 0,   /* no impulse */
+  ILAW_CLOSED = 1, /* pushed, no friction */
+  ILAW_STICK = 2,
+  ILAW_SLIP = 3,
+  ILAW_BONDED = 4,
+  ILAW_BROKEN = 5, /* the bond broke at this step */
+  ILAW_HEALED = 6, /* a bond formed at this step */
+  ILAW_BAD_INPUT = 7,
+  ILAW_STATUS_COUNT = 8,
+};
+
+/* Components of the energy output, per node and step. The work of the impulse over the step is
+ * r.(v_previous + v)/2, exactly, in a central-difference host; the parts below are what becomes of it.
+ * Dissipated parts are never negative. */
+enum {
+  ILAW_ENERGY_FRICTION = 0, /* dissipated by friction */
+  ILAW_ENERGY_IMPACT = 1,   /* dissipated by impact */
+  ILAW_ENERGY_RUPTURE = 2,  /* dissipated by rupture */
+  ILAW_ENERGY_STORED = 3,   /* stored at the end of the step (a level, not an increment) */
+  ILAW_ENERGY_COUNT = 4,
+};
+
+/* ---- description -------------------------------------------------------------------------------- */
+
+/* A parameter of a law. Text members are never null, and empty where they have nothing to say. */
+typedef struct ilaw_parameter {
+  uint32_t struct_size;
+  uint32_t kind;        /* ILAW_PARAMETER_* */
+  const char* name;     /* lower case, digits, underscore: what users type */
+  const char* symbol;   /* as in the law's page */
+  const char* unit;     /* SI, "1" when it has none */
+  const char* doc;      /* one sentence */
+  double minimum;       /* smallest value allowed */
+  double maximum;       /* largest finite value allowed */
+  double default_value; /* for a choice, its index in choices */
+  uint32_t required;    /* 1: has no default */
+  uint32_t minimum_excluded; /* 1: the value must be larger than minimum */
+  uint32_t infinity_allowed; /* 1: +infinity is an ordinary value */
+  uint32_t may_be;           /* ILAW_MAY_BE_* mask */
+  const char* const* choices; /* choice_count texts, null unless kind is CHOICE */
+  uint32_t choice_count;
+  uint32_t reserved; /* 0 */
+} ilaw_parameter;
+
+/* A state variable. The state of a node is the concatenation of its variables, in this order. */
+typedef struct ilaw_state_variable {
+  uint32_t struct_size;
+  uint32_t kind;    /* ILAW_STATE_* */
+  const char* name; /* lower case, digits, underscore */
+  const char* unit;
+  const char* doc;
+  uint64_t count; /* doubles: 1 for SCALAR, d for VECTOR and AXIS; known from the instance for HISTORY */
+} ilaw_state_variable;
+
+/* A parameter with its value, for create. */
+typedef struct ilaw_argument {
+  uint32_t struct_size;
+  uint32_t kind;        /* ILAW_VALUE_* */
+  const char* name;     /* of the parameter */
+  double number;        /* VALUE_NUMBER; infinity where the parameter allows it */
+  const char* text;     /* VALUE_TEXT: the choice; else null */
+  const double* values; /* VALUE_TABLE: count pairs (time, value), times increasing; else null */
+  uint64_t count;       /* VALUE_TABLE: number of pairs, at least 1; else 0 */
+} ilaw_argument;
+
+/* What an instance will be used for. */
+typedef struct ilaw_setup {
+  uint32_t struct_size;
+  uint32_t dimension;     /* 1, 2 or 3 */
+  uint32_t delassus_form; /* one of ILAW_DELASSUS_*: the form every batch will have */
+  uint32_t frame;         /* ILAW_FRAME_*: the frame every batch will have */
+  double velocity_step;   /* smallest velocity step expected, > 0: sizes memories; a smaller one is served
+                             with coarser memory */
+  const ilaw_argument* const* arguments; /* argument_count pointers; may be null when 0 */
+  uint32_t argument_count;
+  uint32_t tangent_given; /* 1: batches in the global frame will carry a tangent */
+} ilaw_setup;
+
+/* An instance of a law: its checked parameters. Opaque, immutable, usable from any number of threads. */
+typedef struct ilaw_instance ilaw_instance;
+
+/* What an instance needs, for these parameters: often less than the law in general. */
+typedef struct ilaw_instance_info {
+  uint32_t struct_size;
+  uint32_t inputs;        /* ILAW_INPUT_* mask: read by every evaluate */
+  uint32_t energy_inputs; /* ILAW_INPUT_* mask: read besides when the energy output is asked for */
+  uint32_t state_variable_count;
+  uint64_t state_size; /* doubles per node; may be 0 */
+  const ilaw_state_variable* const* state_variables; /* owned by the instance; counts sum to state_size */
+  const char* const* per_node_parameters; /* names of parameters given per node, in the order of the batch */
+  uint32_t per_node_parameter_count;
+  uint32_t reserved; /* 0 */
+} ilaw_instance_info;
+
+/* ---- batch -------------------------------------------------------------------------------------- */
+
+/* Component c of node i stands at values[i * node_stride + c * component_stride] (strides in doubles).
+ * AoS (3,n): strides 3 and 1. SoA: strides 1 and n. A node stride of 0 gives all nodes the same value.
+ * values = null: the array is absent. */
+typedef struct ilaw_input {
+  const double* values;
+  int64_t node_stride;
+  int64_t component_stride;
+} ilaw_input;
+
+/* As ilaw_input, written to. A node stride of 0 is allowed only for a batch of one node. */
+typedef struct ilaw_output {
+  double* values;
+  int64_t node_stride;
+  int64_t component_stride;
+} ilaw_output;
+
+/* Arguments of evaluate. d is the dimension, s the state size of the instance.
+ * Outputs may not overlap inputs or each other, except that state_out may be state_in. */
+typedef struct ilaw_batch {
+  uint32_t struct_size;
+  int32_t index_base;     /* first value of an index: 0 in C, 1 in Fortran */
+  int64_t node_count;     /* nodes to evaluate */
+  const int32_t* index;   /* null: nodes 0 .. node_count-1; else node index[k] - index_base for each k, each
+                             node once; only these are read and written */
+  double time;            /* t_{n+1}, of the configuration that the gaps belong to */
+  double velocity_step;   /* > 0: an impulse is a force times it */
+  double position_step;   /* > 0: a predicted gap is gap + position_step * v_N */
+  ilaw_input v_free;      /* d: velocity without interface, relative to the obstacle [m/s] */
+  ilaw_input delassus;    /* H, see ILAW_DELASSUS_* [1/kg]; symmetric positive definite */
+  ilaw_input gap;         /* 1: signed distance at time [m] */
+  ilaw_input gap_offset;  /* 1, optional: subtracted from the gap (thickness, initial slack) [m] */
+  ilaw_input v_previous;  /* d: half-step velocity before this step, relative to the obstacle [m/s] */
+  ilaw_input area;        /* 1: tributary area [m^2], >= 0 */
+  ilaw_input normal;      /* d, global frame: unit normal */
+  ilaw_input tangent;     /* d, global frame, optional: unit tangent, orthogonal to the normal; turns with the
+                             material. Without it history vectors are carried from normal to normal by the
+                             shortest rotation */
+  const ilaw_input* per_node_parameters; /* 1 each, as many as the instance info says; may be null when 0 */
+  ilaw_input state_in;    /* s */
+  ilaw_output state_out;  /* s; may be the array of state_in, with the same strides */
+  ilaw_output impulse;    /* d: r [N.s] */
+  ilaw_output velocity;   /* d, optional: v = v_free + H r [m/s] */
+  ilaw_output energy;     /* ILAW_ENERGY_COUNT, optional [J] */
+  uint8_t* status;        /* optional: ILAW_FREE ... per node, at status[i * status_stride] */
+  int64_t status_stride;
+} ilaw_batch;
+
+/* What evaluate has to say besides its return code. The caller sets struct_size. */
+typedef struct ilaw_report {
+  uint32_t struct_size;
+  uint32_t reserved;      /* 0 */
+  int64_t bad_count;      /* nodes with bad input */
+  int64_t first_bad_node; /* the node number (without index_base) of the first in the batch, -1 when none */
+  const char* reason;     /* of that node, or why the call was refused; static text, null when none */
+} ilaw_report;
+
+/* ---- laws and libraries ------------------------------------------------------------------------- */
+
+/* One law. All function pointers are set. All functions may be called from any thread. */
+typedef struct ilaw_law {
+  uint32_t struct_size;
+  uint32_t dimensions;     /* ILAW_DIMENSION_* mask */
+  uint32_t delassus_forms; /* ILAW_DELASSUS_* mask */
+  uint32_t inputs;         /* ILAW_INPUT_* mask: all that it may read, for some parameters */
+  uint32_t outputs;        /* ILAW_OUTPUT_* mask */
+  uint32_t capabilities;   /* ILAW_CAN_* mask */
+  const char* id;          /* lower case, digits, underscore; unique in the library */
+  const char* title;       /* a few words */
+  const char* doc;         /* one paragraph */
+  const char* const* references; /* reference_count texts: author, year, title */
+  const ilaw_parameter* const* parameters;
+  const ilaw_state_variable* const* state_variables; /* counts for dimension 3 and default parameters */
+  uint32_t reference_count;
+  uint32_t parameter_count;
+  uint32_t state_variable_count;
+  uint32_t reserved; /* 0 */
+
+  /* Checks the setup and makes an instance. On failure *instance is null and message (message_size bytes,
+   * may be null when 0) says which parameter, its value and what is allowed.
+   * Returns ILAW_OK, ILAW_INVALID_ARGUMENT, ILAW_INVALID_PARAMETER, ILAW_UNSUPPORTED, ILAW_OUT_OF_MEMORY. */
+  int32_t (*create)(const ilaw_setup* setup, ilaw_instance** instance, char* message, size_t message_size);
+
+  /* Ends an instance; null is allowed. No evaluate of this instance may be running. */
+  void (*destroy)(ilaw_instance* instance);
+
+  /* Fills info up to info->struct_size, which the caller sets. The pointers live as long as the instance.
+   * Returns ILAW_OK or ILAW_INVALID_ARGUMENT. */
+  int32_t (*info)(const ilaw_instance* instance, ilaw_instance_info* info);
+
+  /* Writes the initial state of the nodes of a batch: reads node_count, index, index_base, time, area and
+   * normal, tangent (as the instance needs them), per_node_parameters; writes state_out. The rest of the batch may
+   * be zero. Returns as evaluate. */
+  int32_t (*initialise)(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report);
+
+  /* One step of a batch; pure: no allocation, lock, I/O or global. The result at a node depends on that
+   * node's inputs and the scalars of the batch alone, bit for bit: not on the other nodes, their order,
+   * the layout, threads or the processor. A node with bad input gets r = 0, state_out = state_in, status
+   * ILAW_BAD_INPUT, energy 0 and velocity = v_free; the others are evaluated as ever.
+   * report may be null. Returns ILAW_OK, ILAW_BAD_NODES, or ILAW_INVALID_ARGUMENT with nothing written. */
+  int32_t (*evaluate)(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report);
+} ilaw_law;
+
+/* A library of laws. */
+typedef struct ilaw_plugin {
+  uint32_t struct_size;
+  uint16_t abi_major; /* ILAW_ABI_MAJOR it was compiled with */
+  uint16_t abi_minor;
+  const char* name;
+  const char* version;
+  const char* vendor;
+  const char* licence; /* SPDX identifier where there is one */
+  const ilaw_law* const* laws;
+  uint32_t law_count;
+  uint32_t reserved; /* 0 */
+} ilaw_plugin;
+
+/* The exported function. Returns the same constant description at every call. */
+typedef const ilaw_plugin* (*ilaw_entry_function)(void);
+#ifdef ILAW_BUILDING_PLUGIN
+ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void);
+#endif
+
+/* ---- layout, pinned ------------------------------------------------------------------------------ */
+
+#if UINTPTR_MAX == UINT64_MAX
+#if defined(__cplusplus)
+#define ILAW_PIN(name, condition) static_assert(condition, #name)
+#else
+#define ILAW_PIN(name, condition) typedef char ilaw_pin_##name[(condition) ? 1 : -1]
+#endif
+#define ILAW_PIN_OFFSET(type, member, offset) ILAW_PIN(type##_##member, offsetof(type, member) == (offset))
+
+ILAW_PIN(parameter_size, sizeof(ilaw_parameter) == 96);
+ILAW_PIN_OFFSET(ilaw_parameter, name, 8);
+ILAW_PIN_OFFSET(ilaw_parameter, minimum, 40);
+ILAW_PIN_OFFSET(ilaw_parameter, required, 64);
+ILAW_PIN_OFFSET(ilaw_parameter, choices, 80);
+ILAW_PIN_OFFSET(ilaw_parameter, choice_count, 88);
+ILAW_PIN(state_variable_size, sizeof(ilaw_state_variable) == 40);
+ILAW_PIN(argument_size, sizeof(ilaw_argument) == 48);
+ILAW_PIN(setup_size, sizeof(ilaw_setup) == 40);
+ILAW_PIN(instance_info_size, sizeof(ilaw_instance_info) == 48);
+ILAW_PIN(input_size, sizeof(ilaw_input) == 24);
+ILAW_PIN(output_size, sizeof(ilaw_output) == 24);
+ILAW_PIN(batch_size, sizeof(ilaw_batch) == 384);
+ILAW_PIN(report_size, sizeof(ilaw_report) == 32);
+ILAW_PIN(law_size, sizeof(ilaw_law) == 128);
+ILAW_PIN(plugin_size, sizeof(ilaw_plugin) == 56);
+#endif
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
+
+#endif /* ILAW_ILAW_H */

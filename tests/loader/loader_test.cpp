@@ -1,0 +1,215 @@
+// What the loader finds, refuses and keeps loaded.
+#include <ilaw/loader.hpp>
+
+#include <gtest/gtest.h>
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+#include <utility>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path fresh_folder() {
+  static int number = 0;
+  const fs::path folder = fs::temp_directory_path() /
+                          ("ilaw_loader_" + std::to_string(getpid()) + "_" + std::to_string(number++));
+  fs::create_directories(folder);
+  return folder;
+}
+
+std::string variant(const std::string& name) { return std::string(ILAW_TEST_PLUGINS) + "/" + name + ".so"; }
+
+std::pair<std::int32_t, std::string> refusal_of(const std::string& file) {
+  try {
+    const ilaw::library library(file);
+  } catch (const ilaw::error& error) {
+    return {error.code(), error.what()};
+  }
+  return {ILAW_OK, "not refused"};
+}
+
+ilaw_setup setup_1d() {
+  ilaw_setup setup{};
+  setup.struct_size = sizeof setup;
+  setup.dimension = 1;
+  setup.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.velocity_step = 1.0;
+  return setup;
+}
+
+struct Refused {
+  const char* name;
+  const char* found_and_expected;  // what follows the file's name
+};
+
+class RefusedLibrary : public ::testing::TestWithParam<Refused> {};
+
+TEST_P(RefusedLibrary, IsNamedWithWhatWasFoundAndExpected) {
+  const std::string file = variant(GetParam().name);
+  const auto [code, message] = refusal_of(file);
+  EXPECT_EQ(code, ILAW_BAD_LIBRARY);
+  EXPECT_EQ(message, fs::canonical(file).string() + ": " + GetParam().found_and_expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Loader, RefusedLibrary,
+    ::testing::Values(
+        Refused{"null_function", "law 'zero': function 'evaluate' is null, expected a function"},
+        Refused{"small_law", "law 0: law has struct_size 96, expected at least 128"},
+        Refused{"small_plugin", "the description has struct_size 8, expected at least 56"},
+        Refused{"other_major_symbol", "a library for ABI major version 2, expected major version 1"},
+        Refused{"other_major_field", "ABI version 2.0, expected major version 1"},
+        Refused{"duplicate_law", "law 'zero' is declared twice"},
+        Refused{"bad_name", "law 0: id is 'Zero Law', expected lower-case letters, digits and '_'"},
+        Refused{"wild_pointer", "law 'zero': title is no readable text of at most 64 KiB"},
+        Refused{"null_title", "law 'zero': title is null, expected a text"},
+        Refused{"no_entry", "not a law library: the symbol ilaw_plugin_v1 is missing"},
+        Refused{"no_laws", "law_count is 0, expected at least 1"},
+        Refused{"bad_default",
+                "law 'zero': parameter 'strength': default 2.000000 lies outside its own range"},
+        Refused{"long_count", "law 'zero': parameters has 4000000000 entries, expected at most 10000"},
+        Refused{"unknown_bits", "law 'zero': delassus_forms is 65, expected only the bits of 7"}),
+    [](const auto& drawn) { return drawn.param.name; });
+
+TEST(Loader, RefusesFilesThatAreNoLibraries) {
+  const fs::path folder = fresh_folder();
+  const std::string text = (folder / "text.so").string();
+  std::ofstream(text) << "hello, this is a text and quite long enough to hold an ELF header of 64 bytes";
+  EXPECT_EQ(refusal_of(text).second,
+            text + ": not an ELF file, expected a whole ELF shared library for this machine");
+  EXPECT_NE(refusal_of(folder.string()).second.find(": a folder, expected"), std::string::npos);
+  EXPECT_EQ(refusal_of((folder / "none.so").string()).first, ILAW_NOT_FOUND);
+}
+
+// dlopen maps what the headers promise: a truncated file would die of SIGBUS.
+TEST(Loader, RefusesTruncatedLibraries) {
+  const std::string whole = std::string(ILAW_PLUGIN_FOLDER) + "/contact.so";
+  const fs::path cut = fresh_folder() / "cut.so";
+  const auto size = static_cast<std::uintmax_t>(fs::file_size(whole));
+  for (const double part : {0.0001, 0.001, 0.1, 0.5, 0.9, 0.9999}) {
+    fs::copy_file(whole, cut, fs::copy_options::overwrite_existing);
+    const auto bytes = static_cast<std::uintmax_t>(part * static_cast<double>(size));
+    fs::resize_file(cut, bytes);
+    const auto [code, message] = refusal_of(cut.string());
+    EXPECT_EQ(code, ILAW_BAD_LIBRARY) << bytes;
+    EXPECT_NE(
+        message.find(bytes < 4 ? "not an ELF file" : "truncated at " + std::to_string(bytes) + " bytes"),
+        std::string::npos)
+        << message;
+  }
+}
+
+TEST(Loader, LoadsALibraryOfANewerMinorVersion) {
+  const ilaw::library library(variant("newer_minor"));
+  EXPECT_EQ(library.plugin().abi_minor, 5);
+  const ilaw::interface law(library, "", setup_1d());
+  double r = 7.0;
+  ilaw_batch batch{};
+  batch.struct_size = sizeof batch;
+  batch.node_count = 1;
+  batch.impulse = {&r, 1, 1};
+  EXPECT_EQ(law.evaluate(batch), ILAW_OK);
+  EXPECT_EQ(r, 0.0);
+}
+
+TEST(Loader, RefusesAnInstanceWhoseStateDoesNotAddUp) {
+  const ilaw::library library(variant("wrong_state_size"));
+  try {
+    const ilaw::interface law(library, "zero", setup_1d());
+    FAIL() << "not refused";
+  } catch (const ilaw::error& error) {
+    EXPECT_NE(std::string(error.what()).find("state_size is 3, expected the sum of the counts, 0"),
+              std::string::npos);
+  }
+}
+
+TEST(Loader, NamesTheLawsOfALibrary) {
+  const ilaw::library library(variant("good"));
+  EXPECT_NE(library.law("zero"), nullptr);
+  EXPECT_EQ(library.law("one"), nullptr);
+  try {
+    const ilaw::interface law(library, "one", setup_1d());
+    FAIL() << "not refused";
+  } catch (const ilaw::error& error) {
+    EXPECT_EQ(error.code(), ILAW_NOT_FOUND);
+    EXPECT_NE(std::string(error.what()).find("no law 'one', expected one of: zero"), std::string::npos);
+  }
+}
+
+// A searched folder with a copy of the good plugin under a name.
+fs::path folder_with(const std::string& name) {
+  const fs::path folder = fresh_folder();
+  fs::copy_file(variant("good"), folder / (name + ".so"));
+  return folder;
+}
+
+TEST(Search, FindsNamesInThePathInItsOrder) {
+  const fs::path first = folder_with("here"), second = folder_with("here");
+  setenv("ILAW_PATH", (first.string() + ":" + second.string()).c_str(), 1);
+  EXPECT_EQ(ilaw::library("here").path(), (first / "here.so").string());
+  setenv("ILAW_PATH", (second.string() + ":" + first.string()).c_str(), 1);
+  EXPECT_EQ(ilaw::library("here").path(), (second / "here.so").string());
+  const std::vector<std::string> files = ilaw::search();
+  EXPECT_EQ(std::count(files.begin(), files.end(), (second / "here.so").string()), 1);
+  EXPECT_EQ(std::count(files.begin(), files.end(), (first / "here.so").string()), 0);
+  EXPECT_EQ(ilaw::search_path().substr(0, second.string().size()), second.string());
+}
+
+TEST(Search, NeverLooksInTheCurrentFolder) {
+  const fs::path folder = folder_with("local"), before = fs::current_path();
+  fs::current_path(folder);
+  for (const char* path : {"", ":", ".", "./", ".:"}) {
+    setenv("ILAW_PATH", path, 1);
+    const auto [code, message] = refusal_of("local");
+    EXPECT_EQ(code, ILAW_NOT_FOUND) << "ILAW_PATH=" << path;
+    EXPECT_EQ(message.find("'local': no local.so found, expected it in one of: /"), 0U) << message;
+  }
+  EXPECT_EQ(refusal_of("./local.so").first, ILAW_OK);  // an explicit path is the user's word
+  fs::current_path(before);
+  unsetenv("ILAW_PATH");
+}
+
+bool loaded(const std::string& file) {
+  void* handle = dlopen(file.c_str(), RTLD_NOLOAD | RTLD_LAZY);
+  if (handle) dlclose(handle);
+  return handle != nullptr;
+}
+
+TEST(Lifetime, LibraryStaysLoadedWhileAnInterfaceLives) {
+  const fs::path folder = folder_with("alive");
+  const std::string file = (folder / "alive.so").string();
+  {
+    auto library = std::make_unique<ilaw::library>(file);
+    const ilaw::library again(file);
+    EXPECT_EQ(again.get(), library->get());
+    const ilaw::interface law(*library, "zero", setup_1d());
+    library.reset();
+    EXPECT_TRUE(loaded(file));
+    EXPECT_STREQ(law.law().id, "zero");
+  }
+  EXPECT_FALSE(loaded(file));
+}
+
+TEST(Lifetime, ThreadsMayOpenAndClose) {
+  const std::string file = variant("good");
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&file] {
+      for (int k = 0; k < 50; ++k) {
+        const ilaw::library library(file);
+        const ilaw::interface law(library, "zero", setup_1d());
+        EXPECT_STREQ(law.law().id, "zero");
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+}
+
+}  // namespace

@@ -1,0 +1,165 @@
+/* A law that gives r = 0, described in plain C99, with one thing wrong in each variant but GOOD and
+ * NEWER_MINOR. */
+#define ILAW_BUILDING_PLUGIN
+#include <ilaw/ilaw.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+struct ilaw_instance {
+  int unused;
+};
+
+static int32_t create(const ilaw_setup* setup, ilaw_instance** instance, char* message, size_t message_size) {
+  (void)setup;
+  if (message_size > 0) message[0] = '\0';
+  *instance = malloc(sizeof **instance);
+  return *instance ? ILAW_OK : ILAW_OUT_OF_MEMORY;
+}
+
+static void destroy(ilaw_instance* instance) { free(instance); }
+
+static int32_t info(const ilaw_instance* instance, ilaw_instance_info* out) {
+  const uint32_t size = out->struct_size;
+  (void)instance;
+  memset(out, 0, size < sizeof *out ? size : sizeof *out);
+  out->struct_size = size;
+#ifdef VARIANT_WRONG_STATE_SIZE
+  out->state_size = 3;
+#endif
+  return ILAW_OK;
+}
+
+static int32_t nothing(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report) {
+  int64_t i;
+  (void)instance;
+  (void)report;
+  for (i = 0; batch->impulse.values && i < batch->node_count; ++i)
+    batch->impulse.values[i * batch->impulse.node_stride] = 0.0;
+  return ILAW_OK;
+}
+
+static const ilaw_parameter parameter = {sizeof(ilaw_parameter),
+                                         ILAW_PARAMETER_NUMBER,
+                                         "strength",
+                                         "s",
+                                         "1",
+                                         "Nothing.",
+                                         0.0,
+                                         1.0,
+#ifdef VARIANT_BAD_DEFAULT
+                                         2.0,
+#else
+                                         0.5,
+#endif
+                                         0,
+                                         0,
+                                         0,
+                                         0,
+                                         NULL,
+                                         0,
+                                         0};
+static const ilaw_parameter* const parameters[] = {&parameter};
+
+/* What a newer minor version would append to the law. */
+typedef struct newer_law {
+  ilaw_law law;
+  double appended;
+} newer_law;
+
+#ifdef VARIANT_NEWER_MINOR
+#define LAW_SIZE sizeof(newer_law)
+#define MINOR 5
+#define DIMENSIONS (ILAW_DIMENSION_1 | 1u << 20)
+#else
+#define LAW_SIZE sizeof(ilaw_law)
+#define MINOR 0
+#define DIMENSIONS ILAW_DIMENSION_1
+#endif
+#ifdef VARIANT_SMALL_LAW
+#undef LAW_SIZE
+#define LAW_SIZE 96
+#endif
+#ifdef VARIANT_BAD_NAME
+#define ID "Zero Law"
+#else
+#define ID "zero"
+#endif
+#ifdef VARIANT_WILD_POINTER
+#define TITLE ((const char*)16)
+#elif defined(VARIANT_NULL_TITLE)
+#define TITLE NULL
+#else
+#define TITLE "Nothing"
+#endif
+#ifdef VARIANT_NULL_FUNCTION
+#define EVALUATE NULL
+#else
+#define EVALUATE nothing
+#endif
+#ifdef VARIANT_LONG_COUNT
+#define PARAMETER_COUNT 4000000000u
+#else
+#define PARAMETER_COUNT 1
+#endif
+#ifdef VARIANT_UNKNOWN_BITS
+#define FORMS (ILAW_DELASSUS_SCALAR | 64)
+#else
+#define FORMS ILAW_DELASSUS_SCALAR
+#endif
+
+static const newer_law zero = {{LAW_SIZE,
+                                DIMENSIONS,
+                                FORMS,
+                                ILAW_INPUT_GAP,
+                                0,
+                                0,
+                                ID,
+                                TITLE,
+                                "Gives no impulse.",
+                                NULL,
+                                parameters,
+                                NULL,
+                                0,
+                                PARAMETER_COUNT,
+                                0,
+                                0,
+                                create,
+                                destroy,
+                                info,
+                                nothing,
+                                EVALUATE},
+                               1.0};
+
+static const ilaw_law* const laws[] = {&zero.law, &zero.law};
+
+static const ilaw_plugin plugin = {
+#ifdef VARIANT_SMALL_PLUGIN
+    8,
+#else
+    sizeof(ilaw_plugin),
+#endif
+#ifdef VARIANT_OTHER_MAJOR_FIELD
+    2,
+#else
+    ILAW_ABI_MAJOR,
+#endif
+    MINOR, "variant", "0.1", "tests", "BSD-3-Clause", laws,
+#ifdef VARIANT_DUPLICATE_LAW
+    2,
+#elif defined(VARIANT_NO_LAWS)
+    0,
+#else
+    1,
+#endif
+    0};
+
+#ifdef VARIANT_OTHER_MAJOR_SYMBOL
+ILAW_EXPORT const ilaw_plugin* ilaw_plugin_v2(void);
+ILAW_EXPORT const ilaw_plugin* ilaw_plugin_v2(void) { return &plugin; }
+#elif defined(VARIANT_NO_ENTRY)
+ILAW_EXPORT const ilaw_plugin* some_other_function(void);
+ILAW_EXPORT const ilaw_plugin* some_other_function(void) { return &plugin; }
+#else
+ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) { return &plugin; }
+#endif
