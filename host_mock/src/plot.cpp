@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -119,14 +120,19 @@ void draw(std::ostream& script, const std::filesystem::path& folder, const char*
   script << "unset multiplot\nunset output\n";
 }
 
-// Runs gnuplot on a script file, without a shell. Returns its exit status, -1 when it cannot be started.
+// Runs gnuplot on a script file, without a shell and without its warnings (an axis of a constant, say).
+// Returns its exit status, -1 when it cannot be started.
 int run_gnuplot(const std::string& script) {
   std::string program = "gnuplot", file = script;
   char* arguments[] = {program.data(), file.data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
-  if (posix_spawnp(&child, "gnuplot", nullptr, nullptr, arguments, environ) != 0) return -1;
+  const int started = posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
   int status = 0;
-  if (waitpid(child, &status, 0) != child) return -1;
+  if (started != 0 || waitpid(child, &status, 0) != child) return -1;
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
@@ -153,8 +159,10 @@ int plot(const std::filesystem::path& folder) {
     std::printf("%s\n%s\n", (folder / "history.png").c_str(), (folder / "history.svg").c_str());
     return exit_done;
   }
-  std::fprintf(stderr, status < 0 ? "ilaw: gnuplot cannot be started; it is in the package gnuplot-nox\n"
-                                  : "ilaw: gnuplot failed, see its message above\n");
+  if (status < 0 || status == 127)
+    std::fprintf(stderr, "ilaw: gnuplot cannot be started; it is in the package gnuplot-nox\n");
+  else
+    std::fprintf(stderr, "ilaw: gnuplot failed; run it on %s to see why\n", script.c_str());
   return exit_failed;
 }
 
