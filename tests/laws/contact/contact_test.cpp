@@ -1,0 +1,91 @@
+// Contact through the ABI: Moreau's and the predictive condition.
+#include "law_runner.hpp"
+
+#include <random>
+
+namespace ilaw::testing {
+namespace {
+
+constexpr double ulp = 2.3e-16;
+
+TEST(Contact, KeepsMoreausComplementarity) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-300.0, 150.0);
+  for (const double restitution : {0.0, 0.5, 1.0}) {
+    NodeRun node("contact", {{{"restitution", restitution}}, {}});
+    for (int k = 0; k < 100000; ++k) {
+      const double scale = std::pow(10.0, exponent(random));
+      const double v = scale * uniform(random), before = scale * uniform(random);
+      node.gap = uniform(random);
+      node.h[0] = 1.0 + 0.9 * uniform(random);
+      node.v_previous = {before, 0.3 * scale, 0.0};
+      ASSERT_EQ(node.step({v, 0.7 * scale, -0.2 * scale}), ILAW_OK);
+      ASSERT_GE(node.r[0], 0.0);
+      ASSERT_EQ(node.r[1], 0.0);
+      ASSERT_EQ(node.r[2], 0.0);
+      const double left = node.v[0] + restitution * before;
+      if (node.gap > 0.0) {
+        ASSERT_EQ(node.r[0], 0.0);
+      } else {
+        ASSERT_GE(left, -4 * ulp * scale);
+        ASSERT_LE(std::min(node.r[0] * node.h[0], left), 4 * ulp * scale);
+      }
+      ASSERT_EQ(node.status, node.r[0] > 0.0 ? ILAW_CLOSED : ILAW_FREE);
+      ASSERT_GE(node.energy[ILAW_ENERGY_IMPACT], 0.0);
+    }
+  }
+}
+
+// An impact under no force loses (1 - e^2) of the energy of the normal motion.
+TEST(Contact, LosesTheEnergyOfItsRestitution) {
+  for (const double restitution : {0.0, 0.25, 0.8, 1.0}) {
+    NodeRun node("contact", {{{"restitution", restitution}}, {}});
+    node.h[0] = 0.5;  // mass 2
+    node.gap = -1e-9;
+    node.v_previous = {-3.0, 1.0, 0.0};
+    ASSERT_EQ(node.step({-3.0, 1.0, 0.0}), ILAW_OK);
+    EXPECT_NEAR(node.v[0], 3.0 * restitution, 1e-15);
+    EXPECT_NEAR(node.energy[ILAW_ENERGY_IMPACT], 9.0 * (1.0 - restitution * restitution), 1e-14);
+  }
+}
+
+// Falling freely onto the plane: the gap after every step stays above rounding, also with restitution.
+TEST(Contact, PredictiveNeverPenetrates) {
+  for (const double restitution : {0.0, 0.4, 1.0})
+    for (const double h : {1e-2, 3e-3, 1e-3}) {
+      NodeRun node("contact", {{{"restitution", restitution}}, {{"activation", "predictive"}}}, h);
+      double position = 1.0;
+      node.v = {-0.1, 0.0, 0.0};
+      for (int k = 0; k < 3000; ++k) {
+        position += h * node.v[0];
+        ASSERT_GE(position, -1e-15) << "e " << restitution << ", h " << h << ", step " << k;
+        node.gap = position;
+        ASSERT_EQ(node.step({node.v[0] - 10.0 * h, 0.0, 0.0}), ILAW_OK);
+      }
+    }
+}
+
+// A penetration that is there already is kept, not pushed out at speed.
+TEST(Contact, PredictiveCreatesNoEnergyFromPenetration) {
+  NodeRun node("contact", {{}, {{"activation", "predictive"}}}, 1e-3);
+  node.gap = -0.01;
+  ASSERT_EQ(node.step({-0.5, 0.0, 0.0}), ILAW_OK);
+  EXPECT_NEAR(node.v[0], 0.0, 1e-16);
+  ASSERT_EQ(node.step({0.5, 0.0, 0.0}), ILAW_OK);
+  EXPECT_EQ(node.r[0], 0.0);
+}
+
+// Frictionless contact uses only H_NN of a full H; the tangential velocities follow the coupling.
+TEST(Contact, TakesAnyForm) {
+  NodeRun node("contact", {}, 1e-3, ILAW_DELASSUS_FULL);
+  node.h = {4.0, 3.0, 2.0, 1.0, -0.5, 0.25};
+  node.gap = 0.0;
+  ASSERT_EQ(node.step({-2.0, 1.0, 1.0}), ILAW_OK);
+  EXPECT_EQ(node.r[0], 0.5);
+  EXPECT_NEAR(node.v[0], 0.0, 1e-16);
+  EXPECT_NEAR(node.v[1], 1.5, 1e-15);
+  EXPECT_NEAR(node.v[2], 0.75, 1e-15);
+}
+
+}  // namespace
+}  // namespace ilaw::testing

@@ -1,0 +1,188 @@
+// Contact with friction through the ABI: closed forms, cone, complementarity, dissipation, limits,
+// invariances.
+#include "law_runner.hpp"
+
+#include <limits>
+#include <random>
+
+namespace ilaw::testing {
+namespace {
+
+constexpr double inf_value = std::numeric_limits<double>::infinity();
+constexpr double ulp = std::numeric_limits<double>::epsilon();
+
+double tangential(const Vector& a) { return std::hypot(a[1], a[2]); }
+
+// Random vectors of any scale; the same draw for all tests of a seed.
+class Draw {
+ public:
+  explicit Draw(unsigned seed, double smallest = -300.0, double largest = 150.0)
+      : random_(seed), exponent_(smallest, largest) {}
+  Vector velocity() {
+    const double scale = std::pow(10.0, exponent_(random_));
+    return {scale * uniform_(random_), scale * uniform_(random_), scale * uniform_(random_)};
+  }
+  double between(double low, double high) { return low + (high - low) * 0.5 * (1.0 + uniform_(random_)); }
+
+ private:
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> uniform_{-1.0, 1.0}, exponent_;
+};
+
+// Oblique impact of a point, no force (v_free = v^-): sticks or slides throughout, leaves with e v_z and
+// v_x - mu (1+e) v_z where that is positive. Energy never grows at any angle.
+TEST(Coulomb, ObliqueImpactFollowsItsClosedForm) {
+  for (const double restitution : {0.0, 0.3, 1.0})
+    for (const double friction : {0.0, 0.1, 0.5, 2.0})
+      for (double angle = 0.0; angle < 90.0; angle += 0.1) {
+        NodeRun node("coulomb", {{{"friction", friction}, {"restitution", restitution}}, {}});
+        const double vz = std::cos(angle * M_PI / 180.0), vx = std::sin(angle * M_PI / 180.0);
+        node.h[0] = 0.4;
+        node.v_previous = {-vz, 0.6 * vx, 0.8 * vx};
+        ASSERT_EQ(node.step(node.v_previous), ILAW_OK);
+        const double left = std::max(0.0, vx - friction * (1.0 + restitution) * vz);
+        ASSERT_NEAR(node.v[0], restitution * vz, 4 * ulp);
+        ASSERT_NEAR(node.v[1], 0.6 * left, 8 * ulp * (1.0 + friction));
+        ASSERT_NEAR(node.v[2], 0.8 * left, 8 * ulp * (1.0 + friction));
+        const double energy = node.v[0] * node.v[0] + node.v[1] * node.v[1] + node.v[2] * node.v[2];
+        ASSERT_LE(energy, 1.0 + 8 * ulp) << "mu " << friction << ", angle " << angle;
+      }
+}
+
+TEST(Coulomb, KeepsComplementarityConeAndDirectionAtAnyScale) {
+  Draw draw(1);
+  int sticks = 0, slips = 0;
+  for (const double friction : {0.0, 1e-6, 0.3, 1.0, 1e6}) {
+    NodeRun node("coulomb", {{{"friction", friction}}, {}});
+    for (int k = 0; k < 100000; ++k) {
+      const Vector q = draw.velocity();
+      node.h[0] = std::pow(10.0, draw.between(-6.0, 6.0));
+      node.gap = draw.between(-1.0, 0.3);
+      node.v_previous = {};
+      ASSERT_EQ(node.step(q), ILAW_OK);
+      const double scale = std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])});
+      if (node.gap > 0.0 || q[0] >= 0.0) {
+        for (const double r : node.r) ASSERT_EQ(r, 0.0);
+        ASSERT_EQ(node.status, ILAW_FREE);
+        continue;
+      }
+      ASSERT_GT(node.r[0], 0.0);
+      ASSERT_NEAR(node.v[0], 0.0, 2 * ulp * scale);
+      ASSERT_LE(tangential(node.r), friction * node.r[0] * (1.0 + 8 * ulp) + 1e-323);
+      if (node.status == ILAW_STICK) {
+        ++sticks;
+        ASSERT_NEAR(tangential(node.v), 0.0, 4 * ulp * scale);
+      } else {
+        ++slips;
+        ASSERT_EQ(node.status, ILAW_SLIP);
+        // On the cone, and opposite to the slip: r_T x v_T = 0, r_T . v_T <= 0.
+        ASSERT_NEAR(tangential(node.r), friction * node.r[0], 8 * ulp * friction * node.r[0] + 1e-322);
+        const double limit = 16 * ulp * tangential(node.r) * scale + 1e-300;
+        ASSERT_NEAR(node.r[1] * node.v[2], node.r[2] * node.v[1], limit);
+        ASSERT_LE(node.r[1] * node.v[1] + node.r[2] * node.v[2], limit);
+      }
+      for (const double energy : node.energy) ASSERT_GE(energy, 0.0);
+    }
+  }
+  EXPECT_GT(sticks, 10000);
+  EXPECT_GT(slips, 10000);
+}
+
+// Among all impulses of the cone, the one chosen takes most from the slip (maximum dissipation).
+TEST(Coulomb, DissipatesAtMost) {
+  Draw draw(2, -1.0, 1.0);
+  NodeRun node("coulomb", {{{"friction", 0.4}}, {}});
+  for (int k = 0; k < 20000; ++k) {
+    node.h[0] = draw.between(0.1, 3.0);
+    node.gap = 0.0;
+    ASSERT_EQ(node.step(draw.velocity()), ILAW_OK);
+    const double angle = draw.between(0.0, 2.0 * M_PI), size = draw.between(0.0, 0.4 * node.r[0]);
+    const double other = size * (std::cos(angle) * node.v[1] + std::sin(angle) * node.v[2]);
+    ASSERT_LE(node.r[1] * node.v[1] + node.r[2] * node.v[2], other + 1e-14);
+  }
+}
+
+// The outputs split the work r.(v^- + v)/2 exactly where neither part is the work of a reaction.
+TEST(Coulomb, EnergyOutputsAreTheWork) {
+  Draw draw(3, -1.0, 1.0);
+  NodeRun node("coulomb", {{{"friction", 0.4}, {"restitution", 0.5}}, {}});
+  for (int k = 0; k < 20000; ++k) {
+    const Vector before = draw.velocity();
+    node.gap = 0.0;
+    node.v_previous = before;
+    ASSERT_EQ(node.step(draw.velocity()), ILAW_OK);
+    const double normal = -0.5 * node.r[0] * (before[0] + node.v[0]);
+    const double sliding = -0.5 * (node.r[1] * (before[1] + node.v[1]) + node.r[2] * (before[2] + node.v[2]));
+    ASSERT_NEAR(node.energy[ILAW_ENERGY_IMPACT], std::max(0.0, normal), 1e-13);
+    ASSERT_NEAR(node.energy[ILAW_ENERGY_FRICTION], std::max(0.0, sliding), 1e-13);
+    ASSERT_EQ(node.energy[ILAW_ENERGY_RUPTURE], 0.0);
+    ASSERT_EQ(node.energy[ILAW_ENERGY_STORED], 0.0);
+  }
+}
+
+TEST(Coulomb, WithoutFrictionIsContactAndWithInfiniteFrictionSticks) {
+  Draw draw(4);
+  NodeRun smooth("coulomb", {{{"friction", 0.0}, {"restitution", 0.3}}, {}});
+  NodeRun contact("contact", {{{"restitution", 0.3}}, {}});
+  NodeRun rough("coulomb", {{{"friction", inf_value}}, {}});
+  for (int k = 0; k < 100000; ++k) {
+    const Vector q = draw.velocity(), before = draw.velocity();
+    smooth.h[0] = contact.h[0] = rough.h[0] = draw.between(0.1, 3.0);
+    smooth.gap = contact.gap = rough.gap = draw.between(-1.0, 0.3);
+    smooth.v_previous = contact.v_previous = before;
+    ASSERT_EQ(smooth.step(q), ILAW_OK);
+    ASSERT_EQ(contact.step(q), ILAW_OK);
+    ASSERT_EQ(smooth.r, contact.r);
+    ASSERT_EQ(smooth.v, contact.v);
+    ASSERT_EQ(rough.step(q), ILAW_OK);
+    ASSERT_EQ(rough.status, rough.r[0] > 0.0 ? ILAW_STICK : ILAW_FREE);
+  }
+}
+
+// Exact under changes of units by powers of two, and under mirror images.
+TEST(Coulomb, IsTheSameInOtherUnitsAndMirrored) {
+  Draw draw(5, -3.0, 3.0);
+  constexpr double mass = 0x1p+30, speed = 0x1p-17;
+  const Parameters parameters{{{"friction", 0.35}, {"restitution", 0.2}, {"tangential_restitution", 0.1}},
+                              {}};
+  NodeRun a("coulomb", parameters), b("coulomb", parameters), mirror("coulomb", parameters);
+  for (int k = 0; k < 50000; ++k) {
+    const Vector q = draw.velocity(), before = draw.velocity();
+    a.gap = b.gap = mirror.gap = draw.between(-1.0, 0.2);
+    a.h[0] = mirror.h[0] = draw.between(0.1, 3.0);
+    b.h[0] = a.h[0] / mass;
+    a.v_previous = before;
+    b.v_previous = {speed * before[0], speed * before[1], speed * before[2]};
+    mirror.v_previous = {before[0], before[1], -before[2]};
+    ASSERT_EQ(a.step(q), ILAW_OK);
+    ASSERT_EQ(b.step({speed * q[0], speed * q[1], speed * q[2]}), ILAW_OK);
+    ASSERT_EQ(mirror.step({q[0], q[1], -q[2]}), ILAW_OK);
+    for (std::size_t c = 0; c < 3; ++c) {
+      ASSERT_EQ(mass * speed * a.r[c], b.r[c]);
+      ASSERT_EQ(c == 2 ? -a.r[c] : a.r[c], mirror.r[c]);
+    }
+  }
+}
+
+// H = diag(h_N, h_T, h_T): the same closed form; any other diagonal is refused by name.
+TEST(Coulomb, TakesADiagonalHThatIsIsotropicInTheTangentPlaneOnly) {
+  NodeRun node("coulomb", {{{"friction", 0.5}}, {}}, 1e-3, ILAW_DELASSUS_DIAGONAL);
+  node.gap = 0.0;
+  node.h = {2.0, 4.0, 4.0};
+  ASSERT_EQ(node.step({-1.0, 0.6, 0.8}), ILAW_OK);  // sticking needs 0.25 = 0.5 * 0.5, the border
+  EXPECT_EQ(node.status, ILAW_STICK);
+  EXPECT_NEAR(node.r[1], -0.15, 1e-16);
+  ASSERT_EQ(node.step({-1.0, 1.2, 1.6}), ILAW_OK);
+  EXPECT_EQ(node.status, ILAW_SLIP);
+  EXPECT_NEAR(node.r[1], -0.15, 1e-16);
+  EXPECT_NEAR(node.r[2], -0.2, 1e-16);
+  node.h = {2.0, 4.0, 5.0};
+  EXPECT_EQ(node.step({-1.0, 0.6, 0.8}), ILAW_BAD_NODES);
+  EXPECT_STREQ(
+      node.report.reason,
+      "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal");
+  EXPECT_EQ(node.r, (Vector{}));
+}
+
+}  // namespace
+}  // namespace ilaw::testing
