@@ -40,7 +40,8 @@ struct contact {
   template <class Node>
   void step(Node& node) const {
     const contact_condition condition = contact_at(node, restitution, activation);
-    const double normal = condition.slack <= 0.0 ? positive_part(-condition.excess / node.delassus.normal()) : 0.0;
+    const double normal =
+        condition.slack <= 0.0 ? positive_part(-condition.excess / node.delassus.normal()) : 0.0;
     node.impulse.n = normal;
     node.status = normal > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
   }

@@ -58,10 +58,10 @@ extern "C" {
 /* What a function returns. Negative: nothing was done, and the message says why. */
 enum {
   ILAW_OK = 0,
-  ILAW_BAD_NODES = 1,         /* evaluate: some nodes had bad input, see ilaw_report; the others are done */
-  ILAW_INVALID_ARGUMENT = -1, /* the call itself is wrong: null pointer, struct too small, count < 0 */
+  ILAW_BAD_NODES = 1,          /* evaluate: some nodes had bad input, see ilaw_report; the others are done */
+  ILAW_INVALID_ARGUMENT = -1,  /* the call itself is wrong: null pointer, struct too small, count < 0 */
   ILAW_INVALID_PARAMETER = -2, /* a parameter is unknown, missing, out of range or wrongly combined */
-  ILAW_UNSUPPORTED = -3,      /* dimension, form of H or input that this law does not serve */
+  ILAW_UNSUPPORTED = -3,       /* dimension, form of H or input that this law does not serve */
   ILAW_OUT_OF_MEMORY = -4,
   ILAW_NOT_FOUND = -5,   /* loader: no such library or law */
   ILAW_BAD_LIBRARY = -6, /* loader: not a law library, another major version, or a broken description */
@@ -97,8 +97,8 @@ enum { ILAW_OUTPUT_VELOCITY = 1 << 0, ILAW_OUTPUT_STATUS = 1 << 1, ILAW_OUTPUT_E
 
 /* What more a law can do, a bit mask. */
 enum {
-  ILAW_CAN_ADHERE = 1 << 0,        /* r_N may be negative */
-  ILAW_CAN_STORE_ENERGY = 1 << 1,  /* the stored part of the energy may be other than zero */
+  ILAW_CAN_ADHERE = 1 << 0,          /* r_N may be negative */
+  ILAW_CAN_STORE_ENERGY = 1 << 1,    /* the stored part of the energy may be other than zero */
   ILAW_CAN_ACT_AT_DISTANCE = 1 << 2, /* may give r != 0 at gap > 0 even from a freshly initialised state */
 };
 
@@ -125,8 +125,8 @@ enum {
   ILAW_STATE_SCALAR = 0,  /* one double */
   ILAW_STATE_VECTOR = 1,  /* d doubles: components in the local frame of the node */
   ILAW_STATE_HISTORY = 2, /* any number of doubles, meaningful to the law alone, in the local frame */
-  ILAW_STATE_AXIS = 3,    /* d doubles: a unit vector in the host's axes, the only kind that a host which turns
-                             its whole model must turn too; found in the global frame without tangents only */
+  ILAW_STATE_AXIS = 3, /* d doubles: a unit vector in the host's axes, the only kind that a host which turns
+                          its whole model must turn too; found in the global frame without tangents only */
 };
 
 /* Status of a node after a step. */
@@ -158,18 +158,18 @@ enum {
 /* A parameter of a law. Text members are never null, and empty where they have nothing to say. */
 typedef struct ilaw_parameter {
   uint32_t struct_size;
-  uint32_t kind;        /* ILAW_PARAMETER_* */
-  const char* name;     /* lower case, digits, underscore: what users type */
-  const char* symbol;   /* as in the law's page */
-  const char* unit;     /* SI, "1" when it has none */
-  const char* doc;      /* one sentence */
-  double minimum;       /* smallest value allowed */
-  double maximum;       /* largest finite value allowed */
-  double default_value; /* for a choice, its index in choices */
-  uint32_t required;    /* 1: has no default */
-  uint32_t minimum_excluded; /* 1: the value must be larger than minimum */
-  uint32_t infinity_allowed; /* 1: +infinity is an ordinary value */
-  uint32_t may_be;           /* ILAW_MAY_BE_* mask */
+  uint32_t kind;              /* ILAW_PARAMETER_* */
+  const char* name;           /* lower case, digits, underscore: what users type */
+  const char* symbol;         /* as in the law's page */
+  const char* unit;           /* SI, "1" when it has none */
+  const char* doc;            /* one sentence */
+  double minimum;             /* smallest value allowed */
+  double maximum;             /* largest finite value allowed */
+  double default_value;       /* for a choice, its index in choices */
+  uint32_t required;          /* 1: has no default */
+  uint32_t minimum_excluded;  /* 1: the value must be larger than minimum */
+  uint32_t infinity_allowed;  /* 1: +infinity is an ordinary value */
+  uint32_t may_be;            /* ILAW_MAY_BE_* mask */
   const char* const* choices; /* choice_count texts, null unless kind is CHOICE */
   uint32_t choice_count;
   uint32_t reserved; /* 0 */
@@ -218,7 +218,7 @@ typedef struct ilaw_instance_info {
   uint32_t inputs;        /* ILAW_INPUT_* mask: read by every evaluate */
   uint32_t energy_inputs; /* ILAW_INPUT_* mask: read besides when the energy output is asked for */
   uint32_t state_variable_count;
-  uint64_t state_size; /* doubles per node; may be 0 */
+  uint64_t state_size;                               /* doubles per node; may be 0 */
   const ilaw_state_variable* const* state_variables; /* owned by the instance; counts sum to state_size */
   const char* const* per_node_parameters; /* names of parameters given per node, in the order of the batch */
   uint32_t per_node_parameter_count;
@@ -247,30 +247,30 @@ typedef struct ilaw_output {
  * Outputs may not overlap inputs or each other, except that state_out may be state_in. */
 typedef struct ilaw_batch {
   uint32_t struct_size;
-  int32_t index_base;     /* first value of an index: 0 in C, 1 in Fortran */
-  int64_t node_count;     /* nodes to evaluate */
-  const int32_t* index;   /* null: nodes 0 .. node_count-1; else node index[k] - index_base for each k, each
-                             node once; only these are read and written */
-  double time;            /* t_{n+1}, of the configuration that the gaps belong to */
-  double velocity_step;   /* > 0: an impulse is a force times it */
-  double position_step;   /* > 0: a predicted gap is gap + position_step * v_N */
-  ilaw_input v_free;      /* d: velocity without interface, relative to the obstacle [m/s] */
-  ilaw_input delassus;    /* H, see ILAW_DELASSUS_* [1/kg]; symmetric positive definite */
-  ilaw_input gap;         /* 1: signed distance at time [m] */
-  ilaw_input gap_offset;  /* 1, optional: subtracted from the gap (thickness, initial slack) [m] */
-  ilaw_input v_previous;  /* d: half-step velocity before this step, relative to the obstacle [m/s] */
-  ilaw_input area;        /* 1: tributary area [m^2], >= 0 */
-  ilaw_input normal;      /* d, global frame: unit normal */
-  ilaw_input tangent;     /* d, global frame, optional: unit tangent, orthogonal to the normal; turns with the
-                             material. Without it history vectors are carried from normal to normal by the
-                             shortest rotation */
+  int32_t index_base;    /* first value of an index: 0 in C, 1 in Fortran */
+  int64_t node_count;    /* nodes to evaluate */
+  const int32_t* index;  /* null: nodes 0 .. node_count-1; else node index[k] - index_base for each k, each
+                            node once; only these are read and written */
+  double time;           /* t_{n+1}, of the configuration that the gaps belong to */
+  double velocity_step;  /* > 0: an impulse is a force times it */
+  double position_step;  /* > 0: a predicted gap is gap + position_step * v_N */
+  ilaw_input v_free;     /* d: velocity without interface, relative to the obstacle [m/s] */
+  ilaw_input delassus;   /* H, see ILAW_DELASSUS_* [1/kg]; symmetric positive definite */
+  ilaw_input gap;        /* 1: signed distance at time [m] */
+  ilaw_input gap_offset; /* 1, optional: subtracted from the gap (thickness, initial slack) [m] */
+  ilaw_input v_previous; /* d: half-step velocity before this step, relative to the obstacle [m/s] */
+  ilaw_input area;       /* 1: tributary area [m^2], >= 0 */
+  ilaw_input normal;     /* d, global frame: unit normal */
+  ilaw_input tangent;    /* d, global frame, optional: unit tangent, orthogonal to the normal; turns with the
+                            material. Without it history vectors are carried from normal to normal by the
+                            shortest rotation */
   const ilaw_input* per_node_parameters; /* 1 each, as many as the instance info says; may be null when 0 */
-  ilaw_input state_in;    /* s */
-  ilaw_output state_out;  /* s; may be the array of state_in, with the same strides */
-  ilaw_output impulse;    /* d: r [N.s] */
-  ilaw_output velocity;   /* d, optional: v = v_free + H r [m/s] */
-  ilaw_output energy;     /* ILAW_ENERGY_COUNT, optional [J] */
-  uint8_t* status;        /* optional: ILAW_FREE ... per node, at status[i * status_stride] */
+  ilaw_input state_in;                   /* s */
+  ilaw_output state_out;                 /* s; may be the array of state_in, with the same strides */
+  ilaw_output impulse;                   /* d: r [N.s] */
+  ilaw_output velocity;                  /* d, optional: v = v_free + H r [m/s] */
+  ilaw_output energy;                    /* ILAW_ENERGY_COUNT, optional [J] */
+  uint8_t* status;                       /* optional: ILAW_FREE ... per node, at status[i * status_stride] */
   int64_t status_stride;
 } ilaw_batch;
 
@@ -288,14 +288,14 @@ typedef struct ilaw_report {
 /* One law. All function pointers are set. All functions may be called from any thread. */
 typedef struct ilaw_law {
   uint32_t struct_size;
-  uint32_t dimensions;     /* ILAW_DIMENSION_* mask */
-  uint32_t delassus_forms; /* ILAW_DELASSUS_* mask */
-  uint32_t inputs;         /* ILAW_INPUT_* mask: all that it may read, for some parameters */
-  uint32_t outputs;        /* ILAW_OUTPUT_* mask */
-  uint32_t capabilities;   /* ILAW_CAN_* mask */
-  const char* id;          /* lower case, digits, underscore; unique in the library */
-  const char* title;       /* a few words */
-  const char* doc;         /* one paragraph */
+  uint32_t dimensions;           /* ILAW_DIMENSION_* mask */
+  uint32_t delassus_forms;       /* ILAW_DELASSUS_* mask */
+  uint32_t inputs;               /* ILAW_INPUT_* mask: all that it may read, for some parameters */
+  uint32_t outputs;              /* ILAW_OUTPUT_* mask */
+  uint32_t capabilities;         /* ILAW_CAN_* mask */
+  const char* id;                /* lower case, digits, underscore; unique in the library */
+  const char* title;             /* a few words */
+  const char* doc;               /* one paragraph */
   const char* const* references; /* reference_count texts: author, year, title */
   const ilaw_parameter* const* parameters;
   const ilaw_state_variable* const* state_variables; /* counts for dimension 3 and default parameters */
@@ -317,8 +317,8 @@ typedef struct ilaw_law {
   int32_t (*info)(const ilaw_instance* instance, ilaw_instance_info* info);
 
   /* Writes the initial state of the nodes of a batch: reads node_count, index, index_base, time, area and
-   * normal, tangent (as the instance needs them), per_node_parameters; writes state_out. The rest of the batch may
-   * be zero. Returns as evaluate. */
+   * normal, tangent (as the instance needs them), per_node_parameters; writes state_out. The rest of the
+   * batch may be zero. Returns as evaluate. */
   int32_t (*initialise)(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report);
 
   /* One step of a batch; pure: no allocation, lock, I/O or global. The result at a node depends on that

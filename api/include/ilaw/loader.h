@@ -35,7 +35,8 @@ typedef struct ilaw_interface ilaw_interface;
 /* Opens a library by name or explicit path, checks its whole description, gives *library.
  * Opening the same file again gives the same object.
  * Returns ILAW_OK, ILAW_INVALID_ARGUMENT, ILAW_NOT_FOUND, ILAW_BAD_LIBRARY, ILAW_OUT_OF_MEMORY. */
-int32_t ilaw_library_open(const char* name_or_path, ilaw_library** library, char* message, size_t message_size);
+int32_t ilaw_library_open(const char* name_or_path, ilaw_library** library, char* message,
+                          size_t message_size);
 
 /* Gives back one opening; null is allowed. */
 void ilaw_library_close(ilaw_library* library);
@@ -66,8 +67,10 @@ const ilaw_instance* ilaw_interface_instance(const ilaw_interface* interface);
 /* The law's info, initialise and evaluate (ilaw.h), for hosts that would rather not call through
  * function pointers (Fortran). */
 int32_t ilaw_interface_info(const ilaw_interface* interface, ilaw_instance_info* info);
-int32_t ilaw_interface_initialise(const ilaw_interface* interface, const ilaw_batch* batch, ilaw_report* report);
-int32_t ilaw_interface_evaluate(const ilaw_interface* interface, const ilaw_batch* batch, ilaw_report* report);
+int32_t ilaw_interface_initialise(const ilaw_interface* interface, const ilaw_batch* batch,
+                                  ilaw_report* report);
+int32_t ilaw_interface_evaluate(const ilaw_interface* interface, const ilaw_batch* batch,
+                                ilaw_report* report);
 
 /* Calls visit(path, context) for every file *.so of the search path, in search order, files that an
  * earlier folder hides left out. Opens none of them. Stops early when visit returns non-zero, and

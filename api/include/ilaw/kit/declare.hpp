@@ -114,8 +114,8 @@ constexpr std::array<const T*, N> pointers_to(const std::array<T, N>& elements) 
 template <class Law>
 constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
   const std::uint32_t kind = p.choice_count > 0 ? ILAW_PARAMETER_CHOICE
-                             : p.whole ? ILAW_PARAMETER_COUNT
-                                       : ILAW_PARAMETER_NUMBER;
+                             : p.whole          ? ILAW_PARAMETER_COUNT
+                                                : ILAW_PARAMETER_NUMBER;
   const bool varies = kind == ILAW_PARAMETER_NUMBER;
   return {.struct_size = sizeof(ilaw_parameter),
           .kind = kind,
