@@ -110,6 +110,39 @@ TEST_P(Contract, ReportAndInfoAreFilledUpToTheSizeAsked) {
   EXPECT_EQ(std::memcmp(&info.state_variables, untouched, sizeof untouched), 0);
 }
 
+// A batch from a host of an older minor version ends early, one from a newer host goes on beyond what is
+// known here.
+TEST(Minor, HostsOfOtherMinorVersionsAreServed) {
+  const SetupBuilder setup({{{"friction", 0.5}}, {}});
+  const ilaw::interface law = make_law("coulomb", setup);
+  const double v[] = {-1.0, 2.0, 0.0}, h = 1.0, gap = 0.0;
+  double r[3];
+  std::uint8_t status = 99;
+  struct {
+    ilaw_batch batch{};
+    double appended[4] = {1.0, 2.0, 3.0, 4.0};
+  } newer;
+  ilaw_batch& b = newer.batch;
+  b.struct_size = sizeof newer;
+  b.node_count = 1;
+  b.velocity_step = b.position_step = 1e-3;
+  b.v_free = {v, 3, 1};
+  b.delassus = {&h, 1, 1};
+  b.gap = {&gap, 1, 1};
+  b.impulse = {r, 3, 1};
+  b.status = &status;
+  EXPECT_EQ(law.evaluate(b), ILAW_OK);
+  EXPECT_EQ(status, ILAW_SLIP);
+  EXPECT_EQ(r[1], -0.5);
+
+  b.struct_size = offsetof(ilaw_batch, velocity);  // knows no optional outputs: what stands there is not read
+  status = 99;
+  r[1] = 0.0;
+  EXPECT_EQ(law.evaluate(b), ILAW_OK);
+  EXPECT_EQ(status, 99);
+  EXPECT_EQ(r[1], -0.5);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Laws, Contract,
     ::testing::Values(Case{"contact", {{{"restitution", 0.3}}, {}}},
