@@ -29,4 +29,4 @@ contact_condition contact_at(const Node& node, double restitution, double activa
           node.v_free.n - (activation == predictive ? predicted : rebound)};
 }
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

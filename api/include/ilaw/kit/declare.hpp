@@ -182,4 +182,4 @@ struct description {
 };
 
 }  // namespace detail
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

@@ -40,4 +40,4 @@ inline const ilaw_kit_walk* best_walks() {
   return nullptr;
 }
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

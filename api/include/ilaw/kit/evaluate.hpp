@@ -520,4 +520,4 @@ std::int32_t initialise(const ilaw_instance* opaque, const ilaw_batch* given, il
   return give_report(report, initialise_nodes(made, batch));
 }
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

@@ -104,4 +104,4 @@ struct stored_frame {
   }
 };
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

@@ -41,4 +41,4 @@ void apply_contact_friction(Node& node, double slack, vector q, double friction)
   node.refused = node.delassus.anisotropy() == 0.0 ? not_refused : anisotropic_delassus;
 }
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

@@ -113,4 +113,4 @@ inline void scatter_vector(const ilaw_output& output, int dimension, const node_
   for (int k = 0; k < dimension; ++k) scatter(output, k, nodes, components[k]);
 }
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

@@ -309,4 +309,4 @@ std::int32_t info(const ilaw_instance* opaque, ilaw_instance_info* out) {
   return ILAW_OK;
 }
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

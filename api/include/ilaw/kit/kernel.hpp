@@ -188,4 +188,4 @@ template <class Law, class Delassus, class Frame, class Layout, bool Diagnostics
   }
 }
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

@@ -67,4 +67,4 @@ inline double exp(double x) {
   return x == x ? result : x;
 }
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

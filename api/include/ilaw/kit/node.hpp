@@ -142,4 +142,4 @@ struct node {
   double refused = not_refused;
 };
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

@@ -142,4 +142,4 @@ inline std::int32_t check_table(const char* law, const ilaw_parameter& p, const 
   return ILAW_OK;
 }
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit

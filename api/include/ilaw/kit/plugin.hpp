@@ -73,7 +73,7 @@ class library {
   static constexpr auto pointers = all(std::index_sequence_for<Laws...>{});
 };
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit
 
 // ILAW_PLUGIN(name, version, vendor, licence, Law...) makes the one exported symbol of a law library; at the
 // other levels, the hidden one that gives their walks.
