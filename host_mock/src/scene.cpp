@@ -173,7 +173,7 @@ Arguments read_arguments(const json& parameters, std::size_t node_count, const s
 
 // An explicit path is relative to the scene, not to wherever the user happens to be.
 std::string library_of(const json& interface, const std::filesystem::path& scene_file) {
-  const std::string library = interface.value("library", interface["law"].get<std::string>());
+  std::string library = interface.value("library", interface["law"].get<std::string>());
   if (library.find('/') == std::string::npos) return library;
   return (std::filesystem::absolute(scene_file).parent_path() / library).string();
 }
