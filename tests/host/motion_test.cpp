@@ -195,5 +195,29 @@ TEST(Shock, EntersExactlyOneStep) {
     }
 }
 
+// Instants as people write them, in decimals, which n dt meets only but for rounding.
+TEST(Shock, AtADecimalInstantEntersTheStepThatEndsThere) {
+  for (int n = 1; n <= 999; ++n) {
+    char instant[16];
+    std::snprintf(instant, sizeof instant, "%.3f", n * 1e-3);
+    Scene scene = scene_of(
+        R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1.0, "position": [9.0]}]},
+        "time": {"dt": 0.001, "end": 1.0}, "loads": [{"type": "shock", "nodes": [0], "time": )" +
+        std::string(instant) + R"(, "impulse": [1.0]}], "interfaces": []})");
+    Integrator integrator = integrator_of(scene);
+    while (integrator.velocity()[0] == 0.0) integrator.step();
+    ASSERT_EQ(integrator.steps(), n);
+  }
+}
+
+// V_{1/2} = V_0 + (h/2) g: positions of a free fall are exact at all steps.
+TEST(Start, TakesHalfAStepOfForce) {
+  Scene scene = scene_of(ball(0.0, 1e-3, 0.3, 1.0));
+  Integrator integrator = integrator_of(scene);
+  EXPECT_EQ(integrator.velocity()[0], -0.5 * 1e-3 * 10.0);
+  while (integrator.steps() < scene.steps) integrator.step();
+  EXPECT_NEAR(integrator.displacement()[0], -0.5 * 10.0 * 0.3 * 0.3, 1e-13);
+}
+
 }  // namespace
 }  // namespace ilaw::host::testing
