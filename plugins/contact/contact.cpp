@@ -16,7 +16,8 @@ struct contact {
           "Signorini-Moreau contact without friction: open nodes get no impulse, closed ones are pushed so "
           "that "
           "the normal velocity after the step is at least -e times the one before.",
-      .inputs = reads_gap | reads_v_previous};
+      .inputs = reads_gap | reads_v_previous,
+      .names_tangents = false};
 
   static constexpr const char* references[] = {
       "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics",

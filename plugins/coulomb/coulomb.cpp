@@ -18,7 +18,8 @@ struct coulomb {
           "Signorini-Moreau contact with Coulomb friction: the tangential impulse stays within the friction "
           "cone and "
           "opposes slip. Exact closed form for an H that is isotropic in the tangent plane.",
-      .inputs = reads_gap | reads_v_previous};
+      .inputs = reads_gap | reads_v_previous,
+      .names_tangents = false};
 
   static constexpr const char* references[] = {
       "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics",
@@ -54,8 +55,8 @@ struct coulomb {
   template <class Node>
   void step(Node& node) const {
     const contact_condition contact = contact_at(node, restitution, activation);
-    const vector q{contact.excess, node.v_free.t1 + tangential_restitution * node.v_previous.t1,
-                   node.v_free.t2 + tangential_restitution * node.v_previous.t2};
+    auto q = node.v_free + tangential_restitution * node.v_previous;
+    q.n = contact.excess;
     apply_contact_friction(node, contact.slack, q, friction);
   }
 };

@@ -42,6 +42,9 @@ struct law_card {
   std::uint32_t delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL;
   std::uint32_t inputs = reads_gap;
   std::uint32_t capabilities = 0;
+  // Whether step names t1 or t2. One that does not works on projected_vector too, which spares the host's
+  // axes a tangent per node.
+  bool names_tangents = true;
 };
 
 template <class Law>

@@ -348,18 +348,18 @@ struct tally {
 };
 
 // Why a node was refused, from the same checks as step_node, in their order.
-template <class Law, class Delassus, class Frame, class Layout>
+template <class Law, class Delassus, class Frame, class Layout, scope Scope>
 const char* refusal_reason(const Law& law, const node_block<Law>& b, int i) {
-  const auto n = load_node<Law, Delassus, Frame, Layout>(b, i);
-  if constexpr (Frame::turns)
-    if (!unit(Layout::get(b.axes, i))) return "the normal is not a unit vector";
+  const auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
+  if (defect(Frame::template at<Layout>(b.axes, i).unit_defect()) != 0.0)
+    return "the normal is not a unit vector";
   if (defect(n.v_free) != 0.0) return "v_free is not finite";
   if (n.delassus.positive_defect() != 0.0) return "H is not finite and positive definite";
   if (defect(n.gap) != 0.0) return "the gap is not finite";
   if (defect(n.v_previous) != 0.0) return "v_previous is not finite";
   if (!finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
   if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
-  const double refused = step_node<Law, Delassus, Frame, Layout>(law, b, i).result.refused;
+  const double refused = step_node<Law, Delassus, Frame, Layout, Scope>(law, b, i).result.refused;
   if (refused == anisotropic_delassus)
     return "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal";
   if (refused == no_solution) return "the law's equations have no solution for this H";
@@ -381,7 +381,7 @@ bool at_node(const instance<Law>& made, const ilaw_batch& batch, std::int64_t no
 }
 
 // The whole of a batch; Varying: with parameters per node, one node at a time.
-template <class Law, class Delassus, class Frame, class Layout, bool Diagnostics, bool Varying>
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, bool Varying>
 struct evaluate_walk {
   static tally run(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
     block_room<Law> room;
@@ -401,11 +401,11 @@ struct evaluate_walk {
  private:
   static void run_nodes(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
                         batch_walk<Law, Layout>& walk) {
-    if constexpr (!Varying) run_block<Law, Delassus, Frame, Layout, Diagnostics>(law, walk.block());
+    if constexpr (!Varying) run_block<Law, Delassus, Frame, Layout, Scope>(law, walk.block());
     for (int i = 0; Varying && i < walk.nodes().count; ++i) {
       Law own = law;
       const bool valid = at_node(made, batch, walk.nodes().node(i), own);
-      run_node<Law, Delassus, Frame, Layout, Diagnostics>(own, walk.block(), i, valid);
+      run_node<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i, valid);
     }
   }
 
@@ -416,9 +416,9 @@ struct evaluate_walk {
       if (walk.block().refused[i] == 0.0) continue;
       Law own = law;
       const bool valid = at_node(made, batch, walk.nodes().node(i), own);
-      found.add(walk.nodes().node(i), valid
-                                          ? refusal_reason<Law, Delassus, Frame, Layout>(own, walk.block(), i)
-                                          : "a per-node parameter is out of range");
+      found.add(walk.nodes().node(i),
+                valid ? refusal_reason<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i)
+                      : "a per-node parameter is out of range");
     }
   }
 };
@@ -426,15 +426,18 @@ struct evaluate_walk {
 template <class Law, class Delassus, class Frame, class Layout>
 tally walk_laid_out(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
   if (batch.velocity.values || batch.energy.values || batch.status)
-    return evaluate_walk<Law, Delassus, Frame, Layout, true, false>::run(made, law, batch);
-  return evaluate_walk<Law, Delassus, Frame, Layout, false, false>::run(made, law, batch);
+    return evaluate_walk<Law, Delassus, Frame, Layout, scope::outputs, false>::run(made, law, batch);
+  if constexpr ((Law::card.inputs & reads_v_previous) != 0)
+    if (made.inputs() & ILAW_INPUT_V_PREVIOUS)
+      return evaluate_walk<Law, Delassus, Frame, Layout, scope::with_previous, false>::run(made, law, batch);
+  return evaluate_walk<Law, Delassus, Frame, Layout, scope::impulse, false>::run(made, law, batch);
 }
 
 template <class Law, class Delassus, class Frame>
 tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
   if (made.per_node_count > 0)
-    return evaluate_walk<Law, Delassus, Frame, columns, true, true>::run(made, law, batch);
+    return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
   if constexpr (std::is_same_v<Delassus, scalar_delassus> && !std::is_same_v<Frame, stored_frame>)
     if (all_interleaved(made, batch))
       return walk_laid_out<Law, Delassus, Frame, interleaved>(made, law, batch);
@@ -446,8 +449,9 @@ template <class Law>
 tally walk_turned(const instance<Law>& made, const ilaw_batch& batch) {
   if (made.delassus_form != ILAW_DELASSUS_SCALAR)
     return walk_as<Law, full_delassus, stored_frame>(made, batch);
-  return made.stores_frame() ? walk_as<Law, scalar_delassus, stored_frame>(made, batch)
-                             : walk_as<Law, scalar_delassus, normal_frame>(made, batch);
+  if constexpr (needs_no_tangents<Law>())
+    if (!made.stores_frame()) return walk_as<Law, scalar_delassus, normal_frame>(made, batch);
+  return walk_as<Law, scalar_delassus, stored_frame>(made, batch);
 }
 
 template <class Law>

@@ -85,19 +85,44 @@ struct interleaved {
 
 // The three ways in which a kernel gets its frames: none needed, from the normals alone, or stored. axes:
 // three columns of the normal, then three each of the tangents where they are stored.
+struct no_turn {
+  double unit_defect() const { return 0.0; }
+  vector to_local(axis a) const { return {a.x, a.y, a.z}; }
+  axis to_global(vector a) const { return {a.n, a.t1, a.t2}; }
+  template <class Delassus>
+  Delassus to_local(Delassus h) const {
+    return h;
+  }
+};
 struct local_frame {
-  static constexpr bool turns = false;
+  using vector_type = vector;
+  template <class Layout>
+  static no_turn at(const double* const* /*axes*/, int /*i*/) {
+    return {};
+  }
+};
+
+// The normal alone: enough for laws that are isotropic in the tangent plane.
+struct projection {
+  axis n;
+
+  double unit_defect() const { return defect_unless(unit(n)); }
+  projected_vector to_local(axis a) const {
+    const double normal = dot(n, a);
+    return {normal, a.x - normal * n.x, a.y - normal * n.y, a.z - normal * n.z};
+  }
+  axis to_global(projected_vector a) const { return {a.x + a.n * n.x, a.y + a.n * n.y, a.z + a.n * n.z}; }
+  scalar_delassus to_local(scalar_delassus h) const { return h; }
 };
 struct normal_frame {
-  static constexpr bool turns = true;
+  using vector_type = projected_vector;
   template <class Layout>
-  static basis at(const double* const* axes, int i) {
-    const axis n = Layout::get(axes, i), t1 = any_tangent(n);
-    return {n, t1, cross(n, t1)};
+  static projection at(const double* const* axes, int i) {
+    return {Layout::get(axes, i)};
   }
 };
 struct stored_frame {
-  static constexpr bool turns = true;
+  using vector_type = vector;
   template <class Layout>
   static basis at(const double* const* axes, int i) {
     return {columns::get(axes, i), columns::get(axes + 3, i), columns::get(axes + 6, i)};

@@ -23,6 +23,13 @@ constexpr bool has_vector_state() {
   return false;
 }
 
+// Whether kernels may work from the normal alone: no tangent named, and no vector remembered, which would
+// need tangents to be written in.
+template <class Law>
+constexpr bool needs_no_tangents() {
+  return !Law::card.names_tangents && !has_memory<Law> && !has_vector_state<Law>();
+}
+
 template <class Law>
 struct instance {
   static constexpr std::size_t parameter_count = detail::parameter_count<Law>;
@@ -52,9 +59,10 @@ struct instance {
   std::int64_t frame_size() const { return carries_frame ? 6 : 0; }
   std::int64_t frame_offset() const { return static_cast<std::int64_t>(state_size) - frame_size(); }
 
-  // Whether kernels read all axes from columns, rather than build the frame from the normal.
+  // Whether kernels read all axes from columns, rather than the normal alone.
   bool stores_frame() const {
-    return dimension < 3 || tangent_given || carries_frame || delassus_form != ILAW_DELASSUS_SCALAR;
+    return !needs_no_tangents<Law>() || dimension < 3 || tangent_given || carries_frame ||
+           delassus_form != ILAW_DELASSUS_SCALAR;
   }
 
   std::uint32_t inputs() const {

@@ -41,9 +41,16 @@ struct node_block {
   }
 };
 
-template <class Law, class Delassus>
+// What a kernel computes besides impulse and state, so that what is not asked for costs nothing: nothing,
+// v_previous read as well, or that and the optional outputs.
+enum class scope { impulse, with_previous, outputs };
+
+template <class Law, class Delassus, class Frame>
+using node_in = node<Delassus, state_t<Law>, typename Frame::vector_type>;
+
+template <class Law, class Delassus, class Frame>
 struct stepped {
-  node<Delassus, state_t<Law>> result;
+  node_in<Law, Delassus, Frame> result;
   bool accepted;
 };
 
@@ -71,26 +78,18 @@ double state_defect(const state_t<Law>& state) {
 }  // namespace detail
 
 // A node as it comes in, in its local frame. A normal that is no unit vector makes v_free a defect.
-template <class Law, class Delassus, class Frame, class Layout>
-node<Delassus, state_t<Law>> load_node(const node_block<Law>& b, int i) {
-  node<Delassus, state_t<Law>> n;
+template <class Law, class Delassus, class Frame, class Layout, scope Scope>
+node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
+  node_in<Law, Delassus, Frame> n;
   n.time = b.time;
   n.velocity_step = b.velocity_step;
   n.position_step = b.position_step;
-  const axis v_free = Layout::get(b.v_free, i), v_previous = columns::get(b.v_previous, i);
-  const auto delassus =
-      detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{});
-  if constexpr (Frame::turns) {
-    const basis frame = Frame::template at<Layout>(b.axes, i);
-    n.v_free = frame.to_local(v_free);
-    n.v_free.n += frame.unit_defect();
-    n.v_previous = frame.to_local(v_previous);
-    n.delassus = frame.to_local(delassus);
-  } else {
-    n.v_free = {v_free.x, v_free.y, v_free.z};
-    n.v_previous = {v_previous.x, v_previous.y, v_previous.z};
-    n.delassus = delassus;
-  }
+  const auto frame = Frame::template at<Layout>(b.axes, i);
+  n.v_free = frame.to_local(Layout::get(b.v_free, i));
+  n.v_free.n += frame.unit_defect();
+  if constexpr (Scope != scope::impulse) n.v_previous = frame.to_local(columns::get(b.v_previous, i));
+  n.delassus = frame.to_local(
+      detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{}));
   n.gap = b.gap[i] - b.gap_offset[i];
   n.area = b.area[i];
   if constexpr (has_memory<Law>)
@@ -100,17 +99,19 @@ node<Delassus, state_t<Law>> load_node(const node_block<Law>& b, int i) {
   return n;
 }
 
-template <class Node>
+template <class Law, scope Scope, class Node>
 double input_defect(const Node& n) {
-  return defect(n.v_free) + n.delassus.positive_defect() + defect(n.gap) + defect(n.v_previous) +
-         defect(n.area) + defect_unless(n.area >= 0.0);
+  double sum = defect(n.v_free) + n.delassus.positive_defect() + defect(n.gap);
+  if constexpr (Scope != scope::impulse) sum += defect(n.v_previous);
+  if constexpr ((Law::card.inputs & reads_area) != 0) sum += defect(n.area) + defect_unless(n.area >= 0.0);
+  return sum + detail::state_defect<Law>(n.state);
 }
 
 // Steps one node, and says whether its input was good and its result can be represented.
-template <class Law, class Delassus, class Frame, class Layout>
-stepped<Law, Delassus> step_node(const Law& law, const node_block<Law>& b, int i) {
-  auto n = load_node<Law, Delassus, Frame, Layout>(b, i);
-  const double before = input_defect(n) + detail::state_defect<Law>(n.state);
+template <class Law, class Delassus, class Frame, class Layout, scope Scope>
+stepped<Law, Delassus, Frame> step_node(const Law& law, const node_block<Law>& b, int i) {
+  auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
+  const double before = input_defect<Law, Scope>(n);
   law.step(n);
   const double after = defect(n.impulse) + detail::state_defect<Law>(n.state);
   return {n, before + after + n.refused == 0.0};
@@ -122,11 +123,11 @@ stepped<Law, Delassus> step_node(const Law& law, const node_block<Law>& b, int i
 struct energy_split {
   double friction, impact, rupture, stored;
 };
-template <class Node>
-energy_split split_energy(const Node& n, vector v) {
-  const double normal = positive_part(-0.5 * n.impulse.n * (n.v_previous.n + v.n));
-  const double tangential = positive_part(
-      -0.5 * (n.impulse.t1 * (n.v_previous.t1 + v.t1) + n.impulse.t2 * (n.v_previous.t2 + v.t2)));
+template <class Node, class Vector>
+energy_split split_energy(const Node& n, Vector v) {
+  const Vector mean = n.v_previous + v;
+  const double normal = positive_part(-0.5 * normal_product(n.impulse, mean));
+  const double tangential = positive_part(-0.5 * tangential_product(n.impulse, mean));
   const bool broken = n.status == double{ILAW_BROKEN};
   return {broken ? 0.0 : tangential, broken ? 0.0 : normal, broken ? normal + tangential : 0.0, n.stored};
 }
@@ -141,15 +142,15 @@ void store_state(const node_block<Law>& b, int i, const state_t<Law>& state) {
 
 // A vector in the axes of the batch; where the node is refused, what the host is to find instead.
 template <class Frame, class Layout>
-axis outgoing(const double* const* axes, int i, vector a, bool accepted, axis otherwise) {
-  axis out{a.n, a.t1, a.t2};
-  if constexpr (Frame::turns) out = Frame::template at<Layout>(axes, i).to_global(a);
+axis outgoing(const double* const* axes, int i, typename Frame::vector_type a, bool accepted,
+              axis otherwise) {
+  const axis out = Frame::template at<Layout>(axes, i).to_global(a);
   return {accepted ? out.x : otherwise.x, accepted ? out.y : otherwise.y, accepted ? out.z : otherwise.z};
 }
 
 template <class Law, class Frame, class Layout, class Node>
-void store_diagnostics(const node_block<Law>& b, int i, const Node& n, bool accepted) {
-  const vector v = n.v_free + n.delassus.times(n.impulse);
+void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted) {
+  const auto v = n.v_free + n.delassus.times(n.impulse);
   columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, Layout::get(b.v_free, i)));
   const energy_split e = split_energy(n, v);
   b.energy[ILAW_ENERGY_FRICTION][i] = accepted ? e.friction : 0.0;
@@ -160,16 +161,16 @@ void store_diagnostics(const node_block<Law>& b, int i, const Node& n, bool acce
 }
 
 // Steps and writes node i; valid: what the caller knows of its parameters.
-template <class Law, class Delassus, class Frame, class Layout, bool Diagnostics>
+template <class Law, class Delassus, class Frame, class Layout, scope Scope>
 void run_node(const Law& law, const node_block<Law>& b, int i, bool valid = true) {
-  auto [n, accepted] = step_node<Law, Delassus, Frame, Layout>(law, b, i);
+  auto [n, accepted] = step_node<Law, Delassus, Frame, Layout, Scope>(law, b, i);
   accepted = accepted & valid;
   Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
-  if constexpr (Diagnostics) store_diagnostics<Law, Frame, Layout>(b, i, n, accepted);
+  if constexpr (Scope == scope::outputs) store_outputs<Law, Frame, Layout>(b, i, n, accepted);
   if constexpr (has_memory<Law>)
     if (accepted) law.record(n, history{b.history_values + b.history_offset(i), b.history_component_stride});
   if constexpr (has_state<Law>) {
-    const state_t<Law> before = load_node<Law, Delassus, Frame, Layout>(b, i).state;
+    const state_t<Law> before = load_node<Law, Delassus, Frame, Layout, Scope>(b, i).state;
     store_state<Law>(b, i, accepted ? n.state : before);
   }
   b.refused[i] = accepted ? 0.0 : 1.0;
@@ -177,14 +178,14 @@ void run_node(const Law& law, const node_block<Law>& b, int i, bool valid = true
 
 // Runs a block with the same parameters at all nodes. Not inlined: GCC vectorises this loop only where it
 // stands alone.
-template <class Law, class Delassus, class Frame, class Layout, bool Diagnostics>
+template <class Law, class Delassus, class Frame, class Layout, scope Scope>
 [[gnu::noinline, gnu::flatten]] void run_block(const Law& law, const node_block<Law>& b) {
   const Law l = law;  // a copy, so that no store can alias a parameter
   if constexpr (has_memory<Law>) {
-    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Diagnostics>(l, b, i);
+    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, b, i);
   } else {
 #pragma omp simd
-    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Diagnostics>(l, b, i);
+    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, b, i);
   }
 }
 

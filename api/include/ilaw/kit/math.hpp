@@ -25,15 +25,31 @@ constexpr double positive_part(double x) { return x > 0.0 ? x : 0.0; }
 inline double absolute(double x) { return __builtin_fabs(x); }
 inline double square_root(double x) { return __builtin_sqrt(x); }
 
-// |(a, b)| without overflow or underflow on the way: both are scaled by the power of two below the larger.
+// Powers of two that bring a number to [2, 4) and back: number * down lies there, number = scaled * up / 2.
+// They are made from its exponent by integer arithmetic, which vectorises without a branch or a division.
+struct power_scale {
+  double down, up;
+};
+inline power_scale power_scale_of(double largest) {
+  constexpr std::uint64_t exponent_bits = 0x7FF0000000000000;
+  const std::uint64_t exponent =
+      std::bit_cast<std::uint64_t>(larger(largest, std::numeric_limits<double>::min())) & exponent_bits;
+  return {std::bit_cast<double>(exponent_bits - exponent), std::bit_cast<double>(exponent)};
+}
+
+// |(a, b)| and |(a, b, c)| without overflow or underflow on the way.
 inline double length(double a, double b) {
-  const double largest = larger(absolute(a), absolute(b));
-  // Rescaling is needed only outside this range; the factors are powers of two, so they cost no accuracy.
-  const double scale = largest > 0x1p+500 ? 0x1p-600 : (largest < 0x1p-500 ? 0x1p+600 : 1.0);
-  const double unscale = largest > 0x1p+500 ? 0x1p+600 : (largest < 0x1p-500 ? 0x1p-600 : 1.0);
-  a *= scale;
-  b *= scale;
-  return square_root(a * a + b * b) * unscale;
+  const power_scale scale = power_scale_of(larger(absolute(a), absolute(b)));
+  a *= scale.down;
+  b *= scale.down;
+  return 0.5 * square_root(a * a + b * b) * scale.up;
+}
+inline double length(double a, double b, double c) {
+  const power_scale scale = power_scale_of(larger(larger(absolute(a), absolute(b)), absolute(c)));
+  a *= scale.down;
+  b *= scale.down;
+  c *= scale.down;
+  return 0.5 * square_root(a * a + b * b + c * c) * scale.up;
 }
 
 // e^x to 1 ulp: x = k ln2 + s with |s| <= ln2/2 (Cody and Waite 1980), Taylor polynomial of degree 13 whose

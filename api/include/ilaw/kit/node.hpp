@@ -19,13 +19,41 @@ struct vector {
   double tangential_length() const { return length(t1, t2); }
 };
 
+// A vector for laws that are isotropic in the tangent plane: normal part and tangential rest, the latter in
+// the host's axes, so that no tangent needs to be chosen. A step that is written with the operations that it
+// shares with vector works on both.
+struct projected_vector {
+  double n = 0.0, x = 0.0, y = 0.0, z = 0.0;
+
+  friend constexpr projected_vector operator+(projected_vector a, projected_vector b) {
+    return {a.n + b.n, a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  friend constexpr projected_vector operator-(projected_vector a, projected_vector b) {
+    return {a.n - b.n, a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  friend constexpr projected_vector operator-(projected_vector a) { return {-a.n, -a.x, -a.y, -a.z}; }
+  friend constexpr projected_vector operator*(double s, projected_vector a) {
+    return {s * a.n, s * a.x, s * a.y, s * a.z};
+  }
+  double tangential_length() const { return length(x, y, z); }
+};
+
+// a.b, normal and tangential part apart.
+constexpr double normal_product(vector a, vector b) { return a.n * b.n; }
+constexpr double normal_product(projected_vector a, projected_vector b) { return a.n * b.n; }
+constexpr double tangential_product(vector a, vector b) { return a.t1 * b.t1 + a.t2 * b.t2; }
+constexpr double tangential_product(projected_vector a, projected_vector b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
 // Smallest H allowed: below it 1/H overflows.
 inline constexpr double smallest_delassus = std::numeric_limits<double>::min();
 
 // Checks give a defect: 0.0 where all is well, NaN where not. Defects add up, and need no branch and no
 // logical operation, which compilers vectorise less reliably than arithmetic.
 constexpr double defect(double x) { return x - x; }
-inline double defect(vector a) { return defect(a.n) + defect(a.t1) + defect(a.t2); }
+constexpr double defect(vector a) { return defect(a.n) + defect(a.t1) + defect(a.t2); }
+constexpr double defect(projected_vector a) { return defect(a.n) + defect(a.x) + defect(a.y) + defect(a.z); }
 constexpr double defect_unless(bool good) { return good ? 0.0 : std::numeric_limits<double>::quiet_NaN(); }
 
 // The three forms of H, with the same operations: H r, H^-1 v, and the defect of one that is not
@@ -39,8 +67,12 @@ struct scalar_delassus {
   double tangential() const { return h; }
   double anisotropy() const { return 0.0; }
   double positive_defect() const { return defect(h) + defect_unless(h >= smallest_delassus); }
-  vector times(vector r) const { return h * r; }
+  template <class Vector>
+  Vector times(Vector r) const {
+    return h * r;
+  }
   vector solve(vector v) const { return {v.n / h, v.t1 / h, v.t2 / h}; }
+  projected_vector solve(projected_vector v) const { return {v.n / h, v.x / h, v.y / h, v.z / h}; }
 };
 
 struct diagonal_delassus {
@@ -124,18 +156,19 @@ struct history {
 
 struct stateless {};
 
-// One node in one step. A step reads the first part and writes the second.
-template <class Delassus, class State = stateless>
+// One node in one step. A step reads the first part and writes the second. Vector is projected_vector only
+// for laws that remember no vector and do not tell tangents apart.
+template <class Delassus, class State = stateless, class Vector = vector>
 struct node {
   double time, velocity_step, position_step;
-  vector v_free;      // relative velocity without interface
-  vector v_previous;  // relative velocity of the half step before; zero unless the law reads it
+  Vector v_free;      // relative velocity without interface
+  Vector v_previous;  // relative velocity of the half step before; zero unless the law reads it
   Delassus delassus;
   double gap;   // offset already taken off
   double area;  // zero unless the law reads it
   const_history past;
 
-  vector impulse;
+  Vector impulse;
   State state;          // comes in as it was, leaves as it is
   double stored = 0.0;  // energy stored by the interface at the end of the step
   double status = ILAW_FREE;
