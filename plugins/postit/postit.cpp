@@ -1,12 +1,10 @@
 // Rigid, perfectly brittle adhesion that heals under pressure, with contact and friction. See postit.md.
-#include "window.hpp"
-
 #include <ilaw/kit.hpp>
+#include <ilaw/kit/window.hpp>
 
 namespace {
 
 using namespace ilaw::kit;
-using postit_law::window;
 
 constexpr const char* rupture_choices[] = {"brittle", "saturated"};
 constexpr double saturated = 1.0;

@@ -1,5 +1,5 @@
-// The window of the Post-it law against the sum over all impulses with age < tau.
-#include <window.hpp>
+// The window of impulses against the sum over all impulses with age < tau.
+#include <ilaw/kit/window.hpp>
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace {
 
 using ilaw::kit::vector;
-using postit_law::window;
+using ilaw::kit::window;
 
 // A window in memory of its own, and the same with everything remembered.
 class Windows {

@@ -15,25 +15,24 @@
 // Error: none (but rounding) when each slot has one step. Else only the one slot that tau cuts is not known
 // exactly; it counts with the part of its duration that is alive, so the error is at most the sum of |r| in
 // that slot, whose steps span no more than tau/B. For a force that is constant over the slot the part is
-// exact. SPDX-License-Identifier: BSD-3-Clause
+// exact.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ilaw/kit/node.hpp>
 
 #include <cstdint>
 
-namespace postit_law {
-
-namespace kit = ilaw::kit;
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 class window {
  public:
   // Slots for a duration and a number of buckets B, if steps are no smaller than smallest_step.
   static std::int64_t slot_count(double duration, double buckets, double smallest_step) {
     if (duration == 0.0) return 0;
-    if (duration == kit::infinity) return 1;
+    if (duration == infinity) return 1;
     const double steps = __builtin_ceil(duration / smallest_step * (1.0 - rounding));
-    return static_cast<std::int64_t>(kit::smaller(buckets, kit::larger(steps, 1.0))) + 1;
+    return static_cast<std::int64_t>(smaller(buckets, larger(steps, 1.0))) + 1;
   }
   static std::int64_t doubles(std::int64_t slots) { return slots == 0 ? 0 : 1 + slots * slot_doubles; }
 
@@ -41,8 +40,8 @@ class window {
 
   // The sum of the impulses before the step that ends at time.
   template <class History>
-  kit::vector sum(const History& memory, double time, double step) const {
-    kit::vector total;
+  vector sum(const History& memory, double time, double step) const {
+    vector total;
     for (std::int64_t k = 0; k < slots_; ++k) {
       const slot s = read(memory, k);
       const double part = live_part(s, time, step);
@@ -52,7 +51,7 @@ class window {
   }
 
   // Takes the step's own impulse in.
-  void add(const kit::history& memory, double time, double step, kit::vector impulse) const {
+  void add(const history& memory, double time, double step, vector impulse) const {
     if (slots_ == 0 || (impulse.n == 0.0 && impulse.t1 == 0.0 && impulse.t2 == 0.0)) return;
     auto current = static_cast<std::int64_t>(memory[0]);  // counted from 1; 0: none yet
     if (current == 0 || begins_new(read(memory, current - 1), time, step)) {
@@ -65,7 +64,7 @@ class window {
     write(memory, current - 1, {s.impulse + impulse, s.first, time});
   }
 
-  void clear(const kit::history& memory) const {
+  void clear(const history& memory) const {
     for (std::int64_t k = 0; k < doubles(slots_); ++k) memory[k] = 0.0;
   }
 
@@ -77,7 +76,7 @@ class window {
 
   // An empty slot has no impulse, and its times do not matter.
   struct slot {
-    kit::vector impulse;
+    vector impulse;
     double first, last;
   };
   template <class History>
@@ -85,7 +84,7 @@ class window {
     const std::int64_t at = 1 + k * slot_doubles;
     return {{memory[at], memory[at + 1], memory[at + 2]}, memory[at + 3], memory[at + 4]};
   }
-  static void write(const kit::history& memory, std::int64_t k, const slot& s) {
+  static void write(const history& memory, std::int64_t k, const slot& s) {
     const std::int64_t at = 1 + k * slot_doubles;
     memory[at] = s.impulse.n;
     memory[at + 1] = s.impulse.t1;
@@ -95,22 +94,22 @@ class window {
   }
 
   bool begins_new(const slot& current, double time, double step) const {
-    if (duration_ == kit::infinity) return false;
+    if (duration_ == infinity) return false;
     const auto buckets = static_cast<double>(slots_ - 1);
     if (duration_ <= buckets * step * (1.0 + rounding)) return true;
     return time - current.first >= duration_ / buckets - age_slack * step;
   }
 
   double live_part(const slot& s, double time, double step) const {
-    if (duration_ == kit::infinity) return 1.0;
+    if (duration_ == infinity) return 1.0;
     const double limit = duration_ - age_slack * step;
     if (time - s.last >= limit) return 0.0;
     if (time - s.first < limit) return 1.0;
-    return kit::smaller(1.0, (s.last - (time - duration_)) / (s.last - s.first + step));
+    return smaller(1.0, (s.last - (time - duration_)) / (s.last - s.first + step));
   }
 
   double duration_;
   std::int64_t slots_;
 };
 
-}  // namespace postit_law
+}  // namespace ilaw::kit
