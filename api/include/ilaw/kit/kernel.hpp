@@ -117,17 +117,17 @@ stepped<Law, Delassus, Frame> step_node(const Law& law, const node_block<Law>& b
   return {n, before + after + n.refused == 0.0};
 }
 
-// Energy split of ilaw.h from the work of the impulse, -r.(v^- + v)/2, normal and tangential part apart. A
-// reaction that meets a node moving away does positive work, which the external force gives back within the
-// same step: that is no dissipation, hence the positive parts.
+// Energy split of ilaw.h from the work of the impulse, -r.(v^- + v)/2 less what was stored of it, normal and
+// tangential part apart. A reaction that meets a node moving away does positive work, which the external
+// force gives back within the same step: that is no dissipation, hence the positive parts.
 struct energy_split {
   double friction, impact, rupture, stored;
 };
 template <class Node, class Vector>
 energy_split split_energy(const Node& n, Vector v) {
   const Vector mean = n.v_previous + v;
-  const double normal = positive_part(-0.5 * normal_product(n.impulse, mean));
-  const double tangential = positive_part(-0.5 * tangential_product(n.impulse, mean));
+  const double normal = positive_part(-0.5 * normal_product(n.impulse, mean) - n.normal_gain);
+  const double tangential = positive_part(-0.5 * tangential_product(n.impulse, mean) - n.tangential_gain);
   const bool broken = n.status == double{ILAW_BROKEN};
   return {broken ? 0.0 : tangential, broken ? 0.0 : normal, broken ? normal + tangential : 0.0, n.stored};
 }

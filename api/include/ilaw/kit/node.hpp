@@ -171,6 +171,9 @@ struct node {
   Vector impulse;
   State state;          // comes in as it was, leaves as it is
   double stored = 0.0;  // energy stored by the interface at the end of the step
+  // What the step added to it, by the normal and by the tangential motion; the rest of the work is
+  // dissipated.
+  double normal_gain = 0.0, tangential_gain = 0.0;
   double status = ILAW_FREE;
   double refused = not_refused;
 };
