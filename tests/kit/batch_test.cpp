@@ -157,6 +157,7 @@ INSTANTIATE_TEST_SUITE_P(
                              {"initial_adhesion", 0.2},
                              {"buckets", 4}},
                             {}}},
+                      Case{"tie", {{{"strength", 2.0}, {"memory", 0.01}}, {}}},
                       Case{"kit_probe", {{{"viscosity", 2.0}}, {}}}),
     [](const auto& drawn) { return std::string(drawn.param.law) + "_" + std::to_string(drawn.index); });
 

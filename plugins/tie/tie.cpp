@@ -1,0 +1,109 @@
+// Bilateral bond that may break by the impulses of a window, and is then contact. See tie.md.
+#include <ilaw/kit.hpp>
+#include <ilaw/kit/window.hpp>
+
+namespace {
+
+using namespace ilaw::kit;
+
+// A pull exactly at the limit holds, whatever the rounding of its windowed sum.
+constexpr double at_the_limit = 1.0 + 1e-12;
+
+struct tie {
+  double strength;
+  double memory_time;
+  double buckets;
+  double slots = 0.0;  // of the window, from the setup
+
+  static constexpr law_card card{.id = "tie",
+                                 .title = "Bilateral bond, breakable (spot weld)",
+                                 .doc =
+                                     "Keeps the node at rest relative to the obstacle, in all directions and "
+                                     "for any H. Where a strength "
+                                     "is given, the bond breaks for good when the impulses of the last "
+                                     "memory exceed it in pull and shear "
+                                     "together; frictionless contact is left.",
+                                 .inputs = reads_gap | reads_area,
+                                 .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE};
+
+  static constexpr const char* references[] = {
+      "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics"};
+
+  static constexpr parameter<tie> parameters[] = {
+      {.member = &tie::strength,
+       .name = "strength",
+       .symbol = "R_Y",
+       .unit = "N.s/m^2",
+       .doc = "Impulse per area, over the memory, that the bond can carry in pull and shear.",
+       .default_value = infinity,
+       .infinity_allowed = true},
+      {.member = &tie::memory_time,
+       .name = "memory",
+       .symbol = "tau_Y",
+       .unit = "s",
+       .doc = "Duration over which impulses are summed; 0: the step's own impulse alone.",
+       .infinity_allowed = true},
+      {.member = &tie::buckets,
+       .name = "buckets",
+       .symbol = "B",
+       .doc = "Slots of the memory: the sum is exact when there are at least memory over time step.",
+       .default_value = 16.0,
+       .minimum = 1.0,
+       .maximum = 4096.0,
+       .whole = true}};
+
+  struct state {
+    double broken;
+  };
+  static constexpr state_variable state_variables[] = {
+      {.name = "broken", .doc = "1 once the bond has broken, else 0."}};
+  static constexpr state_variable memory{
+      .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .kind = ILAW_STATE_HISTORY};
+
+  std::uint32_t inputs() const { return strength < infinity ? reads_gap | reads_area : 0U; }
+  std::int64_t memory_size(const ilaw_setup& setup) {
+    slots = static_cast<double>(window::slot_count(memory_time, buckets, setup.velocity_step));
+    return window::doubles(static_cast<std::int64_t>(slots));
+  }
+
+  template <class Node>
+  void step(Node& node) const {
+    if (node.state.broken != 0.0) {
+      touch(node);
+      return;
+    }
+    const vector trial = -node.delassus.solve(node.v_free);
+    const double limit = strength < infinity ? strength * node.area : infinity;
+    if (load(sums().sum(node.past, node.time, node.velocity_step) + trial) <= limit * at_the_limit) {
+      node.impulse = trial;
+      node.status = ILAW_BONDED;
+      return;
+    }
+    touch(node);
+    node.state.broken = 1.0;
+    node.status = ILAW_BROKEN;
+  }
+
+  // A broken bond needs no window any more.
+  template <class Node>
+  void record(const Node& node, history own) const {
+    if (node.status == double{ILAW_BONDED}) sums().add(own, node.time, node.velocity_step, node.impulse);
+    if (node.status == double{ILAW_BROKEN}) sums().clear(own);
+  }
+
+ private:
+  window sums() const { return {memory_time, static_cast<std::int64_t>(slots)}; }
+
+  // Pull and shear count alike, a press does not: nothing is torn by it.
+  static double load(vector sum) { return length(positive_part(-sum.n), sum.t1, sum.t2); }
+
+  template <class Node>
+  static void touch(Node& node) {
+    node.impulse.n = node.gap <= 0.0 ? positive_part(-node.v_free.n / node.delassus.normal()) : 0.0;
+    node.status = node.impulse.n > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
+  }
+};
+
+}  // namespace
+
+ILAW_PLUGIN("tie", "1.0.0", "ilaw", "BSD-3-Clause", tie)

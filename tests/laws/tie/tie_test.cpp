@@ -1,0 +1,177 @@
+// The tie through the ABI: a bilateral constraint for any H, and its rupture, against closed forms.
+#include "law_runner.hpp"
+
+#include <limits>
+#include <random>
+
+namespace ilaw::testing {
+namespace {
+
+constexpr double inf_value = std::numeric_limits<double>::infinity();
+constexpr double ulp = 2.3e-16;
+
+// A unit point mass pushed by impulses from outside: v_free = v + impulse.
+struct Tied : NodeRun {
+  Tied(const Parameters& parameters, double step) : NodeRun("tie", parameters, step) { gap = 0.0; }
+
+  int push(const Vector& impulse) {
+    ++steps;
+    time = static_cast<double>(steps) * dt;
+    EXPECT_EQ(this->step({v[0] + impulse[0], v[1] + impulse[1], v[2] + impulse[2]}), ILAW_OK);
+    return status;
+  }
+  std::int64_t steps = 0;
+};
+
+// The bilateral constraint v = 0 has the closed form r = -H^-1 v_free; for H = A A^T + c I of moderate
+// condition LDL^T leaves a residual of some ulp of |H| |r|. Free gaps play no part.
+TEST(Tie, UnbrokenIsTheBilateralConstraintForAnyH) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-250.0, 150.0);
+  NodeRun node("tie", {}, 1e-3, ILAW_DELASSUS_FULL);
+  EXPECT_EQ(node.interface.info().inputs, 0U);
+  for (int k = 0; k < 1000000; ++k) {
+    double a[3][3], h[3][3] = {};
+    for (auto& row : a)
+      for (double& entry : row) entry = uniform(random);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        for (int l = 0; l < 3; ++l) h[i][j] += a[i][l] * a[j][l];
+        h[i][j] += i == j ? 0.3 : 0.0;
+      }
+    node.h = {h[0][0], h[1][1], h[2][2], h[0][1], h[0][2], h[1][2]};
+    node.gap = uniform(random);
+    const double scale = std::pow(10.0, exponent(random));
+    ASSERT_EQ(node.step({scale * uniform(random), scale * uniform(random), scale * uniform(random)}),
+              ILAW_OK);
+    ASSERT_EQ(node.status, ILAW_BONDED);
+    const double r = std::abs(node.r[0]) + std::abs(node.r[1]) + std::abs(node.r[2]);
+    for (const double v : node.v) ASSERT_LE(std::abs(v), 64 * ulp * 4.0 * r);
+  }
+}
+
+// A scalar H divides exactly once: r = -v_free / h, bit for bit.
+TEST(Tie, OnAPointMassIsItsMomentum) {
+  NodeRun node("tie", {});
+  node.h[0] = 3.0;
+  node.gap = 7.0;  // held at any distance
+  ASSERT_EQ(node.step({1.0, -2.0, 0.5}), ILAW_OK);
+  EXPECT_EQ(node.r, (Vector{-1.0 / 3.0, 2.0 / 3.0, -0.5 / 3.0}));
+}
+
+// A mass hung on the bond by its weight stays where it is: the drift of 1e6 steps is rounding.
+TEST(Tie, HoldsItsPlace) {
+  Tied node({}, 1e-3);
+  node.h[0] = 0.7;
+  double position = 0.0;
+  for (int k = 0; k < 1000000; ++k) {
+    node.push({-9.81e-3, 3e-3, 1e-3});
+    position += 1e-3 * node.v[0];
+  }
+  EXPECT_LE(std::abs(position), 1e6 * 1e-3 * ulp * 9.81e-3);
+}
+
+// Constant force F in pull, shear or both: the window holds F min(t, tau), so the bond holds for ever when
+// F tau <= R, and else breaks at the first t_n = n h with n h F > R. A press never breaks it.
+TEST(Tie, ConstantForceBreaksAtStrengthOverForce) {
+  constexpr double h = 1e-2, tau = 0.2, force = 2.0;
+  const Parameters strong{{{"strength", 0.4}, {"memory", tau}, {"buckets", 20}}, {}},
+      weak{{{"strength", 0.29}, {"memory", tau}, {"buckets", 20}}, {}};
+  for (const Vector& direction : {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, -1}, Vector{0.6, 0, 0.8}}) {
+    const Vector pull{h * force * direction[0], h * force * direction[1], h * force * direction[2]};
+    Tied holds(strong, h), breaks(weak, h);
+    for (int n = 1; n <= 300; ++n) ASSERT_EQ(holds.push(pull), ILAW_BONDED) << n;
+    for (int n = 1; n <= 14; ++n) ASSERT_EQ(breaks.push(pull), ILAW_BONDED) << n;
+    EXPECT_EQ(breaks.push(pull), ILAW_BROKEN);  // 15 h F = 0.3 > 0.29 at last
+    EXPECT_EQ(breaks.named("broken"), 1.0);
+  }
+  Tied pressed(weak, h);
+  for (int n = 1; n <= 300; ++n) ASSERT_EQ(pressed.push({-100.0, 0, 0}), ILAW_BONDED);
+}
+
+// The strength is per area; a single impulse p breaks iff p > R A, whatever the memory.
+TEST(Tie, ASingleShockBreaksIffItExceedsStrengthTimesArea) {
+  for (const double tau : {0.0, 1e-3, 0.02, inf_value})
+    for (const auto& [shock, breaks] : {std::pair{0.5, false}, {0.5000001, true}}) {
+      Tied node({{{"strength", 2.0}, {"memory", tau}}, {}}, 1e-3);
+      node.area = 0.25;
+      EXPECT_EQ(node.push({0.6 * shock, -0.8 * shock, 0}) == ILAW_BROKEN, breaks) << tau << " " << shock;
+    }
+}
+
+// After rupture: nothing holds it, and the bits of law contact are left.
+TEST(Tie, BrokenIsContact) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Tied node({{{"strength", 0.5}, {"memory", 0.1}}, {}}, 1e-3);
+  NodeRun contact("contact", {});
+  ASSERT_EQ(node.push({1.0, 0, 0}), ILAW_BROKEN);
+  EXPECT_EQ(node.r, Vector{});
+  EXPECT_EQ(node.v[0], 1.0);
+  for (int k = 0; k < 10000; ++k) {
+    const Vector v{uniform(random), uniform(random), uniform(random)};
+    node.gap = contact.gap = uniform(random);
+    node.h[0] = contact.h[0] = 1.0 + 0.9 * uniform(random);
+    ASSERT_EQ(node.step(v), ILAW_OK);
+    ASSERT_EQ(contact.step(v), ILAW_OK);
+    ASSERT_EQ(node.r, contact.r);
+    ASSERT_EQ(node.status, contact.status);
+  }
+  EXPECT_EQ(node.named("broken"), 1.0);
+}
+
+// Random histories: units and mirror images give the same bits, no energy is created without external force.
+TEST(Tie, RandomHistoriesKeepTheInvariants) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  constexpr double mass = 0x1p+20, length = 0x1p-13, duration = 0x1p+7;
+  const double impulse = mass * length / duration, area = length * length, speed = length / duration;
+  int broken = 0;
+  for (int history = 0; history < 400; ++history) {
+    const auto parameters = [&](double unit_impulse, double unit_time) {
+      return Parameters{{{"strength", 5.0 * unit_impulse}, {"memory", 0.02 * unit_time}}, {}};
+    };
+    NodeRun a("tie", parameters(1.0, 1.0), 1e-3),
+        b("tie", parameters(impulse / area, duration), 1e-3 * duration),
+        mirror("tie", parameters(1.0, 1.0), 1e-3);
+    b.area = area;
+    for (int k = 1; k <= 100; ++k) {
+      const Vector v{uniform(random), uniform(random), uniform(random)};
+      a.h[0] = mirror.h[0] = 1.0 + 0.9 * uniform(random);
+      b.h[0] = a.h[0] / mass;
+      a.time = mirror.time = k * 1e-3;
+      b.time = a.time * duration;
+      a.gap = mirror.gap = uniform(random);
+      b.gap = a.gap * length;
+      a.v_previous = v;
+      ASSERT_EQ(a.step(v), ILAW_OK);
+      ASSERT_EQ(b.step({v[0] * speed, v[1] * speed, v[2] * speed}), ILAW_OK);
+      ASSERT_EQ(mirror.step({v[0], -v[1], v[2]}), ILAW_OK);
+      ASSERT_EQ(a.status, b.status);
+      for (std::size_t c = 0; c < 3; ++c) {
+        ASSERT_EQ(a.r[c] * impulse, b.r[c]);
+        ASSERT_EQ(c == 1 ? -a.r[c] : a.r[c], mirror.r[c]);
+        ASSERT_LE(a.r[c] * (v[c] + a.v[c]), 4 * ulp);
+      }
+      for (const double energy : a.energy) ASSERT_GE(energy, 0.0);
+      broken += a.status == ILAW_BROKEN;
+    }
+  }
+  EXPECT_GT(broken, 100);
+}
+
+TEST(Tie, RefusesBadParameters) {
+  for (const auto& [name, value] :
+       {std::pair{"strength", -1.0}, {"memory", -1e-3}, {"buckets", 0.0}, {"buckets", 2.5}}) {
+    const SetupBuilder setup({{{name, value}}, {}});
+    try {
+      make_law("tie", setup);
+      ADD_FAILURE() << name << " = " << value << " was accepted";
+    } catch (const std::exception& refusal) {
+      EXPECT_NE(std::string(refusal.what()).find(name), std::string::npos) << refusal.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ilaw::testing
