@@ -129,7 +129,8 @@ energy_split split_energy(const Node& n, Vector v) {
   const double normal = positive_part(-0.5 * normal_product(n.impulse, mean) - n.normal_gain);
   const double tangential = positive_part(-0.5 * tangential_product(n.impulse, mean) - n.tangential_gain);
   const bool broken = n.status == double{ILAW_BROKEN};
-  return {broken ? 0.0 : tangential, broken ? 0.0 : normal, broken ? normal + tangential : 0.0, n.stored};
+  return {broken ? 0.0 : tangential, broken ? 0.0 : normal, (broken ? normal + tangential : 0.0) + n.rupture,
+          n.stored};
 }
 
 template <class Law>

@@ -174,6 +174,7 @@ struct node {
   // What the step added to it, by the normal and by the tangential motion; the rest of the work is
   // dissipated.
   double normal_gain = 0.0, tangential_gain = 0.0;
+  double rupture = 0.0;  // part of these gains that is not stored: dissipated by rupture
   double status = ILAW_FREE;
   double refused = not_refused;
 };
