@@ -10,6 +10,8 @@ namespace {
 using ilaw::kit::exp;
 using ilaw::kit::infinity;
 using ilaw::kit::length;
+using ilaw::kit::log;
+using ilaw::kit::power;
 
 // The long double function of libm, rounded, is the reference.
 TEST(Exp, IsWithinOneUlp) {
@@ -29,6 +31,46 @@ TEST(Exp, HasItsLimits) {
   EXPECT_EQ(exp(-800.0), 0.0);
   EXPECT_EQ(exp(infinity), infinity);
   EXPECT_TRUE(std::isnan(exp(std::nan(""))));
+}
+
+TEST(Log, IsWithinOneUlp) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> exponent(-1074.0, 1024.0), near_one(0.5, 2.0);
+  for (int i = 0; i < 200000; ++i) {
+    const double x = i % 2 ? std::exp2(exponent(random)) : near_one(random);
+    const auto expected = static_cast<double>(std::log(static_cast<long double>(x)));
+    const double ulp = std::nextafter(std::abs(expected), infinity) - std::abs(expected);
+    EXPECT_LE(std::abs(log(x) - expected), ulp) << x;
+  }
+}
+
+TEST(Log, HasItsLimits) {
+  EXPECT_EQ(log(1.0), 0.0);
+  EXPECT_EQ(log(0.0), -infinity);
+  EXPECT_EQ(log(infinity), infinity);
+  EXPECT_TRUE(std::isnan(log(-1.0)));
+  EXPECT_TRUE(std::isnan(log(std::nan(""))));
+}
+
+// The relative error of exp is the absolute one of y ln x, of which half an ulp is lost.
+TEST(Power, IsAsAccurateAsItSays) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> exponent(-200.0, 200.0), powers(0.1, 4.0);
+  for (int i = 0; i < 200000; ++i) {
+    const double x = std::exp2(exponent(random)), y = i % 4 ? powers(random) : 0.5 * (i % 16 / 4 + 1);
+    const auto expected =
+        static_cast<double>(std::pow(static_cast<long double>(x), static_cast<long double>(y)));
+    EXPECT_LE(std::abs(power(x, y) / expected - 1.0), 2.3e-16 * (1.0 + std::abs(y * std::log(x))))
+        << x << " " << y;
+  }
+}
+
+TEST(Power, HasItsLimits) {
+  EXPECT_EQ(power(0.0, 1.5), 0.0);
+  EXPECT_EQ(power(0.0, 2.7), 0.0);
+  EXPECT_EQ(power(1.0, 2.7), 1.0);
+  EXPECT_EQ(power(4.0, 1.5), 8.0);
+  EXPECT_EQ(power(infinity, 2.7), infinity);
 }
 
 TEST(Length, NeitherOverflowsNorUnderflows) {

@@ -118,30 +118,4 @@ inline double power(double x, double y) {
   return y == 1.0 ? x : (y == 1.5 ? x * square_root(x) : (y == 2.0 ? x * x : general));
 }
 
-// ln x for normal x > 0, to 2 ulp (next to 1: of its own size): x = 2^k m with m in [1/sqrt 2, sqrt 2],
-// ln m = 2 artanh z with z = (m - 1)/(m + 1), whose series to z^23 leaves less than 2e-18 of it.
-inline double log(double x) {
-  constexpr double ln2_high = 6.93147180369123816490e-01;
-  constexpr double ln2_low = 1.90821492927058770002e-10;
-  constexpr std::uint64_t mantissa_bits = 0x000FFFFFFFFFFFFF, one_bits = 0x3FF0000000000000;
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  const double mantissa = std::bit_cast<double>((bits & mantissa_bits) | one_bits);
-  const bool is_large = mantissa > 1.4142135623730951;
-  const double m = is_large ? 0.5 * mantissa : mantissa;
-  const double k = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023 + (is_large ? 1 : 0));
-  const double z = (m - 1.0) / (m + 1.0), s = z * z;
-  double p = 1.0 / 23.0;
-  p = p * s + 1.0 / 21.0;
-  p = p * s + 1.0 / 19.0;
-  p = p * s + 1.0 / 17.0;
-  p = p * s + 1.0 / 15.0;
-  p = p * s + 1.0 / 13.0;
-  p = p * s + 1.0 / 11.0;
-  p = p * s + 1.0 / 9.0;
-  p = p * s + 1.0 / 7.0;
-  p = p * s + 1.0 / 5.0;
-  p = p * s + 1.0 / 3.0;
-  return k * ln2_high + (2.0 * z + (2.0 * z * (s * p) + k * ln2_low));
-}
-
 }  // namespace ilaw::kit
