@@ -98,7 +98,7 @@ module ilaw_abi
     integer(c_int64_t) :: state_size = 0
     type(c_ptr) :: state_variables = c_null_ptr     ! state_variable_count pointers to ilaw_state_variable
     type(c_ptr) :: per_node_parameters = c_null_ptr ! per_node_parameter_count pointers to text
-    integer(c_int32_t) :: per_node_parameter_count = 0, reserved = 0
+    integer(c_int32_t) :: per_node_parameter_count = 0, capabilities = 0
   end type
 
   type, bind(c) :: ilaw_input

@@ -208,6 +208,7 @@ void check_instance_info(const std::string& file, const ilaw_law& law, const ila
   if (sum != info.state_size)
     check.refuse("state_size is " + std::to_string(info.state_size) + ", expected the sum of the counts, " +
                  std::to_string(sum));
+  check.mask(info.capabilities, 2 * ILAW_CAN_ACT_AT_DISTANCE - 1, true, "capabilities");
   check.array(info.per_node_parameters, info.per_node_parameter_count, "per_node_parameters");
   for (std::uint32_t i = 0; i < info.per_node_parameter_count; ++i)
     check.text(info.per_node_parameters[i], "a per-node parameter");

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <istream>
+#include <ostream>
+#include <stdexcept>
 
 namespace ilaw::host {
 namespace {
@@ -21,46 +24,79 @@ long double work(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after)
   return twice / 2;
 }
 
+// 1/2 U_n^T K U_{n+1} of a linear model.
+double mixed_potential(const Model& model, const Dofs& u, const Dofs& u_next) {
+  Dofs force = Dofs::Zero(u.size());
+  model.add_internal_forces(u_next, force);
+  return -0.5 * u.dot(force);
+}
+
 }  // namespace
 
 void EnergyBalance::start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) {
-  initial_ = kinetic_energy(model, v) + model.internal_energy(u, u_next);
-  largest_ = std::abs(static_cast<double>(initial_));
+  sums_.initial = kinetic_energy(model, v);
+  sums_.initial += model.is_linear() ? mixed_potential(model, u, u_next) : model.potential(u);
+  if (!model.is_linear()) sums_.internal_work = -static_cast<Sum>(model.potential(u));
+  meet(sums_.initial);
 }
 
-void EnergyBalance::add_step(const Dofs& v_before, const Dofs& v_after, const Dofs& external,
-                             const Dofs& interface) {
-  external_work_ += work(external, v_before, v_after);
-  interface_work_ += work(interface, v_before, v_after);
-  largest_ = std::max({largest_, std::abs(static_cast<double>(external_work_)),
-                       std::abs(static_cast<double>(interface_work_))});
+void EnergyBalance::meet(Sum energy) {
+  sums_.largest = std::max(sums_.largest, std::abs(static_cast<double>(energy)));
+}
+
+void EnergyBalance::add_external(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after) {
+  sums_.external_work += work(impulse, v_before, v_after);
+  meet(sums_.external_work);
+}
+
+void EnergyBalance::add_internal(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after) {
+  sums_.internal_work += work(impulse, v_before, v_after);
+}
+
+void EnergyBalance::add_interface(double work, double relative_work) {
+  sums_.interface_work += work;
+  sums_.relative_work += relative_work;
+  meet(sums_.interface_work);
 }
 
 void EnergyBalance::add_dissipation(int part, double energy) {
   by_law_[static_cast<std::size_t>(part)] += energy;
-  least_dissipation_ = std::min(least_dissipation_, energy);
+  sums_.least_dissipation = std::min(sums_.least_dissipation, energy);
 }
 
 EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs& u_next,
                                    const Dofs& v) const {
-  const long double kinetic = kinetic_energy(model, v);
-  const double internal = model.internal_energy(u, u_next);
-  const long double open = kinetic + internal - initial_ - external_work_ - interface_work_;
-  const double scale = std::max({largest_, static_cast<double>(kinetic), std::abs(internal)});
+  const Sum kinetic = kinetic_energy(model, v);
+  const Sum internal = model.is_linear() ? Sum{mixed_potential(model, u, u_next)} : -sums_.internal_work;
+  const Sum open = kinetic + internal - sums_.initial - sums_.external_work - sums_.interface_work;
+  const double scale =
+      std::max({sums_.largest, static_cast<double>(kinetic), std::abs(static_cast<double>(internal))});
   EnergyReport report{};
   report.kinetic = static_cast<double>(kinetic);
-  report.internal = internal;
-  report.external_work = static_cast<double>(external_work_);
-  report.interface_work = static_cast<double>(interface_work_);
+  report.internal = static_cast<double>(internal);
+  report.potential = model.potential(u);
+  report.external_work = static_cast<double>(sums_.external_work);
+  report.interface_work = static_cast<double>(sums_.interface_work);
   report.balance_error = scale > 0.0 ? std::abs(static_cast<double>(open)) / scale : 0.0;
-  long double parts = 0;
+  Sum parts = 0;
   for (std::size_t k = 0; k < by_law_.size(); ++k) {
     report.by_law[k] = static_cast<double>(by_law_[k]);
     parts += by_law_[k];
   }
-  report.least_dissipation = least_dissipation_;
-  report.reaction_work = static_cast<double>(relative_work_ + parts);
+  report.least_dissipation = sums_.least_dissipation;
+  report.reaction_work = static_cast<double>(sums_.relative_work + parts);
   return report;
+}
+
+void EnergyBalance::save(std::ostream& out) const {
+  out.write(reinterpret_cast<const char*>(&sums_), sizeof sums_);
+  out.write(reinterpret_cast<const char*>(&by_law_), sizeof by_law_);
+}
+
+void EnergyBalance::load(std::istream& in) {
+  in.read(reinterpret_cast<char*>(&sums_), sizeof sums_);
+  in.read(reinterpret_cast<char*>(&by_law_), sizeof by_law_);
+  if (!in) throw std::runtime_error("the checkpoint is damaged");
 }
 
 }  // namespace ilaw::host

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <istream>
+#include <ostream>
 #include <set>
 #include <stdexcept>
 
@@ -24,15 +26,43 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_;
 };
 
+// Whether an impulse of one contact may change the velocity of another.
 bool share_nodes(const std::vector<std::unique_ptr<Interface>>& interfaces) {
   std::set<int> seen;
   for (const auto& interface : interfaces)
-    for (int node : interface->nodes())
-      if (!seen.insert(node).second) return true;
+    for (const std::vector<int>* nodes : {&interface->nodes(), &interface->setup().opponent->partners()})
+      for (const int node : *nodes)
+        if (!seen.insert(node).second) return true;
   return false;
 }
 
-// Block Gauss-Seidel stops when impulses move velocities by no more than this part of the largest velocity.
+bool any_prescribed(const Loads& loads) {
+  return std::any_of(loads.begin(), loads.end(),
+                     [](const auto& load) { return !load->prescribed_nodes().empty(); });
+}
+
+// Calls f(i) for all degrees of freedom, with threads where there are many. f touches those of i alone.
+template <class F>
+void for_each_dof(Eigen::Index count, F f) {
+  constexpr Eigen::Index many = 1 << 16;
+#pragma omp parallel for schedule(static) if (count > many)
+  for (Eigen::Index i = 0; i < count; ++i) f(i);
+}
+
+double largest_speed(const Dofs& v, Eigen::Index d) {
+  double largest = 0.0;
+  const Eigen::Index nodes = v.size() / d;
+  constexpr Eigen::Index many = 1 << 16;
+#pragma omp parallel for schedule(static) reduction(max : largest) if (nodes > many)
+  for (Eigen::Index node = 0; node < nodes; ++node) {
+    double square = 0.0;
+    for (Eigen::Index c = 0; c < d; ++c) square += v[node * d + c] * v[node * d + c];
+    largest = std::max(largest, square);
+  }
+  return std::sqrt(largest);
+}
+
+// Block Gauss-Seidel stops when a sweep moves velocities by no more than this part of the largest velocity.
 constexpr double coupling_tolerance = 1e-14;
 constexpr int most_sweeps = 1000;
 
@@ -45,120 +75,175 @@ Integrator::Integrator(const Model& model, const Loads& loads,
       interfaces_(interfaces),
       dt_(dt),
       coupled_(share_nodes(interfaces)),
+      has_prescribed_(any_prescribed(loads)),
       u_(Dofs::Zero(model.mass().size())),
       v_(model.initial_velocity()),
       v_before_(v_),
-      v_free_(v_),
       external_impulse_(u_),
-      interface_impulse_(u_),
-      others_(u_),
-      status_counts_(ILAW_STATUS_COUNT) {
-  for (const auto& interface : interfaces_) interface->initialise(u_, 0.0);
+      internal_impulse_(u_),
+      inverse_mass_(model.mass().cwiseInverse()) {
+  for (const auto& interface : interfaces_) interface->set_coupled(coupled_);
   Dofs force = Dofs::Zero(u_.size());
   for (const auto& load : loads_) load->add_force(0.0, force);
   model_.add_internal_forces(u_, force);
   v_ += 0.5 * dt_ * force.cwiseQuotient(model_.mass());
+  for (const auto& load : loads_) load->prescribe({0.0, dt_}, v_);
   energy_.start(model_, u_, u_ + dt_ * v_, v_);
 }
 
 void Integrator::step() {
   const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
   v_before_ = v_;
-  u_ += dt_ * v_;
+  for_each_dof(u_.size(), [&](Eigen::Index i) { u_[i] += dt_ * v_[i]; });
   free_velocity(times);
   solve_interfaces(times.after);
-  v_ = v_free_ + interface_impulse_.cwiseQuotient(model_.mass());
   ++steps_;
-  if (!v_.allFinite()) {
-    Eigen::Index dof = 0;
-    while (std::isfinite(v_[dof])) ++dof;
-    throw std::runtime_error("the motion diverged: velocity " + std::to_string(v_[dof]) + " at node " +
-                             std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_) +
-                             ", time " + std::to_string(times.after));
-  }
+  check_motion();
   account();
+}
+
+void Integrator::check_motion() const {
+  if (v_.allFinite()) return;
+  Eigen::Index dof = 0;
+  while (std::isfinite(v_[dof])) ++dof;
+  throw std::runtime_error("the motion diverged: velocity " + std::to_string(v_[dof]) + " at node " +
+                           std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_) +
+                           ", time " + std::to_string(time()));
 }
 
 void Integrator::free_velocity(StepTimes step) {
   const Stopwatch watch(seconds_.internal_forces);
-  external_impulse_.setZero();
-  for (const auto& load : loads_) load->add_force(step.after, external_impulse_);
-  external_impulse_ *= dt_;
-  for (const auto& load : loads_) load->add_impulse(step, external_impulse_);
-  others_.setZero();
-  model_.add_internal_forces(u_, others_);
-  v_free_ = v_before_ + (external_impulse_ + dt_ * others_).cwiseQuotient(model_.mass());
+  if (!loads_.empty()) {
+    external_impulse_.setZero();
+    for (const auto& load : loads_) load->add_force(step.after, external_impulse_);
+    external_impulse_ *= dt_;
+    for (const auto& load : loads_) load->add_impulse(step, external_impulse_);
+  }
+  if (model_.has_internal_forces()) {
+    internal_impulse_.setZero();
+    model_.add_internal_forces(u_, internal_impulse_);
+  }
+  for_each_dof(v_.size(), [&](Eigen::Index i) {
+    internal_impulse_[i] *= dt_;
+    v_[i] += (external_impulse_[i] + internal_impulse_[i]) * inverse_mass_[i];
+  });
+  if (has_prescribed_) prescribe(step);
+}
+
+// What holds a node to its path is an external impulse: the velocity that it takes off, times the mass.
+void Integrator::prescribe(StepTimes step) {
+  const Dofs free = v_;
+  for (const auto& load : loads_) load->prescribe({step.after, step.after + dt_}, v_);
+  external_impulse_ += model_.mass().cwiseProduct(v_ - free);
 }
 
 void Integrator::solve_interfaces(double time) {
   const Stopwatch watch(seconds_.interfaces);
-  interface_impulse_.setZero();
-  for (const auto& interface : interfaces_) {
-    interface->forget_impulse();
-    interface->locate(u_, time, dt_);
-    asked_ += static_cast<std::int64_t>(interface->nodes().size());
-  }
+  const Eigen::Index d = model_.dimension();
+  const StepView step{u_, v_before_, time, dt_, largest_speed(v_before_, d), largest_speed(v_, d)};
+  for (const auto& interface : interfaces_) interface->open_step(step);
   int sweeps = 1;
-  double change = sweep(time);
-  const double scale = std::max(v_free_.cwiseAbs().maxCoeff(), v_before_.cwiseAbs().maxCoeff());
+  double change = sweep(step);
+  const double scale = std::max(step.speed_before, step.speed_free);
   while (coupled_ && change > coupling_tolerance * scale && sweeps < most_sweeps) {
-    change = sweep(time);
+    change = sweep(step);
     ++sweeps;
   }
   for (const auto& interface : interfaces_) interface->accept();
   if (!coupled_) return;
-  sweeps_max_ = std::max(sweeps_max_, sweeps);
-  if (scale > 0.0) coupling_residual_max_ = std::max(coupling_residual_max_, change / scale);
+  tally_.sweeps += sweeps;
+  tally_.sweeps_max = std::max(tally_.sweeps_max, sweeps);
+  if (scale > 0.0) tally_.coupling_residual_max = std::max(tally_.coupling_residual_max, change / scale);
+  if (change > coupling_tolerance * scale) ++tally_.unconverged;
 }
 
-// Evaluates every interface once, each against the impulses of the others; returns the largest change of
+// Evaluates every contact once, each against the impulses of the others; returns the largest change of
 // velocity.
-double Integrator::sweep(double time) {
-  const Eigen::Index d = model_.dimension();
+double Integrator::sweep(const StepView& step) {
   double change = 0.0;
-  for (const auto& interface : interfaces_) {
-    const auto count = static_cast<int>(interface->nodes().size());
-    for (int k = 0; k < count; ++k) add_impulse(*interface, k, -1.0);
-    others_ = v_free_ + interface_impulse_.cwiseQuotient(model_.mass());
-    previous_.resize(count * d);
-    for (int k = 0; k < count; ++k) previous_.segment(k * d, d) = interface->impulse(k);
-    interface->evaluate(others_, v_before_, time, dt_);
-    for (int k = 0; k < count; ++k) {
-      add_impulse(*interface, k, 1.0);
-      const double mass = model_.mass()[interface->nodes()[static_cast<std::size_t>(k)] * d];
-      change = std::max(change,
-                        (interface->impulse(k) - previous_.segment(k * d, d)).cwiseAbs().maxCoeff() / mass);
-    }
-  }
+  for (const auto& interface : interfaces_)
+    for (int colour = 0; colour < interface->colours(); ++colour)
+      change = std::max(change, interface->solve(colour, v_, step));
   return change;
 }
 
-void Integrator::add_impulse(const Interface& interface, int place, double sign) {
-  const Eigen::Index d = model_.dimension();
-  interface_impulse_.segment(interface.nodes()[static_cast<std::size_t>(place)] * d, d) +=
-      sign * interface.impulse(place);
-}
-
 void Integrator::account() {
-  energy_.add_step(v_before_, v_, external_impulse_, interface_impulse_);
-  const Eigen::Index d = model_.dimension();
+  if (!loads_.empty()) energy_.add_external(external_impulse_, v_before_, v_);
+  if (!model_.is_linear()) energy_.add_internal(internal_impulse_, v_before_, v_);
+  for (const auto& interface : interfaces_) account(*interface);
   double stored = 0.0;
-  for (const auto& interface : interfaces_) {
-    const Dofs drift = interface->obstacle_velocity() + interface->obstacle_velocity_before();
-    for (int k = 0; k < static_cast<int>(interface->nodes().size()); ++k) {
-      const Eigen::Index node = interface->nodes()[static_cast<std::size_t>(k)] * d;
-      penetration_max_ = std::max(penetration_max_, -interface->gap(k));
-      ++status_counts_[static_cast<std::size_t>(interface->status(k))];
-      for (int part = 0; part < ILAW_ENERGY_STORED; ++part)
-        energy_.add_dissipation(part, interface->energy(k, part));
-      stored += interface->energy(k, ILAW_ENERGY_STORED);
-      energy_.add_relative_work(
-          0.5 * interface->impulse(k).dot(v_before_.segment(node, d) + v_.segment(node, d) - drift));
-    }
-  }
+  for (const auto& interface : interfaces_)
+    for (const std::int32_t slot : interface->asked()) stored += interface->energy(slot, ILAW_ENERGY_STORED);
   energy_.set_stored(stored);
 }
 
+void Integrator::account(const Interface& interface) {
+  const Vector drift = interface.obstacle_velocity() + interface.obstacle_velocity_before();
+  double work = 0.0, relative_work = 0.0;
+  for (const std::int32_t slot : interface.asked()) {
+    tally_.penetration_max = std::max(tally_.penetration_max, -interface.gap(slot));
+    ++tally_.status_counts[static_cast<std::size_t>(interface.status(slot))];
+    if (interface.status(slot) == ILAW_FREE && interface.impulse(slot).isZero(0.0)) continue;
+    for (int part = 0; part < ILAW_ENERGY_STORED; ++part)
+      energy_.add_dissipation(part, interface.energy(slot, part));
+    const Vector sum = interface.relative(slot, v_before_) + interface.relative(slot, v_);
+    work += 0.5 * interface.impulse(slot).dot(sum);
+    relative_work += 0.5 * interface.impulse(slot).dot(sum - drift);
+  }
+  energy_.add_interface(work, relative_work);
+  const auto asked = static_cast<std::int64_t>(interface.asked().size());
+  const auto skipped = static_cast<std::int64_t>(interface.nodes().size()) - asked;
+  tally_.asked += asked;
+  tally_.skipped += skipped;
+  tally_.status_counts[ILAW_FREE] += skipped;
+}
+
+Dofs Integrator::interface_impulse() const {
+  Dofs impulse = Dofs::Zero(u_.size());
+  for (const auto& interface : interfaces_)
+    for (const std::int32_t slot : interface->asked()) interface->add_impulse(slot, impulse);
+  return impulse;
+}
+
 EnergyReport Integrator::energy() const { return energy_.report(model_, u_, u_ + dt_ * v_, v_); }
+
+Vector Integrator::angular_momentum() const {
+  const Eigen::Index d = model_.dimension();
+  std::array<long double, 3> sum{};
+  for (Eigen::Index i = 0; i < u_.size(); i += d) {
+    std::array<long double, 3> x{}, p{};
+    for (Eigen::Index c = 0; c < d; ++c) {
+      x[static_cast<std::size_t>(c)] = static_cast<long double>(model_.position()[i + c]) + u_[i + c];
+      p[static_cast<std::size_t>(c)] = static_cast<long double>(model_.mass()[i + c]) * v_[i + c];
+    }
+    for (std::size_t c = 0; c < 3; ++c)
+      sum[c] += x[(c + 1) % 3] * p[(c + 2) % 3] - x[(c + 2) % 3] * p[(c + 1) % 3];
+  }
+  Vector momentum(d == 1 ? 0 : d == 2 ? 1 : 3);
+  for (Eigen::Index c = 0; c < momentum.size(); ++c)
+    momentum[c] = static_cast<double>(sum[static_cast<std::size_t>(d == 2 ? 2 : c)]);
+  return momentum;
+}
+
+void Integrator::save(std::ostream& out) const {
+  out.write(reinterpret_cast<const char*>(&steps_), sizeof steps_);
+  for (const Dofs* dofs : {&u_, &v_})
+    out.write(reinterpret_cast<const char*>(dofs->data()),
+              static_cast<std::streamsize>(dofs->size()) * static_cast<std::streamsize>(sizeof(double)));
+  energy_.save(out);
+  out.write(reinterpret_cast<const char*>(&tally_), sizeof tally_);
+  for (const auto& interface : interfaces_) interface->save(out);
+}
+
+void Integrator::load(std::istream& in) {
+  in.read(reinterpret_cast<char*>(&steps_), sizeof steps_);
+  for (Dofs* dofs : {&u_, &v_})
+    in.read(reinterpret_cast<char*>(dofs->data()),
+            static_cast<std::streamsize>(dofs->size()) * static_cast<std::streamsize>(sizeof(double)));
+  energy_.load(in);
+  in.read(reinterpret_cast<char*>(&tally_), sizeof tally_);
+  for (const auto& interface : interfaces_) interface->load(in, u_);
+  if (!in) throw std::runtime_error("the checkpoint is damaged");
+}
 
 }  // namespace ilaw::host

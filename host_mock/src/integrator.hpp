@@ -9,6 +9,7 @@
 #include "interface.hpp"
 #include "load.hpp"
 
+#include <iosfwd>
 #include <memory>
 #include <vector>
 
@@ -17,6 +18,17 @@ namespace ilaw::host {
 // Wall-clock seconds spent in each phase.
 struct PhaseSeconds {
   double internal_forces = 0.0, interfaces = 0.0;
+};
+
+// What happened so far.
+struct Tally {
+  std::int64_t asked = 0, skipped = 0;  // node-steps
+  std::int64_t sweeps = 0;              // over all steps
+  std::int64_t unconverged = 0;         // steps whose sweeps ended above the tolerance
+  int sweeps_max = 0;
+  double coupling_residual_max = 0.0;  // of any step's last sweep
+  double penetration_max = 0.0;
+  std::array<std::int64_t, ILAW_STATUS_COUNT> status_counts{};
 };
 
 class Integrator {
@@ -29,37 +41,40 @@ class Integrator {
 
   std::int64_t steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * dt_; }
-  const Dofs& displacement() const { return u_; }             // at time()
-  const Dofs& velocity() const { return v_; }                 // at the half step after time()
-  const Dofs& impulse() const { return interface_impulse_; }  // of the last step, per degree of freedom
+  const Dofs& displacement() const { return u_; }  // at time()
+  const Dofs& velocity() const { return v_; }      // at the half step after time()
+  // Impulse of the interfaces in the last step, per degree of freedom.
+  Dofs interface_impulse() const;
   EnergyReport energy() const;
+  // About the origin, at the half step after time(): one component in 2D, three in 3D, none in 1D.
+  Vector angular_momentum() const;
   const PhaseSeconds& seconds() const { return seconds_; }
-  double penetration_max() const { return penetration_max_; }
-  std::int64_t node_steps_asked() const { return asked_; }
-  // Sweeps of the last step and residual of the worst step, where interfaces share nodes.
-  int sweeps_max() const { return sweeps_max_; }
-  double coupling_residual_max() const { return coupling_residual_max_; }
-  const std::vector<std::int64_t>& status_counts() const { return status_counts_; }
+  const Tally& tally() const { return tally_; }
+
+  // Everything that the next step depends on; a run that goes on from it gives the same bits.
+  void save(std::ostream& out) const;
+  void load(std::istream& in);
 
  private:
   void free_velocity(StepTimes step);
+  void prescribe(StepTimes step);
   void solve_interfaces(double time);
-  double sweep(double time);
-  void add_impulse(const Interface& interface, int place, double sign);
+  double sweep(const StepView& step);
   void account();
+  void account(const Interface& interface);
+  void check_motion() const;
 
   const Model& model_;
   const Loads& loads_;
   std::vector<std::unique_ptr<Interface>>& interfaces_;
   double dt_;
-  bool coupled_;  // a node belongs to two interfaces
-  std::int64_t steps_ = 0, asked_ = 0;
-  Dofs u_, v_, v_before_, v_free_, external_impulse_, interface_impulse_, others_, previous_;
+  bool coupled_, has_prescribed_;
+  std::int64_t steps_ = 0;
+  Dofs u_, v_, v_before_, external_impulse_, internal_impulse_;
+  Dofs inverse_mass_;
   EnergyBalance energy_;
   PhaseSeconds seconds_;
-  double penetration_max_ = 0.0, coupling_residual_max_ = 0.0;
-  int sweeps_max_ = 0;
-  std::vector<std::int64_t> status_counts_;
+  Tally tally_;
 };
 
 }  // namespace ilaw::host

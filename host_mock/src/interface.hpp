@@ -1,13 +1,17 @@
-// interface.hpp - one interface of a scene: a law between some nodes and an obstacle, driven through the ABI.
-// SPDX-License-Identifier: BSD-3-Clause
+// interface.hpp - one interface of a scene: a law between some nodes and their opponent, driven through the
+// ABI.
+//
+// Contacts have a place (of their node in the interface's list) and, once they were first asked, a slot in
+// the arrays that the law works on. What was never near takes no slot. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "model.hpp"
-#include "obstacle.hpp"
+#include "opponent.hpp"
+#include "reach.hpp"
 
 #include <ilaw/loader.hpp>
 
 #include <cstdint>
+#include <iosfwd>
 #include <map>
 #include <memory>
 #include <string>
@@ -27,7 +31,17 @@ struct InterfaceSetup {
   std::string name, law, library;  // library: name or path
   Arguments arguments;
   std::vector<int> nodes;
-  std::shared_ptr<const Obstacle> obstacle;
+  std::vector<double> areas;  // tributary, per node
+  std::unique_ptr<Opponent> opponent;
+  double birth = 0.0, death = std::numeric_limits<double>::infinity();  // acts for birth <= t < death
+  bool asks_all = false;  // also contacts that cannot be reached: same results, more work
+};
+
+// A step from the interface's side. Speeds are the largest of any node.
+struct StepView {
+  const Dofs& u;         // at time
+  const Dofs& v_before;  // at the half step before time
+  double time, dt, speed_before, speed_free;
 };
 
 class Interface {
@@ -42,35 +56,66 @@ class Interface {
   const ilaw_instance_info& info() const { return info_; }
   const std::vector<int>& nodes() const { return setup_.nodes; }
 
-  // First state of all nodes. Throws ilaw::error.
-  void initialise(const Dofs& displacement, double time);
-
-  // Gap, normal and obstacle velocity for a step that ends at time; displacement is that of time.
-  void locate(const Dofs& displacement, double time, double dt);
-
-  // Before the first evaluate of a step: no impulse yet.
-  void forget_impulse() { impulse_.setZero(); }
-
-  // Impulses for these velocities, always from the state before the step. Throws ilaw::error on bad nodes.
-  void evaluate(const Dofs& v_free, const Dofs& v_previous, double time, double dt);
-
+  // Chooses the contacts to ask in this step and finds their gaps, normals and partners.
+  void open_step(const StepView& step);
+  // The contacts of the step, by slot; those of one colour share no node.
+  const std::vector<std::int32_t>& asked() const { return asked_; }
+  int colours() const { return static_cast<int>(colours_.size()); }
+  // Evaluates one colour against the velocities v, which hold all impulses so far and take the change in.
+  // Returns the largest change of a contact's velocity. Throws ilaw::error on bad nodes.
+  double solve(int colour, Dofs& v, const StepView& step);
   // The step is done: its state becomes the state before the next.
-  void accept() { state_.swap(next_state_); }
+  void accept();
+  // Whether evaluate will be called more than once per step: it then keeps state_in and state_out apart.
+  void set_coupled(bool coupled) { coupled_ = coupled; }
 
-  // Of the last step, by place in nodes().
-  auto impulse(int place) const { return impulse_.segment(place * dimension_, dimension_); }
-  double gap(int place) const { return gap_[place]; }
-  int status(int place) const { return status_[static_cast<std::size_t>(place)]; }
-  // part: ILAW_ENERGY_*
-  double energy(int place, int part) const { return energy_[ILAW_ENERGY_COUNT * place + part]; }
-  Eigen::VectorXd obstacle_velocity() const { return obstacle_velocity_; }
-  Eigen::VectorXd obstacle_velocity_before() const { return obstacle_velocity_before_; }
-  // Accepted state; entry: double of the node's state.
-  double state(int place, int entry) const {
-    return state_[static_cast<Eigen::Index>(info_.state_size) * place + entry];
+  // Of the last step, by slot.
+  auto impulse(int slot) const { return Eigen::Map<const Vector>(&impulse_[at(slot)], dimension_); }
+  double gap(int slot) const { return gap_[static_cast<std::size_t>(slot)]; }
+  int status(int slot) const { return status_[static_cast<std::size_t>(slot)]; }
+  double energy(int slot, int part) const {
+    return energy_[static_cast<std::size_t>(ILAW_ENERGY_COUNT * slot + part)];
   }
+  // Relative velocity of a contact in a velocity field, without the obstacle's own.
+  Vector relative(int slot, const Dofs& v) const;
+  // Adds an impulse per degree of freedom.
+  void add_impulse(int slot, Dofs& impulse) const;
+  const Vector& obstacle_velocity() const { return obstacle_velocity_; }
+  const Vector& obstacle_velocity_before() const { return obstacle_velocity_before_; }
+
+  // For outputs, by place, whether it was asked or not.
+  double gap_at(int place, const Dofs& u, double time) const {
+    return setup_.opponent->meet(place, u, time).gap;
+  }
+  int node_of(int slot) const {
+    return setup_.nodes[static_cast<std::size_t>(place_of_[static_cast<std::size_t>(slot)])];
+  }
+  int slot_of(int place, const Dofs& u);  // makes one where there is none
+  // Accepted state; entry: double of the node's state.
+  double state(int slot, int entry) const { return state_[state_at(slot) + static_cast<std::size_t>(entry)]; }
+  bool was_asked(int slot) const;
+
+  std::size_t bytes_per_contact() const;
+  std::size_t slot_count() const { return place_of_.size(); }
+
+  // Everything that the next step depends on.
+  void save(std::ostream& out) const;
+  void load(std::istream& in, const Dofs& u);
 
  private:
+  std::size_t at(int slot) const {
+    return static_cast<std::size_t>(slot) * static_cast<std::size_t>(dimension_);
+  }
+  std::size_t state_at(int slot) const { return static_cast<std::size_t>(slot) * info_.state_size; }
+  bool may_skip() const;
+  void look(const StepView& step);
+  void locate(int slot, const StepView& step);
+  void colour_contacts();
+  void open_slot(int place, const Dofs& u);
+  void initialise(int slot, const Dofs& u);
+  void gather(const std::vector<std::int32_t>& slots, const Dofs& v, const StepView& step);
+  void evaluate(const std::vector<std::int32_t>& slots, const StepView& step);
+  double apply(const std::vector<std::int32_t>& slots, Dofs& v, double dt);
   ilaw_batch batch(double time, double dt) const;
   std::string node_message(const ilaw_report& report) const;
 
@@ -80,11 +125,24 @@ class Interface {
   ilaw::library library_;
   ilaw::interface interface_;
   ilaw_instance_info info_;
-  std::vector<ilaw_input> per_node_;
-  Dofs v_free_, v_previous_, normal_, impulse_;
-  Eigen::VectorXd delassus_, gap_, area_, state_, next_state_, energy_;
-  Eigen::VectorXd obstacle_velocity_, obstacle_velocity_before_;
-  std::vector<std::uint8_t> status_;
+  bool coupled_ = false;
+  Reach reach_;
+
+  std::vector<int> slot_of_;                // by place; -1: none yet
+  std::vector<int> place_of_;               // by slot
+  std::vector<std::int32_t> near_, asked_;  // slots
+  std::vector<std::vector<std::int32_t>> colours_;
+  std::vector<std::uint64_t> colours_of_node_;
+
+  // By slot.
+  std::vector<Meeting> meetings_;
+  std::vector<double> v_free_, v_previous_, normal_, impulse_, previous_impulse_, delassus_, gap_, area_,
+      energy_;
+  std::vector<double> state_, next_state_;
+  std::vector<std::uint8_t> status_, touched_;
+  std::vector<std::vector<double>> per_node_;
+  std::vector<ilaw_input> per_node_inputs_;
+  Vector obstacle_velocity_, obstacle_velocity_before_;
 };
 
 }  // namespace ilaw::host

@@ -5,7 +5,12 @@
 
 namespace ilaw::host {
 
-Gravity::Gravity(const Model& model, std::vector<int> nodes, Eigen::VectorXd acceleration)
+const std::vector<int>& Load::prescribed_nodes() const {
+  static const std::vector<int> none;
+  return none;
+}
+
+Gravity::Gravity(const Model& model, std::vector<int> nodes, Vector acceleration)
     : model_(model), nodes_(std::move(nodes)), acceleration_(std::move(acceleration)) {}
 
 void Gravity::add_force(double /*time*/, Dofs& force) const {
@@ -14,16 +19,20 @@ void Gravity::add_force(double /*time*/, Dofs& force) const {
     force.segment(node * d, d) += model_.mass().segment(node * d, d).cwiseProduct(acceleration_);
 }
 
-Force::Force(std::vector<int> nodes, Eigen::VectorXd direction, Table history)
-    : nodes_(std::move(nodes)), direction_(std::move(direction)), history_(std::move(history)) {}
+Force::Force(std::vector<int> nodes, std::vector<double> shares, Vector direction, Table history)
+    : nodes_(std::move(nodes)),
+      shares_(std::move(shares)),
+      direction_(std::move(direction)),
+      history_(std::move(history)) {}
 
 void Force::add_force(double time, Dofs& force) const {
   const Eigen::Index d = direction_.size();
   const double size = history_.at(time)[0];
-  for (int node : nodes_) force.segment(node * d, d) += size * direction_;
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    force.segment(nodes_[k] * d, d) += size * shares_[k] * direction_;
 }
 
-Shock::Shock(std::vector<int> nodes, double time, Eigen::VectorXd impulse)
+Shock::Shock(std::vector<int> nodes, double time, Vector impulse)
     : nodes_(std::move(nodes)), time_(time), impulse_(std::move(impulse)) {}
 
 void Shock::add_impulse(StepTimes step, Dofs& impulse) const {
@@ -33,6 +42,16 @@ void Shock::add_impulse(StepTimes step, Dofs& impulse) const {
   if (!(time_ > step.before + slack && time_ <= step.after + slack)) return;
   const Eigen::Index d = impulse_.size();
   for (int node : nodes_) impulse.segment(node * d, d) += impulse_;
+}
+
+PrescribedMotion::PrescribedMotion(std::vector<int> nodes, std::vector<int> axes, int dimension,
+                                   Motion motion)
+    : nodes_(std::move(nodes)), axes_(std::move(axes)), dimension_(dimension), motion_(std::move(motion)) {}
+
+void PrescribedMotion::prescribe(StepTimes step, Dofs& velocity) const {
+  const Vector mean = motion_.velocity(step.before, step.after);
+  for (int node : nodes_)
+    for (int axis : axes_) velocity[node * dimension_ + axis] = mean[axis];
 }
 
 }  // namespace ilaw::host

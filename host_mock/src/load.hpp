@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "model.hpp"
+#include "models/model.hpp"
+#include "obstacle.hpp"
 #include "table.hpp"
 
 #include <memory>
@@ -22,43 +23,62 @@ class Load {
   virtual void add_force(double /*time*/, Dofs& /*force*/) const {}
   // Adds the impulses that fall into a step.
   virtual void add_impulse(StepTimes /*step*/, Dofs& /*impulse*/) const {}
+  // Sets the velocities that are prescribed for a step.
+  virtual void prescribe(StepTimes /*step*/, Dofs& /*velocity*/) const {}
+  // Nodes whose motion is prescribed.
+  virtual const std::vector<int>& prescribed_nodes() const;
 };
 
 using Loads = std::vector<std::unique_ptr<Load>>;
 
 class Gravity : public Load {
  public:
-  Gravity(const Model& model, std::vector<int> nodes, Eigen::VectorXd acceleration);
+  Gravity(const Model& model, std::vector<int> nodes, Vector acceleration);
   void add_force(double time, Dofs& force) const override;
 
  private:
   const Model& model_;
   std::vector<int> nodes_;
-  Eigen::VectorXd acceleration_;
+  Vector acceleration_;
 };
 
 // A force along a direction, of a size that is piecewise linear in time.
 class Force : public Load {
  public:
-  Force(std::vector<int> nodes, Eigen::VectorXd direction, Table history);
+  // The size times its share acts on each node.
+  Force(std::vector<int> nodes, std::vector<double> shares, Vector direction, Table history);
   void add_force(double time, Dofs& force) const override;
 
  private:
   std::vector<int> nodes_;
-  Eigen::VectorXd direction_;
+  std::vector<double> shares_;
+  Vector direction_;
   Table history_;
 };
 
 // An impulse at an instant s; it enters the step with t_n < s <= t_{n+1}.
 class Shock : public Load {
  public:
-  Shock(std::vector<int> nodes, double time, Eigen::VectorXd impulse);
+  Shock(std::vector<int> nodes, double time, Vector impulse);
   void add_impulse(StepTimes step, Dofs& impulse) const override;
 
  private:
   std::vector<int> nodes_;
   double time_;
-  Eigen::VectorXd impulse_;
+  Vector impulse_;
+};
+
+// Nodes that follow a given motion; axes that are not driven stay free.
+class PrescribedMotion : public Load {
+ public:
+  PrescribedMotion(std::vector<int> nodes, std::vector<int> axes, int dimension, Motion motion);
+  void prescribe(StepTimes step, Dofs& velocity) const override;
+  const std::vector<int>& prescribed_nodes() const override { return nodes_; }
+
+ private:
+  std::vector<int> nodes_, axes_;
+  int dimension_;
+  Motion motion_;
 };
 
 }  // namespace ilaw::host

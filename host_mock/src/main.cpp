@@ -21,10 +21,17 @@ int main(int argc, char** argv) {
       "before\n"
       "anything ran.\nExample: ilaw run scene.json --out results && ilaw plot results");
 
-  std::string scene, folder;
+  RunOptions options;
   CLI::App* run_command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
-  run_command->add_option("scene", scene, "Scene file (JSON)")->required();
-  run_command->add_option("--out", folder, "Folder for the results, made if it does not exist")->required();
+  run_command->add_option("scene", options.scene, "Scene file (JSON)")->required();
+  run_command->add_option("--out", options.folder, "Folder for the results, made if it does not exist")
+      ->required();
+  run_command
+      ->add_option("--checkpoint-every", options.checkpoint_every,
+                   "Steps between checkpoints, from which --resume goes on")
+      ->check(CLI::PositiveNumber);
+  run_command->add_flag("--resume", options.resume,
+                        "Go on from the checkpoint in the folder, to the same bits");
   run_command->footer("Example: ilaw run host_mock/scenes/bouncing_ball.json --out results");
 
   std::string results;
@@ -50,7 +57,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? exit_done : exit_bad_input;
   }
   try {
-    if (run_command->parsed()) return run(scene, folder);
+    if (run_command->parsed()) return run(options);
     if (plot_command->parsed()) return plot(results);
     return list_command->parsed() ? list_laws() : describe(law, as_json);
   } catch (const std::exception& error) {

@@ -46,7 +46,9 @@ json describe_interface(const Interface& interface) {
           {"library", interface.library().path()},
           {"library_version", interface.library().plugin().version},
           {"nodes", interface.nodes().size()},
-          {"state_size", interface.info().state_size}};
+          {"nodes_stored", interface.slot_count()},
+          {"state_size", interface.info().state_size},
+          {"bytes_per_node", interface.bytes_per_contact()}};
 }
 
 }  // namespace
@@ -54,6 +56,24 @@ json describe_interface(const Interface& interface) {
 AtomicFile::AtomicFile(std::filesystem::path file)
     : file_(std::move(file)), partial_(file_.string() + ".partial"), stream_(partial_) {
   if (!stream_) throw std::runtime_error(partial_.string() + ": cannot be written");
+}
+
+AtomicFile::AtomicFile(std::filesystem::path file, std::uintmax_t size)
+    : file_(std::move(file)), partial_(file_.string() + ".partial") {
+  if (!std::filesystem::exists(partial_)) std::filesystem::copy_file(file_, partial_);
+  if (std::filesystem::file_size(partial_) < size)
+    throw std::runtime_error(partial_.string() + ": found " +
+                             std::to_string(std::filesystem::file_size(partial_)) +
+                             " bytes, expected at least " + std::to_string(size) + " of the run to resume");
+  std::filesystem::resize_file(partial_, size);
+  stream_.open(partial_, std::ios::app);
+  if (!stream_) throw std::runtime_error(partial_.string() + ": cannot be written");
+}
+
+std::uintmax_t AtomicFile::flush() {
+  stream_.flush();
+  if (!stream_) throw std::runtime_error(partial_.string() + ": could not be written; is the disk full?");
+  return std::filesystem::file_size(partial_);
 }
 
 AtomicFile::~AtomicFile() {
@@ -69,19 +89,26 @@ void AtomicFile::commit() {
   committed_ = true;
 }
 
-History::History(const Scene& scene, const std::filesystem::path& folder)
+History::History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder)
     : scene_(scene), file_(folder / "history.csv") {
-  find_contacts();
+  find_contacts(integrator);
   write_header();
 }
 
-void History::find_contacts() {
+History::History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder,
+                 std::uintmax_t size)
+    : scene_(scene), file_(folder / "history.csv", size) {
+  find_contacts(integrator);
+}
+
+void History::find_contacts(const Integrator& integrator) {
   for (int node : scene_.output.watch) {
     std::vector<Contact>& contacts = contacts_.emplace_back();
     for (const auto& interface : scene_.interfaces) {
       const auto found = std::find(interface->nodes().begin(), interface->nodes().end(), node);
-      if (found != interface->nodes().end())
-        contacts.push_back({interface.get(), static_cast<int>(found - interface->nodes().begin()), ""});
+      if (found == interface->nodes().end()) continue;
+      const int place = static_cast<int>(found - interface->nodes().begin());
+      contacts.push_back({interface.get(), place, interface->slot_of(place, integrator.displacement()), ""});
     }
     const std::string name = "n" + std::to_string(node) + ".";
     for (Contact& contact : contacts)
@@ -91,35 +118,56 @@ void History::find_contacts() {
 
 void History::write_header() {
   std::ostream& out = file_.stream();
+  const int d = scene_.model->dimension();
   out << "time";
   for (std::size_t w = 0; w < contacts_.size(); ++w) {
     const std::string node = "n" + std::to_string(scene_.output.watch[w]) + ".";
     for (const char* quantity : {"u", "v", "r"})
-      for (int c = 0; c < scene_.model->dimension(); ++c) out << ',' << node << quantity << c;
+      for (int c = 0; c < d; ++c) out << ',' << node << quantity << c;
     for (const Contact& contact : contacts_[w]) {
       out << ',' << contact.prefix << "gap," << contact.prefix << "status";
       for_each_state(contact.interface->info(),
                      [&](const std::string& name, int) { out << ',' << contact.prefix << name; });
     }
   }
+  if (scene_.output.balance) {
+    out << ",energy.kinetic,energy.internal,energy.potential,energy.external_work,energy.interface_work,"
+           "energy.balance_error";
+    for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c) out << ",angular_momentum" << c;
+  }
   out << '\n';
+}
+
+void History::add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse) {
+  std::ostream& out = file_.stream();
+  const int d = scene_.model->dimension();
+  const Eigen::Index node = static_cast<Eigen::Index>(scene_.output.watch[watched]) * d;
+  for (const Dofs* quantity : {&integrator.displacement(), &integrator.velocity(), &impulse})
+    for (int c = 0; c < d; ++c) out << ',' << number((*quantity)[node + c]);
+  for (const Contact& contact : contacts_[watched]) {
+    const Interface& interface = *contact.interface;
+    const int status = interface.was_asked(contact.slot) ? interface.status(contact.slot) : int{ILAW_FREE};
+    out << ',' << number(interface.gap_at(contact.place, integrator.displacement(), integrator.time())) << ','
+        << status;
+    for_each_state(interface.info(), [&](const std::string&, int entry) {
+      out << ',' << number(interface.state(contact.slot, entry));
+    });
+  }
 }
 
 void History::add_row(const Integrator& integrator) {
   std::ostream& out = file_.stream();
-  const int d = scene_.model->dimension();
   out << number(integrator.time());
-  for (std::size_t w = 0; w < contacts_.size(); ++w) {
-    const Eigen::Index node = scene_.output.watch[w] * d;
-    for (const Dofs* quantity : {&integrator.displacement(), &integrator.velocity(), &integrator.impulse()})
-      for (int c = 0; c < d; ++c) out << ',' << number((*quantity)[node + c]);
-    for (const Contact& contact : contacts_[w]) {
-      out << ',' << number(contact.interface->gap(contact.place)) << ','
-          << contact.interface->status(contact.place);
-      for_each_state(contact.interface->info(), [&](const std::string&, int entry) {
-        out << ',' << number(contact.interface->state(contact.place, entry));
-      });
-    }
+  if (!contacts_.empty()) {
+    const Dofs impulse = integrator.interface_impulse();
+    for (std::size_t w = 0; w < contacts_.size(); ++w) add_node(w, integrator, impulse);
+  }
+  if (scene_.output.balance) {
+    const EnergyReport energy = integrator.energy();
+    for (const double value : {energy.kinetic, energy.internal, energy.potential, energy.external_work,
+                               energy.interface_work, energy.balance_error})
+      out << ',' << number(value);
+    for (const double component : integrator.angular_momentum()) out << ',' << number(component);
   }
   out << '\n';
 }
@@ -127,15 +175,19 @@ void History::add_row(const Integrator& integrator) {
 void write_summary(const Scene& scene, const Integrator& integrator, const RunRecord& record,
                    const std::filesystem::path& folder) {
   const EnergyReport energy = integrator.energy();
+  const Tally& tally = integrator.tally();
   json statuses = json::object();
-  for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k)
-    statuses[status_names[k]] = integrator.status_counts()[k];
+  for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k) statuses[status_names[k]] = tally.status_counts[k];
+  const PhaseSeconds& seconds = integrator.seconds();
+  const double stepping = seconds.internal_forces + seconds.interfaces;
+  const double interface_share = stepping > 0.0 ? seconds.interfaces / stepping : 0.0;
   json interfaces = json::array();
   for (const auto& interface : scene.interfaces) interfaces.push_back(describe_interface(*interface));
   const json summary = {
       {"program", {{"name", "ilaw"}, {"version", ILAW_VERSION}, {"abi", {ILAW_ABI_MAJOR, ILAW_ABI_MINOR}}}},
       {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", scene.source}}},
       {"interfaces", interfaces},
+      {"resumed_at_step", record.resumed_at},
       {"interrupted", record.interrupted},
       {"failure", record.failure},
       {"steps", integrator.steps()},
@@ -145,6 +197,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
       {"energy",
        {{"kinetic", energy.kinetic},
         {"internal", energy.internal},
+        {"potential", energy.potential},
         {"external_work", energy.external_work},
         {"interface_work", energy.interface_work},
         {"balance_error", energy.balance_error},
@@ -154,16 +207,20 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
         {"stored", energy.by_law[ILAW_ENERGY_STORED]},
         {"least_dissipation", energy.least_dissipation},
         {"reaction_work", energy.reaction_work}}},
-      {"penetration_max", integrator.penetration_max()},
+      {"penetration_max", tally.penetration_max},
       {"status_counts", statuses},
-      {"node_steps", {{"asked", integrator.node_steps_asked()}}},
+      {"node_steps", {{"asked", tally.asked}, {"skipped", tally.skipped}}},
       {"coupling",
-       {{"sweeps_max", integrator.sweeps_max()}, {"residual_max", integrator.coupling_residual_max()}}},
+       {{"sweeps", tally.sweeps},
+        {"sweeps_max", tally.sweeps_max},
+        {"residual_max", tally.coupling_residual_max},
+        {"steps_unconverged", tally.unconverged}}},
       {"seconds",
        {{"total", record.seconds_total},
         {"internal_forces", integrator.seconds().internal_forces},
         {"interfaces", integrator.seconds().interfaces},
-        {"output", record.seconds_output}}}};
+        {"output", record.seconds_output}}},
+      {"interface_share", interface_share}};
   AtomicFile file(folder / "summary.json");
   file.stream() << summary.dump(2) << '\n';
   file.commit();

@@ -5,6 +5,7 @@
 #include "integrator.hpp"
 #include "scene.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -16,11 +17,15 @@ namespace ilaw::host {
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path file);
+  // Goes on after the first size bytes of what an earlier run left, complete or not.
+  AtomicFile(std::filesystem::path file, std::uintmax_t size);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   std::ostream& stream() { return stream_; }
+  // Bytes written so far, all of them in the file.
+  std::uintmax_t flush();
   // Throws std::runtime_error when the disk did not take it all.
   void commit();
 
@@ -33,19 +38,24 @@ class AtomicFile {
 // history.csv: a row per output instant, columns as in docs/scenes.md. Vectors are in the scene's axes.
 class History {
  public:
-  History(const Scene& scene, const std::filesystem::path& folder);
+  History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder);
+  // Goes on after the first size bytes of an earlier run's.
+  History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder,
+          std::uintmax_t size);
   void add_row(const Integrator& integrator);
+  std::uintmax_t flush() { return file_.flush(); }
   void commit() { file_.commit(); }
 
  private:
   // A watched node in one interface.
   struct Contact {
     const Interface* interface;
-    int place;
+    int place, slot;
     std::string prefix;  // "n0." or, where the node has several, "n0.<interface>."
   };
-  void find_contacts();
+  void find_contacts(const Integrator& integrator);
   void write_header();
+  void add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse);
 
   const Scene& scene_;
   AtomicFile file_;
@@ -53,6 +63,7 @@ class History {
 };
 
 struct RunRecord {
+  std::int64_t resumed_at = 0;  // step
   bool interrupted = false;
   std::string failure;  // empty: none
   double seconds_total = 0.0, seconds_output = 0.0;

@@ -8,15 +8,19 @@
 
 namespace ilaw::host {
 
-Progress::Progress(std::int64_t steps)
-    : steps_(steps), terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {}
+Progress::Progress(std::int64_t first, std::int64_t steps)
+    : first_(first),
+      steps_(steps),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      start_(Clock::now()),
+      last_(start_) {}
 
 Progress::~Progress() {
   if (drawn_) std::fputs("\r\033[K", stderr);
 }
 
 void Progress::show(std::int64_t done) {
-  if (!terminal_ || done == 0) return;
+  if (!terminal_ || done == first_) return;
   const Clock::time_point now = Clock::now();
   if (now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
@@ -28,7 +32,7 @@ void Progress::show(std::int64_t done) {
   std::fprintf(stderr, "\r[%s%s] %3.0f %%  %.0f s left ",
                std::string(static_cast<std::size_t>(filled), '#').c_str(),
                std::string(static_cast<std::size_t>(width - filled), '.').c_str(), 100.0 * part,
-               elapsed / part * (1.0 - part));
+               elapsed * static_cast<double>(steps_ - done) / static_cast<double>(done - first_));
 }
 
 }  // namespace ilaw::host

@@ -9,7 +9,8 @@ namespace ilaw::host {
 
 class Progress {
  public:
-  explicit Progress(std::int64_t steps);
+  // A run that starts at a step and ends after steps.
+  Progress(std::int64_t first, std::int64_t steps);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -19,7 +20,7 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  std::int64_t steps_;
+  std::int64_t first_, steps_;
   bool terminal_, drawn_ = false;
   Clock::time_point start_, last_;
 };

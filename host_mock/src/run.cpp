@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run.hpp"
 
+#include "checkpoint.hpp"
+#include "fields.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "scene.hpp"
@@ -10,6 +12,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <system_error>
 
@@ -27,24 +30,73 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Steps to the end, to a request to stop, or to a failure; the record says which.
-void advance(const Scene& scene, Integrator& integrator, History& history, RunRecord& record) {
-  Progress progress(scene.steps);
-  try {
-    while (integrator.steps() < scene.steps && !stop_requested) {
-      integrator.step();
-      if (integrator.steps() % scene.output.every == 0) {
-        const Clock::time_point start = Clock::now();
-        history.add_row(integrator);
-        record.seconds_output += seconds_since(start);
-      }
-      progress.show(integrator.steps());
+// A run and what it writes.
+class Run {
+ public:
+  Run(Scene& scene, const RunOptions& options)
+      : scene_(scene),
+        options_(options),
+        integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt),
+        fields_(scene, options.folder) {
+    if (options.resume) {
+      resume();
+      return;
     }
-  } catch (const std::exception& failure) {
-    record.failure = failure.what();
+    history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
+    if (scene_.output.fields > 0) fields_.write(integrator_);
   }
-  record.interrupted = integrator.steps() < scene.steps && record.failure.empty();
-}
+
+  // Steps to the end, to a request to stop, or to a failure; the record says which.
+  void advance() {
+    Progress progress(integrator_.steps(), scene_.steps);
+    try {
+      while (integrator_.steps() < scene_.steps && !stop_requested) {
+        integrator_.step();
+        write_outputs();
+        progress.show(integrator_.steps());
+      }
+    } catch (const std::exception& failure) {
+      record.failure = failure.what();
+    }
+    record.interrupted = integrator_.steps() < scene_.steps && record.failure.empty();
+    if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
+    history_->commit();
+  }
+
+  const Integrator& integrator() const { return integrator_; }
+  RunRecord record;
+
+ private:
+  void resume() {
+    const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder);
+    history_ = std::make_unique<History>(scene_, integrator_, options_.folder, checkpoint.history_size);
+    fields_.resume(checkpoint.fields);
+    record.resumed_at = integrator_.steps();
+  }
+
+  void write_outputs() {
+    const std::int64_t step = integrator_.steps();
+    const bool row = step % scene_.output.every == 0;
+    const bool field = scene_.output.fields > 0 && step % scene_.output.fields == 0;
+    const bool checkpoint = options_.checkpoint_every > 0 && step % options_.checkpoint_every == 0;
+    if (!row && !field && !checkpoint) return;
+    const Clock::time_point start = Clock::now();
+    if (row) history_->add_row(integrator_);
+    if (field) fields_.write(integrator_);
+    if (checkpoint) write_checkpoint_now();
+    record.seconds_output += seconds_since(start);
+  }
+
+  void write_checkpoint_now() {
+    write_checkpoint(scene_, integrator_, {history_->flush(), fields_.written()}, options_.folder);
+  }
+
+  Scene& scene_;
+  const RunOptions& options_;
+  Integrator integrator_;
+  Fields fields_;
+  std::unique_ptr<History> history_;
+};
 
 std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
   try {
@@ -65,17 +117,18 @@ bool make_folder(const std::filesystem::path& folder) {
 }
 
 int report(const Scene& scene, const Integrator& integrator, const RunRecord& record,
-           const std::filesystem::path& folder) {
+           const RunOptions& options) {
+  const std::filesystem::path& folder = options.folder;
   if (!record.failure.empty()) {
     std::fprintf(stderr, "ilaw: %s: failed at step %lld, time %g: %s\n", scene.file.c_str(),
                  static_cast<long long>(integrator.steps()), integrator.time(), record.failure.c_str());
     return exit_failed;
   }
   if (record.interrupted) {
-    std::fprintf(stderr,
-                 "ilaw: %s: interrupted at step %lld of %lld; the files in %s are whole up to there\n",
-                 scene.file.c_str(), static_cast<long long>(integrator.steps()),
-                 static_cast<long long>(scene.steps), folder.c_str());
+    std::fprintf(
+        stderr, "ilaw: %s: interrupted at step %lld of %lld; the files in %s are whole up to there%s\n",
+        scene.file.c_str(), static_cast<long long>(integrator.steps()), static_cast<long long>(scene.steps),
+        folder.c_str(), options.checkpoint_every > 0 ? ", and --resume goes on from there" : "");
     return exit_failed;
   }
   std::printf("%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e; results in %s\n",
@@ -86,23 +139,20 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
 
 }  // namespace
 
-int run(const std::filesystem::path& scene_file, const std::filesystem::path& folder) {
+int run(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
-  std::optional<Scene> scene = read_or_explain(scene_file);
-  if (!scene || !make_folder(folder)) return exit_bad_input;
+  std::optional<Scene> scene = read_or_explain(options.scene);
+  if (!scene || !make_folder(options.folder)) return exit_bad_input;
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   try {
-    Integrator integrator(*scene->model, scene->loads, scene->interfaces, scene->dt);
-    History history(*scene, folder);
-    RunRecord record;
-    advance(*scene, integrator, history, record);
-    history.commit();
-    record.seconds_total = seconds_since(start);
-    write_summary(*scene, integrator, record, folder);
-    return report(*scene, integrator, record, folder);
+    Run run(*scene, options);
+    run.advance();
+    run.record.seconds_total = seconds_since(start);
+    write_summary(*scene, run.integrator(), run.record, options.folder);
+    return report(*scene, run.integrator(), run.record, options);
   } catch (const std::exception& failure) {
-    std::fprintf(stderr, "ilaw: %s: %s\n", scene_file.c_str(), failure.what());
+    std::fprintf(stderr, "ilaw: %s: %s\n", options.scene.c_str(), failure.what());
     return exit_failed;
   }
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 namespace ilaw::host {
@@ -9,7 +10,13 @@ namespace ilaw::host {
 // Exit codes of the program, as in its help.
 enum ExitCode { exit_done = 0, exit_failed = 1, exit_bad_input = 2 };
 
+struct RunOptions {
+  std::filesystem::path scene, folder;
+  std::int64_t checkpoint_every = 0;  // steps; 0: never
+  bool resume = false;
+};
+
 // Runs a scene and writes its results to folder; says on stderr what went wrong. Returns an ExitCode.
-int run(const std::filesystem::path& scene_file, const std::filesystem::path& folder);
+int run(const RunOptions& options);
 
 }  // namespace ilaw::host

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene.hpp"
 
-#include "points.hpp"
+#include "models/bars.hpp"
+#include "models/blocks.hpp"
+#include "models/points.hpp"
+#include "models/rotating_spring.hpp"
+#include "selection.hpp"
 #include "validation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numeric>
@@ -20,25 +25,15 @@ std::string at(const std::string& pointer, std::size_t index) {
   return pointer + "/" + std::to_string(index);
 }
 
-Eigen::VectorXd read_vector(const json& value, int dimension, const std::string& pointer) {
-  if (static_cast<int>(value.size()) != dimension)
-    throw SceneError(pointer, "found " + std::to_string(value.size()) + " components, expected " +
-                                  std::to_string(dimension) + ", the dimension of the model");
-  Eigen::VectorXd vector(dimension);
-  for (int i = 0; i < dimension; ++i) vector[i] = value[static_cast<std::size_t>(i)].get<double>();
-  return vector;
-}
-
-Eigen::VectorXd read_vector_or_zero(const json& object, const char* key, int dimension,
-                                    const std::string& pointer) {
-  if (!object.contains(key)) return Eigen::VectorXd::Zero(dimension);
+Vector read_vector_or_zero(const json& object, const char* key, int dimension, const std::string& pointer) {
+  if (!object.contains(key)) return Vector::Zero(dimension);
   return read_vector(object[key], dimension, pointer + "/" + key);
 }
 
 // Rows of a table: time first, then width values.
 Table read_table(const json& rows, int width, const std::string& pointer) {
   std::vector<double> times;
-  std::vector<Eigen::VectorXd> values;
+  std::vector<Vector> values;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (static_cast<int>(rows[k].size()) != width + 1)
       throw SceneError(at(pointer, k), "found " + std::to_string(rows[k].size()) + " numbers, expected " +
@@ -48,80 +43,217 @@ Table read_table(const json& rows, int width, const std::string& pointer) {
       throw SceneError(at(pointer, k),
                        "found time " + rows[k][0].dump() + ", expected one after " + rows[k - 1][0].dump());
     times.push_back(time);
-    Eigen::VectorXd value(width);
+    Vector value(width);
     for (int i = 0; i < width; ++i) value[i] = rows[k][static_cast<std::size_t>(i) + 1].get<double>();
     values.push_back(value);
   }
   return {times, values};
 }
 
-void check_node(int node, int node_count, const std::string& pointer) {
-  if (node >= node_count)
-    throw SceneError(
-        pointer, "found node " + std::to_string(node) + ", expected 0 to " + std::to_string(node_count - 1));
+Motion read_motion(const json& object, int d, const std::string& pointer) {
+  if (object.contains("velocity") && object.contains("path"))
+    throw SceneError(pointer, "found both 'velocity' and 'path', expected at most one of them");
+  if (object.contains("path")) return Motion(read_table(object["path"], d, pointer + "/path"));
+  return Motion(read_vector_or_zero(object, "velocity", d, pointer));
 }
 
-std::vector<int> read_nodes(const json& nodes, int node_count, const std::string& pointer) {
-  std::vector<int> list;
-  if (nodes.is_string()) {
-    list.resize(static_cast<std::size_t>(node_count));
-    std::iota(list.begin(), list.end(), 0);
-    return list;
-  }
-  std::set<int> seen;
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    list.push_back(nodes[k].get<int>());
-    check_node(list.back(), node_count, at(pointer, k));
-    if (!seen.insert(list.back()).second)
-      throw SceneError(at(pointer, k), "found node " + nodes[k].dump() + " twice, expected each node once");
-  }
-  return list;
-}
+// ---- models ---------------------------------------------------------------------------------------------
 
 std::unique_ptr<Model> read_points(const json& model) {
   const int d = model["dimension"].get<int>();
-  const json& points = model["points"];
-  const auto count = static_cast<Eigen::Index>(points.size());
-  Eigen::VectorXd mass(count), area(count);
-  Dofs position(count * d), velocity(count * d);
-  for (std::size_t k = 0; k < points.size(); ++k) {
+  std::vector<PointMass> points;
+  for (std::size_t k = 0; k < model["points"].size(); ++k) {
+    const json& point = model["points"][k];
     const std::string pointer = at("/model/points", k);
-    const auto i = static_cast<Eigen::Index>(k);
-    mass[i] = points[k]["mass"].get<double>();
-    area[i] = points[k].value("area", 1.0);
-    position.segment(i * d, d) = read_vector(points[k]["position"], d, pointer + "/position");
-    velocity.segment(i * d, d) = read_vector_or_zero(points[k], "velocity", d, pointer);
+    points.push_back({point["mass"].get<double>(), point.value("area", 1.0),
+                      read_vector(point["position"], d, pointer + "/position"),
+                      read_vector_or_zero(point, "velocity", d, pointer)});
   }
-  return std::make_unique<Points>(d, mass, position, velocity, area);
+  return std::make_unique<Points>(d, points);
+}
+
+std::unique_ptr<Model> read_rotating_spring(const json& model) {
+  return std::make_unique<RotatingSpring>(SpringSetup{
+      model["mass"].get<double>(), model["stiffness"].get<double>(), model["length"].get<double>(),
+      model.value("area", 1.0), read_vector(model["position"], 2, "/model/position"),
+      read_vector_or_zero(model, "velocity", 2, "/model")});
+}
+
+// Bodies are named in a scene, or bar0, bar1 ...
+class BodyNames {
+ public:
+  explicit BodyNames(const char* kind) : kind_(kind) {}
+  std::string next(const json& body, const std::string& pointer) {
+    std::string name = body.value("name", kind_ + std::to_string(seen_.size()));
+    if (name == "all" || !seen_.insert(name).second)
+      throw SceneError(pointer + "/name",
+                       "found '" + name + "', expected a name of its own for each body, other than 'all'");
+    return name;
+  }
+
+ private:
+  std::string kind_;
+  std::set<std::string> seen_;
+};
+
+std::unique_ptr<Model> read_bars(const json& model) {
+  std::vector<BarSetup> bars;
+  BodyNames names("bar");
+  for (std::size_t k = 0; k < model["bars"].size(); ++k) {
+    const json& bar = model["bars"][k];
+    bars.push_back({names.next(bar, at("/model/bars", k)), bar.value("start", 0.0),
+                    bar["length"].get<double>(), bar["elements"].get<int>(), bar["young"].get<double>(),
+                    bar["density"].get<double>(), bar.value("section", 1.0), bar.value("velocity", 0.0)});
+  }
+  return std::make_unique<Bars>(bars);
+}
+
+Material read_material(const json& material) {
+  return {material["type"] == "linear" ? MaterialLaw::linear : MaterialLaw::neo_hookean,
+          material["young"].get<double>(), material["poisson"].get<double>(),
+          material["density"].get<double>()};
+}
+
+std::unique_ptr<Model> read_blocks(const json& model) {
+  std::vector<BlockSetup> blocks;
+  BodyNames names("block");
+  double nodes = 0.0;
+  for (std::size_t k = 0; k < model["blocks"].size(); ++k) {
+    const json& block = model["blocks"][k];
+    const std::string pointer = at("/model/blocks", k);
+    const auto elements = block["elements"].get<std::array<int, 3>>();
+    nodes += (elements[0] + 1.0) * (elements[1] + 1.0) * (elements[2] + 1.0);
+    constexpr double most_nodes = 5e8;  // 3 degrees of freedom each must fit a 32-bit number
+    if (nodes > most_nodes)
+      throw SceneError(pointer + "/elements", "found " + block["elements"].dump() + ", which makes " +
+                                                  std::to_string(nodes) + " nodes, expected at most 5e8");
+    blocks.push_back({names.next(block, pointer), read_vector_or_zero(block, "corner", 3, pointer),
+                      read_vector(block["size"], 3, pointer + "/size"),
+                      read_vector_or_zero(block, "velocity", 3, pointer), elements,
+                      read_material(block["material"])});
+  }
+  return std::make_unique<Blocks>(blocks);
+}
+
+std::unique_ptr<Model> read_model(const json& model) {
+  const std::string type = model["type"].get<std::string>();
+  if (type == "points") return read_points(model);
+  if (type == "rotating_spring") return read_rotating_spring(model);
+  return type == "bars" ? read_bars(model) : read_blocks(model);
+}
+
+// ---- loads ----------------------------------------------------------------------------------------------
+
+// Part of a total force for each node, by tributary area.
+std::vector<double> shares_of(const NodeSet& set, const std::string& pointer) {
+  const double sum = std::accumulate(set.areas.begin(), set.areas.end(), 0.0);
+  if (!(sum > 0.0)) throw SceneError(pointer, "the nodes have no area to share a total force by");
+  std::vector<double> shares = set.areas;
+  for (double& share : shares) share /= sum;
+  return shares;
+}
+
+std::unique_ptr<Load> read_prescribed(const json& load, const NodeSet& set, int d,
+                                      const std::string& pointer) {
+  std::vector<int> axes(static_cast<std::size_t>(d));
+  std::iota(axes.begin(), axes.end(), 0);
+  if (load.contains("axes")) axes = load["axes"].get<std::vector<int>>();
+  for (const int axis : axes)
+    if (axis >= d)
+      throw SceneError(pointer + "/axes",
+                       "found axis " + std::to_string(axis) + ", expected 0 to " + std::to_string(d - 1));
+  return std::make_unique<PrescribedMotion>(set.nodes, axes, d, read_motion(load, d, pointer));
 }
 
 std::unique_ptr<Load> read_load(const json& load, const Model& model, const std::string& pointer) {
   const int d = model.dimension();
   const std::string type = load["type"].get<std::string>();
-  const std::vector<int> nodes = read_nodes(load.contains("nodes") ? load["nodes"] : json("all"),
-                                            model.node_count(), pointer + "/nodes");
+  const NodeSet set = select_nodes(load.value("nodes", json("all")), model, pointer + "/nodes");
   if (type == "gravity")
-    return std::make_unique<Gravity>(model, nodes,
+    return std::make_unique<Gravity>(model, set.nodes,
                                      read_vector(load["acceleration"], d, pointer + "/acceleration"));
-  if (type == "force")
-    return std::make_unique<Force>(nodes, read_vector(load["direction"], d, pointer + "/direction"),
+  if (type == "force") {
+    const std::vector<double> shares = load.value("total", false)
+                                           ? shares_of(set, pointer + "/nodes")
+                                           : std::vector<double>(set.nodes.size(), 1.0);
+    return std::make_unique<Force>(set.nodes, shares,
+                                   read_vector(load["direction"], d, pointer + "/direction"),
                                    read_table(load["history"], 1, pointer + "/history"));
+  }
+  if (type == "motion") return read_prescribed(load, set, d, pointer);
   const double time = load["time"].get<double>();
   if (time <= 0.0)
     throw SceneError(pointer + "/time", "found " + load["time"].dump() + ", expected a time > 0");
-  return std::make_unique<Shock>(nodes, time, read_vector(load["impulse"], d, pointer + "/impulse"));
+  return std::make_unique<Shock>(set.nodes, time, read_vector(load["impulse"], d, pointer + "/impulse"));
 }
 
-std::shared_ptr<const Obstacle> read_obstacle(const json& obstacle, int d, const std::string& pointer) {
-  const Eigen::VectorXd normal = read_vector(obstacle["normal"], d, pointer + "/normal");
-  if (normal.norm() == 0.0)
-    throw SceneError(pointer + "/normal", "found a vector of length 0, expected a direction");
-  if (obstacle.contains("velocity") && obstacle.contains("path"))
-    throw SceneError(pointer, "found both 'velocity' and 'path', expected at most one of them");
-  const Motion motion = obstacle.contains("path")
-                            ? Motion(read_table(obstacle["path"], d, pointer + "/path"))
-                            : Motion(read_vector_or_zero(obstacle, "velocity", d, pointer));
-  return std::make_shared<Plane>(read_vector(obstacle["point"], d, pointer + "/point"), normal, motion);
+// ---- interfaces -----------------------------------------------------------------------------------------
+
+Vector read_direction(const json& value, int d, const std::string& pointer) {
+  const Vector direction = read_vector(value, d, pointer);
+  if (direction.norm() == 0.0) throw SceneError(pointer, "found a vector of length 0, expected a direction");
+  return direction;
+}
+
+std::unique_ptr<const Obstacle> read_obstacle(const json& obstacle, int d, const std::string& pointer) {
+  const std::string type = obstacle["type"].get<std::string>();
+  const Motion motion = read_motion(obstacle, d, pointer);
+  if (type == "plane")
+    return std::make_unique<Plane>(read_vector(obstacle["point"], d, pointer + "/point"),
+                                   read_direction(obstacle["normal"], d, pointer + "/normal"), motion);
+  if (type == "sphere")
+    return std::make_unique<Sphere>(read_vector(obstacle["center"], d, pointer + "/center"),
+                                    obstacle["radius"].get<double>(), motion);
+  if (d != 3)
+    throw SceneError(pointer + "/type", "found \"cylinder\" in " + std::to_string(d) +
+                                            "D, expected a model in 3D (in 2D a sphere is a disc)");
+  return std::make_unique<Cylinder>(read_vector(obstacle["point"], d, pointer + "/point"),
+                                    read_direction(obstacle["axis"], d, pointer + "/axis"),
+                                    obstacle["radius"].get<double>(), motion);
+}
+
+std::unique_ptr<Opponent> read_partners(const json& against, const NodeSet& own, const Model& model,
+                                        const std::string& pointer) {
+  if (!against.contains("nodes") || !against.contains("normal"))
+    throw SceneError(pointer, "found " + against.dump() + ", expected 'nodes' and 'normal', or 'surface'");
+  const NodeSet partners = select_nodes(against["nodes"], model, pointer + "/nodes");
+  if (partners.nodes.size() != own.nodes.size())
+    throw SceneError(pointer + "/nodes", "found " + std::to_string(partners.nodes.size()) +
+                                             " nodes, expected one for each of the " +
+                                             std::to_string(own.nodes.size()) + " nodes of the interface");
+  for (std::size_t k = 0; k < own.nodes.size(); ++k)
+    if (own.nodes[k] == partners.nodes[k])
+      throw SceneError(pointer + "/nodes",
+                       "node " + std::to_string(own.nodes[k]) + " would meet itself, expected another node");
+  const Vector normal =
+      read_direction(against["normal"], model.dimension(), pointer + "/normal").normalized();
+  return std::make_unique<NodeOpponent>(model, own.nodes, partners.nodes, normal);
+}
+
+std::unique_ptr<Opponent> read_opponent(const json& interface, const NodeSet& own, const Model& model,
+                                        const std::string& pointer) {
+  if (interface.contains("obstacle") == interface.contains("against"))
+    throw SceneError(pointer,
+                     std::string("found ") +
+                         (interface.contains("obstacle") ? "both 'obstacle' and 'against'" : "neither") +
+                         ", expected one of 'obstacle' (rigid) and 'against' (another body)");
+  if (interface.contains("obstacle"))
+    return std::make_unique<RigidOpponent>(
+        model, own.nodes, read_obstacle(interface["obstacle"], model.dimension(), pointer + "/obstacle"));
+  return read_partners(interface["against"], own, model, pointer + "/against");
+}
+
+// A node that follows a given path cannot give way to an interface.
+void refuse_prescribed(const Interface& interface, const Loads& loads, const std::string& pointer) {
+  std::set<int> driven;
+  for (const auto& load : loads)
+    driven.insert(load->prescribed_nodes().begin(), load->prescribed_nodes().end());
+  for (const std::vector<int>* nodes : {&interface.nodes(), &interface.setup().opponent->partners()})
+    for (const int node : *nodes)
+      if (driven.count(node))
+        throw SceneError(pointer,
+                         "found node " + std::to_string(node) +
+                             ", whose motion is prescribed by a load, expected nodes that are free to move");
 }
 
 // JSON has no infinity: "inf" stands for it.
@@ -187,16 +319,23 @@ std::string known_libraries() {
 
 std::unique_ptr<Interface> read_interface(const json& interface, std::size_t number, const Scene& scene) {
   const std::string pointer = at("/interfaces", number);
+  const NodeSet own = select_nodes(interface["nodes"], *scene.model, pointer + "/nodes");
   InterfaceSetup setup;
   setup.name = interface.value("name", "interface" + std::to_string(number));
   setup.law = interface["law"].get<std::string>();
   setup.library = library_of(interface, scene.file);
-  setup.nodes = read_nodes(interface["nodes"], scene.model->node_count(), pointer + "/nodes");
-  setup.obstacle = read_obstacle(interface["obstacle"], scene.model->dimension(), pointer + "/obstacle");
+  setup.nodes = own.nodes;
+  setup.areas = own.areas;
+  setup.opponent = read_opponent(interface, own, *scene.model, pointer);
   setup.arguments = read_arguments(interface.value("parameters", json::object()), setup.nodes.size(),
                                    pointer + "/parameters");
+  setup.birth = interface.value("birth", setup.birth);
+  setup.death = interface.value("death", setup.death);
+  setup.asks_all = !interface.value("skip", true);
   try {
-    return std::make_unique<Interface>(std::move(setup), *scene.model, scene.dt);
+    auto made = std::make_unique<Interface>(std::move(setup), *scene.model, scene.dt);
+    refuse_prescribed(*made, scene.loads, pointer + "/nodes");
+    return made;
   } catch (const ilaw::error& error) {
     if (error.code() == ILAW_INVALID_PARAMETER) throw SceneError(pointer + "/parameters", error.what());
     if (error.code() == ILAW_NOT_FOUND)
@@ -231,10 +370,18 @@ void read_time(const json& time, Scene& scene) {
 
 void read_output(const json& output, Scene& scene) {
   scene.output.every = output.value("every", std::int64_t{1});
+  scene.output.balance = output.value("balance", false);
+  scene.output.fields = output.value("fields", std::int64_t{0});
   const json watch = output.value("watch", json::array());
   for (std::size_t k = 0; k < watch.size(); ++k) {
-    scene.output.watch.push_back(watch[k].get<int>());
-    check_node(scene.output.watch.back(), scene.model->node_count(), at("/output/watch", k));
+    const std::string pointer = at("/output/watch", k);
+    if (watch[k].is_number() && watch[k].get<int>() >= scene.model->node_count())
+      throw SceneError(pointer, "found node " + watch[k].dump() + ", expected 0 to " +
+                                    std::to_string(scene.model->node_count() - 1));
+    const json nodes = watch[k].is_number() ? json::array({watch[k]}) : watch[k];
+    for (const int node : select_nodes(nodes, *scene.model, pointer).nodes)
+      if (std::find(scene.output.watch.begin(), scene.output.watch.end(), node) == scene.output.watch.end())
+        scene.output.watch.push_back(node);
   }
 }
 
@@ -255,13 +402,20 @@ std::string read_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-Scene read_scene(const std::filesystem::path& file) {
+nlohmann::json read_scene_source(const std::filesystem::path& file) {
+  nlohmann::json source = parse_scene(read_file(file));
+  validate_scene(source);
+  return source;
+}
+
+Scene read_scene(const std::filesystem::path& file) { return read_scene(read_scene_source(file), file); }
+
+Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   Scene scene;
   scene.file = file;
-  scene.source = parse_scene(read_file(file));
-  validate_scene(scene.source);
+  scene.source = std::move(source);
   scene.title = scene.source.value("title", file.stem().string());
-  scene.model = read_points(scene.source["model"]);
+  scene.model = read_model(scene.source["model"]);
   read_time(scene.source["time"], scene);
   const json loads = scene.source.value("loads", json::array());
   for (std::size_t i = 0; i < loads.size(); ++i)

@@ -4,7 +4,7 @@
 
 #include "interface.hpp"
 #include "load.hpp"
-#include "model.hpp"
+#include "models/model.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -17,8 +17,10 @@
 namespace ilaw::host {
 
 struct OutputSetup {
-  std::int64_t every = 1;  // steps per row of the history
-  std::vector<int> watch;  // nodes
+  std::int64_t every = 1;   // steps per row of the history
+  std::vector<int> watch;   // nodes
+  bool balance = false;     // energies and angular momentum in the history
+  std::int64_t fields = 0;  // steps per VTK file; 0: none
 };
 
 struct Scene {
@@ -35,5 +37,9 @@ struct Scene {
 
 // Reads and checks a scene, loads its laws. Throws SceneError, whose message starts with the JSON pointer.
 Scene read_scene(const std::filesystem::path& file);
+
+// The same from parsed JSON; file: where relative library paths start from.
+nlohmann::json read_scene_source(const std::filesystem::path& file);
+Scene read_scene(nlohmann::json source, const std::filesystem::path& file);
 
 }  // namespace ilaw::host

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include "vector.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -12,10 +12,10 @@ namespace ilaw::host {
 class Table {
  public:
   // times strictly increasing, one value each; all values of the same size.
-  Table(std::vector<double> times, std::vector<Eigen::VectorXd> values)
+  Table(std::vector<double> times, std::vector<Vector> values)
       : times_(std::move(times)), values_(std::move(values)) {}
 
-  Eigen::VectorXd at(double time) const {
+  Vector at(double time) const {
     if (time <= times_.front()) return values_.front();
     if (time >= times_.back()) return values_.back();
     const auto k =
@@ -26,7 +26,7 @@ class Table {
 
  private:
   std::vector<double> times_;
-  std::vector<Eigen::VectorXd> values_;
+  std::vector<Vector> values_;
 };
 
 }  // namespace ilaw::host

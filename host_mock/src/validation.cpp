@@ -177,11 +177,17 @@ json parse_scene(const std::string& text) {
 
 void validate_scene(const json& scene) {
   validate(scene, schema(), "");
-  const json& definitions = schema()["definitions"];
-  for (std::size_t i = 0; scene.contains("loads") && i < scene["loads"].size(); ++i) {
-    const json& load = scene["loads"][i];
-    validate(load, definitions["load_" + load["type"].get<std::string>()], "/loads/" + std::to_string(i));
-  }
+  // Parts that come in types have a schema per type.
+  const auto validate_typed = [](const json& value, const std::string& kind, const std::string& pointer) {
+    validate(value, schema()["definitions"][kind + "_" + value["type"].get<std::string>()], pointer);
+  };
+  validate_typed(scene["model"], "model", "/model");
+  for (std::size_t i = 0; scene.contains("loads") && i < scene["loads"].size(); ++i)
+    validate_typed(scene["loads"][i], "load", "/loads/" + std::to_string(i));
+  for (std::size_t i = 0; i < scene["interfaces"].size(); ++i)
+    if (scene["interfaces"][i].contains("obstacle"))
+      validate_typed(scene["interfaces"][i]["obstacle"], "obstacle",
+                     "/interfaces/" + std::to_string(i) + "/obstacle");
 }
 
 }  // namespace ilaw::host

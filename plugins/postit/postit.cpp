@@ -31,7 +31,7 @@ struct postit {
           "under "
           "pressure, each time less after a rupture; contact with Coulomb friction where it is not bonded.",
       .inputs = reads_gap | reads_area,
-      .capabilities = ILAW_CAN_ADHERE};
+      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE};
 
   static constexpr const char* references[] = {
       "LaMCoS / Michelin, 2024, Post-it tests (slides), after hal-04146784: parameters, tests, windowed "
@@ -103,6 +103,10 @@ struct postit {
 
   std::uint32_t inputs() const {
     return reads_gap | (adhesion_limit < infinity || initial_adhesion > 0.0 ? reads_area : 0U);
+  }
+  // What is bonded from the start holds at any gap.
+  std::uint32_t capabilities() const {
+    return std::uint32_t{ILAW_CAN_ADHERE} | (initial_adhesion > 0.0 ? std::uint32_t{ILAW_CAN_ACT_AT_DISTANCE} : 0U);
   }
   const char* conflict() const {
     return initial_adhesion > adhesion_limit

@@ -75,7 +75,7 @@ contains
     layout = [c_sizeof(i), at([ &
       c_loc(i%struct_size), c_loc(i%inputs), c_loc(i%energy_inputs), c_loc(i%state_variable_count), &
       c_loc(i%state_size), c_loc(i%state_variables), c_loc(i%per_node_parameters), &
-      c_loc(i%per_node_parameter_count), c_loc(i%reserved)], c_loc(i))]
+      c_loc(i%per_node_parameter_count), c_loc(i%capabilities)], c_loc(i))]
   end function
 
   function input_layout() result(layout)

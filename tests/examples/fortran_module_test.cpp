@@ -77,7 +77,7 @@ layout c_layout(int structure) {
               OFFSET(state_variables),
               OFFSET(per_node_parameters),
               OFFSET(per_node_parameter_count),
-              OFFSET(reserved)};
+              OFFSET(capabilities)};
     }
     case 5: {
       using T = ilaw_input;

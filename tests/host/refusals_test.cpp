@@ -46,7 +46,8 @@ INSTANTIATE_TEST_SUITE_P(
     Scene, Mistakes,
     ::testing::Values(
         Mistake{"/interface", "[]",
-                "/interface: unknown key, expected one of: doc, interfaces, loads, model, output, time, "
+                "/interface: unknown key, expected one of: converge, doc, exact, interfaces, loads, model, "
+                "output, time, "
                 "title (did you mean "
                 "'interfaces'?)"},
         Mistake{"/model/type", "\"bar\"", "/model/type: found \"bar\", expected one of \"points\""},
@@ -68,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/interfaces/0/nodes", "[0, 0]",
                 "/interfaces/0/nodes/1: found node 0 twice, expected each node once"},
         Mistake{"/interfaces/0/nodes", "\"some\"",
-                "/interfaces/0/nodes: found \"some\", expected one of \"all\" or array of integers"},
+                "/interfaces/0/nodes: found \"some\", expected one of all"},
         Mistake{"/interfaces/0/law", "\"glue\"",
                 "/interfaces/0/law: 'glue': no glue.so found, expected it in one of: "},
         Mistake{"/interfaces/0/library", "\"./nowhere.so\"", "/interfaces/0/library: "},

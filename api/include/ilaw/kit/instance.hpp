@@ -19,7 +19,7 @@ template <class Law>
 constexpr bool has_vector_state() {
   if constexpr (has_state<Law>)
     for (const state_variable& v : Law::state_variables)
-      if (v.kind == ILAW_STATE_VECTOR) return true;
+      if (v.kind == ILAW_STATE_VECTOR || v.kind == ILAW_STATE_HISTORY) return true;
   return false;
 }
 
@@ -75,6 +75,12 @@ struct instance {
     return mask;
   }
   std::uint32_t energy_inputs() const { return ILAW_INPUT_V_PREVIOUS & ~inputs(); }
+
+  std::uint32_t capabilities() const {
+    if constexpr (requires { law.capabilities(); })
+      if (table_count == 0 && per_node_count == 0) return law.capabilities();
+    return Law::card.capabilities;
+  }
 
   // The law as it is at a time: tables read.
   Law at(double time) const {
@@ -313,7 +319,7 @@ std::int32_t info(const ilaw_instance* opaque, ilaw_instance_info* out) {
                    .state_variables = made.variable_pointers,
                    .per_node_parameters = made.per_node_names,
                    .per_node_parameter_count = made.per_node_count,
-                   .reserved = 0});
+                   .capabilities = made.capabilities()});
   return ILAW_OK;
 }
 

@@ -97,9 +97,12 @@ enum { ILAW_OUTPUT_VELOCITY = 1 << 0, ILAW_OUTPUT_STATUS = 1 << 1, ILAW_OUTPUT_E
 
 /* What more a law can do, a bit mask. */
 enum {
-  ILAW_CAN_ADHERE = 1 << 0,          /* r_N may be negative */
-  ILAW_CAN_STORE_ENERGY = 1 << 1,    /* the stored part of the energy may be other than zero */
-  ILAW_CAN_ACT_AT_DISTANCE = 1 << 2, /* may give r != 0 at gap > 0 even from a freshly initialised state */
+  ILAW_CAN_ADHERE = 1 << 0,       /* r_N may be negative */
+  ILAW_CAN_STORE_ENERGY = 1 << 1, /* the stored part of the energy may be other than zero */
+  /* Without it a node whose state is as initialise left it gets r = 0 and keeps that state, bit for bit,
+   * whenever gap > 0 and gap + position_step * v_free_N > 0: a host need not ask nodes that are surely out of
+   * reach. */
+  ILAW_CAN_ACT_AT_DISTANCE = 1 << 2,
 };
 
 /* Kind of a parameter. */
@@ -222,7 +225,7 @@ typedef struct ilaw_instance_info {
   const ilaw_state_variable* const* state_variables; /* owned by the instance; counts sum to state_size */
   const char* const* per_node_parameters; /* names of parameters given per node, in the order of the batch */
   uint32_t per_node_parameter_count;
-  uint32_t reserved; /* 0 */
+  uint32_t capabilities; /* ILAW_CAN_* mask: what the law can do with these parameters */
 } ilaw_instance_info;
 
 /* ---- batch -------------------------------------------------------------------------------------- */

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fields.hpp"
+
+#include "output.hpp"
+
+#include <vtkCellType.h>
+#include <vtkDoubleArray.h>
+#include <vtkIdList.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+namespace ilaw::host {
+namespace {
+
+// VTK is 3D: missing components are zero.
+void add_vectors(vtkUnstructuredGrid& grid, const char* name, const Dofs& values, int dimension) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(3);
+  for (Eigen::Index i = 0; i < values.size(); i += dimension) {
+    double vector[3] = {0.0, 0.0, 0.0};
+    for (int c = 0; c < dimension; ++c) vector[c] = values[i + c];
+    array->InsertNextTuple(vector);
+  }
+  grid.GetPointData()->AddArray(array);
+}
+
+vtkDoubleArray* add_scalars(vtkUnstructuredGrid& grid, const std::string& name, int nodes, double value) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name.c_str());
+  array->SetNumberOfTuples(nodes);
+  array->Fill(value);
+  grid.GetPointData()->AddArray(array);
+  return array;  // kept alive by the grid
+}
+
+void add_geometry(vtkUnstructuredGrid& grid, const Model& model) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  const int d = model.dimension();
+  for (Eigen::Index i = 0; i < model.position().size(); i += d) {
+    double place[3] = {0.0, 0.0, 0.0};
+    for (int c = 0; c < d; ++c) place[c] = model.position()[i + c];
+    points->InsertNextPoint(place);
+  }
+  grid.SetPoints(points);
+  const Mesh& mesh = model.mesh();
+  vtkNew<vtkIdList> cell;
+  const auto add_cell = [&](int type, const int* nodes, int count) {
+    cell->Reset();
+    for (int k = 0; k < count; ++k) cell->InsertNextId(nodes[k]);
+    grid.InsertNextCell(type, cell);
+  };
+  for (int node = 0; mesh.cells.empty() && node < model.node_count(); ++node) add_cell(VTK_VERTEX, &node, 1);
+  for (std::size_t k = 0; k < mesh.cells.size(); k += static_cast<std::size_t>(mesh.nodes_per_cell))
+    add_cell(mesh.nodes_per_cell == 8 ? VTK_HEXAHEDRON : VTK_LINE, &mesh.cells[k], mesh.nodes_per_cell);
+}
+
+void add_interface(vtkUnstructuredGrid& grid, Interface& interface, const std::string& prefix, int node_count,
+                   const Integrator& integrator) {
+  vtkDoubleArray* gap =
+      add_scalars(grid, prefix + "gap", node_count, std::numeric_limits<double>::quiet_NaN());
+  vtkNew<vtkIntArray> status;
+  status->SetName((prefix + "status").c_str());
+  status->SetNumberOfTuples(node_count);
+  status->FillValue(-1);
+  grid.GetPointData()->AddArray(status);
+  std::vector<std::pair<vtkDoubleArray*, int>> states;
+  int entry = 0;
+  const ilaw_instance_info& info = interface.info();
+  for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
+    const ilaw_state_variable& variable = *info.state_variables[i];
+    if (variable.kind == ILAW_STATE_SCALAR)
+      states.emplace_back(add_scalars(grid, prefix + variable.name, node_count, 0.0), entry);
+    entry += static_cast<int>(variable.count);
+  }
+  for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
+    const int node = interface.nodes()[k], place = static_cast<int>(k);
+    gap->SetValue(node, interface.gap_at(place, integrator.displacement(), integrator.time()));
+    status->SetValue(node, ILAW_FREE);
+    if (states.empty()) continue;
+    const int slot = interface.slot_of(place, integrator.displacement());
+    for (const auto& [array, at] : states) array->SetValue(node, interface.state(slot, at));
+  }
+  for (const std::int32_t slot : interface.asked())
+    status->SetValue(interface.node_of(slot), interface.status(slot));
+}
+
+}  // namespace
+
+void Fields::write(const Integrator& integrator) {
+  const Model& model = *scene_.model;
+  vtkNew<vtkUnstructuredGrid> grid;
+  add_geometry(*grid, model);
+  add_vectors(*grid, "u", integrator.displacement(), model.dimension());
+  add_vectors(*grid, "v", integrator.velocity(), model.dimension());
+  add_vectors(*grid, "r", integrator.interface_impulse(), model.dimension());
+  for (const auto& interface : scene_.interfaces)
+    add_interface(*grid, *interface, scene_.interfaces.size() == 1 ? "" : interface->name() + ".",
+                  model.node_count(), integrator);
+
+  char name[40];
+  std::snprintf(name, sizeof name, "fields_%06zu.vtu", written_.size());
+  const std::filesystem::path file = folder_ / name, partial = file.string() + ".partial";
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetFileName(partial.c_str());
+  writer->SetInputData(grid);
+  if (!writer->Write())
+    throw std::runtime_error(partial.string() + ": could not be written; is the disk full?");
+  std::filesystem::rename(partial, file);
+
+  written_.push_back({{"name", name}, {"time", integrator.time()}});
+  AtomicFile series(folder_ / "fields.vtu.series");
+  series.stream() << nlohmann::json{{"file-series-version", "1.0"}, {"files", written_}}.dump(1) << '\n';
+  series.commit();
+}
+
+}  // namespace ilaw::host

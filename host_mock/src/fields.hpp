@@ -1,0 +1,32 @@
+// fields.hpp - the state of all nodes as VTK files, with an index in time that ParaView opens
+// (fields.vtu.series). SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "integrator.hpp"
+#include "scene.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+namespace ilaw::host {
+
+class Fields {
+ public:
+  Fields(const Scene& scene, std::filesystem::path folder) : scene_(scene), folder_(std::move(folder)) {}
+
+  // Writes one file: u, v, r per node, and per interface gap, status and state variables. A node that an
+  // interface does not have gets gap NaN and status -1.
+  void write(const Integrator& integrator);
+
+  // The files so far, with their times: to go on after a checkpoint.
+  const nlohmann::json& written() const { return written_; }
+  void resume(nlohmann::json written) { written_ = std::move(written); }
+
+ private:
+  const Scene& scene_;
+  std::filesystem::path folder_;
+  nlohmann::json written_ = nlohmann::json::array();
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,71 @@
+// model.hpp - what the integrator knows of a body: lumped mass, geometry, internal forces. Matrix-free.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ilaw::host {
+
+// One value per degree of freedom: dimension consecutive values per node, as a (d,n) array.
+using Dofs = Eigen::VectorXd;
+
+// Nodes with a name, which scenes use instead of numbers. Areas are tributary, on the set's own surface.
+struct NodeSet {
+  std::vector<int> nodes;
+  std::vector<double> areas;
+  std::vector<std::array<int, 4>> facets;  // of a surface in 3D, counter-clockwise seen from outside
+};
+
+// What all models have in common, filled by their constructors.
+struct Nodes {
+  int dimension = 0;
+  Dofs mass, position, velocity;  // mass lumped, per degree of freedom, > 0; position of the undeformed body
+  std::map<std::string, NodeSet> sets;
+};
+
+// Cells of a model with a mesh, for pictures.
+struct Mesh {
+  int nodes_per_cell = 0;  // 2: line, 8: hexahedron in VTK's order
+  std::vector<int> cells;
+};
+
+class Model {
+ public:
+  explicit Model(Nodes nodes) : nodes_(std::move(nodes)) {}
+  virtual ~Model() = default;
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+
+  int dimension() const { return nodes_.dimension; }
+  int node_count() const { return static_cast<int>(nodes_.mass.size()) / nodes_.dimension; }
+  const Dofs& mass() const { return nodes_.mass; }
+  const Dofs& position() const { return nodes_.position; }
+  const Dofs& initial_velocity() const { return nodes_.velocity; }
+  // Named sets; "all" is always there.
+  const std::map<std::string, NodeSet>& sets() const { return nodes_.sets; }
+  const Mesh& mesh() const { return mesh_; }
+
+  virtual bool has_internal_forces() const { return false; }
+  // Adds -f_int(u) to force.
+  virtual void add_internal_forces(const Dofs& /*u*/, Dofs& /*force*/) const {}
+  // Whether f_int = K u, so that central difference's own energy has the potential part 1/2 u_n^T K u_{n+1}.
+  virtual bool is_linear() const { return true; }
+  // Energy stored in the deformed body.
+  virtual double potential(const Dofs& /*u*/) const { return 0.0; }
+  // A bound from below on the largest stable step of central difference (about the undeformed body where the
+  // model is not linear); infinite without internal forces.
+  virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }
+
+ protected:
+  Nodes nodes_;
+  Mesh mesh_;
+};
+
+}  // namespace ilaw::host

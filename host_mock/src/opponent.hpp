@@ -1,0 +1,81 @@
+// opponent.hpp - what the nodes of an interface meet: a rigid obstacle, other nodes, or a surface of another
+// body. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "models/model.hpp"
+#include "obstacle.hpp"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace ilaw::host {
+
+// How one node meets its opponent. The relative velocity of the contact is
+//   v = V_node - sum_i weight_i V_partner_i - (velocity of the obstacle).
+struct Meeting {
+  static constexpr int most_partners = 4;
+
+  double gap = 0.0;
+  Vector normal;
+  int partner_count = 0;
+  std::array<int, most_partners> partners{};
+  std::array<double, most_partners> weights{};
+};
+
+class Opponent {
+ public:
+  virtual ~Opponent() = default;
+
+  // Meeting of the interface's node at place in its list.
+  virtual Meeting meet(int place, const Dofs& u, double time) const = 0;
+  // A bound from below on the gap, cheap, that relative motion by a distance lowers by no more than the
+  // distance.
+  virtual double gap_bound(int place, const Dofs& u, double time) const = 0;
+  // Called before gap_bound and meet are asked about all places again.
+  virtual void look(const Dofs& /*u*/) {}
+  // How far the opponent may go before the next look.
+  virtual double sight() const { return std::numeric_limits<double>::infinity(); }
+
+  // Mean velocity of a rigid opponent between two times.
+  virtual Vector velocity(double from, double to) const = 0;
+  // Nodes that may be partners; empty for rigid opponents.
+  virtual const std::vector<int>& partners() const = 0;
+  virtual bool keeps_normal() const { return false; }
+};
+
+// A rigid obstacle.
+class RigidOpponent : public Opponent {
+ public:
+  RigidOpponent(const Model& model, std::vector<int> nodes, std::unique_ptr<const Obstacle> obstacle);
+  Meeting meet(int place, const Dofs& u, double time) const override;
+  double gap_bound(int place, const Dofs& u, double time) const override;
+  Vector velocity(double from, double to) const override { return obstacle_->velocity(from, to); }
+  const std::vector<int>& partners() const override { return none_; }
+  bool keeps_normal() const override { return obstacle_->is_flat(); }
+
+ private:
+  Vector position(int place, const Dofs& u) const;
+
+  const Model& model_;
+  std::vector<int> nodes_, none_;
+  std::unique_ptr<const Obstacle> obstacle_;
+};
+
+// One other node for each node, across a given normal.
+class NodeOpponent : public Opponent {
+ public:
+  NodeOpponent(const Model& model, std::vector<int> nodes, std::vector<int> partners, Vector normal);
+  Meeting meet(int place, const Dofs& u, double time) const override;
+  double gap_bound(int place, const Dofs& u, double time) const override { return meet(place, u, time).gap; }
+  Vector velocity(double /*from*/, double /*to*/) const override { return Vector::Zero(model_.dimension()); }
+  const std::vector<int>& partners() const override { return partners_; }
+  bool keeps_normal() const override { return true; }
+
+ private:
+  const Model& model_;
+  std::vector<int> nodes_, partners_;
+  Vector normal_;
+};
+
+}  // namespace ilaw::host
