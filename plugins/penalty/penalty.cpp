@@ -1,0 +1,196 @@
+// Penalised contact with regularised friction, explicit and locally implicit. See penalty.md for the
+// equations.
+#include "compression.hpp"
+
+#include <ilaw/kit.hpp>
+
+namespace {
+
+using namespace ilaw::kit;
+
+constexpr const char* integration_choices[] = {"explicit", "implicit"};
+constexpr double implicitly = 1.0;
+
+struct penalty {
+  double stiffness;
+  double damping;
+  double exponent;
+  double friction;
+  double tangential_stiffness;
+  double integration;
+
+  static constexpr law_card card{
+      .id = "penalty",
+      .title = "Penalised contact with regularised friction",
+      .doc =
+          "A spring (linear, or of Hertz's kind) with a Kelvin-Voigt damper instead of contact, and a "
+          "tangential "
+          "spring that slides on the cone. Explicit as most codes have it, or locally implicit: then any "
+          "stiffness, infinite too, leaves the critical time step as it is.",
+      .inputs = reads_gap | reads_v_previous,
+      .capabilities = ILAW_CAN_STORE_ENERGY};
+
+  static constexpr const char* references[] = {
+      "H. Hertz, 1882, Ueber die Beruehrung fester elastischer Koerper",
+      "P. Wriggers, T. Vu Van, E. Stein, 1990, Finite element formulation of large deformation "
+      "impact-contact "
+      "problems with friction",
+      "J. C. Simo, T. J. R. Hughes, 1998, Computational inelasticity: return mapping"};
+
+  static constexpr parameter<penalty> parameters[] = {
+      {.member = &penalty::stiffness,
+       .name = "stiffness",
+       .symbol = "k",
+       .unit = "N/m^p",
+       .doc = "Stiffness of a node against penetration; inf (implicit only): contact.",
+       .required = true,
+       .infinity_allowed = true},
+      {.member = &penalty::damping,
+       .name = "damping",
+       .symbol = "c",
+       .unit = "N.s/m",
+       .doc = "Kelvin-Voigt damping of a node while it penetrates."},
+      {.member = &penalty::exponent,
+       .name = "exponent",
+       .symbol = "p",
+       .doc = "The force is k times the penetration to this power: 1 linear, 1.5 Hertz.",
+       .default_value = 1.0,
+       .minimum = 1.0,
+       .maximum = 8.0},
+      {.member = &penalty::friction,
+       .name = "friction",
+       .symbol = "mu",
+       .doc = "Coefficient of friction.",
+       .infinity_allowed = true},
+      {.member = &penalty::tangential_stiffness,
+       .name = "tangential_stiffness",
+       .symbol = "k_T",
+       .unit = "N/m",
+       .doc = "Stiffness of a sticking node against slip; inf (implicit only): no slip at all.",
+       .default_value = infinity,
+       .minimum_excluded = true,
+       .infinity_allowed = true},
+      {.member = &penalty::integration,
+       .name = "integration",
+       .doc = "explicit: forces from the gap and slip of the step; implicit: from those it leads to.",
+       .choices = integration_choices,
+       .choice_count = 2}};
+
+  struct state {
+    double normal, slip_1, slip_2;  // normal is always zero
+  };
+  static constexpr state_variable state_variables[] = {
+      {.name = "spring",
+       .unit = "m",
+       .doc = "Elastic part of the slip; normal component zero.",
+       .kind = ILAW_STATE_VECTOR}};
+
+  std::uint32_t inputs() const {
+    return reads_gap | (integration != implicitly && damping > 0.0 ? reads_v_previous : 0U);
+  }
+  const char* conflict() const {
+    if (integration == implicitly) return nullptr;
+    if (stiffness == infinity)
+      return "parameter 'stiffness' = inf with 'integration' = \"explicit\", expected a finite stiffness or "
+             "\"implicit\"";
+    if (friction > 0.0 && tangential_stiffness == infinity)
+      return "parameter 'tangential_stiffness' = inf with 'friction' > 0 and 'integration' = \"explicit\", "
+             "expected a finite tangential stiffness or \"implicit\"";
+    return nullptr;
+  }
+
+  template <class Node>
+  void step(Node& node) const {
+    if (integration == implicitly)
+      step_implicitly(node);
+    else
+      step_explicitly(node);
+  }
+
+ private:
+  // Energy of the normal spring; none when it is rigid.
+  double potential(double penetration) const {
+    const double spring = stiffness * power(penetration, exponent) * penetration / (exponent + 1.0);
+    return stiffness < infinity ? spring : 0.0;
+  }
+  double tangential_potential(vector slip, vector other) const {
+    return tangential_stiffness < infinity ? 0.5 * tangential_stiffness * tangential_product(slip, other)
+                                           : 0.0;
+  }
+
+  // Gives the node a normal impulse that is known already, and the tangential one -q/softness within the
+  // cone.
+  template <class Node>
+  void rub(Node& node, double normal, vector q, double softness) const {
+    q.n = -normal;
+    const auto result = solve_contact_friction(diagonal_delassus{1.0, softness, softness}, -1.0, q, friction);
+    node.impulse = result.impulse;
+    const double rubbed = result.slips ? double{ILAW_SLIP} : double{ILAW_STICK};
+    const double closed = friction > 0.0 ? rubbed : double{ILAW_CLOSED};
+    node.status = normal > 0.0 ? closed : double{ILAW_FREE};
+  }
+
+  template <class Node>
+  void step_implicitly(Node& node) const {
+    const double rate = 1.0 / node.position_step;
+    const vector spring{0.0, node.state.slip_1, node.state.slip_2};
+    const double softness = rate / (node.velocity_step * tangential_stiffness);
+    rub(node, normal_impulse(node), node.v_free + rate * spring, node.delassus.tangential() + softness);
+    const bool coupled = friction > 0.0 && node.delassus.anisotropy() != 0.0;
+    node.refused = coupled ? anisotropic_delassus : not_refused;
+
+    const double compliance = node.position_step * softness;
+    node.state = {0.0, 0.0 - compliance * node.impulse.t1, 0.0 - compliance * node.impulse.t2};
+    const vector strained{0.0, node.state.slip_1, node.state.slip_2};
+    const vector v = node.v_free + node.delassus.times(node.impulse);
+    const double normal = potential(positive_part(-(node.gap + node.position_step * v.n)));
+    const double tangential = tangential_potential(strained, strained);
+    node.normal_gain = normal - potential(positive_part(-node.gap));
+    node.tangential_gain = tangential - tangential_potential(spring, spring);
+    node.stored = normal + tangential;
+  }
+
+  // r = h <k <-g'>^p - c v_N> where the next gap g' = g + h v_N, v_N = v_free + H r, is closed; else r keeps
+  // it from opening, if anything does. An infinite stiffness does not push out what has penetrated already.
+  template <class Node>
+  double normal_impulse(const Node& node) const {
+    const double gap = stiffness < infinity ? node.gap : positive_part(node.gap);
+    const penalty_law::compression problem{.velocity = node.v_free.n,
+                                           .reach = node.v_free.n + gap * (1.0 / node.position_step),
+                                           .delassus = node.delassus.normal(),
+                                           .velocity_step = node.velocity_step,
+                                           .position_step = node.position_step};
+    if (exponent == 1.0 || stiffness == infinity) return problem.linear(gap, stiffness, damping);
+    return problem.power_law(stiffness, damping, exponent);
+  }
+
+  // Forces of the configuration and the half step before: the stiffness eats the critical time step. The
+  // spring is kept as the motion of this step will strain it, so that the next step finds it ready.
+  template <class Node>
+  void step_explicitly(Node& node) const {
+    const double penetration = positive_part(-node.gap), h = node.velocity_step;
+    const double elastic = h * stiffness * power(penetration, exponent);
+    const double viscous = penetration > 0.0 ? h * damping * node.v_previous.n : 0.0;
+    const double shear = friction > 0.0 ? h * tangential_stiffness : 0.0;
+    const vector spring{0.0, node.state.slip_1, node.state.slip_2};
+    rub(node, positive_part(elastic - viscous), shear * spring, 1.0);
+
+    const bool holds = node.impulse.n > 0.0 && shear > 0.0;
+    const vector kept{0.0, holds ? -node.impulse.t1 / shear : 0.0, holds ? -node.impulse.t2 / shear : 0.0};
+    const vector v = node.v_free + node.delassus.times(node.impulse);
+    const vector next{0.0, holds ? kept.t1 + node.position_step * v.t1 : 0.0,
+                      holds ? kept.t2 + node.position_step * v.t2 : 0.0};
+    node.state = {0.0, next.t1, next.t2};
+
+    // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
+    const vector mean = node.v_previous + v;
+    const double normal = potential(penetration) - 0.5 * elastic / h * node.position_step * v.n;
+    node.stored = positive_part(normal + tangential_potential(kept, next));
+    node.normal_gain = -0.5 * elastic * mean.n;
+    node.tangential_gain = tangential_product(node.impulse, (1.0 / h) * (spring - kept) - 0.5 * mean);
+  }
+};
+
+}  // namespace
+
+ILAW_PLUGIN("penalty", "1.0.0", "ilaw", "BSD-3-Clause", penalty)
