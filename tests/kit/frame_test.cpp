@@ -78,16 +78,28 @@ constexpr Vector velocity_of(int step) { return {-1.0 + 0.1 * step, 0.3 - 0.05 *
 // rotation would be off by its angle.
 constexpr double rounding = 1.1e-13;
 
-void expect_frame_indifference(const Matrix& start, const Matrix& each_step, bool tangent) {
-  const Parameters parameters{{{"viscosity", 2.0}}, {}};
-  TurningNode still(ILAW_KIT_PROBE, "kit_probe", parameters, tangent);
-  TurningNode turning(ILAW_KIT_PROBE, "kit_probe", parameters, tangent);
+void expect_frame_indifference(const std::string& file, const std::string& law, const Parameters& parameters,
+                               const Matrix& start, const Matrix& each_step, bool tangent) {
+  TurningNode still(file, law, parameters, tangent), turning(file, law, parameters, tangent);
   Matrix q = start;
   for (int step = 0; step < 50; ++step) {
     const Vector expected = still.step(start, velocity_of(step)), found = turning.step(q, velocity_of(step));
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], rounding) << "step " << step;
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(found[c], expected[c], rounding) << law << ", step " << step;
     q = product(q, each_step);
   }
+}
+
+// Every kind of vector memory: named, and in a history.
+void expect_frame_indifference(const Matrix& start, const Matrix& each_step, bool tangent) {
+  expect_frame_indifference(ILAW_KIT_PROBE, "kit_probe", {{{"viscosity", 2.0}}, {}}, start, each_step,
+                            tangent);
+  expect_frame_indifference(plugin_file("tie"), "tie", {{{"strength", 40.0}, {"memory", 0.02}}, {}}, start,
+                            each_step, tangent);
+  expect_frame_indifference(
+      plugin_file("penalty"), "penalty",
+      {{{"stiffness", 1e6}, {"friction", 0.9}, {"tangential_stiffness", 1e5}}, {{"integration", "implicit"}}},
+      start, each_step, tangent);
 }
 
 TEST(Frame, MemoryFollowsTheMaterialWithTangents) {
