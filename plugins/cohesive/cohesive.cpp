@@ -11,8 +11,8 @@ using namespace cohesive_law;
 constexpr const char* shape_choices[] = {"bilinear", "exponential", "camacho_ortiz"};
 constexpr double exponential = 1.0, camacho_ortiz = 2.0;
 
-// A root is looked for up to this share of a rigid bond: one that lies closer to 1 is as good as it.
-constexpr double almost_rigid = 1.0 - 0x1p-50;
+// A rigid bond that breaks leaves at least this part of the free motion.
+constexpr double almost_nothing = 0x1p-100;
 
 struct cohesive {
   double shape;
@@ -111,19 +111,23 @@ struct cohesive {
 
   struct state {
     double damage;
-    vector jump;
-    double damage_before;
-    vector jump_before;
+    vector position;  // at the time of the next impulse
+    vector opening;   // half a step before: the bond's
   };
   static constexpr state_variable state_variables[] = {
       {.name = "damage", .doc = "0: intact, 1: broken."},
-      {.name = "opening", .unit = "m", .doc = "Normal opening since the start."},
-      {.name = "slip_1", .unit = "m", .doc = "First tangential opening.", .kind = ILAW_STATE_HISTORY},
-      {.name = "slip_2", .unit = "m", .doc = "Second tangential opening.", .kind = ILAW_STATE_HISTORY},
-      {.name = "damage_before", .doc = "Damage one step before."},
-      {.name = "opening_before", .unit = "m", .doc = "Normal opening one step before."},
-      {.name = "slip_1_before", .unit = "m", .doc = "slip_1 one step before.", .kind = ILAW_STATE_HISTORY},
-      {.name = "slip_2_before", .unit = "m", .doc = "slip_2 one step before.", .kind = ILAW_STATE_HISTORY}};
+      {.name = "opening", .unit = "m", .doc = "Normal displacement since the start."},
+      {.name = "slip_1", .unit = "m", .doc = "First tangential displacement.", .kind = ILAW_STATE_HISTORY},
+      {.name = "slip_2", .unit = "m", .doc = "Second tangential displacement.", .kind = ILAW_STATE_HISTORY},
+      {.name = "mean_opening", .unit = "m", .doc = "Mean of the last two openings."},
+      {.name = "mean_slip_1",
+       .unit = "m",
+       .doc = "Mean of the last two of slip_1.",
+       .kind = ILAW_STATE_HISTORY},
+      {.name = "mean_slip_2",
+       .unit = "m",
+       .doc = "Mean of the last two of slip_2.",
+       .kind = ILAW_STATE_HISTORY}};
 
   const char* conflict() const {
     if ((strength == infinity) != (shear_strength() == infinity))
@@ -148,13 +152,13 @@ struct cohesive {
   template <class Node>
   void initialise(Node& node) const {
     const bool bonds = strength > 0.0 && toughness > 0.0;
-    node.state.damage = node.state.damage_before = bonds ? 0.0 : 1.0;
+    node.state.damage = bonds ? 0.0 : 1.0;
   }
 
   template <class Node>
   void step(Node& node) const {
     node.refused = node.delassus.anisotropy() == 0.0 ? not_refused : anisotropic_delassus;
-    if (node.state.damage_before < 1.0 && node.area > 0.0)
+    if (node.state.damage < 1.0 && node.area > 0.0)
       step_bond(node);
     else
       touch(node);
@@ -167,14 +171,14 @@ struct cohesive {
   double weight() const { return shape == camacho_ortiz ? shear_strength() / strength : 1.0; }
 
   // Share of shear: part of the squared opening that is tangential.
-  static double shear_share(vector jump, double size) {
-    const double part = size > 0.0 ? jump.tangential_length() / size : 0.0;
+  static double shear_share(vector w, double size) {
+    const double part = size > 0.0 ? w.tangential_length() / size : 0.0;
     return smaller(part * part, 1.0);
   }
 
   softening softening_at(double shear) const {
     const bool mixed = shear > 0.0 && shape != camacho_ortiz;
-    const double part = !mixed ? 0.0 : shear < 1.0 ? exp(mixing_exponent * log(shear)) : 1.0;
+    const double part = mixed ? power(shear, mixing_exponent) : 0.0;
     const double energy = toughness + part * (shear_toughness() - toughness);
     const double s1 = strength, s2 = shear_strength();
     const double peak = part > 0.0 ? square_root(s1 * s1 + part * (s2 * s2 - s1 * s1)) : s1;
@@ -182,6 +186,8 @@ struct cohesive {
     const double width = (energy / peak - 0.5 * peak * flexibility()) / full;
     return {peak, peak * flexibility(), width, shape == exponential};
   }
+
+  softening softening_along(vector w, double size) const { return softening_at(shear_share(w, size)); }
 
   // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
   double softness_scale() const { return larger(softening_at(0.0).width / strength, 0.0); }
@@ -199,75 +205,72 @@ struct cohesive {
   template <class Node>
   zone zone_of(const Node& node) const {
     const double damage = node.state.damage, normal = node.delassus.normal();
-    return {.before = node.state.jump_before,
-            .now = node.state.jump,
+    return {.position = node.state.position,
+            .opening = node.state.opening,
             .v_free = node.v_free,
             .normal_delassus = normal,
             .tangential_delassus = node.delassus.tangential(),
             .position_step = node.position_step,
             .weight = weight(),
             .friction = damage > 0.0 ? friction * damage : 0.0,
-            .compliance_scale = 0.5 * node.position_step * node.velocity_step * node.area * normal};
+            .compliance_scale = 0.25 * node.position_step * node.velocity_step * node.area * normal};
   }
-  static double share_of(secant s, double scale) { return scale * s.stiff / (s.soft + scale * s.stiff); }
+
+  struct outcome {
+    share parts;
+    double damage;
+  };
 
   template <class Node>
   void step_bond(Node& node) const {
     const zone z = zone_of(node);
-    const double share = delay_time > 0.0 ? delayed_share(node, z) : share_at_once(node, z);
-    const motion m = z.at(share);
-    const double damage = delay_time > 0.0 ? delayed_damage(node, m) : damage_at_once(node, m);
-    settle(node, z, share, m, damage);
+    const bool is_delayed = delay_time > 0.0 && strength < infinity;
+    settle(node, z, is_delayed ? delayed(node, z) : at_once(node, z));
   }
 
-  // Without delay: elastic where that stays below the softening, else on it.
+  // Without delay: elastic where that stays below the softening, else the mean traction on the way from w^-
+  // to w^+.
   template <class Node>
-  double share_at_once(const Node& node, const zone& z) const {
-    const secant now = secant_of(node.state.damage), before = secant_of(node.state.damage_before);
-    const double elastic = share_of(now, z.compliance_scale);
-    if (strength == infinity || holds(z, now, elastic)) return elastic;
-    const double stiffest = smaller(share_of(before, z.compliance_scale), almost_rigid);
-    const double from = effective(z.before, z.weight);
-    return sign_change(0.0, stiffest, [&](double share) {
-      const motion m = z.at(share);
-      const softening s = softening_at(shear_share(m.jump, m.size));
-      const double traction = s.mean_traction_on_path(before, from, m.size);
-      return share / (1.0 - share) * (m.size + from) - 2.0 * z.compliance_scale * traction;
+  outcome at_once(const Node& node, const zone& z) const {
+    const secant now = secant_of(node.state.damage);
+    share stiffest = z.of(now);
+    if (strength == infinity || holds(z, now, stiffest)) return {stiffest, node.state.damage};
+    stiffest.left = larger(stiffest.left, almost_nothing);
+    const double from = z.size(z.opening);
+    const share found = balance(stiffest, [&](share trial) {
+      const motion m = z.at(trial);
+      const double traction = softening_along(m.opening, m.size).mean_traction_on_path(now, from, m.size);
+      return trial.stiffness() * (m.size + from) - 2.0 * z.compliance_scale * traction;
     });
+    const motion m = z.at(found);
+    const softening s = softening_along(m.opening, m.size);
+    const double damage = m.size > s.onset ? damage_of(m.size, s.traction(m.size)) : 0.0;
+    return {found, larger(node.state.damage, damage)};
   }
 
-  bool holds(const zone& z, secant now, double elastic) const {
+  bool holds(const zone& z, secant now, share elastic) const {
     if (now.soft > 0.0) {
       const motion m = z.at(elastic);
-      return now.stiff * m.size < now.soft * softening_at(shear_share(m.jump, m.size)).traction(m.size);
+      return now.stiff * m.size <= now.soft * softening_along(m.opening, m.size).traction(m.size);
     }
-    // A rigid bond does not move: its traction is what counts.
-    const vector w = z.drive();
-    const double scale = z.position_step / (2.0 * z.compliance_scale), q = z.stiffness_ratio();
-    const double tangential = scale * z.weight / q;
-    const vector traction{scale * positive_part(w.n), tangential * w.t1, tangential * w.t2};
-    const double size = length(traction.n, traction.t1, traction.t2);
-    return size < softening_at(shear_share(traction, size)).strength;
-  }
-
-  template <class Node>
-  double damage_at_once(const Node& node, const motion& m) const {
-    if (strength == infinity) return node.state.damage;
-    const softening s = softening_at(shear_share(m.jump, m.size));
-    return m.size > s.onset ? larger(node.state.damage, damage_of(m.size, s.traction(m.size)))
-                            : node.state.damage;
+    // A rigid bond does not move: its traction is what counts, with the weight of the work it does.
+    const vector t = z.rigid_traction();
+    const vector effective{positive_part(t.n), t.t1 / z.weight, t.t2 / z.weight};
+    const double size = length(effective.n, effective.t1, effective.t2);
+    return size <= softening_along(effective, size).strength;
   }
 
   // With delay: the stiffness is the mean of those before and after.
   template <class Node>
-  double delayed_share(const Node& node, const zone& z) const {
-    const secant before = secant_of(node.state.damage_before);
+  outcome delayed(const Node& node, const zone& z) const {
+    const secant before = secant_of(node.state.damage);
     const double stiffness_before = before.stiff / before.soft;
-    return sign_change(0.0, share_of(secant_of(0.0), z.compliance_scale), [&](double share) {
-      const secant after = secant_of(delayed_damage(node, z.at(share)));
+    const share found = balance(z.of(before), [&](share trial) {
+      const secant after = secant_of(delayed_damage(node, z.at(trial)));
       const double mean = 0.5 * (stiffness_before + after.stiff / after.soft);
-      return share / (1.0 - share) - z.compliance_scale * mean;
+      return trial.stiffness() - z.compliance_scale * mean;
     });
+    return {found, delayed_damage(node, z.at(found))};
   }
 
   // Exact for the constant target f that the opening at the end of the step sets (Allix and Deu 1997):
@@ -275,8 +278,7 @@ struct cohesive {
   template <class Node>
   double delayed_damage(const Node& node, const motion& m) const {
     const double damage = node.state.damage;
-    if (strength == infinity) return damage;
-    const softening s = softening_at(shear_share(m.jump, m.size));
+    const softening s = softening_along(m.opening, m.size);
     const double progress = s.progress(m.size);
     const double target = progress < 1.0 && progress > 0.0 ? damage_of(m.size, s.traction(m.size)) : progress;
     const double distance = target - damage;
@@ -288,33 +290,21 @@ struct cohesive {
   }
 
   template <class Node>
-  void settle(Node& node, const zone& z, double share, const motion& m, double damage) const {
+  void settle(Node& node, const zone& z, const outcome& found) const {
     auto& s = node.state;
-    const double sizes[] = {effective(z.before, z.weight), effective(z.now, z.weight), m.size};
-    const double energies[] = {energy_of(secant_of(s.damage_before), sizes[0]),
-                               energy_of(secant_of(s.damage), sizes[1]),
-                               energy_of(secant_of(damage), sizes[2])};
-    node.impulse = z.impulse(share, m);
+    const motion m = z.at(found.parts);
+    node.impulse = z.impulse(found.parts, m);
     // The bond's part of the work, which contact and friction have no share in.
-    const double stiff = share < almost_rigid ? share / (1.0 - share) / z.compliance_scale : 0.0;
-    const double rate = 0.25 * node.area * stiff, w2 = z.weight * z.weight;
-    const vector sum = m.jump + z.before, change = m.jump - z.before;
+    const double stiff = found.parts.left > 0.0 ? found.parts.stiffness() / z.compliance_scale : 0.0;
+    const double rate = 0.5 * node.area * stiff;
+    const vector sum = m.opening + z.opening, change = m.opening - z.opening;
     node.normal_gain = rate * normal_product(sum, change);
-    node.tangential_gain = rate * w2 * tangential_product(sum, change);
-    node.stored = 0.5 * node.area * (energies[1] + energies[2]);
-    node.rupture = positive_part(node.normal_gain + node.tangential_gain -
-                                 0.5 * node.area * (energies[2] - energies[0]));
-    const double unbonded = s.damage < 1.0 ? double{ILAW_BROKEN} : contact_status(z, m);
-    node.status = damage < 1.0 ? double{ILAW_BONDED} : unbonded;
-    s.damage_before = s.damage;
-    s.jump_before = s.jump;
-    s.damage = damage;
-    s.jump = m.jump;
-  }
-  static double contact_status(const zone& z, const motion& m) {
-    const double slip = (m.jump - z.now).tangential_length();
-    const double closed_status = slip > 0.0 ? double{ILAW_SLIP} : double{ILAW_STICK};
-    return m.friction.n > 0.0 ? closed_status : double{ILAW_FREE};
+    node.tangential_gain = rate * z.weight * z.weight * tangential_product(sum, change);
+    const double stored_before = node.area * energy_of(secant_of(s.damage), z.size(z.opening));
+    node.stored = node.area * energy_of(secant_of(found.damage), m.size);
+    node.rupture = positive_part(node.normal_gain + node.tangential_gain - (node.stored - stored_before));
+    node.status = found.damage < 1.0 ? double{ILAW_BONDED} : double{ILAW_BROKEN};
+    s = {found.damage, z.next_position(m), m.opening};
   }
 
   // No bond: contact and friction, by the gap.
@@ -324,10 +314,10 @@ struct cohesive {
     auto q = node.v_free;
     q.n = contact.excess;
     apply_contact_friction(node, contact.slack, q, friction);
-    auto& s = node.state;
-    s.damage_before = s.damage;
-    s.jump_before = s.jump;
-    s.jump = s.jump + node.position_step * (node.v_free + node.delassus.times(node.impulse));
+    const vector next =
+        node.state.position + node.position_step * (node.v_free + node.delassus.times(node.impulse));
+    node.state.opening = 0.5 * (node.state.position + next);
+    node.state.position = next;
   }
 };
 
