@@ -1,0 +1,314 @@
+// Cohesive zones through the ABI: what holds for any motion, invariances, limits, refusals.
+#include "bond.hpp"
+
+namespace ilaw::testing {
+namespace {
+
+class Draw {
+ public:
+  explicit Draw(unsigned seed) : random_(seed) {}
+  double between(double low, double high) { return low + (high - low) * uniform_(random_); }
+  double power_of_ten(double low, double high) { return std::pow(10.0, between(low, high)); }
+  Vector vector(double scale) {
+    return {scale * between(-1.0, 1.0), scale * between(-1.0, 1.0), scale * between(-1.0, 1.0)};
+  }
+
+  // Any bond: of any shape, rigid or not, with its mixed mode, friction and delay.
+  Parameters bond() {
+    const bool is_delayed = between(0.0, 1.0) < 0.2;
+    const char* shapes[] = {"bilinear", "exponential", "camacho_ortiz"};
+    const std::string shape = shapes[static_cast<int>(between(0.0, is_delayed ? 2.0 : 3.0))];
+    const double strength = between(0.5, 2.0), strength_2 = between(0.5, 4.0), toughness = between(0.5, 2.0);
+    Parameters p{{{"strength", strength}, {"strength_2", strength_2}, {"toughness", toughness}},
+                 {{"shape", shape}}};
+    p.numbers["friction"] = between(0.0, 1.0) < 0.3 ? 0.0 : between(0.0, 1.5);
+    if (shape != "camacho_ortiz") {
+      p.numbers["toughness_2"] = between(0.5, 4.0);
+      p.numbers["mixing_exponent"] = between(0.3, 3.0);
+      if (is_delayed || between(0.0, 1.0) < 0.7) p.numbers["stiffness"] = power_of_ten(1.5, 9.0);
+    }
+    if (is_delayed)
+      p.numbers.insert(
+          {{"delay_time", power_of_ten(-2.0, 1.0)}, {"delay_exponent", power_of_ten(-1.0, 2.0)}});
+    return p;
+  }
+
+ private:
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> uniform_{0.0, 1.0};
+};
+
+// A mass pushed at random, for any bond and step. In each step damage grows within [0, 1], the parts
+// dissipated are not negative, the opening is not negative, and the work is what was stored and dissipated,
+// except where a contact's reaction meets a node moving away.
+TEST(CohesiveProperties, HoldForAnyMotion) {
+  Draw draw(11);
+  int broken = 0, rubbed = 0, partly = 0;
+  for (int bond = 0; bond < 4000; ++bond) {
+    Hung node(draw.bond(), draw.power_of_ten(-3.0, 0.0));
+    node.area = draw.between(0.1, 2.0);
+    const double force = draw.power_of_ten(-0.5, 1.0);
+    Vector bias = draw.vector(force);
+    for (int k = 0; k < 250; ++k) {
+      if (k % 50 == 0) bias = draw.vector(force);
+      const double damage = node.named("damage"), stored = node.energy[ILAW_ENERGY_STORED];
+      const Vector v = node.v;
+      const Vector random = draw.vector(force);
+      node.push({bias[0] + random[0], bias[1] + random[1], bias[2] + random[2]});
+      ASSERT_GE(node.named("damage"), damage);
+      ASSERT_LE(node.named("damage"), 1.0);
+      for (const double part : node.energy) ASSERT_GE(part, 0.0);
+      if (damage == 1.0) break;
+      ASSERT_GE(node.named("opening"), 0.0);
+      double balance = stored - node.energy[ILAW_ENERGY_STORED];
+      double scale = 1e-13 * (node.energy[ILAW_ENERGY_STORED] + stored);
+      for (std::size_t c = 0; c < 3; ++c) {
+        balance -= node.energy[c] + 0.5 * node.r[c] * (v[c] + node.v[c]);
+        const double pushed = std::abs(node.r[c]);  // v rounds as its terms v_free and H r do
+        scale += 1e-13 * pushed * (std::abs(v[c]) + std::abs(node.v[c]) + node.h[0] * pushed);
+      }
+      ASSERT_LE(balance, scale) << "bond " << bond << ", step " << k;
+      if (node.named("opening") > 0.0) {
+        ASSERT_GE(balance, -scale) << "bond " << bond << ", step " << k;
+      }
+      broken += node.status == ILAW_BROKEN;
+      rubbed += node.energy[ILAW_ENERGY_FRICTION] > 0.0;
+      partly += damage > 0.0 && damage < 1.0;
+    }
+  }
+  EXPECT_GT(broken, 1000);
+  EXPECT_GT(rubbed, 10000);
+  EXPECT_GT(partly, 100000);
+}
+
+// Pressed and sheared, the tangential impulse is that of the bond, -h A k w with w the mean slip of the two
+// half steps, and Coulomb friction of the broken part: at most mu d r_N, and against the slip where it slips.
+TEST(CohesiveProperties, FrictionGrowsAsTheBondBreaks) {
+  Draw draw(12);
+  int slips = 0, sticks = 0;
+  const double strength = 2.0, toughness = 3.0, friction = 0.7, step = 0.02;
+  Bond node({{{"strength", strength}, {"toughness", toughness}, {"friction", friction}}, {}}, step, 1.0, 1.0);
+  for (int k = 0; k < 20000; ++k) {
+    const double damage = draw.between(0.01, 0.99);
+    // The secant of the rigid, linear bond of mode I, k = sigma^2 (1 - d)/(2 G d), and half its range.
+    const double secant = strength * strength * (1.0 - damage) / (2.0 * toughness * damage);
+    const double reach = 0.5 * damage * 2.0 * toughness / strength;
+    const double angle = draw.between(0.0, 6.28), slip1 = reach * std::cos(angle),
+                 slip2 = reach * std::sin(angle);
+    node.state = {damage, 0.0, slip1, slip2, 0.0, slip1, slip2};
+    const Vector v = draw.vector(1.0);
+    ASSERT_EQ(node.step({-std::abs(v[0]), 0.3 * v[1], 0.3 * v[2]}), ILAW_OK);
+    ASSERT_EQ(node.named("damage"), damage);
+    ASSERT_NEAR(node.r[0], std::abs(v[0]), 4 * ulp);
+    const double f1 = node.r[1] + step * secant * 0.5 * (slip1 + node.named("mean_slip_1"));
+    const double f2 = node.r[2] + step * secant * 0.5 * (slip2 + node.named("mean_slip_2"));
+    const double limit = friction * damage * node.r[0], speed = std::hypot(node.v[1], node.v[2]);
+    ASSERT_LE(std::hypot(f1, f2), limit + 1e-13 * (1.0 + step * secant));
+    if (speed > 1e-12) {
+      ++slips;
+      // The law forms slip/h, whose rounding turns a slow slip.
+      const double rounding = 1e-13 + limit * 4 * ulp * (1.0 + reach / step) / speed;
+      ASSERT_NEAR(f1, -limit * node.v[1] / speed, rounding);
+      ASSERT_NEAR(f2, -limit * node.v[2] / speed, rounding);
+    } else {
+      ++sticks;
+    }
+  }
+  EXPECT_GT(slips, 3000);
+  EXPECT_GT(sticks, 3000);
+}
+
+// Strength inf: the node stops in one step, whatever else is given. No toughness, no strength, or broken:
+// coulomb with predictive activation, bit for bit.
+TEST(CohesiveProperties, LimitsAreTieAndCoulomb) {
+  Draw draw(13);
+  NodeRun tie("cohesive", {{{"strength", inf_value}, {"toughness", 1.0}, {"friction", 0.3}}, {}});
+  NodeRun tough("cohesive", {{{"strength", 1.0}, {"toughness", 0.0}, {"friction", 0.3}}, {}});
+  NodeRun weak("cohesive", {{{"strength", 0.0}, {"toughness", 1.0}, {"friction", 0.3}}, {}});
+  NodeRun broken("cohesive", {{{"strength", 1.0}, {"toughness", 1.0}, {"friction", 0.3}}, {}});
+  NodeRun contact("coulomb", {{{"friction", 0.3}}, {{"activation", "predictive"}}});
+  broken.state[0] = 1.0;
+  EXPECT_EQ(tough.named("damage"), 1.0);
+  for (int k = 0; k < 50000; ++k) {
+    const Vector v = draw.vector(draw.power_of_ten(-100.0, 100.0));
+    const double delassus = draw.power_of_ten(-3.0, 3.0), gap = draw.between(-1e-3, 1e-3);
+    for (NodeRun* each : {&tie, &tough, &weak, &broken, &contact}) {
+      each->h[0] = delassus;
+      each->gap = gap;
+      ASSERT_EQ(each->step(v), ILAW_OK);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      ASSERT_NEAR(tie.v[c], 0.0, 2 * ulp * std::abs(v[c]));
+      ASSERT_EQ(tie.state[c + 1], 0.0);
+    }
+    for (NodeRun* each : {&tough, &weak, &broken}) {
+      ASSERT_EQ(each->r, contact.r);
+      ASSERT_EQ(each->status, contact.status);
+      ASSERT_EQ(each->energy, contact.energy);
+    }
+  }
+}
+
+// The same motion in other units of mass, length and time, powers of two: the same bits. A mirror image is
+// one.
+TEST(CohesiveProperties, AreTheSameInOtherUnitsAndMirrored) {
+  Draw draw(14);
+  constexpr double mass = 0x1p+20, meter = 0x1p-12, second = 0x1p+7;
+  constexpr double pressure = mass / (meter * second * second);
+  for (int bond = 0; bond < 200; ++bond) {
+    const Parameters p = draw.bond();
+    Parameters q = p;
+    for (auto& [name, value] : q.numbers) {
+      if (name.starts_with("strength")) value *= pressure;
+      if (name.starts_with("toughness")) value *= pressure * meter;
+      if (name == "stiffness") value *= pressure / meter;
+      if (name == "delay_time") value *= second;
+    }
+    Hung a(p, 0.05), b(q, 0.05 * second, mass), mirror(p, 0.05);
+    b.area *= meter * meter;
+    for (int k = 0; k < 100; ++k) {
+      const Vector f = draw.vector(3.0);
+      constexpr double unit = mass * meter / (second * second);
+      a.push(f);
+      b.push({unit * f[0], unit * f[1], unit * f[2]});
+      mirror.push({f[0], f[1], -f[2]});
+      ASSERT_EQ(a.named("damage"), b.named("damage"));
+      ASSERT_EQ(a.named("damage"), mirror.named("damage"));
+      for (std::size_t c = 0; c < 3; ++c) {
+        ASSERT_EQ(a.r[c] * mass * meter / second, b.r[c]);
+        ASSERT_EQ(a.r[c], (c == 2 ? -1.0 : 1.0) * mirror.r[c]);
+      }
+    }
+  }
+}
+
+// In the host's axes, with a normal that turns by the shortest rotation and no tangent given: what the bond
+// remembers turns with it, and the impulse is that of the local frame, turned.
+TEST(CohesiveProperties, RememberedSlipTurnsWithTheNormal) {
+  const Parameters p{{{"strength", 1.0}, {"toughness", 1.0}, {"stiffness", 50.0}, {"friction", 0.4}}, {}};
+  const double step = 0.05;
+  Bond local(p, step, 1.0, 1.0);
+  const ilaw::interface global =
+      make_law("cohesive", SetupBuilder(p, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, step));
+  std::vector<double> state(global.info().state_size);
+  Vector normal{1, 0, 0}, free{}, impulse{};
+  ilaw_batch b = local.batch();
+  b.normal = {normal.data(), 0, 1};
+  b.v_free = {free.data(), 0, 1};
+  b.state_out = {state.data(), 0, 1};
+  ASSERT_EQ(global.initialise(b), ILAW_OK);
+  b.state_in = {state.data(), 0, 1};
+  b.impulse = {impulse.data(), 0, 1};
+  Draw draw(15);
+  for (int k = 0; k < 200; ++k) {
+    const double c = std::cos(0.1 * k), s = std::sin(0.1 * k);
+    const Vector v = draw.vector(0.5);
+    normal = {c, s, 0.0};
+    free = {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
+    ASSERT_EQ(local.step(v), ILAW_OK);
+    ASSERT_EQ(global.evaluate(b), ILAW_OK);
+    // The local tangents turn with the normal about the third axis.
+    ASSERT_NEAR(impulse[0], c * local.r[0] - s * local.r[1], 1e-11) << k;
+    ASSERT_NEAR(impulse[1], s * local.r[0] + c * local.r[1], 1e-11);
+    ASSERT_NEAR(impulse[2], local.r[2], 1e-11);
+  }
+  EXPECT_GT(local.named("damage"), 0.0);
+}
+
+// H = diag(h_N, h_T, h_T) with another h_T: the node moves by v_free + H r and the traction is on the bond's
+// curve.
+TEST(CohesiveProperties, OtherTangentialInertiaIsSolvedAndAnisotropyRefused) {
+  const double step = 0.1;
+  NodeRun node("cohesive", {{{"strength", 1.0}, {"toughness", 2.0}, {"stiffness", 40.0}}, {}}, step,
+               ILAW_DELASSUS_DIAGONAL);
+  node.h = {1.0, 3.5, 3.5};
+  ASSERT_EQ(node.step({0.08, 0.06, -0.03}), ILAW_OK);
+  EXPECT_EQ(node.named("damage"), 0.0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double mean = 0.5 * step * node.v[c];  // of the openings 0 and h v
+    EXPECT_NEAR(node.r[c], -step * 40.0 * 0.5 * mean, 1e-15);
+  }
+  ASSERT_EQ(node.step({3.0, 9.0, -4.0}), ILAW_OK);
+  EXPECT_GT(node.named("damage"), 0.1);
+  EXPECT_LT(node.named("damage"), 0.9);
+  node.h = {1.0, 3.5, 3.0};
+  EXPECT_EQ(node.step({1.0, 1.0, 1.0}), ILAW_BAD_NODES);
+  EXPECT_STREQ(
+      node.report.reason,
+      "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal");
+}
+
+// An impulse divides by the velocity step, an opening grows with the position step.
+TEST(CohesiveProperties, TwoTimeSteps) {
+  NodeRun node("cohesive", {{{"strength", 1e9}, {"toughness", 1e20}, {"stiffness", 40.0}}, {}});
+  ilaw_batch b = node.batch();
+  b.velocity_step = 0.1;
+  b.position_step = 0.3;
+  const Vector free{2.0, 0, 0};
+  b.v_free = {free.data(), 0, 1};
+  b.state_in = {node.state.data(), 0, 1};
+  b.state_out = {node.state.data(), 0, 1};
+  b.impulse = {node.r.data(), 0, 1};
+  b.velocity = {node.v.data(), 0, 1};
+  ASSERT_EQ(node.interface.evaluate(b), ILAW_OK);
+  EXPECT_NEAR(node.named("opening"), 0.3 * node.v[0], 1e-15);
+  EXPECT_NEAR(node.r[0], -0.1 * 40.0 * 0.25 * 0.3 * node.v[0], 1e-15);
+}
+
+std::string refusal(const Parameters& parameters) {
+  try {
+    make_law("cohesive", SetupBuilder(parameters));
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CohesiveProperties, BadParametersAreRefusedByName) {
+  const auto bond = [](std::map<std::string, double> more, const std::string& shape = "bilinear") {
+    more.insert({{"strength", 2.0}, {"toughness", 3.0}});
+    return refusal({more, {{"shape", shape}}});
+  };
+  EXPECT_EQ(bond({}), "");
+  EXPECT_EQ(bond({{"stiffness", 2.0 / 3.0}}), "") << "strength^2/(2 stiffness) is the toughness";
+  EXPECT_EQ(refusal({{{"toughness", 1.0}}, {}}),
+            "law 'cohesive': parameter 'strength' is missing: expected a number in [0, inf]");
+  EXPECT_EQ(bond({{"strength", -1.0}}),
+            "law 'cohesive': parameter 'strength' = -1 is not allowed: expected a number in [0, inf]");
+  EXPECT_EQ(bond({{"stiffness", 0.66}}),
+            "law 'cohesive': parameter 'toughness' (or 'toughness_2') is below strength^2/(2 stiffness), the "
+            "energy "
+            "that the bond stores when its strength is reached");
+  EXPECT_EQ(bond({{"stiffness", 10.0}}, "camacho_ortiz"),
+            "law 'cohesive': shape \"camacho_ortiz\" is rigid: parameter 'stiffness' must be inf");
+  EXPECT_EQ(bond({{"toughness_2", 4.0}}, "camacho_ortiz"),
+            "law 'cohesive': shape \"camacho_ortiz\" has one toughness: parameter 'toughness_2' must be the "
+            "same as "
+            "'toughness'");
+  EXPECT_EQ(bond({{"strength_2", inf_value}}),
+            "law 'cohesive': parameters 'strength' and 'strength_2' must both be infinite, or both finite");
+  EXPECT_EQ(bond({{"delay_time", 1.0}}),
+            "law 'cohesive': parameter 'delay_time' > 0 needs a finite 'stiffness': the opening of a rigid "
+            "bond says "
+            "nothing of its load");
+  EXPECT_NE(bond({{"delay_time", inf_value}}), "");
+  EXPECT_NE(bond({{"mixing_exponent", 0.0}}), "");
+  EXPECT_NE(bond({}, "trilinear"), "");
+}
+
+// A node that may not be evaluated keeps its state, and the others do not notice.
+TEST(CohesiveProperties, BadNodesKeepTheirState) {
+  Hung node({{{"strength", 2.0}, {"toughness", 3.0}}, {}}, 0.1);
+  for (int k = 0; k < 10; ++k) node.push({3.0, 0, 0});
+  const std::vector<double> state = node.state;
+  ASSERT_GT(state[0], 0.0);
+  EXPECT_EQ(node.step({std::nan(""), 0, 0}), ILAW_BAD_NODES);
+  EXPECT_EQ(node.state, state);
+  node.area = -1.0;
+  EXPECT_EQ(node.step({1.0, 0, 0}), ILAW_BAD_NODES);
+  EXPECT_EQ(node.status, ILAW_BAD_INPUT);
+  EXPECT_EQ(node.state, state);
+}
+
+}  // namespace
+}  // namespace ilaw::testing
