@@ -48,14 +48,18 @@ TEST(Cohesive, BilinearTractionIsExactAtTheTimeOfTheImpulse) {
     for (int k = 0; k < 400; ++k) {
       node.pull({1.0, 0, 0});
       const double opening = k * h;  // at the time of the impulse
-      if (k > 0 && opening + h < onset) EXPECT_NEAR(node.traction(0), stiffness * opening, 1e-10);
+      if (k > 0 && opening + h < onset) {
+        EXPECT_NEAR(node.traction(0), stiffness * opening, 1e-10);
+      }
       if (opening - h > onset && opening + h < end) {
         EXPECT_NEAR(node.traction(0), strength * (end - opening) / (end - onset), 1e-10);
         EXPECT_NEAR(node.named("damage"), (opening + 0.5 * h - onset) / (end - onset), 1e-10)
             << "at the half step";
         EXPECT_EQ(node.status, ILAW_BONDED);
       }
-      if (opening - h > end) EXPECT_NEAR(node.r[0], 0.0, 1e-25);
+      if (opening - h > end) {
+        EXPECT_NEAR(node.r[0], 0.0, 1e-25);
+      }
     }
   }
 }
