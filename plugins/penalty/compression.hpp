@@ -35,11 +35,11 @@ struct compression {
   double power_law(double stiffness, double damping, double exponent) const {
     const double most = rigid(), damper = velocity_step * damping;
     const double a = 1.0 + damper * delassus;
-    const double b = velocity_step * stiffness * kit::power(-reach * position_step, exponent) / most;
+    const double b = velocity_step * stiffness * raised(-reach * position_step, exponent) / most;
     const double d = damper * velocity / most;
     const double x = kit::smaller(root(a, b, a + d, exponent), 1.0);
     // Each form where it does not cancel.
-    const double stiff = 1.0 - x, soft = kit::positive_part(b * kit::power(x, exponent) - d) / a;
+    const double stiff = 1.0 - x, soft = kit::positive_part(b * raised(x, exponent) - d) / a;
     return most > 0.0 ? most * (x < 0.5 ? stiff : soft) : 0.0;
   }
 
@@ -50,13 +50,19 @@ struct compression {
     if (!(c > 0.0)) return 0.0;
     double x = kit::smaller(c / a, kit::power(c / b, 1.0 / exponent));
     for (int k = 0; k < most_iterations; ++k) {
-      const double power = b * kit::power(x, exponent);
+      const double power = b * raised(x, exponent);
       const double next = x - (a * x + power - c) / (a + exponent * power / x);
       if (!(next < x)) break;
       x = next;
     }
     return x;
   }
+  // Hertz's power by itself, in scalar code worth a branch.
+  static double raised(double x, double exponent) {
+    if (exponent == 1.5) return x * kit::square_root(x);
+    return kit::power(x, exponent);
+  }
+
   // Quadratic from the start: 5 for Hertz, 10 for the largest exponent; the rest is for rounding.
   static constexpr int most_iterations = 32;
 };

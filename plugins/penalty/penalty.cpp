@@ -99,18 +99,23 @@ struct penalty {
     return nullptr;
   }
 
+  template <class Run>
+  void in_form(Run run) const;
   template <class Node>
   void step(Node& node) const {
-    if (integration == implicitly)
-      step_implicitly(node);
-    else
-      step_explicitly(node);
+    in_form([&node](const auto& form) { form.step(node); });
   }
 
- private:
+ protected:
+  template <bool Linear>
+  double spring_force(double penetration) const {
+    if constexpr (Linear) return stiffness * penetration;
+    return stiffness * power(penetration, exponent);
+  }
   // Energy of the normal spring; none when it is rigid.
+  template <bool Linear>
   double potential(double penetration) const {
-    const double spring = stiffness * power(penetration, exponent) * penetration / (exponent + 1.0);
+    const double spring = spring_force<Linear>(penetration) * penetration / (exponent + 1.0);
     return stiffness < infinity ? spring : 0.0;
   }
   double tangential_potential(vector slip, vector other) const {
@@ -130,12 +135,13 @@ struct penalty {
     node.status = normal > 0.0 ? closed : double{ILAW_FREE};
   }
 
-  template <class Node>
+  template <bool Linear, class Node>
   void step_implicitly(Node& node) const {
     const double rate = 1.0 / node.position_step;
     const vector spring{0.0, node.state.slip_1, node.state.slip_2};
     const double softness = rate / (node.velocity_step * tangential_stiffness);
-    rub(node, normal_impulse(node), node.v_free + rate * spring, node.delassus.tangential() + softness);
+    rub(node, normal_impulse<Linear>(node), node.v_free + rate * spring,
+        node.delassus.tangential() + softness);
     const bool coupled = friction > 0.0 && node.delassus.anisotropy() != 0.0;
     node.refused = coupled ? anisotropic_delassus : not_refused;
 
@@ -143,16 +149,16 @@ struct penalty {
     node.state = {0.0, 0.0 - compliance * node.impulse.t1, 0.0 - compliance * node.impulse.t2};
     const vector strained{0.0, node.state.slip_1, node.state.slip_2};
     const vector v = node.v_free + node.delassus.times(node.impulse);
-    const double normal = potential(positive_part(-(node.gap + node.position_step * v.n)));
+    const double normal = potential<Linear>(positive_part(-(node.gap + node.position_step * v.n)));
     const double tangential = tangential_potential(strained, strained);
-    node.normal_gain = normal - potential(positive_part(-node.gap));
+    node.normal_gain = normal - potential<Linear>(positive_part(-node.gap));
     node.tangential_gain = tangential - tangential_potential(spring, spring);
     node.stored = normal + tangential;
   }
 
   // r = h <k <-g'>^p - c v_N> where the next gap g' = g + h v_N, v_N = v_free + H r, is closed; else r keeps
   // it from opening, if anything does. An infinite stiffness does not push out what has penetrated already.
-  template <class Node>
+  template <bool Linear, class Node>
   double normal_impulse(const Node& node) const {
     const double gap = stiffness < infinity ? node.gap : positive_part(node.gap);
     const penalty_law::compression problem{.velocity = node.v_free.n,
@@ -160,36 +166,59 @@ struct penalty {
                                            .delassus = node.delassus.normal(),
                                            .velocity_step = node.velocity_step,
                                            .position_step = node.position_step};
-    if (exponent == 1.0 || stiffness == infinity) return problem.linear(gap, stiffness, damping);
+    if constexpr (Linear) return problem.linear(gap, stiffness, damping);
     return problem.power_law(stiffness, damping, exponent);
   }
 
   // Forces of the configuration and the half step before: the stiffness eats the critical time step. The
   // spring is kept as the motion of this step will strain it, so that the next step finds it ready.
-  template <class Node>
+  template <bool Linear, class Node>
   void step_explicitly(Node& node) const {
     const double penetration = positive_part(-node.gap), h = node.velocity_step;
-    const double elastic = h * stiffness * power(penetration, exponent);
+    const double elastic = h * spring_force<Linear>(penetration);
     const double viscous = penetration > 0.0 ? h * damping * node.v_previous.n : 0.0;
     const double shear = friction > 0.0 ? h * tangential_stiffness : 0.0;
     const vector spring{0.0, node.state.slip_1, node.state.slip_2};
     rub(node, positive_part(elastic - viscous), shear * spring, 1.0);
 
-    const bool holds = node.impulse.n > 0.0 && shear > 0.0;
-    const vector kept{0.0, holds ? -node.impulse.t1 / shear : 0.0, holds ? -node.impulse.t2 / shear : 0.0};
+    const double per_impulse = shear > 0.0 ? 1.0 / shear : 0.0;
+    const double moves = shear > 0.0 ? node.position_step : 0.0;
+    const double strains = node.impulse.n > 0.0 ? moves : 0.0;
     const vector v = node.v_free + node.delassus.times(node.impulse);
-    const vector next{0.0, holds ? kept.t1 + node.position_step * v.t1 : 0.0,
-                      holds ? kept.t2 + node.position_step * v.t2 : 0.0};
+    const vector kept{0.0, 0.0 - per_impulse * node.impulse.t1, 0.0 - per_impulse * node.impulse.t2};
+    const vector next{0.0, kept.t1 + strains * v.t1, kept.t2 + strains * v.t2};
     node.state = {0.0, next.t1, next.t2};
 
     // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
     const vector mean = node.v_previous + v;
-    const double normal = potential(penetration) - 0.5 * elastic / h * node.position_step * v.n;
+    const double normal = potential<Linear>(penetration) - 0.5 * elastic / h * node.position_step * v.n;
     node.stored = positive_part(normal + tangential_potential(kept, next));
     node.normal_gain = -0.5 * elastic * mean.n;
     node.tangential_gain = tangential_product(node.impulse, (1.0 / h) * (spring - kept) - 0.5 * mean);
   }
 };
+
+// The four forms, chosen per batch: loops without a power vectorise.
+template <bool Implicit, bool Linear>
+struct penalty_form : penalty {
+  template <class Node>
+  void step(Node& node) const {
+    if constexpr (Implicit)
+      step_implicitly<Linear>(node);
+    else
+      step_explicitly<Linear>(node);
+  }
+};
+
+template <class Run>
+void penalty::in_form(Run run) const {
+  const bool is_implicit = integration == implicitly;
+  const bool is_linear = exponent == 1.0 || stiffness == infinity;
+  if (is_implicit && is_linear) run(penalty_form<true, true>{*this});
+  if (is_implicit && !is_linear) run(penalty_form<true, false>{*this});
+  if (!is_implicit && is_linear) run(penalty_form<false, true>{*this});
+  if (!is_implicit && !is_linear) run(penalty_form<false, false>{*this});
+}
 
 }  // namespace
 

@@ -8,7 +8,9 @@
 //   struct state { double ...; };                         named memory, all double, vectors as three
 //   static constexpr state_variable state_variables[];    in the order of struct state
 //   std::uint32_t inputs() const;                         what these parameters read (default: card.inputs)
-//   std::uint32_t capabilities() const;                   what these parameters can do (default: card.capabilities)
+//   std::uint32_t capabilities() const;                   what these parameters can do (default: the card's)
+//   template <class Run> void in_form(Run) const;         calls it with a derived law whose step gives the
+//                                                         same bits without what these parameters turn off
 //   const char* conflict() const;                         why parameters do not go together, or null
 //   template <class Node> void initialise(Node&) const;   first state (default: zeros)
 //   static constexpr state_variable memory;               declares a history, of

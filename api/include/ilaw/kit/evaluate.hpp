@@ -401,7 +401,10 @@ struct evaluate_walk {
  private:
   static void run_nodes(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
                         batch_walk<Law, Layout>& walk) {
-    if constexpr (!Varying) run_block<Law, Delassus, Frame, Layout, Scope>(law, walk.block());
+    if constexpr (!Varying)
+      in_its_form(law, [&walk](const auto& form) {
+        run_block<Law, Delassus, Frame, Layout, Scope>(form, walk.block());
+      });
     for (int i = 0; Varying && i < walk.nodes().count; ++i) {
       Law own = law;
       const bool valid = at_node(made, batch, walk.nodes().node(i), own);

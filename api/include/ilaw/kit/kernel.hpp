@@ -108,8 +108,8 @@ double input_defect(const Node& n) {
 }
 
 // Steps one node, and says whether its input was good and its result can be represented.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope>
-stepped<Law, Delassus, Frame> step_node(const Law& law, const node_block<Law>& b, int i) {
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+stepped<Law, Delassus, Frame> step_node(const Form& law, const node_block<Law>& b, int i) {
   auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
   const double before = input_defect<Law, Scope>(n);
   law.step(n);
@@ -133,12 +133,13 @@ energy_split split_energy(const Node& n, Vector v) {
           n.stored};
 }
 
-template <class Law>
-void store_state(const node_block<Law>& b, int i, const state_t<Law>& state) {
-  if constexpr (has_state<Law>) {
-    const auto doubles = std::bit_cast<std::array<double, state_doubles<Law>>>(state);
-    for (int k = 0; k < state_doubles<Law>; ++k) b.state_out[k][i] = doubles[k];
-  }
+// Number by number: a choice between structs is a branch, which does not vectorise.
+template <class Law, std::size_t... K>
+void store_state(const node_block<Law>& b, int i, const state_t<Law>& after, const state_t<Law>& before,
+                 bool accepted, std::index_sequence<K...>) {
+  const auto next = std::bit_cast<std::array<double, sizeof...(K)>>(after);
+  const auto last = std::bit_cast<std::array<double, sizeof...(K)>>(before);
+  ((b.state_out[K][i] = accepted ? next[K] : last[K]), ...);
 }
 
 // A vector in the axes of the batch; where the node is refused, what the host is to find instead.
@@ -162,8 +163,8 @@ void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted
 }
 
 // Steps and writes node i; valid: what the caller knows of its parameters.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope>
-void run_node(const Law& law, const node_block<Law>& b, int i, bool valid = true) {
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+void run_node(const Form& law, const node_block<Law>& b, int i, bool valid = true) {
   auto [n, accepted] = step_node<Law, Delassus, Frame, Layout, Scope>(law, b, i);
   accepted = accepted & valid;
   Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
@@ -172,21 +173,31 @@ void run_node(const Law& law, const node_block<Law>& b, int i, bool valid = true
     if (accepted) law.record(n, history{b.history_values + b.history_offset(i), b.history_component_stride});
   if constexpr (has_state<Law>) {
     const state_t<Law> before = load_node<Law, Delassus, Frame, Layout, Scope>(b, i).state;
-    store_state<Law>(b, i, accepted ? n.state : before);
+    store_state<Law>(b, i, n.state, before, accepted, std::make_index_sequence<state_doubles<Law>>{});
   }
   b.refused[i] = accepted ? 0.0 : 1.0;
 }
 
+// Calls run with the form of a law that its parameters ask for: a struct derived from it with a shorter step.
+template <class Law, class Run>
+void in_its_form(const Law& law, Run run) {
+  if constexpr (requires { law.in_form(run); })
+    law.in_form(run);
+  else
+    run(law);
+}
+
 // Runs a block with the same parameters at all nodes. Not inlined: GCC vectorises this loop only where it
-// stands alone.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope>
-[[gnu::noinline, gnu::flatten]] void run_block(const Law& law, const node_block<Law>& b) {
-  const Law l = law;  // a copy, so that no store can alias a parameter
+// stands alone. Form: the law, or the form of it that it chose for its parameters.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+[[gnu::noinline, gnu::flatten]] void run_block(const Form& law, const node_block<Law>& b) {
+  const Form l = law;  // copies, so that no store can alias a parameter or a time step
   if constexpr (has_memory<Law>) {
     for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, b, i);
   } else {
+    const node_block<Law> own = b;
 #pragma omp simd
-    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, b, i);
+    for (int i = 0; i < own.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, own, i);
   }
 }
 
