@@ -30,7 +30,8 @@ inline Exact projected_on_cone(const Exact& x, long double mu) {
   return {normal, part * x[1], part * x[2]};
 }
 
-// r - P(r - (v_N + mu |v_T|, v_T)), zero exactly at the solutions (De Saxce and Feng 1991), isotropic friction.
+// r - P(r - (v_N + mu |v_T|, v_T)), zero exactly at the solutions (De Saxce and Feng 1991), isotropic
+// friction.
 inline long double natural_map_residual(const kit::local_problem& p, const double* impulse) {
   const Exact r{impulse[0], impulse[1], impulse[2]}, v = velocity(p, r);
   const long double mu = p.mu[0];

@@ -149,6 +149,9 @@ struct pair {
   double x, y;
 };
 
+// What rounding must leave of a positive number, so that nothing becomes singular.
+inline constexpr double definite = 0x1p-60;
+
 // Eigenvectors (cosine, -sine) and (sine, cosine) of a symmetric matrix, s1 <= s2: Jacobi's rotation, in the
 // form that keeps the digits of the small eigenvalue.
 struct eigenvectors {
@@ -163,7 +166,7 @@ struct eigenvectors {
     cosine = ordered ? c : t * c;
     sine = ordered ? t * c : -c;
     s2 = larger(first, second);
-    s1 = larger(smaller(first, second), 0x1p-60 * s2);  // rounding must not make it singular
+    s1 = larger(smaller(first, second), definite * smaller(s11, s22));
   }
   pair to(pair a) const { return {cosine * a.x - sine * a.y, sine * a.x + cosine * a.y}; }
   pair from(pair a) const { return {cosine * a.x + sine * a.y, cosine * a.y - sine * a.x}; }
@@ -206,7 +209,8 @@ class cone_contact {
         d_{mu1 / m_, mu2 / m_},
         w_{d_.x * a.n1 / a.nn, d_.y * a.n2 / a.nn},
         n_(-a.qn / a.nn),
-        axes_(d_.x * d_.x * a.t11 - w_.x * (d_.x * a.n1), d_.y * d_.y * a.t22 - w_.y * (d_.y * a.n2),
+        axes_(condensed(d_.x * d_.x * a.t11, w_.x * (d_.x * a.n1)),
+              condensed(d_.y * d_.y * a.t22, w_.y * (d_.y * a.n2)),
               d_.x * d_.y * a.t12 - w_.x * (d_.y * a.n2)) {}
 
   contact_mode solve(double* r) const {
@@ -215,6 +219,7 @@ class cone_contact {
     const sliding f{axes_.s1, axes_.s2, absolute(c.x), absolute(c.y), sign.x * w.x, sign.y * w.y, n_, m_};
     sliding::state x = f.at(0.0);
     const bool sticks = f.fits(x);
+    if (!sticks && !(n_ > 0.0)) return contact_mode::none;  // happens beside a held axis only
     const double alpha = sticks ? 0.0 : multiplier(f);
     if (!sticks) x = f.at(alpha);
     give(r, {sign.x * x.p1, sign.y * x.p2}, sticks);
@@ -225,6 +230,9 @@ class cone_contact {
  private:
   // Scaled H and q are below 4: an impulse above this cancels most of what it does, and rounding shows.
   static constexpr double amplified = 4.0;
+  static double condensed(double full, double normal_part) {
+    return larger(full - normal_part, definite * full);
+  }
   static double largest(const double* r) {
     return larger(absolute(r[0]), larger(absolute(r[1]), absolute(r[2])));
   }
@@ -270,9 +278,8 @@ class cone_contact {
 // Any coefficients. A held axis is eliminated and its impulse recovered; an axis without friction gives none.
 inline contact_mode solve_axes(const contact& a, double mu1, double mu2, double* r) {
   if (mu1 == infinity) {
-    const contact rest = hold_first(a);
-    if (!(rest.qn < 0.0)) return contact_mode::none;
-    const contact_mode mode = solve_axes(rest, 0.0, mu2, r);
+    const contact_mode mode = solve_axes(hold_first(a), 0.0, mu2, r);
+    if (!(r[0] > 0.0)) return contact_mode::none;
     r[1] = -(a.q1 + a.n1 * r[0] + a.t12 * r[2]) / a.t11;
     return mode;
   }
