@@ -72,6 +72,26 @@ TEST(LocalProblem, HoldsItsConditionsForAnyFullH) {
   RecordProperty("worst_ulp", std::to_string(worst));
 }
 
+// Where the impulse cancels most of what it does, what is left is the rounding of the impulse itself.
+TEST(LocalProblem, IsRoundedOnceWhereHAmplifies) {
+  Draw draw(10);
+  long double worst = 0.0L;
+  int amplified = 0;
+  for (int k = 0; k < 300000; ++k) {
+    local_problem p{};
+    draw.fill_coupled(p, 1e-3);
+    draw.fill_pressed_velocity(p, 1.0);
+    p.mu[0] = p.mu[1] = draw.decade(-1.0, 0.5);
+    const Solved s = solved(p);
+    if (s.natural < 50.0L * largest({p.q[0], p.q[1], p.q[2]})) continue;
+    ++amplified;
+    worst = std::max(worst, violation(p, s));
+  }
+  EXPECT_LE(worst, 1.0L);
+  EXPECT_GT(amplified, 10000);
+  RecordProperty("worst_ulp", std::to_string(worst));
+}
+
 TEST(LocalProblem, HoldsThemForIllConditionedHEllipsesAndAllScales) {
   Draw draw(2);
   long double worst = 0.0L;
