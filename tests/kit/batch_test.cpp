@@ -165,6 +165,13 @@ INSTANTIATE_TEST_SUITE_P(
               {{"integration", "implicit"}}}},
         Case{"penalty",
              {{{"stiffness", 1e6}, {"exponent", 2.3}, {"damping", 20.0}}, {{"integration", "implicit"}}}},
+        Case{"cohesive",
+             {{{"strength", 10.0}, {"toughness", 0.02}, {"strength_2", 15.0}, {"mixing_exponent", 1.7}}, {}}},
+        Case{"cohesive",
+             {{{"strength", 10.0}, {"toughness", 0.02}, {"stiffness", 1e4}, {"friction", 0.4}},
+              {{"shape", "exponential"}}}},
+        Case{"cohesive",
+             {{{"strength", 10.0}, {"toughness", 0.02}, {"stiffness", 1e4}, {"delay_time", 2e-3}}, {}}},
         Case{"kit_probe", {{{"viscosity", 2.0}}, {}}}),
     [](const auto& drawn) { return std::string(drawn.param.law) + "_" + std::to_string(drawn.index); });
 

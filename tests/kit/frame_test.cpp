@@ -100,6 +100,10 @@ void expect_frame_indifference(const Matrix& start, const Matrix& each_step, boo
       plugin_file("penalty"), "penalty",
       {{{"stiffness", 1e6}, {"friction", 0.9}, {"tangential_stiffness", 1e5}}, {{"integration", "implicit"}}},
       start, each_step, tangent);
+  expect_frame_indifference(
+      plugin_file("cohesive"), "cohesive",
+      {{{"strength", 5.0}, {"toughness", 10.0}, {"stiffness", 200.0}, {"friction", 0.3}}, {}}, start,
+      each_step, tangent);
 }
 
 TEST(Frame, MemoryFollowsTheMaterialWithTangents) {
