@@ -36,9 +36,8 @@ bool share_nodes(const std::vector<std::unique_ptr<Interface>>& interfaces) {
   return false;
 }
 
-bool any_prescribed(const Loads& loads) {
-  return std::any_of(loads.begin(), loads.end(),
-                     [](const auto& load) { return !load->prescribed_nodes().empty(); });
+bool any_corrects(const Loads& loads) {
+  return std::any_of(loads.begin(), loads.end(), [](const auto& load) { return load->corrects(); });
 }
 
 // Calls f(i) for all degrees of freedom, with threads where there are many. f touches those of i alone.
@@ -75,7 +74,7 @@ Integrator::Integrator(const Model& model, const Loads& loads,
       interfaces_(interfaces),
       dt_(dt),
       coupled_(share_nodes(interfaces)),
-      has_prescribed_(any_prescribed(loads)),
+      corrects_(any_corrects(loads)),
       u_(Dofs::Zero(model.mass().size())),
       v_(model.initial_velocity()),
       v_before_(v_),
@@ -87,7 +86,7 @@ Integrator::Integrator(const Model& model, const Loads& loads,
   for (const auto& load : loads_) load->add_force(0.0, force);
   model_.add_internal_forces(u_, force);
   v_ += 0.5 * dt_ * force.cwiseQuotient(model_.mass());
-  for (const auto& load : loads_) load->prescribe({0.0, dt_}, v_);
+  for (const auto& load : loads_) load->correct({-dt_, 0.0}, v_, v_);
   energy_.start(model_, u_, u_ + dt_ * v_, v_);
 }
 
@@ -127,14 +126,14 @@ void Integrator::free_velocity(StepTimes step) {
     internal_impulse_[i] *= dt_;
     v_[i] += (external_impulse_[i] + internal_impulse_[i]) * inverse_mass_[i];
   });
-  if (has_prescribed_) prescribe(step);
+  if (corrects_) correct(step);
 }
 
-// What holds a node to its path is an external impulse: the velocity that it takes off, times the mass.
-void Integrator::prescribe(StepTimes step) {
-  const Dofs free = v_;
-  for (const auto& load : loads_) load->prescribe({step.after, step.after + dt_}, v_);
-  external_impulse_ += model_.mass().cwiseProduct(v_ - free);
+// What a load takes off or adds, times the mass, is its impulse.
+void Integrator::correct(StepTimes step) {
+  const Dofs uncorrected = v_;
+  for (const auto& load : loads_) load->correct(step, v_before_, v_);
+  external_impulse_ += model_.mass().cwiseProduct(v_ - uncorrected);
 }
 
 void Integrator::solve_interfaces(double time) {

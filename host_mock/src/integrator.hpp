@@ -57,7 +57,7 @@ class Integrator {
 
  private:
   void free_velocity(StepTimes step);
-  void prescribe(StepTimes step);
+  void correct(StepTimes step);
   void solve_interfaces(double time);
   double sweep(const StepView& step);
   void account();
@@ -68,7 +68,7 @@ class Integrator {
   const Loads& loads_;
   std::vector<std::unique_ptr<Interface>>& interfaces_;
   double dt_;
-  bool coupled_, has_prescribed_;
+  bool coupled_, corrects_;
   std::int64_t steps_ = 0;
   Dofs u_, v_, v_before_, external_impulse_, internal_impulse_;
   Dofs inverse_mass_;

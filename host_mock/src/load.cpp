@@ -48,10 +48,22 @@ PrescribedMotion::PrescribedMotion(std::vector<int> nodes, std::vector<int> axes
                                    Motion motion)
     : nodes_(std::move(nodes)), axes_(std::move(axes)), dimension_(dimension), motion_(std::move(motion)) {}
 
-void PrescribedMotion::prescribe(StepTimes step, Dofs& velocity) const {
-  const Vector mean = motion_.velocity(step.before, step.after);
+// Positions follow the motion: the velocity is its mean over the step to come.
+void PrescribedMotion::correct(StepTimes step, const Dofs& /*v_before*/, Dofs& v) const {
+  const Vector mean = motion_.velocity(step.after, step.after + (step.after - step.before));
   for (int node : nodes_)
-    for (int axis : axes_) velocity[node * dimension_ + axis] = mean[axis];
+    for (int axis : axes_) v[node * dimension_ + axis] = mean[axis];
+}
+
+Damping::Damping(std::vector<int> nodes, int dimension, double rate)
+    : nodes_(std::move(nodes)), dimension_(dimension), rate_(rate) {}
+
+// m (v' - v_before) = m (v - v_before) - rate h m (v_before + v')/2, solved for v'.
+void Damping::correct(StepTimes step, const Dofs& v_before, Dofs& v) const {
+  const double a = 0.5 * rate_ * (step.after - step.before);
+  const Eigen::Index d = dimension_;
+  for (int node : nodes_)
+    v.segment(node * d, d) = (v.segment(node * d, d) - a * v_before.segment(node * d, d)) / (1.0 + a);
 }
 
 }  // namespace ilaw::host

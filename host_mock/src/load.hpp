@@ -23,8 +23,10 @@ class Load {
   virtual void add_force(double /*time*/, Dofs& /*force*/) const {}
   // Adds the impulses that fall into a step.
   virtual void add_impulse(StepTimes /*step*/, Dofs& /*impulse*/) const {}
-  // Sets the velocities that are prescribed for a step.
-  virtual void prescribe(StepTimes /*step*/, Dofs& /*velocity*/) const {}
+  // Changes the velocity that a step would leave with, without interfaces; the change counts as an external
+  // impulse.
+  virtual void correct(StepTimes /*step*/, const Dofs& /*v_before*/, Dofs& /*v*/) const {}
+  virtual bool corrects() const { return false; }
   // Nodes whose motion is prescribed.
   virtual const std::vector<int>& prescribed_nodes() const;
 };
@@ -68,11 +70,25 @@ class Shock : public Load {
   Vector impulse_;
 };
 
+// Viscous damping by mass: the force -rate m (v_before + v)/2.
+class Damping : public Load {
+ public:
+  Damping(std::vector<int> nodes, int dimension, double rate);
+  void correct(StepTimes step, const Dofs& v_before, Dofs& v) const override;
+  bool corrects() const override { return true; }
+
+ private:
+  std::vector<int> nodes_;
+  int dimension_;
+  double rate_;
+};
+
 // Nodes that follow a given motion; axes that are not driven stay free.
 class PrescribedMotion : public Load {
  public:
   PrescribedMotion(std::vector<int> nodes, std::vector<int> axes, int dimension, Motion motion);
-  void prescribe(StepTimes step, Dofs& velocity) const override;
+  void correct(StepTimes step, const Dofs& v_before, Dofs& v) const override;
+  bool corrects() const override { return true; }
   const std::vector<int>& prescribed_nodes() const override { return nodes_; }
 
  private:

@@ -1,10 +1,13 @@
 // The `ilaw` program.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "converge.hpp"
 #include "describe.hpp"
 #include "plot.hpp"
 #include "run.hpp"
 
 #include <CLI/CLI.hpp>
+
+#include <omp.h>
 
 #include <cstdio>
 #include <exception>
@@ -22,6 +25,12 @@ int main(int argc, char** argv) {
       "anything ran.\nExample: ilaw run scene.json --out results && ilaw plot results");
 
   RunOptions options;
+  int threads = 1;
+  const auto add_threads = [&threads](CLI::App* command) {
+    command->add_option("--threads", threads, "Threads; any number gives the same bits")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+  };
   CLI::App* run_command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
   run_command->add_option("scene", options.scene, "Scene file (JSON)")->required();
   run_command->add_option("--out", options.folder, "Folder for the results, made if it does not exist")
@@ -32,6 +41,7 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   run_command->add_flag("--resume", options.resume,
                         "Go on from the checkpoint in the folder, to the same bits");
+  add_threads(run_command);
   run_command->footer("Example: ilaw run host_mock/scenes/bouncing_ball.json --out results");
 
   std::string results;
@@ -39,6 +49,21 @@ int main(int argc, char** argv) {
       app.add_subcommand("plot", "Draw the history of a run: history.png and history.svg");
   plot_command->add_option("folder", results, "Folder that `ilaw run` wrote")->required();
   plot_command->footer("Example: ilaw plot results");
+
+  ConvergeOptions sweep;
+  CLI::App* converge_command = app.add_subcommand(
+      "converge", "Run a scene with ever smaller steps (and meshes) and measure its errors and their order");
+  converge_command->add_option("scene", sweep.scene, "Scene file (JSON)")->required();
+  converge_command->add_option("--out", sweep.folder, "Folder for converge.csv, .json, .png and .svg")
+      ->required();
+  converge_command->add_option("--levels", sweep.levels, "Runs, the scene's own among them")
+      ->check(CLI::Range(2, 12));
+  converge_command->add_option("--factor", sweep.factor, "Refinement from run to run")
+      ->check(CLI::Range(1.01, 10.0));
+  converge_command->add_option("--refine", sweep.refine, "time, or mesh (with the time step)")
+      ->check(CLI::IsMember({"time", "mesh"}));
+  add_threads(converge_command);
+  converge_command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out results");
 
   CLI::App* list_command = app.add_subcommand("list", "List the laws on the search path");
   list_command->footer("Example: ILAW_PATH=$HOME/my_laws ilaw list");
@@ -56,9 +81,11 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_done : exit_bad_input;
   }
+  omp_set_num_threads(threads);
   try {
     if (run_command->parsed()) return run(options);
     if (plot_command->parsed()) return plot(results);
+    if (converge_command->parsed()) return converge(sweep);
     return list_command->parsed() ? list_laws() : describe(law, as_json);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "ilaw: %s\n", error.what());

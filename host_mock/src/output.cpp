@@ -131,9 +131,9 @@ void History::write_header() {
     }
   }
   if (scene_.output.balance) {
-    out << ",energy.kinetic,energy.internal,energy.potential,energy.external_work,energy.interface_work,"
-           "energy.balance_error";
-    for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c) out << ",angular_momentum" << c;
+    out << ",balance.kinetic,balance.internal,balance.potential,balance.external_work,balance.interface_work,"
+           "balance.error";
+    for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c) out << ",balance.angular_momentum" << c;
   }
   out << '\n';
 }

@@ -31,7 +31,7 @@ class Reach {
   void forget() { looked_ = false; }
 
  private:
-  static constexpr double steps_ahead = 32.0;
+  static constexpr double steps_ahead = 16.0;
   static constexpr double rounding = 1.0 + 1e-9;  // sums and gaps are rounded: a bound must not be
 
   bool looked_ = false;

@@ -180,6 +180,7 @@ std::unique_ptr<Load> read_load(const json& load, const Model& model, const std:
                                    read_vector(load["direction"], d, pointer + "/direction"),
                                    read_table(load["history"], 1, pointer + "/history"));
   }
+  if (type == "damping") return std::make_unique<Damping>(set.nodes, d, load["rate"].get<double>());
   if (type == "motion") return read_prescribed(load, set, d, pointer);
   const double time = load["time"].get<double>();
   if (time <= 0.0)

@@ -28,10 +28,11 @@ TEST_P(ShippedScene, ClosesItsBalanceAndNeverGainsEnergyAtInterfaces) {
     ASSERT_GE(now, dissipated);
     dissipated = now;
   }
-  EXPECT_GT(dissipated, 0.0);
-  // What bodies lost to interfaces is what the laws dissipated, but for the reactions' work, which is small.
+  // What bodies lost to interfaces is what the laws dissipated, but for the work of reactions on nodes that
+  // still move away, which is of the order of the step. A bond that breaks brittly takes nothing.
   const EnergyReport energy = integrator.energy();
-  EXPECT_NEAR(-energy.interface_work, dissipated, 1e-3 * dissipated);
+  EXPECT_NEAR(-energy.interface_work, dissipated, 0.03 * dissipated);
+  EXPECT_EQ(dissipated > 0.0, GetParam().stem() != "glued_bar");
 }
 
 INSTANTIATE_TEST_SUITE_P(Host, ShippedScene, ::testing::ValuesIn(shipped_scenes()),
@@ -69,24 +70,37 @@ void expect_events(const char* scene, const std::vector<Event>& expected) {
   }
 }
 
-// By hand: presses of 1 and 2 give adhesion 1 and 2; pulls 0.8 and 1.5 hold; 2.5 > 2 breaks at 0.9 and leaves
-// at 2.5; pushed by -5 at 1.0 it returns at -2.5 and covers 0.25 in 0.1: impact 2.5 at 1.1; 2.4 holds, 3
-// breaks at 1.5.
+// By hand: presses of 0.5 and 1 give adhesion 1, the larger. Pulls of 0.8 hold. Each pull of 1.5 breaks and
+// throws the mass up at 1.5; 0.04 later, at 0.06, the push of -2.5 sends it back at 1, and it lands 0.06
+// later: adhesion 1.
 TEST(PostitScenes, Test1) {
-  expect_events("postit_test1.json", {{0.1, ILAW_HEALED, 1.0},
-                                      {0.5, ILAW_BONDED, 2.0},
+  expect_events("postit_test1.json", {{0.05, ILAW_HEALED, 0.5},
+                                      {0.1, ILAW_BONDED, 1.0},
+                                      {0.3, ILAW_BROKEN, 0.0},
+                                      {0.4, ILAW_HEALED, 1.0},
+                                      {0.6, ILAW_BROKEN, 0.0},
+                                      {0.7, ILAW_HEALED, 1.0},
                                       {0.9, ILAW_BROKEN, 0.0},
-                                      {1.1, ILAW_HEALED, 2.5},
-                                      {1.5, ILAW_BROKEN, 0.0}});
+                                      {1.0, ILAW_HEALED, 1.0},
+                                      {1.2, ILAW_BROKEN, 0.0},
+                                      {1.3, ILAW_HEALED, 1.0}});
 }
 
-// The same, but the impact after one rupture gives 2.5 exp(-1/10) = 2.262 < 2.4: breaks at 1.3.
+// The same, but b ruptures leave exp(-b/10) of an impact: 0.905, 0.819, then 0.741 < 0.8, which breaks
+// at 1.1. Up at 0.8, at 1.2 with 2.3 from 0.08, at 1.24 with -0.2 from 0.172, at 1.35 with -1 from 0.15: it
+// lands at 1.5 with 1.
 TEST(PostitScenes, Test2) {
-  expect_events("postit_test2.json", {{0.1, ILAW_HEALED, 1.0},
-                                      {0.5, ILAW_BONDED, 2.0},
+  expect_events("postit_test2.json", {{0.05, ILAW_HEALED, 0.5},
+                                      {0.1, ILAW_BONDED, 1.0},
+                                      {0.3, ILAW_BROKEN, 0.0},
+                                      {0.4, ILAW_HEALED, std::exp(-0.1)},
+                                      {0.6, ILAW_BROKEN, 0.0},
+                                      {0.7, ILAW_HEALED, std::exp(-0.2)},
                                       {0.9, ILAW_BROKEN, 0.0},
-                                      {1.1, ILAW_HEALED, 2.5 * std::exp(-0.1)},
-                                      {1.3, ILAW_BROKEN, 0.0}});
+                                      {1.0, ILAW_HEALED, std::exp(-0.3)},
+                                      {1.1, ILAW_BROKEN, 0.0},
+                                      {1.5, ILAW_HEALED, std::exp(-0.4)},
+                                      {1.6, ILAW_BROKEN, 0.0}});
 }
 
 // By hand, R = 0.4: the triangle of peak 4 and slope 20 puts at most 2 (4 - 20*0.02) 0.04 = 0.288 into 0.08;

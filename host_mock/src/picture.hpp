@@ -1,0 +1,25 @@
+// picture.hpp - what the picture of a history shows, as a script for gnuplot.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <ostream>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+struct Caption {
+  std::string title;
+  int every;                       // steps per row; 0 when it is not known
+  std::set<std::string> statuses;  // those that occurred
+};
+
+// A script that draws folder/history.csv, whose columns are in header, as folder/history.png and .svg: panels
+// over a common time for gap (and displacement in 2D and 3D), velocity, impulse and its running sum, each
+// state variable of the laws, and the status as a band per node. folder is absolute.
+void write_picture(std::ostream& script, const std::filesystem::path& folder,
+                   const std::vector<std::string>& header, const Caption& caption);
+
+}  // namespace ilaw::host
