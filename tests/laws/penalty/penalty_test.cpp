@@ -133,6 +133,63 @@ TEST(Penalty, UsesEachStepWhereItBelongs) {
   EXPECT_NEAR(state[1], hp * v[1], 1e-17);
 }
 
+// The explicit form: the configuration and the half step before, not what the step leads to.
+TEST(Penalty, ExplicitReadsWhatIsKnownBefore) {
+  for (const double exponent : {1.0, 1.5}) {
+    NodeRun node("penalty",
+                 with("explicit", {{"stiffness", 500.0}, {"damping", 7.0}, {"exponent", exponent}}));
+    node.gap = -0.04;
+    node.v_previous = {0.2, 0.0, 0.0};
+    ASSERT_EQ(node.step({-9.0, 1.0, 0.0}), ILAW_OK);
+    EXPECT_NEAR(node.r[0], 1e-3 * (500.0 * std::pow(0.04, exponent) - 7.0 * 0.2), 1e-17);
+    EXPECT_EQ(node.status, ILAW_CLOSED);
+    node.v_previous = {100.0, 0.0, 0.0};  // the damper would pull
+    ASSERT_EQ(node.step({-9.0, 1.0, 0.0}), ILAW_OK);
+    EXPECT_EQ(node.r[0], 0.0);
+  }
+}
+
+// A stiffness given per node takes another way through the kit: the same bits.
+TEST(Penalty, PerNodeStiffnessGivesTheSameBits) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const char* integration : {"explicit", "implicit"})
+    for (const double exponent : {1.0, 1.5}) {
+      const Parameters constant = with(
+          integration,
+          {{"stiffness", 3e3}, {"exponent", exponent}, {"friction", 0.3}, {"tangential_stiffness", 1e3}});
+      NodeRun node("penalty", constant);
+      SetupBuilder setup(constant);
+      std::vector<ilaw_argument> arguments;
+      for (std::uint32_t k = 0; k < setup.setup.argument_count; ++k)
+        arguments.push_back(*setup.setup.arguments[k]);
+      std::vector<const ilaw_argument*> pointers;
+      for (ilaw_argument& a : arguments) {
+        if (std::string(a.name) == "stiffness") a.kind = ILAW_VALUE_PER_NODE;
+        pointers.push_back(&a);
+      }
+      setup.setup.arguments = pointers.data();
+      const ilaw::interface varying = make_law("penalty", setup);
+      const double stiffness = 3e3;
+      const ilaw_input per_node{&stiffness, 0, 0};
+      std::vector<double> state(node.state.size());
+      Vector r{};
+      for (int k = 0; k < 1000; ++k) {
+        const Vector v{uniform(random), uniform(random), uniform(random)};
+        node.gap = 1e-3 * uniform(random) - 5e-4;
+        ASSERT_EQ(node.step(v), ILAW_OK);
+        ilaw_batch b = node.batch();
+        b.state_in = {state.data(), 0, 1};
+        b.state_out = {state.data(), 0, 1};
+        b.impulse = {r.data(), 0, 1};
+        b.per_node_parameters = &per_node;
+        ASSERT_EQ(varying.evaluate(b), ILAW_OK);
+        ASSERT_EQ(r, node.r);
+        ASSERT_EQ(state, node.state);
+      }
+    }
+}
+
 // A million random steps of nodes with memory: r_N pushes, |r_T| <= mu r_N, a power of ten in stiffness at a
 // time; where no force acts (v_free = v^-), no implicit step creates energy, and none counts as negative.
 TEST(Penalty, RandomHistoriesKeepTheCone) {
