@@ -41,7 +41,7 @@ struct cohesive {
       "G. T. Camacho, M. Ortiz, 1996, Computational modelling of impact damage in brittle materials",
       "M. L. Benzeggagh, M. Kenane, 1996, Measurement of mixed-mode delamination fracture toughness",
       "A. Turon, P. P. Camanho, J. Costa, C. G. Davila, 2006, A damage model for the simulation of "
-      "delamination under variable-mode loading",
+      "delamination in advanced composites under variable-mode loading",
       "G. Alfano, E. Sacco, 2006, Combining interface damage and friction in a cohesive-zone model",
       "O. Allix, J.-F. Deu, 1997, Delayed-damage modelling for fracture prediction of laminated composites "
       "under dynamic loading"};
@@ -141,8 +141,7 @@ struct cohesive {
       return "parameter 'delay_time' > 0 needs a finite 'stiffness': the opening of a rigid bond says "
              "nothing of "
              "its load";
-    const bool too_soft = softening_at(0.0).width < 0.0 || softening_at(1.0).width < 0.0;
-    return strength < infinity && strength > 0.0 && toughness > 0.0 && too_soft
+    return stores_more(strength, toughness) || stores_more(shear_strength(), shear_toughness())
                ? "parameter 'toughness' (or 'toughness_2') is below strength^2/(2 stiffness), the energy "
                  "that the "
                  "bond stores when its strength is reached"
@@ -165,6 +164,9 @@ struct cohesive {
   }
 
  private:
+  bool stores_more(double peak, double energy) const {
+    return peak < infinity && energy > 0.0 && 0.5 * peak * peak * flexibility() > energy;
+  }
   double flexibility() const { return stiffness < infinity ? 1.0 / stiffness : 0.0; }
   double shear_strength() const { return strength_2 > 0.0 ? strength_2 : strength; }
   double shear_toughness() const { return toughness_2 > 0.0 ? toughness_2 : toughness; }
@@ -183,14 +185,14 @@ struct cohesive {
     const double s1 = strength, s2 = shear_strength();
     const double peak = part > 0.0 ? square_root(s1 * s1 + part * (s2 * s2 - s1 * s1)) : s1;
     const double full = softening::fullness(shape == exponential);
-    const double width = (energy / peak - 0.5 * peak * flexibility()) / full;
+    const double width = positive_part(energy / peak - 0.5 * peak * flexibility()) / full;
     return {peak, peak * flexibility(), width, shape == exponential};
   }
 
   softening softening_along(vector w, double size) const { return softening_at(shear_share(w, size)); }
 
   // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
-  double softness_scale() const { return larger(softening_at(0.0).width / strength, 0.0); }
+  double softness_scale() const { return softening_at(0.0).width / strength; }
   secant secant_of(double damage) const {
     return {1.0 - damage, flexibility() + (strength < infinity ? damage * softness_scale() : 0.0)};
   }

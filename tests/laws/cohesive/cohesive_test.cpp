@@ -210,7 +210,7 @@ TEST(Cohesive, RuptureInstantUnderAConstantForceConverges) {
     }
     const double found = t + h * (end - before) / (node.named("opening") - before);
     const double error = std::abs(found - exact);
-    EXPECT_LE(error, 0.6 * h * h) << h;
+    EXPECT_LE(error, 0.3 * h * h) << h;
     if (last > 0.0) {
       EXPECT_NEAR(last / error, 4.0, 1.0);
     }
