@@ -7,6 +7,9 @@ using namespace ilaw::kit;
 
 struct coulomb {
   double friction;
+  double kinetic_friction;
+  double decay;
+  double friction_2;
   double restitution;
   double tangential_restitution;
   double activation;
@@ -16,14 +19,17 @@ struct coulomb {
       .title = "Unilateral contact with dry friction",
       .doc =
           "Signorini-Moreau contact with Coulomb friction: the tangential impulse stays within the friction "
-          "cone and "
-          "opposes slip. Exact closed form for an H that is isotropic in the tangent plane.",
+          "cone, circular or elliptical, and dissipates at most. Exact for any symmetric positive definite "
+          "H.",
       .inputs = reads_gap | reads_v_previous,
       .names_tangents = false};
 
   static constexpr const char* references[] = {
       "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics",
-      "G. de Saxce, Z.-Q. Feng, 1991, New inequality and functional for contact with friction"};
+      "G. de Saxce, Z.-Q. Feng, 1991, New inequality and functional for contact with friction",
+      "G. Daviet, F. Bertails-Descoubes, L. Boissieux, 2011, A hybrid iterative solver for robustly "
+      "capturing "
+      "Coulomb friction in hair dynamics"};
 
   static constexpr parameter<coulomb> parameters[] = {
       {.member = &coulomb::friction,
@@ -31,6 +37,27 @@ struct coulomb {
        .symbol = "mu",
        .doc = "Coefficient of friction; inf forbids slip while the contact is pressed.",
        .required = true,
+       .infinity_allowed = true},
+      {.member = &coulomb::kinetic_friction,
+       .name = "kinetic_friction",
+       .symbol = "mu_k",
+       .doc = "Coefficient that friction falls to with the slip speed; above friction, and so by default, "
+              "there is "
+              "no fall.",
+       .default_value = infinity,
+       .infinity_allowed = true},
+      {.member = &coulomb::decay,
+       .name = "decay",
+       .symbol = "beta",
+       .unit = "s/m",
+       .doc = "Rate of this fall: mu_k + (mu - mu_k) exp(-beta |v_T|); inf: at once with any slip.",
+       .default_value = infinity,
+       .infinity_allowed = true},
+      {.member = &coulomb::friction_2,
+       .name = "friction_2",
+       .symbol = "mu_2",
+       .doc = "Coefficient along the second tangent, friction being the first's; inf: the same as friction.",
+       .default_value = infinity,
        .infinity_allowed = true},
       {.member = &coulomb::restitution,
        .name = "restitution",
@@ -48,16 +75,51 @@ struct coulomb {
        .choices = activation_choices,
        .choice_count = 2}};
 
+  bool falls() const { return kinetic_friction < friction || kinetic_friction < second(); }
+  bool tells_tangents_apart() const { return friction_2 != infinity && friction_2 != friction; }
   std::uint32_t inputs() const {
-    return reads_gap | (restitution > 0.0 || tangential_restitution > 0.0 ? reads_v_previous : 0U);
+    const bool reads = restitution > 0.0 || tangential_restitution > 0.0 || falls();
+    return reads_gap | (reads ? reads_v_previous : 0U);
   }
+
+  // One coefficient at all speeds, which keeps the loop of the common case free of all that follows.
+  struct plain;
+  bool is_plain() const { return !falls() && !tells_tangents_apart(); }
 
   template <class Node>
   void step(Node& node) const {
     const contact_condition contact = contact_at(node, restitution, activation);
+    const double speed = node.v_previous.tangential_length();
+    const double left = speed > 0.0 ? exp(-decay * speed) : 1.0;  // of the fall
+    apply_contact_friction(node, contact.slack, approach(node, contact), fallen(friction, left),
+                           fallen(second(), left));
+  }
+
+ private:
+  double second() const { return friction_2 == infinity ? friction : friction_2; }
+
+  // Each coefficient falls to the kinetic one where that is smaller; an infinite one falls only as a whole.
+  double fallen(double coefficient, double left) const {
+    const double kinetic = smaller(kinetic_friction, coefficient);
+    if (left == 0.0) return kinetic;
+    return kinetic < coefficient && left < 1.0 ? kinetic + (coefficient - kinetic) * left : coefficient;
+  }
+
+  template <class Node>
+  auto approach(const Node& node, contact_condition contact) const {
     auto q = node.v_free + tangential_restitution * node.v_previous;
     q.n = contact.excess;
-    apply_contact_friction(node, contact.slack, q, friction);
+    return q;
+  }
+};
+
+struct coulomb::plain {
+  coulomb law;
+
+  template <class Node>
+  void step(Node& node) const {
+    const contact_condition contact = contact_at(node, law.restitution, law.activation);
+    apply_contact_friction(node, contact.slack, law.approach(node, contact), law.friction);
   }
 };
 

@@ -12,6 +12,7 @@
 //   template <class Run> void in_form(Run) const;         calls it with a derived law whose step gives the
 //                                                         same bits without what these parameters turn off
 //   const char* conflict() const;                         why parameters do not go together, or null
+//   bool is_plain() const; struct plain { Law law; step }  a case whose loop is to stay free of the rest
 //   template <class Node> void initialise(Node&) const;   first state (default: zeros)
 //   static constexpr state_variable memory;               declares a history, of
 //   std::int64_t memory_size(const setup&) const          doubles, which step reads as node.past and

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <ilaw/kit/contact.hpp>
+#include <ilaw/kit/coulomb_full.hpp>
 #include <ilaw/kit/node.hpp>
+
+#include <type_traits>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
@@ -35,14 +38,68 @@ friction_result<Vector> solve_contact_friction(const Delassus& delassus, double 
   return result;
 }
 
-// The same, giving the node its impulse and status.
+// The entries of H in the order of local_problem, and whether the closed form above holds: without coupling,
+// and with one tangential entry or one tangential velocity.
+inline local_problem problem_of(const scalar_delassus& h) {
+  return {.h = {h.h, h.h, h.h}, .q = {}, .mu = {}};
+}
+inline local_problem problem_of(const diagonal_delassus& h) {
+  return {.h = {h.n, h.t1, h.t2}, .q = {}, .mu = {}};
+}
+inline local_problem problem_of(const full_delassus& h) {
+  return {.h = {h.nn, h.t11, h.t22, h.n1, h.n2, h.t12}, .q = {}, .mu = {}};
+}
+template <class Vector>
+bool has_closed_form(const scalar_delassus&, Vector) {
+  return true;
+}
+inline bool has_closed_form(const diagonal_delassus& h, vector q) { return h.t1 == h.t2 || q.t2 == 0.0; }
+inline bool has_closed_form(const full_delassus& h, vector) { return h.anisotropy() == 0.0; }
+
+// Gives the node its impulse and status, by the closed form.
 template <class Node, class Vector>
-void apply_contact_friction(Node& node, double slack, Vector q, double friction) {
+void apply_isotropic_friction(Node& node, double slack, Vector q, double friction) {
   const auto result = solve_contact_friction(node.delassus, slack, q, friction);
   node.impulse = result.impulse;
   const double closed_status = result.slips ? double{ILAW_SLIP} : double{ILAW_STICK};
   node.status = result.impulse.n > 0.0 ? closed_status : double{ILAW_FREE};
-  node.refused = node.delassus.anisotropy() == 0.0 ? not_refused : anisotropic_delassus;
+}
+
+// The same for any H, and for an ellipse of coefficients along the tangents.
+template <class Node>
+void apply_any_friction(Node& node, double slack, vector q, double friction_1, double friction_2) {
+  local_problem problem = problem_of(node.delassus);
+  problem.q[0] = q.n;
+  problem.q[1] = q.t1;
+  problem.q[2] = q.t2;
+  problem.mu[0] = friction_1;
+  problem.mu[1] = friction_2;
+  double r[3] = {};
+  const contact_mode mode = slack <= 0.0 ? solve(problem, r) : contact_mode::free;
+  node.impulse = {r[0], r[1], r[2]};
+  node.status = mode == contact_mode::slip    ? double{ILAW_SLIP}
+                : mode == contact_mode::stick ? double{ILAW_STICK}
+                                              : double{ILAW_FREE};
+  node.refused = mode == contact_mode::none ? no_solution : not_refused;
+}
+
+// Contact with friction, by the closed form where it holds.
+template <class Node, class Vector>
+void apply_contact_friction(Node& node, double slack, Vector q, double friction) {
+  if constexpr (std::is_same_v<decltype(node.delassus), scalar_delassus>)
+    apply_isotropic_friction(node, slack, q, friction);
+  else if (has_closed_form(node.delassus, q))
+    apply_isotropic_friction(node, slack, q, friction);
+  else
+    apply_any_friction(node, slack, q, friction, friction);
+}
+
+// With two coefficients; a vector without tangents knows only the first.
+template <class Node, class Vector>
+void apply_contact_friction(Node& node, double slack, Vector q, double friction_1, double friction_2) {
+  if constexpr (std::is_same_v<Vector, vector>)
+    if (friction_1 != friction_2) return apply_any_friction(node, slack, q, friction_1, friction_2);
+  apply_contact_friction(node, slack, q, friction_1);
 }
 
 }  // namespace ilaw::kit

@@ -230,13 +230,23 @@ class instance_builder {
         return ILAW_INVALID_PARAMETER;
       }
     if constexpr (requires { made_.law.tells_tangents_apart(); })
-      if (made_.law.tells_tangents_apart() && setup_.frame == ILAW_FRAME_GLOBAL && setup_.dimension == 3 &&
+      if (with_unknowns().tells_tangents_apart() && setup_.frame == ILAW_FRAME_GLOBAL && setup_.dimension == 3 &&
           !setup_.tangent_given) {
         text_.add(
             "law '%s': these parameters tell the two tangential axes apart: expected a tangent per node", id);
         return ILAW_UNSUPPORTED;
       }
     return ILAW_OK;
+  }
+
+  // The law with parameters that vary as NaN, which equals nothing.
+  Law with_unknowns() const {
+    Law law = made_.law;
+    for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
+      law.*made_.per_node_members[k] = std::numeric_limits<double>::quiet_NaN();
+    for (std::uint32_t k = 0; k < made_.table_count; ++k)
+      law.*made_.table_members[k] = std::numeric_limits<double>::quiet_NaN();
+    return law;
   }
 
   std::int32_t lay_out_state() {
