@@ -29,10 +29,12 @@ class Stopwatch {
 // Whether an impulse of one contact may change the velocity of another.
 bool share_nodes(const std::vector<std::unique_ptr<Interface>>& interfaces) {
   std::set<int> seen;
-  for (const auto& interface : interfaces)
+  for (const auto& interface : interfaces) {
+    if (interface->setup().opponent->shares_partners()) return true;
     for (const std::vector<int>* nodes : {&interface->nodes(), &interface->setup().opponent->partners()})
       for (const int node : *nodes)
         if (!seen.insert(node).second) return true;
+  }
   return false;
 }
 

@@ -192,14 +192,15 @@ void Interface::look(const StepView& step) {
   for (std::size_t k = 0; k < setup_.nodes.size(); ++k) {
     const int place = static_cast<int>(k), slot = slot_of_[k];
     const bool touched = slot >= 0 && touched_[static_cast<std::size_t>(slot)];
-    if (touched || !may_skip() || reach_.is_near(setup_.opponent->gap_bound(place, step.u, step.time)))
+    if (touched || !may_skip() ||
+        reach_.is_near(setup_.opponent->gap_bound(place, step.u, step.time) - setup_.gap_offset))
       near_.push_back(slot_of(place, step.u));
   }
 }
 
 void Interface::open_step(const StepView& step) {
   asked_.clear();
-  colours_.clear();
+  for (auto& colour : colours_) colour.clear();
   const Opponent& opponent = *setup_.opponent;
   obstacle_velocity_before_ = opponent.velocity(step.time - step.dt, step.time);
   obstacle_velocity_ = opponent.velocity(step.time, step.time + step.dt);
@@ -220,7 +221,7 @@ void Interface::locate(int slot, const StepView& step) {
   const auto k = static_cast<std::size_t>(slot);
   meetings_[k] = setup_.opponent->meet(place_of_[k], step.u, step.time);
   const Meeting& meeting = meetings_[k];
-  gap_[k] = meeting.gap;
+  gap_[k] = meeting.gap - setup_.gap_offset;
   std::copy_n(meeting.normal.data(), dimension_, &normal_[at(slot)]);
   std::fill_n(&impulse_[at(slot)], dimension_, 0.0);
   const auto mass = [this](int node) { return model_.mass()[static_cast<Eigen::Index>(node) * dimension_]; };
@@ -234,7 +235,8 @@ void Interface::locate(int slot, const StepView& step) {
 void Interface::colour_contacts() {
   if (asked_.empty()) return;
   if (colours_of_node_.empty()) {
-    colours_.push_back(asked_);
+    colours_.resize(1);
+    colours_[0] = asked_;
     return;
   }
   std::fill(colours_of_node_.begin(), colours_of_node_.end(), 0);
@@ -288,6 +290,7 @@ void Interface::gather(const std::vector<std::int32_t>& slots, const Dofs& v, co
 
 double Interface::solve(int colour, Dofs& v, const StepView& step) {
   const std::vector<std::int32_t>& slots = colours_[static_cast<std::size_t>(colour)];
+  if (slots.empty()) return 0.0;
   if (colour < 63) {
     gather(slots, v, step);
     evaluate(slots, step);

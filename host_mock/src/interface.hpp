@@ -34,7 +34,8 @@ struct InterfaceSetup {
   std::vector<double> areas;  // tributary, per node
   std::unique_ptr<Opponent> opponent;
   double birth = 0.0, death = std::numeric_limits<double>::infinity();  // acts for birth <= t < death
-  bool asks_all = false;  // also contacts that cannot be reached: same results, more work
+  double gap_offset = 0.0;  // taken off every gap: thickness, radius
+  bool asks_all = false;    // also contacts that cannot be reached: same results, more work
 };
 
 // A step from the interface's side. Speeds are the largest of any node.
@@ -71,6 +72,8 @@ class Interface {
 
   // Of the last step, by slot.
   auto impulse(int slot) const { return Eigen::Map<const Vector>(&impulse_[at(slot)], dimension_); }
+  auto normal(int slot) const { return Eigen::Map<const Vector>(&normal_[at(slot)], dimension_); }
+  double delassus(int slot) const { return delassus_[static_cast<std::size_t>(slot)]; }
   double gap(int slot) const { return gap_[static_cast<std::size_t>(slot)]; }
   int status(int slot) const { return status_[static_cast<std::size_t>(slot)]; }
   double energy(int slot, int part) const {
@@ -85,7 +88,7 @@ class Interface {
 
   // For outputs, by place, whether it was asked or not.
   double gap_at(int place, const Dofs& u, double time) const {
-    return setup_.opponent->meet(place, u, time).gap;
+    return setup_.opponent->meet(place, u, time).gap - setup_.gap_offset;
   }
   int node_of(int slot) const {
     return setup_.nodes[static_cast<std::size_t>(place_of_[static_cast<std::size_t>(slot)])];

@@ -41,6 +41,8 @@ class Opponent {
   virtual Vector velocity(double from, double to) const = 0;
   // Nodes that may be partners; empty for rigid opponents.
   virtual const std::vector<int>& partners() const = 0;
+  // Whether two contacts may have a partner in common.
+  virtual bool shares_partners() const { return false; }
   virtual bool keeps_normal() const { return false; }
 };
 

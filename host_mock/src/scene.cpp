@@ -6,6 +6,7 @@
 #include "models/points.hpp"
 #include "models/rotating_spring.hpp"
 #include "selection.hpp"
+#include "surface.hpp"
 #include "validation.hpp"
 
 #include <algorithm>
@@ -67,7 +68,9 @@ std::unique_ptr<Model> read_points(const json& model) {
     const std::string pointer = at("/model/points", k);
     points.push_back({point["mass"].get<double>(), point.value("area", 1.0),
                       read_vector(point["position"], d, pointer + "/position"),
-                      read_vector_or_zero(point, "velocity", d, pointer)});
+                      read_vector_or_zero(point, "velocity", d, pointer),
+                      point.contains("stiffness") ? read_vector(point["stiffness"], d, pointer + "/stiffness")
+                                                  : Eigen::VectorXd()});
   }
   return std::make_unique<Points>(d, points);
 }
@@ -231,6 +234,16 @@ std::unique_ptr<Opponent> read_partners(const json& against, const NodeSet& own,
   return std::make_unique<NodeOpponent>(model, own.nodes, partners.nodes, normal);
 }
 
+std::unique_ptr<Opponent> read_surface(const std::string& name, const NodeSet& own, const Model& model,
+                                       const std::string& pointer) {
+  const NodeSet& surface = select_surface(name, model, pointer);
+  for (const int node : surface.nodes)
+    if (std::find(own.nodes.begin(), own.nodes.end(), node) != own.nodes.end())
+      throw SceneError(pointer, "node " + std::to_string(node) +
+                                    " would meet its own facet, expected the surface of another body");
+  return std::make_unique<SurfaceOpponent>(model, own.nodes, surface);
+}
+
 std::unique_ptr<Opponent> read_opponent(const json& interface, const NodeSet& own, const Model& model,
                                         const std::string& pointer) {
   if (interface.contains("obstacle") == interface.contains("against"))
@@ -241,7 +254,9 @@ std::unique_ptr<Opponent> read_opponent(const json& interface, const NodeSet& ow
   if (interface.contains("obstacle"))
     return std::make_unique<RigidOpponent>(
         model, own.nodes, read_obstacle(interface["obstacle"], model.dimension(), pointer + "/obstacle"));
-  return read_partners(interface["against"], own, model, pointer + "/against");
+  const json& against = interface["against"];
+  if (!against.contains("surface")) return read_partners(against, own, model, pointer + "/against");
+  return read_surface(against["surface"].get<std::string>(), own, model, pointer + "/against/surface");
 }
 
 // A node that follows a given path cannot give way to an interface.
@@ -332,6 +347,7 @@ std::unique_ptr<Interface> read_interface(const json& interface, std::size_t num
                                    pointer + "/parameters");
   setup.birth = interface.value("birth", setup.birth);
   setup.death = interface.value("death", setup.death);
+  setup.gap_offset = interface.value("gap_offset", 0.0);
   setup.asks_all = !interface.value("skip", true);
   try {
     auto made = std::make_unique<Interface>(std::move(setup), *scene.model, scene.dt);

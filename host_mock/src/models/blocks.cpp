@@ -10,6 +10,9 @@
 namespace ilaw::host {
 namespace {
 
+// Below it threads cost more than they bring.
+constexpr int fewest_for_threads = 512;
+
 // Corners of the unit cube in VTK's order.
 constexpr std::array<std::array<int, 3>, 8> corner_of{
     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
@@ -247,8 +250,9 @@ bool Blocks::is_linear() const {
 void Blocks::add_internal_forces(const Dofs& u, Dofs& force) const {
   for (const Block& block : blocks_) {
     const int layers = block.elements[static_cast<std::size_t>(block.layer_axis)];
+    const bool many = block.elements[0] * block.elements[1] * block.elements[2] >= fewest_for_threads;
     for (int parity = 0; parity < 2; ++parity) {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (many)
       for (int layer = parity; layer < layers; layer += 2)
         block.for_each_element(layer, [&](int element) {
           const ElementVector local = block.internal_force(block.gather(u, element));

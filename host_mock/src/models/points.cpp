@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "points.hpp"
 
+#include <cmath>
+
 namespace ilaw::host {
 namespace {
 
@@ -21,6 +23,25 @@ Nodes nodes_of(int dimension, const std::vector<PointMass>& points) {
 
 }  // namespace
 
-Points::Points(int dimension, const std::vector<PointMass>& points) : Model(nodes_of(dimension, points)) {}
+Points::Points(int dimension, const std::vector<PointMass>& points) : Model(nodes_of(dimension, points)) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (points[k].stiffness.size() == 0) continue;
+    if (stiffness_.size() == 0) stiffness_ = Dofs::Zero(mass().size());
+    stiffness_.segment(static_cast<Eigen::Index>(k) * dimension, dimension) = points[k].stiffness;
+  }
+}
+
+void Points::add_internal_forces(const Dofs& u, Dofs& force) const {
+  if (stiffness_.size() > 0) force -= stiffness_.cwiseProduct(u);
+}
+
+double Points::potential(const Dofs& u) const {
+  return stiffness_.size() > 0 ? 0.5 * u.dot(stiffness_.cwiseProduct(u)) : 0.0;
+}
+
+double Points::critical_step() const {
+  if (stiffness_.size() == 0) return Model::critical_step();
+  return 2.0 / std::sqrt(stiffness_.cwiseQuotient(mass()).maxCoeff());
+}
 
 }  // namespace ilaw::host

@@ -1,0 +1,145 @@
+// Contacts that share degrees of freedom: block Gauss-Seidel over the laws ends where every law holds.
+#include "host_runner.hpp"
+
+namespace ilaw::host::testing {
+namespace {
+
+Scene shipped(const char* name) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  return read_scene(std::filesystem::path(ILAW_SCENES) / name);
+}
+
+// Each law asked once more about what the sweeps left: Signorini and Coulomb, to rounding of the largest
+// speed.
+void expect_law(const Interface& interface, int slot, const Dofs& v, double friction, double speed) {
+  const Vector relative = interface.relative(slot, v) - interface.obstacle_velocity();
+  const Vector impulse = interface.impulse(slot), normal = interface.normal(slot);
+  const double r_n = impulse.dot(normal), v_n = relative.dot(normal);
+  const Vector r_t = impulse - r_n * normal, v_t = relative - v_n * normal;
+  const double tolerance = 1e-13 * speed, h = interface.delassus(slot);
+  EXPECT_GE(r_n, 0.0);
+  if (r_n == 0.0) {
+    EXPECT_TRUE(interface.gap(slot) > 0.0 || v_n >= -tolerance) << v_n;
+    EXPECT_EQ(r_t.norm(), 0.0);
+    return;
+  }
+  EXPECT_NEAR(v_n, 0.0, tolerance);
+  EXPECT_LE(h * r_t.norm(), h * friction * r_n * (1.0 + 1e-12) + tolerance);
+  if (v_t.norm() > tolerance) {
+    EXPECT_NEAR(r_t.dot(v_t), -friction * r_n * v_t.norm(), (friction * r_n + r_t.norm()) * tolerance);
+  }
+}
+
+TEST(NodeToFacet, EveryContactObeysItsLawAtEveryStep) {
+  Scene scene = shipped("two_blocks.json");
+  Integrator integrator = integrator_of(scene);
+  std::int64_t pressed = 0;
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    const double speed = integrator.velocity().cwiseAbs().maxCoeff();
+    for (std::size_t k = 0; k < 2; ++k)
+      for (const std::int32_t slot : scene.interfaces[k]->asked()) {
+        expect_law(*scene.interfaces[k], slot, integrator.velocity(), k == 0 ? 0.5 : 0.3, speed);
+        if (!scene.interfaces[k]->impulse(slot).isZero(0.0)) ++pressed;
+      }
+  }
+  EXPECT_GT(pressed, 500);
+  EXPECT_GT(integrator.tally().sweeps_max, 3);
+  EXPECT_EQ(integrator.tally().unconverged, 0);
+  EXPECT_LE(integrator.tally().coupling_residual_max, 1e-14);
+}
+
+// Weights sum to one, so that what one body gains the other loses.
+TEST(NodeToFacet, KeepsMomentum) {
+  Scene scene = scene_of(R"({"model": {"type": "blocks", "blocks": [
+    {"name": "a", "size": [1, 1, 0.5], "elements": [3, 3, 2], "material": {"type": "linear", "young": 100, "poisson": 0.2, "density": 1}},
+    {"name": "b", "corner": [0.13, 0.21, 0.52], "size": [0.7, 0.6, 0.5], "elements": [4, 2, 2], "velocity": [0.1, 0.0, -1.0],
+     "material": {"type": "linear", "young": 50, "poisson": 0.3, "density": 1}}]},
+    "time": {"cfl": 0.5, "end": 0.4},
+    "interfaces": [{"law": "coulomb", "parameters": {"friction": 0.4}, "nodes": "b.z_min", "against": {"surface": "a.z_max"}}]})");
+  Integrator integrator = integrator_of(scene);
+  const auto momentum = [&] {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    const Dofs p = scene.model->mass().cwiseProduct(integrator.velocity());
+    for (Eigen::Index i = 0; i < p.size(); i += 3) sum += p.segment<3>(i);
+    return sum;
+  };
+  const Eigen::Vector3d before = momentum();
+  double touched = 0.0;
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    touched += integrator.interface_impulse().cwiseAbs().sum();
+  }
+  EXPECT_GT(touched, 0.1);
+  EXPECT_LE((momentum() - before).norm(), 1e-13 * before.norm());
+  EXPECT_LE(integrator.energy().balance_error, 1e-12);
+  // A node sinks in by what it travels within the step that finds it closed.
+  EXPECT_LE(integrator.tally().penetration_max, 1.5 * scene.dt);
+}
+
+// The mesh below moves under a point along flat facets: the gap must not notice where one ends and the next
+// begins.
+TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
+  Scene scene = scene_of(R"({"model": {"type": "blocks", "blocks": [
+    {"name": "a", "size": [1, 1, 0.5], "elements": [4, 4, 1], "material": {"type": "linear", "young": 100, "poisson": 0.2, "density": 1}},
+    {"name": "b", "corner": [0.3, 0.3, 0.6], "size": [0.2, 0.2, 0.2], "elements": [1, 1, 1], "material": {"type": "linear", "young": 50, "poisson": 0.3, "density": 1}}]},
+    "time": {"cfl": 0.5, "end": 0.4},
+    "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "a.z_max"}}]})");
+  Interface& interface = *scene.interfaces[0];
+  const Opponent& opponent = *interface.setup().opponent;
+  Dofs u = Dofs::Zero(scene.model->mass().size());
+  const int node = interface.nodes()[0];
+  for (const double z : {0.03, -0.01})
+    for (double x = -0.29; x < 0.69; x += 0.013) {
+      u[3 * node] = x;
+      u[3 * node + 1] = 0.5 * x;
+      u[3 * node + 2] = -0.1 + z;
+      interface.setup().opponent->look(u);
+      const Meeting meeting = opponent.meet(0, u, 0.0);
+      EXPECT_NEAR(meeting.gap, z, 1e-15) << x;
+      EXPECT_NEAR(meeting.normal[2], 1.0, 1e-15);
+      double sum = 0.0;
+      Eigen::Vector3d foot = Eigen::Vector3d::Zero();
+      for (std::size_t i = 0; i < 4; ++i) {
+        sum += meeting.weights[i];
+        foot += meeting.weights[i] * scene.model->position().segment<3>(3 * meeting.partners[i]);
+      }
+      EXPECT_NEAR(sum, 1.0, 1e-15);
+      EXPECT_LE((foot - Eigen::Vector3d(0.3 + x, 0.3 + 0.5 * x, 0.5)).norm(), 1e-14);
+      EXPECT_LE(opponent.gap_bound(0, u, 0.0), meeting.gap);
+    }
+  u[3 * node] = -0.5;  // 0.2 beyond the border, and below the surface
+  interface.setup().opponent->look(u);
+  EXPECT_GT(opponent.meet(0, u, 0.0).gap, 0.2);
+}
+
+// Three balls of diameter 1 in a row at a wall: the last is thrown at the others and pressed with a force F
+// = 6. All stop in the first step, by impulses that add up from ball to ball; then each contact carries F h.
+TEST(Chain, ImpulsesAddUpFromBallToBall) {
+  Scene scene = scene_of(R"({"model": {"type": "points", "dimension": 1, "points": [
+    {"mass": 1, "position": [0.5]}, {"mass": 2, "position": [1.5], "velocity": [-1]}, {"mass": 3, "position": [2.5], "velocity": [-2]}]},
+    "time": {"dt": 0.001, "end": 0.01},
+    "loads": [{"type": "force", "nodes": [2], "direction": [1], "history": [[0, -6]]}],
+    "interfaces": [
+      {"name": "wall", "law": "contact", "nodes": [0], "gap_offset": 0.5, "obstacle": {"type": "plane", "point": [0], "normal": [1]}},
+      {"name": "first", "law": "contact", "nodes": [1], "gap_offset": 1, "against": {"nodes": [0], "normal": [1]}},
+      {"name": "second", "law": "contact", "nodes": [2], "gap_offset": 1, "against": {"nodes": [1], "normal": [1]}}]})");
+  Integrator integrator = integrator_of(scene);
+  const auto impulse = [&](std::size_t k) {
+    return scene.interfaces[k]->impulse(scene.interfaces[k]->asked().at(0))[0];
+  };
+  integrator.step();
+  const double h = scene.dt,
+               arrives = 2.0 + 6.0 * 0.5 * h / 3.0 + 6.0 * h / 3.0;  // half a step's kick, then a whole
+  EXPECT_NEAR(impulse(2), 3.0 * arrives, 1e-12);
+  EXPECT_NEAR(impulse(1), 3.0 * arrives + 2.0 * 1.0, 1e-12);
+  EXPECT_NEAR(impulse(0), 3.0 * arrives + 2.0 * 1.0, 1e-12);
+  EXPECT_LE(integrator.velocity().cwiseAbs().maxCoeff(), 1e-13);
+  while (integrator.steps() < scene.steps) integrator.step();
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(impulse(k), 6.0 * h, 1e-12);
+  EXPECT_GT(integrator.tally().sweeps_max, 10);
+  EXPECT_EQ(integrator.tally().unconverged, 0);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
