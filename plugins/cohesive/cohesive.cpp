@@ -178,9 +178,11 @@ struct cohesive {
     return smaller(part * part, 1.0);
   }
 
+  bool mixes() const {
+    return shape != camacho_ortiz && (shear_strength() != strength || shear_toughness() != toughness);
+  }
   softening softening_at(double shear) const {
-    const bool mixed = shear > 0.0 && shape != camacho_ortiz;
-    const double part = mixed ? power(shear, mixing_exponent) : 0.0;
+    const double part = shear > 0.0 ? power(shear, mixing_exponent) : 0.0;
     const double energy = toughness + part * (shear_toughness() - toughness);
     const double s1 = strength, s2 = shear_strength();
     const double peak = part > 0.0 ? square_root(s1 * s1 + part * (s2 * s2 - s1 * s1)) : s1;
@@ -189,7 +191,9 @@ struct cohesive {
     return {peak, peak * flexibility(), width, shape == exponential};
   }
 
-  softening softening_along(vector w, double size) const { return softening_at(shear_share(w, size)); }
+  softening softening_along(vector w, double size) const {
+    return softening_at(mixes() ? shear_share(w, size) : 0.0);
+  }
 
   // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
   double softness_scale() const { return softening_at(0.0).width / strength; }
@@ -206,16 +210,19 @@ struct cohesive {
 
   template <class Node>
   zone zone_of(const Node& node) const {
-    const double damage = node.state.damage, normal = node.delassus.normal();
-    return {.position = node.state.position,
-            .opening = node.state.opening,
+    const auto& s = node.state;
+    const double normal = node.delassus.normal(), tangential = node.delassus.tangential(), w = weight();
+    return {.position = s.position,
+            .opening = s.opening,
             .v_free = node.v_free,
             .normal_delassus = normal,
-            .tangential_delassus = node.delassus.tangential(),
+            .tangential_delassus = tangential,
             .position_step = node.position_step,
-            .weight = weight(),
-            .friction = damage > 0.0 ? friction * damage : 0.0,
-            .compliance_scale = 0.25 * node.position_step * node.velocity_step * node.area * normal};
+            .weight = w,
+            .friction = s.damage > 0.0 ? friction * s.damage : 0.0,
+            .compliance_scale = 0.25 * node.position_step * node.velocity_step * node.area * normal,
+            .drive = 0.5 * node.v_free + (1.0 / node.position_step) * (s.position + s.opening),
+            .ratio = w * w * tangential / normal};
   }
 
   struct outcome {

@@ -49,6 +49,8 @@ struct zone {
   double weight;            // of tangential openings in the effective one
   double friction;          // coefficient, already reduced to the broken part
   double compliance_scale;  // c
+  vector drive;             // of w^+ + w^- without bond and contact, as a velocity
+  double ratio;             // of tangential to normal compliance
 
   // Opening along which work is done in each direction, as one number.
   double size(vector w) const { return length(w.n, weight * w.t1, weight * w.t2); }
@@ -59,24 +61,20 @@ struct zone {
   }
   // The same bond as the tangential motion feels it.
   share tangential(share s) const {
-    const double q = weight * weight * tangential_delassus / normal_delassus, sum = s.left + q * s.taken;
-    return {q * s.taken / sum, s.left / sum};
+    const double sum = s.left + ratio * s.taken;
+    return {ratio * s.taken / sum, s.left / sum};
   }
-
-  // Of w^+ + w^- without bond and contact, over the step.
-  vector drive() const { return 0.5 * v_free + (1.0 / position_step) * (position + opening); }
 
   // Mean traction that stops the motion: what a rigid bond bears.
   vector rigid_traction() const {
     const double scale = 0.5 * position_step / compliance_scale;
     const double tangential_scale = scale * normal_delassus / tangential_delassus;
-    const vector d = drive();
-    return {scale * d.n, tangential_scale * d.t1, tangential_scale * d.t2};
+    return {scale * drive.n, tangential_scale * drive.t1, tangential_scale * drive.t2};
   }
 
   motion at(share s) const {
     const double left = tangential(s).left;
-    const vector d = position_step * drive();
+    const vector d = position_step * drive;
     motion m{{s.left * d.n - opening.n, left * d.t1 - opening.t1, left * d.t2 - opening.t2}, 0.0, {}};
     if (next_position(m).n < 0.0) close(s, left, m);
     m.size = size(m.opening);
@@ -88,11 +86,10 @@ struct zone {
   // Impulse of bond, contact and friction together.
   vector impulse(share s, const motion& m) const {
     const share t = tangential(s);
-    const vector d = drive();
     const double normal =
-        m.friction.n > 0.0 ? -arrival() / normal_delassus : -2.0 * s.taken * d.n / normal_delassus;
-    return {normal, t.left * m.friction.t1 - 2.0 * t.taken * d.t1 / tangential_delassus,
-            t.left * m.friction.t2 - 2.0 * t.taken * d.t2 / tangential_delassus};
+        m.friction.n > 0.0 ? -arrival() / normal_delassus : -2.0 * s.taken * drive.n / normal_delassus;
+    return {normal, t.left * m.friction.t1 - 2.0 * t.taken * drive.t1 / tangential_delassus,
+            t.left * m.friction.t2 - 2.0 * t.taken * drive.t2 / tangential_delassus};
   }
 
  private:
