@@ -84,7 +84,8 @@ struct coulomb {
 
   // One coefficient at all speeds, which keeps the loop of the common case free of all that follows.
   struct plain;
-  bool is_plain() const { return !falls() && !tells_tangents_apart(); }
+  template <class Run>
+  void in_form(Run run) const;
 
   template <class Node>
   void step(Node& node) const {
@@ -122,6 +123,14 @@ struct coulomb::plain {
     apply_contact_friction(node, contact.slack, law.approach(node, contact), law.friction);
   }
 };
+
+template <class Run>
+void coulomb::in_form(Run run) const {
+  if (falls() || tells_tangents_apart())
+    run(*this);
+  else
+    run(plain{*this});
+}
 
 }  // namespace
 

@@ -9,10 +9,9 @@
 //   static constexpr state_variable state_variables[];    in the order of struct state
 //   std::uint32_t inputs() const;                         what these parameters read (default: card.inputs)
 //   std::uint32_t capabilities() const;                   what these parameters can do (default: the card's)
-//   template <class Run> void in_form(Run) const;         calls it with a derived law whose step gives the
-//                                                         same bits without what these parameters turn off
+//   template <class Run> void in_form(Run) const;         calls it with a struct whose step gives the same
+//                                                         bits without what these parameters turn off
 //   const char* conflict() const;                         why parameters do not go together, or null
-//   bool is_plain() const; struct plain { Law law; step }  a case whose loop is to stay free of the rest
 //   template <class Node> void initialise(Node&) const;   first state (default: zeros)
 //   static constexpr state_variable memory;               declares a history, of
 //   std::int64_t memory_size(const setup&) const          doubles, which step reads as node.past and

@@ -178,7 +178,7 @@ void run_node(const Form& law, const node_block<Law>& b, int i, bool valid = tru
   b.refused[i] = accepted ? 0.0 : 1.0;
 }
 
-// Calls run with the form of a law that its parameters ask for: a struct derived from it with a shorter step.
+// Calls run with the form of a law that its parameters ask for: a struct with a shorter step.
 template <class Law, class Run>
 void in_its_form(const Law& law, Run run) {
   if constexpr (requires { law.in_form(run); })
@@ -187,24 +187,18 @@ void in_its_form(const Law& law, Run run) {
     run(law);
 }
 
-// The loop over a block with the same parameters at all nodes; Step: the law or its plain case. Not inlined:
-// GCC vectorises this loop only where it stands alone.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Step>
-[[gnu::noinline, gnu::flatten]] void run_loop(const Step& step, const node_block<Law>& b) {
-  const Step l = step;  // a copy, so that no store can alias a parameter
+// Runs a block with the same parameters at all nodes. Not inlined: GCC vectorises this loop only where it
+// stands alone. Form: the law, or the form of it that it chose for its parameters.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+[[gnu::noinline, gnu::flatten]] void run_block(const Form& law, const node_block<Law>& b) {
+  const Form l = law;  // copies, so that no store can alias a parameter or a time step
   if constexpr (has_memory<Law>) {
     for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, b, i);
   } else {
+    const node_block<Law> own = b;
 #pragma omp simd
-    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, b, i);
+    for (int i = 0; i < own.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, own, i);
   }
-}
-
-template <class Law, class Delassus, class Frame, class Layout, scope Scope>
-void run_block(const Law& law, const node_block<Law>& b) {
-  if constexpr (requires { law.is_plain(); })
-    if (law.is_plain()) return run_loop<Law, Delassus, Frame, Layout, Scope>(typename Law::plain{law}, b);
-  run_loop<Law, Delassus, Frame, Layout, Scope>(law, b);
 }
 
 }  // namespace ilaw::kit
