@@ -50,6 +50,7 @@ ilaw::interface create(const InterfaceSetup& setup, const ilaw::library& library
   law.delassus_form = ILAW_DELASSUS_SCALAR;
   law.frame = ILAW_FRAME_GLOBAL;
   law.velocity_step = dt;
+  law.tangent_given = setup.tangent.size() > 0 ? 1 : 0;
   law.arguments = arguments.pointers().data();
   law.argument_count = static_cast<std::uint32_t>(arguments.pointers().size());
   return {library, setup.law, law};
@@ -107,6 +108,7 @@ ilaw_batch Interface::batch(double time, double dt) const {
   batch.position_step = dt;
   batch.area = {area_.data(), 1, 1};
   batch.normal = {normal_.data(), dimension_, 1};
+  if (setup_.tangent.size() > 0) batch.tangent = {setup_.tangent.data(), 0, 1};
   batch.per_node_parameters = per_node_inputs_.data();
   return batch;
 }

@@ -34,6 +34,7 @@ struct InterfaceSetup {
   std::vector<double> areas;  // tributary, per node
   std::unique_ptr<Opponent> opponent;
   double birth = 0.0, death = std::numeric_limits<double>::infinity();  // acts for birth <= t < death
+  Vector tangent;           // first tangent of all nodes; empty: none given
   double gap_offset = 0.0;  // taken off every gap: thickness, radius
   bool asks_all = false;    // also contacts that cannot be reached: same results, more work
 };

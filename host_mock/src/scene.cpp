@@ -70,7 +70,7 @@ std::unique_ptr<Model> read_points(const json& model) {
                       read_vector(point["position"], d, pointer + "/position"),
                       read_vector_or_zero(point, "velocity", d, pointer),
                       point.contains("stiffness") ? read_vector(point["stiffness"], d, pointer + "/stiffness")
-                                                  : Eigen::VectorXd()});
+                                                  : Vector()});
   }
   return std::make_unique<Points>(d, points);
 }
@@ -333,6 +333,20 @@ std::string known_libraries() {
   return names.empty() ? "none" : names;
 }
 
+// The first tangent, for laws that tell the two apart: one direction for the whole interface, which must be
+// flat.
+Vector read_tangent(const json& interface, const InterfaceSetup& setup, const Model& model,
+                    const std::string& pointer) {
+  if (!interface.contains("tangent")) return {};
+  const Vector tangent = read_direction(interface["tangent"], model.dimension(), pointer).normalized();
+  if (!setup.opponent->keeps_normal())
+    throw SceneError(pointer, "found a tangent, expected none: the normal of the opponent turns");
+  if (std::abs(tangent.dot(setup.opponent->meet(0, Dofs::Zero(model.mass().size()), 0.0).normal)) > 1e-9)
+    throw SceneError(pointer,
+                     "found " + interface["tangent"].dump() + ", expected a direction across the normal");
+  return tangent;
+}
+
 std::unique_ptr<Interface> read_interface(const json& interface, std::size_t number, const Scene& scene) {
   const std::string pointer = at("/interfaces", number);
   const NodeSet own = select_nodes(interface["nodes"], *scene.model, pointer + "/nodes");
@@ -347,6 +361,7 @@ std::unique_ptr<Interface> read_interface(const json& interface, std::size_t num
                                    pointer + "/parameters");
   setup.birth = interface.value("birth", setup.birth);
   setup.death = interface.value("death", setup.death);
+  setup.tangent = read_tangent(interface, setup, *scene.model, pointer + "/tangent");
   setup.gap_offset = interface.value("gap_offset", 0.0);
   setup.asks_all = !interface.value("skip", true);
   try {

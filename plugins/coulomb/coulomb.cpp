@@ -5,6 +5,9 @@ namespace {
 
 using namespace ilaw::kit;
 
+// A slip below this part of the free one is the rounding of a contact that stuck.
+constexpr double at_rest = 0x1p-26;
+
 struct coulomb {
   double friction;
   double kinetic_friction;
@@ -91,7 +94,8 @@ struct coulomb {
   void step(Node& node) const {
     const contact_condition contact = contact_at(node, restitution, activation);
     const double speed = node.v_previous.tangential_length();
-    const double left = speed > 0.0 ? exp(-decay * speed) : 1.0;  // of the fall
+    const bool slipped = speed > at_rest * node.v_free.tangential_length();
+    const double left = slipped ? exp(-decay * speed) : 1.0;  // of the fall
     apply_contact_friction(node, contact.slack, approach(node, contact), fallen(friction, left),
                            fallen(second(), left));
   }

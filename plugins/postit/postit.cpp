@@ -106,7 +106,8 @@ struct postit {
   }
   // What is bonded from the start holds at any gap.
   std::uint32_t capabilities() const {
-    return std::uint32_t{ILAW_CAN_ADHERE} | (initial_adhesion > 0.0 ? std::uint32_t{ILAW_CAN_ACT_AT_DISTANCE} : 0U);
+    return std::uint32_t{ILAW_CAN_ADHERE} |
+           (initial_adhesion > 0.0 ? std::uint32_t{ILAW_CAN_ACT_AT_DISTANCE} : 0U);
   }
   const char* conflict() const {
     return initial_adhesion > adhesion_limit

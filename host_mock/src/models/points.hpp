@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "../vector.hpp"
 #include "model.hpp"
 
 namespace ilaw::host {
 
 struct PointMass {
   double mass, area;
-  Eigen::VectorXd position, velocity;
-  Eigen::VectorXd stiffness;  // of a spring to where the point starts, per axis; empty: none
+  Vector position, velocity;
+  Vector stiffness;  // of a spring to where the point starts, per axis; empty: none
 };
 
 class Points : public Model {

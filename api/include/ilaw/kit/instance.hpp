@@ -230,8 +230,8 @@ class instance_builder {
         return ILAW_INVALID_PARAMETER;
       }
     if constexpr (requires { made_.law.tells_tangents_apart(); })
-      if (with_unknowns().tells_tangents_apart() && setup_.frame == ILAW_FRAME_GLOBAL && setup_.dimension == 3 &&
-          !setup_.tangent_given) {
+      if (with_unknowns().tells_tangents_apart() && setup_.frame == ILAW_FRAME_GLOBAL &&
+          setup_.dimension == 3 && !setup_.tangent_given) {
         text_.add(
             "law '%s': these parameters tell the two tangential axes apart: expected a tangent per node", id);
         return ILAW_UNSUPPORTED;
