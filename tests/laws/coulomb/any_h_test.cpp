@@ -227,6 +227,55 @@ TEST(CoulombAnyH, AKineticCoefficientAboveTheStaticOneDoesNothing) {
   }
 }
 
+// Mass m on a spring k, pressed with N on a belt of speed V. It sticks until k x = mu N, then slips about x_k
+// = mu_k N/k as x = x_k + A cos(wt) + (V/w) sin(wt), A = (mu - mu_k) N/k, w^2 = k/m, until its speed is V
+// again: that is when tan(wt/2) = -A w/V, at x_k - A. Period: 2 A/V + (2 pi - 2 atan(A w/V))/w.
+TEST(CoulombAnyH, OscillatesBetweenStickAndSlipWithThePeriodOfTheClosedForm) {
+  constexpr double k = 4.0, weight = 10.0, belt = 0.3, mu = 0.5, mu_k = 0.3, w = 2.0, amplitude = 0.5;
+  const double period = 2.0 * amplitude / belt + (2.0 * M_PI - 2.0 * std::atan(amplitude * w / belt)) / w;
+  const auto measured = [&](double dt) {
+    NodeRun node("coulomb", {{{"friction", mu}, {"kinetic_friction", mu_k}}, {}}, dt);
+    double x = 0.0, v = belt, first = 0.0, last = 0.0;
+    int releases = 0;
+    bool stuck = true;
+    for (int step = 0; releases < 6; ++step) {
+      x += dt * v;
+      node.v_previous = {0.0, v - belt, 0.0};
+      EXPECT_EQ(node.step({-dt * weight, v - belt - dt * k * x, 0.0}), ILAW_OK);
+      v = node.v[1] + belt;
+      if (stuck && node.status == ILAW_SLIP) {
+        if (releases++ == 0) first = dt * step;
+        last = dt * step;
+        EXPECT_NEAR(x, mu * weight / k, 2.0 * dt * belt);
+      }
+      stuck = node.status == ILAW_STICK;
+    }
+    return (last - first) / 5.0;
+  };
+  EXPECT_NEAR(measured(1e-2), period, 2e-2);
+  EXPECT_NEAR(measured(1e-3), period, 2e-3);
+}
+
+// Limits between laws for a full H, bit for bit: no friction is contact, no adhesion is coulomb.
+TEST(CoulombAnyH, MeetsContactAndPostit) {
+  NodeRun smooth("coulomb", {{{"friction", 0.0}}, {}}, 1e-3, ILAW_DELASSUS_FULL);
+  NodeRun contact("contact", {}, 1e-3, ILAW_DELASSUS_FULL);
+  NodeRun rough("coulomb", {{{"friction", 0.4}}, {}}, 1e-3, ILAW_DELASSUS_FULL);
+  NodeRun postit("postit", {{{"friction", 0.4}, {"adhesion_limit", 0.0}}, {}}, 1e-3, ILAW_DELASSUS_FULL);
+  Draw draw(46);
+  for (int k = 0; k < 20000; ++k) {
+    kit::local_problem p{};
+    draw.fill_coupled(p, 0.1);
+    std::copy(p.h, p.h + 6, smooth.h.begin());
+    contact.h = rough.h = postit.h = smooth.h;
+    const Vector q{draw.normal(), draw.normal(), draw.normal()};
+    for (NodeRun* node : {&smooth, &contact, &rough, &postit}) ASSERT_EQ(node->step(q), ILAW_OK);
+    ASSERT_EQ(smooth.r, contact.r);
+    ASSERT_EQ(rough.r, postit.r);
+    ASSERT_EQ(rough.status, postit.status);
+  }
+}
+
 // Infinite friction that would have to pull: refused, with the reason.
 TEST(CoulombAnyH, SaysWhereThereIsNoSolution) {
   NodeRun node("coulomb", {{{"friction", inf_value}}, {}}, 1e-3, ILAW_DELASSUS_FULL);
