@@ -1,0 +1,266 @@
+// Bars against d'Alembert's solutions. At cfl = 1 the scheme is exact at the nodes: a wave passes one element
+// per step, so that contact is checked to rounding. A front brings half an element's mass first, whose
+// impulse is half that of the steps after it.
+#include "errors.hpp"
+#include "host_runner.hpp"
+
+#include <algorithm>
+
+namespace ilaw::host::testing {
+namespace {
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+int node_of(const Scene& scene, const char* set) { return scene.model->sets().at(set).nodes[0]; }
+
+// Forces of an interface on one node, impulse over dt, per step.
+std::vector<double> run_forces(Scene& scene, Integrator& integrator, int node) {
+  std::vector<double> forces;
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    forces.push_back(integrator.interface_impulse()[node] / scene.dt);
+  }
+  return forces;
+}
+
+// ---- a bar on a wall (Doyen, Ern, Piperno 2011) ---------------------------------------------------------
+
+std::string doyen_bar(double cfl, int elements) {
+  return R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": 5.0, "length": 10.0, "elements": )" +
+         std::to_string(elements) + R"(, "young": 900.0, "density": 1.0, "velocity": -10.0}]},
+    "time": {"cfl": )" +
+         number(cfl) + R"(, "end": 1.6},
+    "interfaces": [{"law": "contact", "nodes": "bar.left", "parameters": {"activation": "predictive"},
+                    "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})";
+}
+
+// c = 30: contact from 5/10 to 5/10 + 2L/c, that is 3 N/2 and 3 N/2 + 2 N steps of h = L/(N c), with the
+// force rho c v S = 300. In the step of the release the end is already free to go, and does not get the half
+// impulse 300 h/2 that its half mass would need to leave at once with 10: the bar leaves with 10 - 300 h/2
+// over its mass 10, and its end with 0 and 20 in turns, of mean 10. Rounding: 3.5 N steps of some operations
+// on 300.
+TEST(BarOnWall, HasExactContactAtTheCriticalStep) {
+  for (const int elements : {4, 50, 100, 400}) {
+    Scene scene = scene_of(doyen_bar(1.0, elements));
+    const double h = 10.0 / 30.0 / elements, rounding = 300.0 * 3.5 * elements * 2.2e-16 * 100.0;
+    ASSERT_NEAR(scene.dt, h, 1e-16);
+    Integrator integrator = integrator_of(scene);
+    const std::vector<double> forces = run_forces(scene, integrator, node_of(scene, "bar.left"));
+    const int meets = 3 * elements / 2, leaves = meets + 2 * elements;
+    for (int step = 1; step <= static_cast<int>(forces.size()); ++step) {
+      const double exact = step < meets || step >= leaves ? 0.0 : step == meets ? 150.0 : 300.0;
+      ASSERT_NEAR(forces[static_cast<std::size_t>(step) - 1], exact, rounding) << elements << ", " << step;
+    }
+    EXPECT_NEAR(scene.model->mass().dot(integrator.velocity()), 100.0 - 300.0 * h / 2.0, rounding);
+    const int left = node_of(scene, "bar.left");
+    const double u = integrator.displacement()[left];
+    integrator.step();
+    integrator.step();
+    EXPECT_NEAR(integrator.displacement()[left] - u, 2.0 * h * 10.0, rounding * h);
+  }
+}
+
+// Off the critical step waves disperse: fronts spread over (N)^(1/3) elements, their peak overshoots. In the
+// mean the force is kept.
+TEST(BarOnWall, IsNearBelowTheCriticalStep) {
+  for (const int elements : {50, 100, 400}) {
+    Scene scene = scene_of(doyen_bar(0.9, elements));
+    Integrator integrator = integrator_of(scene);
+    const std::vector<double> forces = run_forces(scene, integrator, node_of(scene, "bar.left"));
+    double first = 0.0, last = 0.0, impulse = 0.0;
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+      impulse += forces[k] * scene.dt;
+      if (forces[k] <= 0.0) continue;
+      last = static_cast<double>(k + 1) * scene.dt;
+      if (first == 0.0) first = last;
+    }
+    std::printf("N %d h %g first %g last %g (%g h) mean force %g impulse %g momentum/m %g err %g\n", elements,
+                scene.dt, (first - 0.5) / scene.dt, last, (last - 7.0 / 6) / scene.dt, impulse / (2.0 / 3),
+                impulse, scene.model->mass().dot(integrator.velocity()) / 10,
+                integrator.energy().balance_error);
+  }
+}
+
+// ---- two bars -------------------------------------------------------------------------------------------
+
+// Left: c = 2, Z = 2, L = 1, v = 1; right: c = 1.5, Z = 0.5 sqrt(9 4) = 3, L = 1.2, v = -0.5; both have
+// Le/c = 0.01. They meet after 10 steps and go together at (Z_A v_A + Z_B v_B)/(Z_A + Z_B) = 0.1, with the
+// force Z_A Z_B/(Z_A + Z_B) (v_A - v_B) = 1.8, until the wave in the left bar is back after 2L/c = 1. Behind
+// it the left bar moves at 2 (0.1) - 1 = -0.8; together the ends would then need the force -0.36: they part,
+// and the right one goes at 0.1 - 1.8/3 = -0.5 until its own wave is back, 1.6 after they met.
+TEST(TwoBars, OfUnequalImpedancesAndLengthsMeetAndPart) {
+  Scene scene = scene_of(R"({"model": {"type": "bars", "bars": [
+      {"name": "a", "start": -1.15, "length": 1.0, "elements": 50, "young": 4.0, "density": 1.0, "velocity": 1.0},
+      {"name": "b", "start": 0.0, "length": 1.2, "elements": 80, "young": 9.0, "density": 4.0, "section": 0.5,
+       "velocity": -0.5}]},
+    "time": {"cfl": 1.0, "end": 1.65},
+    "interfaces": [{"law": "contact", "nodes": "b.left", "parameters": {"activation": "predictive"},
+                    "against": {"nodes": "a.right", "normal": [1.0]}}]})");
+  ASSERT_NEAR(scene.dt, 0.01, 1e-17);
+  const int a = node_of(scene, "a.right"), b = node_of(scene, "b.left");
+  Integrator integrator = integrator_of(scene);
+  double v_a = 0.0, v_b = 0.0;        // of the step before
+  constexpr double rounding = 1e-11;  // 165 steps on velocities of 1 and forces of 2
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    const auto step = integrator.steps();
+    const double force = integrator.interface_impulse()[b] / scene.dt;
+    const double exact = step < 10 || step >= 110 ? 0.0 : step == 10 ? 0.9 : 1.8;
+    EXPECT_NEAR(force, exact, rounding) << step;
+    EXPECT_NEAR(integrator.interface_impulse()[a], -integrator.interface_impulse()[b], 1e-17);
+    if (step >= 10 && step < 110) {
+      EXPECT_NEAR(integrator.velocity()[a], 0.1, rounding) << step;
+      EXPECT_NEAR(integrator.velocity()[b], 0.1, rounding) << step;
+    }
+    if (step > 111 && step < 165) {  // half masses leave in turns, see the bar on the wall
+      EXPECT_NEAR(0.5 * (v_a + integrator.velocity()[a]), -0.8, rounding) << step;
+      EXPECT_NEAR(0.5 * (v_b + integrator.velocity()[b]), -0.5, rounding) << step;
+    }
+    v_a = integrator.velocity()[a];
+    v_b = integrator.velocity()[b];
+  }
+  EXPECT_LE(integrator.energy().balance_error, 1e-14);
+}
+
+// ---- an elastic bar thrown on a wall (arXiv 2606.01355) -------------------------------------------------
+
+struct NodeErrors {
+  double u, v;
+};
+
+// Of the contact node, after the release: mean |u - u_exact| over mean |u_exact|, the same for v.
+NodeErrors errors_after_release(double cfl, int elements) {
+  constexpr double length = 0.254, young = 2.1e11, density = 7847.0, gap = 1e-3 * length, speed = 5.0;
+  const double c = std::sqrt(young / density), meets = gap / speed, leaves = meets + 2.0 * length / c;
+  const double end = leaves + 6.0 * length / c;
+  Scene scene = scene_of(R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": )" + number(gap) +
+                         R"(, "length": 0.254, "elements": )" + std::to_string(elements) +
+                         R"(, "young": 2.1e11, "density": 7847.0, "section": 6.45e-4, "velocity": -5.0}]},
+    "time": {"cfl": )" + number(cfl) +
+                         R"(, "end": )" + number(end) + R"(},
+    "interfaces": [{"law": "contact", "nodes": "bar.left",
+                    "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})");
+  Integrator integrator = integrator_of(scene);
+  double u_error = 0.0, u_sum = 0.0, v_error = 0.0, v_sum = 0.0;
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    if (integrator.time() < 1.1 * leaves) continue;
+    const double u = speed * (integrator.time() - leaves);  // above the wall
+    u_error += std::abs(gap + integrator.displacement()[0] - u);
+    u_sum += std::abs(u);
+    v_error += std::abs(integrator.velocity()[0] - speed);
+    v_sum += speed;
+  }
+  return {u_error / u_sum, v_error / v_sum};
+}
+
+TEST(ElasticBar, IsAsNearItsExactReboundAsPublished) {
+  for (const int elements : {10, 100, 1000})
+    for (const double cfl : {0.999, 0.7}) {
+      const NodeErrors e = errors_after_release(cfl, elements);
+      std::printf("N %d cfl %g: u %g v %g\n", elements, cfl, e.u, e.v);
+    }
+}
+
+// ---- a glued bar ----------------------------------------------------------------------------------------
+
+// E = rho = L = S = F = 1, R_Y = 1.
+std::string glued_bar(double cfl, double memory, double end) {
+  return R"({"model": {"type": "bars", "bars": [{"name": "bar", "length": 1.0, "elements": 100, "young": 1.0, "density": 1.0}]},
+    "time": {"cfl": )" +
+         number(cfl) + R"(, "end": )" + number(end) + R"(},
+    "loads": [{"type": "force", "nodes": "bar.right", "direction": [1.0], "history": [[0.0, 1.0]]}],
+    "interfaces": [{"law": "postit", "nodes": "bar.left",
+                    "parameters": {"initial_adhesion": 1.0, "memory": )" +
+         number(memory) + R"(, "buckets": 256},
+                    "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})";
+}
+
+// The glue feels 2F from L/c = 1 on: with a window longer than R_Y/(2F) = 0.5 it breaks at 1.5, and the end
+// then moves at 2F/Z = 2. At cfl = 1 the impulses are 2F h each, the first half of it: their sum passes R_Y
+// with the step after 1.5.
+TEST(GluedBar, BreaksWhenTheWindowHasItsImpulse) {
+  for (const double cfl : {1.0, 0.9})
+    for (const double memory : {0.55, 1.5}) {
+      Scene scene = scene_of(glued_bar(cfl, memory, 2.5));
+      Integrator integrator = integrator_of(scene);
+      double breaks = 0.0;
+      while (integrator.steps() < scene.steps) {
+        integrator.step();
+        if (scene.interfaces[0]->status(0) != ILAW_BROKEN) continue;
+        EXPECT_EQ(breaks, 0.0);
+        breaks = integrator.time();
+      }
+      const double mean = integrator.displacement()[0] / (integrator.time() - breaks);
+      std::printf("cfl %g memory %g breaks %.6f, velocity %g mean %g\n", cfl, memory, breaks,
+                  integrator.velocity()[0], mean);
+    }
+}
+
+// 2F tau <= R_Y: the window never holds R_Y. The glue's force is 2F and 0 in turns of 2L/c.
+TEST(GluedBar, HoldsWhenTheWindowIsTooShort) {
+  for (const double cfl : {1.0, 0.9}) {
+    Scene scene = scene_of(glued_bar(cfl, 0.4, 12.0));
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) {
+      integrator.step();
+      ASSERT_EQ(scene.interfaces[0]->status(0), ILAW_BONDED) << integrator.time();
+    }
+    EXPECT_NEAR(integrator.displacement()[0], 0.0, 1e-13);
+  }
+}
+
+// ---- long runs ------------------------------------------------------------------------------------------
+
+// A bar between two walls, thousands of impacts.
+std::string bar_between_walls(double cfl, int elements, double end) {
+  return R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": 0.5, "length": 1.0, "elements": )" +
+         std::to_string(elements) + R"(, "young": 1.0, "density": 1.0, "velocity": -0.1}]},
+    "time": {"cfl": )" +
+         number(cfl) + R"(, "end": )" + number(end) + R"(},
+    "interfaces": [{"name": "left", "law": "contact", "nodes": "bar.left", "parameters": {"restitution": 0.9},
+                    "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}},
+                   {"name": "right", "law": "contact", "nodes": "bar.right", "parameters": {"restitution": 1.0},
+                    "obstacle": {"type": "plane", "point": [2.0], "normal": [-1.0]}}]})";
+}
+
+// The discrete energy is an exact invariant but for what the laws take: it never grows, up to the critical
+// step itself.
+TEST(BarBetweenWalls, NeverGainsEnergyUpToTheCriticalStep) {
+  for (const double cfl : {0.5, 0.9, 0.999, 1.0}) {
+    constexpr int elements = 10;
+    Scene scene = scene_of(bar_between_walls(cfl, elements, 1e5 * cfl / elements));
+    Integrator integrator = integrator_of(scene);
+    const EnergyReport start = integrator.energy();
+    const double initial = start.kinetic + start.internal;
+    double before = initial;
+    while (integrator.steps() < scene.steps) {
+      integrator.step();
+      if (integrator.steps() % 10 != 0) continue;
+      const EnergyReport now = integrator.energy();
+      const double energy = now.kinetic + now.internal;
+      ASSERT_LE(energy, before + 1e-12 * initial) << "cfl " << cfl << ", step " << integrator.steps();
+      ASSERT_GE(energy, -1e-12 * initial);
+      before = energy;
+    }
+    EXPECT_GT(integrator.tally().status_counts[ILAW_CLOSED], 10);
+    std::printf("cfl %g closed %ld E %g v %g\n", cfl, long(integrator.tally().status_counts[ILAW_CLOSED]),
+                before / initial, integrator.velocity().cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(BarBetweenWalls, ClosesItsBalanceOverAMillionSteps) {
+  Scene scene = scene_of(bar_between_walls(0.9, 10, 0.9 * 1e6 / 10));
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) integrator.step();
+  EXPECT_GE(integrator.steps(), 1000000);
+  EXPECT_LE(integrator.energy().balance_error, 1e-10);
+  std::printf("balance %g\n", integrator.energy().balance_error);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
