@@ -64,8 +64,8 @@ TEST(BarOnWall, HasExactContactAtTheCriticalStep) {
   }
 }
 
-// Off the critical step waves disperse: fronts spread over (N)^(1/3) elements, their peak overshoots. In the
-// mean the force is kept.
+// Off the critical step waves disperse: a front spreads over some N^(1/3) of the N elements, N^(-2/3) of the
+// contact, in which the force is not at its height yet. Instants are kept to a step.
 TEST(BarOnWall, IsNearBelowTheCriticalStep) {
   for (const int elements : {50, 100, 400}) {
     Scene scene = scene_of(doyen_bar(0.9, elements));
@@ -78,10 +78,12 @@ TEST(BarOnWall, IsNearBelowTheCriticalStep) {
       last = static_cast<double>(k + 1) * scene.dt;
       if (first == 0.0) first = last;
     }
-    std::printf("N %d h %g first %g last %g (%g h) mean force %g impulse %g momentum/m %g err %g\n", elements,
-                scene.dt, (first - 0.5) / scene.dt, last, (last - 7.0 / 6) / scene.dt, impulse / (2.0 / 3),
-                impulse, scene.model->mass().dot(integrator.velocity()) / 10,
-                integrator.energy().balance_error);
+    EXPECT_NEAR(first, 0.5, scene.dt);
+    EXPECT_NEAR(last, 7.0 / 6.0, scene.dt);
+    const double part_of_front = std::pow(elements, -2.0 / 3.0);
+    EXPECT_NEAR(impulse / (2.0 / 3.0), 300.0, 300.0 * 0.15 * part_of_front) << elements;
+    EXPECT_NEAR(scene.model->mass().dot(integrator.velocity()), 100.0, 100.0 * 0.3 * part_of_front);
+    EXPECT_LE(integrator.energy().balance_error, 1e-14);
   }
 }
 
@@ -92,6 +94,10 @@ TEST(BarOnWall, IsNearBelowTheCriticalStep) {
 // force Z_A Z_B/(Z_A + Z_B) (v_A - v_B) = 1.8, until the wave in the left bar is back after 2L/c = 1. Behind
 // it the left bar moves at 2 (0.1) - 1 = -0.8; together the ends would then need the force -0.36: they part,
 // and the right one goes at 0.1 - 1.8/3 = -0.5 until its own wave is back, 1.6 after they met.
+//
+// An end of half an element has the mass Z h/2, so that H h/2 = 1/2 + 1/3 = 1/1.2. The step where they meet
+// stops 1.5 with the impulse 1.5/H = 0.9 h. In that where they part, an impulse of 0.9 h would let the ends
+// go at 0.3 from each other; the law gives no more than together needs, 0.9 h - 0.3/H = 0.72 h.
 TEST(TwoBars, OfUnequalImpedancesAndLengthsMeetAndPart) {
   Scene scene = scene_of(R"({"model": {"type": "bars", "bars": [
       {"name": "a", "start": -1.15, "length": 1.0, "elements": 50, "young": 4.0, "density": 1.0, "velocity": 1.0},
@@ -109,10 +115,10 @@ TEST(TwoBars, OfUnequalImpedancesAndLengthsMeetAndPart) {
     integrator.step();
     const auto step = integrator.steps();
     const double force = integrator.interface_impulse()[b] / scene.dt;
-    const double exact = step < 10 || step >= 110 ? 0.0 : step == 10 ? 0.9 : 1.8;
+    const double exact = step < 10 || step > 110 ? 0.0 : step == 10 ? 0.9 : step == 110 ? 0.72 : 1.8;
     EXPECT_NEAR(force, exact, rounding) << step;
     EXPECT_NEAR(integrator.interface_impulse()[a], -integrator.interface_impulse()[b], 1e-17);
-    if (step >= 10 && step < 110) {
+    if (step >= 10 && step <= 109) {
       EXPECT_NEAR(integrator.velocity()[a], 0.1, rounding) << step;
       EXPECT_NEAR(integrator.velocity()[b], 0.1, rounding) << step;
     }
@@ -128,12 +134,12 @@ TEST(TwoBars, OfUnequalImpedancesAndLengthsMeetAndPart) {
 
 // ---- an elastic bar thrown on a wall (arXiv 2606.01355) -------------------------------------------------
 
-struct NodeErrors {
-  double u, v;
+struct ContactNode {
+  double u_error, v_error, peak_force;
 };
 
-// Of the contact node, after the release: mean |u - u_exact| over mean |u_exact|, the same for v.
-NodeErrors errors_after_release(double cfl, int elements) {
+// From 1.1 times the release on: mean |u - u_exact| over mean |u_exact|, the same for v at the steps' ends.
+ContactNode contact_node(double cfl, int elements) {
   constexpr double length = 0.254, young = 2.1e11, density = 7847.0, gap = 1e-3 * length, speed = 5.0;
   const double c = std::sqrt(young / density), meets = gap / speed, leaves = meets + 2.0 * length / c;
   const double end = leaves + 6.0 * length / c;
@@ -145,25 +151,41 @@ NodeErrors errors_after_release(double cfl, int elements) {
     "interfaces": [{"law": "contact", "nodes": "bar.left",
                     "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})");
   Integrator integrator = integrator_of(scene);
-  double u_error = 0.0, u_sum = 0.0, v_error = 0.0, v_sum = 0.0;
+  double u_error = 0.0, u_sum = 0.0, v_error = 0.0, v_sum = 0.0, peak_force = 0.0;
   while (integrator.steps() < scene.steps) {
+    const double v_before = integrator.velocity()[0];
     integrator.step();
+    peak_force = std::max(peak_force, integrator.interface_impulse()[0] / scene.dt);
     if (integrator.time() < 1.1 * leaves) continue;
     const double u = speed * (integrator.time() - leaves);  // above the wall
     u_error += std::abs(gap + integrator.displacement()[0] - u);
     u_sum += std::abs(u);
-    v_error += std::abs(integrator.velocity()[0] - speed);
+    v_error += std::abs(0.5 * (v_before + integrator.velocity()[0]) - speed);
     v_sum += speed;
   }
-  return {u_error / u_sum, v_error / v_sum};
+  return {u_error / u_sum, v_error / v_sum, peak_force};
 }
 
+// The errors published there, of two digits, to half a unit of the second one: 5 % at most. The peak of the
+// force S sqrt(rho E) |v0| = 130915 at cfl 0.7 is the overshoot of a dispersed front, whatever the mesh.
 TEST(ElasticBar, IsAsNearItsExactReboundAsPublished) {
-  for (const int elements : {10, 100, 1000})
-    for (const double cfl : {0.999, 0.7}) {
-      const NodeErrors e = errors_after_release(cfl, elements);
-      std::printf("N %d cfl %g: u %g v %g\n", elements, cfl, e.u, e.v);
+  struct Published {
+    int elements;
+    double cfl, u, v;
+  };
+  for (const Published& published : std::vector<Published>{{10, 0.999, 0.087, 0.10},
+                                                           {100, 0.999, 6.4e-3, 1.2e-2},
+                                                           {1000, 0.999, 6.7e-4, 2.7e-3},
+                                                           {10, 0.7, 0.071, 0.21},
+                                                           {100, 0.7, 1.2e-2, 7.1e-2},
+                                                           {1000, 0.7, 2.7e-3, 2.5e-2}}) {
+    const ContactNode found = contact_node(published.cfl, published.elements);
+    EXPECT_NEAR(found.u_error, published.u, 0.05 * published.u) << published.elements << " " << published.cfl;
+    EXPECT_NEAR(found.v_error, published.v, 0.05 * published.v) << published.elements << " " << published.cfl;
+    if (published.elements == 1000 && published.cfl == 0.7) {
+      EXPECT_NEAR(found.peak_force / 130915.0, 1.064, 5e-4);
     }
+  }
 }
 
 // ---- a glued bar ----------------------------------------------------------------------------------------
@@ -181,8 +203,9 @@ std::string glued_bar(double cfl, double memory, double end) {
 }
 
 // The glue feels 2F from L/c = 1 on: with a window longer than R_Y/(2F) = 0.5 it breaks at 1.5, and the end
-// then moves at 2F/Z = 2. At cfl = 1 the impulses are 2F h each, the first half of it: their sum passes R_Y
-// with the step after 1.5.
+// then moves at 2F/Z = 2. At cfl = 1 the impulses are F h, then 2F h each: 0.99 at 1.49, more than R_Y
+// at 1.5, and the end's half mass goes at 4 and 0 in turns. Below, the front is spread: the instant is kept
+// to a step, the end to the way of two.
 TEST(GluedBar, BreaksWhenTheWindowHasItsImpulse) {
   for (const double cfl : {1.0, 0.9})
     for (const double memory : {0.55, 1.5}) {
@@ -195,9 +218,9 @@ TEST(GluedBar, BreaksWhenTheWindowHasItsImpulse) {
         EXPECT_EQ(breaks, 0.0);
         breaks = integrator.time();
       }
-      const double mean = integrator.displacement()[0] / (integrator.time() - breaks);
-      std::printf("cfl %g memory %g breaks %.6f, velocity %g mean %g\n", cfl, memory, breaks,
-                  integrator.velocity()[0], mean);
+      EXPECT_NEAR(breaks, 1.5, cfl == 1.0 ? 1e-12 : scene.dt) << memory;
+      const double way = 2.0 * (integrator.time() - breaks);
+      EXPECT_NEAR(integrator.displacement()[0], way, cfl == 1.0 ? 1e-10 : 4.0 * scene.dt) << memory;
     }
 }
 
@@ -217,49 +240,94 @@ TEST(GluedBar, HoldsWhenTheWindowIsTooShort) {
 // ---- long runs ------------------------------------------------------------------------------------------
 
 // A bar between two walls, thousands of impacts.
-std::string bar_between_walls(double cfl, int elements, double end) {
+std::string bar_between_walls(double cfl, int elements, double restitution, double end) {
   return R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": 0.5, "length": 1.0, "elements": )" +
          std::to_string(elements) + R"(, "young": 1.0, "density": 1.0, "velocity": -0.1}]},
     "time": {"cfl": )" +
          number(cfl) + R"(, "end": )" + number(end) + R"(},
-    "interfaces": [{"name": "left", "law": "contact", "nodes": "bar.left", "parameters": {"restitution": 0.9},
+    "interfaces": [{"name": "left", "law": "contact", "nodes": "bar.left", "parameters": {"restitution": )" +
+         number(restitution) + R"(},
                     "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}},
                    {"name": "right", "law": "contact", "nodes": "bar.right", "parameters": {"restitution": 1.0},
                     "obstacle": {"type": "plane", "point": [2.0], "normal": [-1.0]}}]})";
 }
 
-// The discrete energy is an exact invariant but for what the laws take: it never grows, up to the critical
-// step itself.
-TEST(BarBetweenWalls, NeverGainsEnergyUpToTheCriticalStep) {
+double total(const EnergyReport& energy) { return energy.kinetic + energy.internal; }
+
+// Rounding of an energy: of u^T K u as a sum of terms that cancel, as the bar is far from where it started;
+// each is below 2 (E S/Le) u_i^2 for two elements at a node, with E = S = L = 1.
+double rounding_of(const Integrator& integrator, int elements) {
+  return 4e-16 * (integrator.energy().kinetic + 4.0 * elements * integrator.displacement().squaredNorm());
+}
+
+// E_{n+1} - E_n = r (v^- + v^+)/2 of each contact, and v^+ = -e v^- where r > 0.
+// e = 1: no work at all; the energy stays where it is, up to the critical step itself. There the mode whose
+// nodes go to and fro in turns has a double root: it grows with the number of steps, not with powers, and its
+// kinetic and internal parts cancel.
+TEST(BarBetweenWalls, KeepsItsEnergyUpToTheCriticalStep) {
   for (const double cfl : {0.5, 0.9, 0.999, 1.0}) {
     constexpr int elements = 10;
-    Scene scene = scene_of(bar_between_walls(cfl, elements, 1e5 * cfl / elements));
+    Scene scene = scene_of(bar_between_walls(cfl, elements, 1.0, 1e5 * cfl / elements));
     Integrator integrator = integrator_of(scene);
-    const EnergyReport start = integrator.energy();
-    const double initial = start.kinetic + start.internal;
-    double before = initial;
+    double energy = total(integrator.energy());
+    const double initial = energy;
+    double speed = 0.0;
     while (integrator.steps() < scene.steps) {
       integrator.step();
-      if (integrator.steps() % 10 != 0) continue;
       const EnergyReport now = integrator.energy();
-      const double energy = now.kinetic + now.internal;
-      ASSERT_LE(energy, before + 1e-12 * initial) << "cfl " << cfl << ", step " << integrator.steps();
-      ASSERT_GE(energy, -1e-12 * initial);
-      before = energy;
+      ASSERT_NEAR(total(now), energy, rounding_of(integrator, elements))
+          << "cfl " << cfl << ", step " << integrator.steps();
+      energy = total(now);
+      speed = std::max(speed, integrator.velocity().cwiseAbs().maxCoeff());
     }
-    EXPECT_GT(integrator.tally().status_counts[ILAW_CLOSED], 10);
-    std::printf("cfl %g closed %ld E %g v %g\n", cfl, long(integrator.tally().status_counts[ILAW_CLOSED]),
-                before / initial, integrator.velocity().cwiseAbs().maxCoeff());
+    EXPECT_GE(integrator.tally().status_counts[ILAW_CLOSED], 10);
+    if (cfl < 1.0) {
+      EXPECT_NEAR(energy, initial, 1e-12 * initial);
+      // E >= (1 - cfl^2) 1/2 v^T M v, the end's mass is 0.05.
+      EXPECT_LE(speed, std::sqrt(initial / (0.5 * 0.05 * (1.0 - cfl * cfl))));
+    } else {
+      EXPECT_LE(speed, 0.4 * static_cast<double>(scene.steps));  // linear growth, by what impacts put into it
+    }
+  }
+}
+
+// e < 1: r v^- (1 - e)/2 is taken, but for reactions on an end that still moves off within the step (v^- >
+// 0), which give as much: an artefact of the step that the summary calls reaction work.
+TEST(BarBetweenWalls, GainsNothingButTheWorkOfReactionsOnEndsThatMoveOff) {
+  for (const double cfl : {0.5, 0.9, 0.999, 1.0}) {
+    constexpr int elements = 10;
+    Scene scene = scene_of(bar_between_walls(cfl, elements, 0.9, 1e5 * cfl / elements));
+    Integrator integrator = integrator_of(scene);
+    const int left = node_of(scene, "bar.left");
+    double energy = total(integrator.energy()), gained = 0.0;
+    const double initial = energy;
+    while (integrator.steps() < scene.steps) {
+      const double v = integrator.velocity()[left];
+      integrator.step();
+      const double work = 0.5 * (1.0 - 0.9) * integrator.interface_impulse()[left] * v;
+      const EnergyReport now = integrator.energy();
+      ASSERT_NEAR(total(now), energy + work, rounding_of(integrator, elements))
+          << cfl << ", step " << integrator.steps();
+      gained += std::max(work, 0.0);
+      energy = total(now);
+      if (cfl < 1.0) {
+        ASSERT_LE(energy, initial) << cfl << ", step " << integrator.steps();
+      }
+    }
+    EXPECT_NEAR(integrator.energy().reaction_work, gained, 1e-10 * initial);
+    EXPECT_GT(gained, 0.0);
+    if (cfl < 1.0) {
+      EXPECT_LE(energy, 0.1 * initial);
+    }
   }
 }
 
 TEST(BarBetweenWalls, ClosesItsBalanceOverAMillionSteps) {
-  Scene scene = scene_of(bar_between_walls(0.9, 10, 0.9 * 1e6 / 10));
+  Scene scene = scene_of(bar_between_walls(0.9, 10, 0.9, 0.9 * 1e6 / 10));
   Integrator integrator = integrator_of(scene);
   while (integrator.steps() < scene.steps) integrator.step();
   EXPECT_GE(integrator.steps(), 1000000);
   EXPECT_LE(integrator.energy().balance_error, 1e-10);
-  std::printf("balance %g\n", integrator.energy().balance_error);
 }
 
 }  // namespace
