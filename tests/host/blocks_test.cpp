@@ -1,0 +1,203 @@
+// Blocks of hexahedra: patch tests, invariances, consistency of forces and energy.
+#include "models/blocks.hpp"
+
+#include "host_runner.hpp"
+#include "models/bars.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <random>
+#include <set>
+
+namespace ilaw::host::testing {
+namespace {
+
+constexpr double young = 3.0, poisson = 0.3, density = 2.0;
+// Lame constants by their definition.
+constexpr double mu = young / (2.0 * (1.0 + poisson));
+constexpr double lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+
+Blocks block_of(MaterialLaw law, std::array<int, 3> elements = {4, 3, 2}) {
+  return Blocks(
+      {{"b", {0.5, -1.0, 2.0}, {2.0, 1.2, 0.6}, {0.0, 0.0, 0.0}, elements, {law, young, poisson, density}}});
+}
+
+Dofs forces(const Model& model, const Dofs& u) {
+  Dofs force = Dofs::Zero(u.size());
+  model.add_internal_forces(u, force);
+  return force;
+}
+
+// u = G x at all nodes.
+Dofs linear_field(const Model& model, const Eigen::Matrix3d& gradient) {
+  const Eigen::Map<const Eigen::Matrix3Xd> x(model.position().data(), 3, model.node_count());
+  const Eigen::Matrix3Xd u = gradient * x;
+  return Eigen::Map<const Dofs>(u.data(), u.size());
+}
+
+Dofs random_field(const Model& model, double size, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> draw(-size, size);
+  return Dofs::NullaryExpr(model.mass().size(), [&] { return draw(random); });
+}
+
+Eigen::Matrix3d random_matrix(double size, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> draw(-size, size);
+  return Eigen::Matrix3d::NullaryExpr([&] { return draw(random); });
+}
+
+// First Piola-Kirchhoff stress for the displacement gradient G.
+Eigen::Matrix3d stress(MaterialLaw law, const Eigen::Matrix3d& G) {
+  if (law == MaterialLaw::linear)
+    return lambda * G.trace() * Eigen::Matrix3d::Identity() + mu * (G + G.transpose());
+  const Eigen::Matrix3d F = Eigen::Matrix3d::Identity() + G, turned = F.inverse().transpose();
+  return mu * (F - turned) + lambda * std::log(F.determinant()) * turned;
+}
+
+struct Side {
+  const char* name;
+  Eigen::Vector3d normal;
+  double area;
+};
+const std::vector<Side> sides{{"b.x_min", {-1, 0, 0}, 0.72}, {"b.x_max", {1, 0, 0}, 0.72},
+                              {"b.y_min", {0, -1, 0}, 1.2},  {"b.y_max", {0, 1, 0}, 1.2},
+                              {"b.z_min", {0, 0, -1}, 2.4},  {"b.z_max", {0, 0, 1}, 2.4}};
+
+// ---- geometry -------------------------------------------------------------------------------------------
+
+TEST(Block, HasTheMassAndTheFacesOfItsBox) {
+  const Blocks block = block_of(MaterialLaw::linear);
+  ASSERT_EQ(block.node_count(), 5 * 4 * 3);
+  EXPECT_NEAR(block.mass().sum(), 3.0 * density * 2.0 * 1.2 * 0.6, 1e-14);
+  EXPECT_GT(block.mass().minCoeff(), 0.0);
+  for (const Side& side : sides) {
+    const NodeSet& face = block.sets().at(side.name);
+    double area = 0.0;
+    for (const double part : face.areas) area += part;
+    EXPECT_NEAR(area, side.area, 1e-14) << side.name;
+    Eigen::Vector3d outward = Eigen::Vector3d::Zero();
+    const auto corner = [&](int node) { return block.position().segment<3>(3 * node); };
+    for (const std::array<int, 4>& facet : face.facets)
+      outward += 0.5 * Eigen::Vector3d(corner(facet[2]) - corner(facet[0]))
+                           .cross(Eigen::Vector3d(corner(facet[3]) - corner(facet[1])));
+    EXPECT_NEAR((outward - side.area * side.normal).norm(), 0.0, 1e-14) << side.name;
+  }
+}
+
+// ---- statics --------------------------------------------------------------------------------------------
+
+class BlockOf : public ::testing::TestWithParam<MaterialLaw> {};
+INSTANTIATE_TEST_SUITE_P(Material, BlockOf, ::testing::Values(MaterialLaw::linear, MaterialLaw::neo_hookean),
+                         [](const auto& law) {
+                           return law.param == MaterialLaw::linear ? "linear" : "neo_hookean";
+                         });
+
+// u = G x has the same stress P everywhere: nodes inside feel nothing, those of a face the force -P n times
+// their part of its area.
+TEST_P(BlockOf, PassesThePatchTest) {
+  std::mt19937_64 random(1);
+  const Blocks block = block_of(GetParam());
+  for (int draw = 0; draw < 200; ++draw) {
+    const Eigen::Matrix3d G = random_matrix(0.2, random), P = stress(GetParam(), G);
+    Dofs exact = Dofs::Zero(block.mass().size());
+    for (const Side& side : sides) {
+      const NodeSet& face = block.sets().at(side.name);
+      for (std::size_t k = 0; k < face.nodes.size(); ++k)
+        exact.segment<3>(3 * face.nodes[k]) -= face.areas[k] * P * side.normal;
+    }
+    EXPECT_LE((forces(block, linear_field(block, G)) - exact).cwiseAbs().maxCoeff(), 1e-14) << draw;
+  }
+}
+
+// Pulled along x and free to narrow, a linear block answers with E times strain times area.
+TEST(LinearBlock, HasYoungsModulusInUniaxialTension) {
+  const Blocks block = block_of(MaterialLaw::linear);
+  const double strain = 1e-3;
+  const Eigen::Vector3d strains(strain, -poisson * strain, -poisson * strain);
+  const Dofs force = forces(block, linear_field(block, strains.asDiagonal()));
+  double pull = 0.0;
+  for (const int node : block.sets().at("b.x_max").nodes) pull -= force[3 * node];
+  EXPECT_NEAR(pull, young * strain * 0.72, 1e-16);
+  for (const int node : block.sets().at("b.y_max").nodes) EXPECT_NEAR(force[3 * node + 1], 0.0, 1e-17);
+}
+
+TEST_P(BlockOf, FeelsNoForceFromTranslation) {
+  const Blocks block = block_of(GetParam());
+  const Dofs u = Eigen::Vector3d(3.0, -1.0, 7.0).replicate(block.node_count(), 1);
+  EXPECT_EQ(forces(block, u).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ(block.potential(u), 0.0);
+}
+
+TEST(NeoHookeanBlock, FeelsNoForceFromAnyRotation) {
+  const Blocks block = block_of(MaterialLaw::neo_hookean);
+  for (const double angle : {0.1, 1.0, 3.0}) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(angle, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+    EXPECT_LE(forces(block, linear_field(block, turn - Eigen::Matrix3d::Identity())).cwiseAbs().maxCoeff(),
+              1e-14);
+  }
+}
+
+// A turn of the deformed body turns its forces with it: f(Q (x + u) - x) = Q f(u).
+TEST(NeoHookeanBlock, TurnsItsForcesWithTheBody) {
+  std::mt19937_64 random(2);
+  const Blocks block = block_of(MaterialLaw::neo_hookean);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.0, Eigen::Vector3d(1, 1, -3).normalized()).matrix();
+  for (int draw = 0; draw < 20; ++draw) {
+    const Dofs u = random_field(block, 0.03, random), x = block.position();
+    Dofs turned(u.size());
+    Dofs exact = forces(block, u);
+    for (int node = 0; node < block.node_count(); ++node) {
+      turned.segment<3>(3 * node) = turn * (x + u).segment<3>(3 * node) - x.segment<3>(3 * node);
+      exact.segment<3>(3 * node) = (turn * exact.segment<3>(3 * node)).eval();
+    }
+    EXPECT_LE((forces(block, turned) - exact).cwiseAbs().maxCoeff(), 1e-13);
+  }
+}
+
+// Central differences of the potential along random directions: error of order step^2 and of rounding over
+// step.
+TEST_P(BlockOf, HasForcesThatAreTheGradientOfItsPotential) {
+  std::mt19937_64 random(3);
+  const Blocks block = block_of(GetParam());
+  constexpr double step = 1e-5;
+  for (int draw = 0; draw < 50; ++draw) {
+    const Dofs u = random_field(block, 0.05, random), direction = random_field(block, 1.0, random);
+    const double slope =
+        (block.potential(u + step * direction) - block.potential(u - step * direction)) / (2.0 * step);
+    const double exact = -forces(block, u).dot(direction);
+    EXPECT_NEAR(slope, exact, 1e-6) << draw;
+  }
+}
+
+// For small strains both materials are the same, to the square of the strain.
+TEST(NeoHookeanBlock, IsLinearElasticForSmallStrains) {
+  std::mt19937_64 random(4);
+  const Blocks linear = block_of(MaterialLaw::linear), block = block_of(MaterialLaw::neo_hookean);
+  const Dofs field = random_field(block, 1.0, random);
+  std::vector<double> sizes, errors;
+  for (const double size : {4e-4, 2e-4, 1e-4}) {
+    sizes.push_back(size);
+    errors.push_back((forces(block, size * field) - forces(linear, size * field)).norm());
+  }
+  EXPECT_NEAR(order(sizes, errors), 2.0, 0.02);
+}
+
+// The stiffness, column by column: symmetric, and zero for the six motions of a rigid body alone, so no
+// hourglass modes.
+TEST(LinearBlock, HasASymmetricStiffnessWithSixRigidMotions) {
+  for (const std::array<int, 3>& elements : {std::array{1, 1, 1}, std::array{3, 2, 1}}) {
+    const Blocks block = block_of(MaterialLaw::linear, elements);
+    const Eigen::Index size = block.mass().size();
+    Eigen::MatrixXd stiffness(size, size);
+    for (Eigen::Index column = 0; column < size; ++column)
+      stiffness.col(column) = -forces(block, Dofs::Unit(size, column));
+    EXPECT_LE((stiffness - stiffness.transpose()).cwiseAbs().maxCoeff(), 1e-14);
+    const Eigen::VectorXd modes = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(stiffness).eigenvalues();
+    EXPECT_LE(modes.head<6>().cwiseAbs().maxCoeff(), 1e-13);
+    EXPECT_GE(modes[6], 1e-2);
+  }
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
