@@ -142,30 +142,53 @@ void Integrator::solve_interfaces(double time) {
   const Stopwatch watch(seconds_.interfaces);
   const Eigen::Index d = model_.dimension();
   const StepView step{u_, v_before_, time, dt_, largest_speed(v_before_, d), largest_speed(v_, d)};
-  for (const auto& interface : interfaces_) interface->open_step(step);
-  int sweeps = 1;
-  double change = sweep(step);
-  const double scale = std::max(step.speed_before, step.speed_free);
-  while (coupled_ && change > coupling_tolerance * scale && sweeps < most_sweeps) {
-    change = sweep(step);
-    ++sweeps;
+  if (coupled_) {
+    solve_coupled(step);
+  } else {
+    open_interfaces(step);
+    sweep(step);
   }
-  for (const auto& interface : interfaces_) interface->accept();
-  if (!coupled_) return;
-  tally_.sweeps += sweeps;
-  tally_.sweeps_max = std::max(tally_.sweeps_max, sweeps);
-  if (scale > 0.0) tally_.coupling_residual_max = std::max(tally_.coupling_residual_max, change / scale);
-  if (change > coupling_tolerance * scale) ++tally_.unconverged;
+  for (const auto& interface : interfaces_) interface->accept(dt_);
 }
 
-// Evaluates every contact once, each against the impulses of the others; returns the largest change of
-// velocity.
-double Integrator::sweep(const StepView& step) {
-  double change = 0.0;
+// Which contacts may act follows from a bound on speeds. Where impulses of other contacts make a node faster,
+// the step is solved again with a larger one: whether that happens does not depend on who was asked.
+void Integrator::solve_coupled(StepView step) {
+  const double scale = std::max(step.speed_before, step.speed_after);
+  const Dofs v_free = v_;
+  step.speed_after = 2.0 * scale;
+  int sweeps = 0;
+  Move last;
+  for (bool bounded = false; !bounded;) {
+    open_interfaces(step);
+    v_ = v_free;
+    double fastest = 0.0;
+    sweeps = 0;
+    do {
+      last = sweep(step);
+      fastest = std::max(fastest, last.speed);
+      ++sweeps;
+    } while (last.change > coupling_tolerance * scale && sweeps < most_sweeps);
+    bounded = !(fastest > step.speed_after);
+    step.speed_after = 2.0 * fastest;
+  }
+  tally_.sweeps += sweeps;
+  tally_.sweeps_max = std::max(tally_.sweeps_max, sweeps);
+  if (scale > 0.0) tally_.coupling_residual_max = std::max(tally_.coupling_residual_max, last.change / scale);
+  if (last.change > coupling_tolerance * scale) ++tally_.unconverged;
+}
+
+void Integrator::open_interfaces(const StepView& step) {
+  for (const auto& interface : interfaces_) interface->open_step(step);
+}
+
+// Evaluates every contact once, each against the impulses of the others.
+Move Integrator::sweep(const StepView& step) {
+  Move moved;
   for (const auto& interface : interfaces_)
     for (int colour = 0; colour < interface->colours(); ++colour)
-      change = std::max(change, interface->solve(colour, v_, step));
-  return change;
+      moved.include(interface->solve(colour, v_, step));
+  return moved;
 }
 
 void Integrator::account() {

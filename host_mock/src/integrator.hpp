@@ -59,7 +59,9 @@ class Integrator {
   void free_velocity(StepTimes step);
   void correct(StepTimes step);
   void solve_interfaces(double time);
-  double sweep(const StepView& step);
+  void solve_coupled(StepView step);
+  void open_interfaces(const StepView& step);
+  Move sweep(const StepView& step);
   void account();
   void account(const Interface& interface);
   void check_motion() const;

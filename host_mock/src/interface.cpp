@@ -59,6 +59,9 @@ ilaw::interface create(const InterfaceSetup& setup, const ilaw::library& library
 // Contacts of one evaluate when threads share a batch.
 constexpr int chunk = 2048;
 
+// For all contacts that find no other colour: they are solved one by one.
+constexpr std::size_t serial_colour = 63;
+
 template <class T>
 void write(std::ostream& out, const std::vector<T>& values) {
   const std::uint64_t size = values.size();
@@ -202,13 +205,15 @@ void Interface::look(const StepView& step) {
 
 void Interface::open_step(const StepView& step) {
   asked_.clear();
-  for (auto& colour : colours_) colour.clear();
+  colours_.clear();
   const Opponent& opponent = *setup_.opponent;
   obstacle_velocity_before_ = opponent.velocity(step.time - step.dt, step.time);
   obstacle_velocity_ = opponent.velocity(step.time, step.time + step.dt);
   const double moving = opponent.partners().empty() ? 1.0 : 2.0;
-  const bool due = reach_.look_due(step.dt, moving * step.speed_before + obstacle_velocity_before_.norm(),
-                                   moving * step.speed_free + obstacle_velocity_.norm(), opponent.sight());
+  const double closing_before = moving * step.speed_before + obstacle_velocity_before_.norm(),
+               closing_after = moving * step.speed_after + obstacle_velocity_.norm();
+  ahead_ = step.dt * closing_after;
+  const bool due = reach_.look_due(step.dt, closing_before, closing_after, opponent.sight());
   if (step.time < setup_.birth || step.time >= setup_.death) {
     reach_.forget();
     return;
@@ -233,7 +238,14 @@ void Interface::locate(int slot, const StepView& step) {
     delassus_[k] += meeting.weights[i] * meeting.weights[i] / mass(meeting.partners[i]);
 }
 
-// Greedy: each contact takes the first colour that none of its nodes has.
+// Whether a contact cannot act in this step, as those that are not asked (reach.hpp).
+bool Interface::is_idle(int slot) const {
+  const auto k = static_cast<std::size_t>(slot);
+  return !(info_.capabilities & ILAW_CAN_ACT_AT_DISTANCE) && !touched_[k] && gap_[k] > ahead_;
+}
+
+// Idle contacts come last, whatever nodes they share: the order of those that act must not depend on how many
+// others are asked.
 void Interface::colour_contacts() {
   if (asked_.empty()) return;
   if (colours_of_node_.empty()) {
@@ -242,21 +254,33 @@ void Interface::colour_contacts() {
     return;
   }
   std::fill(colours_of_node_.begin(), colours_of_node_.end(), 0);
+  std::vector<std::int32_t> idle;
   for (const std::int32_t slot : asked_) {
-    const Meeting& meeting = meetings_[static_cast<std::size_t>(slot)];
-    const int own = setup_.nodes[static_cast<std::size_t>(place_of_[static_cast<std::size_t>(slot)])];
-    std::uint64_t taken = colours_of_node_[static_cast<std::size_t>(own)];
-    for (int i = 0; i < meeting.partner_count; ++i)
-      taken |= colours_of_node_[static_cast<std::size_t>(meeting.partners[static_cast<std::size_t>(i)])];
-    // The last colour is for all that find no other: its contacts are solved one by one.
-    const auto colour = std::min(static_cast<std::size_t>(std::countr_one(taken)), std::size_t{63});
+    if (is_idle(slot)) {
+      idle.push_back(slot);
+      continue;
+    }
+    const std::size_t colour = colour_of(slot);
     if (colours_.size() <= colour) colours_.resize(colour + 1);
     colours_[colour].push_back(slot);
-    const std::uint64_t mark = std::uint64_t{1} << colour;
-    colours_of_node_[static_cast<std::size_t>(own)] |= mark;
-    for (int i = 0; i < meeting.partner_count; ++i)
-      colours_of_node_[static_cast<std::size_t>(meeting.partners[static_cast<std::size_t>(i)])] |= mark;
   }
+  colours_.push_back(std::move(idle));
+}
+
+// Greedy: the first colour that none of the contact's nodes has.
+std::size_t Interface::colour_of(int slot) {
+  const Meeting& meeting = meetings_[static_cast<std::size_t>(slot)];
+  std::uint64_t& own = colours_of_node_[static_cast<std::size_t>(node_of(slot))];
+  const auto of_partner = [&](int i) -> std::uint64_t& {
+    return colours_of_node_[static_cast<std::size_t>(meeting.partners[static_cast<std::size_t>(i)])];
+  };
+  std::uint64_t taken = own;
+  for (int i = 0; i < meeting.partner_count; ++i) taken |= of_partner(i);
+  const auto colour = std::min(static_cast<std::size_t>(std::countr_one(taken)), serial_colour);
+  const std::uint64_t mark = std::uint64_t{1} << colour;
+  own |= mark;
+  for (int i = 0; i < meeting.partner_count; ++i) of_partner(i) |= mark;
+  return colour;
 }
 
 Vector Interface::relative(int slot, const Dofs& v) const {
@@ -290,21 +314,21 @@ void Interface::gather(const std::vector<std::int32_t>& slots, const Dofs& v, co
   }
 }
 
-double Interface::solve(int colour, Dofs& v, const StepView& step) {
+Move Interface::solve(int colour, Dofs& v, const StepView& step) {
   const std::vector<std::int32_t>& slots = colours_[static_cast<std::size_t>(colour)];
-  if (slots.empty()) return 0.0;
-  if (colour < 63) {
+  if (slots.empty()) return {};
+  if (static_cast<std::size_t>(colour) != serial_colour) {
     gather(slots, v, step);
     evaluate(slots, step);
-    return apply(slots, v, step.dt);
+    return apply(slots, v);
   }
-  double change = 0.0;
+  Move moved;
   for (const std::int32_t slot : slots) {
     gather({slot}, v, step);
     evaluate({slot}, step);
-    change = std::max(change, apply({slot}, v, step.dt));
+    moved.include(apply({slot}, v));
   }
-  return change;
+  return moved;
 }
 
 void Interface::evaluate(const std::vector<std::int32_t>& slots, const StepView& step) {
@@ -338,31 +362,37 @@ void Interface::evaluate(const std::vector<std::int32_t>& slots, const StepView&
     if (codes[k] != ILAW_OK) throw ilaw::error(codes[k], node_message(reports[k]));
 }
 
-double Interface::apply(const std::vector<std::int32_t>& slots, Dofs& v, double dt) {
-  double change = 0.0;
+Move Interface::apply(const std::vector<std::int32_t>& slots, Dofs& v) {
+  double change = 0.0, speed = 0.0;
   const Eigen::Index d = dimension_;
-#pragma omp parallel for schedule(static) reduction(max : change) if (slots.size() > 2 * std::size_t{chunk})
+#pragma omp parallel for schedule(static) \
+    reduction(max                         \
+              : change, speed) if (slots.size() > 2 * std::size_t{chunk})
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const std::int32_t slot = slots[i];
     const auto k = static_cast<std::size_t>(slot);
     const Vector added = impulse(slot) - Eigen::Map<const Vector>(&previous_impulse_[at(slot)], d);
+    if (added.isZero(0.0)) continue;  // idle contacts may share nodes, which they must not even write
     change = std::max(change, delassus_[k] * added.cwiseAbs().maxCoeff());
     const auto move = [&](int node, double weight) {
       v.segment(node * d, d) += (weight / model_.mass()[node * d]) * added;
+      speed = std::max(speed, v.segment(node * d, d).norm());
     };
-    move(setup_.nodes[static_cast<std::size_t>(place_of_[k])], 1.0);
+    move(node_of(slot), 1.0);
     for (std::size_t p = 0; p < static_cast<std::size_t>(meetings_[k].partner_count); ++p)
       move(meetings_[k].partners[p], -meetings_[k].weights[p]);
-    const double approach = dt * Eigen::Map<const Vector>(&v_free_[at(slot)], d).norm();
-    if (status_[k] != ILAW_FREE || !(gap_[k] > approach)) touched_[k] = info_.state_size > 0;
   }
-  return change;
+  return {change, speed};
 }
 
-void Interface::accept() {
-  if (!coupled_) return;
-  for (const std::int32_t slot : asked_)
-    std::copy_n(&next_state_[state_at(slot)], info_.state_size, &state_[state_at(slot)]);
+void Interface::accept(double dt) {
+  if (info_.state_size == 0) return;
+  for (const std::int32_t slot : asked_) {
+    const auto k = static_cast<std::size_t>(slot);
+    const double approach = dt * Eigen::Map<const Vector>(&v_free_[at(slot)], dimension_).norm();
+    if (status_[k] != ILAW_FREE || !(gap_[k] > approach)) touched_[k] = 1;
+    if (coupled_) std::copy_n(&next_state_[state_at(slot)], info_.state_size, &state_[state_at(slot)]);
+  }
 }
 
 bool Interface::was_asked(int slot) const {

@@ -10,6 +10,7 @@
 
 #include <ilaw/loader.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <iosfwd>
 #include <map>
@@ -39,11 +40,23 @@ struct InterfaceSetup {
   bool asks_all = false;    // also contacts that cannot be reached: same results, more work
 };
 
-// A step from the interface's side. Speeds are the largest of any node.
+// A step from the interface's side. Speeds bound those of all nodes.
 struct StepView {
   const Dofs& u;         // at time
   const Dofs& v_before;  // at the half step before time
-  double time, dt, speed_before, speed_free;
+  double time, dt;
+  double speed_before;  // at the half step before time
+  double speed_after;   // while impulses are sought: of v_free, and of what other contacts may make of it
+};
+
+// What solving contacts did to the velocities.
+struct Move {
+  double change = 0.0;  // largest change of a contact's velocity
+  double speed = 0.0;   // largest speed of a node that was moved
+  void include(const Move& other) {
+    change = std::max(change, other.change);
+    speed = std::max(speed, other.speed);
+  }
 };
 
 class Interface {
@@ -64,10 +77,10 @@ class Interface {
   const std::vector<std::int32_t>& asked() const { return asked_; }
   int colours() const { return static_cast<int>(colours_.size()); }
   // Evaluates one colour against the velocities v, which hold all impulses so far and take the change in.
-  // Returns the largest change of a contact's velocity. Throws ilaw::error on bad nodes.
-  double solve(int colour, Dofs& v, const StepView& step);
+  // Throws ilaw::error on bad nodes.
+  Move solve(int colour, Dofs& v, const StepView& step);
   // The step is done: its state becomes the state before the next.
-  void accept();
+  void accept(double dt);
   // Whether evaluate will be called more than once per step: it then keeps state_in and state_out apart.
   void set_coupled(bool coupled) { coupled_ = coupled; }
 
@@ -114,12 +127,14 @@ class Interface {
   bool may_skip() const;
   void look(const StepView& step);
   void locate(int slot, const StepView& step);
+  bool is_idle(int slot) const;
   void colour_contacts();
+  std::size_t colour_of(int slot);
   void open_slot(int place, const Dofs& u);
   void initialise(int slot, const Dofs& u);
   void gather(const std::vector<std::int32_t>& slots, const Dofs& v, const StepView& step);
   void evaluate(const std::vector<std::int32_t>& slots, const StepView& step);
-  double apply(const std::vector<std::int32_t>& slots, Dofs& v, double dt);
+  Move apply(const std::vector<std::int32_t>& slots, Dofs& v);
   ilaw_batch batch(double time, double dt) const;
   std::string node_message(const ilaw_report& report) const;
 
@@ -131,6 +146,7 @@ class Interface {
   ilaw_instance_info info_;
   bool coupled_ = false;
   Reach reach_;
+  double ahead_ = 0.0;  // how far a gap may close in the coming step
 
   std::vector<int> slot_of_;                // by place; -1: none yet
   std::vector<int> place_of_;               // by slot

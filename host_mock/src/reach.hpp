@@ -2,11 +2,14 @@
 //
 // At a look, contacts with a gap bound of at most a horizon D are near. Since then nodes and obstacles have
 // approached each other by no more than the sum of (step x largest closing speed), whatever happened to them,
-// so that the gap of any other contact is still larger than D minus that sum; and within the next step it can
-// close by no more than step x (largest closing speed without interface). While the sum of both stays below
-// D, a contact that is not near has gap > 0 and gap + h v_N > 0: a law that does not act at a distance gives
-// it r = 0, and leaves the state it was initialised with (ilaw.h, ILAW_CAN_ACT_AT_DISTANCE). Asking it would
-// change nothing, to the bit. SPDX-License-Identifier: BSD-3-Clause
+// so that the gap of any other contact is still larger than D minus that sum. Within the next step it can
+// close by no more than step x (largest closing speed while impulses are sought): where other contacts may
+// make nodes faster, the integrator checks the bound it gave and solves again with a larger one. While the
+// sum of both stays below D, a contact that is not near has gap > 0 and gap + h v_N > 0: a law that does not
+// act at a distance gives it r = 0, and leaves the state it was initialised with (ilaw.h,
+// ILAW_CAN_ACT_AT_DISTANCE). Asking it would change nothing, to the bit.
+//
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <algorithm>
@@ -15,14 +18,14 @@ namespace ilaw::host {
 
 class Reach {
  public:
-  // Speeds are the largest closing speeds of the step that led here and of the coming one without interface.
+  // Speeds bound the closing speeds of the step that led here and of the coming one.
   // Says whether it is time to look; sight bounds the horizon.
-  bool look_due(double dt, double speed_before, double speed_free, double sight) {
+  bool look_due(double dt, double speed_before, double speed_after, double sight) {
     approached_ += rounding * dt * speed_before;
-    const double ahead = rounding * dt * speed_free;
+    const double ahead = rounding * dt * speed_after;
     if (looked_ && approached_ + ahead < horizon_) return false;
     approached_ = 0.0;
-    horizon_ = std::min(steps_ahead * dt * std::max(speed_before, speed_free), sight);
+    horizon_ = std::min(steps_ahead * dt * std::max(speed_before, speed_after), sight);
     horizon_ = std::max(horizon_, 2.0 * ahead);  // never shorter than the step itself
     looked_ = true;
     return true;

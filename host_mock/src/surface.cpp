@@ -94,10 +94,7 @@ void SurfaceOpponent::find_neighbours() {
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     std::set<std::size_t> around;
     for (const int node : facets_[f]) around.insert(facets_at[node].begin(), facets_at[node].end());
-    around.erase(f);
-    std::vector<std::size_t>& list = neighbours_.emplace_back();
-    list.push_back(f);
-    list.insert(list.end(), around.begin(), around.end());
+    neighbours_.emplace_back(around.begin(), around.end());
   }
 }
 

@@ -32,9 +32,11 @@ class SurfaceOpponent : public Opponent {
   const Model& model_;
   std::vector<int> nodes_, partners_;
   std::vector<Facet> facets_;
-  std::vector<std::vector<std::size_t>> neighbours_;  // of a facet, itself first
-  std::vector<std::size_t> nearest_;                  // facet, by place, at the last look
-  std::vector<double> bound_;                         // of the gap, by place, at the last look
+  std::vector<std::vector<std::size_t>>
+      neighbours_;                    // of a facet, and itself, in ascending order: which of two
+                                      // equally near ones is met does not depend on the look
+  std::vector<std::size_t> nearest_;  // facet, by place, at the last look
+  std::vector<double> bound_;         // of the gap, by place, at the last look
   double shortest_edge_;
 };
 

@@ -185,5 +185,63 @@ TEST(Reach, MissesNoContactOfDrawnPoints) {
   EXPECT_GT(skipped, asked);
 }
 
+// A point flies at 100 towards a wall; a spring that is born around it for one step, late, throws it on at
+// 1000. The free motion says nothing of it, but the wall must act within that very step: its law looks ahead.
+TEST(Reach, SeesWhatAnotherInterfaceThrows) {
+  json scene = json::parse(R"({
+    "model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0], "velocity": [100]}]},
+    "time": {"dt": 0.001, "end": 0.04},
+    "interfaces": [
+      {"name": "spring", "law": "penalty", "parameters": {"stiffness": 1e5, "integration": "explicit"}, "nodes": [0],
+       "obstacle": {"type": "plane", "point": [10], "normal": [1]}},
+      {"name": "wall", "law": "contact", "parameters": {"activation": "predictive"}, "nodes": [0],
+       "obstacle": {"type": "plane", "point": [3.31], "normal": [-1]}}]})");
+  for (int step = 1; step < 33; ++step) {
+    scene["interfaces"][0]["birth"] = (step - 0.5) * 1e-3;
+    scene["interfaces"][0]["death"] = (step + 0.5) * 1e-3;
+    expect_same_bits(scene);
+    Scene run = scene_of(scene.dump());
+    Integrator integrator = integrator_of(run);
+    while (integrator.steps() < run.steps) integrator.step();
+    EXPECT_NEAR(integrator.displacement()[0], 3.31, 1e-12) << step;
+  }
+}
+
+// Blocks thrown at each other: contacts share nodes, and are solved in an order that must not depend on who
+// is asked.
+TEST(Reach, KeepsTheOrderOfSharedNodes) {
+  Draw draw(21);
+  std::int64_t skipped = 0;
+  for (int k = 0; k < 12 && !HasFailure(); ++k) {
+    const json material = {{"type", "neo_hookean"}, {"young", 1e3}, {"poisson", 0.3}, {"density", 1.0}};
+    const json lower = {
+        {"name", "lower"}, {"size", {1.0, 1.0, 0.3}}, {"elements", {3, 4, 1}}, {"material", material}};
+    const json upper = {{"name", "upper"},
+                        {"corner", {draw.in(-0.2, 0.4), draw.in(-0.2, 0.4), 0.35}},
+                        {"size", {0.7, 0.8, 0.4}},
+                        {"elements", {4, 3, 2}},
+                        {"velocity", {draw.in(-10.0, 10.0), draw.in(-10.0, 10.0), draw.in(-10.0, -1.0)}},
+                        {"material", material}};
+    const json scene = {{"model", {{"type", "blocks"}, {"blocks", {lower, upper}}}},
+                        {"time", {{"cfl", 0.7}, {"end", 0.2}}},
+                        {"interfaces",
+                         {{{"name", "between"},
+                           {"law", "coulomb"},
+                           {"parameters", {{"friction", 0.3}}},
+                           {"nodes", "upper.z_min"},
+                           {"against", {{"surface", "lower.z_max"}}}},
+                          {{"name", "floor"},
+                           {"law", "coulomb"},
+                           {"parameters", {{"friction", 0.3}}},
+                           {"nodes", "lower.z_min"},
+                           {"obstacle",
+                            {{"type", "plane"},
+                             {"point", {0.0, 0.0, -0.05}},
+                             {"normal", {draw.in(-0.3, 0.3), 0.0, 1.0}}}}}}}};
+    skipped += expect_same_bits(scene).skipped;
+  }
+  EXPECT_GT(skipped, 1000);
+}
+
 }  // namespace
 }  // namespace ilaw::host::testing
