@@ -1,41 +1,15 @@
 // The `ilaw` program as a user meets it: exit codes, messages, files.
 #include "host_runner.hpp"
+#include "program_runner.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
 #include <csignal>
-#include <cstdio>
 #include <sstream>
 #include <thread>
 
 namespace ilaw::host::testing {
 namespace {
-
-struct Outcome {
-  int code;
-  std::string output;  // stdout and stderr
-};
-
-Outcome run_program(const std::string& arguments) {
-  const std::string command = std::string(ILAW_PROGRAM) + " " + arguments + " 2>&1 </dev/null";
-  FILE* pipe = popen(command.c_str(), "r");
-  std::string output;
-  std::array<char, 4096> buffer{};
-  for (std::size_t got; (got = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    output.append(buffer.data(), got);
-  const int status = pclose(pipe);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
-}
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
 
 const std::string ball = std::string(ILAW_SCENES) + "/bouncing_ball.json";
 
@@ -100,13 +74,8 @@ TEST(Program, LeavesWholeFilesWhenInterrupted) {
   scene["time"]["end"] = 1e6;
   scene["output"]["every"] = 1000;
   std::ofstream(folder / "scene.json") << scene.dump();
-  const std::string file = (folder / "scene.json").string(), out = folder.string();
-  const pid_t child = fork();
-  if (child == 0) {
-    if (!freopen((folder / "messages").c_str(), "w", stderr)) _exit(127);
-    execl(ILAW_PROGRAM, ILAW_PROGRAM, "run", file.c_str(), "--out", out.c_str(), nullptr);
-    _exit(127);
-  }
+  const pid_t child =
+      start_program({"run", (folder / "scene.json").string(), "--out", folder.string()}, folder / "messages");
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   kill(child, SIGINT);
   int status = 0;

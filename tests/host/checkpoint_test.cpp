@@ -1,0 +1,253 @@
+// A run that goes on from a checkpoint goes on to the same bits, and nothing but its own checkpoint will do.
+#include "checkpoint.hpp"
+#include "host_runner.hpp"
+#include "program_runner.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <omp.h>
+
+#include <csignal>
+#include <cstring>
+#include <random>
+#include <sstream>
+#include <thread>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+json shipped(const std::string& name) {
+  return read_scene_source(std::filesystem::path(ILAW_SCENES) / (name + ".json"));
+}
+
+std::string saved(const Integrator& integrator) {
+  std::ostringstream state;
+  integrator.save(state);
+  return state.str();
+}
+
+bool same_bits(const Dofs& a, const Dofs& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
+
+// ---- in one process -------------------------------------------------------------------------------------
+
+// Friction of a spring with a history vector, on a plane that is not along the axes.
+json dragged_block() {
+  return json::parse(R"({
+    "model": {"type": "points", "dimension": 3, "points": [
+      {"mass": 1, "position": [0, 0, 0], "velocity": [1, 0.5, 0]}, {"mass": 2, "position": [1, 0, 3], "velocity": [0, 1, -1]}]},
+    "time": {"dt": 0.001, "end": 0.6}, "loads": [{"type": "gravity", "acceleration": [0, 0, -10]}],
+    "interfaces": [{"law": "penalty", "nodes": "all",
+      "parameters": {"stiffness": 1e4, "friction": 0.2, "tangential_stiffness": 5e3, "damping": 3, "integration": "implicit"},
+      "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0.1, 0, 1]}}]})");
+}
+
+std::vector<std::pair<std::string, json>> resumed_scenes() {
+  json dcb = shipped("dcb_peel");
+  dcb["model"]["blocks"][0]["elements"] = {20, 1, 2};
+  dcb["time"]["end"] = 100.0;
+  json strip = shipped("postit_3d");
+  strip["model"]["blocks"][0]["elements"] = {20, 2, 1};
+  std::vector<std::pair<std::string, json>> scenes{
+      {"dcb_peel", dcb}, {"postit_3d", strip}, {"penalty_history", dragged_block()}};
+  for (const char* name : {"block_impact", "two_blocks", "rotating_spring", "postit_test2", "postit_test3",
+                           "stick_slip", "two_bars", "bouncing_ball"})
+    scenes.emplace_back(name, shipped(name));
+  return scenes;
+}
+
+class Resumed : public ::testing::TestWithParam<std::pair<std::string, json>> {};
+
+// Saved in the middle, at drawn steps, read into a fresh run, and both go on: displacements, velocities and
+// impulses of each step, and the energies in the end.
+TEST_P(Resumed, GoesOnToTheSameBits) {
+  omp_set_num_threads(1);
+  std::mt19937 engine(30);
+  for (int k = 0; k < 3; ++k) {
+    Scene scene = scene_of(GetParam().second.dump()), copy = scene_of(GetParam().second.dump());
+    Integrator uninterrupted = integrator_of(scene), resumed = integrator_of(copy);
+    const auto stop = std::uniform_int_distribution<std::int64_t>(0, scene.steps - 1)(engine);
+    while (uninterrupted.steps() < stop) uninterrupted.step();
+    std::istringstream state(saved(uninterrupted));
+    resumed.load(state);
+    ASSERT_EQ(resumed.steps(), stop);
+    while (resumed.steps() < scene.steps) {
+      resumed.step();
+      uninterrupted.step();
+      ASSERT_TRUE(same_bits(resumed.displacement(), uninterrupted.displacement())) << resumed.steps();
+      ASSERT_TRUE(same_bits(resumed.velocity(), uninterrupted.velocity())) << resumed.steps();
+      ASSERT_TRUE(same_bits(resumed.interface_impulse(), uninterrupted.interface_impulse()))
+          << resumed.steps();
+    }
+    const EnergyReport energy = resumed.energy(), wanted = uninterrupted.energy();
+    EXPECT_EQ(energy.interface_work, wanted.interface_work);
+    EXPECT_EQ(energy.balance_error, wanted.balance_error);
+    EXPECT_EQ(energy.by_law, wanted.by_law);
+    EXPECT_EQ(energy.least_dissipation, wanted.least_dissipation);
+    EXPECT_EQ(resumed.tally().status_counts, uninterrupted.tally().status_counts);
+    EXPECT_EQ(resumed.tally().penetration_max, uninterrupted.tally().penetration_max);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Checkpoint, Resumed, ::testing::ValuesIn(resumed_scenes()),
+                         [](const auto& drawn) { return drawn.param.first; });
+
+// ---- the program ----------------------------------------------------------------------------------------
+
+// A run of a second or so, in small steps, with fields.
+json long_scene() {
+  json scene = shipped("block_impact");
+  scene["model"]["blocks"][0]["elements"] = {4, 4, 4};
+  scene["time"] = {{"cfl", 0.01}, {"end", 0.03}};
+  scene["output"] = {{"every", 7}, {"watch", {0, 80}}, {"fields", 900}, {"balance", true}};
+  return scene;
+}
+
+std::filesystem::path written(const json& scene, const std::filesystem::path& folder) {
+  std::ofstream(folder / "scene.json") << scene.dump();
+  return folder / "scene.json";
+}
+
+// What must not depend on whether a run was interrupted: all but the time it took, and which contacts were
+// asked, which depends on when one last looked.
+json results_of(const std::filesystem::path& folder) {
+  json summary = json::parse(text_of(folder / "summary.json"));
+  for (const char* key : {"seconds", "interface_share", "resumed_at_step", "node_steps"}) summary.erase(key);
+  for (json& interface : summary["interfaces"]) interface.erase("nodes_stored");
+  return summary;
+}
+
+void expect_same_results(const std::filesystem::path& a, const std::filesystem::path& b) {
+  EXPECT_EQ(text_of(a / "history.csv"), text_of(b / "history.csv"));
+  EXPECT_EQ(results_of(a), results_of(b));
+  const json series = json::parse(text_of(a / "fields.vtu.series"));
+  EXPECT_EQ(series, json::parse(text_of(b / "fields.vtu.series")));
+  EXPECT_GT(series["files"].size(), 3U);
+  for (const json& file : series["files"]) {
+    const std::string name = file["name"];
+    EXPECT_EQ(text_of(a / name), text_of(b / name)) << name;
+  }
+}
+
+class Interrupted : public ::testing::TestWithParam<int> {};
+
+// Ended again and again, a while after a new checkpoint, and resumed each time.
+TEST_P(Interrupted, LeavesTheResultsOfAnUninterruptedRun) {
+  const auto whole = fresh_folder(), parts = fresh_folder();
+  const std::string scene = written(long_scene(), whole).string();
+  ASSERT_EQ(run_program("run " + scene + " --out " + whole.string()).code, 0);
+  std::mt19937 engine(31);
+  std::vector<std::string> command{"run", scene, "--out", parts.string(), "--checkpoint-every", "100"};
+  int ended = 0;
+  for (bool running = true; running && ended < 4; ++ended) {
+    const std::string before = text_of(parts / "checkpoint.cbor");
+    const pid_t child = start_program(command, parts / "messages");
+    while ((running = waitpid(child, nullptr, WNOHANG) == 0) && text_of(parts / "checkpoint.cbor") == before)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (!running) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution<int>(0, 80)(engine)));
+    kill(child, GetParam());
+    waitpid(child, nullptr, 0);
+    if (ended == 0) command.emplace_back("--resume");
+  }
+  EXPECT_GE(ended, 2) << "the run is too short for this machine";
+  const Outcome last =
+      run_program("run " + scene + " --out " + parts.string() + " --checkpoint-every 100 --resume");
+  EXPECT_EQ(last.code, 0) << last.output;
+  EXPECT_GE(json::parse(text_of(parts / "summary.json"))["resumed_at_step"], 200);
+  expect_same_results(whole, parts);
+}
+
+INSTANTIATE_TEST_SUITE_P(Checkpoint, Interrupted, ::testing::Values(SIGKILL, SIGTERM, SIGINT),
+                         [](const auto& drawn) { return std::string(sigabbrev_np(drawn.param)); });
+
+// Where it stopped by itself a run says how to go on; its files are whole.
+TEST(Checkpoint, IsWrittenWhereARunIsInterrupted) {
+  const auto folder = fresh_folder();
+  const std::string scene = written(long_scene(), folder).string();
+  const pid_t child = start_program({"run", scene, "--out", folder.string(), "--checkpoint-every", "100000"},
+                                    folder / "messages");
+  while (!std::filesystem::exists(folder / "history.csv.partial"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  kill(child, SIGTERM);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_NE(text_of(folder / "messages").find("--resume goes on from there"), std::string::npos);
+  const json summary = json::parse(text_of(folder / "summary.json"));
+  EXPECT_TRUE(summary["interrupted"]);
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
+  EXPECT_EQ(run_program("run " + scene + " --out " + folder.string() + " --resume").code, 0);
+  EXPECT_EQ(json::parse(text_of(folder / "summary.json"))["resumed_at_step"], summary["steps"]);
+}
+
+TEST(Checkpoint, OfNoRunOrAnotherOneIsRefused) {
+  const auto folder = fresh_folder();
+  const json scene = shipped("postit_test3");
+  const std::string file = written(scene, folder).string(), out = " --out " + folder.string();
+  const std::string path = (folder / "checkpoint.cbor").string();
+  const Outcome none = run_program("run " + file + out + " --resume");
+  EXPECT_EQ(none.code, 1);
+  EXPECT_NE(none.output.find(path + ": found no checkpoint to resume from"), std::string::npos)
+      << none.output;
+  ASSERT_EQ(run_program("run " + file + out + " --checkpoint-every 500").code, 0);
+  json other = scene;
+  other["interfaces"][0]["parameters"]["memory"] = 0.081;
+  written(other, folder);
+  const Outcome another = run_program("run " + file + out + " --resume");
+  EXPECT_EQ(another.code, 1);
+  EXPECT_NE(another.output.find(path + ": is of another scene, expected the very run"), std::string::npos)
+      << another.output;
+  written(scene, folder);
+  std::filesystem::remove(folder / "history.csv");
+  const Outcome lost = run_program("run " + file + out + " --resume");
+  EXPECT_EQ(lost.code, 1);
+  EXPECT_NE(lost.output.find("history.csv"), std::string::npos) << lost.output;
+  EXPECT_EQ(run_program("run " + file + out + " --checkpoint-every 0").code, 2);
+}
+
+// Cut short anywhere, or with one bit turned anywhere, it is told apart from a good one, by name; the program
+// then fails without a crash.
+TEST(Checkpoint, DamagedAnywhereIsRefused) {
+  const auto folder = fresh_folder();
+  Scene scene = scene_of(shipped("bouncing_ball").dump());
+  Integrator integrator = integrator_of(scene);
+  for (int k = 0; k < 100; ++k) integrator.step();
+  write_checkpoint(scene, integrator, {1234, json::array()}, folder);
+  const std::string good = text_of(folder / "checkpoint.cbor");
+  EXPECT_EQ(read_checkpoint(scene, integrator, folder).history_size, 1234U);
+  const auto refusal_of = [&](const std::string& bytes) -> std::string {
+    std::ofstream(folder / "checkpoint.cbor", std::ios::binary) << bytes;
+    try {
+      read_checkpoint(scene, integrator, folder);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "not refused";
+  };
+  const std::string wanted = (folder / "checkpoint.cbor").string() + ": the checkpoint is damaged";
+  const auto expect_refused = [&](const std::string& bytes) {
+    const std::string refusal = refusal_of(bytes);
+    EXPECT_EQ(refusal.substr(0, wanted.size()), wanted) << refusal;
+  };
+  std::mt19937 engine(32);
+  std::uniform_int_distribution<std::size_t> place(0, good.size() - 1);
+  for (int k = 0; k < 300; ++k) {
+    expect_refused(good.substr(0, place(engine)));
+    std::string turned = good;
+    turned[place(engine)] ^= static_cast<char>(1 << (k % 8));
+    expect_refused(turned);
+  }
+  expect_refused("");
+  expect_refused("what is this");
+  expect_refused(good + "x");
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
