@@ -33,9 +33,11 @@ void add_vectors(vtkUnstructuredGrid& grid, const char* name, const Dofs& values
   grid.GetPointData()->AddArray(array);
 }
 
-vtkDoubleArray* add_scalars(vtkUnstructuredGrid& grid, const std::string& name, int nodes, double value) {
+vtkDoubleArray* add_array(vtkUnstructuredGrid& grid, const std::string& name, int nodes, int components,
+                          double value) {
   vtkNew<vtkDoubleArray> array;
   array->SetName(name.c_str());
+  array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(nodes);
   array->Fill(value);
   grid.GetPointData()->AddArray(array);
@@ -64,31 +66,47 @@ void add_geometry(vtkUnstructuredGrid& grid, const Model& model) {
     add_cell(mesh.nodes_per_cell == 8 ? VTK_HEXAHEDRON : VTK_LINE, &mesh.cells[k], mesh.nodes_per_cell);
 }
 
+// A state variable's place in the state of a node. Histories mean nothing outside their law.
+struct StateArray {
+  vtkDoubleArray* array;
+  int entry, count;
+};
+
+std::vector<StateArray> add_states(vtkUnstructuredGrid& grid, const ilaw_instance_info& info,
+                                   const std::string& prefix, int node_count) {
+  std::vector<StateArray> states;
+  int entry = 0;
+  for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
+    const ilaw_state_variable& variable = *info.state_variables[i];
+    const bool vector = variable.kind == ILAW_STATE_VECTOR;
+    const auto count = static_cast<int>(variable.count);
+    if (vector || variable.kind == ILAW_STATE_SCALAR)
+      states.push_back(
+          {add_array(grid, prefix + variable.name, node_count, vector ? 3 : 1, 0.0), entry, count});
+    entry += count;
+  }
+  return states;
+}
+
 void add_interface(vtkUnstructuredGrid& grid, Interface& interface, const std::string& prefix, int node_count,
                    const Integrator& integrator) {
   vtkDoubleArray* gap =
-      add_scalars(grid, prefix + "gap", node_count, std::numeric_limits<double>::quiet_NaN());
+      add_array(grid, prefix + "gap", node_count, 1, std::numeric_limits<double>::quiet_NaN());
   vtkNew<vtkIntArray> status;
   status->SetName((prefix + "status").c_str());
   status->SetNumberOfTuples(node_count);
   status->FillValue(-1);
   grid.GetPointData()->AddArray(status);
-  std::vector<std::pair<vtkDoubleArray*, int>> states;
-  int entry = 0;
-  const ilaw_instance_info& info = interface.info();
-  for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
-    const ilaw_state_variable& variable = *info.state_variables[i];
-    if (variable.kind == ILAW_STATE_SCALAR)
-      states.emplace_back(add_scalars(grid, prefix + variable.name, node_count, 0.0), entry);
-    entry += static_cast<int>(variable.count);
-  }
+  const std::vector<StateArray> states = add_states(grid, interface.info(), prefix, node_count);
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
     const int node = interface.nodes()[k], place = static_cast<int>(k);
     gap->SetValue(node, interface.gap_at(place, integrator.displacement(), integrator.time()));
     status->SetValue(node, ILAW_FREE);
     if (states.empty()) continue;
     const int slot = interface.slot_of(place, integrator.displacement());
-    for (const auto& [array, at] : states) array->SetValue(node, interface.state(slot, at));
+    for (const StateArray& state : states)
+      for (int c = 0; c < state.count; ++c)
+        state.array->SetComponent(node, c, interface.state(slot, state.entry + c));
   }
   for (const std::int32_t slot : interface.asked())
     status->SetValue(interface.node_of(slot), interface.status(slot));

@@ -1,0 +1,214 @@
+// Fields are read back with VTK itself, and hold what the integrator holds.
+#include "fields.hpp"
+
+#include "host_runner.hpp"
+#include "program_runner.hpp"
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include <omp.h>
+
+#include <vtkCellType.h>
+#include <vtkDataArray.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+vtkSmartPointer<vtkUnstructuredGrid> grid_of(const std::filesystem::path& file) {
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  EXPECT_TRUE(reader->CanReadFile(file.c_str())) << file;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return reader->GetOutput();
+}
+
+class Field {
+ public:
+  Field(vtkUnstructuredGrid& grid, const std::string& name, int components)
+      : array_(grid.GetPointData()->GetArray(name.c_str())) {
+    if (!array_) throw std::runtime_error("no array " + name);
+    EXPECT_EQ(array_->GetNumberOfComponents(), components) << name;
+    EXPECT_EQ(array_->GetNumberOfTuples(), grid.GetNumberOfPoints()) << name;
+  }
+  double at(int node, int component = 0) const { return array_->GetComponent(node, component); }
+
+ private:
+  vtkDataArray* array_;
+};
+
+void expect_vectors(vtkUnstructuredGrid& grid, const char* name, const Dofs& wanted, int d) {
+  const Field field(grid, name, 3);
+  for (int i = 0; i < static_cast<int>(wanted.size()); ++i)
+    ASSERT_EQ(field.at(i / d, i % d), wanted[i]) << name << " of node " << i / d;
+  for (int c = d; c < 3; ++c) EXPECT_EQ(field.at(0, c), 0.0);
+}
+
+json shipped(const std::string& name) {
+  return read_scene_source(std::filesystem::path(ILAW_SCENES) / (name + ".json"));
+}
+
+// Bonds form, hold and break in this scene; the upper nodes belong to no interface.
+TEST(Fields, HoldWhatTheIntegratorHolds) {
+  omp_set_num_threads(1);
+  const auto folder = fresh_folder();
+  json source = shipped("postit_3d");
+  source["model"]["blocks"][0]["elements"] = {20, 2, 2};
+  Scene scene = scene_of(source.dump());
+  Integrator integrator = integrator_of(scene);
+  Interface& interface = *scene.interfaces[0];
+  Fields fields(scene, folder);
+  int bonded = 0, broken = 0, number = 0;
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    if (integrator.steps() % 20 != 0) continue;
+    fields.write(integrator);
+    char name[32];
+    std::snprintf(name, sizeof name, "fields_%06d.vtu", number++);
+    const auto grid = grid_of(folder / name);
+    ASSERT_EQ(grid->GetNumberOfPoints(), scene.model->node_count());
+    ASSERT_EQ(grid->GetNumberOfCells(), 20 * 2 * 2);
+    expect_vectors(*grid, "u", integrator.displacement(), 3);
+    expect_vectors(*grid, "v", integrator.velocity(), 3);
+    expect_vectors(*grid, "r", integrator.interface_impulse(), 3);
+    const Field gap(*grid, "gap", 1), status(*grid, "status", 1), adhesion(*grid, "adhesion", 1),
+        ruptures(*grid, "ruptures", 1);
+    std::vector<bool> belongs(static_cast<std::size_t>(scene.model->node_count()));
+    for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
+      const int node = interface.nodes()[k], place = static_cast<int>(k);
+      const int slot = interface.slot_of(place, integrator.displacement());
+      belongs[static_cast<std::size_t>(node)] = true;
+      // The plane is z = 0.
+      ASSERT_EQ(gap.at(node),
+                scene.model->position()[3 * node + 2] + integrator.displacement()[3 * node + 2]);
+      ASSERT_EQ(status.at(node), interface.was_asked(slot) ? interface.status(slot) : int{ILAW_FREE});
+      ASSERT_EQ(adhesion.at(node), interface.state(slot, 0));
+      ASSERT_EQ(ruptures.at(node), interface.state(slot, 1));
+      bonded += status.at(node) == double{ILAW_BONDED};
+      broken += ruptures.at(node) > 0.0;
+    }
+    for (int node = 0; node < scene.model->node_count(); ++node)
+      if (!belongs[static_cast<std::size_t>(node)]) {
+        ASSERT_TRUE(std::isnan(gap.at(node)));
+        ASSERT_EQ(status.at(node), -1.0);
+      }
+  }
+  EXPECT_GT(bonded, 100);
+  EXPECT_GT(broken, 100);
+}
+
+// Cells are hexahedra of positive volume that fill the block; nodes stand where the model has them.
+TEST(Fields, HaveTheMeshOfTheModel) {
+  const auto folder = fresh_folder();
+  Scene scene = scene_of(shipped("block_impact").dump());
+  Integrator integrator = integrator_of(scene);
+  Fields(scene, folder).write(integrator);
+  const auto grid = grid_of(folder / "fields_000000.vtu");
+  for (int node = 0; node < scene.model->node_count(); ++node) {
+    std::array<double, 3> x{};
+    grid->GetPoint(node, x.data());
+    for (int c = 0; c < 3; ++c)
+      ASSERT_EQ(x[static_cast<std::size_t>(c)], scene.model->position()[3 * node + c]);
+  }
+  double volume = 0.0;
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
+    ASSERT_EQ(grid->GetCellType(cell), VTK_HEXAHEDRON);
+    vtkNew<vtkIdList> nodes;
+    grid->GetCellPoints(cell, nodes);
+    // VTK's order: 0 1 3 4 are a corner and its neighbours along the three axes.
+    const auto corner = [&](int k) { return scene.model->position().segment<3>(3 * nodes->GetId(k)); };
+    const Eigen::Vector3d x = corner(1) - corner(0), y = corner(3) - corner(0), z = corner(4) - corner(0);
+    EXPECT_LE((corner(6) - corner(0) - x - y - z).norm(), 1e-15);
+    EXPECT_LE((corner(2) - corner(0) - x - y).norm(), 1e-15);
+    volume += x.cross(y).dot(z);
+  }
+  EXPECT_NEAR(volume, 1e-3, 1e-15);
+}
+
+// Two interfaces: arrays are told apart by name. Bars are lines, points are vertices.
+TEST(Fields, NameTheInterfaceWhereThereAreSeveral) {
+  const auto folder = fresh_folder();
+  Scene scene = scene_of(shipped("block_impact").dump());
+  Integrator integrator = integrator_of(scene);
+  Fields(scene, folder).write(integrator);
+  const auto grid = grid_of(folder / "fields_000000.vtu");
+  const int node = scene.model->sets().at("block.x_max").nodes[0];
+  // Center (0.25, 0.05, 0.08), radius 0.1, from the corner (0.1, 0, 0.02).
+  EXPECT_NEAR(Field(*grid, "ball.gap", 1).at(node), std::sqrt(0.15 * 0.15 + 0.05 * 0.05 + 0.06 * 0.06) - 0.1,
+              1e-15);
+  EXPECT_NEAR(Field(*grid, "floor.gap", 1).at(node), 0.02, 1e-15);
+  EXPECT_EQ(grid->GetPointData()->GetArray("gap"), nullptr);
+}
+
+TEST(Fields, DrawBarsAsLinesAndPointsAsVertices) {
+  const auto folder = fresh_folder();
+  Scene bars = scene_of(shipped("two_bars").dump()), points = scene_of(shipped("sliding_block").dump());
+  Integrator of_bars = integrator_of(bars), of_points = integrator_of(points);
+  while (of_bars.steps() < 100) of_bars.step();
+  Fields(bars, folder).write(of_bars);
+  const auto lines = grid_of(folder / "fields_000000.vtu");
+  EXPECT_EQ(lines->GetNumberOfCells(), 300);
+  EXPECT_EQ(lines->GetCellType(0), VTK_LINE);
+  expect_vectors(*lines, "u", of_bars.displacement(), 1);
+  expect_vectors(*lines, "r", of_bars.interface_impulse(), 1);
+  EXPECT_GT(of_bars.interface_impulse().cwiseAbs().maxCoeff(), 0.0);
+  Fields(points, folder).write(of_points);
+  const auto vertices = grid_of(folder / "fields_000000.vtu");
+  EXPECT_EQ(vertices->GetNumberOfCells(), points.model->node_count());
+  EXPECT_EQ(vertices->GetCellType(0), VTK_VERTEX);
+}
+
+// The elastic slip of penalty, in the local frame: a point drawn along by 0.002, below its limit of friction.
+TEST(Fields, HoldVectorsOfTheState) {
+  const auto folder = fresh_folder();
+  Scene scene =
+      scene_of(R"({"model": {"type": "points", "dimension": 2, "points": [{"mass": 1, "position": [0, 0]}]},
+    "time": {"dt": 0.001, "end": 0.1}, "loads": [{"type": "gravity", "acceleration": [1, -10]}],
+    "interfaces": [{"law": "penalty", "parameters": {"stiffness": 1e4, "friction": 0.5, "tangential_stiffness": 1e3, "integration": "implicit"},
+      "nodes": "all", "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}]})");
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) integrator.step();
+  Fields(scene, folder).write(integrator);
+  const auto grid = grid_of(folder / "fields_000000.vtu");
+  const Field spring(*grid, "spring", 3);
+  EXPECT_EQ(spring.at(0, 0), 0.0);
+  EXPECT_NE(spring.at(0, 1), 0.0);
+  EXPECT_EQ(spring.at(0, 1), scene.interfaces[0]->state(0, 1));
+  EXPECT_EQ(spring.at(0, 2), 0.0);
+}
+
+// `ilaw run` writes the start, then every so many steps; the series names them with their times, as ParaView
+// wants it.
+TEST(Fields, AreListedInASeries) {
+  const auto folder = fresh_folder();
+  json source = shipped("block_impact");
+  source["output"]["fields"] = 40;
+  std::ofstream(folder / "scene.json") << source.dump();
+  ASSERT_EQ(run_program("run " + (folder / "scene.json").string() + " --out " + folder.string()).code, 0);
+  const json series = json::parse(text_of(folder / "fields.vtu.series"));
+  const json summary = json::parse(text_of(folder / "summary.json"));
+  EXPECT_EQ(series["file-series-version"], "1.0");
+  ASSERT_EQ(series["files"].size(), 1U + summary["steps"].get<std::size_t>() / 40U);
+  for (std::size_t k = 0; k < series["files"].size(); ++k) {
+    EXPECT_NEAR(series["files"][k]["time"].get<double>(),
+                static_cast<double>(40 * k) * summary["dt"].get<double>(), 1e-15);
+    const auto grid = grid_of(folder / series["files"][k]["name"].get<std::string>());
+    EXPECT_EQ(grid->GetNumberOfPoints(), summary["nodes"].get<int>());
+  }
+  source["output"].erase("fields");
+  const auto without = fresh_folder();
+  std::ofstream(without / "scene.json") << source.dump();
+  ASSERT_EQ(run_program("run " + (without / "scene.json").string() + " --out " + without.string()).code, 0);
+  for (const auto& entry : std::filesystem::directory_iterator(without))
+    EXPECT_EQ(entry.path().string().find(".vtu"), std::string::npos) << entry.path();
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
