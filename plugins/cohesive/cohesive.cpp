@@ -156,7 +156,7 @@ struct cohesive {
 
   template <class Node>
   void step(Node& node) const {
-    node.refused = node.delassus.anisotropy() == 0.0 ? not_refused : anisotropic_delassus;
+    node.refused = refusal_of_anisotropy(node.delassus);
     if (node.state.damage < 1.0 && node.area > 0.0)
       step_bond(node);
     else

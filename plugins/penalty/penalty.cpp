@@ -140,10 +140,11 @@ struct penalty {
     const double rate = 1.0 / node.position_step;
     const vector spring{0.0, node.state.slip_1, node.state.slip_2};
     const double softness = rate / (node.velocity_step * tangential_stiffness);
-    rub(node, normal_impulse<Linear>(node), node.v_free + rate * spring,
-        node.delassus.tangential() + softness);
-    const bool coupled = friction > 0.0 && node.delassus.anisotropy() != 0.0;
-    node.refused = coupled ? anisotropic_delassus : not_refused;
+    const vector q = node.v_free + rate * spring;
+    if (friction > 0.0 && node.delassus.anisotropy() != 0.0)
+      rub_any<Linear>(node, q, softness);
+    else
+      rub(node, normal_impulse<Linear>(node), q, node.delassus.tangential() + softness);
 
     const double compliance = node.position_step * softness;
     node.state = {0.0, 0.0 - compliance * node.impulse.t1, 0.0 - compliance * node.impulse.t2};
@@ -156,11 +157,41 @@ struct penalty {
     node.stored = normal + tangential;
   }
 
+  // The same for any H: springs are inverse masses beside its own, which makes this Coulomb's local problem.
+  // Where H couples the normal to the tangents, the normal spring must be one as well: linear and without
+  // damper.
+  template <bool Linear, class Node>
+  void rub_any(Node& node, vector q, double softness) const {
+    local_problem problem = problem_of(node.delassus);
+    problem.h[1] += softness;
+    problem.h[2] += softness;
+    problem.q[1] = q.t1;
+    problem.q[2] = q.t2;
+    problem.mu[0] = problem.mu[1] = friction;
+    const bool couples = absolute(problem.h[3]) + absolute(problem.h[4]) > rounding_of(node.delassus);
+    const bool is_inverse_mass = stiffness == infinity || (Linear && damping == 0.0);
+    if (couples && is_inverse_mass) {
+      problem.h[0] += 1.0 / (node.velocity_step * node.position_step * stiffness);
+      problem.q[0] = node.v_free.n + acting_gap(node) * (1.0 / node.position_step);
+    } else {
+      problem.h[3] = problem.h[4] = 0.0;
+      problem.q[0] = -problem.h[0] * normal_impulse<Linear>(node);
+    }
+    apply_local_problem(node, stiffness > 0.0 ? -1.0 : 1.0, problem);
+    if (couples && !is_inverse_mass) node.refused = anisotropic_delassus;
+  }
+
+  // A rigid spring does not push out what has penetrated already.
+  template <class Node>
+  double acting_gap(const Node& node) const {
+    return stiffness < infinity ? node.gap : positive_part(node.gap);
+  }
+
   // r = h <k <-g'>^p - c v_N> where the next gap g' = g + h v_N, v_N = v_free + H r, is closed; else r keeps
-  // it from opening, if anything does. An infinite stiffness does not push out what has penetrated already.
+  // it from opening, if anything does.
   template <bool Linear, class Node>
   double normal_impulse(const Node& node) const {
-    const double gap = stiffness < infinity ? node.gap : positive_part(node.gap);
+    const double gap = acting_gap(node);
     const penalty_law::compression problem{.velocity = node.v_free.n,
                                            .reach = node.v_free.n + gap * (1.0 / node.position_step),
                                            .delassus = node.delassus.normal(),

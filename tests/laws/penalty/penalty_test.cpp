@@ -83,9 +83,8 @@ TEST(PenaltyFriction, RigidSpringsAreCoulomb) {
   }
 }
 
-// Without friction any H is served, by its normal row; with friction the closed form asks for an isotropic
-// one.
-TEST(Penalty, ServesWhatItHasAClosedFormFor) {
+// Without friction only the normal row of H counts.
+TEST(Penalty, WithoutFrictionServesAnyH) {
   NodeRun smooth("penalty", with("implicit", {{"stiffness", 1e3}}), 1e-2, ILAW_DELASSUS_FULL);
   smooth.h = {4.0, 3.0, 2.0, 1.0, -0.5, 0.25};
   smooth.gap = -0.1;
@@ -93,18 +92,58 @@ TEST(Penalty, ServesWhatItHasAClosedFormFor) {
   // r (1/(h^2 k) + H_NN) = -(v + g/h) = 12.
   EXPECT_NEAR(smooth.r[0], 12.0 / 14.0, 1e-15);
   EXPECT_NEAR(smooth.v[1], 1.0 + 12.0 / 14.0, 1e-15);
-  NodeRun rough("penalty", with("implicit", {{"stiffness", 1e3}, {"friction", 0.2}}), 1e-2,
-                ILAW_DELASSUS_FULL);
-  rough.h = smooth.h;
-  rough.gap = -0.1;
-  EXPECT_EQ(rough.step({-2.0, 1.0, 1.0}), ILAW_BAD_NODES);
-  rough.h = {4.0, 2.0, 2.0, 0.0, 0.0, 0.0};
-  EXPECT_EQ(rough.step({-2.0, 1.0, 1.0}), ILAW_OK);
-  NodeRun explicitly("penalty",
-                     with("explicit", {{"stiffness", 1e3}, {"friction", 0.2}, {"tangential_stiffness", 1.0}}),
-                     1e-2, ILAW_DELASSUS_FULL);
-  explicitly.h = smooth.h;
-  EXPECT_EQ(explicitly.step({-2.0, 1.0, 1.0}), ILAW_OK);
+}
+
+// With friction: the spring of a sticking node is in equilibrium, and one that slides is at the cone, its
+// rate of slip u_T = (xi + h v_T - xi')/h against it. Each of the springs and H as they are, coupling and
+// all.
+TEST(Penalty, WithFrictionServesAnyH) {
+  constexpr double h = 1e-2, k = 1e3, tangential = 600.0, mu = 0.3;
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int sticking = 0, slipping = 0;
+  NodeRun node("penalty",
+               with("implicit", {{"stiffness", k}, {"tangential_stiffness", tangential}, {"friction", mu}}),
+               h, ILAW_DELASSUS_FULL);
+  for (int trial = 0; trial < 20000; ++trial) {
+    node.h = {4.0, 3.0, 2.0, uniform(random), uniform(random), uniform(random)};
+    node.gap = 0.05 * uniform(random);
+    const double before[] = {node.state[1], node.state[2]};
+    ASSERT_EQ(node.step({uniform(random), 0.2 * uniform(random), 0.2 * uniform(random)}), ILAW_OK);
+    const double next = node.gap + h * node.v[0];
+    ASSERT_NEAR(node.r[0], h * k * std::max(-next, 0.0), 1e-14);
+    const double shear = std::hypot(node.r[1], node.r[2]);
+    ASSERT_LE(shear, mu * node.r[0] * (1.0 + 8 * ulp));
+    double against = 0.0, slip = 0.0;
+    for (std::size_t c = 0; c < 2; ++c) {
+      ASSERT_NEAR(node.r[c + 1], -h * tangential * node.state[c + 1], 1e-15);
+      const double u = before[c] + h * node.v[c + 1] - node.state[c + 1];
+      against -= u * node.r[c + 1];
+      slip = std::hypot(slip, u);
+    }
+    if (node.r[0] > 0.0) {
+      ASSERT_NEAR(against, slip * mu * node.r[0], 1e-16);
+    }
+    sticking += node.status == ILAW_STICK;
+    slipping += node.status == ILAW_SLIP;
+  }
+  EXPECT_GT(sticking, 1000);
+  EXPECT_GT(slipping, 1000);
+}
+
+// A normal spring that is no inverse mass cannot be coupled to the tangents; uncoupled it serves any H.
+TEST(Penalty, RefusesACouplingThatItHasNoSolutionFor) {
+  for (const std::map<std::string, double>& more :
+       {std::map<std::string, double>{{"damping", 1.0}}, {{"exponent", 1.5}}}) {
+    std::map<std::string, double> numbers = more;
+    numbers.insert({{"stiffness", 1e3}, {"friction", 0.2}});
+    NodeRun node("penalty", with("implicit", numbers), 1e-2, ILAW_DELASSUS_FULL);
+    node.gap = -0.1;
+    node.h = {4.0, 3.0, 2.0, 1.0, -0.5, 0.25};
+    EXPECT_EQ(node.step({-2.0, 1.0, 1.0}), ILAW_BAD_NODES);
+    node.h = {4.0, 3.0, 2.0, 0.0, 0.0, 0.25};
+    EXPECT_EQ(node.step({-2.0, 1.0, 1.0}), ILAW_OK);
+  }
 }
 
 // The two steps: an impulse is a force times the velocity step, a gap moves by the position step.

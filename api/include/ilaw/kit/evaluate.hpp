@@ -111,6 +111,7 @@ class batch_walk {
     block_.position_step = batch_.position_step;
     gather_inputs();
     if (made_.frame == ILAW_FRAME_GLOBAL) gather_frame();
+    if (made_.frame == ILAW_FRAME_GLOBAL && dimension_ == 2) pad_turned_delassus();
     open_state();
     aim_outputs();
   }
@@ -233,10 +234,22 @@ class batch_walk {
     }
     for (int e = 0; e < 3; ++e) h[e] = e < dimension_ ? component(e) : h[0];
     for (int e = 3; e < 6; ++e) h[e] = zeros.values;
+    if (dimension_ == 2) h[2] = h[1];  // or it would pass for anisotropic
     if (made_.delassus_form != ILAW_DELASSUS_FULL) return;
     if (dimension_ == 2) h[3] = component(2);
     for (int e = 3; dimension_ == 3 && e < 6; ++e) h[e] = component(e);
-    if (dimension_ == 2) h[2] = h[1];
+  }
+
+  // In two dimensions the second tangent is given the entry of the first, lest H pass for anisotropic.
+  void pad_turned_delassus() {
+    if (made_.delassus_form == ILAW_DELASSUS_SCALAR) return;
+    const double* const* h = block_.delassus;
+    double* padded = room_.delassus[4].values;
+    for (int i = 0; i < nodes_.count; ++i) {
+      const axis t = plane_tangent(2, columns::get(block_.axes, i));
+      padded[i] = t.x * t.x * h[0][i] + t.y * t.y * h[1][i] + 2.0 * t.x * t.y * h[3][i];
+    }
+    block_.delassus[2] = padded;
   }
 
   // Columns of the axes. Frames that follow from the normal alone are left to the kernel in three dimensions.

@@ -65,7 +65,19 @@ void apply_isotropic_friction(Node& node, double slack, Vector q, double frictio
   node.status = result.impulse.n > 0.0 ? closed_status : double{ILAW_FREE};
 }
 
-// The same for any H, and for an ellipse of coefficients along the tangents.
+// The same by the local problem, which may be of any H.
+template <class Node>
+void apply_local_problem(Node& node, double slack, const local_problem& problem) {
+  double r[3] = {};
+  const contact_mode mode = slack <= 0.0 ? solve(problem, r) : contact_mode::free;
+  node.impulse = {r[0], r[1], r[2]};
+  node.status = mode == contact_mode::slip    ? double{ILAW_SLIP}
+                : mode == contact_mode::stick ? double{ILAW_STICK}
+                                              : double{ILAW_FREE};
+  node.refused = mode == contact_mode::none ? no_solution : not_refused;
+}
+
+// For an ellipse of coefficients along the tangents.
 template <class Node>
 void apply_any_friction(Node& node, double slack, vector q, double friction_1, double friction_2) {
   local_problem problem = problem_of(node.delassus);
@@ -74,13 +86,7 @@ void apply_any_friction(Node& node, double slack, vector q, double friction_1, d
   problem.q[2] = q.t2;
   problem.mu[0] = friction_1;
   problem.mu[1] = friction_2;
-  double r[3] = {};
-  const contact_mode mode = slack <= 0.0 ? solve(problem, r) : contact_mode::free;
-  node.impulse = {r[0], r[1], r[2]};
-  node.status = mode == contact_mode::slip    ? double{ILAW_SLIP}
-                : mode == contact_mode::stick ? double{ILAW_STICK}
-                                              : double{ILAW_FREE};
-  node.refused = mode == contact_mode::none ? no_solution : not_refused;
+  apply_local_problem(node, slack, problem);
 }
 
 // Contact with friction, by the closed form where it holds.

@@ -154,6 +154,18 @@ struct history {
   operator const_history() const { return {values, stride}; }
 };
 
+// What turning H to other axes leaves where an entry was zero: some ulp of the others.
+template <class Delassus>
+double rounding_of(const Delassus& delassus) {
+  return 0x1p-46 * (delassus.normal() + delassus.tangential());
+}
+
+// Refuses an H for which closed forms for diag(h_N, h_T, h_T) do not hold.
+template <class Delassus>
+double refusal_of_anisotropy(const Delassus& delassus) {
+  return delassus.anisotropy() > rounding_of(delassus) ? anisotropic_delassus : not_refused;
+}
+
 struct stateless {};
 
 // One node in one step. A step reads the first part and writes the second. Vector is projected_vector only
