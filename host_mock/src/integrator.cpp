@@ -88,7 +88,7 @@ Integrator::Integrator(const Model& model, const Loads& loads,
   for (const auto& load : loads_) load->add_force(0.0, force);
   model_.add_internal_forces(u_, force);
   v_ += 0.5 * dt_ * force.cwiseQuotient(model_.mass());
-  for (const auto& load : loads_) load->correct({-dt_, 0.0}, v_, v_);
+  for (const auto& load : loads_) load->start(dt_, v_before_, v_);
   energy_.start(model_, u_, u_ + dt_ * v_, v_);
 }
 

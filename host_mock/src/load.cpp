@@ -55,12 +55,22 @@ void PrescribedMotion::correct(StepTimes step, const Dofs& /*v_before*/, Dofs& v
     for (int axis : axes_) v[node * dimension_ + axis] = mean[axis];
 }
 
+void PrescribedMotion::start(double dt, const Dofs& v_start, Dofs& v) const {
+  correct({-dt, 0.0}, v_start, v);
+}
+
 Damping::Damping(std::vector<int> nodes, int dimension, double rate)
     : nodes_(std::move(nodes)), dimension_(dimension), rate_(rate) {}
 
-// m (v' - v_before) = m (v - v_before) - rate h m (v_before + v')/2, solved for v'.
 void Damping::correct(StepTimes step, const Dofs& v_before, Dofs& v) const {
-  const double a = 0.5 * rate_ * (step.after - step.before);
+  damp(step.after - step.before, v_before, v);
+}
+
+void Damping::start(double dt, const Dofs& v_start, Dofs& v) const { damp(0.5 * dt, v_start, v); }
+
+// m (v' - v_before) = m (v - v_before) - rate h m (v_before + v')/2, solved for v'.
+void Damping::damp(double duration, const Dofs& v_before, Dofs& v) const {
+  const double a = 0.5 * rate_ * duration;
   const Eigen::Index d = dimension_;
   for (int node : nodes_)
     v.segment(node * d, d) = (v.segment(node * d, d) - a * v_before.segment(node * d, d)) / (1.0 + a);

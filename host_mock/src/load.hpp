@@ -26,6 +26,8 @@ class Load {
   // Changes the velocity that a step would leave with, without interfaces; the change counts as an external
   // impulse.
   virtual void correct(StepTimes /*step*/, const Dofs& /*v_before*/, Dofs& /*v*/) const {}
+  // The same for the half step that a run starts with, from V_0 to V_{1/2}.
+  virtual void start(double /*dt*/, const Dofs& /*v_start*/, Dofs& /*v*/) const {}
   virtual bool corrects() const { return false; }
   // Nodes whose motion is prescribed.
   virtual const std::vector<int>& prescribed_nodes() const;
@@ -75,9 +77,12 @@ class Damping : public Load {
  public:
   Damping(std::vector<int> nodes, int dimension, double rate);
   void correct(StepTimes step, const Dofs& v_before, Dofs& v) const override;
+  void start(double dt, const Dofs& v_start, Dofs& v) const override;
   bool corrects() const override { return true; }
 
  private:
+  void damp(double duration, const Dofs& v_before, Dofs& v) const;
+
   std::vector<int> nodes_;
   int dimension_;
   double rate_;
@@ -88,6 +93,7 @@ class PrescribedMotion : public Load {
  public:
   PrescribedMotion(std::vector<int> nodes, std::vector<int> axes, int dimension, Motion motion);
   void correct(StepTimes step, const Dofs& v_before, Dofs& v) const override;
+  void start(double dt, const Dofs& v_start, Dofs& v) const override;
   bool corrects() const override { return true; }
   const std::vector<int>& prescribed_nodes() const override { return nodes_; }
 
