@@ -1,0 +1,215 @@
+// Obstacles against closed forms of their distances; prescribed motion and damping.
+#include "obstacle.hpp"
+
+#include "host_runner.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <random>
+
+namespace ilaw::host::testing {
+namespace {
+
+using Eigen::Vector3d;
+using nlohmann::json;
+
+Motion still() { return Motion(Vector(Vector3d::Zero())); }
+
+Vector3d random_vector(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> draw(-2.0, 2.0);
+  return Vector3d::NullaryExpr([&] { return draw(random); });
+}
+
+// ---- shapes ---------------------------------------------------------------------------------------------
+
+TEST(Plane, MeasuresAlongItsNormalWhateverItsLength) {
+  const Plane plane(Vector3d(1, 2, 3), Vector3d(0, 0, 5), still());
+  const Surface surface = plane.at(Vector3d(-4, 7, 1), 0.0);
+  EXPECT_EQ(surface.gap, -2.0);
+  EXPECT_EQ(Vector3d(surface.normal), Vector3d(0, 0, 1));
+}
+
+TEST(Sphere, MeasuresFromItsCenterInsideAndOutside) {
+  const Sphere sphere(Vector3d(1, 0, 0), 2.0, still());
+  const Surface outside = sphere.at(Vector3d(1, 3, 4), 0.0), inside = sphere.at(Vector3d(1, 0, -0.5), 0.0);
+  EXPECT_NEAR(outside.gap, 3.0, 1e-15);
+  EXPECT_NEAR((Vector3d(outside.normal) - Vector3d(0, 0.6, 0.8)).norm(), 0.0, 1e-15);
+  EXPECT_EQ(inside.gap, -1.5);
+  EXPECT_EQ(Vector3d(inside.normal), Vector3d(0, 0, -1));
+}
+
+TEST(Cylinder, MeasuresFromItsAxisWhateverItsLength) {
+  const Cylinder cylinder(Vector3d(0, 0, 1), Vector3d(0, 7, 0), 0.5, still());
+  const Surface surface = cylinder.at(Vector3d(3, 100, 5), 0.0);
+  EXPECT_NEAR(surface.gap, 4.5, 1e-14);
+  EXPECT_NEAR((Vector3d(surface.normal) - Vector3d(0.6, 0, 0.8)).norm(), 0.0, 1e-15);
+}
+
+// Where no direction is better than another, the normal is still a unit vector, off the axis of a cylinder.
+TEST(RoundObstacle, HasANormalAtItsCenter) {
+  const Sphere sphere(Vector3d(1, 2, 3), 2.0, still());
+  EXPECT_EQ(sphere.at(Vector3d(1, 2, 3), 0.0).gap, -2.0);
+  EXPECT_EQ(sphere.at(Vector3d(1, 2, 3), 0.0).normal.norm(), 1.0);
+  for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 3, 0), Vector3d(1, 1, 0)}) {
+    const Cylinder cylinder(Vector3d::Zero(), axis, 1.0, still());
+    const Surface surface = cylinder.at(Vector3d::Zero(), 0.0);
+    EXPECT_EQ(surface.gap, -1.0);
+    EXPECT_NEAR(surface.normal.norm(), 1.0, 1e-15);
+    EXPECT_NEAR(surface.normal.dot(axis), 0.0, 1e-15);
+  }
+}
+
+// Of all shapes: the normal is a unit vector, the point less gap times normal is on the surface, and the gap
+// grows along the normal as the way does.
+TEST(Obstacle, HasAGapThatIsADistanceAlongItsNormal) {
+  std::mt19937_64 random(5);
+  for (int draw = 0; draw < 10000; ++draw) {
+    const Vector3d place = random_vector(random), direction = random_vector(random);
+    const Plane plane(place, direction, still());
+    const Sphere sphere(place, 0.7, still());
+    const Cylinder cylinder(place, direction, 0.7, still());
+    const Vector3d x = random_vector(random);
+    for (const Obstacle* obstacle : std::initializer_list<const Obstacle*>{&plane, &sphere, &cylinder}) {
+      const Surface surface = obstacle->at(x, 0.0);
+      ASSERT_NEAR(surface.normal.norm(), 1.0, 1e-15);
+      ASSERT_NEAR(obstacle->at(x - surface.gap * surface.normal, 0.0).gap, 0.0, 1e-14) << draw;
+      ASSERT_NEAR(obstacle->at(x + 0.3 * surface.normal, 0.0).gap, surface.gap + 0.3, 1e-14) << draw;
+    }
+  }
+}
+
+// ---- motion ---------------------------------------------------------------------------------------------
+
+// An obstacle that moved by d sees a point at x as it saw that at x - d; its velocity is the mean over a
+// step.
+TEST(MovingObstacle, IsTheOneAtRestDisplaced) {
+  const Motion steady(Vector(Vector3d(1, -2, 0.5)));
+  const Motion path(Table({0.0, 1.0, 3.0}, {Vector3d(0, 0, 0), Vector3d(2, 0, 0), Vector3d(2, 4, 0)}));
+  EXPECT_EQ(Vector3d(steady.displacement(2.0)), Vector3d(2, -4, 1));
+  EXPECT_EQ(Vector3d(path.displacement(0.5)), Vector3d(1, 0, 0));
+  EXPECT_EQ(Vector3d(path.displacement(2.0)), Vector3d(2, 2, 0));
+  EXPECT_EQ(Vector3d(path.displacement(9.0)), Vector3d(2, 4, 0));  // it stays at the end
+  EXPECT_EQ(Vector3d(path.velocity(0.5, 2.0)), Vector3d(1, 2, 0) / 1.5);
+  std::mt19937_64 random(6);
+  for (const Motion& motion : {steady, path})
+    for (int draw = 0; draw < 1000; ++draw) {
+      const Vector3d center = random_vector(random), x = random_vector(random);
+      const double time = 0.003 * draw;
+      const Sphere moving(center, 0.5, motion), resting(center, 0.5, still());
+      EXPECT_EQ(moving.at(x, time).gap, resting.at(x - motion.displacement(time), 0.0).gap);
+      EXPECT_EQ(Vector3d(moving.velocity(0.1, 0.2)), Vector3d(motion.velocity(0.1, 0.2)));
+    }
+}
+
+// A sphere that moves at 2 hits a resting point at distance 1.5 from its surface, after 0.75: e = 1 throws it
+// off at twice the speed, along the line of centres.
+TEST(MovingSphere, ThrowsAPointOff) {
+  Scene scene = scene_of(json{
+      {"model",
+       {{"type", "points"}, {"dimension", 3}, {"points", {{{"mass", 2.0}, {"position", {0.0, 0.0, 0.0}}}}}}},
+      {"time", {{"dt", 1e-3}, {"end", 1.5}}},
+      {"interfaces",
+       {{{"law", "contact"},
+         {"parameters", {{"restitution", 1.0}}},
+         {"nodes", {0}},
+         {"obstacle",
+          {{"type", "sphere"},
+           {"center", {-1.5, -2.0, 0.0}},
+           {"radius", 1.0},
+           {"velocity", {1.2, 1.6, 0.0}}}}}}}}
+                             .dump());
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    if (integrator.time() < 0.75 - scene.dt) {
+      EXPECT_EQ(integrator.velocity().norm(), 0.0);
+    }
+  }
+  EXPECT_NEAR((integrator.velocity() - Vector3d(2.4, 3.2, 0.0)).norm(), 0.0, 1e-12);
+  // From the instant on, at most a step late.
+  EXPECT_NEAR(integrator.displacement().norm(), 4.0 * 0.75, 4.0 * 1.001e-3);
+  EXPECT_LE(integrator.energy().balance_error, 1e-14);
+  EXPECT_NEAR(integrator.energy().interface_work, 0.5 * 2.0 * 16.0, 1e-11);
+}
+
+// ---- prescribed motion ----------------------------------------------------------------------------------
+
+// Positions follow a path at all steps, corners included, on the axes that are driven; the others are free.
+TEST(PrescribedMotion, IsFollowedToRounding) {
+  Scene scene = scene_of(json{
+      {"model",
+       {{"type", "points"},
+        {"dimension", 2},
+        {"points", {{{"mass", 2.0}, {"position", {0.0, 0.0}}, {"velocity", {0.0, 3.0}}}}}}},
+      {"time", {{"dt", 1e-3}, {"end", 3.0}}},
+      {"loads",
+       {{{"type", "gravity"}, {"acceleration", {5.0, -10.0}}},
+        {{"type", "motion"},
+         {"nodes", {0}},
+         {"axes", {0}},
+         {"path", {{0.0, 0.0, 0.0}, {1.0, 0.5, 0.0}, {1.5, -1.0, 0.0}, {2.5, -1.0, 0.0}}}}}},
+      {"interfaces",
+       json::array()}}.dump());
+  const Table path({0.0, 1.0, 1.5, 2.5}, {Vector::Constant(1, 0.0), Vector::Constant(1, 0.5),
+                                          Vector::Constant(1, -1.0), Vector::Constant(1, -1.0)});
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    const double t = integrator.time();
+    // 3000 sums of velocities h (up to 3 h), each rounded at a position of 1.
+    ASSERT_NEAR(integrator.displacement()[0], path.at(t)[0], 3000 * 2.2e-16) << t;
+    ASSERT_NEAR(integrator.displacement()[1], 3.0 * t - 5.0 * t * t, 1e-11) << t;
+  }
+  EXPECT_LE(integrator.energy().balance_error, 1e-12);
+}
+
+// A bar that is pulled at one end at a constant speed v and held at the other: after n passes of the wave the
+// energy given to it is what it holds. In the first, until L/c, the end feels the force Z v: work Z v^2 t.
+TEST(PrescribedMotion, DoesTheWorkOfItsForce) {
+  Scene scene = scene_of(json{
+      {"model",
+       {{"type", "bars"},
+        {"bars", {{{"name", "bar"}, {"length", 1.0}, {"elements", 100}, {"young", 4.0}, {"density", 1.0}}}}}},
+      {"time", {{"cfl", 1.0}, {"end", 0.45}}},
+      {"loads", {{{"type", "motion"}, {"nodes", "bar.right"}, {"velocity", {0.3}}}}},
+      {"interfaces",
+       json::array()}}.dump());
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) integrator.step();
+  // The end moves at once: its first impulse is given to a half mass before the balance starts.
+  EXPECT_NEAR(integrator.energy().external_work, 2.0 * 0.3 * 0.3 * 0.45, 1e-12);
+  EXPECT_LE(integrator.energy().balance_error, 1e-14);
+}
+
+// ---- damping --------------------------------------------------------------------------------------------
+
+// v' = -rate v: v_0 exp(-rate t) at half steps, x its integral; the force at the mean of velocities makes the
+// scheme of second order, and the energy that is lost is its work.
+TEST(Damping, DecaysExponentiallyToSecondOrder) {
+  constexpr double rate = 2.0, end = 1.0;
+  std::vector<double> steps, v_errors, u_errors;
+  for (const double dt : {0.02, 0.01, 0.005, 0.0025}) {
+    Scene scene = scene_of(json{
+        {"model",
+         {{"type", "points"},
+          {"dimension", 2},
+          {"points", {{{"mass", 2.0}, {"position", {0.0, 0.0}}, {"velocity", {3.0, -4.0}}}}}}},
+        {"time", {{"dt", dt}, {"end", end}}},
+        {"loads", {{{"type", "damping"}, {"rate", rate}}}},
+        {"interfaces",
+         json::array()}}.dump());
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) integrator.step();
+    const Eigen::Vector2d start(3.0, -4.0);
+    const double t = integrator.time();
+    steps.push_back(dt);
+    v_errors.push_back((integrator.velocity() - std::exp(-rate * (t + 0.5 * dt)) * start).norm());
+    u_errors.push_back((integrator.displacement() - (1.0 - std::exp(-rate * t)) / rate * start).norm());
+    EXPECT_LE(integrator.energy().balance_error, 1e-14);
+  }
+  EXPECT_NEAR(order(steps, v_errors), 2.0, 0.05);
+  EXPECT_NEAR(order(steps, u_errors), 2.0, 0.05);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
