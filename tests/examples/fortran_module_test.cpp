@@ -205,6 +205,11 @@ struct section {
   int number;
   std::int64_t nodes, components;
   double first, per_node, per_component;
+
+  friend void PrintTo(const section& shown, std::ostream* out) {
+    *out << "section " << shown.number << ": " << shown.nodes << " nodes, " << shown.components
+         << " components";
+  }
 };
 
 class FortranArray : public testing::TestWithParam<section> {};

@@ -10,6 +10,15 @@
 #include <random>
 #include <set>
 
+namespace ilaw::host {
+
+static const char* name_of(MaterialLaw law) { return law == MaterialLaw::linear ? "linear" : "neo_hookean"; }
+
+// GoogleTest looks for it beside the type.
+static void PrintTo(MaterialLaw law, std::ostream* out) { *out << name_of(law); }
+
+}  // namespace ilaw::host
+
 namespace ilaw::host::testing {
 namespace {
 
@@ -88,9 +97,7 @@ TEST(Block, HasTheMassAndTheFacesOfItsBox) {
 
 class BlockOf : public ::testing::TestWithParam<MaterialLaw> {};
 INSTANTIATE_TEST_SUITE_P(Material, BlockOf, ::testing::Values(MaterialLaw::linear, MaterialLaw::neo_hookean),
-                         [](const auto& law) {
-                           return law.param == MaterialLaw::linear ? "linear" : "neo_hookean";
-                         });
+                         [](const auto& law) { return name_of(law.param); });
 
 // u = G x has the same stress P everywhere: nodes inside feel nothing, those of a face the force -P n times
 // their part of its area.

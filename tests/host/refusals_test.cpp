@@ -31,6 +31,10 @@ struct Mistake {
   const char* pointer;  // where a value is put
   const char* value;
   const char* message;  // how the refusal begins
+
+  friend void PrintTo(const Mistake& mistake, std::ostream* out) {
+    *out << mistake.pointer << " = " << mistake.value;
+  }
 };
 
 class Mistakes : public ::testing::TestWithParam<Mistake> {};

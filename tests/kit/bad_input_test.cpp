@@ -14,6 +14,8 @@ struct Bad {
   const char* name;
   std::function<void(Nodes&)> spoil;  // node 70
   const char* reason;
+
+  friend void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
 };
 
 class BadInput : public ::testing::TestWithParam<Bad> {};

@@ -12,6 +12,8 @@ namespace {
 struct Case {
   const char* law;
   Parameters parameters;
+
+  friend void PrintTo(const Case& shown, std::ostream* out) { *out << shown.law; }
 };
 
 class Contract : public ::testing::TestWithParam<Case> {

@@ -48,6 +48,8 @@ ilaw_setup setup_1d() {
 struct Refused {
   const char* name;
   const char* found_and_expected;  // what follows the file's name
+
+  friend void PrintTo(const Refused& refused, std::ostream* out) { *out << refused.name; }
 };
 
 class RefusedLibrary : public ::testing::TestWithParam<Refused> {};
