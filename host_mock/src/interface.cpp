@@ -3,58 +3,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <deque>
 #include <istream>
 #include <ostream>
 #include <utility>
 
 namespace ilaw::host {
 namespace {
-
-// The arguments of create, with the pointers that it wants; deque keeps addresses while growing.
-class ArgumentList {
- public:
-  explicit ArgumentList(const Arguments& given) {
-    for (const auto& [name, value] : given.numbers) add(ILAW_VALUE_NUMBER, name).number = value;
-    for (const auto& [name, text] : given.texts) add(ILAW_VALUE_TEXT, name).text = text.c_str();
-    for (const auto& [name, pairs] : given.tables) {
-      ilaw_argument& argument = add(ILAW_VALUE_TABLE, name);
-      argument.values = pairs.data();
-      argument.count = pairs.size() / 2;
-    }
-    for (const auto& [name, values] : given.per_node) add(ILAW_VALUE_PER_NODE, name);
-    for (const ilaw_argument& argument : arguments_) pointers_.push_back(&argument);
-  }
-
-  const std::vector<const ilaw_argument*>& pointers() const { return pointers_; }
-
- private:
-  ilaw_argument& add(std::uint32_t kind, const std::string& name) {
-    ilaw_argument& argument = arguments_.emplace_back();
-    argument = {};
-    argument.struct_size = sizeof argument;
-    argument.kind = kind;
-    argument.name = name.c_str();
-    return argument;
-  }
-
-  std::deque<ilaw_argument> arguments_;
-  std::vector<const ilaw_argument*> pointers_;
-};
-
-ilaw::interface create(const InterfaceSetup& setup, const ilaw::library& library, int dimension, double dt) {
-  const ArgumentList arguments(setup.arguments);
-  ilaw_setup law{};
-  law.struct_size = sizeof law;
-  law.dimension = static_cast<std::uint32_t>(dimension);
-  law.delassus_form = ILAW_DELASSUS_SCALAR;
-  law.frame = ILAW_FRAME_GLOBAL;
-  law.velocity_step = dt;
-  law.tangent_given = setup.tangent.size() > 0 ? 1 : 0;
-  law.arguments = arguments.pointers().data();
-  law.argument_count = static_cast<std::uint32_t>(arguments.pointers().size());
-  return {library, setup.law, law};
-}
 
 // Contacts of one evaluate when threads share a batch.
 constexpr int chunk = 2048;
@@ -93,7 +47,7 @@ Interface::Interface(InterfaceSetup setup, const Model& model, double dt)
       model_(model),
       dimension_(model.dimension()),
       library_(setup_.library),
-      interface_(create(setup_, library_, dimension_, dt)),
+      interface_(create_law(setup_.law, setup_.arguments, setup_.tangent, library_, dimension_, dt)),
       info_(interface_.info()),
       slot_of_(setup_.nodes.size(), -1),
       obstacle_velocity_(Vector::Zero(dimension_)),

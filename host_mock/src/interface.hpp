@@ -5,6 +5,7 @@
 // the arrays that the law works on. What was never near takes no slot. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "arguments.hpp"
 #include "opponent.hpp"
 #include "reach.hpp"
 
@@ -13,20 +14,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <iosfwd>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace ilaw::host {
-
-// Parameters of a law as a scene gives them.
-struct Arguments {
-  std::map<std::string, double> numbers;
-  std::map<std::string, std::string> texts;
-  std::map<std::string, std::vector<double>> tables;    // pairs (time, value)
-  std::map<std::string, std::vector<double>> per_node;  // one value per node of the interface
-};
 
 struct InterfaceSetup {
   std::string name, law, library;  // library: name or path
