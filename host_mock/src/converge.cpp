@@ -189,7 +189,9 @@ int converge(const ConvergeOptions& options) {
     const json source = read_scene_source(options.scene);
     const Sweep sweep = sweep_of(source, options);
     title = without_quotes(source.value("title", options.scene.stem().string()));
-    std::filesystem::create_directories(folder);
+    exact_solution(
+        scene_at(source, sweep, 0, options.scene));  // refused, if at all, before anything is written
+    if (!make_folder(folder)) return exit_bad_input;
     table = run_levels(source, sweep, options.scene);
     write_table(table, folder);
     write_orders(table, sweep, title, folder);

@@ -53,6 +53,15 @@ json describe_interface(const Interface& interface) {
 
 }  // namespace
 
+bool make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (std::filesystem::is_directory(folder)) return true;
+  std::fprintf(stderr, "ilaw: --out %s: found a file or a place that cannot be written, expected a folder\n",
+               folder.c_str());
+  return false;
+}
+
 AtomicFile::AtomicFile(std::filesystem::path file)
     : file_(std::move(file)), partial_(file_.string() + ".partial"), stream_(partial_) {
   if (!stream_) throw std::runtime_error(partial_.string() + ": cannot be written");

@@ -13,6 +13,9 @@
 
 namespace ilaw::host {
 
+// Makes the folder that --out names, if it does not exist; says on stderr why it cannot.
+bool make_folder(const std::filesystem::path& folder);
+
 // A file that appears under its name only when it is complete: written beside it, then renamed.
 class AtomicFile {
  public:

@@ -14,7 +14,6 @@
 #include <exception>
 #include <memory>
 #include <optional>
-#include <system_error>
 
 namespace ilaw::host {
 namespace {
@@ -105,15 +104,6 @@ std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
     std::fprintf(stderr, "ilaw: %s: %s\n", file.c_str(), error.what());
   }
   return std::nullopt;
-}
-
-bool make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (std::filesystem::is_directory(folder)) return true;
-  std::fprintf(stderr, "ilaw: --out %s: found a file or a place that cannot be written, expected a folder\n",
-               folder.c_str());
-  return false;
 }
 
 int report(const Scene& scene, const Integrator& integrator, const RunRecord& record,

@@ -1,0 +1,286 @@
+// Errors and their orders: the norms on motions made by hand, and `ilaw converge` on scenes with known
+// answers.
+#include "errors.hpp"
+#include "host_runner.hpp"
+#include "program_runner.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+// ---- norms ----------------------------------------------------------------------------------------------
+
+constexpr double never = ContactInstants::none;
+
+// A point that comes at speed 1, meets something at an instant, and goes back at speed 1.
+ExactNode bounce(double instant) {
+  ExactNode node;
+  node.displacement = [=](double t) { return t < instant ? t : 2.0 * instant - t; };
+  node.velocity = [=](double t) { return t < instant ? 1.0 : -1.0; };
+  node.instants.first_impulse = instant;
+  return node;
+}
+
+// What a run would leave of it.
+Trace trace_of(const ExactNode& node, double dt, int steps) {
+  Trace trace;
+  trace.dt = dt;
+  trace.steps = steps;
+  for (int k = 1; k <= steps; ++k) {
+    trace.displacement.push_back(Dofs::Constant(1, node.displacement(k * dt)));
+    trace.velocity.push_back(Dofs::Constant(1, node.velocity((k + 0.5) * dt)));
+  }
+  trace.instants = {node.instants};
+  return trace;
+}
+
+TEST(Norms, AreZeroForTheExactMotion) {
+  const Errors errors = errors_against({bounce(0.4321)}, trace_of(bounce(0.4321), 1e-2, 100));
+  EXPECT_EQ(errors.u_L2, 0.0);
+  EXPECT_EQ(errors.u_max, 0.0);
+  EXPECT_EQ(errors.v_L1, 0.0);
+  EXPECT_EQ(errors.instant, 0.0);
+}
+
+// A bounce that is seen one step late: one velocity of N is wrong, by 2 where the mean is 1, and positions
+// after it by 2 h where the largest is 0.5. All is first order, and so is the order that is found.
+TEST(Norms, OfAJumpDisplacedByOneStepAreOfFirstOrder) {
+  std::vector<double> steps;
+  std::map<std::string, std::vector<double>> found;
+  for (int n = 50; n <= 800; n *= 2) {
+    const double h = 1.0 / n;
+    const double instant = 0.5;
+    const Errors errors = errors_against({bounce(instant)}, trace_of(bounce(instant + h), h, n));
+    EXPECT_NEAR(errors.v_L1, 2.0 / n, 1e-12);
+    EXPECT_NEAR(errors.u_max, 2.0 * h / 0.5, 1e-12);
+    EXPECT_NEAR(errors.instant, h, 1e-15);
+    // Half of the errors are 2 h; the mean square of the motion is 1/12.
+    EXPECT_NEAR(errors.u_L2, std::sqrt(0.5) * 2.0 * h / std::sqrt(1.0 / 12.0), 3.0 * h * h * 10.0);
+    steps.push_back(h);
+    found["u_L2"].push_back(errors.u_L2);
+    found["u_max"].push_back(errors.u_max);
+    found["v_L1"].push_back(errors.v_L1);
+    found["instant"].push_back(errors.instant);
+  }
+  for (const auto& [norm, errors] : found) EXPECT_NEAR(order_of(steps, errors), 1.0, 0.05) << norm;
+}
+
+// Against a finer run of the same motion, whose positions are linear between its instants.
+TEST(Norms, AgainstAFinerRunOfTheSameMotionAreThoseOfTheMotion) {
+  const double h = 1e-2;
+  const Errors same = errors_against(trace_of(bounce(0.505), h / 8.0, 800), trace_of(bounce(0.505), h, 99));
+  EXPECT_LE(same.u_L2, 1e-14);
+  EXPECT_LE(same.u_max, 1e-14);
+  EXPECT_LE(same.v_L1, 2.0 / 99 * 1.001);  // the jump falls on an instant of the half steps
+  EXPECT_EQ(same.instant, 0.0);
+  const Errors late = errors_against(trace_of(bounce(0.505), h / 8.0, 800), trace_of(bounce(0.515), h, 99));
+  EXPECT_NEAR(late.u_max, 2.0 * h / 0.5, 1e-12);  // the largest of the reference where the trace looks
+  EXPECT_NEAR(late.instant, h, 1e-15);
+}
+
+TEST(Norms, TakeTheInstantThatIsFarthestOffOfThoseThatBothHave) {
+  Trace trace = trace_of(bounce(0.5), 1e-2, 100);
+  ExactNode exact = bounce(0.5);
+  trace.instants[0] = {0.51, never, 0.7};
+  exact.instants = {0.5, 0.6, 0.75};
+  EXPECT_NEAR(errors_against({exact}, trace).instant, 0.05, 1e-15);
+  exact.instants = {never, 0.6, never};
+  EXPECT_TRUE(std::isnan(errors_against({exact}, trace).instant));
+}
+
+TEST(Order, IsTheSlopeByLeastSquares) {
+  const std::vector<double> h{1.0, 0.5, 0.2, 0.1};
+  std::vector<double> errors;
+  for (const double step : h) errors.push_back(3.0 * std::pow(step, 1.7));
+  EXPECT_NEAR(order_of(h, errors), 1.7, 1e-14);
+  // Errors 1, 1, 1/4 at steps 1, 1/2, 1/4: slopes 0 and 2, least squares the mean.
+  EXPECT_NEAR(order_of({1.0, 0.5, 0.25}, {1.0, 1.0, 0.25}), 1.0, 1e-14);
+  errors[2] = 0.0;
+  EXPECT_TRUE(std::isnan(order_of(h, errors)));
+}
+
+// ---- the program ----------------------------------------------------------------------------------------
+
+json shipped(const std::string& name) {
+  return read_scene_source(std::filesystem::path(ILAW_SCENES) / (name + ".json"));
+}
+
+struct Study {
+  Outcome outcome;
+  std::filesystem::path folder;
+  json orders;                                       // converge.json
+  std::map<std::string, std::vector<double>> table;  // converge.csv, by column
+};
+
+Study study_of(const json& scene, const std::string& options) {
+  Study study;
+  study.folder = fresh_folder();
+  std::ofstream(study.folder / "scene.json") << scene.dump();
+  const std::filesystem::path results = study.folder / "results";
+  study.outcome = run_program("converge " + (study.folder / "scene.json").string() + " --out " +
+                              results.string() + " " + options);
+  if (study.outcome.code != 0) return study;
+  study.orders = json::parse(text_of(results / "converge.json"));
+  std::istringstream table(text_of(results / "converge.csv"));
+  std::string header, row, entry;
+  std::getline(table, header);
+  std::vector<std::string> names;
+  for (std::istringstream line(header); std::getline(line, entry, ',');) names.push_back(entry);
+  while (std::getline(table, row)) {
+    std::istringstream line(row);
+    for (const std::string& name : names) {
+      std::getline(line, entry, ',');
+      study.table[name].push_back(std::strtod(entry.c_str(), nullptr));
+    }
+  }
+  EXPECT_EQ(text_of(results / "converge.png").substr(1, 3), "PNG");
+  EXPECT_NE(text_of(results / "converge.svg").find("<svg"), std::string::npos);
+  return study;
+}
+
+double order_in(const Study& study, const char* norm) {
+  return study.orders.at("orders").at(norm).get<double>();
+}
+
+// Waves with fronts, on linear elements below the critical step: fronts spread over O((h^2 t)^(1/3)) by
+// dispersion, so that velocities are of order 2/3 in L1 but for the ringing, whose mean falls off as slowly
+// as h^(1/2). Positions are their integral.
+TEST(Converge, TwoBarsAgainstTheExactSolution) {
+  const Study study = study_of(shipped("two_bars"), "--levels 5");
+  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+  EXPECT_EQ(study.orders["reference"], "exact solution");
+  EXPECT_EQ(study.orders["refined"], "mesh and time step");
+  ASSERT_EQ(study.table.at("dt").size(), 5U);
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_NEAR(study.table.at("dt")[k], 0.009 / std::pow(2.0, k), 1e-9);  // cfl 0.9, elements of 0.01
+    EXPECT_NEAR(study.table.at("steps")[k], 4.0 / study.table.at("dt")[k], 1.0);
+    // Found closed a step late at most.
+    EXPECT_LE(study.table.at("instant")[k], study.table.at("dt")[k]);
+  }
+  EXPECT_GE(order_in(study, "u_L2"), 0.8);
+  EXPECT_GE(order_in(study, "v_L1"), 0.45);
+}
+
+// At the critical step waves are exact: what is left is the instant of contact, of first order in all norms,
+// or none where contact falls on an instant.
+TEST(Converge, TwoBarsAtTheCriticalStepAreOfFirstOrder) {
+  json scene = shipped("two_bars");
+  scene["time"]["cfl"] = 1.0;
+  scene["model"]["bars"][0]["start"] = -1.0 - 0.05 / std::sqrt(2.0);
+  const Study study = study_of(scene, "--levels 6");
+  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+  for (const char* norm : {"u_L2", "u_max", "v_L1", "instant"}) {
+    if (std::string(norm) != "v_L1") {
+      EXPECT_GE(order_in(study, norm), 0.75) << norm;
+    }
+    for (std::size_t k = 0; k < 6; ++k)
+      EXPECT_LE(study.table.at(norm)[k], study.table.at("dt")[k]) << norm << " at level " << k;
+  }
+}
+
+// Rupture is found at the end of the step in which the window passes the limit.
+TEST(Converge, GluedBarBreaksWithinAStepOfItsInstant) {
+  const Study study = study_of(shipped("glued_bar"), "--levels 5 --factor 2");
+  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_LE(study.table.at("instant")[k], study.table.at("dt")[k]);
+  EXPECT_GE(order_in(study, "instant"), 0.9);
+  EXPECT_GE(order_in(study, "v_L1"), 0.45);
+}
+
+json ball(double restitution) {
+  json scene = shipped("bouncing_ball");
+  const json point = scene["model"]["points"][0];
+  scene["model"]["points"] = {point, point};
+  scene["model"]["points"].erase(1);
+  scene["interfaces"] =
+      json::array({{{"law", "contact"},
+                    {"parameters", {{"restitution", restitution}}},
+                    {"nodes", "all"},
+                    {"obstacle", {{"type", "plane"}, {"point", {0.0}}, {"normal", {1.0}}}}}});
+  scene["output"] = {{"watch", {0}}};
+  scene["exact"] = {{"type", "bouncing_ball"}};
+  return scene;
+}
+
+// Steps that have nothing in common with the instants of impact, whose phase within a step makes single
+// errors ragged.
+TEST(Converge, BouncingBallIsOfFirstOrder) {
+  for (const double restitution : {0.0, 0.5, 0.8}) {
+    json scene = ball(restitution);
+    scene["time"] = {{"dt", 1e-2 / std::sqrt(2.0)}, {"end", 2.5}};
+    const Study study = study_of(scene, "--levels 12 --factor 1.7");
+    ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+    EXPECT_EQ(study.orders["refined"], "time step");
+    for (const char* norm : {"u_L2", "v_L1"}) {
+      // Without rebound there is one jump, which half steps see at the right place or one off: no order.
+      if (restitution == 0.0 && std::string(norm) == "v_L1") continue;
+      EXPECT_GE(order_in(study, norm), 0.8) << norm << " for e = " << restitution;
+      EXPECT_LE(order_in(study, norm), 1.3) << norm << " for e = " << restitution;
+    }
+    for (std::size_t k = 0; k < 12; ++k)
+      EXPECT_LE(study.table.at("instant")[k], 1.5 * study.table.at("dt")[k]) << k;
+  }
+}
+
+TEST(Converge, WithoutExactSolutionComparesWithTheFinestRun) {
+  const Study study = study_of(shipped("postit_test2"), "--levels 4");
+  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+  EXPECT_EQ(study.orders["reference"], "finest run");
+  EXPECT_EQ(study.orders["levels"], 4);
+  EXPECT_EQ(study.table.at("dt").size(), 3U);
+  EXPECT_GT(study.table.at("u_L2")[0], study.table.at("u_L2")[2]);
+}
+
+// A block twice as fine along all three axes takes twice the steps at the same cfl.
+TEST(Converge, RefinesMeshAndStepTogether) {
+  json scene = shipped("block_impact");
+  scene["model"]["blocks"][0]["elements"] = {2, 2, 2};
+  const Study study = study_of(scene, "--levels 3 --refine mesh");
+  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+  EXPECT_NEAR(study.table.at("dt")[0] / study.table.at("dt")[1], 2.0, 0.1);
+  EXPECT_NEAR(study.table.at("steps")[1] / study.table.at("steps")[0], 2.0, 0.1);
+}
+
+TEST(Converge, RefusesWhatItCannotCompare) {
+  const auto refusal = [](const json& scene, const std::string& options) {
+    const Study study = study_of(scene, options);
+    EXPECT_EQ(study.outcome.code, 2) << study.outcome.output;
+    EXPECT_FALSE(std::filesystem::exists(study.folder / "results"));
+    return study.outcome.output;
+  };
+  json unwatched = shipped("postit_test2");
+  unwatched["output"].erase("watch");
+  EXPECT_NE(refusal(unwatched, "").find("/output/watch: found no node, expected those to compare"),
+            std::string::npos);
+  EXPECT_NE(refusal(shipped("postit_test2"), "--refine mesh").find("/converge/refine: found \"mesh\""),
+            std::string::npos);
+  json thrown = ball(0.5);
+  thrown["model"]["points"][0]["velocity"] = {1.0};
+  EXPECT_NE(refusal(thrown, "").find("/exact: expected one point at rest in 1D"), std::string::npos);
+  json late = shipped("glued_bar");
+  late["time"]["end"] = 3.5;
+  EXPECT_NE(refusal(late, "").find("/exact: expected a window longer than R_Y/(2F)"), std::string::npos);
+  json alone = shipped("two_bars");
+  alone["output"]["watch"] = {"right.left"};
+  EXPECT_NE(refusal(alone, "").find("/exact: expected two bars"), std::string::npos);
+  json unknown = ball(0.5);
+  unknown["exact"]["type"] = "flea_circus";
+  EXPECT_NE(refusal(unknown, "").find("/exact/type"), std::string::npos);
+  refusal(ball(0.5), "--levels 1");
+  refusal(ball(0.5), "--factor 1");
+  refusal(ball(0.5), "--refine space");
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "file") << "not a folder";
+  const Outcome taken = run_program("converge " + std::string(ILAW_SCENES) + "/two_bars.json --out " +
+                                    (folder / "file").string());
+  EXPECT_EQ(taken.code, 2);
+  EXPECT_NE(taken.output.find("expected a folder"), std::string::npos) << taken.output;
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
