@@ -170,7 +170,7 @@ struct penalty {
     problem.mu[0] = problem.mu[1] = friction;
     const bool couples = absolute(problem.h[3]) + absolute(problem.h[4]) > rounding_of(node.delassus);
     const bool is_inverse_mass = stiffness == infinity || (Linear && damping == 0.0);
-    if (couples && is_inverse_mass) {
+    if (is_inverse_mass) {
       problem.h[0] += 1.0 / (node.velocity_step * node.position_step * stiffness);
       problem.q[0] = node.v_free.n + acting_gap(node) * (1.0 / node.position_step);
     } else {

@@ -268,6 +268,7 @@ class Runner {
     b.energy = {energy[0].data(), 4, 1};
     b.status = status.data();
     b.status_stride = 1;
+    b.per_node_parameters = per_node.data();
     return b;
   }
 
@@ -280,6 +281,7 @@ class Runner {
 
  public:
   double time = 0.0;
+  std::vector<ilaw_input> per_node;  // in the order of the instance
   std::vector<Vector> r, v;
   std::vector<std::array<double, 4>> energy;
   std::vector<std::uint8_t> status;

@@ -25,6 +25,8 @@ inline std::string plugin_file(const std::string& law) {
 struct Parameters {
   std::map<std::string, double> numbers;
   std::map<std::string, std::string> texts;
+  std::map<std::string, std::vector<double>> tables = {};  // time, value, time, value ...
+  std::vector<std::string> per_node = {};
 };
 
 // Setup with the storage that its pointers need.
@@ -39,6 +41,12 @@ class SetupBuilder {
       a.number = value;
     }
     for (const auto& [name, text] : given_.texts) add(name, ILAW_VALUE_TEXT).text = text.c_str();
+    for (const auto& [name, pairs] : given_.tables) {
+      ilaw_argument& a = add(name, ILAW_VALUE_TABLE);
+      a.values = pairs.data();
+      a.count = pairs.size() / 2;
+    }
+    for (const std::string& name : given_.per_node) add(name, ILAW_VALUE_PER_NODE);
     for (const ilaw_argument& a : arguments_) pointers_.push_back(&a);
     setup.struct_size = sizeof setup;
     setup.dimension = dimension;

@@ -379,18 +379,21 @@ const char* refusal_reason(const Law& law, const node_block<Law>& b, int i) {
   return "the impulse or the state overflows";
 }
 
-// The parameters of one node, where some are given per node; false if one is out of range.
+// The parameters of one node, where some are given per node; says what is wrong with them, null where nothing
+// is. Then law stays as it was: no step need stand what no parameter may be.
 template <class Law>
-bool at_node(const instance<Law>& made, const ilaw_batch& batch, std::int64_t node, Law& law) {
-  bool valid = true;
+const char* at_node(const instance<Law>& made, const ilaw_batch& batch, std::int64_t node, Law& law) {
+  Law own = law;
   for (std::uint32_t k = 0; k < made.per_node_count; ++k) {
     const ilaw_input& given = batch.per_node_parameters[k];
     const double value = given.values[node * given.node_stride];
-    valid = valid && in_range(*made.per_node[k], value);
-    law.*made.per_node_members[k] = value;
+    if (!in_range(*made.per_node[k], value)) return "a per-node parameter is out of range";
+    own.*made.per_node_members[k] = value;
   }
-  if constexpr (requires { law.conflict(); }) valid = valid && !law.conflict();
-  return valid;
+  if constexpr (requires { own.conflict(); })
+    if (const char* conflict = made.per_node_count > 0 ? own.conflict() : nullptr) return conflict;
+  law = own;
+  return nullptr;
 }
 
 // The whole of a batch; Varying: with parameters per node, one node at a time.
@@ -420,8 +423,8 @@ struct evaluate_walk {
       });
     for (int i = 0; Varying && i < walk.nodes().count; ++i) {
       Law own = law;
-      const bool valid = at_node(made, batch, walk.nodes().node(i), own);
-      run_node<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i, valid);
+      const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
+      run_node<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i, !wrong);
     }
   }
 
@@ -431,10 +434,9 @@ struct evaluate_walk {
     for (int i = 0; i < walk.nodes().count; ++i) {
       if (walk.block().refused[i] == 0.0) continue;
       Law own = law;
-      const bool valid = at_node(made, batch, walk.nodes().node(i), own);
+      const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
       found.add(walk.nodes().node(i),
-                valid ? refusal_reason<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i)
-                      : "a per-node parameter is out of range");
+                wrong ? wrong : refusal_reason<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i));
     }
   }
 };
@@ -519,9 +521,9 @@ tally initialise_nodes(const instance<Law>& made, const ilaw_batch& batch) {
     walk.open_initial(first);
     for (int i = 0; i < walk.nodes().count; ++i) {
       Law own = law;
-      const bool valid = at_node(made, batch, walk.nodes().node(i), own);
-      if (const char* wrong = valid ? walk.initialise(own, i) : "a per-node parameter is out of range")
-        found.add(walk.nodes().node(i), wrong);
+      const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
+      if (!wrong) wrong = walk.initialise(own, i);
+      if (wrong) found.add(walk.nodes().node(i), wrong);
     }
   }
   return found;

@@ -224,8 +224,9 @@ class instance_builder {
   }
 
   std::int32_t check_together() {
+    // Values that come per node are checked together there.
     if constexpr (requires { made_.law.conflict(); })
-      if (const char* conflict = made_.law.conflict()) {
+      if (const char* conflict = made_.per_node_count > 0 ? nullptr : made_.law.conflict()) {
         text_.add("law '%s': %s", id, conflict);
         return ILAW_INVALID_PARAMETER;
       }

@@ -1,0 +1,196 @@
+// Parameters as tables in time and as values per node: whatever a law's description allows, for every law.
+#include "random_nodes.hpp"
+
+#include <algorithm>
+
+namespace ilaw::testing {
+namespace {
+
+struct Given {
+  const char* law;
+  Parameters parameters;
+};
+std::ostream& operator<<(std::ostream& out, const Given& given) { return out << given.law; }
+
+const std::vector<Given> laws = {{"contact", {{{"restitution", 0.4}}, {}}},
+                                 {"coulomb",
+                                  {{{"friction", 0.5},
+                                    {"kinetic_friction", 0.3},
+                                    {"decay", 2.0},
+                                    {"friction_2", 0.4},
+                                    {"restitution", 0.2},
+                                    {"tangential_restitution", 0.1}},
+                                   {}}},
+                                 {"penalty",
+                                  {{{"stiffness", 1e6},
+                                    {"damping", 20.0},
+                                    {"exponent", 1.5},
+                                    {"friction", 0.3},
+                                    {"tangential_stiffness", 1e5}},
+                                   {{"integration", "implicit"}}}},
+                                 {"postit",
+                                  {{{"adhesion_limit", 2.0},
+                                    {"efficiency_decrease", 5.0},
+                                    {"tangent_influence", 0.8},
+                                    {"friction", 0.3},
+                                    {"initial_adhesion", 1.0}},
+                                   {}}},
+                                 {"tie", {{{"strength", 2.0}}, {}}},
+                                 {"cohesive",
+                                  {{{"strength", 500.0},
+                                    {"toughness", 0.5},
+                                    {"strength_2", 700.0},
+                                    {"toughness_2", 0.9},
+                                    {"mixing_exponent", 2.0},
+                                    {"stiffness", 1e7},
+                                    {"friction", 0.3},
+                                    {"delay_time", 1e-4},
+                                    {"delay_exponent", 2.0}},
+                                   {}}}};
+
+class Options : public ::testing::TestWithParam<Given> {
+ protected:
+  // Steps that both ways must give the same bits for.
+  void expect_same(Runner& a, Runner& b) {
+    a.initialise();
+    b.initialise();
+    for (int k = 0; k < 20; ++k) {
+      nodes.draw();
+      for (std::size_t i = 0; i < nodes.count; ++i) {
+        nodes.v_previous[i] = nodes.v_free[nodes.count - 1 - i];
+        nodes.gap[i] = nodes.uniform() * RandomNodes::step;
+      }
+      a.time = b.time += RandomNodes::step;
+      ASSERT_EQ(a.evaluate(), ILAW_OK) << a.report.reason;
+      ASSERT_EQ(b.evaluate(), ILAW_OK) << b.report.reason;
+      ASSERT_EQ(a.r, b.r);
+      ASSERT_EQ(a.state, b.state);
+      ASSERT_EQ(a.status, b.status);
+    }
+  }
+
+  // Numbers that the law lets be given in this way.
+  std::vector<const ilaw_parameter*> numbers(std::uint32_t way) const {
+    std::vector<const ilaw_parameter*> found;
+    const ilaw_law& description = *library.law(law.law);
+    for (std::uint32_t k = 0; k < description.parameter_count; ++k)
+      if ((description.parameters[k]->may_be & way) &&
+          law.parameters.numbers.contains(description.parameters[k]->name))
+        found.push_back(description.parameters[k]);
+    return found;
+  }
+
+  const Given& law = GetParam();
+  ilaw::library library{plugin_file(law.law)};
+  RandomNodes nodes{500, 3, ILAW_DELASSUS_SCALAR, Inertia::any, 13};
+};
+
+TEST_P(Options, AConstantGivenPerNodeGivesTheSameBits) {
+  const auto varying = numbers(ILAW_MAY_BE_PER_NODE);
+  EXPECT_GE(varying.size(), 1U);
+  for (const ilaw_parameter* parameter : varying) {
+    Parameters parameters = law.parameters;
+    const double value = parameters.numbers.extract(parameter->name).mapped();
+    parameters.per_node = {parameter->name};
+    Runner constant(law.law, law.parameters, nodes), per_node(law.law, parameters, nodes);
+    const std::vector<double> values(nodes.count, value);
+    per_node.per_node = {{values.data(), 1, 1}};
+    expect_same(constant, per_node);
+  }
+}
+
+TEST_P(Options, AConstantTableGivesTheSameBits) {
+  const auto varying = numbers(ILAW_MAY_BE_TABLE);
+  EXPECT_GE(varying.size(), 1U);
+  for (const ilaw_parameter* parameter : varying) {
+    Parameters parameters = law.parameters;
+    const double value = parameters.numbers.extract(parameter->name).mapped();
+    parameters.tables[parameter->name] = {0.0, value, 3.5 * RandomNodes::step, value, 1.0, value};
+    Runner constant(law.law, law.parameters, nodes), table(law.law, parameters, nodes);
+    expect_same(constant, table);
+  }
+}
+
+// Each node has the value of its own array entry, whatever the others have: as in a batch where it is the
+// constant.
+TEST_P(Options, EachNodeHasItsOwnValue) {
+  for (const ilaw_parameter* parameter : numbers(ILAW_MAY_BE_PER_NODE)) {
+    Parameters parameters = law.parameters;
+    const double value = parameters.numbers.at(parameter->name),
+                 other = std::min(1.1 * value, parameter->maximum);
+    Parameters changed = law.parameters;
+    changed.numbers[parameter->name] = other;
+    parameters.numbers.erase(parameter->name);
+    parameters.per_node = {parameter->name};
+    Runner a(law.law, law.parameters, nodes), b(law.law, changed, nodes), mixed(law.law, parameters, nodes);
+    std::vector<double> values(nodes.count);
+    for (std::size_t i = 0; i < nodes.count; ++i) values[i] = i % 2 ? value : other;
+    mixed.per_node = {{values.data(), 1, 1}};
+    for (Runner* runner : {&a, &b, &mixed}) runner->initialise();
+    nodes.draw();
+    std::fill(nodes.gap.begin(), nodes.gap.end(), -1e-4);
+    nodes.v_previous = nodes.v_free;
+    for (Runner* runner : {&a, &b, &mixed}) ASSERT_EQ(runner->evaluate(), ILAW_OK) << runner->report.reason;
+    for (std::size_t i = 0; i < nodes.count; ++i)
+      ASSERT_EQ(mixed.r[i], (i % 2 ? a : b).r[i]) << parameter->name;
+  }
+}
+
+// A value that may not be, at one node in three, is bad input there and nowhere else.
+TEST_P(Options, BadValuesAreBadInputAtTheirNodesOnly) {
+  for (const ilaw_parameter* parameter : numbers(ILAW_MAY_BE_PER_NODE))
+    for (const double bad :
+         {std::nan(""), parameter->minimum - 1.0, -std::numeric_limits<double>::infinity()}) {
+      Parameters parameters = law.parameters;
+      const double value = parameters.numbers.extract(parameter->name).mapped();
+      parameters.per_node = {parameter->name};
+      Runner constant(law.law, law.parameters, nodes), per_node(law.law, parameters, nodes);
+      std::vector<double> values(nodes.count, value);
+      per_node.per_node = {{values.data(), 1, 1}};
+      for (Runner* runner : {&constant, &per_node}) runner->initialise();
+      for (std::size_t i = 0; i < nodes.count; i += 3) values[i] = bad;
+      nodes.draw();
+      nodes.v_previous = nodes.v_free;
+      std::fill(nodes.gap.begin(), nodes.gap.end(), -1e-4);
+      ASSERT_EQ(constant.evaluate(), ILAW_OK);
+      ASSERT_EQ(per_node.evaluate(), ILAW_BAD_NODES);
+      EXPECT_EQ(per_node.report.bad_count, static_cast<std::int64_t>((nodes.count + 2) / 3));
+      EXPECT_EQ(per_node.report.first_bad_node, 0);
+      EXPECT_STREQ(per_node.report.reason, "a per-node parameter is out of range");
+      for (std::size_t i = 0; i < nodes.count; ++i) {
+        ASSERT_EQ(per_node.r[i], i % 3 ? constant.r[i] : Vector{}) << parameter->name << " " << bad;
+        ASSERT_EQ(per_node.status[i], i % 3 ? int{constant.status[i]} : int{ILAW_BAD_INPUT});
+      }
+    }
+}
+
+// Half way between two instants of a table the value is half way, and outside its ends it is theirs.
+TEST_P(Options, TablesArePiecewiseLinearInTime) {
+  for (const ilaw_parameter* parameter : numbers(ILAW_MAY_BE_TABLE)) {
+    const double value = law.parameters.numbers.at(parameter->name);
+    const double from = std::min(0.75 * value, parameter->maximum), to = 1.25 * value - 0.25 * from;
+    Parameters parameters = law.parameters, midway = law.parameters;
+    parameters.numbers.erase(parameter->name);
+    parameters.tables[parameter->name] = {1.0, from, 3.0, to};
+    nodes.draw();
+    nodes.v_previous = nodes.v_free;
+    std::fill(nodes.gap.begin(), nodes.gap.end(), -1e-4);
+    Runner table(law.law, parameters, nodes);
+    for (const auto& [time, expected] : {std::pair{0.0, from}, {2.0, 0.5 * from + 0.5 * to}, {9.0, to}}) {
+      midway.numbers[parameter->name] = expected;
+      Runner constant(law.law, midway, nodes);
+      constant.time = table.time = time;
+      constant.initialise();
+      table.initialise();
+      ASSERT_EQ(constant.evaluate(), ILAW_OK);
+      ASSERT_EQ(table.evaluate(), ILAW_OK);
+      ASSERT_EQ(constant.r, table.r) << parameter->name << " at " << time;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, Options, ::testing::ValuesIn(laws),
+                         [](const auto& drawn) { return std::string(drawn.param.law); });
+
+}  // namespace
+}  // namespace ilaw::testing
