@@ -25,7 +25,7 @@ class Reach {
     const double ahead = rounding * dt * speed_after;
     if (looked_ && approached_ + ahead < horizon_) return false;
     approached_ = 0.0;
-    horizon_ = std::min(steps_ahead * dt * std::max(speed_before, speed_after), sight);
+    horizon_ = std::min(steps_ahead * dt * speed_before, sight);
     horizon_ = std::max(horizon_, 2.0 * ahead);  // never shorter than the step itself
     looked_ = true;
     return true;

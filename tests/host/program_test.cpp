@@ -4,7 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <pty.h>
+
 #include <csignal>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -49,7 +52,7 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   EXPECT_EQ(run_program("run " + ball + " --out " + ball).code, 2);
   EXPECT_EQ(run_program("describe no_such_law").code, 2);
   EXPECT_EQ(run_program("plot " + folder.string()).code, 2);
-  for (const char* command : {"", "run", "plot", "list", "describe"}) {
+  for (const char* command : {"", "run", "plot", "converge", "list", "describe"}) {
     const Outcome help = run_program(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.output.find("Example: "), std::string::npos) << command;
@@ -67,29 +70,169 @@ TEST(Program, FailsWithCodeOneWhereTheMotionOverflows) {
   EXPECT_NE(outcome.output.find("diverged"), std::string::npos) << outcome.output;
 }
 
-// Ctrl-C ends the run at the end of a step, with whole files that say so. No progress bar without a terminal.
-TEST(Program, LeavesWholeFilesWhenInterrupted) {
+class Stopped : public ::testing::TestWithParam<int> {};
+
+// Ctrl-C and kill end the run at the end of a step, with whole files that say so. No progress bar without a
+// terminal.
+TEST_P(Stopped, LeavesWholeFiles) {
   const auto folder = fresh_folder();
   nlohmann::json scene = nlohmann::json::parse(text_of(ball));
   scene["time"]["end"] = 1e6;
   scene["output"]["every"] = 1000;
+  scene["output"]["fields"] = 100000;
   std::ofstream(folder / "scene.json") << scene.dump();
   const pid_t child =
       start_program({"run", (folder / "scene.json").string(), "--out", folder.string()}, folder / "messages");
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  kill(child, SIGINT);
+  EXPECT_FALSE(std::filesystem::exists(folder / "history.csv"));  // not whole yet
+  kill(child, GetParam());
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 1);
   const nlohmann::json summary = nlohmann::json::parse(text_of(folder / "summary.json"));
   EXPECT_TRUE(summary["interrupted"]);
+  const auto steps = summary["steps"].get<std::int64_t>();
   const std::string history = text_of(folder / "history.csv");
   EXPECT_EQ(history.back(), '\n');
-  const auto rows = std::count(history.begin(), history.end(), '\n') - 1;
-  EXPECT_EQ(rows, summary["steps"].get<std::int64_t>() / 1000);
+  EXPECT_EQ(std::count(history.begin(), history.end(), '\n') - 1, steps / 1000);
+  const nlohmann::json series = nlohmann::json::parse(text_of(folder / "fields.vtu.series"));
+  EXPECT_EQ(series["files"].size(), 1U + static_cast<std::size_t>(steps / 100000));
+  for (const auto& file : series["files"])
+    EXPECT_TRUE(std::filesystem::exists(folder / file["name"].get<std::string>()));
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
   const std::string messages = text_of(folder / "messages");
   EXPECT_NE(messages.find("interrupted at step"), std::string::npos);
   EXPECT_EQ(messages.find('\r'), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Program, Stopped, ::testing::Values(SIGINT, SIGTERM),
+                         [](const auto& drawn) { return std::string(sigabbrev_np(drawn.param)); });
+
+// ---- progress -------------------------------------------------------------------------------------------
+
+// What a run says on a terminal of its own.
+std::string said_on_terminal(const std::string& scene, const std::filesystem::path& folder) {
+  int terminal = -1;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (child == 0) {
+    execl(ILAW_PROGRAM, ILAW_PROGRAM, "run", scene.c_str(), "--out", folder.c_str(), nullptr);
+    _exit(127);
+  }
+  std::string said;
+  std::array<char, 4096> buffer{};
+  for (ssize_t got; (got = read(terminal, buffer.data(), buffer.size())) > 0;)
+    said.append(buffer.data(), static_cast<std::size_t>(got));
+  close(terminal);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0) << said;
+  return said;
+}
+
+// A bar with its part done and the time left, redrawn in place and wiped in the end, before the line that
+// stays.
+TEST(Program, ShowsItsProgressOnATerminalOnly) {
+  const auto folder = fresh_folder();
+  nlohmann::json scene = nlohmann::json::parse(text_of(ball));
+  scene["time"]["end"] = 200.0;
+  scene["output"] = {{"every", 100000}};
+  std::ofstream(folder / "scene.json") << scene.dump();
+  const std::string file = (folder / "scene.json").string();
+  const std::string said = said_on_terminal(file, folder);
+  const std::regex bar("\\r\\[(#*)(\\.*)\\] +([0-9]+) %  [0-9]+ s left ");
+  int last = -1;
+  std::ptrdiff_t bars = 0;
+  for (std::sregex_iterator found(said.begin(), said.end(), bar), end; found != end; ++found, ++bars) {
+    const int percent = std::stoi((*found)[3]);
+    EXPECT_GE(percent, last);
+    EXPECT_LE(percent, 100);
+    EXPECT_EQ((*found)[1].length() + (*found)[2].length(), 30);
+    EXPECT_NEAR(static_cast<double>((*found)[1].length()), 0.3 * percent, 1.2);
+    last = percent;
+  }
+  EXPECT_GE(bars, 1) << "too fast a machine, or no bar: " << said;
+  const auto wiped = said.rfind("\r\033[K"), result = said.find("steps to time 200");
+  ASSERT_NE(wiped, std::string::npos);
+  ASSERT_NE(result, std::string::npos) << said;
+  EXPECT_LT(wiped, result);
+  const Outcome piped = run_program("run " + file + " --out " + folder.string());
+  EXPECT_EQ(piped.code, 0);
+  EXPECT_EQ(piped.output.find('\r'), std::string::npos);
+  EXPECT_EQ(std::count(piped.output.begin(), piped.output.end(), '\n'), 1);
+}
+
+TEST(Program, DrawsNothingForAShortRun) {
+  const auto folder = fresh_folder();
+  EXPECT_EQ(said_on_terminal(ball, folder).find('['), std::string::npos);
+}
+
+// ---- the summary ----------------------------------------------------------------------------------------
+
+nlohmann::json summary_of(const nlohmann::json& scene) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << scene.dump();
+  const Outcome outcome =
+      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  EXPECT_EQ(outcome.code, 0) << outcome.output;
+  return nlohmann::json::parse(text_of(folder / "summary.json"));
+}
+
+nlohmann::json shipped(const char* name) {
+  return nlohmann::json::parse(text_of(std::filesystem::path(ILAW_SCENES) / name));
+}
+
+// Every contact of every step is asked or skipped, and has a status.
+TEST(Summary, CountsWhoWasAskedAndWhoWasSkipped) {
+  nlohmann::json scene = shipped("block_impact.json");
+  const auto nodes = 9 * 9 * 9 + 9 * 9;
+  const nlohmann::json skipping = summary_of(scene);
+  for (auto& interface : scene["interfaces"]) interface["skip"] = false;
+  const nlohmann::json asking = summary_of(scene);
+  const auto steps = skipping["steps"].get<std::int64_t>();
+  for (const nlohmann::json& summary : {skipping, asking}) {
+    const nlohmann::json& count = summary["node_steps"];
+    EXPECT_EQ(count["asked"].get<std::int64_t>() + count["skipped"].get<std::int64_t>(), nodes * steps);
+    std::int64_t sum = 0;
+    for (const auto& [status, times] : summary["status_counts"].items()) sum += times.get<std::int64_t>();
+    EXPECT_EQ(sum, nodes * steps);
+  }
+  EXPECT_EQ(asking["node_steps"]["skipped"], 0);
+  EXPECT_GT(skipping["node_steps"]["skipped"], nodes * steps / 2);
+  EXPECT_EQ(asking["status_counts"], skipping["status_counts"]);
+  EXPECT_EQ(asking["interfaces"][0]["nodes_stored"], 9 * 9 * 9);
+  EXPECT_LT(skipping["interfaces"][0]["nodes_stored"], 9 * 9 * 9);
+}
+
+TEST(Summary, TellsTheInterfacesShareAndMemory) {
+  const nlohmann::json summary = summary_of(shipped("postit_test3.json"));
+  const nlohmann::json& seconds = summary["seconds"];
+  const double share = summary["interface_share"];
+  EXPECT_GT(share, 0.0);
+  EXPECT_LT(share, 1.0);
+  EXPECT_NEAR(share,
+              seconds["interfaces"].get<double>() /
+                  (seconds["interfaces"].get<double>() + seconds["internal_forces"].get<double>()),
+              1e-12);
+  EXPECT_GE(seconds["total"].get<double>(),
+            seconds["interfaces"].get<double>() + seconds["internal_forces"].get<double>());
+  // The state, with a window of 80 buckets, and some vectors beside it.
+  const nlohmann::json& interface = summary["interfaces"][0];
+  EXPECT_GE(interface["state_size"], 80);
+  EXPECT_GE(interface["bytes_per_node"], 8 * interface["state_size"].get<int>());
+  EXPECT_LE(interface["bytes_per_node"], 8 * interface["state_size"].get<int>() + 300);
+}
+
+// Contacts that share nodes: how many sweeps, and what the last one still changed.
+TEST(Summary, TellsHowCoupledContactsConverged) {
+  const nlohmann::json coupled = summary_of(shipped("two_blocks.json"))["coupling"];
+  EXPECT_GT(coupled["sweeps_max"], 1);
+  EXPECT_GE(coupled["sweeps"], coupled["sweeps_max"]);
+  EXPECT_LE(coupled["residual_max"], 1e-14);
+  EXPECT_EQ(coupled["steps_unconverged"], 0);
+  const nlohmann::json single = summary_of(shipped("two_bars.json"))["coupling"];
+  EXPECT_EQ(single["sweeps"], 0);
+  EXPECT_EQ(single["residual_max"], 0.0);
 }
 
 TEST(Program, DrawsAHistory) {
