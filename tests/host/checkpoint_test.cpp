@@ -171,7 +171,7 @@ TEST(Checkpoint, IsWrittenWhereARunIsInterrupted) {
   const std::string scene = written(long_scene(), folder).string();
   const pid_t child = start_program({"run", scene, "--out", folder.string(), "--checkpoint-every", "100000"},
                                     folder / "messages");
-  while (!std::filesystem::exists(folder / "history.csv.partial"))
+  for (int k = 0; k < 5000 && !std::filesystem::exists(folder / "history.csv.partial"); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   kill(child, SIGTERM);
