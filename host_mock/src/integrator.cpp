@@ -207,9 +207,10 @@ void Integrator::account(const Interface& interface) {
   for (const std::int32_t slot : interface.asked()) {
     tally_.penetration_max = std::max(tally_.penetration_max, -interface.gap(slot));
     ++tally_.status_counts[static_cast<std::size_t>(interface.status(slot))];
-    if (interface.status(slot) == ILAW_FREE && interface.impulse(slot).isZero(0.0)) continue;
+    // Also where there is no impulse: a penalty that lets go may still have stored something.
     for (int part = 0; part < ILAW_ENERGY_STORED; ++part)
       energy_.add_dissipation(part, interface.energy(slot, part));
+    if (interface.status(slot) == ILAW_FREE && interface.impulse(slot).isZero(0.0)) continue;
     const Vector sum = interface.relative(slot, v_before_) + interface.relative(slot, v_);
     work += 0.5 * interface.impulse(slot).dot(sum);
     relative_work += 0.5 * interface.impulse(slot).dot(sum - drift);

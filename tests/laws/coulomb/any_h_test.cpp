@@ -103,6 +103,27 @@ TEST(CoulombAnyH, NeverCreatesEnergyAndDissipatesAtMost) {
   }
 }
 
+// Newton's coefficient where H couples: sticking, r = -H^-1 q with q = v^- + (e v_N^-, 0), the work is
+// -q.H^-1 q/2 + e r_N, for v^- = (-1, -w) a gain of (e^2 + w^2 - 1)/(2 (1 - w^2)). Equal coefficients lose 1
+// - e^2.
+TEST(CoulombAnyH, RestitutionCreatesEnergyWhereHCouplesUnlessItIsMoreaus) {
+  constexpr double w = 0.8;
+  for (const double e : {0.4, 0.8})
+    for (const bool moreau : {false, true}) {
+      NodeRun node(
+          "coulomb",
+          {{{"friction", 10.0}, {"restitution", e}, {"tangential_restitution", moreau ? e : 0.0}}, {}}, 1e-3,
+          ILAW_DELASSUS_FULL);
+      node.h = {1.0, 1.0, 1.0, w, 0.0, 0.0};
+      const Vector v{-1.0, -w, 0.0};
+      node.v_previous = v;
+      ASSERT_EQ(node.step(v), ILAW_OK);
+      const double work = 0.5 * (dot(node.r, v) + dot(node.r, node.v));
+      const double newton = (e * e + w * w - 1.0) / (2.0 * (1.0 - w * w));
+      EXPECT_NEAR(work, moreau ? -0.5 * (1.0 - e * e) : newton, 1e-14);
+    }
+}
+
 // H = diag(h_N, h_1, h_2): r_N = -q_N/h_N stands alone, and sliding is r_i = -q_i/(h_i + a) with a > 0 the
 // root of |r_T| = mu r_N, which decreases in a.
 TEST(CoulombAnyH, SlidesOnADiagonalHAtTheRootOfItsOneEquation) {
