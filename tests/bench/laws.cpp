@@ -10,12 +10,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -27,17 +28,29 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// A law with parameters, and how its inputs come.
+struct Subject {
+  std::string law, what;  // what: the parameters in words
+  std::vector<std::pair<const char*, double>> numbers = {};
+  std::pair<const char*, const char*> choice = {nullptr, nullptr};
+  std::uint32_t form = ILAW_DELASSUS_SCALAR;
+  const char* per_node = nullptr;  // a parameter of numbers that is given per node
+};
+
+struct Way {
+  bool global = false, soa = false, outputs = false;
+};
+
 // Arrays of one case, drawn at random: half of the nodes touch.
 class Case {
  public:
-  Case(const std::string& law, std::vector<std::pair<const char*, double>> parameters, bool global, bool soa,
-       bool outputs, std::int64_t nodes)
-      : name_(law),
-        global_(global),
-        soa_(soa),
-        outputs_(outputs),
+  Case(const Subject& subject, Way way, std::int64_t nodes)
+      : subject_(subject),
+        way_(way),
         nodes_(nodes),
-        interface_(create(law, std::move(parameters), global)),
+        components_(subject.form == ILAW_DELASSUS_SCALAR ? 1
+                                                         : (subject.form == ILAW_DELASSUS_DIAGONAL ? 3 : 6)),
+        interface_(create(subject, way.global)),
         state_size_(static_cast<std::int64_t>(interface_.info().state_size)) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -47,19 +60,17 @@ class Case {
     };
     fill(v_free_, 3 * nodes);
     fill(gap_, nodes);
-    fill(delassus_, nodes);
-    for (double& h : delassus_) h = 1.5 + h;
-    if (global) fill(normal_, 3 * nodes);
-    for (std::int64_t i = 0; global && i < nodes; ++i) {
-      double* n[3];
-      for (int c = 0; c < 3; ++c) n[c] = &normal_[static_cast<std::size_t>(soa ? i + c * nodes : 3 * i + c)];
-      const double length = std::sqrt(*n[0] * *n[0] + *n[1] * *n[1] + *n[2] * *n[2]);
-      for (double* component : n) *component /= length;
-    }
+    fill(delassus_, components_ * nodes);
+    for (std::size_t k = 0; k < delassus_.size(); ++k)  // positive definite: |H_ij| < 0.3, H_ii > 1
+      delassus_[k] = k % static_cast<std::size_t>(components_) < 3 ? 2.0 + delassus_[k] : 0.3 * delassus_[k];
+    if (way.global) draw_normals([&] { return uniform(random); });
     impulse_.resize(static_cast<std::size_t>(3 * nodes));
     state_.resize(static_cast<std::size_t>(state_size_ * nodes));
-    if (outputs) velocity_.resize(static_cast<std::size_t>(3 * nodes));
-    if (outputs) status_.resize(static_cast<std::size_t>(nodes));
+    if (way.outputs) velocity_.resize(static_cast<std::size_t>(3 * nodes));
+    if (way.outputs) status_.resize(static_cast<std::size_t>(nodes));
+    for (const auto& [name, value] : subject.numbers)
+      if (subject.per_node && std::string(name) == subject.per_node)
+        per_node_.assign(static_cast<std::size_t>(nodes), value);
     lay_out();
     if (interface_.initialise(batch_) != ILAW_OK) std::abort();
     batch_.state_in = {state_.data(), state_size_, 1};
@@ -74,55 +85,86 @@ class Case {
 
   // What one node must move: inputs and outputs once, the state in and out.
   double bytes() const {
-    return 24.0 + 8.0 + 8.0 + 24.0 + (global_ ? 24.0 : 0.0) + (outputs_ ? 25.0 : 0.0) +
-           16.0 * static_cast<double>(state_size_);
+    return 24.0 + 8.0 * static_cast<double>(components_) + 8.0 + 24.0 + (way_.global ? 24.0 : 0.0) +
+           (way_.outputs ? 25.0 : 0.0) + (interface_.info().inputs & ILAW_INPUT_V_PREVIOUS ? 24.0 : 0.0) +
+           (per_node_.empty() ? 0.0 : 8.0) + 16.0 * static_cast<double>(state_size_);
   }
   std::string label() const {
-    return name_ + (global_ ? " global" : " local") + (soa_ ? " SoA" : " AoS") + (outputs_ ? " outputs" : "");
+    return subject_.law + (subject_.what.empty() ? "" : " " + subject_.what) +
+           (subject_.form == ILAW_DELASSUS_SCALAR     ? ""
+            : subject_.form == ILAW_DELASSUS_DIAGONAL ? " diagonal H"
+                                                      : " full H") +
+           (way_.global ? " global" : " local") + (way_.soa ? " SoA" : " AoS") +
+           (way_.outputs ? " outputs" : "");
   }
   std::int64_t nodes() const { return nodes_; }
 
  private:
-  static ilaw::interface create(const std::string& law,
-                                std::vector<std::pair<const char*, double>> parameters, bool global) {
+  static ilaw::interface create(const Subject& subject, bool global) {
     std::vector<ilaw_argument> arguments;
-    for (const auto& [name, value] : parameters)
-      arguments.push_back({sizeof(ilaw_argument), ILAW_VALUE_NUMBER, name, value, nullptr, nullptr, 0});
+    for (const auto& [name, value] : subject.numbers) {
+      const bool varies = subject.per_node && std::string(name) == subject.per_node;
+      arguments.push_back({sizeof(ilaw_argument),
+                           std::uint32_t{varies ? ILAW_VALUE_PER_NODE : ILAW_VALUE_NUMBER}, name, value,
+                           nullptr, nullptr, 0});
+    }
+    if (subject.choice.first)
+      arguments.push_back({sizeof(ilaw_argument), ILAW_VALUE_TEXT, subject.choice.first, 0.0,
+                           subject.choice.second, nullptr, 0});
     std::vector<const ilaw_argument*> pointers;
     for (const ilaw_argument& argument : arguments) pointers.push_back(&argument);
     ilaw_setup setup{};
     setup.struct_size = sizeof setup;
     setup.dimension = 3;
-    setup.delassus_form = ILAW_DELASSUS_SCALAR;
+    setup.delassus_form = subject.form;
     setup.frame = global ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL;
     setup.velocity_step = 1e-3;
     setup.arguments = pointers.data();
     setup.argument_count = static_cast<std::uint32_t>(pointers.size());
-    return {ilaw::library(law), law, setup};
+    return {ilaw::library(subject.law), subject.law, setup};
+  }
+
+  template <class Next>
+  void draw_normals(Next next) {
+    normal_.resize(static_cast<std::size_t>(3 * nodes_));
+    for (double& component : normal_) component = next();
+    for (std::int64_t i = 0; i < nodes_; ++i) {
+      double* n[3];
+      for (int c = 0; c < 3; ++c)
+        n[c] = &normal_[static_cast<std::size_t>(way_.soa ? i + c * nodes_ : 3 * i + c)];
+      const double length = std::sqrt(*n[0] * *n[0] + *n[1] * *n[1] + *n[2] * *n[2]);
+      for (double* component : n) *component /= length;
+    }
   }
 
   void lay_out() {
-    const std::int64_t node = soa_ ? 1 : 3, component = soa_ ? nodes_ : 1;
+    const std::int64_t node = way_.soa ? 1 : 3, component = way_.soa ? nodes_ : 1;
     batch_.struct_size = sizeof batch_;
     batch_.node_count = nodes_;
     batch_.velocity_step = batch_.position_step = 1e-3;
     batch_.v_free = {v_free_.data(), node, component};
-    batch_.delassus = {delassus_.data(), 1, 1};
+    batch_.delassus = {delassus_.data(), components_, 1};
     batch_.gap = {gap_.data(), 1, 1};
-    if (global_) batch_.normal = {normal_.data(), node, component};
+    if (way_.global) batch_.normal = {normal_.data(), node, component};
     batch_.impulse = {impulse_.data(), node, component};
     batch_.state_out = {state_.data(), state_size_, 1};
-    if (outputs_) batch_.velocity = {velocity_.data(), node, component};
-    if (outputs_) batch_.status = status_.data();
+    if (way_.outputs) batch_.velocity = {velocity_.data(), node, component};
+    if (way_.outputs) batch_.status = status_.data();
     batch_.status_stride = 1;
+    batch_.v_previous = batch_.v_free;
+    batch_.area = {&area_, 0, 1};
+    if (!per_node_.empty()) parameter_ = {per_node_.data(), 1, 1};
+    batch_.per_node_parameters = &parameter_;
   }
 
-  std::string name_;
-  bool global_, soa_, outputs_;
-  std::int64_t nodes_;
+  Subject subject_;
+  Way way_;
+  std::int64_t nodes_, components_;
+  double area_ = 1.0;
+  ilaw_input parameter_{};
   ilaw::interface interface_;
   std::int64_t state_size_;
-  std::vector<double> v_free_, gap_, delassus_, normal_, impulse_, velocity_, state_;
+  std::vector<double> v_free_, gap_, delassus_, normal_, impulse_, velocity_, state_, per_node_;
   std::vector<std::uint8_t> status_;
   ilaw_batch batch_{};
 };
@@ -177,43 +219,67 @@ void measure(const std::function<std::unique_ptr<Case>()>& make, Triad& triad, s
     ratios.push_back(seconds * bandwidth / (one->bytes() * static_cast<double>(nodes)));
     bandwidths.push_back(1e-9 * bandwidth);
   }
-  std::printf("%9lld  %-32s %8.2f ns/node  triad %7.1f GB/s  ratio %6.2f\n", static_cast<long long>(nodes),
+  std::printf("%9lld  %-52s %8.2f ns/node  triad %7.1f GB/s  ratio %6.2f\n", static_cast<long long>(nodes),
               one->label().c_str(), median(times), median(bandwidths), median(ratios));
   if (csv)
     *csv << nodes << ',' << one->label() << ',' << median(times) << ',' << median(bandwidths) << ','
          << median(ratios) << '\n';
 }
 
-Options read_options(int argc, char** argv) {
-  Options options;
-  for (int k = 1; k + 1 < argc; k += 2) {
-    if (std::strcmp(argv[k], "--nodes") == 0) options.sizes = {std::atoll(argv[k + 1])};
-    if (std::strcmp(argv[k], "--repetitions") == 0) options.repetitions = std::atoi(argv[k + 1]);
-    if (std::strcmp(argv[k], "--out") == 0) options.out = argv[k + 1];
-  }
-  return options;
+// Every law as a host has it most often, and what its options cost.
+std::vector<Subject> subjects() {
+  const std::uint32_t diagonal = ILAW_DELASSUS_DIAGONAL, full = ILAW_DELASSUS_FULL;
+  const std::pair<const char*, const char*> implicit{"integration", "implicit"};
+  const double never = 1e12;
+  return {
+      {"contact", "", {}, {}, diagonal},
+      {"contact", "", {}, {}, full},
+      {"coulomb", "", {{"friction", 0.3}}, {}, diagonal},
+      {"coulomb", "", {{"friction", 0.3}}, {}, full},
+      {"coulomb", "kinetic", {{"friction", 0.3}, {"kinetic_friction", 0.2}, {"decay", 1.0}}},
+      {"coulomb", "elliptical", {{"friction", 0.3}, {"friction_2", 0.2}}},
+      {"coulomb", "friction per node", {{"friction", 0.3}}, {}, ILAW_DELASSUS_SCALAR, "friction"},
+      {"postit", "memory", {{"friction", 0.3}, {"memory", 0.01}, {"buckets", 4.0}}},
+      {"penalty", "explicit", {{"stiffness", 1e4}}},
+      {"penalty", "implicit", {{"stiffness", 1e4}}, implicit},
+      {"penalty", "implicit friction", {{"stiffness", 1e4}, {"friction", 0.3}}, implicit},
+      {"penalty", "implicit friction", {{"stiffness", 1e4}, {"friction", 0.3}}, implicit, full},
+      {"penalty", "implicit Hertz", {{"stiffness", 1e4}, {"exponent", 1.5}}, implicit},
+      {"tie", "unbreakable"},
+      {"tie", "unbreakable", {}, {}, full},
+      {"tie", "memory", {{"strength", never}, {"memory", 0.01}, {"buckets", 4.0}}},
+      {"cohesive", "holding", {{"strength", never}, {"toughness", never}}},
+      {"cohesive", "softening", {{"strength", 1e-3}, {"toughness", 1e6}}},
+  };
+}
+
+void write_header(std::ostream* csv) {
+  if (csv) *csv << "nodes,case,ns_per_node,triad_GB_per_s,ratio\n";
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const Options options = read_options(argc, argv);
+  Options options;
+  CLI::App app("Time per node of each law beside a triad kernel");
+  app.add_option("--nodes", options.sizes, "Nodes in a batch")->expected(1, 8)->capture_default_str();
+  app.add_option("--repetitions", options.repetitions, "Medians are over so many")->capture_default_str();
+  app.add_option("--out", options.out, "CSV file to write as well");
+  CLI11_PARSE(app, argc, argv);
   std::unique_ptr<std::ofstream> csv;
-  if (!options.out.empty()) {
-    csv = std::make_unique<std::ofstream>(options.out);
-    *csv << "nodes,case,ns_per_node,triad_GB_per_s,ratio\n";
-  }
-  using Parameters = std::vector<std::pair<const char*, double>>;
-  const std::vector<std::pair<std::string, Parameters>> laws = {
-      {"contact", {}}, {"coulomb", {{"friction", 0.3}}}, {"postit", {{"friction", 0.3}}}};
+  if (!options.out.empty()) csv = std::make_unique<std::ofstream>(options.out);
+  write_header(csv.get());
+  const std::vector<Subject> in_all_ways = {
+      {"contact", ""}, {"coulomb", "", {{"friction", 0.3}}}, {"postit", "", {{"friction", 0.3}}}};
   for (const std::int64_t nodes : options.sizes) {
     Triad triad(nodes);
-    for (const auto& [law, parameters] : laws)
+    const auto add = [&](const Subject& subject, Way way) {
+      measure([&] { return std::make_unique<Case>(subject, way, nodes); }, triad, nodes, options, csv.get());
+    };
+    for (const Subject& subject : in_all_ways)
       for (const bool outputs : {false, true})
         for (const bool global : {false, true})
-          for (const bool soa : {false, true})
-            measure([&, l = law,
-                     p = parameters] { return std::make_unique<Case>(l, p, global, soa, outputs, nodes); },
-                    triad, nodes, options, csv.get());
+          for (const bool soa : {false, true}) add(subject, {global, soa, outputs});
+    for (const Subject& subject : subjects()) add(subject, {});
   }
 }
