@@ -236,6 +236,34 @@ TEST(Converge, WithoutExactSolutionComparesWithTheFinestRun) {
   EXPECT_GT(study.table.at("u_L2")[0], study.table.at("u_L2")[2]);
 }
 
+// Tests 1, 2 and 3 of the Post-it law, as shipped: shocks enter whole steps, and ruptures and impacts are
+// seen up to a step late, so that everything is of first order, by least squares over a step smaller by 300.
+TEST(Converge, PostitTestsAreOfFirstOrderInTime) {
+  for (const char* name : {"postit_test1", "postit_test2", "postit_test3"}) {
+    const Study study = study_of(shipped(name), "");
+    ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+    ASSERT_EQ(study.table.at("dt").size(), 11U);
+    for (const char* norm : {"u_L2", "u_max", "v_L1", "instant"}) {
+      EXPECT_GE(order_in(study, norm), 0.9) << norm << " of " << name;
+      EXPECT_LE(order_in(study, norm), 1.5) << norm << " of " << name;
+    }
+  }
+}
+
+// The 3D test, space and time together, on three coarse meshes: with the finest as reference, errors of order
+// p at h and h/2 are as h^p - (h/4)^p to (h/2)^p - (h/4)^p, so that p = 1 shows as 1.58, and p = 1/2 as 1.27.
+TEST(Converge, PostitTest3dConvergesInSpaceAndTime) {
+  json scene = shipped("postit_3d");
+  scene["converge"] = {{"levels", 3}, {"first", 2}, {"refine", "mesh"}};
+  const Study study = study_of(scene, "");
+  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+  EXPECT_EQ(study.orders["refined"], "mesh and time step");
+  EXPECT_GE(order_in(study, "u_L2"), 0.5);
+  EXPECT_GE(order_in(study, "instant"), 0.5);
+  EXPECT_LE(study.table.at("u_L2")[1], 0.1);
+  EXPECT_LE(study.table.at("instant")[1], 0.1);  // of a last rupture after 1.2
+}
+
 // A block twice as fine along all three axes takes twice the steps at the same cfl.
 TEST(Converge, RefinesMeshAndStepTogether) {
   json scene = shipped("block_impact");
