@@ -147,9 +147,9 @@ double order_in(const Study& study, const char* norm) {
   return study.orders.at("orders").at(norm).get<double>();
 }
 
-// Waves with fronts, on linear elements below the critical step: fronts spread over O((h^2 t)^(1/3)) by
-// dispersion, so that velocities are of order 2/3 in L1 but for the ringing, whose mean falls off as slowly
-// as h^(1/2). Positions are their integral.
+// Waves with fronts, on linear elements below the critical step: dispersion makes of a front the integral of
+// an Airy function, h^(2/3) wide, with a tail of ringing that falls off as x^(-3/4): the mean of its size is
+// h^(2/3) (h^(-2/3))^(1/4) = h^(1/2).
 TEST(Converge, TwoBarsAgainstTheExactSolution) {
   const Study study = study_of(shipped("two_bars"), "--levels 5");
   ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
