@@ -66,6 +66,11 @@ struct tie {
     return window::doubles(static_cast<std::int64_t>(slots));
   }
 
+  // Without strength and memory: nothing to sum.
+  struct unbreakable;
+  template <class Run>
+  void in_form(Run run) const;
+
   template <class Node>
   void step(Node& node) const {
     if (node.state.broken != 0.0) {
@@ -103,6 +108,27 @@ struct tie {
     node.status = node.impulse.n > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
   }
 };
+
+struct tie::unbreakable {
+  static constexpr bool forgets = true;
+
+  template <class Node>
+  void step(Node& node) const {
+    const vector trial = -node.delassus.solve(node.v_free);
+    touch(node);  // if the state says broken, by a strength that there was
+    const bool holds = node.state.broken == 0.0;
+    node.impulse = {holds ? trial.n : node.impulse.n, holds ? trial.t1 : 0.0, holds ? trial.t2 : 0.0};
+    node.status = holds ? double{ILAW_BONDED} : node.status;
+  }
+};
+
+template <class Run>
+void tie::in_form(Run run) const {
+  if (strength == infinity && memory_time == 0.0)
+    run(unbreakable{});
+  else
+    run(*this);
+}
 
 }  // namespace
 

@@ -417,11 +417,19 @@ struct evaluate_walk {
  private:
   static void run_nodes(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
                         batch_walk<Law, Layout>& walk) {
-    if constexpr (!Varying)
+    if constexpr (Varying)
+      run_varying(made, law, batch, walk);
+    else
       in_its_form(law, [&walk](const auto& form) {
         run_block<Law, Delassus, Frame, Layout, Scope>(form, walk.block());
       });
-    for (int i = 0; Varying && i < walk.nodes().count; ++i) {
+  }
+
+  // Flattened: passing nodes by memory from function to function costs more than a plain step.
+  [[gnu::noinline, gnu::flatten]] static void run_varying(const instance<Law>& made, const Law& law,
+                                                          const ilaw_batch& batch,
+                                                          batch_walk<Law, Layout>& walk) {
+    for (int i = 0; i < walk.nodes().count; ++i) {
       Law own = law;
       const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
       run_node<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i, !wrong);

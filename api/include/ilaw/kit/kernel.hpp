@@ -162,6 +162,12 @@ void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted
   b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
 }
 
+// Whether a form of a law works with the law's memory. One that says it forgets runs in vector code.
+template <class Law, class Form>
+inline constexpr bool remembers = has_memory<Law> && !requires {
+  Form::forgets;
+};
+
 // Steps and writes node i; valid: what the caller knows of its parameters.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
 void run_node(const Form& law, const node_block<Law>& b, int i, bool valid = true) {
@@ -169,7 +175,7 @@ void run_node(const Form& law, const node_block<Law>& b, int i, bool valid = tru
   accepted = accepted & valid;
   Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
   if constexpr (Scope == scope::outputs) store_outputs<Law, Frame, Layout>(b, i, n, accepted);
-  if constexpr (has_memory<Law>)
+  if constexpr (remembers<Law, Form>)
     if (accepted) law.record(n, history{b.history_values + b.history_offset(i), b.history_component_stride});
   if constexpr (has_state<Law>) {
     const state_t<Law> before = load_node<Law, Delassus, Frame, Layout, Scope>(b, i).state;
@@ -192,7 +198,7 @@ void in_its_form(const Law& law, Run run) {
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
 [[gnu::noinline, gnu::flatten]] void run_block(const Form& law, const node_block<Law>& b) {
   const Form l = law;  // copies, so that no store can alias a parameter or a time step
-  if constexpr (has_memory<Law>) {
+  if constexpr (remembers<Law, Form>) {
     for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, b, i);
   } else {
     const node_block<Law> own = b;
