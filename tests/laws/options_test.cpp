@@ -48,7 +48,7 @@ const std::vector<Given> laws = {{"contact", {{{"restitution", 0.4}}, {}}},
                                     {"delay_exponent", 2.0}},
                                    {}}}};
 
-class Options : public ::testing::TestWithParam<Given> {
+class OptionsOf : public ::testing::TestWithParam<Given> {
  protected:
   // Steps that both ways must give the same bits for.
   void expect_same(Runner& a, Runner& b) {
@@ -85,7 +85,7 @@ class Options : public ::testing::TestWithParam<Given> {
   RandomNodes nodes{500, 3, ILAW_DELASSUS_SCALAR, Inertia::any, 13};
 };
 
-TEST_P(Options, AConstantGivenPerNodeGivesTheSameBits) {
+TEST_P(OptionsOf, AConstantGivenPerNodeGivesTheSameBits) {
   const auto varying = numbers(ILAW_MAY_BE_PER_NODE);
   EXPECT_GE(varying.size(), 1U);
   for (const ilaw_parameter* parameter : varying) {
@@ -99,7 +99,7 @@ TEST_P(Options, AConstantGivenPerNodeGivesTheSameBits) {
   }
 }
 
-TEST_P(Options, AConstantTableGivesTheSameBits) {
+TEST_P(OptionsOf, AConstantTableGivesTheSameBits) {
   const auto varying = numbers(ILAW_MAY_BE_TABLE);
   EXPECT_GE(varying.size(), 1U);
   for (const ilaw_parameter* parameter : varying) {
@@ -113,7 +113,7 @@ TEST_P(Options, AConstantTableGivesTheSameBits) {
 
 // Each node has the value of its own array entry, whatever the others have: as in a batch where it is the
 // constant.
-TEST_P(Options, EachNodeHasItsOwnValue) {
+TEST_P(OptionsOf, EachNodeHasItsOwnValue) {
   for (const ilaw_parameter* parameter : numbers(ILAW_MAY_BE_PER_NODE)) {
     Parameters parameters = law.parameters;
     const double value = parameters.numbers.at(parameter->name),
@@ -137,7 +137,7 @@ TEST_P(Options, EachNodeHasItsOwnValue) {
 }
 
 // A value that may not be, at one node in three, is bad input there and nowhere else.
-TEST_P(Options, BadValuesAreBadInputAtTheirNodesOnly) {
+TEST_P(OptionsOf, BadValuesAreBadInputAtTheirNodesOnly) {
   for (const ilaw_parameter* parameter : numbers(ILAW_MAY_BE_PER_NODE))
     for (const double bad :
          {std::nan(""), parameter->minimum - 1.0, -std::numeric_limits<double>::infinity()}) {
@@ -164,8 +164,28 @@ TEST_P(Options, BadValuesAreBadInputAtTheirNodesOnly) {
     }
 }
 
+// Parameters that do not go together are refused by create, or at their nodes where one of them is given per
+// node.
+TEST(Options, ValuesThatDoNotGoTogetherAreRefusedAtTheirNodes) {
+  RandomNodes nodes(4, 3, ILAW_DELASSUS_SCALAR, Inertia::any, 14);
+  Parameters parameters{{{"strength", 10.0}, {"toughness", 1.0}, {"delay_time", 1.0}}, {}};
+  parameters.per_node = {"stiffness"};
+  Runner run("cohesive", parameters, nodes);
+  const double stiffness[] = {1e3, std::numeric_limits<double>::infinity(), 1e3, 1.0};
+  run.per_node = {{stiffness, 1, 1}};
+  nodes.draw();
+  EXPECT_EQ(run.evaluate(), ILAW_BAD_NODES);
+  EXPECT_EQ(run.report.bad_count, 2);
+  EXPECT_EQ(run.report.first_bad_node, 1);
+  EXPECT_EQ(std::string(run.report.reason).rfind("parameter 'delay_time' > 0 needs a finite 'stiffness'", 0),
+            0U)
+      << run.report.reason;
+  EXPECT_EQ(run.status[3], ILAW_BAD_INPUT);  // toughness below strength^2/(2 stiffness) = 50
+  EXPECT_NE(run.status[0], ILAW_BAD_INPUT);
+}
+
 // Half way between two instants of a table the value is half way, and outside its ends it is theirs.
-TEST_P(Options, TablesArePiecewiseLinearInTime) {
+TEST_P(OptionsOf, TablesArePiecewiseLinearInTime) {
   for (const ilaw_parameter* parameter : numbers(ILAW_MAY_BE_TABLE)) {
     const double value = law.parameters.numbers.at(parameter->name);
     const double from = std::min(0.75 * value, parameter->maximum), to = 1.25 * value - 0.25 * from;
@@ -189,7 +209,7 @@ TEST_P(Options, TablesArePiecewiseLinearInTime) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, Options, ::testing::ValuesIn(laws),
+INSTANTIATE_TEST_SUITE_P(Laws, OptionsOf, ::testing::ValuesIn(laws),
                          [](const auto& drawn) { return std::string(drawn.param.law); });
 
 }  // namespace
