@@ -115,7 +115,7 @@ const std::vector<Law> laws = {
      .inertia = Inertia::isotropic,
      .is_rigid = false,
      .sees_past_motion = true},
-    {.name = "cohesive_mixed_mode",
+    {.name = "cohesive_mixed_mode",  // soft enough for one solution, see its page
      .law = "cohesive",
      .parameters = {{{"strength", 500.0},
                      {"toughness", 0.8},

@@ -35,8 +35,8 @@ TEST(LawScenes, TieBreaksWhenItsMemoryIsFull) {
   EXPECT_NEAR(broke, 0.75, 1.01e-3);
 }
 
-// Dropped from 0.2 onto k = 1e4 (w = 100) with V = 2: sinks by g/w^2 (1 + sqrt(1 + (V w/g)^2)), the damped one
-// by less.
+// Dropped from 0.2 onto k = 1e4 (w = 100) with V = 2: sinks by g/w^2 (1 + sqrt(1 + (V w/g)^2)), the damped
+// one by less.
 TEST(LawScenes, PenaltySinksByItsClosedForm) {
   Shown shown("penalty_bounce.json");
   double deepest[2] = {};
