@@ -157,8 +157,10 @@ int Blocks::Block::element_first(const std::array<int, 3>& at) const {
 
 Blocks::ElementVector Blocks::Block::gather(const Dofs& u, int element_first) const {
   ElementVector local;
+  const Eigen::Vector3d carried = u.segment<3>(3 * element_first);
   for (int a = 0; a < 8; ++a)
-    local.segment<3>(3 * a) = u.segment<3>(3 * (element_first + corners[static_cast<std::size_t>(a)]));
+    local.segment<3>(3 * a) =
+        u.segment<3>(3 * (element_first + corners[static_cast<std::size_t>(a)])) - carried;
   return local;
 }
 

@@ -48,6 +48,8 @@ class Blocks : public Model {
     std::array<int, 8> corners;  // nodes of an element, from its first
 
     int element_first(const std::array<int, 3>& at) const;
+    // Displacements relative to the first node: rounding then grows with strain, not with how far a block has
+    // moved.
     ElementVector gather(const Dofs& u, int element_first) const;
     ElementVector internal_force(const ElementVector& u) const;
     double energy(const ElementVector& u) const;
