@@ -3,8 +3,8 @@
 // with the work of an impulse p over a step p . (V_{n+1/2} + V_{n+3/2})/2. For f_int = K u the internal part
 // is I_n = 1/2 U_n^T K U_{n+1}, worked out from the state at the end: the balance is then an identity that
 // only a correct scheme fulfils. For other models I_n is the sum of -h f_int . (V_{n+1/2} + V_{n+3/2})/2; how
-// far it is from the potential of U_n tells the scheme's own energy error. SPDX-License-Identifier:
-// BSD-3-Clause
+// far it is from the potential of U_n tells the scheme's own energy error.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "models/model.hpp"

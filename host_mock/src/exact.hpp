@@ -1,5 +1,6 @@
 // exact.hpp - solutions in closed form of some scenes, to measure errors against. Derivations:
-// docs/scenes.md. SPDX-License-Identifier: BSD-3-Clause
+// docs/scenes.md.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "scene.hpp"

@@ -1,5 +1,6 @@
 // fields.hpp - the state of all nodes as VTK files, with an index in time that ParaView opens
-// (fields.vtu.series). SPDX-License-Identifier: BSD-3-Clause
+// (fields.vtu.series).
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "integrator.hpp"

@@ -2,7 +2,8 @@
 // ABI.
 //
 // Contacts have a place (of their node in the interface's list) and, once they were first asked, a slot in
-// the arrays that the law works on. What was never near takes no slot. SPDX-License-Identifier: BSD-3-Clause
+// the arrays that the law works on. What was never near takes no slot.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "arguments.hpp"

@@ -1,5 +1,6 @@
 // opponent.hpp - what the nodes of an interface meet: a rigid obstacle, other nodes, or a surface of another
-// body. SPDX-License-Identifier: BSD-3-Clause
+// body.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "models/model.hpp"

@@ -1,5 +1,6 @@
 // output.hpp - what a run leaves in its folder: history.csv and summary.json, each written whole or not at
-// all. SPDX-License-Identifier: BSD-3-Clause
+// all.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "integrator.hpp"

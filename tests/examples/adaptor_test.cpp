@@ -1,6 +1,7 @@
 // A law in a velocity-Verlet code that has nothing but a nodal-force hook, against the scheme laws are
 // written for (central differences with velocities at half steps): the same half-step velocities, also at
-// variable steps. SPDX-License-Identifier: BSD-3-Clause
+// variable steps.
+// SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <ilaw/loader.hpp>
 

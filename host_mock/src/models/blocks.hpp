@@ -3,8 +3,8 @@
 //
 // Full 2x2x2 integration: it has no zero-energy modes, so no hourglass stiffness to choose, whose value would
 // show in every convergence table. All elements of a box are alike, so shape gradients are computed once; a
-// linear box keeps one 24x24 stiffness for all its elements. Matrix-free otherwise. SPDX-License-Identifier:
-// BSD-3-Clause
+// linear box keeps one 24x24 stiffness for all its elements. Matrix-free otherwise.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "material.hpp"

@@ -1,5 +1,6 @@
 // material.hpp - stored energy per undeformed volume and first Piola-Kirchhoff stress, from the Lame
-// constants. SPDX-License-Identifier: BSD-3-Clause
+// constants.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <Eigen/Core>

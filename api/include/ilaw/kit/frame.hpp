@@ -1,5 +1,6 @@
 // frame.hpp - local frames of nodes, from the normals (and tangents) that a host gives in its
-// axes. SPDX-License-Identifier: BSD-3-Clause
+// axes.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ilaw/kit/node.hpp>
