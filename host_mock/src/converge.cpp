@@ -11,6 +11,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
+#include <tuple>
 
 namespace ilaw::host {
 namespace {
@@ -84,7 +86,9 @@ struct ErrorTable {
   double order(std::size_t which) const {
     std::vector<double> values;
     for (const Errors& one : errors) values.push_back(norm_of(one, which));
-    return order_of(steps(), values);
+    // Errors are relative but those of instants.
+    const bool is_instant = which + 1 == norms.size();
+    return order_of(steps(), values, is_instant ? runs[0].dt * static_cast<double>(runs[0].steps) : 1.0);
   }
 };
 
@@ -112,7 +116,10 @@ void write_table(const ErrorTable& table, const std::filesystem::path& folder) {
   file.stream().precision(10);
   for (std::size_t k = 0; k < table.errors.size(); ++k) {
     file.stream() << table.runs[k].dt << ',' << table.runs[k].steps << ',' << table.runs[k].seconds;
-    for (std::size_t n = 0; n < norms.size(); ++n) file.stream() << ',' << norm_of(table.errors[k], n);
+    for (std::size_t n = 0; n < norms.size(); ++n) {
+      file.stream() << ',';
+      if (const double error = norm_of(table.errors[k], n); std::isfinite(error)) file.stream() << error;
+    }
     file.stream() << '\n';
   }
   file.commit();
@@ -121,8 +128,7 @@ void write_table(const ErrorTable& table, const std::filesystem::path& folder) {
 void write_orders(const ErrorTable& table, const Sweep& sweep, const std::string& title,
                   const std::filesystem::path& folder) {
   json orders;
-  for (std::size_t n = 0; n < norms.size(); ++n)
-    if (const double order = table.order(n); std::isfinite(order)) orders[norms[n]] = order;
+  for (std::size_t n = 0; n < norms.size(); ++n) orders[norms[n]] = table.order(n);  // NaN is written as null
   AtomicFile file(folder / "converge.json");
   file.stream() << json{{"title", title},
                         {"reference", table.exact ? "exact solution" : "finest run"},
@@ -145,12 +151,15 @@ void write_picture(const ErrorTable& table, const std::string& title, const std:
               "key left top "
               "noenhanced\nset ylabel 'relative error'\nset multiplot layout 1,2 title '"
            << title << "' noenhanced\n";
-    for (const auto& [column, label] : {std::pair{1, "time step"}, std::pair{3, "run time (s)"}}) {
+    // Run times of machines differ: over that of the finest run that is compared.
+    const double finest = table.runs[table.errors.size() - 1].seconds;
+    for (const auto& [column, unit, label] :
+         {std::tuple{1, 1.0, "time step"}, std::tuple{3, finest, "run time / that of the finest run"}}) {
       script << "set xlabel '" << label << "'\nplot ";
       for (std::size_t n = 0; n < 3; ++n)
-        script << (n ? ", '" : "'") << (folder / "converge.csv").string() << "' using " << column << ':'
-               << n + 4 << " with linespoints linewidth 1.5 pointtype " << n + 5 << " title '" << norms[n]
-               << "'";
+        script << (n ? ", '" : "'") << (folder / "converge.csv").string() << "' using ($" << column << '/'
+               << unit << "):" << n + 4 << " with linespoints linewidth 1.5 pointtype " << n + 5 << " title '"
+               << norms[n] << "'";
       if (column == 1) {
         const double h = table.runs[0].dt, top = norm_of(table.errors[0], 0);
         script << ", " << top / h << "*x with lines dashtype 2 linecolor rgb '#808080' title 'order 1'";
@@ -167,15 +176,22 @@ std::string without_quotes(std::string text) {
   return text;
 }
 
+// A number in ten columns, "-" where there is none.
+void print(const char* format, double value) {
+  char text[32] = "-";
+  if (std::isfinite(value)) std::snprintf(text, sizeof text, format, value);
+  std::printf(" %10s", std::string_view(text) == "-0.00" ? "0.00" : text);
+}
+
 void print_table(const ErrorTable& table) {
   std::printf("%12s %10s %10s %10s %10s %10s\n", "dt", "seconds", norms[0], norms[1], norms[2], norms[3]);
   for (std::size_t k = 0; k < table.errors.size(); ++k) {
     std::printf("%12.4g %10.2g", table.runs[k].dt, table.runs[k].seconds);
-    for (std::size_t n = 0; n < norms.size(); ++n) std::printf(" %10.2e", norm_of(table.errors[k], n));
+    for (std::size_t n = 0; n < norms.size(); ++n) print("%.2e", norm_of(table.errors[k], n));
     std::printf("\n");
   }
   std::printf("%23s", "order");
-  for (std::size_t n = 0; n < norms.size(); ++n) std::printf(" %10.2f", table.order(n));
+  for (std::size_t n = 0; n < norms.size(); ++n) print("%.2f", table.order(n));
   std::printf("\n");
 }
 

@@ -123,17 +123,22 @@ Errors errors_against(const Trace& reference, const Trace& trace) {
   });
 }
 
-double order_of(const std::vector<double>& h, const std::vector<double>& errors) {
+double order_of(const std::vector<double>& h, const std::vector<double>& errors, double scale) {
   double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
-  const auto n = static_cast<double>(h.size());
+  std::size_t count = 0;
   for (std::size_t k = 0; k < h.size(); ++k) {
-    if (!(errors[k] > 0.0) || !std::isfinite(errors[k])) return ContactInstants::none;
+    if (!std::isfinite(errors[k])) return ContactInstants::none;
+    if (!(errors[k] > rounding_level * scale)) continue;
     const double x = std::log(h[k]), y = std::log(errors[k]);
     sx += x;
     sy += y;
     sxx += x * x;
     sxy += x * y;
+    ++count;
   }
+  // Two points of many make a slope of chance.
+  if (count < std::min<std::size_t>(h.size(), 3) || count < 2) return ContactInstants::none;
+  const auto n = static_cast<double>(count);
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 

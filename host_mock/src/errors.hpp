@@ -35,7 +35,13 @@ Errors errors_against(const std::vector<ExactNode>& exact, const Trace& trace);
 // Against a run of the same scene with smaller steps.
 Errors errors_against(const Trace& reference, const Trace& trace);
 
-// Slope of log(error) over log(h) by least squares; NaN where errors are zero or missing.
-double order_of(const std::vector<double>& h, const std::vector<double>& errors);
+// Errors below this part of their quantity are those of the arithmetic: 1e5 steps add up to so many
+// roundings. In time units for instants, relative to the end of the run.
+constexpr double rounding_level = 1e-11;
+
+// Slope of log(error) over log(h) by least squares, without the errors that are at rounding level (that part
+// of scale, the size of the quantity): these no longer depend on h. NaN where that leaves fewer than three
+// errors, or two of two, or where one is missing.
+double order_of(const std::vector<double>& h, const std::vector<double>& errors, double scale = 1.0);
 
 }  // namespace ilaw::host
