@@ -140,9 +140,9 @@ TEST(Fields, NameTheInterfaceWhereThereAreSeveral) {
   Fields(scene, folder).write(integrator);
   const auto grid = grid_of(folder / "fields_000000.vtu");
   const int node = scene.model->sets().at("block.x_max").nodes[0];
-  // Center (0.25, 0.05, 0.08), radius 0.1, from the corner (0.1, 0, 0.02).
-  EXPECT_NEAR(Field(*grid, "ball.gap", 1).at(node), std::sqrt(0.15 * 0.15 + 0.05 * 0.05 + 0.06 * 0.06) - 0.1,
-              1e-15);
+  // Center (0.215, 0.05, 0.08), radius 0.1, from the corner (0.1, 0, 0.02).
+  EXPECT_NEAR(Field(*grid, "ball.gap", 1).at(node),
+              std::sqrt(0.115 * 0.115 + 0.05 * 0.05 + 0.06 * 0.06) - 0.1, 1e-15);
   EXPECT_NEAR(Field(*grid, "floor.gap", 1).at(node), 0.02, 1e-15);
   EXPECT_EQ(grid->GetPointData()->GetArray("gap"), nullptr);
 }
