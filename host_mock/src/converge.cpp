@@ -148,14 +148,14 @@ void write_picture(const ErrorTable& table, const std::string& title, const std:
            << " size 1000,460 font 'sans,11' background rgb 'white'\nset output '"
            << (folder / ("converge." + std::string(kind))).string()
            << "'\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\nset "
-              "key left top "
-              "noenhanced\nset ylabel 'relative error'\nset multiplot layout 1,2 title '"
+              "ylabel 'relative error'\nset multiplot layout 1,2 title '"
            << title << "' noenhanced\n";
     // Run times of machines differ: over that of the finest run that is compared.
     const double finest = table.runs[table.errors.size() - 1].seconds;
-    for (const auto& [column, unit, label] :
-         {std::tuple{1, 1.0, "time step"}, std::tuple{3, finest, "run time / that of the finest run"}}) {
-      script << "set xlabel '" << label << "'\nplot ";
+    for (const auto& [column, unit, label, corner] :
+         {std::tuple{1, 1.0, "time step", "right"},
+          std::tuple{3, finest, "run time / that of the finest run", "left"}}) {
+      script << "set xlabel '" << label << "'\nset key bottom " << corner << " noenhanced\nplot ";
       for (std::size_t n = 0; n < 3; ++n)
         script << (n ? ", '" : "'") << (folder / "converge.csv").string() << "' using ($" << column << '/'
                << unit << "):" << n + 4 << " with linespoints linewidth 1.5 pointtype " << n + 5 << " title '"
