@@ -5,8 +5,10 @@ set -euo pipefail
 
 packages=(g++ gfortran cmake ninja-build binutils libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev
   gnuplot-nox libgtest-dev libvtk9-dev libsiconos-numerics-dev libbenchmark-dev)
-# For .ci/run only.
-[ "${1:-}" = ci ] && packages+=(clang-format clang-tidy)
+case ${1:-} in
+  ci) packages+=(clang-format clang-tidy) ;;  # for .ci/run
+  results) packages+=(jq) ;;                  # for docs/results/make.sh
+esac
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,15 +1,16 @@
 # Penalty beside contact: error against run time. Called by make.sh with the folders tables and img.
 set datafile separator comma
-set terminal pngcairo size 1100,480 font 'sans,11' background rgb 'white'
+set terminal pngcairo size 1100,560 font 'sans,11' background rgb 'white'
 set output img.'/penalty.png'
 set logscale xy
 set format xy '10^{%T}'
 set grid
 set border 3
 set tics nomirror
-set xlabel 'run time (s)'
+set xlabel "run time / contact's finest run"
 set ylabel 'relative error u_{L2}'
-set key outside bottom center horizontal noenhanced
+set bmargin 9
+set key below maxrows 3 noenhanced
 laws(body) = body eq 'bar' ? "contact 'explicit 1' 'explicit 10' 'explicit 100' 'implicit 1' 'implicit 10' 'implicit 100'" \
                            : "contact 'explicit 100' 'explicit 10000' 'explicit 1e+06' 'implicit 100' 'implicit 10000' 'implicit 1e+06'"
 set multiplot layout 1,2
