@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Measures everything that docs/results/README.md shows: builds in Release, runs the cases, writes tables/*.csv and
-# img/*.png, and puts the tables into the page. About six minutes on two quiet cores, after the build. Usage: docs/results/make.sh [BUILD_FOLDER]
+# img/*.png, and puts the tables into the page. About six minutes on two quiet cores, after the build.
+# Usage: docs/results/make.sh [BUILD_FOLDER]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 build=${1:-build/release}
