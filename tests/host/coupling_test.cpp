@@ -1,6 +1,8 @@
 // Contacts that share degrees of freedom: block Gauss-Seidel over the laws ends where every law holds.
 #include "host_runner.hpp"
 
+#include <array>
+
 namespace ilaw::host::testing {
 namespace {
 
@@ -47,6 +49,26 @@ TEST(NodeToFacet, EveryContactObeysItsLawAtEveryStep) {
   EXPECT_GT(integrator.tally().sweeps_max, 3);
   EXPECT_EQ(integrator.tally().unconverged, 0);
   EXPECT_LE(integrator.tally().coupling_residual_max, 1e-14);
+}
+
+// The block is stopped by the floor, and then by the ball.
+TEST(BlockImpact, MeetsTheFloorAndTheBall) {
+  Scene scene = shipped("block_impact.json");
+  Integrator integrator = integrator_of(scene);
+  std::array<std::int64_t, 2> pressed{};
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    const double speed = integrator.velocity().cwiseAbs().maxCoeff();
+    for (std::size_t k = 0; k < 2; ++k)
+      for (const std::int32_t slot : scene.interfaces[k]->asked()) {
+        if (scene.interfaces[k]->impulse(slot).isZero(0.0)) continue;
+        expect_law(*scene.interfaces[k], slot, integrator.velocity(), 0.3, speed);
+        ++pressed[k];
+      }
+  }
+  EXPECT_GT(pressed[0], 500);
+  EXPECT_GT(pressed[1], 100);
+  EXPECT_EQ(integrator.tally().unconverged, 0);
 }
 
 // Weights sum to one, so that what one body gains the other loses.
