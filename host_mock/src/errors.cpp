@@ -97,6 +97,7 @@ Trace trace_of(Scene& scene) {
 
 Errors errors_against(const std::vector<ExactNode>& exact, const Trace& trace) {
   std::vector<ContactInstants> instants;
+  instants.reserve(exact.size());
   for (const ExactNode& node : exact) instants.push_back(node.instants);
   return errors_with(trace, instants, [&](double time) {
     Sample sample{Dofs(static_cast<Eigen::Index>(exact.size())),
