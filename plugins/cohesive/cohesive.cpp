@@ -234,17 +234,21 @@ struct cohesive {
   void step_bond(Node& node) const {
     const zone z = zone_of(node);
     const bool is_delayed = delay_time > 0.0 && strength < infinity;
-    settle(node, z, is_delayed ? delayed(node, z) : at_once(node, z));
+    const double damage = node.state.damage;
+    settle(node, z, is_delayed ? delayed(damage, node.position_step, z) : at_once(damage, z));
   }
 
-  // Without delay: elastic where that stays below the softening, else the mean traction on the way from w^-
-  // to w^+.
-  template <class Node>
-  outcome at_once(const Node& node, const zone& z) const {
-    const secant now = secant_of(node.state.damage);
-    share stiffest = z.of(now);
-    if (strength == infinity || holds(z, now, stiffest)) return {stiffest, node.state.damage};
-    stiffest.left = larger(stiffest.left, almost_nothing);
+  // Without delay: elastic where that stays below the softening.
+  outcome at_once(double damage, const zone& z) const {
+    const secant now = secant_of(damage);
+    const share stiffest = z.of(now);
+    if (strength == infinity || holds(z, now, stiffest)) return {stiffest, damage};
+    return softened(damage, now, {stiffest.taken, larger(stiffest.left, almost_nothing)}, z);
+  }
+
+  // Else the mean traction on the way from w^- to w^+. Like `delayed` too long to be compiled for each form
+  // of node.
+  [[gnu::noinline]] outcome softened(double damage_before, secant now, share stiffest, const zone& z) const {
     const double from = z.size(z.opening);
     const share found = balance(stiffest, [&](share trial) {
       const motion m = z.at(trial);
@@ -254,7 +258,7 @@ struct cohesive {
     const motion m = z.at(found);
     const softening s = softening_along(m.opening, m.size);
     const double damage = m.size > s.onset ? damage_of(m.size, s.traction(m.size)) : 0.0;
-    return {found, larger(node.state.damage, damage)};
+    return {found, larger(damage_before, damage)};
   }
 
   bool holds(const zone& z, secant now, share elastic) const {
@@ -270,29 +274,26 @@ struct cohesive {
   }
 
   // With delay: the stiffness is the mean of those before and after.
-  template <class Node>
-  outcome delayed(const Node& node, const zone& z) const {
-    const secant before = secant_of(node.state.damage);
+  [[gnu::noinline]] outcome delayed(double damage, double position_step, const zone& z) const {
+    const secant before = secant_of(damage);
     const double stiffness_before = before.stiff / before.soft;
     const share found = balance(z.of(before), [&](share trial) {
-      const secant after = secant_of(delayed_damage(node, z.at(trial)));
+      const secant after = secant_of(delayed_damage(damage, position_step, z.at(trial)));
       const double mean = 0.5 * (stiffness_before + after.stiff / after.soft);
       return trial.stiffness() - z.compliance_scale * mean;
     });
-    return {found, delayed_damage(node, z.at(found))};
+    return {found, delayed_damage(damage, position_step, z.at(found))};
   }
 
   // Exact for the constant target f that the opening at the end of the step sets (Allix and Deu 1997):
   // d = f - ln(1 + (exp(a z) - 1) exp(-a h/tau_c))/a, z = f - d before the step.
-  template <class Node>
-  double delayed_damage(const Node& node, const motion& m) const {
-    const double damage = node.state.damage;
+  double delayed_damage(double damage, double position_step, const motion& m) const {
     const softening s = softening_along(m.opening, m.size);
     const double progress = s.progress(m.size);
     const double target = progress < 1.0 && progress > 0.0 ? damage_of(m.size, s.traction(m.size)) : progress;
     const double distance = target - damage;
     if (!(distance > 0.0)) return damage;
-    const double a = delay_exponent, decline = a * node.position_step / delay_time;
+    const double a = delay_exponent, decline = a * position_step / delay_time;
     const double ahead = a * distance - decline;
     const double left = ahead < 40.0 ? log((1.0 - exp(-decline)) + exp(ahead)) : ahead;
     return larger(damage, smaller(target - left / a, 1.0));

@@ -32,7 +32,7 @@ struct compression {
 
   // Any p >= 1, in x = g'/(l reach) from 0 (rigid) to 1 (nothing there): r = r_rigid (1 - x), where
   // a x + b x^p = a + d, a = 1 + h c H, b = h k (-l reach)^p / r_rigid, d = h c v_free / r_rigid.
-  double power_law(double stiffness, double damping, double exponent) const {
+  [[gnu::noinline]] double power_law(double stiffness, double damping, double exponent) const {
     const double most = rigid(), damper = velocity_step * damping;
     const double a = 1.0 + damper * delassus;
     const double b = velocity_step * stiffness * raised(-reach * position_step, exponent) / most;
