@@ -97,19 +97,21 @@ void Integrator::step() {
   v_before_ = v_;
   for_each_dof(u_.size(), [&](Eigen::Index i) { u_[i] += dt_ * v_[i]; });
   free_velocity(times);
+  check_motion(times.after);
   solve_interfaces(times.after);
+  check_motion(times.after);
   ++steps_;
-  check_motion();
   account();
 }
 
-void Integrator::check_motion() const {
+// Before the laws are asked, too: they must not be blamed.
+void Integrator::check_motion(double time) const {
   if (v_.allFinite()) return;
   Eigen::Index dof = 0;
   while (std::isfinite(v_[dof])) ++dof;
   throw std::runtime_error("the motion diverged: velocity " + std::to_string(v_[dof]) + " at node " +
-                           std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_) +
-                           ", time " + std::to_string(time()));
+                           std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_ + 1) +
+                           ", time " + std::to_string(time));
 }
 
 void Integrator::free_velocity(StepTimes step) {

@@ -64,7 +64,7 @@ class Integrator {
   Move sweep(const StepView& step);
   void account();
   void account(const Interface& interface);
-  void check_motion() const;
+  void check_motion(double time) const;
 
   const Model& model_;
   const Loads& loads_;
