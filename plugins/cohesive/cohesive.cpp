@@ -32,8 +32,7 @@ struct cohesive {
       .doc =
           "Bond that holds up to its strength, then softens until its toughness is spent; unloads to the "
           "origin; contact and friction take over as it breaks. Solved with H for any initial stiffness, "
-          "also "
-          "infinite, without a limit on the time step. H isotropic in the tangent plane.",
+          "also infinite, without a limit on the time step. H isotropic in the tangent plane.",
       .inputs = reads_gap | reads_area,
       .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY | ILAW_CAN_ACT_AT_DISTANCE};
 
@@ -50,8 +49,7 @@ struct cohesive {
       {.member = &cohesive::shape,
        .name = "shape",
        .doc = "bilinear, exponential: modes mixed by Benzeggagh and Kenane; camacho_ortiz: rigid, then "
-              "linear in "
-              "an effective opening.",
+              "linear in an effective opening.",
        .choices = shape_choices,
        .choice_count = 3},
       {.member = &cohesive::strength,
@@ -139,13 +137,14 @@ struct cohesive {
              "'toughness'";
     if (delay_time > 0.0 && stiffness == infinity)
       return "parameter 'delay_time' > 0 needs a finite 'stiffness': the opening of a rigid bond says "
-             "nothing of "
-             "its load";
-    return stores_more(strength, toughness) || stores_more(shear_strength(), shear_toughness())
-               ? "parameter 'toughness' (or 'toughness_2') is below strength^2/(2 stiffness), the energy "
-                 "that the "
-                 "bond stores when its strength is reached"
-               : nullptr;
+             "nothing of its load";
+    if (stores_more(strength, toughness))
+      return "parameter 'toughness' is below 'strength'^2/(2 'stiffness'), the energy that the bond stores "
+             "when its strength is reached";
+    if (stores_more(shear_strength(), shear_toughness()))
+      return "parameter 'toughness_2' is below 'strength_2'^2/(2 'stiffness'), the energy that the bond "
+             "stores in shear when its strength is reached (0: the same as 'toughness' and 'strength')";
+    return nullptr;
   }
 
   template <class Node>

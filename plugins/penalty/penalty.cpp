@@ -90,12 +90,10 @@ struct penalty {
   }
   const char* conflict() const {
     if (integration == implicitly) return nullptr;
-    if (stiffness == infinity)
-      return "parameter 'stiffness' = inf with 'integration' = \"explicit\", expected a finite stiffness or "
-             "\"implicit\"";
+    if (stiffness == infinity) return "parameter 'stiffness' must be finite where 'integration' is explicit";
     if (friction > 0.0 && tangential_stiffness == infinity)
-      return "parameter 'tangential_stiffness' = inf with 'friction' > 0 and 'integration' = \"explicit\", "
-             "expected a finite tangential stiffness or \"implicit\"";
+      return "parameter 'tangential_stiffness' must be finite where 'integration' is explicit and 'friction' "
+             "> 0";
     return nullptr;
   }
 

@@ -48,6 +48,38 @@ TEST_P(Contract, LayoutsGiveTheSameBits) {
     }
 }
 
+// In all dimensions and forms of H that the law serves, whether it has a solution for all of these H or
+// refuses some.
+TEST_P(Contract, EveryFormOfHGivesTheSameBitsInAllLayoutsAndInstructionSets) {
+  const ilaw::interface any = make(ILAW_FRAME_LOCAL);
+  for (const int d : {1, 2, 3})
+    for (const auto& [form, components] : {std::pair{ILAW_DELASSUS_SCALAR, 1},
+                                           {ILAW_DELASSUS_DIAGONAL, d},
+                                           {ILAW_DELASSUS_FULL, d * (d + 1) / 2}})
+      for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL}) {
+        if (!(any.law().delassus_forms & static_cast<std::uint32_t>(form))) continue;
+        SCOPED_TRACE(::testing::Message() << "d " << d << ", form " << form << ", frame " << frame);
+        const bool global = frame == ILAW_FRAME_GLOBAL;
+        const auto made = [&] {
+          return make(frame, static_cast<std::uint32_t>(form), static_cast<std::uint32_t>(d));
+        };
+        const Nodes nodes(130, d, components);
+        std::vector<std::int32_t> order(130);
+        std::iota(order.begin(), order.end(), 0);
+        std::shuffle(order.begin(), order.end(), std::mt19937(7));
+        const ilaw::interface law = made();
+        const Results reference = run(law, nodes, {}, global);
+        EXPECT_TRUE(run(law, nodes, {.soa = true}, global) == reference);
+        EXPECT_TRUE(run(law, nodes, {.separate_state = true, .order = order}, global) == reference);
+        EXPECT_EQ(run(law, nodes, {.outputs = false}, global).impulse, reference.impulse);
+        for (const char* level : {"baseline", "v3", "v4"}) {
+          setenv("ILAW_ISA", level, 1);
+          EXPECT_TRUE(run(made(), nodes, {}, global) == reference) << level;
+        }
+        unsetenv("ILAW_ISA");
+      }
+}
+
 TEST_P(Contract, EmptyBatchIsFine) {
   const ilaw::interface law = make(ILAW_FRAME_LOCAL);
   EXPECT_EQ(run(law, Nodes(0), {}).code, ILAW_OK);

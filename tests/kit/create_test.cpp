@@ -34,7 +34,7 @@ TEST(Create, NamesTheParameterItsValueAndWhatIsAllowed) {
   EXPECT_EQ(refusal_of("coulomb", {}),
             "law 'coulomb': parameter 'friction' is missing: expected a number in [0, inf]");
   EXPECT_EQ(refusal_of("coulomb", {{{"friction", -0.1}}, {}}),
-            "law 'coulomb': parameter 'friction' = -0.10000000000000001 is not allowed: expected a number in "
+            "law 'coulomb': parameter 'friction' = -0.1 is not allowed: expected a number in "
             "[0, inf]");
   EXPECT_EQ(refusal_of("postit", {{{"buckets", 2.5}}, {}}),
             "law 'postit': parameter 'buckets' = 2.5 is not allowed: expected a whole number in [1, 4096]");
@@ -42,7 +42,8 @@ TEST(Create, NamesTheParameterItsValueAndWhatIsAllowed) {
             "law 'postit': parameter 'tangent_influence' = 0 is not allowed: expected a number in (0, inf]");
   EXPECT_EQ(
       refusal_of("postit", {{{"initial_adhesion", 2.0}, {"adhesion_limit", 1.0}}, {}}),
-      "law 'postit': parameter 'initial_adhesion' is larger than 'adhesion_limit', expected at most that");
+      "law 'postit': parameter 'initial_adhesion' is larger than 'adhesion_limit', expected at most that; "
+      "found adhesion_limit = 1, initial_adhesion = 2");
 }
 
 TEST(Create, RefusesSetupsThatTheLawDoesNotServe) {
@@ -65,6 +66,65 @@ TEST(Create, RefusesSetupsThatTheLawDoesNotServe) {
   setup.setup.delassus_form = ILAW_DELASSUS_SCALAR;
   setup.setup.velocity_step = 0.0;
   EXPECT_EQ(refusal(), "law 'contact': velocity_step 0 is not allowed: expected a finite number > 0");
+}
+
+// A table's end beside an infinite value is what was written.
+TEST(Create, TablesMayReachInfinity) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const double pairs[] = {0.0, 0.1, 0.1, 0.1, 0.2, inf, 0.3, 0.2};
+  ilaw_argument table{};
+  table.struct_size = sizeof table;
+  table.kind = ILAW_VALUE_TABLE;
+  table.name = "friction";
+  table.values = pairs;
+  table.count = 4;
+  const ilaw_argument* arguments[] = {&table};
+  SetupBuilder setup({});
+  setup.setup.arguments = arguments;
+  setup.setup.argument_count = 1;
+  const ilaw::interface law = make_law("coulomb", setup);
+  const double v[] = {-1.0, 5.0, 0.0}, h = 1.0, gap = 0.0;
+  double r[3];
+  ilaw_batch b{};
+  b.struct_size = sizeof b;
+  b.node_count = 1;
+  b.velocity_step = b.position_step = 1e-3;
+  b.v_free = b.v_previous = {v, 3, 1};
+  b.delassus = {&h, 0, 1};
+  b.gap = {&gap, 0, 1};
+  b.impulse = {r, 3, 1};
+  for (const auto& [time, impulse] :
+       {std::pair{0.0, -0.1}, {0.1, -0.1}, {0.15, -5.0}, {0.2, -5.0}, {0.25, -5.0}, {0.3, -0.2}}) {
+    b.time = time;
+    EXPECT_EQ(law.evaluate(b), ILAW_OK);
+    EXPECT_NEAR(r[1], impulse, 1e-15) << time;
+  }
+}
+
+// The slots of a memory are laid out when the law is made.
+TEST(Create, RefusesAMemoryThatVaries) {
+  const double pairs[] = {0.0, 0.1, 1.0, 0.2};
+  for (const char* law : {"postit", "tie"})
+    for (const auto& [kind, words] :
+         {std::pair{ILAW_VALUE_TABLE, "a table in time"}, {ILAW_VALUE_PER_NODE, "a value per node"}}) {
+      ilaw_argument memory{};
+      memory.struct_size = sizeof memory;
+      memory.kind = static_cast<std::uint32_t>(kind);
+      memory.name = "memory";
+      memory.values = pairs;
+      memory.count = 2;
+      const ilaw_argument* arguments[] = {&memory};
+      SetupBuilder setup({});
+      setup.setup.arguments = arguments;
+      setup.setup.argument_count = 1;
+      try {
+        make_law(law, setup);
+        ADD_FAILURE() << law;
+      } catch (const ilaw::error& error) {
+        EXPECT_EQ(error.what(), "law '" + std::string(law) + "': parameter 'memory' was given as " + words +
+                                    ": expected a number in [0, inf]");
+      }
+    }
 }
 
 // A table in time is read at the time of the batch; a value per node comes with the batch and is checked

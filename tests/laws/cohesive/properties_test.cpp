@@ -274,22 +274,31 @@ TEST(CohesiveProperties, BadParametersAreRefusedByName) {
             "law 'cohesive': parameter 'strength' is missing: expected a number in [0, inf]");
   EXPECT_EQ(bond({{"strength", -1.0}}),
             "law 'cohesive': parameter 'strength' = -1 is not allowed: expected a number in [0, inf]");
-  EXPECT_EQ(bond({{"stiffness", 0.66}}),
-            "law 'cohesive': parameter 'toughness' (or 'toughness_2') is below strength^2/(2 stiffness), the "
-            "energy "
-            "that the bond stores when its strength is reached");
-  EXPECT_EQ(bond({{"stiffness", 10.0}}, "camacho_ortiz"),
-            "law 'cohesive': shape \"camacho_ortiz\" is rigid: parameter 'stiffness' must be inf");
-  EXPECT_EQ(bond({{"toughness_2", 4.0}}, "camacho_ortiz"),
-            "law 'cohesive': shape \"camacho_ortiz\" has one toughness: parameter 'toughness_2' must be the "
-            "same as "
-            "'toughness'");
-  EXPECT_EQ(bond({{"strength_2", inf_value}}),
-            "law 'cohesive': parameters 'strength' and 'strength_2' must both be infinite, or both finite");
-  EXPECT_EQ(bond({{"delay_time", 1.0}}),
-            "law 'cohesive': parameter 'delay_time' > 0 needs a finite 'stiffness': the opening of a rigid "
-            "bond says "
-            "nothing of its load");
+  EXPECT_EQ(
+      bond({{"stiffness", 0.66}}),
+      "law 'cohesive': parameter 'toughness' is below 'strength'^2/(2 'stiffness'), the energy that the bond "
+      "stores when its strength is reached; found strength = 2, toughness = 3, stiffness = 0.66");
+  EXPECT_EQ(
+      bond({{"stiffness", 10.0}, {"toughness_2", 0.19}}),
+      "law 'cohesive': parameter 'toughness_2' is below 'strength_2'^2/(2 'stiffness'), the energy that the "
+      "bond stores in shear when its strength is reached (0: the same as 'toughness' and 'strength'); found "
+      "strength = 2, toughness = 3, strength_2 = 0, toughness_2 = 0.19, stiffness = 10");
+  EXPECT_EQ(
+      bond({{"stiffness", 10.0}}, "camacho_ortiz"),
+      "law 'cohesive': shape \"camacho_ortiz\" is rigid: parameter 'stiffness' must be inf; found stiffness = "
+      "10");
+  EXPECT_EQ(
+      bond({{"toughness_2", 4.0}}, "camacho_ortiz"),
+      "law 'cohesive': shape \"camacho_ortiz\" has one toughness: parameter 'toughness_2' must be the same as "
+      "'toughness'; found toughness = 3, toughness_2 = 4");
+  EXPECT_EQ(
+      bond({{"strength_2", inf_value}}),
+      "law 'cohesive': parameters 'strength' and 'strength_2' must both be infinite, or both finite; found "
+      "strength = 2, strength_2 = inf");
+  EXPECT_EQ(
+      bond({{"delay_time", 1.0}}),
+      "law 'cohesive': parameter 'delay_time' > 0 needs a finite 'stiffness': the opening of a rigid bond says "
+      "nothing of its load; found stiffness = inf, delay_time = 1");
   EXPECT_NE(bond({{"delay_time", inf_value}}), "");
   EXPECT_NE(bond({{"mixing_exponent", 0.0}}), "");
   EXPECT_NE(bond({}, "trilinear"), "");

@@ -64,6 +64,7 @@ struct parameter {
   bool minimum_excluded = false;
   bool infinity_allowed = false;
   bool whole = false;
+  bool fixed = false;  // no table and no value per node: the layout of the state depends on it
   const char* const* choices = nullptr;
   std::uint32_t choice_count = 0;
 };
@@ -122,7 +123,7 @@ constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
   const std::uint32_t kind = p.choice_count > 0 ? ILAW_PARAMETER_CHOICE
                              : p.whole          ? ILAW_PARAMETER_COUNT
                                                 : ILAW_PARAMETER_NUMBER;
-  const bool varies = kind == ILAW_PARAMETER_NUMBER;
+  const bool varies = kind == ILAW_PARAMETER_NUMBER && !p.fixed;
   return {.struct_size = sizeof(ilaw_parameter),
           .kind = kind,
           .name = p.name,

@@ -228,6 +228,7 @@ class instance_builder {
     if constexpr (requires { made_.law.conflict(); })
       if (const char* conflict = made_.per_node_count > 0 ? nullptr : made_.law.conflict()) {
         text_.add("law '%s': %s", id, conflict);
+        add_values_named_in(conflict);
         return ILAW_INVALID_PARAMETER;
       }
     if constexpr (requires { made_.law.tells_tangents_apart(); })
@@ -238,6 +239,19 @@ class instance_builder {
         return ILAW_UNSUPPORTED;
       }
     return ILAW_OK;
+  }
+
+  void add_values_named_in(const char* text) {
+    const char* separator = "; found ";
+    for (std::size_t i = 0; i < parameter_count; ++i) {
+      const ilaw_parameter& p = detail::description<Law>::parameters[i];
+      char quoted[80];
+      std::snprintf(quoted, sizeof quoted, "'%s'", p.name);
+      if (!std::strstr(text, quoted)) continue;
+      text_.add("%s%s = ", separator, p.name);
+      add_value(text_, p, made_.law.*Law::parameters[i].member);
+      separator = ", ";
+    }
   }
 
   // The law with parameters that vary as NaN, which equals nothing.

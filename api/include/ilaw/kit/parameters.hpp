@@ -6,6 +6,7 @@
 
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
@@ -48,7 +49,9 @@ struct time_table {
     }
     const double t0 = pairs[2 * low], t1 = pairs[2 * high], y0 = pairs[2 * low + 1], y1 = pairs[2 * high + 1];
     const double fraction = (time - t0) / (t1 - t0);
-    return y0 == y1 ? y0 : y0 * (1.0 - fraction) + y1 * fraction;
+    // At its ends a segment has their values, also beside an infinite one.
+    if (y0 == y1 || fraction == 0.0) return y0;
+    return fraction == 1.0 ? y1 : y0 * (1.0 - fraction) + y1 * fraction;
   }
 };
 
@@ -72,12 +75,29 @@ inline void add_choices(message& text, const ilaw_parameter& p) {
   for (std::uint32_t i = 0; i < p.choice_count; ++i) text.add("%s\"%s\"", i ? ", " : "", p.choices[i]);
 }
 
+// With as few digits as read back to the same number.
+inline void add_number(message& text, double value) {
+  char digits[32];
+  int precision = 15;
+  do std::snprintf(digits, sizeof digits, "%.*g", precision, value);
+  while (precision++ < 17 && std::strtod(digits, nullptr) != value);
+  text.add("%s", digits);
+}
+
+inline void add_value(message& text, const ilaw_parameter& p, double value) {
+  if (p.kind == ILAW_PARAMETER_CHOICE)
+    text.add("\"%s\"", p.choices[static_cast<std::uint32_t>(value)]);
+  else
+    add_number(text, value);
+}
+
 // Checks one number against the range of its parameter.
 inline std::int32_t check_number(const char* law, const ilaw_parameter& p, double value, message& text) {
   const bool whole = p.kind != ILAW_PARAMETER_COUNT || value == __builtin_floor(value);
   if (in_range(p, value) && whole) return ILAW_OK;
-  text.add("law '%s': parameter '%s' = %.17g is not allowed: expected a %snumber in ", law, p.name, value,
-           p.kind == ILAW_PARAMETER_COUNT ? "whole " : "");
+  text.add("law '%s': parameter '%s' = ", law, p.name);
+  add_number(text, value);
+  text.add(" is not allowed: expected a %snumber in ", p.kind == ILAW_PARAMETER_COUNT ? "whole " : "");
   add_range(text, p);
   return ILAW_INVALID_PARAMETER;
 }
@@ -94,7 +114,7 @@ inline std::int32_t read_choice(const char* law, const ilaw_parameter& p, const 
   if (a.kind == ILAW_VALUE_TEXT && a.text)
     text.add("\"%s\"", a.text);
   else if (a.kind == ILAW_VALUE_NUMBER)
-    text.add("%.17g", a.number);
+    add_number(text, a.number);
   else
     text.add("a table or array");
   text.add(" is not allowed: expected one of ");
@@ -130,10 +150,10 @@ inline std::int32_t check_table(const char* law, const ilaw_parameter& p, const 
   for (std::uint64_t k = 0; k < a.count; ++k) {
     const double time = a.values[2 * k];
     if (!finite(time) || (k > 0 && time <= a.values[2 * k - 2])) {
-      text.add(
-          "law '%s': parameter '%s': time %.17g of pair %llu of the table is not allowed: expected finite, "
-          "increasing times",
-          law, p.name, time, static_cast<unsigned long long>(k));
+      text.add("law '%s': parameter '%s': time ", law, p.name);
+      add_number(text, time);
+      text.add(" of pair %llu of the table is not allowed: expected finite, increasing times",
+               static_cast<unsigned long long>(k));
       return ILAW_INVALID_PARAMETER;
     }
     if (const std::int32_t code = check_number(law, p, a.values[2 * k + 1], text); code != ILAW_OK)
