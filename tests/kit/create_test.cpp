@@ -2,6 +2,7 @@
 #include "law_runner.hpp"
 
 #include <limits>
+#include <span>
 
 namespace ilaw::testing {
 namespace {
@@ -68,36 +69,68 @@ TEST(Create, RefusesSetupsThatTheLawDoesNotServe) {
   EXPECT_EQ(refusal(), "law 'contact': velocity_step 0 is not allowed: expected a finite number > 0");
 }
 
-// A table's end beside an infinite value is what was written.
-TEST(Create, TablesMayReachInfinity) {
-  const double inf = std::numeric_limits<double>::infinity();
-  const double pairs[] = {0.0, 0.1, 0.1, 0.1, 0.2, inf, 0.3, 0.2};
-  ilaw_argument table{};
-  table.struct_size = sizeof table;
-  table.kind = ILAW_VALUE_TABLE;
-  table.name = "friction";
-  table.values = pairs;
-  table.count = 4;
-  const ilaw_argument* arguments[] = {&table};
-  SetupBuilder setup({});
-  setup.setup.arguments = arguments;
-  setup.setup.argument_count = 1;
-  const ilaw::interface law = make_law("coulomb", setup);
-  const double v[] = {-1.0, 5.0, 0.0}, h = 1.0, gap = 0.0;
-  double r[3];
+// A setup with one parameter, that varies.
+struct Varying {
+  Varying(std::uint32_t kind, const char* name, std::span<const double> values, std::uint64_t count) {
+    argument.struct_size = sizeof argument;
+    argument.kind = kind;
+    argument.name = name;
+    argument.values = values.data();
+    argument.count = count;
+    setup.setup.arguments = arguments;
+    setup.setup.argument_count = 1;
+  }
+  Varying(const Varying&) = delete;
+  Varying& operator=(const Varying&) = delete;
+
+  ilaw_argument argument{};
+  const ilaw_argument* arguments[1] = {&argument};
+  SetupBuilder setup{{}};
+};
+
+// Two nodes that close and slide at speed 5: the tangential impulse is minus their friction, up to -5.
+struct TwoSliding {
+  TwoSliding() {
+    b.struct_size = sizeof b;
+    b.node_count = 2;
+    b.velocity_step = b.position_step = 1e-3;
+    b.v_free = b.v_previous = {v, 3, 1};
+    b.delassus = {&h, 0, 1};
+    b.gap = {&gap, 0, 1};
+    b.impulse = {r, 3, 1};
+  }
+  TwoSliding(const TwoSliding&) = delete;
+  TwoSliding& operator=(const TwoSliding&) = delete;
+
+  const double v[6] = {-1.0, 5.0, 0.0, -1.0, 5.0, 0.0}, h = 1.0, gap = 0.0;
+  double r[6] = {};
   ilaw_batch b{};
-  b.struct_size = sizeof b;
-  b.node_count = 1;
-  b.velocity_step = b.position_step = 1e-3;
-  b.v_free = b.v_previous = {v, 3, 1};
-  b.delassus = {&h, 0, 1};
-  b.gap = {&gap, 0, 1};
-  b.impulse = {r, 3, 1};
+};
+
+// A table in time is read at the time of the batch.
+TEST(Create, TakesTables) {
+  const double pairs[] = {0.0, 0.0, 1.0, 0.8};
+  const Varying table(ILAW_VALUE_TABLE, "friction", pairs, 2);
+  const ilaw::interface law = make_law("coulomb", table.setup);
+  TwoSliding nodes;
+  for (const auto& [time, friction] : {std::pair{-1.0, 0.0}, {0.25, 0.2}, {0.5, 0.4}, {7.0, 0.8}}) {
+    nodes.b.time = time;
+    EXPECT_EQ(law.evaluate(nodes.b), ILAW_OK);
+    EXPECT_NEAR(nodes.r[1], -friction, 1e-15);
+  }
+}
+
+// A table's end beside an infinite value is what was written.
+TEST(Create, TakesTablesThatReachInfinity) {
+  const double pairs[] = {0.0, 0.1, 0.1, 0.1, 0.2, std::numeric_limits<double>::infinity(), 0.3, 0.2};
+  const Varying table(ILAW_VALUE_TABLE, "friction", pairs, 4);
+  const ilaw::interface law = make_law("coulomb", table.setup);
+  TwoSliding nodes;
   for (const auto& [time, impulse] :
        {std::pair{0.0, -0.1}, {0.1, -0.1}, {0.15, -5.0}, {0.2, -5.0}, {0.25, -5.0}, {0.3, -0.2}}) {
-    b.time = time;
-    EXPECT_EQ(law.evaluate(b), ILAW_OK);
-    EXPECT_NEAR(r[1], impulse, 1e-15) << time;
+    nodes.b.time = time;
+    EXPECT_EQ(law.evaluate(nodes.b), ILAW_OK);
+    EXPECT_NEAR(nodes.r[1], impulse, 1e-15) << time;
   }
 }
 
@@ -107,18 +140,9 @@ TEST(Create, RefusesAMemoryThatVaries) {
   for (const char* law : {"postit", "tie"})
     for (const auto& [kind, words] :
          {std::pair{ILAW_VALUE_TABLE, "a table in time"}, {ILAW_VALUE_PER_NODE, "a value per node"}}) {
-      ilaw_argument memory{};
-      memory.struct_size = sizeof memory;
-      memory.kind = static_cast<std::uint32_t>(kind);
-      memory.name = "memory";
-      memory.values = pairs;
-      memory.count = 2;
-      const ilaw_argument* arguments[] = {&memory};
-      SetupBuilder setup({});
-      setup.setup.arguments = arguments;
-      setup.setup.argument_count = 1;
+      const Varying memory(static_cast<std::uint32_t>(kind), "memory", pairs, 2);
       try {
-        make_law(law, setup);
+        make_law(law, memory.setup);
         ADD_FAILURE() << law;
       } catch (const ilaw::error& error) {
         EXPECT_EQ(error.what(), "law '" + std::string(law) + "': parameter 'memory' was given as " + words +
@@ -127,56 +151,27 @@ TEST(Create, RefusesAMemoryThatVaries) {
     }
 }
 
-// A table in time is read at the time of the batch; a value per node comes with the batch and is checked
-// there.
-TEST(Create, TakesTablesAndValuesPerNode) {
-  const double pairs[] = {0.0, 0.0, 1.0, 0.8};
-  ilaw_argument table{};
-  table.struct_size = sizeof table;
-  table.kind = ILAW_VALUE_TABLE;
-  table.name = "friction";
-  table.values = pairs;
-  table.count = 2;
-  const ilaw_argument* arguments[] = {&table};
-  SetupBuilder setup({});
-  setup.setup.arguments = arguments;
-  setup.setup.argument_count = 1;
-  const double v[] = {-1.0, 5.0, 0.0, -1.0, 5.0, 0.0}, h = 1.0, gap = 0.0;
-  double r[6];
-  ilaw_batch b{};
-  b.struct_size = sizeof b;
-  b.node_count = 2;
-  b.velocity_step = b.position_step = 1e-3;
-  b.v_free = {v, 3, 1};
-  b.v_previous = {v, 3, 1};
-  b.delassus = {&h, 0, 1};
-  b.gap = {&gap, 0, 1};
-  b.impulse = {r, 3, 1};
-  const ilaw::interface in_time = make_law("coulomb", setup);
-  for (const auto& [time, friction] : {std::pair{-1.0, 0.0}, {0.25, 0.2}, {0.5, 0.4}, {7.0, 0.8}}) {
-    b.time = time;
-    EXPECT_EQ(in_time.evaluate(b), ILAW_OK);
-    EXPECT_NEAR(r[1], -friction, 1e-15);
-  }
-
-  table.kind = ILAW_VALUE_PER_NODE;
-  const ilaw::interface per_node = make_law("coulomb", setup);
-  ASSERT_EQ(per_node.info().per_node_parameter_count, 1U);
-  EXPECT_STREQ(per_node.info().per_node_parameters[0], "friction");
+// A value per node comes with the batch and is checked there.
+TEST(Create, TakesValuesPerNode) {
+  const Varying per_node(ILAW_VALUE_PER_NODE, "friction", {}, 0);
+  const ilaw::interface law = make_law("coulomb", per_node.setup);
+  ASSERT_EQ(law.info().per_node_parameter_count, 1U);
+  EXPECT_STREQ(law.info().per_node_parameters[0], "friction");
   double friction[] = {0.1, 0.3};
   const ilaw_input given{friction, 1, 1};
-  b.per_node_parameters = &given;
-  EXPECT_EQ(per_node.evaluate(b), ILAW_OK);
-  EXPECT_NEAR(r[1], -0.1, 1e-16);
-  EXPECT_NEAR(r[4], -0.3, 1e-16);
+  TwoSliding nodes;
+  nodes.b.per_node_parameters = &given;
+  EXPECT_EQ(law.evaluate(nodes.b), ILAW_OK);
+  EXPECT_NEAR(nodes.r[1], -0.1, 1e-16);
+  EXPECT_NEAR(nodes.r[4], -0.3, 1e-16);
   friction[1] = -0.3;
   ilaw_report report{};
   report.struct_size = sizeof report;
-  EXPECT_EQ(per_node.evaluate(b, &report), ILAW_BAD_NODES);
+  EXPECT_EQ(law.evaluate(nodes.b, &report), ILAW_BAD_NODES);
   EXPECT_EQ(report.first_bad_node, 1);
   EXPECT_STREQ(report.reason, "a per-node parameter is out of range");
-  EXPECT_NEAR(r[1], -0.1, 1e-16);
-  EXPECT_EQ(r[4], 0.0);
+  EXPECT_NEAR(nodes.r[1], -0.1, 1e-16);
+  EXPECT_EQ(nodes.r[4], 0.0);
 }
 
 }  // namespace
