@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Installs what the project needs and this machine lacks (Debian 12). Does nothing, and needs no network, when all is
-# there. Sourced or run; used by host_mock/demo.sh and tests/run.sh.
+# there. Usage: host_mock/setup.sh [tests|ci|results], for host_mock/demo.sh without.
 set -euo pipefail
 
-packages=(g++ gfortran cmake ninja-build binutils libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev
-  gnuplot-nox libgtest-dev libvtk9-dev libsiconos-numerics-dev libbenchmark-dev)
+packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev gnuplot-nox libvtk9-dev)
+for_tests=(gfortran binutils libgtest-dev libbenchmark-dev libsiconos-numerics-dev)
 case ${1:-} in
-  ci) packages+=(clang-format clang-tidy) ;;  # for .ci/run
-  results) packages+=(jq) ;;                  # for docs/results/make.sh
+  tests) packages+=("${for_tests[@]}") ;;
+  ci) packages+=("${for_tests[@]}" clang-format clang-tidy) ;;
+  results) packages+=("${for_tests[@]}" jq) ;;
 esac
 
 missing=()
@@ -22,12 +23,13 @@ fi
 
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
-  if ! command -v sudo >/dev/null || ! sudo -n true 2>/dev/null; then
+  # A password can be asked for on a terminal only.
+  if ! command -v sudo >/dev/null || ! { sudo -n true 2>/dev/null || { [ -t 0 ] && sudo -v; }; }; then
     echo "set-up: these packages are missing and only an administrator can install them; ask for:" >&2
     echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
     exit 2
   fi
-  as_root=(sudo -n)
+  as_root=(sudo)
 fi
 echo "set-up: installing ${missing[*]}"
 log=$(mktemp)

@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-bash host_mock/setup.sh
+bash host_mock/setup.sh tests
 echo "build: build/release"
 cmake --preset release -DILAW_TESTS=ON -DILAW_WERROR="${ILAW_WERROR:-OFF}" >/dev/null
 cmake --build --preset release -- --quiet
