@@ -77,6 +77,7 @@ EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs
   report.potential = model.potential(u);
   report.external_work = static_cast<double>(sums_.external_work);
   report.interface_work = static_cast<double>(sums_.interface_work);
+  report.scale = scale;
   report.balance_error = scale > 0.0 ? std::abs(static_cast<double>(open)) / scale : 0.0;
   Sum parts = 0;
   for (std::size_t k = 0; k < by_law_.size(); ++k) {

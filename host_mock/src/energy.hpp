@@ -21,6 +21,7 @@ struct EnergyReport {
   std::array<double, ILAW_ENERGY_COUNT> by_law;  // friction, impact, rupture dissipated; stored now
   double least_dissipation;                      // smallest dissipation of one node in one step, >= 0
   double reaction_work;                          // interface_work + dissipated + stored: see docs/scenes.md
+  double scale;                                  // largest energy or work met
 };
 
 class EnergyBalance {

@@ -5,12 +5,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "anderson.hpp"
 #include "energy.hpp"
 #include "interface.hpp"
 #include "load.hpp"
 
 #include <iosfwd>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace ilaw::host {
@@ -24,9 +26,9 @@ struct PhaseSeconds {
 struct Tally {
   std::int64_t asked = 0, skipped = 0;  // node-steps
   std::int64_t sweeps = 0;              // over all steps
-  std::int64_t unconverged = 0;         // steps whose sweeps ended above the tolerance
+  std::int64_t unconverged = 0;         // steps that ended above the tolerance
   int sweeps_max = 0;
-  double coupling_residual_max = 0.0;  // of any step's last sweep
+  double coupling_residual_max = 0.0;  // at the end of any step: see Integrator::residual
   double penetration_max = 0.0;
   std::array<std::int64_t, ILAW_STATUS_COUNT> status_counts{};
 };
@@ -50,6 +52,8 @@ class Integrator {
   Vector angular_momentum() const;
   const PhaseSeconds& seconds() const { return seconds_; }
   const Tally& tally() const { return tally_; }
+  // What a reader of the results must know.
+  std::vector<std::string> warnings() const;
 
   // Everything that the next step depends on; a run that goes on from it gives the same bits.
   void save(std::ostream& out) const;
@@ -61,7 +65,10 @@ class Integrator {
   void solve_interfaces(double time);
   void solve_coupled(StepView step);
   void open_interfaces(const StepView& step);
-  Move sweep(const StepView& step);
+  double sweep(const StepView& step);
+  double residual(double speed) const;
+  std::vector<double> impulses() const;
+  double accelerate(Anderson& anderson, std::vector<double>& impulses_before);
   void account();
   void account(const Interface& interface);
   void check_motion(double time) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <istream>
 #include <ostream>
 #include <utility>
@@ -53,8 +54,11 @@ Interface::Interface(InterfaceSetup setup, const Model& model, double dt)
       obstacle_velocity_(Vector::Zero(dimension_)),
       obstacle_velocity_before_(obstacle_velocity_) {
   per_node_.resize(info_.per_node_parameter_count);
-  if (!setup_.opponent->partners().empty())
-    colours_of_node_.resize(static_cast<std::size_t>(model.node_count()));
+}
+
+void Interface::set_coupled() {
+  coupled_ = true;
+  colours_of_node_.resize(static_cast<std::size_t>(model_.node_count()));
 }
 
 ilaw_batch Interface::batch(double time, double dt) const {
@@ -202,9 +206,8 @@ bool Interface::is_idle(int slot) const {
 // others are asked.
 void Interface::colour_contacts() {
   if (asked_.empty()) return;
-  if (colours_of_node_.empty()) {
-    colours_.resize(1);
-    colours_[0] = asked_;
+  if (!coupled_) {
+    colours_.assign(1, asked_);
     return;
   }
   std::fill(colours_of_node_.begin(), colours_of_node_.end(), 0);
@@ -268,21 +271,24 @@ void Interface::gather(const std::vector<std::int32_t>& slots, const Dofs& v, co
   }
 }
 
-Move Interface::solve(int colour, Dofs& v, const StepView& step) {
-  const std::vector<std::int32_t>& slots = colours_[static_cast<std::size_t>(colour)];
-  if (slots.empty()) return {};
-  if (static_cast<std::size_t>(colour) != serial_colour) {
+// Calls visit(slots) with what may be done at once.
+template <class Visit>
+void Interface::for_each_batch(std::size_t colour, Visit visit) const {
+  const std::vector<std::int32_t>& slots = colours_[colour];
+  if (colour == serial_colour)
+    for (const std::int32_t slot : slots) visit(std::vector{slot});
+  else if (!slots.empty())
+    visit(slots);
+}
+
+double Interface::solve(int colour, Dofs& v, const StepView& step) {
+  double speed = 0.0;
+  for_each_batch(static_cast<std::size_t>(colour), [&](const std::vector<std::int32_t>& slots) {
     gather(slots, v, step);
     evaluate(slots, step);
-    return apply(slots, v);
-  }
-  Move moved;
-  for (const std::int32_t slot : slots) {
-    gather({slot}, v, step);
-    evaluate({slot}, step);
-    moved.include(apply({slot}, v));
-  }
-  return moved;
+    speed = std::max(speed, apply(slots, v));
+  });
+  return speed;
 }
 
 void Interface::evaluate(const std::vector<std::int32_t>& slots, const StepView& step) {
@@ -316,18 +322,15 @@ void Interface::evaluate(const std::vector<std::int32_t>& slots, const StepView&
     if (codes[k] != ILAW_OK) throw ilaw::error(codes[k], node_message(reports[k]));
 }
 
-Move Interface::apply(const std::vector<std::int32_t>& slots, Dofs& v) {
-  double change = 0.0, speed = 0.0;
+double Interface::apply(const std::vector<std::int32_t>& slots, Dofs& v) {
+  double speed = 0.0;
   const Eigen::Index d = dimension_;
-#pragma omp parallel for schedule(static) \
-    reduction(max                         \
-              : change, speed) if (slots.size() > 2 * std::size_t{chunk})
+#pragma omp parallel for schedule(static) reduction(max : speed) if (slots.size() > 2 * std::size_t{chunk})
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const std::int32_t slot = slots[i];
     const auto k = static_cast<std::size_t>(slot);
     const Vector added = impulse(slot) - Eigen::Map<const Vector>(&previous_impulse_[at(slot)], d);
     if (added.isZero(0.0)) continue;  // idle contacts may share nodes, which they must not even write
-    change = std::max(change, delassus_[k] * added.cwiseAbs().maxCoeff());
     const auto move = [&](int node, double weight) {
       v.segment(node * d, d) += (weight / model_.mass()[node * d]) * added;
       speed = std::max(speed, v.segment(node * d, d).norm());
@@ -336,7 +339,41 @@ Move Interface::apply(const std::vector<std::int32_t>& slots, Dofs& v) {
     for (std::size_t p = 0; p < static_cast<std::size_t>(meetings_[k].partner_count); ++p)
       move(meetings_[k].partners[p], -meetings_[k].weights[p]);
   }
-  return {change, speed};
+  return speed;
+}
+
+// Of contacts that may act: what the others were asked about must not matter.
+Misfit Interface::misfit(const Dofs& v) const {
+  Misfit misfit;
+  for (std::size_t colour = 0; colour + 1 < colours_.size(); ++colour)
+    for (const std::int32_t slot : colours_[colour]) {
+      const Vector own = delassus(slot) * impulse(slot);
+      const Vector since = relative(slot, v) - obstacle_velocity_ - own -
+                           Eigen::Map<const Vector>(&v_free_[at(slot)], dimension_);
+      misfit.change = std::max(misfit.change, since.cwiseAbs().maxCoeff());
+      misfit.size = std::max(misfit.size, own.cwiseAbs().maxCoeff());
+    }
+  return misfit;
+}
+
+void Interface::append_impulses(std::vector<double>& scaled) const {
+  for (std::size_t colour = 0; colour + 1 < colours_.size(); ++colour)
+    for (const std::int32_t slot : colours_[colour])
+      for (const double component : impulse(slot)) scaled.push_back(std::sqrt(delassus(slot)) * component);
+}
+
+double Interface::add_impulses(const double*& scaled, Dofs& v) {
+  double speed = 0.0;
+  const auto add = [&](const std::vector<std::int32_t>& slots) {
+    for (const std::int32_t slot : slots)
+      for (std::size_t i = at(slot); i < at(slot) + static_cast<std::size_t>(dimension_); ++i) {
+        previous_impulse_[i] = impulse_[i];
+        impulse_[i] += *scaled++ / std::sqrt(delassus(slot));
+      }
+    speed = std::max(speed, apply(slots, v));
+  };
+  for (std::size_t colour = 0; colour + 1 < colours_.size(); ++colour) for_each_batch(colour, add);
+  return speed;
 }
 
 void Interface::accept(double dt) {

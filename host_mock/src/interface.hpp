@@ -42,14 +42,10 @@ struct StepView {
   double speed_after;   // while impulses are sought: of v_free, and of what other contacts may make of it
 };
 
-// What solving contacts did to the velocities.
-struct Move {
-  double change = 0.0;  // largest change of a contact's velocity
-  double speed = 0.0;   // largest speed of a node that was moved
-  void include(const Move& other) {
-    change = std::max(change, other.change);
-    speed = std::max(speed, other.speed);
-  }
+// How far velocities are from those that the laws were last asked about.
+struct Misfit {
+  double change = 0.0;  // largest change of a contact's free velocity since
+  double size = 0.0;    // largest change of velocity that an impulse alone makes at its contact
 };
 
 class Interface {
@@ -66,16 +62,24 @@ class Interface {
 
   // Chooses the contacts to ask in this step and finds their gaps, normals and partners.
   void open_step(const StepView& step);
-  // The contacts of the step, by slot; those of one colour share no node.
+  // The contacts of the step, by slot; those of one colour share no node, but for the last one where coupled:
+  // these contacts cannot act.
   const std::vector<std::int32_t>& asked() const { return asked_; }
   int colours() const { return static_cast<int>(colours_.size()); }
   // Evaluates one colour against the velocities v, which hold all impulses so far and take the change in.
-  // Throws ilaw::error on bad nodes.
-  Move solve(int colour, Dofs& v, const StepView& step);
+  // Returns the largest speed of a node that was moved. Throws ilaw::error on bad nodes.
+  double solve(int colour, Dofs& v, const StepView& step);
+  // Zero where every law has answered to the velocities v.
+  Misfit misfit(const Dofs& v) const;
+  // Impulses of contacts that may act, in a fixed order, times the root of their delassus: a norm in energy.
+  void append_impulses(std::vector<double>& scaled) const;
+  // Adds as many to them, and to the velocities. Returns the largest speed of a node that was moved, and
+  // moves scaled to the end of what it took.
+  double add_impulses(const double*& scaled, Dofs& v);
   // The step is done: its state becomes the state before the next.
   void accept(double dt);
-  // Whether evaluate will be called more than once per step: it then keeps state_in and state_out apart.
-  void set_coupled(bool coupled) { coupled_ = coupled; }
+  // Contacts may share nodes: evaluate is called more than once per step, with state_in and state_out apart.
+  void set_coupled();
 
   // Of the last step, by slot.
   auto impulse(int slot) const { return Eigen::Map<const Vector>(&impulse_[at(slot)], dimension_); }
@@ -127,7 +131,9 @@ class Interface {
   void initialise(int slot, const Dofs& u);
   void gather(const std::vector<std::int32_t>& slots, const Dofs& v, const StepView& step);
   void evaluate(const std::vector<std::int32_t>& slots, const StepView& step);
-  Move apply(const std::vector<std::int32_t>& slots, Dofs& v);
+  template <class Visit>
+  void for_each_batch(std::size_t colour, Visit visit) const;
+  double apply(const std::vector<std::int32_t>& slots, Dofs& v);
   ilaw_batch batch(double time, double dt) const;
   std::string node_message(const ilaw_report& report) const;
 

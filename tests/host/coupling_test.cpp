@@ -1,6 +1,8 @@
 // Contacts that share degrees of freedom: block Gauss-Seidel over the laws ends where every law holds.
 #include "host_runner.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <array>
 
 namespace ilaw::host::testing {
@@ -161,6 +163,68 @@ TEST(Chain, ImpulsesAddUpFromBallToBall) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(impulse(k), 6.0 * h, 1e-12);
   EXPECT_GT(integrator.tally().sweeps_max, 10);
   EXPECT_EQ(integrator.tally().unconverged, 0);
+}
+
+// Balls of mass 1 that rest on each other in a column, a little compressed: rounding opens no contact.
+Scene column(int balls) {
+  nlohmann::json points = nlohmann::json::array(), interfaces = nlohmann::json::array();
+  for (int k = 0; k < balls; ++k) {
+    points.push_back({{"mass", 1.0}, {"position", {k + 0.5}}});
+    interfaces.push_back({{"law", "contact"}, {"nodes", {k}}, {"gap_offset", k == 0 ? 0.501 : 1.001}});
+    if (k == 0)
+      interfaces[0]["obstacle"] = {{"type", "plane"}, {"point", {0.0}}, {"normal", {1.0}}};
+    else
+      interfaces.back()["against"] = {{"nodes", {k - 1}}, {"normal", {1.0}}};
+  }
+  const nlohmann::json gravity = {{"type", "gravity"}, {"acceleration", {-10.0}}};
+  return scene_of(nlohmann::json{
+      {"model", {{"type", "points"}, {"dimension", 1}, {"points", points}}},
+      {"time", {{"dt", 0.001}, {"end", 0.01}}},
+      {"loads", nlohmann::json::array({gravity})},
+      {"interfaces",
+       interfaces}}.dump());
+}
+
+// Each contact carries what lies above it. Sweeps alone would take some 2000 for twelve balls.
+TEST(Column, EachContactCarriesWhatLiesAboveIt) {
+  for (const int balls : {12, 30}) {
+    Scene scene = column(balls);
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) {
+      integrator.step();
+      if (integrator.steps() == 1) continue;  // takes the kick of half a step out, too
+      for (int k = 0; k < balls; ++k) {
+        const Interface& contact = *scene.interfaces[static_cast<std::size_t>(k)];
+        EXPECT_NEAR(contact.impulse(contact.asked().at(0))[0], 0.01 * (balls - k), 1e-12) << k;
+      }
+      EXPECT_LE(integrator.velocity().cwiseAbs().maxCoeff(), 1e-12);
+    }
+    EXPECT_LE(integrator.tally().sweeps_max, 100);
+    EXPECT_LE(integrator.tally().coupling_residual_max, 1e-14);
+    EXPECT_EQ(integrator.tally().unconverged, 0);
+    EXPECT_TRUE(integrator.warnings().empty());
+  }
+}
+
+// The residual is that of the laws: by so much the impulses are not what the laws answer.
+TEST(Column, ThatIsTooLongIsSaidToBe) {
+  Scene scene = column(250);
+  Integrator integrator = integrator_of(scene);
+  integrator.step();
+  EXPECT_EQ(integrator.tally().sweeps_max, 1000);
+  EXPECT_EQ(integrator.tally().unconverged, 1);
+  double largest = 0.0, size = 0.0;
+  for (const auto& contact : scene.interfaces) {
+    const int slot = contact->asked().at(0);
+    const double own = contact->delassus(slot) * contact->impulse(slot)[0],
+                 v_free = contact->relative(slot, integrator.velocity())[0] - own;
+    largest = std::max(largest, std::abs(own - std::max(0.0, -v_free)));
+    size = std::max(size, own);
+  }
+  EXPECT_GT(largest, 0.0);
+  EXPECT_NEAR(integrator.tally().coupling_residual_max, largest / size, 1e-3 * largest / size);
+  ASSERT_EQ(integrator.warnings().size(), 1U);
+  EXPECT_NE(integrator.warnings()[0].find("not solved in 1 of 1 steps: residual up to"), std::string::npos);
 }
 
 }  // namespace
