@@ -51,6 +51,25 @@ bool refine_mesh(json& model, double by) {
   return refined;
 }
 
+// Nodes are numbered anew on every mesh, so that the same number is another point.
+[[noreturn]] void refuse_number(const std::string& pointer, const json& found) {
+  throw SceneError(pointer,
+                   "found " + found.dump() +
+                       ", expected a set, a box or near: on a refined mesh a number is another node");
+}
+
+void refuse_node_numbers(const json& part, const std::string& pointer) {
+  if (!part.is_structured()) return;
+  for (const auto& [key, value] : part.items()) {
+    const std::string inner = pointer + "/" + key;
+    if (key == "per_node") refuse_number(inner, value);
+    if ((key == "nodes" || key == "watch") && value.is_array())
+      for (std::size_t i = 0; i < value.size(); ++i)
+        if (value[i].is_number()) refuse_number(inner + "/" + std::to_string(i), value[i]);
+    refuse_node_numbers(value, inner);
+  }
+}
+
 // The scene of a level.
 Scene scene_at(const json& source, const Sweep& sweep, int level, const std::filesystem::path& file) {
   json refined = source;
@@ -205,8 +224,9 @@ int converge(const ConvergeOptions& options) {
     const json source = read_scene_source(options.scene);
     const Sweep sweep = sweep_of(source, options);
     title = without_quotes(source.value("title", options.scene.stem().string()));
-    exact_solution(
-        scene_at(source, sweep, 0, options.scene));  // refused, if at all, before anything is written
+    // Refused, if at all, before anything is written.
+    exact_solution(scene_at(source, sweep, 0, options.scene));
+    if (sweep.with_mesh) refuse_node_numbers(source, "");
     if (!make_folder(folder)) return exit_bad_input;
     table = run_levels(source, sweep, options.scene);
     write_table(table, folder);

@@ -41,7 +41,7 @@ constexpr double rounding_level = 1e-11;
 
 // Slope of log(error) over log(h) by least squares, without the errors that are at rounding level (that part
 // of scale, the size of the quantity): these no longer depend on h. NaN where that leaves fewer than three
-// errors, or two of two, or where one is missing.
+// errors, or where one is missing.
 double order_of(const std::vector<double>& h, const std::vector<double>& errors, double scale = 1.0);
 
 }  // namespace ilaw::host
