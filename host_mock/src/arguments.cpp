@@ -3,7 +3,6 @@
 
 #include "validation.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <deque>
 
@@ -35,6 +34,7 @@ void read_varying(const json& value, const std::string& name, std::size_t node_c
   const json& rows = value[key];
   const std::string where = pointer + "/" + key;
   if (!rows.is_array()) throw SceneError(where, "found " + rows.dump() + ", expected an array");
+  if (rows.empty()) throw SceneError(where, "found [], expected at least one entry");
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (key == "per_node") {
       arguments.per_node[name].push_back(read_number(rows[k], at(where, k)));
@@ -61,11 +61,40 @@ class ArgumentList {
       argument.values = pairs.data();
       argument.count = pairs.size() / 2;
     }
-    for (const auto& [name, values] : given.per_node) add(ILAW_VALUE_PER_NODE, name);
+    for (const auto& [name, values] : given.per_node)
+      per_node_.emplace_back(&add(ILAW_VALUE_PER_NODE, name), &values);
     for (const ilaw_argument& argument : arguments_) pointers_.push_back(&argument);
   }
 
   const std::vector<const ilaw_argument*>& pointers() const { return pointers_; }
+  std::size_t node_count() const { return per_node_.empty() ? 0 : per_node_.front().second->size(); }
+
+  // From now on the values of one node stand for those per node. Returns whether this changed any.
+  bool take_node(std::size_t place) {
+    bool changed = false;
+    for (const auto& [argument, values] : per_node_) {
+      changed |= argument->kind != ILAW_VALUE_NUMBER || argument->number != (*values)[place];
+      argument->kind = ILAW_VALUE_NUMBER;
+      argument->number = (*values)[place];
+    }
+    return changed;
+  }
+
+  // Of the parameter that a law's message names first: laws put names in quotes.
+  std::string pointer_from(const std::string& message, std::optional<std::size_t> place) const {
+    const ilaw_argument* named = nullptr;
+    std::size_t first = std::string::npos;
+    for (const ilaw_argument& argument : arguments_)
+      if (const std::size_t at = message.find("'" + std::string(argument.name) + "'"); at < first) {
+        first = at;
+        named = &argument;
+      }
+    if (!named) return "";
+    std::string pointer = "/" + std::string(named->name);
+    for (const auto& [argument, values] : per_node_)
+      if (argument == named) pointer += "/per_node" + (place ? "/" + std::to_string(*place) : "");
+    return named->kind == ILAW_VALUE_TABLE ? pointer + "/table" : pointer;
+  }
 
  private:
   ilaw_argument& add(std::uint32_t kind, const std::string& name) {
@@ -78,6 +107,7 @@ class ArgumentList {
   }
 
   std::deque<ilaw_argument> arguments_;
+  std::vector<std::pair<ilaw_argument*, const std::vector<double>*>> per_node_;
   std::vector<const ilaw_argument*> pointers_;
 };
 
@@ -98,18 +128,7 @@ Arguments read_arguments(const json& parameters, std::size_t node_count, const s
 
 ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
                            const ilaw::library& library, int dimension, double dt) {
-  // Values per node reach the law with the first batch only. Ranges are intervals: whether the smallest and
-  // the largest value are allowed is found now, parameter by parameter.
-  for (const auto& [name, values] : given.per_node) {
-    const auto [least, largest] = std::minmax_element(values.begin(), values.end());
-    for (const double value : {*least, *largest}) {
-      Arguments trial = given;
-      trial.per_node.erase(name);
-      trial.numbers[name] = value;
-      create_law(law, trial, tangent, library, dimension, dt);
-    }
-  }
-  const ArgumentList arguments(given);
+  ArgumentList arguments(given);
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
   setup.dimension = static_cast<std::uint32_t>(dimension);
@@ -119,7 +138,20 @@ ilaw::interface create_law(const std::string& law, const Arguments& given, const
   setup.tangent_given = tangent.size() > 0 ? 1 : 0;
   setup.arguments = arguments.pointers().data();
   setup.argument_count = static_cast<std::uint32_t>(arguments.pointers().size());
-  return {library, law, setup};
+  const auto create = [&](std::optional<std::size_t> place) {
+    try {
+      return ilaw::interface(library, law, setup);
+    } catch (const ilaw::error& refusal) {
+      if (refusal.code() != ILAW_INVALID_PARAMETER) throw;
+      throw ParameterError(refusal, arguments.pointer_from(refusal.what(), place), place);
+    }
+  };
+  ilaw::interface created = create({});
+  // Values per node reach the law with the first batch only. Whether it allows those of a node together is
+  // found now, by creating it for that node alone; neighbours are often alike.
+  for (std::size_t place = 0; place < arguments.node_count(); ++place)
+    if (arguments.take_node(place)) create(place);
+  return created;
 }
 
 }  // namespace ilaw::host

@@ -7,8 +7,11 @@
 #include <ilaw/loader.hpp>
 #include <nlohmann/json.hpp>
 
+#include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -25,8 +28,22 @@ struct Arguments {
 Arguments read_arguments(const nlohmann::json& parameters, std::size_t node_count,
                          const std::string& pointer);
 
+// A parameter that a law refuses: where it stands below "parameters" (empty: no single one is at fault), and
+// whose values they are where they are given per node.
+class ParameterError : public ilaw::error {
+ public:
+  ParameterError(const ilaw::error& refusal, std::string pointer, std::optional<std::size_t> place)
+      : ilaw::error(refusal), pointer_(std::move(pointer)), place_(place) {}
+  const std::string& pointer() const { return pointer_; }
+  std::optional<std::size_t> place() const { return place_; }  // in the interface's list of nodes
+
+ private:
+  std::string pointer_;
+  std::optional<std::size_t> place_;
+};
+
 // Creates the law for nodes with spherical H and global axes; tangent is empty where none is given. Throws
-// ilaw::error with the law's message, also about values per node.
+// ParameterError, also about values per node, or ilaw::error, with the law's message.
 ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
                            const ilaw::library& library, int dimension, double dt);
 

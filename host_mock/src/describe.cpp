@@ -7,9 +7,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -30,6 +32,7 @@ constexpr Bit input_bits[] = {{ILAW_INPUT_GAP, "gap"},
                               {ILAW_INPUT_AREA, "area"},
                               {ILAW_INPUT_NORMAL, "normal"},
                               {ILAW_INPUT_TANGENT, "tangent"}};
+constexpr Bit varying_bits[] = {{ILAW_MAY_BE_TABLE, "table"}, {ILAW_MAY_BE_PER_NODE, "per_node"}};
 constexpr const char* state_kinds[] = {"scalar", "vector", "history", "axis"};
 
 template <std::size_t N>
@@ -43,11 +46,8 @@ json names_of(std::uint32_t mask, const Bit (&bits)[N]) {
 json number_or_inf(double value) { return std::isinf(value) ? json("inf") : json(value); }
 
 json describe_parameter(const ilaw_parameter& p) {
-  json out = {{"name", p.name},
-              {"symbol", p.symbol},
-              {"unit", p.unit},
-              {"doc", p.doc},
-              {"required", p.required != 0}};
+  json out = {{"name", p.name}, {"symbol", p.symbol},          {"unit", p.unit},
+              {"doc", p.doc},   {"required", p.required != 0}, {"may_be", names_of(p.may_be, varying_bits)}};
   if (p.kind == ILAW_PARAMETER_CHOICE) {
     out["choices"] = std::vector<std::string>(p.choices, p.choices + p.choice_count);
     if (!p.required) out["default"] = p.choices[static_cast<std::size_t>(p.default_value)];
@@ -108,21 +108,46 @@ std::string range_of(const json& p) {
          text_of(p["infinity_allowed"].get<bool>() ? json("inf") : p["maximum"]) + (closed ? "]" : ")");
 }
 
+using Row = std::vector<std::string>;
+
+// Columns as wide as their longest entry; the last one is free.
+void print_rows(const std::vector<Row>& rows, const char* indent) {
+  std::vector<std::size_t> widths;
+  for (const Row& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t c = 0; c + 1 < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  for (const Row& row : rows) {
+    std::string line = indent;
+    for (std::size_t c = 0; c + 1 < row.size(); ++c)
+      line += row[c] + std::string(widths[c] + 2 - row[c].size(), ' ');
+    std::printf("%s%s\n", line.c_str(), row.back().c_str());
+  }
+}
+
+Row row_of_parameter(const json& p) {
+  return {text_of(p["name"]),
+          text_of(p["unit"]),
+          range_of(p),
+          p["required"].get<bool>() ? "required" : "default " + text_of(p["default"]),
+          p["may_be"].empty() ? "constant" : "or " + joined(p["may_be"]),
+          text_of(p["doc"])};
+}
+
 void print_law(const json& law) {
   std::printf("\n%s - %s\n  %s\n", text_of(law["id"]).c_str(), text_of(law["title"]).c_str(),
               text_of(law["doc"]).c_str());
   std::printf("  dimensions: %s; H: %s; may read: %s\n", joined(law["dimensions"]).c_str(),
               joined(law["delassus_forms"]).c_str(), joined(law["inputs"]).c_str());
   std::printf("  parameters:\n");
-  for (const json& p : law["parameters"])
-    std::printf("    %-24s %-10s %-28s %-14s %s\n", text_of(p["name"]).c_str(), text_of(p["unit"]).c_str(),
-                range_of(p).c_str(),
-                p["required"].get<bool>() ? "required" : ("default " + text_of(p["default"])).c_str(),
-                text_of(p["doc"]).c_str());
-  if (!law["state"].empty()) std::printf("  state:\n");
+  std::vector<Row> rows;
+  for (const json& p : law["parameters"]) rows.push_back(row_of_parameter(p));
+  print_rows(rows, "    ");
+  rows.clear();
   for (const json& v : law["state"])
-    std::printf("    %-24s %-10s %-28s %s\n", text_of(v["name"]).c_str(), text_of(v["unit"]).c_str(),
-                text_of(v["kind"]).c_str(), text_of(v["doc"]).c_str());
+    rows.push_back({text_of(v["name"]), text_of(v["unit"]), text_of(v["kind"]), text_of(v["doc"])});
+  if (!rows.empty()) std::printf("  state:\n");
+  print_rows(rows, "    ");
   std::printf("  references:\n");
   for (const json& reference : law["references"]) std::printf("    %s\n", text_of(reference).c_str());
 }
@@ -131,17 +156,19 @@ void print_law(const json& law) {
 
 int list_laws() {
   std::printf("search path: %s\n", ilaw::search_path().c_str());
+  std::vector<Row> rows;
   for (const std::string& file : ilaw::search()) {
     try {
       const ilaw::library library(file);
       const ilaw_plugin& plugin = library.plugin();
       for (std::uint32_t i = 0; i < plugin.law_count; ++i)
-        std::printf("%-16s %-44s %s %s  %s\n", plugin.laws[i]->id, plugin.laws[i]->title, plugin.name,
-                    plugin.version, file.c_str());
+        rows.push_back({plugin.laws[i]->id, plugin.laws[i]->title,
+                        std::string(plugin.name) + " " + plugin.version, file});
     } catch (const ilaw::error& error) {
-      std::printf("%-16s refused: %s\n", "-", error.what());
+      rows.push_back({"-", "refused: " + std::string(error.what())});
     }
   }
+  print_rows(rows, "");
   return exit_done;
 }
 

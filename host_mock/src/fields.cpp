@@ -15,7 +15,9 @@
 
 #include <cstdio>
 #include <limits>
+#include <regex>
 #include <stdexcept>
+#include <vector>
 
 namespace ilaw::host {
 namespace {
@@ -113,6 +115,15 @@ void add_interface(vtkUnstructuredGrid& grid, Interface& interface, const std::s
 }
 
 }  // namespace
+
+void Fields::clear() const {
+  std::filesystem::remove(folder_ / "fields.vtu.series");
+  const std::regex own("fields_[0-9]{6,}\\.vtu(\\.partial)?");
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    if (std::regex_match(entry.path().filename().string(), own)) old.push_back(entry.path());
+  for (const std::filesystem::path& file : old) std::filesystem::remove(file);
+}
 
 void Fields::write(const Integrator& integrator) {
   const Model& model = *scene_.model;

@@ -21,6 +21,9 @@ class Fields {
   // With several interfaces, arrays are called <interface>.gap and so on.
   void write(const Integrator& integrator);
 
+  // Removes those of an earlier run in the folder, which this one would not replace.
+  void clear() const;
+
   // The files so far, with their times: to go on after a checkpoint.
   const nlohmann::json& written() const { return written_; }
   void resume(nlohmann::json written) { written_ = std::move(written); }

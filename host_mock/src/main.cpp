@@ -9,16 +9,44 @@
 
 #include <omp.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <vector>
+
+namespace {
+
+// Names what nobody knows first: CLI11 would only tell what is missing for it.
+std::string usage_message(const CLI::App* app, const CLI::Error& error) {
+  const CLI::App* command = app->get_subcommands().empty() ? app : app->get_subcommands().front();
+  const std::string name = app->get_name() + (command == app ? "" : " " + command->get_name());
+  const std::vector<std::string> unknown = app->remaining(true);
+  std::string text = "ilaw: ";
+  if (unknown.empty()) {
+    text += error.what();
+  } else {
+    text += "found '" + unknown.front() + "', expected ";
+    std::string known;
+    for (const CLI::App* one : command->get_subcommands({}))
+      known += (known.empty() ? "one of " : ", ") + one->get_name();
+    for (const CLI::Option* one : command->get_options())
+      if (!one->get_positional()) known += (known.empty() ? "one of " : ", ") + one->get_name();
+    text += known;
+  }
+  return text + "\nRun `" + name + " --help` for more.\n";
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace ilaw::host;
   CLI::App app{
       "ilaw - interface laws in explicit dynamics: runs scenes, draws them, tells what laws there are"};
   app.set_version_flag("--version", "ilaw " ILAW_VERSION);
+  app.name("ilaw");
   app.require_subcommand(1);
+  app.failure_message(usage_message);
   app.footer(
       "Exit codes: 0 done; 1 the run failed (diverged, plugin error, interrupted); 2 bad usage or bad input, "
       "before\n"
@@ -28,7 +56,7 @@ int main(int argc, char** argv) {
   int threads = 1;
   const auto add_threads = [&threads](CLI::App* command) {
     command->add_option("--threads", threads, "Threads; any number gives the same bits")
-        ->check(CLI::PositiveNumber)
+        ->check(CLI::Range(1, 1024))
         ->capture_default_str();
   };
   CLI::App* run_command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
@@ -38,7 +66,7 @@ int main(int argc, char** argv) {
   run_command
       ->add_option("--checkpoint-every", options.checkpoint_every,
                    "Steps between checkpoints, from which --resume goes on")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000'000}));
   run_command->add_flag("--resume", options.resume,
                         "Go on from the checkpoint in the folder, to the same bits");
   add_threads(run_command);

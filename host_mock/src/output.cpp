@@ -3,9 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
-
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <stdexcept>
 #include <system_error>
@@ -22,8 +21,15 @@ constexpr const char* status_names[ILAW_STATUS_COUNT] = {"free",   "closed", "st
 // Shortest text that reads back to the same double.
 std::string number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+// Bytes up to the end of the last whole line.
+std::uintmax_t size_of_lines(const std::filesystem::path& file) {
+  std::uintmax_t size = 0;
+  std::ifstream stream(file, std::ios::binary);
+  for (std::string line; std::getline(stream, line) && !stream.eof();) size += line.size() + 1;
+  return size;
 }
 
 // Named state variables: histories mean nothing outside their law.
@@ -56,7 +62,10 @@ json describe_interface(const Interface& interface) {
 bool make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (std::filesystem::is_directory(folder)) return true;
+  const std::filesystem::path trial = folder / "ilaw.trial";
+  const bool writable = std::ofstream(trial).is_open();
+  std::filesystem::remove(trial, error);
+  if (writable) return true;
   std::fprintf(stderr, "ilaw: --out %s: found a file or a place that cannot be written, expected a folder\n",
                folder.c_str());
   return false;
@@ -69,19 +78,27 @@ AtomicFile::AtomicFile(std::filesystem::path file)
 
 AtomicFile::AtomicFile(std::filesystem::path file, std::uintmax_t size)
     : file_(std::move(file)), partial_(file_.string() + ".partial") {
-  if (!std::filesystem::exists(partial_)) std::filesystem::copy_file(file_, partial_);
-  if (std::filesystem::file_size(partial_) < size)
-    throw std::runtime_error(partial_.string() + ": found " +
-                             std::to_string(std::filesystem::file_size(partial_)) +
-                             " bytes, expected at least " + std::to_string(size) + " of the run to resume");
-  std::filesystem::resize_file(partial_, size);
+  const std::filesystem::path found = std::filesystem::exists(partial_) ? partial_ : file_;
+  const std::string expected = ", expected the first " + std::to_string(size) + " bytes of the run to resume";
+  std::error_code error;
+  const std::uintmax_t found_size = std::filesystem::file_size(found, error);
+  if (error) throw std::runtime_error(found.string() + ": " + error.message() + expected);
+  if (found_size < size)
+    throw std::runtime_error(found.string() + ": found " + std::to_string(found_size) + " bytes" + expected);
+  std::filesystem::rename(found, partial_, error);
+  if (!error) std::filesystem::resize_file(partial_, size, error);
+  if (error) throw std::runtime_error(partial_.string() + ": cannot be written: " + error.message());
   stream_.open(partial_, std::ios::app);
   if (!stream_) throw std::runtime_error(partial_.string() + ": cannot be written");
 }
 
+void AtomicFile::check() const {
+  if (!stream_) throw std::runtime_error(file_.string() + ": could not be written whole; is the disk full?");
+}
+
 std::uintmax_t AtomicFile::flush() {
   stream_.flush();
-  if (!stream_) throw std::runtime_error(partial_.string() + ": could not be written; is the disk full?");
+  check();
   return std::filesystem::file_size(partial_);
 }
 
@@ -92,9 +109,16 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::commit() {
   stream_.close();
-  if (!stream_)
-    throw std::runtime_error(partial_.string() + ": could not be written whole; is the disk full?");
+  check();
   std::filesystem::rename(partial_, file_);
+  committed_ = true;
+}
+
+void AtomicFile::keep_lines() {
+  stream_.close();
+  std::error_code ignored;
+  if (!stream_) std::filesystem::resize_file(partial_, size_of_lines(partial_), ignored);
+  std::filesystem::rename(partial_, file_, ignored);
   committed_ = true;
 }
 
@@ -179,6 +203,7 @@ void History::add_row(const Integrator& integrator) {
     for (const double component : integrator.angular_momentum()) out << ',' << number(component);
   }
   out << '\n';
+  file_.check();
 }
 
 void write_summary(const Scene& scene, const Integrator& integrator, const RunRecord& record,
@@ -192,6 +217,8 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
   const double interface_share = stepping > 0.0 ? seconds.interfaces / stepping : 0.0;
   json interfaces = json::array();
   for (const auto& interface : scene.interfaces) interfaces.push_back(describe_interface(*interface));
+  std::vector<std::string> warnings = scene.warnings;
+  for (const std::string& warning : integrator.warnings()) warnings.push_back(warning);
   const json summary = {
       {"program", {{"name", "ilaw"}, {"version", ILAW_VERSION}, {"abi", {ILAW_ABI_MAJOR, ILAW_ABI_MINOR}}}},
       {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", scene.source}}},
@@ -216,6 +243,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
         {"stored", energy.by_law[ILAW_ENERGY_STORED]},
         {"least_dissipation", energy.least_dissipation},
         {"reaction_work", energy.reaction_work}}},
+      {"warnings", warnings},
       {"penetration_max", tally.penetration_max},
       {"status_counts", statuses},
       {"node_steps", {{"asked", tally.asked}, {"skipped", tally.skipped}}},

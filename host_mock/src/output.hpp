@@ -14,7 +14,8 @@
 
 namespace ilaw::host {
 
-// Makes the folder that --out names, if it does not exist; says on stderr why it cannot.
+// Makes the folder that --out names, if it does not exist, and tries whether files can be made in it; says on
+// stderr why they cannot.
 bool make_folder(const std::filesystem::path& folder);
 
 // A file that appears under its name only when it is complete: written beside it, then renamed.
@@ -30,8 +31,12 @@ class AtomicFile {
   std::ostream& stream() { return stream_; }
   // Bytes written so far, all of them in the file.
   std::uintmax_t flush();
+  // Throws std::runtime_error when the disk did not take all so far, as far as is known.
+  void check() const;
   // Throws std::runtime_error when the disk did not take it all.
   void commit();
+  // Instead, where the file cannot be completed: the whole lines that the disk took get its name.
+  void keep_lines();
 
  private:
   std::filesystem::path file_, partial_;
@@ -49,6 +54,7 @@ class History {
   void add_row(const Integrator& integrator);
   std::uintmax_t flush() { return file_.flush(); }
   void commit() { file_.commit(); }
+  void keep_rows() { file_.keep_lines(); }
 
  private:
   // A watched node in one interface.

@@ -14,6 +14,9 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace ilaw::host {
 namespace {
@@ -29,7 +32,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A run and what it writes.
+// A run and what it writes. The constructor throws std::runtime_error where there is nothing to resume from,
+// or nothing can be written.
 class Run {
  public:
   Run(Scene& scene, const RunOptions& options)
@@ -42,24 +46,36 @@ class Run {
       return;
     }
     history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
-    if (scene_.output.fields > 0) fields_.write(integrator_);
+    fields_.clear();
   }
 
   // Steps to the end, to a request to stop, or to a failure; the record says which.
   void advance() {
     Progress progress(integrator_.steps(), scene_.steps);
     try {
+      if (!options_.resume && scene_.output.fields > 0) fields_.write(integrator_);
       while (integrator_.steps() < scene_.steps && !stop_requested) {
         integrator_.step();
         write_outputs();
         progress.show(integrator_.steps());
       }
+      record.interrupted = integrator_.steps() < scene_.steps;
+      if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
+      history_->commit();
     } catch (const std::exception& failure) {
       record.failure = failure.what();
+      history_->keep_rows();
     }
-    record.interrupted = integrator_.steps() < scene_.steps && record.failure.empty();
-    if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
-    history_->commit();
+  }
+
+  // Where that fails, and nothing did before, the run did.
+  void finish(double seconds_total) {
+    record.seconds_total = seconds_total;
+    try {
+      write_summary(scene_, integrator_, record, options_.folder);
+    } catch (const std::exception& failure) {
+      if (record.failure.empty()) record.failure = failure.what();
+    }
   }
 
   const Integrator& integrator() const { return integrator_; }
@@ -106,11 +122,20 @@ std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
   return std::nullopt;
 }
 
+std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
+  try {
+    return std::make_unique<Run>(scene, options);
+  } catch (const std::runtime_error& error) {
+    std::fprintf(stderr, "ilaw: %s\n", error.what());
+  }
+  return nullptr;
+}
+
 int report(const Scene& scene, const Integrator& integrator, const RunRecord& record,
            const RunOptions& options) {
   const std::filesystem::path& folder = options.folder;
   if (!record.failure.empty()) {
-    std::fprintf(stderr, "ilaw: %s: failed at step %lld, time %g: %s\n", scene.file.c_str(),
+    std::fprintf(stderr, "ilaw: %s: failed after step %lld, time %g: %s\n", scene.file.c_str(),
                  static_cast<long long>(integrator.steps()), integrator.time(), record.failure.c_str());
     return exit_failed;
   }
@@ -121,9 +146,10 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
         folder.c_str(), options.checkpoint_every > 0 ? ", and --resume goes on from there" : "");
     return exit_failed;
   }
-  std::printf("%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e; results in %s\n",
+  std::printf("%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e%s; results in %s\n",
               scene.title.c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
-              record.seconds_total, integrator.energy().balance_error, folder.c_str());
+              record.seconds_total, integrator.energy().balance_error,
+              integrator.warnings().empty() ? "" : ", with warnings", folder.c_str());
   return exit_done;
 }
 
@@ -132,19 +158,22 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
 int run(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   std::optional<Scene> scene = read_or_explain(options.scene);
-  if (!scene || !make_folder(options.folder)) return exit_bad_input;
+  // What a run resumes from stands in its folder already.
+  if (!scene || !(options.resume || make_folder(options.folder))) return exit_bad_input;
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
-  try {
-    Run run(*scene, options);
-    run.advance();
-    run.record.seconds_total = seconds_since(start);
-    write_summary(*scene, run.integrator(), run.record, options.folder);
-    return report(*scene, run.integrator(), run.record, options);
-  } catch (const std::exception& failure) {
-    std::fprintf(stderr, "ilaw: %s: %s\n", options.scene.c_str(), failure.what());
-    return exit_failed;
-  }
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to report, not one to die of
+  const std::unique_ptr<Run> run = start_or_explain(*scene, options);
+  if (!run) return exit_bad_input;
+  const auto warn = [&](const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings)
+      std::fprintf(stderr, "ilaw: %s: warning: %s\n", options.scene.c_str(), warning.c_str());
+  };
+  warn(scene->warnings);
+  run->advance();
+  run->finish(seconds_since(start));
+  warn(run->integrator().warnings());
+  return report(*scene, run->integrator(), run->record, options);
 }
 
 }  // namespace ilaw::host

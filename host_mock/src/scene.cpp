@@ -10,11 +10,14 @@
 #include "validation.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <numeric>
 #include <set>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 namespace ilaw::host {
@@ -129,7 +132,7 @@ std::unique_ptr<Model> read_blocks(const json& model) {
     constexpr double most_nodes = 5e8;  // 3 degrees of freedom each must fit a 32-bit number
     if (nodes > most_nodes)
       throw SceneError(pointer + "/elements", "found " + block["elements"].dump() + ", which makes " +
-                                                  std::to_string(nodes) + " nodes, expected at most 5e8");
+                                                  json(nodes).dump() + " nodes, expected at most 5e8");
     blocks.push_back({names.next(block, pointer), read_vector_or_zero(block, "corner", 3, pointer),
                       read_vector(block["size"], 3, pointer + "/size"),
                       read_vector_or_zero(block, "velocity", 3, pointer), elements,
@@ -314,6 +317,9 @@ std::unique_ptr<Interface> read_interface(const json& interface, std::size_t num
                                    pointer + "/parameters");
   setup.birth = interface.value("birth", setup.birth);
   setup.death = interface.value("death", setup.death);
+  if (setup.death <= setup.birth)
+    throw SceneError(pointer + "/death", "found " + interface["death"].dump() +
+                                             ", expected a time after birth, " + json(setup.birth).dump());
   setup.tangent = read_tangent(interface, setup, *scene.model, pointer + "/tangent");
   setup.gap_offset = interface.value("gap_offset", 0.0);
   setup.asks_all = !interface.value("skip", true);
@@ -321,13 +327,30 @@ std::unique_ptr<Interface> read_interface(const json& interface, std::size_t num
     auto made = std::make_unique<Interface>(std::move(setup), *scene.model, scene.dt);
     refuse_prescribed(*made, scene.loads, pointer + "/nodes");
     return made;
+  } catch (const ParameterError& error) {
+    const std::string whose =
+        error.place() ? " (node " + std::to_string(own.nodes[*error.place()]) + ")" : "";
+    throw SceneError(pointer + "/parameters" + error.pointer(), error.what() + whose);
   } catch (const ilaw::error& error) {
-    if (error.code() == ILAW_INVALID_PARAMETER) throw SceneError(pointer + "/parameters", error.what());
+    const std::string library = pointer + (interface.contains("library") ? "/library" : "/law");
+    if (error.code() == ILAW_BAD_LIBRARY) throw SceneError(library, error.what());
     if (error.code() == ILAW_NOT_FOUND)
-      throw SceneError(pointer + (interface.contains("library") ? "/library" : "/law"),
-                       std::string(error.what()) + "; libraries found: " + known_libraries());
+      throw SceneError(library, std::string(error.what()) + "; libraries found: " + known_libraries());
     throw SceneError(pointer, error.what());
   }
+}
+
+// A step given as such may be larger than the model can stand.
+void check_step(Scene& scene) {
+  const Model& model = *scene.model;
+  constexpr double rounding = 1e-14;
+  if (!(scene.dt > model.critical_step() * (1.0 + rounding))) return;
+  const std::string found = "found " + json(scene.dt).dump(), critical = json(model.critical_step()).dump();
+  if (model.critical_step_is_exact())
+    throw SceneError("/time/dt", found + ", expected at most " + critical + ", the model's critical step");
+  scene.warnings.push_back("/time/dt: " + found +
+                           ", which may be unstable: the critical step is known to be " + critical +
+                           " at least");
 }
 
 void read_time(const json& time, Scene& scene) {
@@ -343,11 +366,12 @@ void read_time(const json& time, Scene& scene) {
     scene.dt = time["cfl"].get<double>() * critical;
   } else {
     scene.dt = time["dt"].get<double>();
+    check_step(scene);
   }
   const double steps = time["end"].get<double>() / scene.dt;
   constexpr double most_steps = 1e15;  // beyond, n*dt no longer tells steps apart
   if (!(steps <= most_steps))
-    throw SceneError("/time", "end/dt is " + std::to_string(steps) + " steps, expected at most 1e15");
+    throw SceneError("/time", "end/dt is " + json(steps).dump() + " steps, expected at most 1e15");
   const double rounded = std::round(steps);
   scene.steps =
       static_cast<std::int64_t>(std::abs(steps - rounded) <= 1e-9 * rounded ? rounded : std::ceil(steps));
@@ -378,10 +402,62 @@ void check_names(const Scene& scene) {
                                                            "' twice, expected a different name for each");
 }
 
+// Times at which nothing can happen any more.
+void warn_of_times(Scene& scene) {
+  const double end = static_cast<double>(scene.steps) * scene.dt;
+  const auto warn_if_late = [&](const json& parts, const char* key, const std::string& pointer) {
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (parts[i].contains(key) && parts[i][key].get<double>() > end)
+        scene.warnings.push_back(at(pointer, i) + "/" + key + ": found " + parts[i][key].dump() +
+                                 ", after the end of the run, " + json(end).dump());
+  };
+  warn_if_late(scene.source.value("loads", json::array()), "time", "/loads");
+  warn_if_late(scene.source["interfaces"], "birth", "/interfaces");
+  const double wanted = scene.source["time"]["end"].get<double>();
+  if (scene.dt > wanted * (1.0 + 1e-9))
+    scene.warnings.push_back("/time/end: found " + json(wanted).dump() + ", less than one step, " +
+                             json(scene.dt).dump() + ", which is taken all the same");
+  if (scene.output.every > scene.steps)
+    scene.warnings.push_back("/output/every: found " + std::to_string(scene.output.every) +
+                             ": the history has no row in " + std::to_string(scene.steps) + " steps");
+}
+
+// Nodes that start inside a rigid obstacle are thrown out of it by most laws.
+void warn_of_start(Scene& scene) {
+  const Dofs start = Dofs::Zero(scene.model->mass().size());
+  const double rounding = 1e-12 * scene.model->position().cwiseAbs().maxCoeff();
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    const Interface& interface = *scene.interfaces[i];
+    if (!interface.setup().opponent->partners().empty()) continue;
+    std::size_t count = 0, deepest = 0;
+    double least = 0.0;
+    for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
+      const double gap = interface.gap_at(static_cast<int>(k), start, 0.0);
+      if (gap < -rounding) ++count;
+      if (gap < least) {
+        least = gap;
+        deepest = k;
+      }
+    }
+    if (count > 0)
+      scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(count) +
+                               " node(s) start inside the obstacle, node " +
+                               std::to_string(interface.nodes()[deepest]) + " by " + json(-least).dump());
+  }
+}
+
 std::string read_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found)
+    throw SceneError("no such file, expected a scene");
+  if (std::filesystem::is_directory(status)) throw SceneError("found a folder, expected a scene");
   std::ifstream stream(file);
   std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) throw SceneError("", "the file cannot be read");
+  if (stream.peek() == std::ifstream::traits_type::eof() && stream.is_open())
+    throw SceneError("the file is empty, expected a scene");
+  if (!stream || !(text << stream.rdbuf()))
+    throw SceneError(std::string("the file cannot be read: ") + std::strerror(errno));
   return text.str();
 }
 
@@ -409,6 +485,8 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
     scene.interfaces.push_back(read_interface(scene.source["interfaces"][i], i, scene));
   check_names(scene);
   read_output(scene.source.value("output", json::object()), scene);
+  warn_of_times(scene);
+  warn_of_start(scene);
   return scene;
 }
 

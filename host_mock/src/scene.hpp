@@ -33,6 +33,7 @@ struct Scene {
   double dt = 0.0;
   std::int64_t steps = 0;
   OutputSetup output;
+  std::vector<std::string> warnings;  // of what can run, but can hardly be meant
 };
 
 // Reads and checks a scene, loads its laws. Throws SceneError, whose message starts with the JSON pointer.

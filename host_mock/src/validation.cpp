@@ -53,6 +53,9 @@ const json& resolved(const json& part) {
 // The schema of a member or element, null where the schema says nothing of it.
 const json& child(const json& part, const std::string& token, bool is_index) {
   static const json nothing;
+  if (part.contains("anyOf"))
+    for (const json& one : part["anyOf"])
+      if (const json& found = child(resolved(one), token, is_index); !found.is_null()) return found;
   if (is_index) return part.contains("items") ? resolved(part["items"]) : nothing;
   return part.contains("properties") && part["properties"].contains(token)
              ? resolved(part["properties"][token])
@@ -74,9 +77,10 @@ std::string allowed(const json& part) {
   std::string text = part.value("type", "a value");
   if (part.contains("items") && resolved(part["items"]).contains("type"))
     text += " of " + resolved(part["items"])["type"].get<std::string>() + "s";
-  for (const auto& [key, words] : {std::pair{"minimum", " >= "}, std::pair{"exclusiveMinimum", " > "},
-                                   std::pair{"maximum", " <= "}, std::pair{"minItems", " of at least "},
-                                   std::pair{"maxItems", " of at most "}, std::pair{"pattern", " matching "}})
+  for (const auto& [key, words] :
+       {std::pair{"minimum", " >= "}, std::pair{"exclusiveMinimum", " > "}, std::pair{"maximum", " <= "},
+        std::pair{"exclusiveMaximum", " < "}, std::pair{"minItems", " of at least "},
+        std::pair{"maxItems", " of at most "}, std::pair{"pattern", " matching "}})
     if (part.contains(key))
       text += words + part[key].dump() + (std::string(key).ends_with("Items") ? " entries" : "");
   return text;
@@ -171,7 +175,7 @@ json parse_scene(const std::string& text) {
       return duplicates(depth, event, parsed);
     });
   } catch (const json::exception& error) {
-    throw SceneError("", std::string("not valid JSON: ") + error.what());
+    throw SceneError(std::string("not valid JSON: ") + error.what());
   }
 }
 

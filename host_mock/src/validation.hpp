@@ -11,9 +11,11 @@ namespace ilaw::host {
 
 extern const char* const scene_schema_text;
 
-// A mistake in a scene: JSON pointer, what was found, what is allowed.
+// A mistake in a scene: JSON pointer, what was found, what is allowed. Without pointer: one of the whole
+// file.
 class SceneError : public std::runtime_error {
  public:
+  explicit SceneError(const std::string& found_and_expected) : std::runtime_error(found_and_expected) {}
   SceneError(const std::string& pointer, const std::string& found_and_expected)
       : std::runtime_error((pointer.empty() ? "/" : pointer) + ": " + found_and_expected) {}
 };

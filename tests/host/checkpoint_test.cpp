@@ -196,28 +196,65 @@ TEST(Checkpoint, IsWrittenWhereARunIsInterrupted) {
   EXPECT_EQ(json::parse(text_of(folder / "summary.json"))["resumed_at_step"], summary["steps"]);
 }
 
+// A disk that is full ends a run with what it took, whole rows, and --resume goes on once there is room. Here
+// a file may have 1 MB, a tenth of the history.
+TEST(Checkpoint, OutlivesAFullDisk) {
+  const auto whole = fresh_folder(), full = fresh_folder();
+  json scene = shipped("bouncing_ball");
+  scene["time"]["end"] = 50.0;
+  const std::string file = written(scene, whole).string();
+  ASSERT_EQ(run_program("run " + file + " --out " + whole.string()).code, 0);
+  const std::string command = "run " + file + " --out " + full.string() + " --checkpoint-every 1000";
+  const Outcome failed = run_program(command, "ulimit -f 2048; ");
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_NE(failed.output.find("history.csv: could not be written whole; is the disk full?"),
+            std::string::npos)
+      << failed.output;
+  const std::string rows = text_of(full / "history.csv"), all = text_of(whole / "history.csv");
+  EXPECT_GT(rows.size(), 900000U);
+  EXPECT_EQ(rows.back(), '\n');
+  EXPECT_EQ(rows, all.substr(0, rows.size()));
+  EXPECT_FALSE(std::filesystem::exists(full / "history.csv.partial"));
+  EXPECT_NE(json::parse(text_of(full / "summary.json"))["failure"], "");
+  const Outcome resumed = run_program(command + " --resume");
+  EXPECT_EQ(resumed.code, 0) << resumed.output;
+  EXPECT_EQ(text_of(full / "history.csv"), all);
+  EXPECT_EQ(results_of(full), results_of(whole));
+}
+
+// Nothing to go on from is bad input, found before anything ran: nothing is written.
 TEST(Checkpoint, OfNoRunOrAnotherOneIsRefused) {
   const auto folder = fresh_folder();
   const json scene = shipped("postit_test3");
   const std::string file = written(scene, folder).string(), out = " --out " + folder.string();
   const std::string path = (folder / "checkpoint.cbor").string();
   const Outcome none = run_program("run " + file + out + " --resume");
-  EXPECT_EQ(none.code, 1);
+  EXPECT_EQ(none.code, 2);
   EXPECT_NE(none.output.find(path + ": found no checkpoint to resume from"), std::string::npos)
       << none.output;
+  EXPECT_EQ(run_program("run " + file + " --resume --out " + (folder / "new").string()).code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
   ASSERT_EQ(run_program("run " + file + out + " --checkpoint-every 500").code, 0);
   json other = scene;
   other["interfaces"][0]["parameters"]["memory"] = 0.081;
   written(other, folder);
   const Outcome another = run_program("run " + file + out + " --resume");
-  EXPECT_EQ(another.code, 1);
+  EXPECT_EQ(another.code, 2);
   EXPECT_NE(another.output.find(path + ": is of another scene, expected the very run"), std::string::npos)
       << another.output;
   written(scene, folder);
   std::filesystem::remove(folder / "history.csv");
   const Outcome lost = run_program("run " + file + out + " --resume");
-  EXPECT_EQ(lost.code, 1);
-  EXPECT_NE(lost.output.find("history.csv"), std::string::npos) << lost.output;
+  EXPECT_EQ(lost.code, 2);
+  EXPECT_NE(lost.output.find("history.csv: No such file or directory, expected the first "),
+            std::string::npos)
+      << lost.output;
+  std::ofstream(folder / "history.csv") << "time\n";
+  EXPECT_NE(
+      run_program("run " + file + out + " --resume").output.find("history.csv: found 5 bytes, expected"),
+      std::string::npos);
+  std::ofstream(folder / "checkpoint.cbor") << "damaged";
+  EXPECT_EQ(run_program("run " + file + out + " --resume").code, 2);
   EXPECT_EQ(run_program("run " + file + out + " --checkpoint-every 0").code, 2);
 }
 

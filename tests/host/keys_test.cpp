@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <random>
 
 namespace ilaw::host::testing {
@@ -181,6 +182,61 @@ TEST(PerNode, FollowsTheOrderOfTheInterface) {
   EXPECT_NEAR(v[6], 1.0 - 0.1 * g * 0.1, 0.1 * g * h);
   EXPECT_NEAR(v[0], 1.0 - 0.3 * g * 0.1, 0.3 * g * h);
   EXPECT_EQ(v[3], 1.0);
+}
+
+// Values are judged together, node by node: what the least of one and the largest of another would make does
+// not count.
+TEST(PerNode, IsJudgedNodeByNode) {
+  const auto refusal = [](const json& law) {
+    return refusal_of(points_on_plane({point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0})}, law));
+  };
+  const auto cohesive = [&](const json& toughness) {
+    return refusal({{"law", "cohesive"},
+                    {"parameters",
+                     {{"stiffness", 100},
+                      {"strength", {{"per_node", {1, 10}}}},
+                      {"toughness", {{"per_node", toughness}}}}}});
+  };
+  EXPECT_EQ(cohesive({0.1, 10}), "not refused");
+  const std::string conflict = cohesive({10, 0.1});
+  EXPECT_EQ(conflict.find("/interfaces/0/parameters/toughness/per_node/1: law 'cohesive': "), 0U) << conflict;
+  EXPECT_TRUE(conflict.ends_with(" (node 1)")) << conflict;
+  EXPECT_EQ(refusal({{"law", "postit"},
+                     {"parameters",
+                      {{"initial_adhesion", {{"per_node", {0.1, 1}}}},
+                       {"adhesion_limit", {{"per_node", {0.2, 2}}}}}}}),
+            "not refused");
+}
+
+// The place is that in the list, the node that of the model.
+TEST(PerNode, IsRefusedWithThePlaceOfTheValueAndTheNode) {
+  EXPECT_EQ(refusal_of(points_on_plane(
+                {point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0}), point({2, 0, 0}, {0, 0, 0})},
+                {{"law", "coulomb"},
+                 {"nodes", {2, 0}},
+                 {"parameters", {{"friction", {{"per_node", {0.1, -0.5}}}}}}})),
+            "/interfaces/0/parameters/friction/per_node/1: law 'coulomb': parameter 'friction' = -0.5 is not "
+            "allowed: expected a number in [0, inf] (node 0)");
+}
+
+// Reading costs the same for each parameter and node.
+TEST(PerNode, TakesNoLongerTogetherThanOneByOne) {
+  constexpr int count = 20000;
+  std::vector<json> points;
+  json values = json::array();
+  for (int k = 0; k < count; ++k) {
+    points.push_back(point({k, 0, 0}, {0, 0, 0}));
+    values.push_back(0.1 + 1e-6 * k);
+  }
+  json parameters;
+  for (const char* name :
+       {"friction", "kinetic_friction", "decay", "friction_2", "restitution", "tangential_restitution"})
+    parameters[name] = {{"per_node", values}};
+  const json scene =
+      points_on_plane(points, {{"law", "coulomb"}, {"parameters", parameters}, {"tangent", {1, 0, 0}}});
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(refusal_of(scene), "not refused");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 TEST(VaryingParameters, AreRefusedWhereTheyCannotBe) {

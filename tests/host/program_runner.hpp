@@ -19,8 +19,9 @@ struct Outcome {
   std::string output;  // stdout and stderr
 };
 
-inline Outcome run_program(const std::string& arguments) {
-  const std::string command = std::string(ILAW_PROGRAM) + " " + arguments + " 2>&1 </dev/null";
+// before: for the shell, as "ulimit -f 100; ".
+inline Outcome run_program(const std::string& arguments, const std::string& before = "") {
+  const std::string command = before + ILAW_PROGRAM + " " + arguments + " 2>&1 </dev/null";
   FILE* pipe = popen(command.c_str(), "r");
   std::string output;
   std::array<char, 4096> buffer{};

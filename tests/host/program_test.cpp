@@ -8,6 +8,7 @@
 
 #include <csignal>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -47,9 +48,14 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   EXPECT_EQ(run_program("run " + ball).code, 2);
   const Outcome missing = run_program("run nowhere.json --out " + (folder / "a").string());
   EXPECT_EQ(missing.code, 2);
-  EXPECT_EQ(missing.output, "ilaw: nowhere.json: /: the file cannot be read\n");
+  EXPECT_EQ(missing.output, "ilaw: nowhere.json: no such file, expected a scene\n");
   EXPECT_FALSE(std::filesystem::exists(folder / "a"));
   EXPECT_EQ(run_program("run " + ball + " --out " + ball).code, 2);
+  for (const char* command : {"run ", "converge "}) {  // a folder in which nobody can make a file
+    const Outcome unwritable = run_program(command + ball + " --out /proc");
+    EXPECT_EQ(unwritable.code, 2);
+    EXPECT_EQ(unwritable.output.find("ilaw: --out /proc: "), 0U) << unwritable.output;
+  }
   EXPECT_EQ(run_program("describe no_such_law").code, 2);
   EXPECT_EQ(run_program("plot " + folder.string()).code, 2);
   for (const char* command : {"", "run", "plot", "converge", "list", "describe"}) {
@@ -59,15 +65,85 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   }
 }
 
+TEST(Program, SaysWhyASceneCannotBeRead) {
+  const auto folder = fresh_folder();
+  const auto output_of = [&](const std::string& scene) {
+    return run_program("run " + scene + " --out " + (folder / "out").string()).output;
+  };
+  EXPECT_EQ(output_of(folder.string()), "ilaw: " + folder.string() + ": found a folder, expected a scene\n");
+  const std::string file = (folder / "scene.json").string();
+  std::ofstream(file).close();
+  EXPECT_EQ(output_of(file), "ilaw: " + file + ": the file is empty, expected a scene\n");
+  if (geteuid() != 0) {  // root may read everything
+    std::filesystem::permissions(file, std::filesystem::perms::none);
+    EXPECT_EQ(output_of(file), "ilaw: " + file + ": the file cannot be read: Permission denied\n");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+// What is misspelt is named, rather than what is missing for it.
+TEST(Program, NamesWhatItDoesNotKnow) {
+  const auto first_line = [](const std::string& arguments) {
+    const std::string output = run_program(arguments).output;
+    return output.substr(0, output.find('\n'));
+  };
+  EXPECT_EQ(first_line("rnu"),
+            "ilaw: found 'rnu', expected one of run, plot, converge, list, describe, --help, --version");
+  EXPECT_EQ(first_line("run " + ball + " --outt here"),
+            "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads");
+  EXPECT_EQ(first_line("run " + ball), "ilaw: --out is required");
+  EXPECT_EQ(first_line("run " + ball + " --out here --threads 0"),
+            "ilaw: --threads: Value 0 not in range 1 to 1024");
+  EXPECT_EQ(first_line("run " + ball + " --out here --checkpoint-every 0").size(),
+            std::string("ilaw: --checkpoint-every: Value 0 not in range 1 to 1000000000000000").size());
+}
+
+// The law is not blamed for the velocities that it is asked with.
 TEST(Program, FailsWithCodeOneWhereTheMotionOverflows) {
   const auto folder = fresh_folder();
   std::ofstream(folder / "scene.json") << R"({"model": {"type": "points", "dimension": 1,
     "points": [{"mass": 1e-300, "position": [1.0]}]}, "time": {"dt": 1.0, "end": 3.0},
-    "loads": [{"type": "force", "nodes": [0], "direction": [1e300], "history": [[0.0, 1.0]]}], "interfaces": []})";
+    "loads": [{"type": "force", "nodes": [0], "direction": [1e300], "history": [[0.5, 0.0], [1.5, 1.0]]}],
+    "interfaces": [{"law": "contact", "nodes": "all", "skip": false,
+                    "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})";
   const Outcome outcome =
       run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
   EXPECT_EQ(outcome.code, 1) << outcome.output;
-  EXPECT_NE(outcome.output.find("diverged"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("the motion diverged: velocity inf at node 0, step 1, time 1.0"),
+            std::string::npos)
+      << outcome.output;
+}
+
+TEST(Program, TellsWarningsAndRuns) {
+  const auto folder = fresh_folder();
+  nlohmann::json scene = nlohmann::json::parse(text_of(ball));
+  scene["output"]["every"] = 5000;
+  const std::string file = (folder / "scene.json").string();
+  std::ofstream(file) << scene.dump();
+  const Outcome outcome = run_program("run " + file + " --out " + folder.string());
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.output.find("ilaw: " + file + ": warning: /output/every: found 5000"), 0U)
+      << outcome.output;
+  EXPECT_EQ(nlohmann::json::parse(text_of(folder / "summary.json"))["warnings"].size(), 1U);
+}
+
+// What an earlier run left and this one does not replace would be taken for its own.
+TEST(Program, RemovesTheFieldsOfAnEarlierRun) {
+  const auto folder = fresh_folder();
+  nlohmann::json scene = nlohmann::json::parse(text_of(ball));
+  const std::string file = (folder / "scene.json").string(),
+                    command = "run " + file + " --out " + folder.string();
+  scene["output"]["fields"] = 1000;
+  std::ofstream(file) << scene.dump();
+  ASSERT_EQ(run_program(command).code, 0);
+  ASSERT_TRUE(std::filesystem::exists(folder / "fields_000002.vtu"));
+  std::ofstream(folder / "fields_of_mine.vtu") << "mine";
+  scene["output"].erase("fields");
+  std::ofstream(file) << scene.dump();
+  ASSERT_EQ(run_program(command).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "fields.vtu.series"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "fields_000002.vtu"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "fields_of_mine.vtu"));
 }
 
 class Stopped : public ::testing::TestWithParam<int> {};
@@ -255,6 +331,21 @@ TEST(Program, ListsAndDescribesLaws) {
   EXPECT_EQ(postit["laws"][0]["parameters"].size(), 8U);
   EXPECT_EQ(postit["laws"][0]["parameters"][0]["default"], "inf");
   EXPECT_NE(run_program("describe postit").output.find("tangent_influence"), std::string::npos);
+  const nlohmann::json coulomb =
+      nlohmann::json::parse(run_program("describe coulomb --json").output)["laws"][0];
+  for (const auto& parameter : coulomb["parameters"])
+    EXPECT_EQ(parameter["may_be"], parameter["name"] == "activation" ? nlohmann::json::array()
+                                                                     : nlohmann::json({"table", "per_node"}));
+  EXPECT_NE(run_program("describe coulomb").output.find("  or table, per_node  "), std::string::npos);
+}
+
+// Columns stand below each other, however long a name is.
+TEST(Program, AlignsColumns) {
+  std::istringstream list(run_program("list").output);
+  std::set<std::size_t> files;
+  for (std::string line; std::getline(list, line);)
+    if (line.find("search path") != 0) files.insert(line.find("/"));
+  EXPECT_EQ(files.size(), 1U);
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ json drawn_points(Draw& draw) {
     interface["obstacle"] = drawn_obstacle(draw);
     if (draw.below(3) == 0) interface["gap_offset"] = draw.in(-0.5, 0.5);
     if (draw.below(3) == 0) interface["birth"] = draw.in(0.0, 1.0);
-    if (draw.below(3) == 0) interface["death"] = draw.in(0.5, 1.5);
+    if (draw.below(3) == 0) interface["death"] = interface.value("birth", 0.0) + draw.in(0.1, 1.0);
     interfaces.push_back(interface);
   }
   loads.push_back({{"type", "gravity"}, {"acceleration", draw.vector(10.0)}});

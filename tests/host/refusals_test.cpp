@@ -1,5 +1,6 @@
 // A mistake in a scene is answered with the JSON pointer, what was found and what is allowed.
 #include "host_runner.hpp"
+#include "program_runner.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -70,6 +71,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "/loads/0/direction: unknown key, expected one of: acceleration, nodes, type"},
         Mistake{"/loads/0/nodes", "[7]", "/loads/0/nodes/0: found node 7, expected 0 to 1"},
         Mistake{"/interfaces/0/nodes", "[0, 2]", "/interfaces/0/nodes/1: found node 2, expected 0 to 1"},
+        Mistake{"/interfaces/0/nodes", "[-1]", "/interfaces/0/nodes/0: found -1, expected integer >= 0"},
+        Mistake{"/loads/0/nodes", "[0, 0.5]", "/loads/0/nodes/1: found 0.5, expected integer >= 0"},
+        Mistake{"/loads/0/nodes", "{\"near\": [\"x\", 0]}",
+                "/loads/0/nodes/near/0: found \"x\", expected number"},
         Mistake{"/interfaces/0/nodes", "[0, 0]",
                 "/interfaces/0/nodes/1: found node 0 twice, expected each node once"},
         Mistake{"/interfaces/0/nodes", "\"some\"",
@@ -77,17 +82,28 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/interfaces/0/law", "\"glue\"",
                 "/interfaces/0/law: 'glue': no glue.so found, expected it in one of: "},
         Mistake{"/interfaces/0/library", "\"./nowhere.so\"", "/interfaces/0/library: "},
-        Mistake{"/interfaces/0/parameters/friction", "-1",
-                "/interfaces/0/parameters: law 'coulomb': parameter 'friction' = -1 is not allowed: expected "
-                "a number in [0, inf]"},
-        Mistake{"/interfaces/0/parameters/fricton", "1",
-                "/interfaces/0/parameters: law 'coulomb': unknown parameter 'fricton': expected one of "
-                "friction, "},
+        Mistake{
+            "/interfaces/0/parameters/friction", "-1",
+            "/interfaces/0/parameters/friction: law 'coulomb': parameter 'friction' = -1 is not allowed: expected "
+            "a number in [0, inf]"},
+        Mistake{
+            "/interfaces/0/parameters/fricton", "1",
+            "/interfaces/0/parameters/fricton: law 'coulomb': unknown parameter 'fricton': expected one of "
+            "friction, "},
         Mistake{"/interfaces/0/parameters/friction", "[1]",
                 "/interfaces/0/parameters/friction: found [1], expected a number or \"inf\""},
         Mistake{"/interfaces/0/parameters/friction", "{\"per_node\": [0.1]}",
                 "/interfaces/0/parameters/friction/per_node: found 1 values, expected 2, one per node of the "
                 "interface"},
+        Mistake{"/interfaces/0/parameters/friction", "{\"table\": []}",
+                "/interfaces/0/parameters/friction/table: found [], expected at least one entry"},
+        Mistake{"/interfaces/0/parameters/friction", "{\"table\": [[0, 1], [1, -1]]}",
+                "/interfaces/0/parameters/friction/table: law 'coulomb': parameter 'friction' = -1"},
+        Mistake{"/interfaces/0/parameters", "{}",
+                "/interfaces/0/parameters: law 'coulomb': parameter 'friction' is missing"},
+        Mistake{"/interfaces/0/death", "0", "/interfaces/0/death: found 0, expected a time after birth, 0.0"},
+        Mistake{"/model/points/0/stiffness", "[0, 4.1e6]",
+                "/time/dt: found 0.001, expected at most 0.000987"},
         Mistake{"/interfaces/0/obstacle/normal", "[0, 0]",
                 "/interfaces/0/obstacle/normal: found a vector of length 0, expected a direction"},
         Mistake{"/output/watch", "[2]", "/output/watch/0: found node 2, expected 0 to 1"},
@@ -104,6 +120,75 @@ TEST(Scene, ThatIsNoJsonIsRefused) {
   EXPECT_NE(refusal_of("{").find("not valid JSON"), std::string::npos);
   EXPECT_NE(refusal_of(R"({"time": {"dt": 1e999}})").find("not valid JSON"), std::string::npos);
   EXPECT_NE(refusal_of(R"({"time": {}, "time": {}})").find("key 'time' appears twice"), std::string::npos);
+}
+
+// The bounds of a range are all told, also those that do not belong to it.
+TEST(Scene, TellsWhereARangeEnds) {
+  json scene = json::parse(text_of(std::filesystem::path(ILAW_SCENES) / "block_impact.json"));
+  scene["model"]["blocks"][0]["material"]["poisson"] = 0.5;
+  EXPECT_EQ(refusal_of(scene.dump()),
+            "/model/blocks/0/material/poisson: found 0.5, expected number > -1 < 0.5");
+}
+
+TEST(Scene, WhoseLibraryIsNoLibraryIsRefusedThere) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "law.so") << "a text";
+  json scene = good_scene();
+  scene["interfaces"][0]["library"] = (folder / "law.so").string();
+  EXPECT_EQ(refusal_of(scene.dump()).find("/interfaces/0/library: " + (folder / "law.so").string()), 0U)
+      << refusal_of(scene.dump());
+}
+
+// ---- steps and warnings ---------------------------------------------------------------------------------
+
+// At the critical step itself a run is stable; what is beyond is refused where that is exact.
+TEST(Step, MayBeCriticalButNoLarger) {
+  json scene = json::parse(text_of(std::filesystem::path(ILAW_SCENES) / "two_bars.json"));
+  const double critical = 0.01;  // elements of 0.01, waves at 1
+  scene["time"] = {{"dt", critical}, {"end", 0.1}};
+  EXPECT_EQ(refusal_of(scene.dump()), "not refused");
+  scene["time"]["dt"] = critical * (1.0 + 1e-12);
+  EXPECT_EQ(refusal_of(scene.dump()).find("/time/dt: found 0.01"), 0U);
+  EXPECT_NE(refusal_of(scene.dump()).find("the model's critical step"), std::string::npos);
+}
+
+std::vector<std::string> warnings_of(const char* pointer, const char* value) {
+  json scene = good_scene();
+  scene[json::json_pointer(pointer)] = json::parse(value);
+  return scene_of(scene.dump()).warnings;
+}
+
+// What can run, but can hardly be meant, is run and told.
+TEST(Warnings, TellWhatCanHardlyBeMeant) {
+  using Warnings = std::vector<std::string>;
+  EXPECT_EQ(warnings_of("/title", "\"as it is\""), Warnings{});
+  EXPECT_EQ(warnings_of("/loads/0", R"({"type": "shock", "nodes": [0], "time": 0.2, "impulse": [0, 1]})"),
+            Warnings{"/loads/0/time: found 0.2, after the end of the run, 0.1"});
+  EXPECT_EQ(warnings_of("/interfaces/0/birth", "0.11"),
+            Warnings{"/interfaces/0/birth: found 0.11, after the end of the run, 0.1"});
+  EXPECT_EQ(warnings_of("/time/dt", "0.5"),
+            Warnings{"/time/end: found 0.1, less than one step, 0.5, which is taken all the same"});
+  EXPECT_EQ(warnings_of("/output/every", "101"),
+            Warnings{"/output/every: found 101: the history has no row in 100 steps"});
+  EXPECT_EQ(
+      warnings_of("/interfaces/0/obstacle", R"({"type": "sphere", "center": [0.5, 1], "radius": 0.75})"),
+      Warnings{"/interfaces/0: 2 node(s) start inside the obstacle, node 0 by 0.25"});
+}
+
+// For blocks the critical step is a bound from below.
+TEST(Warnings, TellOfAStepThatMayBeUnstable) {
+  json scene = json::parse(text_of(std::filesystem::path(ILAW_SCENES) / "block_impact.json"));
+  scene["time"] = {{"dt", 1e-3}, {"end", 0.01}};
+  const std::vector<std::string> warnings = scene_of(scene.dump()).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].find("/time/dt: found 0.001, which may be unstable"), 0U) << warnings[0];
+}
+
+TEST(Warnings, AreNotForTheShippedScenes) {
+  for (const auto& entry : std::filesystem::directory_iterator(ILAW_SCENES)) {
+    const std::vector<std::string> warnings = scene_of(text_of(entry.path())).warnings;
+    EXPECT_TRUE(warnings.empty()) << entry.path() << ": " << warnings.front();
+  }
 }
 
 TEST(Scene, TakesInfinityTablesAndValuesPerNode) {

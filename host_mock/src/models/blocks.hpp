@@ -31,6 +31,7 @@ class Blocks : public Model {
   double potential(const Dofs& u) const override;
   // From the largest eigenvalue of one element, which bounds that of the whole (Irons and Treharne 1971).
   double critical_step() const override { return critical_step_; }
+  bool critical_step_is_exact() const override { return false; }
 
  private:
   using ElementVector = Eigen::Matrix<double, 24, 1>;

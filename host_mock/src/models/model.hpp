@@ -62,6 +62,8 @@ class Model {
   // A bound from below on the largest stable step of central difference (about the undeformed body where the
   // model is not linear); infinite without internal forces.
   virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }
+  // Whether no larger step is stable.
+  virtual bool critical_step_is_exact() const { return true; }
 
  protected:
   Nodes nodes_;
