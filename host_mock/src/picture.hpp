@@ -12,14 +12,20 @@ namespace ilaw::host {
 
 struct Caption {
   std::string title;
-  int every;                       // steps per row; 0 when it is not known
-  std::set<std::string> statuses;  // those that occurred
+  int every;  // steps per row; 0 when it is not known
 };
 
-// A script that draws folder/history.csv, whose columns are in header, as folder/history.png and .svg: panels
-// over a common time for gap (and displacement in 2D and 3D), velocity, impulse and its running sum, each
-// state variable of the laws, and the status as a band per node. folder is absolute.
-void write_picture(std::ostream& script, const std::filesystem::path& folder,
-                   const std::vector<std::string>& header, const Caption& caption);
+// What history.csv holds.
+struct Columns {
+  std::vector<std::string> names;
+  std::vector<bool> all_zero;  // per column
+  std::set<int> statuses;      // those that occur in a row
+};
+
+// A script that draws folder/history.csv as folder/history.png and .svg: panels over a common time for gap
+// (and displacement in 2D and 3D), velocity, impulse and its running sum, each state variable of the laws
+// that is not zero throughout, and the status as a band per node. folder is absolute.
+void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,
+                   const Caption& caption);
 
 }  // namespace ilaw::host

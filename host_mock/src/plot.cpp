@@ -7,7 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -16,30 +18,39 @@
 namespace ilaw::host {
 namespace {
 
-std::vector<std::string> read_header(const std::filesystem::path& history) {
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+Columns read_columns(const std::filesystem::path& history) {
   std::ifstream stream(history);
   std::string line;
   std::getline(stream, line);
-  std::vector<std::string> names;
-  std::istringstream cells(line);
-  for (std::string name; std::getline(cells, name, ',');) names.push_back(name);
-  return names;
+  Columns columns{cells_of(line), {}, {}};
+  columns.all_zero.assign(columns.names.size(), true);
+  while (std::getline(stream, line)) {
+    const std::vector<std::string> cells = cells_of(line);
+    for (std::size_t k = 0; k < std::min(cells.size(), columns.names.size()); ++k) {
+      const double value = std::strtod(cells[k].c_str(), nullptr);
+      if (value != 0.0) columns.all_zero[k] = false;
+      if (columns.names[k].ends_with(".status")) columns.statuses.insert(static_cast<int>(value));
+    }
+  }
+  return columns;
 }
 
 // What the summary tells about the history; a folder without a summary is drawn all the same.
 Caption read_caption(const std::filesystem::path& folder) {
   std::ifstream stream(folder / "summary.json");
   const nlohmann::json summary = nlohmann::json::parse(stream, nullptr, false);
-  if (!summary.is_object()) return {folder.filename().string(), 0, {}};
+  if (!summary.is_object()) return {folder.filename().string(), 0};
   const auto value = [&](const char* pointer, auto otherwise) {
     return summary.value(nlohmann::json::json_pointer(pointer), otherwise);
   };
-  Caption caption{
-      value("/scene/title", folder.filename().string()), value("/scene/source/output/every", 1), {}};
-  const nlohmann::json counts = value("/status_counts", nlohmann::json::object());
-  for (const auto& [name, count] : counts.items())
-    if (count != 0) caption.statuses.insert(name);
-  return caption;
+  return {value("/scene/title", folder.filename().string()), value("/scene/source/output/every", 1)};
 }
 
 int refuse(const std::filesystem::path& history, const char* found) {
@@ -55,12 +66,12 @@ int plot(const std::filesystem::path& results) {
   const std::filesystem::path folder = std::filesystem::absolute(results).lexically_normal();
   const std::filesystem::path history = folder / "history.csv";
   if (!std::filesystem::is_regular_file(history)) return refuse(history, "no such file");
-  const std::vector<std::string> header = read_header(history);
-  if (header.size() < 2) return refuse(history, "no column besides time");
+  const Columns columns = read_columns(history);
+  if (columns.names.size() < 2) return refuse(history, "no column besides time");
 
   const std::filesystem::path script = folder / "history.gnuplot";
   std::ofstream stream(script);
-  write_picture(stream, folder, header, read_caption(folder));
+  write_picture(stream, folder, columns, read_caption(folder));
   stream.close();
   if (!stream) {
     std::fprintf(stderr, "ilaw: %s: cannot be written\n", script.c_str());
