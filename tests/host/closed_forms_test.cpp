@@ -43,7 +43,7 @@ void expect_first_order(const char* scene, double bound, std::vector<Event> (*ev
   EXPECT_GE(order(steps, errors), 0.9) << scene;
 }
 
-// ---- impact oscillator ------------------------------------------------------------------------------------
+// ---- impact oscillator ----
 // u = -sin(10 t)/10 meets -d = -0.05 at 10 t = pi/6 with the speed cos(pi/6). It leaves with w, 0.8 of what
 // it came with, and -d cos s + (w/10) sin s = -d brings it back with w at s = 10 t = 2 (pi - atan(w/(10 d))).
 std::vector<Event> exact_impacts() {
@@ -73,10 +73,9 @@ TEST(ImpactOscillator, ImpactsAtExactInstantsWithExactSpeeds) {
   expect_first_order("impact_oscillator.json", 6.0, impacts, exact_impacts());
 }
 
-// ---- stick-slip
-// --------------------------------------------------------------------------------------------- Sticks to the
-// belt of speed 0.1 until 100 x = 5. Kinetic friction is 3: then x = 0.03 + 0.02 cos s + 0.01 sin s, s = 10
-// t, which has the speed of the belt again at s = 2 (pi - atan 2), where x = 0.01.
+// ---- stick-slip ----
+// Sticks to the belt of speed 0.1 until 100 x = 5. Kinetic friction is 3: then x = 0.03 + 0.02 cos s + 0.01
+// sin s, s = 10 t, which has the speed of the belt again at s = 2 (pi - atan 2), where x = 0.01.
 std::vector<Event> exact_turns() {
   const double slip = 2.0 * (M_PI - std::atan(2.0)) / 10.0, stick = 0.4;
   std::vector<Event> turns;
@@ -108,11 +107,10 @@ TEST(StickSlip, TurnsAtExactInstants) {
   expect_first_order("stick_slip.json", 8.0, turns, exact_turns());
 }
 
-// ---- double cantilever
-// -------------------------------------------------------------------------------------- The half beam of
-// thickness t lifted by w is open over a = (3 E t^3 w^2/(8 G))^(1/4) - 0.605 t: beam theory, with the
-// correction for the root's rotation of Williams (1989), chi = 0.605 for an isotropic beam of nu = 0. What
-// was broken, over toughness and width, is the crack's length.
+// ---- double cantilever ----
+// The half beam of thickness t lifted by w is open over a = (3 E t^3 w^2/(8 G))^(1/4) - 0.605 t: beam theory,
+// with the correction for the root's rotation of Williams (1989), chi = 0.605 for an isotropic beam of nu =
+// 0. What was broken, over toughness and width, is the crack's length.
 TEST(DoubleCantilever, OpensAsBeamTheorySays) {
   Scene scene = shipped("dcb_peel.json");
   Integrator integrator = integrator_of(scene);
@@ -123,11 +121,10 @@ TEST(DoubleCantilever, OpensAsBeamTheorySays) {
   EXPECT_NEAR(opened, crack, 0.02 * crack);
 }
 
-// ---- mixed mode
-// ----------------------------------------------------------------------------------------------- Pulled
-// along x off a plane at 30 degrees, the opening has the share of shear B = 1/4: toughness G = 2e-6 + 6e-6
-// B^2 and strength^2 = 1e-6 + 3e-6 B^2 (Benzeggagh-Kenane, exponent 2). The bar of E = L = 1 loads to the
-// strength s; then s' = s (w - u)/(w - s) falls to 0 at u = w = 2 G/s.
+// ---- mixed mode ----
+// Pulled along x off a plane at 30 degrees, the opening has the share of shear B = 1/4: toughness G = 2e-6 +
+// 6e-6 B^2 and strength^2 = 1e-6 + 3e-6 B^2 (Benzeggagh-Kenane, exponent 2). The bar of E = L = 1 loads to
+// the strength s; then s' = s (w - u)/(w - s) falls to 0 at u = w = 2 G/s.
 TEST(MixedModeBar, SoftensAndBreaksAsMixedTractionSays) {
   const double area = 0.01, toughness = 2e-6 + 6e-6 / 16.0, strength = std::sqrt(1e-6 + 3e-6 / 16.0);
   const double w = 2.0 * toughness / strength;
