@@ -1,5 +1,6 @@
 // Contacts that share degrees of freedom: block Gauss-Seidel over the laws ends where every law holds.
 #include "host_runner.hpp"
+#include "program_runner.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -225,6 +226,39 @@ TEST(Column, ThatIsTooLongIsSaidToBe) {
   EXPECT_NEAR(integrator.tally().coupling_residual_max, largest / size, 1e-3 * largest / size);
   ASSERT_EQ(integrator.warnings().size(), 1U);
   EXPECT_NE(integrator.warnings()[0].find("not solved in 1 of 1 steps: residual up to"), std::string::npos);
+}
+
+// A spring so stiff that it throws the mass back farther at every step.
+TEST(RunWarnings, TellThatAPenaltyPutsInEnergy) {
+  const auto dropped = [](double stiffness) {
+    Scene scene =
+        scene_of(R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0.1]}]},
+      "time": {"dt": 1e-3, "end": 1}, "loads": [{"type": "gravity", "acceleration": [-10]}],
+      "interfaces": [{"law": "penalty", "parameters": {"stiffness": )" +
+                 std::to_string(stiffness) +
+                 R"(}, "nodes": "all", "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) integrator.step();
+    return integrator.warnings();
+  };
+  EXPECT_TRUE(dropped(1e4).empty());
+  ASSERT_EQ(dropped(1e8).size(), 1U);
+  EXPECT_NE(dropped(1e8)[0].find("interfaces put in the energy"), std::string::npos);
+}
+
+// On stderr, in the run's line and in the summary.
+TEST(RunWarnings, AreSaidByTheProgram) {
+  const auto folder = fresh_folder();
+  nlohmann::json scene = column(250).source;
+  scene["time"]["end"] = 0.001;
+  std::ofstream(folder / "scene.json") << scene.dump();
+  const Outcome outcome =
+      run_program("run " + (folder / "scene.json").string() + " --out " + (folder / "out").string());
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.output.find("warning: contacts that share nodes are not solved in"), std::string::npos);
+  EXPECT_NE(outcome.output.find(", with warnings; results in"), std::string::npos) << outcome.output;
+  const auto summary = nlohmann::json::parse(text_of(folder / "out" / "summary.json"));
+  EXPECT_EQ(summary.at("warnings").size(), 1U);
 }
 
 }  // namespace
