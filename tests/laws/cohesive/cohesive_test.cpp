@@ -180,7 +180,7 @@ TEST(Cohesive, IntactBondKeepsTheEnergyForAnyStiffness) {
 TEST(Cohesive, RigidBondStandsStillUpToItsStrength) {
   Hung node(bond_of("camacho_ortiz", 2.0, 3.0), 0.1);
   for (int k = 0; k < 100; ++k) {
-    node.push({1.99 * std::sin(0.1 * k), 1.99 * std::cos(0.1 * k), -5.0 * (k == 1000)});
+    node.push({1.99 * std::sin(0.1 * k), 1.99 * std::cos(0.1 * k), 0});
     EXPECT_EQ(node.v, (Vector{}));
     EXPECT_EQ(node.named("damage"), 0.0);
   }
