@@ -111,6 +111,15 @@ class ArgumentList {
   std::vector<const ilaw_argument*> pointers_;
 };
 
+// Straight through the law: the loader, which checks every instance, has seen one.
+void try_create(const ilaw_law& law, const ilaw_setup& setup) {
+  char message[1024];
+  ilaw_instance* made = nullptr;
+  const std::int32_t code = law.create(&setup, &made, message, sizeof message);
+  if (code != ILAW_OK) throw ilaw::error(code, message);
+  law.destroy(made);
+}
+
 }  // namespace
 
 Arguments read_arguments(const json& parameters, std::size_t node_count, const std::string& pointer) {
@@ -138,20 +147,18 @@ ilaw::interface create_law(const std::string& law, const Arguments& given, const
   setup.tangent_given = tangent.size() > 0 ? 1 : 0;
   setup.arguments = arguments.pointers().data();
   setup.argument_count = static_cast<std::uint32_t>(arguments.pointers().size());
-  const auto create = [&](std::optional<std::size_t> place) {
-    try {
-      return ilaw::interface(library, law, setup);
-    } catch (const ilaw::error& refusal) {
-      if (refusal.code() != ILAW_INVALID_PARAMETER) throw;
-      throw ParameterError(refusal, arguments.pointer_from(refusal.what(), place), place);
-    }
-  };
-  ilaw::interface created = create({});
-  // Values per node reach the law with the first batch only. Whether it allows those of a node together is
-  // found now, by creating it for that node alone; neighbours are often alike.
-  for (std::size_t place = 0; place < arguments.node_count(); ++place)
-    if (arguments.take_node(place)) create(place);
-  return created;
+  std::optional<std::size_t> place;
+  try {
+    ilaw::interface created(library, law, setup);
+    // Values per node reach the law with the first batch only. Whether it allows those of a node together is
+    // found now, by an instance for that node alone; neighbours are often alike.
+    for (place = 0; *place < arguments.node_count(); ++*place)
+      if (arguments.take_node(*place)) try_create(created.law(), setup);
+    return created;
+  } catch (const ilaw::error& refusal) {
+    if (refusal.code() != ILAW_INVALID_PARAMETER) throw;
+    throw ParameterError(refusal, arguments.pointer_from(refusal.what(), place), place);
+  }
 }
 
 }  // namespace ilaw::host

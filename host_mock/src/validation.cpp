@@ -150,16 +150,35 @@ void validate(const json& value, const json& part, const std::string& base) {
   explain_error(value, part, base, *deepest);
 }
 
-// Watches nlohmann's parser for keys that come twice, which JSON leaves undefined.
-class DuplicateKeys {
+// Looks for keys that come twice, which JSON leaves undefined. A reader of its own: nlohmann's parser with a
+// callback goes through all of an array after each of its objects.
+class DuplicateKeys : public nlohmann::json_sax<json> {
  public:
-  bool operator()(int /*depth*/, json::parse_event_t event, json& parsed) {
-    if (event == json::parse_event_t::object_start) seen_.emplace_back();
-    if (event == json::parse_event_t::object_end) seen_.pop_back();
-    if (event == json::parse_event_t::key && !seen_.back().insert(parsed.get<std::string>()).second)
-      throw SceneError("",
-                       "key '" + parsed.get<std::string>() + "' appears twice in one object, expected once");
+  bool start_object(std::size_t /*size*/) override {
+    seen_.emplace_back();
     return true;
+  }
+  bool end_object() override {
+    seen_.pop_back();
+    return true;
+  }
+  bool key(string_t& key) override {
+    if (!seen_.back().insert(key).second)
+      throw SceneError("", "key '" + key + "' appears twice in one object, expected once");
+    return true;
+  }
+  bool null() override { return true; }
+  bool boolean(bool /*value*/) override { return true; }
+  bool number_integer(number_integer_t /*value*/) override { return true; }
+  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
+  bool string(string_t& /*value*/) override { return true; }
+  bool binary(binary_t& /*value*/) override { return true; }
+  bool start_array(std::size_t /*size*/) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t /*at*/, const std::string& /*token*/,
+                   const json::exception& /*error*/) override {
+    return false;  // left to parse
   }
 
  private:
@@ -171,9 +190,8 @@ class DuplicateKeys {
 json parse_scene(const std::string& text) {
   try {
     DuplicateKeys duplicates;
-    return json::parse(text, [&duplicates](int depth, json::parse_event_t event, json& parsed) {
-      return duplicates(depth, event, parsed);
-    });
+    json::sax_parse(text, &duplicates);
+    return json::parse(text);
   } catch (const json::exception& error) {
     throw SceneError(std::string("not valid JSON: ") + error.what());
   }
