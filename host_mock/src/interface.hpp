@@ -88,7 +88,7 @@ class Interface {
   double gap(int slot) const { return gap_[static_cast<std::size_t>(slot)]; }
   int status(int slot) const { return status_[static_cast<std::size_t>(slot)]; }
   double energy(int slot, int part) const {
-    return energy_[static_cast<std::size_t>(ILAW_ENERGY_COUNT * slot + part)];
+    return energy_[static_cast<std::size_t>(slot) * ILAW_ENERGY_COUNT + static_cast<std::size_t>(part)];
   }
   // Relative velocity of a contact in a velocity field, without the obstacle's own.
   Vector relative(int slot, const Dofs& v) const;

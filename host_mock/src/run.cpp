@@ -149,7 +149,8 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
   std::printf("%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e%s; results in %s\n",
               scene.title.c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
               record.seconds_total, integrator.energy().balance_error,
-              integrator.warnings().empty() ? "" : ", with warnings", folder.c_str());
+              scene.warnings.empty() && integrator.warnings().empty() ? "" : ", with warnings",
+              folder.c_str());
   return exit_done;
 }
 
