@@ -197,7 +197,7 @@ std::unique_ptr<Load> read_load(const json& load, const Model& model, const std:
 // ---- interfaces -----------------------------------------------------------------------------------------
 
 Vector read_direction(const json& value, int d, const std::string& pointer) {
-  const Vector direction = read_vector(value, d, pointer);
+  Vector direction = read_vector(value, d, pointer);
   if (direction.norm() == 0.0) throw SceneError(pointer, "found a vector of length 0, expected a direction");
   return direction;
 }
@@ -294,7 +294,7 @@ std::string known_libraries() {
 Vector read_tangent(const json& interface, const InterfaceSetup& setup, const Model& model,
                     const std::string& pointer) {
   if (!interface.contains("tangent")) return {};
-  const Vector tangent = read_direction(interface["tangent"], model.dimension(), pointer).normalized();
+  Vector tangent = read_direction(interface["tangent"], model.dimension(), pointer).normalized();
   if (!setup.opponent->keeps_normal())
     throw SceneError(pointer, "found a tangent, expected none: the normal of the opponent turns");
   if (std::abs(tangent.dot(setup.opponent->meet(0, Dofs::Zero(model.mass().size()), 0.0).normal)) > 1e-9)
