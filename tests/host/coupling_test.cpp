@@ -258,7 +258,7 @@ TEST(RunWarnings, AreSaidByTheProgram) {
   EXPECT_NE(outcome.output.find("warning: contacts that share nodes are not solved in"), std::string::npos);
   EXPECT_NE(outcome.output.find(", with warnings; results in"), std::string::npos) << outcome.output;
   const auto summary = nlohmann::json::parse(text_of(folder / "out" / "summary.json"));
-  EXPECT_EQ(summary.at("warnings").size(), 1U);
+  EXPECT_NE(summary.at("warnings").dump().find("are not solved in"), std::string::npos);
 }
 
 }  // namespace
