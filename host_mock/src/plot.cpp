@@ -13,6 +13,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace ilaw::host {
@@ -65,7 +66,11 @@ int plot(const std::filesystem::path& results) {
   // gnuplot takes file names that begin with < or | for commands: an absolute path never does.
   const std::filesystem::path folder = std::filesystem::absolute(results).lexically_normal();
   const std::filesystem::path history = folder / "history.csv";
-  if (!std::filesystem::is_regular_file(history)) return refuse(history, "no such file");
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(history, error);
+  if (status.type() == std::filesystem::file_type::not_found) return refuse(history, "no such file");
+  if (!std::filesystem::is_regular_file(status))
+    return refuse(history, error ? error.message().c_str() : "something that is no file");
   const Columns columns = read_columns(history);
   if (columns.names.size() < 2) return refuse(history, "no column besides time");
 

@@ -57,7 +57,12 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
     EXPECT_EQ(unwritable.output.find("ilaw: --out /proc: "), 0U) << unwritable.output;
   }
   EXPECT_EQ(run_program("describe no_such_law").code, 2);
-  EXPECT_EQ(run_program("plot " + folder.string()).code, 2);
+  const std::string wanted = ", expected the history that `ilaw run` writes of watched nodes\n";
+  const Outcome empty = run_program("plot " + folder.string());
+  EXPECT_EQ(empty.code, 2);
+  EXPECT_EQ(empty.output, "ilaw: " + (folder / "history.csv").string() + ": found no such file" + wanted);
+  EXPECT_EQ(run_program("plot " + ball).output,
+            "ilaw: " + ball + "/history.csv: found no such file" + wanted);
   for (const char* command : {"", "run", "plot", "converge", "list", "describe"}) {
     const Outcome help = run_program(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
