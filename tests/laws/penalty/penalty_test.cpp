@@ -325,8 +325,10 @@ TEST(Penalty, RefusesBadParameters) {
   for (const auto& [integration, numbers, named] :
        {std::tuple<const char*, Given, const char*>{"implicit", {}, "'stiffness' is missing"},
         {"implicit", {{"stiffness", -1.0}}, "'stiffness' = -1"},
-        {"explicit", {{"stiffness", inf_value}}, "'stiffness' = inf"},
-        {"explicit", {{"stiffness", 1.0}, {"friction", 0.1}}, "'tangential_stiffness' = inf"},
+        {"explicit", {{"stiffness", inf_value}}, "; found stiffness = inf, integration = \"explicit\""},
+        {"explicit",
+         {{"stiffness", 1.0}, {"friction", 0.1}},
+         "; found friction = 0.1, tangential_stiffness = inf, "},
         {"implicit", {{"stiffness", 1.0}, {"tangential_stiffness", 0.0}}, "'tangential_stiffness' = 0"},
         {"implicit", {{"stiffness", 1.0}, {"exponent", 0.5}}, "'exponent' = 0.5"},
         {"implicit", {{"stiffness", 1.0}, {"damping", inf_value}}, "'damping' = inf"},
