@@ -18,7 +18,7 @@ void require(bool good, const std::string& expected) {
 }
 
 // Velocity that is constant between instants; displacement is its integral from 0.
-ExactNode piecewise(std::vector<double> instants, std::vector<double> velocities) {
+ExactNode piecewise(const std::vector<double>& instants, const std::vector<double>& velocities) {
   const auto velocity = [=](double time) {
     const auto k = std::upper_bound(instants.begin(), instants.end(), time) - instants.begin();
     return velocities[static_cast<std::size_t>(k)];

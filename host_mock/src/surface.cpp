@@ -84,7 +84,7 @@ SurfaceOpponent::SurfaceOpponent(const Model& model, std::vector<int> nodes, con
     for (std::size_t k = 0; k < 4; ++k)
       shortest_edge_ = std::min(
           shortest_edge_, (position(facet[k], undeformed) - position(facet[(k + 1) % 4], undeformed)).norm());
-  look(undeformed);
+  SurfaceOpponent::look(undeformed);
 }
 
 void SurfaceOpponent::find_neighbours() {

@@ -73,6 +73,7 @@ std::vector<double> boundary_areas(const std::string& block, const Grid& grid,
       vectors[static_cast<std::size_t>(set.nodes[k] - grid.first)][face.axis] += set.areas[k];
   }
   std::vector<double> areas;
+  areas.reserve(vectors.size());
   for (const Eigen::Vector3d& vector : vectors) areas.push_back(vector.norm());
   return areas;
 }
