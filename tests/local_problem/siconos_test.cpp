@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <vector>
 
 extern "C" {
@@ -47,7 +48,12 @@ class SiconosContact {
     problem_ =
         frictionContactProblem_new_with_data(3, 1, NM_create_from_data(NM_DENSE, 3, 3, matrix_), q_, &mu_);
   }
-  ~SiconosContact() { solver_options_delete(options_); }  // the problem points into this object
+  ~SiconosContact() {
+    problem_->M->matrix0 = problem_->q = problem_->mu = nullptr;  // they are this object's
+    frictionContactProblem_free(problem_);
+    solver_options_delete(options_);
+    std::free(options_);  // which Siconos 4.4 clears only, whatever its header says
+  }
   SiconosContact(const SiconosContact&) = delete;
   SiconosContact& operator=(const SiconosContact&) = delete;
 
