@@ -54,7 +54,8 @@ Tally expect_same_bits(const json& source) {
   const std::vector<double> states = states_of(scene, integrator.displacement()),
                             wanted = states_of(all, asker.displacement());
   EXPECT_EQ(states.size(), wanted.size());
-  EXPECT_EQ(std::memcmp(states.data(), wanted.data(), states.size() * sizeof(double)), 0);
+  EXPECT_TRUE(states.empty() ||
+              std::memcmp(states.data(), wanted.data(), states.size() * sizeof(double)) == 0);
   EXPECT_GE(integrator.tally().skipped, asker.tally().skipped);  // those not born yet, or dead
   EXPECT_EQ(integrator.tally().asked + integrator.tally().skipped,
             asker.tally().asked + asker.tally().skipped);
