@@ -164,11 +164,11 @@ void write_picture(const ErrorTable& table, const std::string& title, const std:
                    std::ostream& script) {
   for (const auto& [terminal, kind] : {std::pair{"pngcairo", "png"}, std::pair{"svg", "svg"}}) {
     script << "reset\nset datafile separator comma\nset terminal " << terminal
-           << " size 1000,460 font 'sans,11' background rgb 'white'\nset output '"
-           << (folder / ("converge." + std::string(kind))).string()
-           << "'\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\nset "
-              "ylabel 'relative error'\nset multiplot layout 1,2 title '"
-           << title << "' noenhanced\n";
+           << " size 1000,460 font 'sans,11' background rgb 'white'\nset output "
+           << in_quotes((folder / ("converge." + std::string(kind))).string())
+           << "\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\nset "
+              "ylabel 'relative error'\nset multiplot layout 1,2 title "
+           << in_quotes(title) << " noenhanced\n";
     // Run times of machines differ: over that of the finest run that is compared.
     const double finest = table.runs[table.errors.size() - 1].seconds;
     for (const auto& [column, unit, label, corner] :
@@ -176,9 +176,9 @@ void write_picture(const ErrorTable& table, const std::string& title, const std:
           std::tuple{3, finest, "run time / that of the finest run", "left"}}) {
       script << "set xlabel '" << label << "'\nset key bottom " << corner << " noenhanced\nplot ";
       for (std::size_t n = 0; n < 3; ++n)
-        script << (n ? ", '" : "'") << (folder / "converge.csv").string() << "' using ($" << column << '/'
-               << unit << "):" << n + 4 << " with linespoints linewidth 1.5 pointtype " << n + 5 << " title '"
-               << norms[n] << "'";
+        script << (n ? ", " : "") << in_quotes((folder / "converge.csv").string()) << " using ($" << column
+               << '/' << unit << "):" << n + 4 << " with linespoints linewidth 1.5 pointtype " << n + 5
+               << " title '" << norms[n] << "'";
       if (column == 1) {
         const double h = table.runs[0].dt, top = norm_of(table.errors[0], 0);
         script << ", " << top / h << "*x with lines dashtype 2 linecolor rgb '#808080' title 'order 1'";
@@ -187,12 +187,6 @@ void write_picture(const ErrorTable& table, const std::string& title, const std:
     }
     script << "unset multiplot\nunset output\n";
   }
-}
-
-std::string without_quotes(std::string text) {
-  for (char& c : text)
-    if (c == '\'' || std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
-  return text;
 }
 
 // A number in ten columns, "-" where there is none.
@@ -223,7 +217,7 @@ int converge(const ConvergeOptions& options) {
   try {
     const json source = read_scene_source(options.scene);
     const Sweep sweep = sweep_of(source, options);
-    title = without_quotes(source.value("title", options.scene.stem().string()));
+    title = source.value("title", options.scene.stem().string());
     // Refused, if at all, before anything is written.
     exact_solution(scene_at(source, sweep, 0, options.scene));
     if (sweep.with_mesh) refuse_node_numbers(source, "");

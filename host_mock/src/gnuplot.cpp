@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cstdio>
 #include <string>
 
@@ -30,6 +31,15 @@ int exit_status_of_gnuplot(std::string file) {
 }
 
 }  // namespace
+
+std::string in_quotes(std::string_view text) {
+  std::string out = "'";
+  for (const char c : text) {
+    if (c == '\'') out += '\'';
+    out += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
+  }
+  return out + "'";
+}
 
 bool run_gnuplot(const std::filesystem::path& script) {
   const int status = exit_status_of_gnuplot(script.string());

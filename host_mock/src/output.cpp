@@ -218,7 +218,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
   json interfaces = json::array();
   for (const auto& interface : scene.interfaces) interfaces.push_back(describe_interface(*interface));
   std::vector<std::string> warnings = scene.warnings;
-  for (const std::string& warning : integrator.warnings()) warnings.push_back(warning);
+  warnings.insert(warnings.end(), record.warnings.begin(), record.warnings.end());
   const json summary = {
       {"program", {{"name", "ilaw"}, {"version", ILAW_VERSION}, {"abi", {ILAW_ABI_MAJOR, ILAW_ABI_MINOR}}}},
       {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", scene.source}}},

@@ -75,7 +75,8 @@ class History {
 struct RunRecord {
   std::int64_t resumed_at = 0;  // step
   bool interrupted = false;
-  std::string failure;  // empty: none
+  std::string failure;                // empty: none
+  std::vector<std::string> warnings;  // of the integrator, at the end
   double seconds_total = 0.0, seconds_output = 0.0;
 };
 

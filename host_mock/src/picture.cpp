@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "picture.hpp"
 
+#include "gnuplot.hpp"
+
 #include <algorithm>
 #include <cctype>
 #include <iterator>
@@ -37,16 +39,6 @@ constexpr Status statuses[] = {{"free", "#dcdcdc"},   {"closed", "#56B4E9"},   {
 // Sizes in pixels.
 constexpr double width = 1000, left = 95, right = 120, above = 45, below = 55, between = 18,
                  curve_height = 120, row_height = 24, key_line = 18;
-
-// In single quotes gnuplot substitutes nothing.
-std::string in_quotes(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text) {
-    if (c == '\'') out += '\'';
-    out += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
-  }
-  return out + "'";
-}
 
 bool is_component(std::string_view name) {
   return name.size() == 2 && std::string_view("uvr").find(name[0]) != std::string_view::npos &&

@@ -71,6 +71,7 @@ class Run {
   // Where that fails, and nothing did before, the run did.
   void finish(double seconds_total) {
     record.seconds_total = seconds_total;
+    record.warnings = integrator_.warnings();
     try {
       write_summary(scene_, integrator_, record, options_.folder);
     } catch (const std::exception& failure) {
@@ -149,8 +150,7 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
   std::printf("%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e%s; results in %s\n",
               scene.title.c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
               record.seconds_total, integrator.energy().balance_error,
-              scene.warnings.empty() && integrator.warnings().empty() ? "" : ", with warnings",
-              folder.c_str());
+              scene.warnings.empty() && record.warnings.empty() ? "" : ", with warnings", folder.c_str());
   return exit_done;
 }
 
@@ -173,7 +173,7 @@ int run(const RunOptions& options) {
   warn(scene->warnings);
   run->advance();
   run->finish(seconds_since(start));
-  warn(run->integrator().warnings());
+  warn(run->record.warnings);
   return report(*scene, run->integrator(), run->record, options);
 }
 

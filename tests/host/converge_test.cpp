@@ -371,6 +371,20 @@ TEST(Converge, RefinesMeshAndStepTogether) {
   EXPECT_NEAR(study.table.at("steps")[1] / study.table.at("steps")[0], 2.0, 0.1);
 }
 
+// gnuplot is given names and titles in single quotes.
+TEST(Converge, DrawsIntoAFolderWithAQuote) {
+  const auto folder = fresh_folder() / "it's here";
+  json scene = ball(0.5);
+  scene["title"] = "The ball's flight";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "scene.json") << scene;
+  const Outcome outcome = run_program("converge \"" + (folder / "scene.json").string() +
+                                      "\" --levels 3 --out \"" + folder.string() + "\"");
+  EXPECT_EQ(outcome.code, 0) << outcome.output;
+  EXPECT_TRUE(std::filesystem::exists(folder / "converge.png"));
+  EXPECT_EQ(json::parse(text_of(folder / "converge.json"))["title"], scene["title"]);
+}
+
 TEST(Converge, RefusesWhatItCannotCompare) {
   const auto refusal = [](const json& scene, const std::string& options) {
     const Study study = study_of(scene, options);

@@ -3,7 +3,9 @@
 #include "random_nodes.hpp"
 
 #include <limits>
+#include <map>
 #include <ostream>
+#include <string>
 #include <tuple>
 
 namespace ilaw::testing {
@@ -28,6 +30,13 @@ struct Law {
 };
 
 std::ostream& operator<<(std::ostream& out, const Law& law) { return out << law.name; }
+
+const std::map<std::string, double> postit_numbers = {{"friction", 0.4},
+                                                      {"adhesion_limit", 2.0},
+                                                      {"efficiency_decrease", 20.0},
+                                                      {"memory", 4.0 * RandomNodes::step},
+                                                      {"tangent_influence", 0.8},
+                                                      {"buckets", 4.0}};
 
 const std::vector<Law> laws = {
     {.name = "contact", .law = "contact", .parameters = {}, .statuses = {ILAW_FREE, ILAW_CLOSED}},
@@ -76,12 +85,7 @@ const std::vector<Law> laws = {
      .is_rigid = false},
     {.name = "postit_saturated",  // its breaking step holds on up to the limit
      .law = "postit",
-     .parameters = {{{"friction", 0.4},
-                     {"adhesion_limit", 2.0},
-                     {"memory", 4.0 * RandomNodes::step},
-                     {"tangent_influence", 0.8},
-                     {"buckets", 4.0}},
-                    {{"rupture", "saturated"}}},
+     .parameters = {postit_numbers, {{"rupture", "saturated"}}},
      .statuses = {ILAW_FREE, ILAW_BONDED, ILAW_BROKEN, ILAW_HEALED},
      .friction = 0.4,
      .friction_2 = 0.4,
@@ -98,13 +102,7 @@ const std::vector<Law> laws = {
      .sees_past_motion = true},
     {.name = "postit",
      .law = "postit",
-     .parameters = {{{"friction", 0.4},
-                     {"adhesion_limit", 2.0},
-                     {"efficiency_decrease", 20.0},
-                     {"memory", 4.0 * RandomNodes::step},
-                     {"tangent_influence", 0.8},
-                     {"buckets", 4.0}},
-                    {}},
+     .parameters = {postit_numbers, {}},
      .statuses = {ILAW_FREE, ILAW_BONDED, ILAW_BROKEN, ILAW_HEALED},
      .friction = 0.4,
      .friction_2 = 0.4},
