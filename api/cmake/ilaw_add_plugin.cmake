@@ -4,8 +4,9 @@
 function(ilaw_add_plugin name source)
   add_library(${name} MODULE ${source})
   target_link_libraries(${name} PRIVATE ilaw::kit)
-  # Instrumented builds look for mistakes, not for speed: one level is enough.
-  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT ILAW_SANITIZE)
+  # Instrumented and debug builds look for mistakes, not for speed: one level is enough.
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT ILAW_SANITIZE AND
+     NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
     target_compile_definitions(${name} PRIVATE ILAW_KIT_OTHER_LEVELS)
     foreach(level v3 v4)
       add_library(${name}_${level} OBJECT ${source})
