@@ -30,7 +30,7 @@ struct postit {
           "Rigid bond that breaks when the impulses of the last memory exceed its adhesion, and forms again "
           "under "
           "pressure, each time less after a rupture; contact with Coulomb friction where it is not bonded.",
-      .inputs = reads_gap | reads_area,
+      .inputs = reads_gap | reads_v_previous | reads_area,
       .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE};
 
   static constexpr const char* references[] = {
@@ -103,7 +103,8 @@ struct postit {
       .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .kind = ILAW_STATE_HISTORY};
 
   std::uint32_t inputs() const {
-    return reads_gap | (adhesion_limit < infinity || initial_adhesion > 0.0 ? reads_area : 0U);
+    return reads_gap | reads_v_previous |
+           (adhesion_limit < infinity || initial_adhesion > 0.0 ? reads_area : 0U);
   }
   // What is bonded from the start holds at any gap.
   std::uint32_t capabilities() const {
@@ -157,7 +158,7 @@ struct postit {
 
   template <class Node>
   void step_bonded(Node& node, vector past) const {
-    const vector trial = -node.delassus.solve(node.v_free);
+    const vector trial = stopping_impulse(node);
     if (criterion(past + trial, node.state.adhesion) <= at_the_limit) {
       node.impulse = trial;
       node.status = ILAW_BONDED;
@@ -182,7 +183,7 @@ struct postit {
   // Contact and friction, on top of what a breaking bond still gave.
   template <class Node>
   void touch(Node& node, vector velocity, vector held) const {
-    apply_contact_friction(node, node.gap, velocity, friction);
+    apply_plain_contact(node, velocity, friction);
     node.impulse = node.impulse + held;
   }
 

@@ -23,7 +23,7 @@ struct tie {
                                      "is given, the bond breaks for good when the impulses of the last "
                                      "memory exceed it in pull and shear "
                                      "together; frictionless contact is left.",
-                                 .inputs = reads_gap | reads_area,
+                                 .inputs = reads_gap | reads_v_previous | reads_area,
                                  .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE};
 
   static constexpr const char* references[] = {
@@ -61,7 +61,7 @@ struct tie {
   static constexpr state_variable memory{
       .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .kind = ILAW_STATE_HISTORY};
 
-  std::uint32_t inputs() const { return strength < infinity ? reads_gap | reads_area : 0U; }
+  std::uint32_t inputs() const { return strength < infinity ? card.inputs : 0U; }
   std::int64_t memory_size(const ilaw_setup& setup) {
     slots = static_cast<double>(window::slot_count(memory_time, buckets, setup.velocity_step));
     return window::doubles(static_cast<std::int64_t>(slots));
@@ -105,7 +105,8 @@ struct tie {
 
   template <class Node>
   static void touch(Node& node) {
-    node.impulse.n = node.gap <= 0.0 ? positive_part(-node.v_free.n / node.delassus.normal()) : 0.0;
+    const contact_condition contact = contact_leaving_at(0.0, node.gap, node.v_free.n, node.v_previous.n);
+    node.impulse.n = contact.slack <= 0.0 ? positive_part(-contact.excess / node.delassus.normal()) : 0.0;
     node.status = node.impulse.n > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
   }
 };

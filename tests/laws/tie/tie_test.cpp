@@ -104,7 +104,7 @@ TEST(Tie, BrokenIsContact) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Tied node({{{"strength", 0.5}, {"memory", 0.1}}, {}}, 1e-3);
-  NodeRun contact("contact", {});
+  NodeRun contact("contact", {{}, {{"activation", "moreau"}}});
   ASSERT_EQ(node.push({1.0, 0, 0}), ILAW_BROKEN);
   EXPECT_EQ(node.r, Vector{});
   EXPECT_EQ(node.v[0], 1.0);
@@ -144,6 +144,8 @@ TEST(Tie, RandomHistoriesKeepTheInvariants) {
       a.gap = mirror.gap = uniform(random);
       b.gap = a.gap * length;
       a.v_previous = v;
+      b.v_previous = {v[0] * speed, v[1] * speed, v[2] * speed};
+      mirror.v_previous = {v[0], -v[1], v[2]};
       ASSERT_EQ(a.step(v), ILAW_OK);
       ASSERT_EQ(b.step({v[0] * speed, v[1] * speed, v[2] * speed}), ILAW_OK);
       ASSERT_EQ(mirror.step({v[0], -v[1], v[2]}), ILAW_OK);

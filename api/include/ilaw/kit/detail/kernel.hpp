@@ -118,16 +118,18 @@ stepped<Law, Delassus, Frame> step_node(const Form& law, const node_block<Law>& 
 }
 
 // Energy split of ilaw.h from the work of the impulse, -r.(v^- + v)/2 less what was stored of it, normal and
-// tangential part apart. A reaction that meets a node moving away does positive work, which the external
-// force gives back within the same step: that is no dissipation, hence the positive parts.
+// tangential part apart. Where H couples them one may be negative, and is then taken off the other, so that
+// both are dissipations and their sum stays the work.
 struct energy_split {
   double friction, impact, rupture, stored;
 };
 template <class Node, class Vector>
 energy_split split_energy(const Node& n, Vector v) {
   const Vector mean = n.v_previous + v;
-  const double normal = positive_part(-0.5 * normal_product(n.impulse, mean) - n.normal_gain);
-  const double tangential = positive_part(-0.5 * tangential_product(n.impulse, mean) - n.tangential_gain);
+  const double along_normal = -0.5 * normal_product(n.impulse, mean) - n.normal_gain;
+  const double along_tangents = -0.5 * tangential_product(n.impulse, mean) - n.tangential_gain;
+  const double normal = positive_part(along_normal + smaller(along_tangents, 0.0));
+  const double tangential = positive_part(along_tangents + smaller(along_normal, 0.0));
   const bool broken = n.status == double{ILAW_BROKEN};
   return {broken ? 0.0 : tangential, broken ? 0.0 : normal, (broken ? normal + tangential : 0.0) + n.rupture,
           n.stored};
