@@ -19,13 +19,12 @@ std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.nam
 // A bond that is made at the start, where it may be at a distance, has to be broken, or to be made in touch.
 const std::vector<Case> cases = {
     {"contact", R"("law": "contact")"},
-    {"contact_predictive", R"("law": "contact", "parameters": {"activation": "predictive"})"},
     {"contact_05", R"("law": "contact", "parameters": {"restitution": 0.5})"},
-    {"contact_predictive_05",
-     R"("law": "contact", "parameters": {"activation": "predictive", "restitution": 0.5})"},
-    {"contact_predictive_1",
-     R"("law": "contact", "parameters": {"activation": "predictive", "restitution": 1.0})"},
+    {"contact_1", R"("law": "contact", "parameters": {"restitution": 1.0})"},
+    {"contact_moreau", R"("law": "contact", "parameters": {"activation": "moreau"})"},
+    {"contact_moreau_05", R"("law": "contact", "parameters": {"activation": "moreau", "restitution": 0.5})"},
     {"coulomb", R"("law": "coulomb", "parameters": {"friction": 0.3})"},
+    {"coulomb_moreau", R"("law": "coulomb", "parameters": {"friction": 0.3, "activation": "moreau"})"},
     {"postit", R"("law": "postit")"},
     {"postit_that_wears", R"("law": "postit", "parameters": {"efficiency_decrease": 5.0})"},
     {"postit_without_adhesion", R"("law": "postit", "parameters": {"adhesion_limit": 0.0})"},
