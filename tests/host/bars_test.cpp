@@ -148,7 +148,7 @@ ContactNode contact_node(double cfl, int elements) {
                          R"(, "young": 2.1e11, "density": 7847.0, "section": 6.45e-4, "velocity": -5.0}]},
     "time": {"cfl": )" + number(cfl) +
                          R"(, "end": )" + number(end) + R"(},
-    "interfaces": [{"law": "contact", "nodes": "bar.left",
+    "interfaces": [{"law": "contact", "parameters": {"activation": "moreau"}, "nodes": "bar.left",
                     "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})");
   Integrator integrator = integrator_of(scene);
   double u_error = 0.0, u_sum = 0.0, v_error = 0.0, v_sum = 0.0, peak_force = 0.0;
@@ -245,7 +245,7 @@ std::string bar_between_walls(double cfl, int elements, double restitution, doub
          std::to_string(elements) + R"(, "young": 1.0, "density": 1.0, "velocity": -0.1}]},
     "time": {"cfl": )" +
          number(cfl) + R"(, "end": )" + number(end) + R"(},
-    "interfaces": [{"name": "left", "law": "contact", "nodes": "bar.left", "parameters": {"restitution": )" +
+    "interfaces": [{"name": "left", "law": "contact", "nodes": "bar.left", "parameters": {"activation": "moreau", "restitution": )" +
          number(restitution) + R"(},
                     "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}},
                    {"name": "right", "law": "contact", "nodes": "bar.right", "parameters": {"restitution": 1.0},
