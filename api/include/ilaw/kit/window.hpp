@@ -78,7 +78,7 @@ class window {
     const std::int64_t oldest = place_of(k - buckets_), latest = before_in_ring(oldest);
     const vector middle = k == newest ? read(own, middle_sum) : sum_between(own, k, newest);
     const vector current = k == newest ? read(own, at(latest)) : vector{};
-    return checked((middle + current) + live_part(own, oldest, smaller(1.0, (k + 1.0) - end), k, newest));
+    return checked((middle + current) + live_part(own, oldest, k - buckets_, end, step, newest));
   }
 
   // Takes the step's own impulse in. The history is one that before() did not refuse.
@@ -155,14 +155,18 @@ class window {
     return sum;
   }
 
-  // What of the oldest bucket tau still covers; with one bucket the next one is not complete.
+  // What of the oldest bucket tau still covers. A step may have begun within this bucket or the next, which
+  // are then filled up to there.
   template <class History>
-  vector live_part(const History& own, std::int64_t oldest, double theta, double k, double newest) const {
-    const vector bucket = read(own, at(oldest));
-    const bool next_is_complete = buckets_ > 1.0;
-    if (!next_is_complete) return theta * bucket;
-    const vector next = (k - buckets_) + 1.0 <= newest ? read(own, at(after(oldest))) : vector{};
-    return theta * bucket + (0.5 * theta * (1.0 - theta)) * limited_difference(bucket, next);
+  vector live_part(const History& own, std::int64_t place, double oldest, double end, step_interval step,
+                   double newest) const {
+    const vector bucket = read(own, at(place));
+    const double begin = end - step.length / width_, filled = smaller(oldest + 1.0, begin);
+    if (filled <= oldest) return {};
+    const double part = smaller(1.0, (filled - (end - buckets_)) / (filled - oldest));
+    if (begin < oldest + 2.0) return part * bucket;
+    const vector next = oldest + 1.0 <= newest ? read(own, at(after(place))) : vector{};
+    return part * bucket + (0.5 * part * (1.0 - part)) * limited_difference(bucket, next);
   }
   static vector limited_difference(vector bucket, vector next) {
     vector difference = next - bucket;
