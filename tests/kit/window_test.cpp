@@ -349,6 +349,14 @@ TEST(Window, TouchesNothingButItsHistory) {
   }
 }
 
+// A clock so far on that a step is below its resolution: impulses still count, whole.
+TEST(Window, CountsStepsThatItsClockCannotResolve) {
+  Window w(1.0, 16, 0x1p46);
+  for (int k = 1; k <= 100; ++k) EXPECT_EQ(w.step_to(0x1p46, 1e-4, {1.0, 0, 0}).n, k);
+  Window beyond(1e-9, 16, 1e9);
+  for (int k = 1; k <= 100; ++k) EXPECT_EQ(beyond.step_to(1e9, 1e-10, {1.0, 0, 0}).n, 1.0);
+}
+
 TEST(Window, RefusesANumberOfABucketThatItCannotHaveWritten) {
   for (const double stamp :
        {0.5, -2.25, 1e16, -1e300, infinity, -infinity, std::numeric_limits<double>::quiet_NaN()}) {

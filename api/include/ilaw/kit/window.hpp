@@ -57,7 +57,7 @@ class window {
   }
 
   window(double duration, double buckets)
-      : duration_(duration), width_(duration / buckets), buckets_(buckets) {}
+      : duration_(duration), per_width_(buckets / duration), buckets_(buckets) {}
 
   // The sum of the impulses before the step, within tau of its end; or why there is none.
   struct reading {
@@ -68,7 +68,7 @@ class window {
   reading before(const History& own, step_interval step) const {
     if (duration_ == 0.0) return {};
     if (duration_ == infinity) return checked(read(own, 0));
-    const double stamp = own[0], end = step.end / width_;
+    const double stamp = own[0], end = step.end * per_width_;
     if (!is_stamp(stamp)) return {{}, impossible_state};
     if (stamp == empty || !on_grid(end)) return {};
     const double newest = bucket_of(stamp), now = floor_of(end), k = larger(now, newest);
@@ -85,9 +85,9 @@ class window {
   void add(const history& own, step_interval step, vector impulse) const {
     if (duration_ == 0.0 || (impulse.n == 0.0 && impulse.t1 == 0.0 && impulse.t2 == 0.0)) return;
     if (duration_ == infinity) return write(own, 0, read(own, 0) + impulse);
-    const double end = step.end / width_;
+    const double end = step.end * per_width_;
     if (!on_grid(end)) return;
-    const double now = floor_of(end), begin = end - step.length / width_;
+    const double now = floor_of(end), begin = end - step.length * per_width_;
     const double newest = own[0] == empty ? now - buckets_ - 1.0 : bucket_of(own[0]);
     const double k = larger(now, newest);
     if (k == newest && begin >= k) {
@@ -137,22 +137,34 @@ class window {
   // oldest.
   std::int64_t ring_size() const { return static_cast<std::int64_t>(buckets_) + 1; }
   std::int64_t place_of(double bucket) const {
-    const std::int64_t place = static_cast<std::int64_t>(bucket) % ring_size();
-    return place < 0 ? place + ring_size() : place;
+    const double size = buckets_ + 1.0;
+    const double place = bucket - floor_of(bucket * (1.0 / size)) * size;  // the quotient may be one off
+    return static_cast<std::int64_t>(place < 0.0 ? place + size : (place < size ? place : place - size));
   }
   std::int64_t after(std::int64_t place) const { return place + 1 < ring_size() ? place + 1 : 0; }
   std::int64_t before_in_ring(std::int64_t place) const { return (place > 0 ? place : ring_size()) - 1; }
   static std::int64_t at(std::int64_t place) { return first_bucket + 3 * place; }
 
-  // The sum of the buckets between the oldest and k, of which those after newest are not open yet.
+  // The sum of the buckets between the oldest and k, of which those after newest are not open yet: in two
+  // runs of neighbours.
   template <class History>
   vector sum_between(const History& own, double k, double newest) const {
     const double first = (k - buckets_) + 1.0;
-    std::int64_t place = place_of(first);
-    vector sum;
-    for (double j = first; j < k && j <= newest; j += 1.0, place = after(place))
-      sum = sum + read(own, at(place));
-    return sum;
+    const auto count = static_cast<std::int64_t>(smaller(k - 1.0, newest) - first) + 1;
+    const std::int64_t place = place_of(first), room = ring_size() - place;
+    const std::int64_t before_end = count < room ? count : room;
+    return sum_of(own, place, before_end) + sum_of(own, 0, count - before_end);
+  }
+  template <class History>
+  static vector sum_of(const History& own, std::int64_t place, std::int64_t count) {
+    vector even, odd;  // two sums that do not wait for each other
+    const std::int64_t end = at(place + count);
+    std::int64_t k = at(place);
+    for (; k + 3 < end; k += 6) {
+      even = even + read(own, k);
+      odd = odd + read(own, k + 3);
+    }
+    return k < end ? (even + read(own, k)) + odd : even + odd;
   }
 
   // What of the oldest bucket tau still covers. A step may have begun within this bucket or the next, which
@@ -161,9 +173,10 @@ class window {
   vector live_part(const History& own, std::int64_t place, double oldest, double end, step_interval step,
                    double newest) const {
     const vector bucket = read(own, at(place));
-    const double begin = end - step.length / width_, filled = smaller(oldest + 1.0, begin);
+    const double begin = end - step.length * per_width_, filled = smaller(oldest + 1.0, begin);
     if (filled <= oldest) return {};
-    const double part = smaller(1.0, (filled - (end - buckets_)) / (filled - oldest));
+    const double live = filled - (end - buckets_);
+    const double part = smaller(1.0, begin < oldest + 1.0 ? live / (filled - oldest) : live);
     if (begin < oldest + 2.0) return part * bucket;
     const vector next = oldest + 1.0 <= newest ? read(own, at(after(place))) : vector{};
     return part * bucket + (0.5 * part * (1.0 - part)) * limited_difference(bucket, next);
@@ -172,7 +185,8 @@ class window {
     vector difference = next - bucket;
     const double most = 2.0 * absolute(bucket.n);
     difference.n = smaller(larger(difference.n, -most), most);
-    if (difference.t1 == 0.0 && difference.t2 == 0.0) return difference;
+    const double larger_part = larger(absolute(bucket.t1), absolute(bucket.t2));
+    if (absolute(difference.t1) + absolute(difference.t2) <= 2.0 * larger_part) return difference;
     const double allowed = 2.0 * bucket.tangential_length(), found = difference.tangential_length();
     const double factor = found > allowed ? allowed / found : 1.0;
     return {difference.n, factor * difference.t1, factor * difference.t2};
@@ -200,7 +214,7 @@ class window {
     }
   }
 
-  double duration_, width_, buckets_;
+  double duration_, per_width_, buckets_;
 };
 
 }  // namespace ilaw::kit
