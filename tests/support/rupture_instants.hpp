@@ -24,7 +24,7 @@ struct BondLoad {
 inline std::vector<BondLoad> bond_loads() {
   const double omega = 2.0 * 3.141592653589793 / 3.0;
   return {
-      {"ramp", [](double t) { return t; }, [](double t) { return 0.5 * t * t; }, 1.6, 10.0, 0.0, 0.0},
+      {"ramp", [](double t) { return t; }, [](double t) { return 0.5 * t * t; }, 1.6, 6.0, 0.0, 0.0},
       {"constant", [](double) { return 1.0; }, [](double t) { return t; }, 0.05, 0.7, 0.5, 0.0},
       // |F''| = omega^2, limited slopes at the start; the sum grows by at least 1.3 where the window is full
       {"sine", [omega](double t) { return 1.0 - std::cos(omega * t); },
@@ -101,7 +101,7 @@ inline void expect_rupture_instants(const BondLaw& law) {
         std::printf("  B = %2.0f:", buckets);
         for (const double ratio : {1.5, 8.5, 33.7, 100.5, 1000.3}) {
           double largest = 0.0;
-          const unsigned draws = ratio > 500.0 ? 8 : 50;
+          const unsigned draws = ratio > 500.0 ? 16 : 40;
           for (unsigned draw = 0; draw < draws; ++draw) {
             const double exact = load.first + (load.last - load.first) * (draw + 0.37) / draws;
             BondRun run(law, load.sum_at(exact), buckets, 1.0 / ratio, varies, draw + 1);
@@ -126,7 +126,7 @@ inline void expect_double_shocks(const BondLaw& law) {
       double shortest_that_holds = 1e9, longest_that_breaks = 0.0;
       for (unsigned draw = 0; draw < (ratio > 500.0 ? 20U : 200U); ++draw) {
         BondRun run(law, 1.0, buckets, 1.0 / ratio, false, draw + 1);
-        const auto steps = static_cast<int>(ratio * (0.6 + 0.8 * run.uniform()));
+        const auto steps = static_cast<int>(ratio * (1.0 + (1.8 * run.uniform() - 1.2) / buckets));
         run.step(0.6);
         for (int k = 1; k < steps; ++k) run.step(0.0);
         const double distance = steps / ratio;
