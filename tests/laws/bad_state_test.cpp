@@ -1,6 +1,6 @@
 // A state that the law cannot have written, and a clock that was set back: refused at their node with the
 // reason, nothing touched but that node's results. For the laws with a window.
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -2,7 +2,7 @@
 // the instant at which the exact integral of the force passes the limit. tau = 1; a load acts from time 0 on.
 #pragma once
 
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <algorithm>
 #include <cstdio>
