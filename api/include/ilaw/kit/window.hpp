@@ -13,9 +13,10 @@
 // Error, for a force F that is smooth over the two oldest buckets: for F = x^2/2 over buckets [0, 1] and
 // [1, 2], b = 1/6 and sigma = 1, and with u = 1 - theta the sum of the oldest is off by u (1 - u) (2 - u)/6,
 // at most 1/(9 sqrt 3). Hence |S - integral of F| <= w^3 |F''|/(9 sqrt 3), and constant and linear forces are
-// exact. Where the slope is limited, and with B = 1, |S - integral| <= w^2 |F'|/8 (linear interpolation of
-// the integral). Where F jumps by J within the oldest bucket: w J/4. A shock is exact until tau - w after it,
-// and fades over the width of its bucket.
+// exact. Where the slope is limited, or not known since the step began less than a bucket after the oldest
+// (h > tau - 2 w), |S - integral| <= w^2 |F'|/8 (linear interpolation of the integral). A step that the edge
+// of a bucket cuts adds up to h^2 |F'|/8. Where F jumps by J within the oldest bucket: w J/4. A shock is
+// exact until tau - w after it, and fades over the width of its bucket.
 //
 // No sum runs on: that of the middle buckets is formed anew whenever k turns, so nothing drifts. Of time the
 // state holds the number of the newest bucket alone. A step without impulse leaves it as it is, bit for bit.
