@@ -7,13 +7,12 @@ namespace {
 using namespace ilaw::kit;
 
 // A pull exactly at the limit holds, whatever the rounding of its windowed sum.
-constexpr double at_the_limit = 1.0 + 1e-12;
+constexpr double at_the_limit = 1.0 + window_slack;
 
 struct tie {
   double strength;
-  double memory_time;
+  double duration;  // of the window
   double buckets;
-  double slots = 0.0;  // of the window, from the setup
 
   static constexpr law_card card{.id = "tie",
                                  .title = "Bilateral bond, breakable (spot weld)",
@@ -37,7 +36,7 @@ struct tie {
        .doc = "Impulse per area, over the memory, that the bond can carry in pull and shear.",
        .default_value = infinity,
        .infinity_allowed = true},
-      {.member = &tie::memory_time,
+      {.member = &tie::duration,
        .name = "memory",
        .symbol = "tau_Y",
        .unit = "s",
@@ -47,25 +46,23 @@ struct tie {
       {.member = &tie::buckets,
        .name = "buckets",
        .symbol = "B",
-       .doc = "Slots of the memory: the sum is exact when there are at least memory over time step.",
+       .doc = "Buckets of the window, which is of third order in their width memory/B.",
        .default_value = 16.0,
        .minimum = 1.0,
        .maximum = 4096.0,
-       .whole = true}};
+       .whole = true,
+       .fixed = true}};
 
   struct state {
     double broken;
   };
   static constexpr state_variable state_variables[] = {
       {.name = "broken", .doc = "1 once the bond has broken, else 0."}};
-  static constexpr state_variable memory{
+  static constexpr state_variable history_variable{
       .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .kind = ILAW_STATE_HISTORY};
 
   std::uint32_t inputs() const { return strength < infinity ? card.inputs : 0U; }
-  std::int64_t memory_size(const ilaw_setup& setup) {
-    slots = static_cast<double>(window::slot_count(memory_time, buckets, setup.velocity_step));
-    return window::doubles(static_cast<std::int64_t>(slots));
-  }
+  std::int64_t history_size() const { return window::doubles(duration, buckets); }
 
   // Without strength and memory: nothing to sum.
   struct unbreakable;
@@ -74,13 +71,16 @@ struct tie {
 
   template <class Node>
   void step(Node& node) const {
+    const window::reading earlier = sums().before(node.history, interval_of(node));
+    node.refused = larger(earlier.refused, refusal_of(node.state));
+    if (node.refused != not_refused) return;
     if (node.state.broken != 0.0) {
       touch(node);
       return;
     }
     const vector trial = -node.delassus.solve(node.v_free);
     const double limit = strength < infinity ? strength * node.area : infinity;
-    if (load(sums().sum(node.past, node.time, node.velocity_step) + trial) <= limit * at_the_limit) {
+    if (load(earlier.sum + trial) <= limit * at_the_limit) {
       node.impulse = trial;
       node.status = ILAW_BONDED;
       return;
@@ -93,12 +93,16 @@ struct tie {
   // A broken bond needs no window any more.
   template <class Node>
   void record(const Node& node, history own) const {
-    if (node.status == double{ILAW_BONDED}) sums().add(own, node.time, node.velocity_step, node.impulse);
+    if (node.status == double{ILAW_BONDED}) sums().add(own, interval_of(node), node.impulse);
     if (node.status == double{ILAW_BROKEN}) sums().clear(own);
   }
 
  private:
-  window sums() const { return {memory_time, static_cast<std::int64_t>(slots)}; }
+  window sums() const { return {duration, buckets}; }
+
+  static double refusal_of(const state& s) {
+    return s.broken == 0.0 || s.broken == 1.0 ? not_refused : impossible_state;
+  }
 
   // Pull and shear count alike, a press does not: nothing is torn by it.
   static double load(vector sum) { return length(positive_part(-sum.n), sum.t1, sum.t2); }
@@ -121,12 +125,13 @@ struct tie::unbreakable {
     const bool holds = node.state.broken == 0.0;
     node.impulse = {holds ? trial.n : node.impulse.n, holds ? trial.t1 : 0.0, holds ? trial.t2 : 0.0};
     node.status = holds ? double{ILAW_BONDED} : node.status;
+    node.refused = refusal_of(node.state);
   }
 };
 
 template <class Run>
 void tie::in_form(Run run) const {
-  if (strength == infinity && memory_time == 0.0)
+  if (strength == infinity && duration == 0.0)
     run(unbreakable{});
   else
     run(*this);

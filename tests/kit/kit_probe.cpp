@@ -23,8 +23,8 @@ struct kit_probe {
   static constexpr state_variable state_variables[] = {
       {.name = "count", .doc = "steps"},
       {.name = "sum", .unit = "N.s", .doc = "impulses", .kind = ILAW_STATE_VECTOR}};
-  static constexpr state_variable memory{.name = "last", .doc = "last two v_N", .kind = ILAW_STATE_HISTORY};
-  std::int64_t memory_size(const ilaw_setup&) const { return 2; }
+  static constexpr state_variable history_variable{.name = "last", .doc = "last two v_N", .kind = ILAW_STATE_HISTORY};
+  std::int64_t history_size() const { return 2; }
 
   // r = -c (v_free + H r), solved for r, plus a pull along the remembered sum so that memory matters.
   template <class Node>
@@ -32,7 +32,7 @@ struct kit_probe {
     const double c = n.gap <= 0.0 ? viscosity : 0.0;
     const double h = n.delassus.normal();
     const double factor = -c / (1.0 + c * h);
-    n.impulse = factor * n.v_free - 0.125 * vector{n.past[0], n.state.sum_t1, n.state.sum_t2};
+    n.impulse = factor * n.v_free - 0.125 * vector{n.history[0], n.state.sum_t1, n.state.sum_t2};
     n.state.count += 1.0;
     n.state.sum_n += n.impulse.n;
     n.state.sum_t1 += n.impulse.t1;

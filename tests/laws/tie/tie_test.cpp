@@ -1,5 +1,5 @@
 // The tie through the ABI: a bilateral constraint for any H, and its rupture, against closed forms.
-#include "support/law_runner.hpp"
+#include "support/rupture_instants.hpp"
 
 #include <limits>
 #include <random>
@@ -161,6 +161,17 @@ TEST(Tie, RandomHistoriesKeepTheInvariants) {
   }
   EXPECT_GT(broken, 100);
 }
+
+// In shear, which the windowed sum carries through frames and slopes of its own.
+const BondLaw bond{"tie",
+                   [](double limit, double buckets) {
+                     return Parameters{{{"strength", limit}, {"memory", 1.0}, {"buckets", buckets}}, {}};
+                   },
+                   {0.0, 0.6, -0.8}};
+
+TEST(Tie, BreaksWhenTheExactIntegralPassesTheStrength) { expect_rupture_instants(bond); }
+
+TEST(Tie, ShocksAddUpWithinTheWindow) { expect_double_shocks(bond); }
 
 TEST(Tie, RefusesBadParameters) {
   for (const auto& [name, value] :

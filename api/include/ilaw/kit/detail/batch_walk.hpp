@@ -244,8 +244,8 @@ class batch_walk {
     }
     const ilaw_output& out = batch_.state_out;
     block_.history_values = nullptr;
-    if (!has_memory<Law>) return;
-    block_.history_values = out.values + made_.memory_offset() * out.component_stride +
+    if (!has_history<Law>) return;
+    block_.history_values = out.values + made_.history_offset() * out.component_stride +
                             (batch_.index ? 0 : nodes_.first * out.node_stride);
     block_.history_node_stride = out.node_stride;
     block_.history_component_stride = out.component_stride;
@@ -253,11 +253,11 @@ class batch_walk {
     block_.history_index_base = batch_.index_base;
   }
 
-  // Memory and frame are worked on in state_out, which therefore starts as state_in.
+  // History and frame are worked on in state_out, which therefore starts as state_in.
   void copy_unnamed_state() {
     if (batch_.state_in.values == batch_.state_out.values) return;
     const auto size = static_cast<std::int64_t>(made_.state_size);
-    for (std::int64_t c = made_.memory_offset(); c < size; ++c)
+    for (std::int64_t c = made_.history_offset(); c < size; ++c)
       for (int i = 0; i < nodes_.count; ++i)
         at(batch_.state_out, nodes_.node(i), c) = at(batch_.state_in, nodes_.node(i), c);
   }

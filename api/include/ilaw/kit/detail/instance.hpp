@@ -27,7 +27,7 @@ constexpr bool has_vector_state() {
 // need tangents to be written in.
 template <class Law>
 constexpr bool needs_no_tangents() {
-  return !Law::card.names_tangents && !has_memory<Law> && !has_vector_state<Law>();
+  return !Law::card.names_tangents && !has_history<Law> && !has_vector_state<Law>();
 }
 
 template <class Law>
@@ -38,7 +38,7 @@ struct instance {
   Law law;
   std::uint32_t dimension, delassus_form, frame, tangent_given;
   ilaw_kit_walk walk = nullptr;  // null: this level's own
-  std::int64_t memory_size = 0;
+  std::int64_t history_size = 0;
   bool carries_frame = false;
   time_table tables[parameter_count + 1];
   std::uint32_t table_count = 0;
@@ -52,9 +52,9 @@ struct instance {
   std::uint32_t variable_count = 0;
   std::uint64_t state_size = 0;
 
-  // Where the named state, the memory and the frame start in the state of a node.
-  std::int64_t memory_offset() const {
-    return static_cast<std::int64_t>(state_size) - memory_size - frame_size();
+  // Where the named state, the history and the frame start in the state of a node.
+  std::int64_t history_offset() const {
+    return static_cast<std::int64_t>(state_size) - history_size - frame_size();
   }
   std::int64_t frame_size() const { return carries_frame ? 6 : 0; }
   std::int64_t frame_offset() const { return static_cast<std::int64_t>(state_size) - frame_size(); }
@@ -265,11 +265,11 @@ class instance_builder {
   }
 
   std::int32_t lay_out_state() {
-    if constexpr (has_memory<Law>) made_.memory_size = made_.law.memory_size(setup_);
-    const auto declared = detail::abi_state_variables<Law>(made_.dimension, made_.memory_size);
+    if constexpr (has_history<Law>) made_.history_size = made_.law.history_size();
+    const auto declared = detail::abi_state_variables<Law>(made_.dimension, made_.history_size);
     for (const ilaw_state_variable& v : declared) append(v);
     made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.tangent_given &&
-                          (made_.memory_size > 0 || has_vector_state<Law>());
+                          (made_.history_size > 0 || has_vector_state<Law>());
     if (made_.carries_frame)
       for (const state_variable& v : frame_variables) append(detail::abi_state_variable(v, 3));
     return ILAW_OK;

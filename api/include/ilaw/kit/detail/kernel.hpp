@@ -92,8 +92,8 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
       detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{}));
   n.gap = b.gap[i] - b.gap_offset[i];
   n.area = b.area[i];
-  if constexpr (has_memory<Law>)
-    n.past = {b.history_values + b.history_offset(i), b.history_component_stride};
+  if constexpr (has_history<Law>)
+    n.history = {b.history_values + b.history_offset(i), b.history_component_stride};
   if constexpr (has_state<Law>)
     n.state = detail::state_at<Law>(b.state_in, i, std::make_index_sequence<state_doubles<Law>>{});
   return n;
@@ -164,9 +164,9 @@ void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted
   b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
 }
 
-// Whether a form of a law works with the law's memory. One that says it forgets runs in vector code.
+// Whether a form of a law works with the law's history. One that says it forgets runs in vector code.
 template <class Law, class Form>
-inline constexpr bool remembers = has_memory<Law> && !requires {
+inline constexpr bool remembers = has_history<Law> && !requires {
   Form::forgets;
 };
 
