@@ -140,6 +140,7 @@ struct full_delassus {
 inline constexpr double not_refused = 0.0;
 inline constexpr double anisotropic_delassus = 1.0;  // the law has no closed form for this H
 inline constexpr double no_solution = 2.0;           // the law's equations have none for this input
+inline constexpr double foreign_state = 3.0;         // the law cannot have written this state
 
 // Memory of a law beyond its named state: doubles of one node, wherever the host keeps them.
 struct const_history {

@@ -93,6 +93,7 @@ const char* refusal_reason(const Law& law, const node_block<Law>& b, int i) {
   if (refused == anisotropic_delassus)
     return "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal";
   if (refused == no_solution) return "the law's equations have no solution for this H";
+  if (refused == foreign_state) return "state that the law cannot have written";
   return "the impulse or the state overflows";
 }
 
