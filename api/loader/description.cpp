@@ -114,7 +114,7 @@ void check_parameter(const checker& check, const ilaw_parameter& p) {
 }
 
 void check_state_variable(const checker& check, const ilaw_state_variable& v) {
-  check.kind(v.kind, ILAW_STATE_AXIS, "kind");
+  check.kind(v.kind, ILAW_STATE_TANGENTIAL, "kind");
   check.text(v.unit, "unit");
   check.text(v.doc, "doc");
 }
@@ -148,11 +148,11 @@ void check_law(const checker& check, const ilaw_law& law) {
   check.text(law.title, "title");
   check.text(law.doc, "doc");
   check.mask(law.dimensions, ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3, false, "dimensions");
-  check.mask(law.delassus_forms, ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL, false,
+  check.mask(law.delassus_forms, 2 * ILAW_DELASSUS_TRANSVERSE - 1, false,
              "delassus_forms");
   check.mask(law.inputs, 2 * ILAW_INPUT_TANGENT - 1, true, "inputs");
   check.mask(law.outputs, 2 * ILAW_OUTPUT_ENERGY - 1, true, "outputs");
-  check.mask(law.capabilities, 2 * ILAW_CAN_ACT_AT_DISTANCE - 1, true, "capabilities");
+  check.mask(law.capabilities, 2 * ILAW_CAN_REST - 1, true, "capabilities");
   check.array(law.references, law.reference_count, "references");
   for (std::uint32_t i = 0; i < law.reference_count; ++i) check.text(law.references[i], "a reference");
   check_named(check, law.parameters, law.parameter_count, "parameters", "parameter", check_parameter);
@@ -208,7 +208,7 @@ void check_instance_info(const std::string& file, const ilaw_law& law, const ila
   if (sum != info.state_size)
     check.refuse("state_size is " + std::to_string(info.state_size) + ", expected the sum of the counts, " +
                  std::to_string(sum));
-  check.mask(info.capabilities, 2 * ILAW_CAN_ACT_AT_DISTANCE - 1, true, "capabilities");
+  check.mask(info.capabilities, 2 * ILAW_CAN_REST - 1, true, "capabilities");
   check.array(info.per_node_parameters, info.per_node_parameter_count, "per_node_parameters");
   for (std::uint32_t i = 0; i < info.per_node_parameter_count; ++i)
     check.text(info.per_node_parameters[i], "a per-node parameter");
