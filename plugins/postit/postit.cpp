@@ -116,8 +116,8 @@ struct postit {
                  "at most that"
                : nullptr;
   }
-  std::int64_t memory_size(const ilaw_setup& setup) {
-    slots = static_cast<double>(window::slot_count(memory_time, buckets, setup.velocity_step));
+  std::int64_t memory_size(const ilaw_setup&) {
+    slots = static_cast<double>(window::slot_count(memory_time, buckets, 0.0));
     return window::doubles(static_cast<std::int64_t>(slots));
   }
 

@@ -62,8 +62,8 @@ struct tie {
       .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .kind = ILAW_STATE_HISTORY};
 
   std::uint32_t inputs() const { return strength < infinity ? reads_gap | reads_area : 0U; }
-  std::int64_t memory_size(const ilaw_setup& setup) {
-    slots = static_cast<double>(window::slot_count(memory_time, buckets, setup.velocity_step));
+  std::int64_t memory_size(const ilaw_setup&) {
+    slots = static_cast<double>(window::slot_count(memory_time, buckets, 0.0));
     return window::doubles(static_cast<std::int64_t>(slots));
   }
 

@@ -65,8 +65,8 @@ TEST(Create, RefusesSetupsThatTheLawDoesNotServe) {
   EXPECT_EQ(refusal(),
             "law 'contact': form 8 of H is not served: expected one of 1 (scalar) 2 (diagonal) 4 (full)");
   setup.setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.setup.velocity_step = 0.0;
-  EXPECT_EQ(refusal(), "law 'contact': velocity_step 0 is not allowed: expected a finite number > 0");
+  setup.setup.flags = std::uint64_t{1} << 40;
+  EXPECT_EQ(refusal(), "law 'contact': flags 0x10000000000 are not known: expected 0");
 }
 
 // A setup with one parameter, that varies.

@@ -35,7 +35,7 @@ class TurningNode {
  public:
   TurningNode(const std::string& file, const std::string& law, const Parameters& parameters, bool tangent)
       : law_(ilaw::library(file), law,
-             SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, 1e-3, tangent).setup),
+             SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, tangent).setup),
         state_(law_.info().state_size + 1) {}
 
   Vector step(const Matrix& q, const Vector& local_velocity) {

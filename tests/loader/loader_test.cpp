@@ -41,7 +41,6 @@ ilaw_setup setup_1d() {
   setup.struct_size = sizeof setup;
   setup.dimension = 1;
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.velocity_step = 1.0;
   return setup;
 }
 

@@ -128,7 +128,8 @@ static const newer_law zero = {{LAW_SIZE,
                                 destroy,
                                 info,
                                 nothing,
-                                EVALUATE},
+                                EVALUATE,
+                                NULL},
                                1.0};
 
 static const ilaw_law* const laws[] = {&zero.law, &zero.law};
@@ -152,7 +153,7 @@ static const ilaw_plugin plugin = {
 #else
     1,
 #endif
-    0};
+    0,     NULL};
 
 #ifdef VARIANT_OTHER_MAJOR_SYMBOL
 ILAW_EXPORT const ilaw_plugin* ilaw_plugin_v2(void);

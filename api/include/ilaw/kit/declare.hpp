@@ -45,6 +45,7 @@ struct law_card {
   std::uint32_t delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL;
   std::uint32_t inputs = reads_gap;
   std::uint32_t capabilities = 0;
+  std::uint32_t state_version = 1;  // to be raised with every change of what a state means
   // Whether step names t1 or t2. One that does not works on projected_vector too, which spares the host's
   // axes a tangent per node.
   bool names_tangents = true;
@@ -74,6 +75,7 @@ struct state_variable {
   const char* unit = "1";
   const char* doc = "";
   std::uint32_t kind = ILAW_STATE_SCALAR;
+  bool internal = false;  // bookkeeping, not for pictures
 };
 
 template <class Law>
@@ -155,7 +157,9 @@ constexpr ilaw_state_variable abi_state_variable(const state_variable& v, std::u
           .name = v.name,
           .unit = v.unit,
           .doc = v.doc,
-          .count = count};
+          .count = count,
+          .flags = v.internal ? std::uint32_t{ILAW_VARIABLE_INTERNAL} : 0U,
+          .reserved = 0};
 }
 
 template <class Law>

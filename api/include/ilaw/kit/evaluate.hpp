@@ -52,8 +52,12 @@ const char* wrong_batch(const instance<Law>& made, const ilaw_batch& b) {
 
 inline std::int32_t refuse(ilaw_report* report, const char* reason) {
   if (report)
-    fill_sized(report,
-               {.struct_size = 0, .reserved = 0, .bad_count = 0, .first_bad_node = -1, .reason = reason});
+    fill_sized(report, {.struct_size = 0,
+                        .reserved = 0,
+                        .bad_count = 0,
+                        .first_bad_node = -1,
+                        .reason = reason,
+                        .stable_velocity_step = infinity});
   return ILAW_INVALID_ARGUMENT;
 }
 
@@ -69,6 +73,7 @@ bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
 struct tally {
   std::int64_t bad_count = 0, first_bad_node = -1;
   const char* reason = nullptr;
+  double stable_velocity_step = infinity;
 
   void add(std::int64_t node, const char* why) {
     if (bad_count++ > 0) return;
@@ -220,7 +225,8 @@ inline std::int32_t give_report(ilaw_report* report, const tally& found) {
                         .reserved = 0,
                         .bad_count = found.bad_count,
                         .first_bad_node = found.first_bad_node,
-                        .reason = found.reason});
+                        .reason = found.reason,
+                        .stable_velocity_step = found.stable_velocity_step});
   return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
 

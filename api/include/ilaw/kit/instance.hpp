@@ -133,10 +133,10 @@ class instance_builder {
       text_.add("law '%s': frame %u is unknown: expected 0 (local) or 1 (global)", id, setup_.frame);
       return ILAW_INVALID_ARGUMENT;
     }
-    if (!(setup_.velocity_step > 0.0) || !finite(setup_.velocity_step)) {
-      text_.add("law '%s': velocity_step %.17g is not allowed: expected a finite number > 0", id,
-                setup_.velocity_step);
-      return ILAW_INVALID_ARGUMENT;
+    if (setup_.flags != 0) {
+      text_.add("law '%s': flags 0x%llx are not known: expected 0", id,
+                static_cast<unsigned long long>(setup_.flags));
+      return ILAW_UNSUPPORTED;
     }
     made_.dimension = setup_.dimension;
     made_.delassus_form = setup_.delassus_form;
@@ -344,7 +344,9 @@ std::int32_t info(const ilaw_instance* opaque, ilaw_instance_info* out) {
                    .state_variables = made.variable_pointers,
                    .per_node_parameters = made.per_node_names,
                    .per_node_parameter_count = made.per_node_count,
-                   .capabilities = made.capabilities()});
+                   .capabilities = made.capabilities(),
+                   .state_version = Law::card.state_version,
+                   .reserved = 0});
   return ILAW_OK;
 }
 
