@@ -5,9 +5,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <cstring>
 
 namespace ilaw::loading {
 namespace {
@@ -38,73 +36,20 @@ class probe {
   bool open_;
 };
 
-std::uintptr_t page_size() {
-  static const auto size = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  return size;
-}
-
 }  // namespace
 
 bool readable(const void* address, std::size_t size) {
   const auto first = reinterpret_cast<std::uintptr_t>(address);
   if (!address || size == 0 || size > UINTPTR_MAX - first) return false;
+  static const auto page_size = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   probe pages;
   const std::uintptr_t last = first + (size - 1);
   for (std::uintptr_t at = first;;) {  // one byte in each page
     if (!pages.can_read(reinterpret_cast<const char*>(at))) return false;
-    const std::uintptr_t next = (at | (page_size() - 1)) + 1;
+    const std::uintptr_t next = (at | (page_size - 1)) + 1;
     if (next > last || next == 0) return true;
     at = next;
   }
-}
-
-bool readable_text(const char* text) {
-  constexpr std::size_t longest = 65536;
-  std::size_t known = 0;
-  while (known < longest) {
-    const auto at = reinterpret_cast<std::uintptr_t>(text) + known;
-    const std::size_t chunk = std::min<std::size_t>(page_size() - (at & (page_size() - 1)), longest - known);
-    if (!readable(text + known, chunk)) return false;
-    if (std::memchr(text + known, '\0', chunk)) return true;
-    known += chunk;
-  }
-  return false;
-}
-
-namespace {
-
-// Length of the UTF-8 sequence at the start of a text, and its character; 0 where there is none.
-std::size_t sequence(std::string_view text, std::uint32_t& character) {
-  const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  const std::size_t length = first < 0x80       ? 1
-                             : first >> 5 == 6  ? 2
-                             : first >> 4 == 14 ? 3
-                             : first >> 3 == 30 ? 4
-                                                : 0;
-  if (length == 0 || length > text.size()) return 0;
-  character = length == 1 ? first : first & (0xFFU >> (length + 1));
-  for (std::size_t i = 1; i < length; ++i) {
-    if (byte(i) >> 6 != 2) return 0;
-    character = character << 6 | (byte(i) & 0x3FU);
-  }
-  constexpr std::uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
-  const bool surrogate = character >= 0xD800 && character <= 0xDFFF;
-  return character < smallest[length] || character > 0x10FFFF || surrogate ? 0 : length;
-}
-
-}  // namespace
-
-bool clean_text(std::string_view text, bool lines_allowed) {
-  while (!text.empty()) {
-    std::uint32_t character = 0;
-    const std::size_t length = sequence(text, character);
-    if (length == 0) return false;
-    const bool control = character < 0x20 || (character >= 0x7F && character < 0xA0);
-    if (control && !(lines_allowed && (character == '\n' || character == '\t'))) return false;
-    text.remove_prefix(length);
-  }
-  return true;
 }
 
 }  // namespace ilaw::loading

@@ -1,27 +1,38 @@
-// Any bytes as a library's description and as what an instance says of itself: pointers in it lead anywhere, into the
-// bytes themselves, or into memory that is not there.
+// Any bytes as a library's description and as what an instance says of itself: pointers in it lead anywhere,
+// into the bytes themselves, or into memory that is not there.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <description.hpp>
 
 #include <cstdint>
 #include <cstring>
 #include <string>
-#include <vector>
 
 namespace {
 
 using namespace ilaw::loading;
 
-// A word of the form 0x51AA'0000'0000'oooo becomes a pointer to the byte of that offset, so that the fuzzer finds
-// structs within structs; all other words stay the wild pointers and numbers that they are.
-std::vector<std::uint64_t> relocated(const std::uint8_t* bytes, std::size_t size) {
-  std::vector<std::uint64_t> words(size / 8 + 1);
-  std::memcpy(words.data(), bytes, size);
+// All memory that there is: it ends with a page, since texts are read page by page.
+struct {
+  char* start = nullptr;
+  std::size_t size = 0;
+} memory;
+
+// The bytes there, of which a word of the form 0x51AA'0000'0000'oooo leads back into them, to the byte of
+// that offset: so the fuzzer finds structs within structs. All other words are the wild pointers that they
+// are.
+void relocate(const std::uint8_t* bytes, std::size_t size) {
+  constexpr std::size_t page = 4096, room = 17 * page;
+  alignas(page) static char pages[room];
+  memory = {pages + room - size, size};
+  if (size > 0) std::memcpy(memory.start, bytes, size);
   constexpr std::uint64_t mark = 0x51AA;
-  for (std::uint64_t& word : words)
-    if (word >> 48 == mark && (word & 0xFFFF) < size)
-      word = reinterpret_cast<std::uint64_t>(reinterpret_cast<const char*>(words.data()) + (word & 0xFFFF));
-  return words;
+  for (std::size_t at = 0; at + 8 <= size; at += 8) {
+    std::uint64_t word;
+    std::memcpy(&word, memory.start + at, sizeof word);
+    if (word >> 48 != mark || (word & 0xFFFF) >= size) continue;
+    word = reinterpret_cast<std::uint64_t>(memory.start + (word & 0xFFFF));
+    std::memcpy(memory.start + at, &word, sizeof word);
+  }
 }
 
 // Reads all that a host may read of a checked description.
@@ -43,12 +54,22 @@ std::size_t letters_of(const ilaw_plugin& plugin) {
 
 }  // namespace
 
+// The loader's asks the kernel, which would also read the sanitizer's own memory.
+bool ilaw::loading::readable(const void* address, std::size_t size) {
+  const auto first = reinterpret_cast<std::uintptr_t>(address);
+  const auto start = reinterpret_cast<std::uintptr_t>(memory.data());
+  return size > 0 && first >= start && first - start <= memory.size() &&
+         size <= memory.size() - (first - start);
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  const std::vector<std::uint64_t> words = relocated(bytes, size);
-  const void* start = words.data();
+  if (size > 65536) return 0;
+  relocate(bytes, size);
   storage kept;
   try {
-    if (letters_of(*checked_plugin("fuzzed", static_cast<const ilaw_plugin*>(start), kept)) == SIZE_MAX) return 1;
+    if (letters_of(*checked_plugin("fuzzed", reinterpret_cast<const ilaw_plugin*>(memory.start), kept)) ==
+        SIZE_MAX)
+      return 1;
   } catch (const refusal&) {
   }
   try {
@@ -57,7 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     ilaw_setup setup{};
     setup.dimension = 3;
     ilaw_instance_info info{};
-    copy_sized(&info, sizeof info, start, size);
+    copy_sized(&info, sizeof info, memory.start, size);
     const std::string file = "fuzzed";
     check_instance_info({file, law, ILAW_ABI_MINOR}, setup, info, kept);
   } catch (const refusal&) {

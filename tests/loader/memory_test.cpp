@@ -55,7 +55,8 @@ TEST(OutOfMemory, OpeningAndCreatingSayItAndLeaveNothingBehind) {
     setup.dimension = 1;
     setup.delassus_form = ILAW_DELASSUS_SCALAR;
     code = ilaw_library_open(file, &library, message, sizeof message);
-    if (code == ILAW_OK) code = ilaw_interface_create(library, "zero", &setup, &interface, message, sizeof message);
+    if (code == ILAW_OK)
+      code = ilaw_interface_create(library, "zero", &setup, &interface, message, sizeof message);
     if (code != ILAW_OK && code != ILAW_OUT_OF_MEMORY) std::abort();
     if (code != ILAW_OK && interface) std::abort();
     ilaw_interface_destroy(interface);

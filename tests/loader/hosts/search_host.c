@@ -1,5 +1,5 @@
-/* search_host [NAME] - prints the search path, or the code of opening a library by name. The test runs a copy of it
- * set-uid. */
+/* search_host [NAME] - prints the search path, or the code of opening a library by name. The test runs a copy
+ * of it set-uid. */
 #include <ilaw/loader.h>
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
-// unusual_host MODE LIBRARY... - runs the same random batches of all laws in a process set up as some industrial code
-// sets up its own, and prints a digest of what the laws gave: the same in every mode.
+// unusual_host MODE LIBRARY... - runs the same random batches of all laws in a process set up as some
+// industrial code sets up its own, and prints a digest of what the laws gave: the same in every mode.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "../../abi/batch_source.hpp"
 
