@@ -291,7 +291,7 @@ void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated,
     bool zero = true;
     for (std::size_t c = 0; c < drawn_.dimension(); ++c) {
       if (!is_finite(impulse_.at(node, c)))
-        refuse("an impulse that is not finite at node " + std::to_string(node));
+        refuse("an impulse of " + std::to_string(impulse_.at(node, c)) + " at node " + std::to_string(node));
       zero = zero && impulse_.at(node, c) == 0.0;
     }
     if (node == report.first_bad_node && report.bad_count > 0 && !zero) refuse("a bad node with an impulse");

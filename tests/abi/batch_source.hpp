@@ -70,15 +70,17 @@ struct Temper {
 // minds.
 class Arena {
  public:
-  static constexpr std::size_t capacity = 16384;
-  Arena() : doubles_(capacity, of_bits(0x7FF4000000000000)) {}
+  static constexpr std::size_t capacity = std::size_t{1} << 18;
+  Arena() : doubles_(capacity, of_bits(0x7FF4000000000000)) {
+    ASAN_POISON_MEMORY_REGION(doubles_.data(), capacity * sizeof(double));
+  }
   ~Arena() { ASAN_UNPOISON_MEMORY_REGION(doubles_.data(), capacity * sizeof(double)); }
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
   void empty() {
+    ASAN_POISON_MEMORY_REGION(doubles_.data(), used_ * sizeof(double));
     used_ = 0;
-    ASAN_POISON_MEMORY_REGION(doubles_.data(), capacity * sizeof(double));
   }
   double* span(std::size_t count) {
     used_ += 2;

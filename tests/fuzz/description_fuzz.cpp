@@ -57,9 +57,8 @@ std::size_t letters_of(const ilaw_plugin& plugin) {
 // The loader's asks the kernel, which would also read the sanitizer's own memory.
 bool ilaw::loading::readable(const void* address, std::size_t size) {
   const auto first = reinterpret_cast<std::uintptr_t>(address);
-  const auto start = reinterpret_cast<std::uintptr_t>(memory.data());
-  return size > 0 && first >= start && first - start <= memory.size() &&
-         size <= memory.size() - (first - start);
+  const auto start = reinterpret_cast<std::uintptr_t>(memory.start);
+  return size > 0 && first >= start && first - start <= memory.size && size <= memory.size - (first - start);
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
