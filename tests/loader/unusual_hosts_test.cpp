@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <array>
 #include <cstdio>
+#include <sstream>
 #include <string>
 
 namespace {
@@ -13,8 +14,9 @@ namespace {
 // What the host prints, and how it ended where not well.
 std::string digest_of(const std::string& host, const std::string& mode) {
   std::string command = std::string(ILAW_HOSTS) + "/" + host + " " + mode;
-  for (const char* law : {"cohesive", "contact", "coulomb", "penalty", "postit", "tie"})
-    command += " " ILAW_PLUGIN_FOLDER "/" + std::string(law) + ".so";
+  std::istringstream laws(ILAW_ALL_LAWS);
+  for (std::string law; laws >> law;)
+    command += " " ILAW_PLUGIN_FOLDER "/" + law + ".so";
   FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   std::string text;
   std::array<char, 256> line;

@@ -18,8 +18,8 @@ std::string library(const std::string& version, const std::string& law) {
 
 std::string all_libraries(const std::string& version) {
   std::string all;
-  for (const char* law : {"cohesive", "contact", "coulomb", "penalty", "postit", "tie"})
-    all += " " + library(version, law);
+  std::istringstream laws(ILAW_ALL_LAWS);
+  for (std::string law; laws >> law;) all += " " + library(version, law);
   return all;
 }
 
