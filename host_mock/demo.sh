@@ -8,7 +8,7 @@ echo "build: build/release"
 cmake --preset release -DILAW_TESTS=OFF >/dev/null
 cmake --build --preset release -- --quiet
 
-for scene in host_mock/scenes/*.json; do
+for scene in host_mock/scenes/*.json plugins/*/*.json; do
   results=build/release/demo/$(basename "$scene" .json)
   build/release/bin/ilaw run "$scene" --out "$results"
   build/release/bin/ilaw plot "$results" >/dev/null

@@ -50,7 +50,8 @@ measure_order() {
 }
 
 scenes=host_mock/scenes
-for test in postit_test1 postit_test2 postit_test3; do measure_order $test $scenes/$test.json; done
+for test in postit_test1 postit_test2; do measure_order $test $scenes/$test.json; done
+measure_order postit_test3 plugins/postit/postit_test3.json
 for ball in bouncing_ball_e08 bouncing_ball_e1; do measure_order $ball $here/scenes/$ball.json; done
 for bar in bar_on_wall two_bars glued_bar; do
   measure_order $bar $scenes/$bar.json

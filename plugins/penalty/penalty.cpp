@@ -182,7 +182,7 @@ struct penalty {
   // damper.
   template <bool Linear, class Node>
   void rub_any(Node& node, vector q, double softness) const {
-    local_problem problem = problem_of(node.delassus);
+    local_coulomb problem = problem_of(node.delassus);
     problem.h[1] += softness;
     problem.h[2] += softness;
     problem.q[1] = q.t1;
@@ -197,7 +197,7 @@ struct penalty {
       problem.h[3] = problem.h[4] = 0.0;
       problem.q[0] = -problem.h[0] * normal_impulse<Linear>(node);
     }
-    apply_local_problem(node, stiffness > 0.0 ? -1.0 : 1.0, problem);
+    apply_local_coulomb(node, stiffness > 0.0 ? -1.0 : 1.0, problem);
     if (couples && !is_inverse_mass) node.refused = anisotropic_delassus;
   }
 

@@ -1,8 +1,8 @@
 // Penalty beside contact in the same scenes: largest stable step, penetration, energy that the interface
 // creates or takes, error against run time. docs/results tells the cases and what was measured.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "errors.hpp"
-#include "scene.hpp"
+#include "scene/scene.hpp"
+#include "study/errors.hpp"
 
 #include <CLI/CLI.hpp>
 

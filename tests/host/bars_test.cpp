@@ -1,8 +1,8 @@
 // Bars against d'Alembert's solutions. At cfl = 1 the scheme is exact at the nodes: a wave passes one element
 // per step, so that contact is checked to rounding. A front brings half an element's mass first, whose
 // impulse is half that of the steps after it.
-#include "errors.hpp"
 #include "host_runner.hpp"
+#include "study/errors.hpp"
 
 #include <algorithm>
 

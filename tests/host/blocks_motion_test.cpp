@@ -180,7 +180,7 @@ void expect_the_same_bits(const json& source, int steps) {
 }
 
 TEST(Threads, GiveTheBitsOfOneInTheShippedBlockImpact) {
-  expect_the_same_bits(json::parse(std::ifstream(ILAW_SCENES "/block_impact.json")), 200);
+  expect_the_same_bits(json::parse(std::ifstream(scene_files::named("block_impact.json"))), 200);
 }
 
 // 4761 contacts: more than are given to one thread.

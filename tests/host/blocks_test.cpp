@@ -1,8 +1,8 @@
 // Blocks of hexahedra: patch tests, invariances, consistency of forces and energy.
-#include "models/blocks.hpp"
+#include "model/blocks.hpp"
 
 #include "host_runner.hpp"
-#include "models/bars.hpp"
+#include "model/bars.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

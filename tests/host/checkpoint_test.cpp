@@ -1,5 +1,5 @@
 // A run that goes on from a checkpoint goes on to the same bits, and nothing but its own checkpoint will do.
-#include "checkpoint.hpp"
+#include "results/checkpoint.hpp"
 #include "host_runner.hpp"
 #include "program_runner.hpp"
 
@@ -18,9 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-json shipped(const std::string& name) {
-  return read_scene_source(std::filesystem::path(ILAW_SCENES) / (name + ".json"));
-}
+json shipped(const std::string& name) { return read_scene_source(scene_files::named(name + ".json")); }
 
 std::string saved(const Integrator& integrator) {
   std::ostringstream state;
@@ -283,11 +281,11 @@ TEST(Checkpoint, DamagedAnywhereIsRefused) {
     EXPECT_EQ(refusal.substr(0, wanted.size()), wanted) << refusal;
   };
   std::mt19937 engine(32);
-  std::uniform_int_distribution<std::size_t> place(0, good.size() - 1);
+  std::uniform_int_distribution<std::size_t> node_index(0, good.size() - 1);
   for (int k = 0; k < 300; ++k) {
-    expect_refused(good.substr(0, place(engine)));
+    expect_refused(good.substr(0, node_index(engine)));
     std::string turned = good;
-    turned[place(engine)] ^= static_cast<char>(1 << (k % 8));
+    turned[node_index(engine)] ^= static_cast<char>(1 << (k % 8));
     expect_refused(turned);
   }
   expect_refused("");

@@ -7,7 +7,7 @@ namespace {
 
 Scene shipped(const char* name, double dt = 0.0) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  const std::filesystem::path file = std::filesystem::path(ILAW_SCENES) / name;
+  const std::filesystem::path file = scene_files::named(name);
   nlohmann::json source = read_scene_source(file);
   if (dt > 0.0) source["time"]["dt"] = dt;
   return read_scene(source, file);

@@ -1,8 +1,8 @@
 // Errors and their orders: the norms on motions made by hand, and `ilaw converge` on scenes with known
 // answers.
-#include "errors.hpp"
 #include "host_runner.hpp"
 #include "program_runner.hpp"
+#include "study/errors.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -132,9 +132,7 @@ TEST(Order, LeavesOutWhatIsAtRoundingLevel) {
 
 // ---- the program ----------------------------------------------------------------------------------------
 
-json shipped(const std::string& name) {
-  return read_scene_source(std::filesystem::path(ILAW_SCENES) / (name + ".json"));
-}
+json shipped(const std::string& name) { return read_scene_source(scene_files::named(name + ".json")); }
 
 struct Study {
   Outcome outcome;
@@ -311,23 +309,23 @@ Peel peel_at(int level) {
   Scene scene = scene_of(source.dump());
   Integrator integrator = integrator_of(scene);
   Interface& bond = *scene.interfaces[0];
-  std::vector<int> slots;
+  std::vector<int> contact_indices;
   for (const int node : scene.output.watch) {
-    const auto place = std::find(bond.nodes().begin(), bond.nodes().end(), node) - bond.nodes().begin();
-    slots.push_back(bond.slot_of(static_cast<int>(place), integrator.displacement()));
+    const auto node_index = std::find(bond.nodes().begin(), bond.nodes().end(), node) - bond.nodes().begin();
+    contact_indices.push_back(bond.contact_index_of(static_cast<int>(node_index), integrator.displacement()));
   }
-  Peel peel{{}, std::vector<double>(slots.size(), never)};
+  Peel peel{{}, std::vector<double>(contact_indices.size(), never)};
   peel.trace.dt = scene.dt;
-  peel.trace.instants.resize(slots.size());
+  peel.trace.instants.resize(contact_indices.size());
   while (integrator.steps() < scene.steps) {
     integrator.step();
-    Dofs u(3 * static_cast<Eigen::Index>(slots.size())), v(u.size());
-    for (std::size_t row = 0; row < slots.size(); ++row) {
+    Dofs u(3 * static_cast<Eigen::Index>(contact_indices.size())), v(u.size());
+    for (std::size_t row = 0; row < contact_indices.size(); ++row) {
       const auto to = 3 * static_cast<Eigen::Index>(row), from = Eigen::Index{3} * scene.output.watch[row];
       u.segment<3>(to) = integrator.displacement().segment<3>(from);
       v.segment<3>(to) = integrator.velocity().segment<3>(from);
-      if (integrator.time() > 0.6 && std::isnan(peel.ruptures[row]) && bond.was_asked(slots[row]) &&
-          bond.status(slots[row]) == ILAW_BROKEN)
+      if (integrator.time() > 0.6 && std::isnan(peel.ruptures[row]) && bond.is_active(contact_indices[row]) &&
+          bond.status(contact_indices[row]) == ILAW_BROKEN)
         peel.ruptures[row] = integrator.time();
     }
     peel.trace.displacement.push_back(u);
@@ -430,7 +428,7 @@ TEST(Converge, RefusesWhatItCannotCompare) {
   refusal(ball(0.5), "--refine space");
   const auto folder = fresh_folder();
   std::ofstream(folder / "file") << "not a folder";
-  const Outcome taken = run_program("converge " + std::string(ILAW_SCENES) + "/two_bars.json --out " +
+  const Outcome taken = run_program("converge " + scene_files::named("two_bars.json").string() + " --out " +
                                     (folder / "file").string());
   EXPECT_EQ(taken.code, 2);
   EXPECT_NE(taken.output.find("expected a folder"), std::string::npos) << taken.output;

@@ -11,20 +11,20 @@ namespace {
 
 Scene shipped(const char* name) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  return read_scene(std::filesystem::path(ILAW_SCENES) / name);
+  return read_scene(scene_files::named(name));
 }
 
 // Each law asked once more about what the sweeps left: Signorini and Coulomb, to rounding of the largest
 // speed.
-void expect_law(const Interface& interface, int slot, const Dofs& v, double friction, double speed) {
-  const Vector relative = interface.relative(slot, v) - interface.obstacle_velocity();
-  const Vector impulse = interface.impulse(slot), normal = interface.normal(slot);
+void expect_law(const Interface& interface, int contact_index, const Dofs& v, double friction, double speed) {
+  const Vector relative = interface.relative(contact_index, v) - interface.obstacle_velocity();
+  const Vector impulse = interface.impulse(contact_index), normal = interface.normal(contact_index);
   const double r_n = impulse.dot(normal), v_n = relative.dot(normal);
   const Vector r_t = impulse - r_n * normal, v_t = relative - v_n * normal;
-  const double tolerance = 1e-13 * speed, h = interface.delassus(slot);
+  const double tolerance = 1e-13 * speed, h = interface.delassus(contact_index);
   EXPECT_GE(r_n, 0.0);
   if (r_n == 0.0) {
-    EXPECT_TRUE(interface.gap(slot) > 0.0 || v_n >= -tolerance) << v_n;
+    EXPECT_TRUE(interface.gap(contact_index) > 0.0 || v_n >= -tolerance) << v_n;
     EXPECT_EQ(r_t.norm(), 0.0);
     return;
   }
@@ -43,9 +43,9 @@ TEST(NodeToFacet, EveryContactObeysItsLawAtEveryStep) {
     integrator.step();
     const double speed = integrator.velocity().cwiseAbs().maxCoeff();
     for (std::size_t k = 0; k < 2; ++k)
-      for (const std::int32_t slot : scene.interfaces[k]->asked()) {
-        expect_law(*scene.interfaces[k], slot, integrator.velocity(), k == 0 ? 0.5 : 0.3, speed);
-        if (!scene.interfaces[k]->impulse(slot).isZero(0.0)) ++pressed;
+      for (const std::int32_t contact_index : scene.interfaces[k]->active()) {
+        expect_law(*scene.interfaces[k], contact_index, integrator.velocity(), k == 0 ? 0.5 : 0.3, speed);
+        if (!scene.interfaces[k]->impulse(contact_index).isZero(0.0)) ++pressed;
       }
   }
   EXPECT_GT(pressed, 500);
@@ -63,9 +63,9 @@ TEST(BlockImpact, MeetsTheFloorAndTheBall) {
     integrator.step();
     const double speed = integrator.velocity().cwiseAbs().maxCoeff();
     for (std::size_t k = 0; k < 2; ++k)
-      for (const std::int32_t slot : scene.interfaces[k]->asked()) {
-        if (scene.interfaces[k]->impulse(slot).isZero(0.0)) continue;
-        expect_law(*scene.interfaces[k], slot, integrator.velocity(), 0.3, speed);
+      for (const std::int32_t contact_index : scene.interfaces[k]->active()) {
+        if (scene.interfaces[k]->impulse(contact_index).isZero(0.0)) continue;
+        expect_law(*scene.interfaces[k], contact_index, integrator.velocity(), 0.3, speed);
         ++pressed[k];
       }
   }
@@ -111,7 +111,7 @@ TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
     "time": {"cfl": 0.5, "end": 0.4},
     "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "a.z_max"}}]})");
   Interface& interface = *scene.interfaces[0];
-  const Opponent& opponent = *interface.setup().opponent;
+  const Counterpart& counterpart = *interface.setup().counterpart;
   Dofs u = Dofs::Zero(scene.model->mass().size());
   const int node = interface.nodes()[0];
   for (const double z : {0.03, -0.01})
@@ -119,23 +119,23 @@ TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
       u[3 * node] = x;
       u[3 * node + 1] = 0.5 * x;
       u[3 * node + 2] = -0.1 + z;
-      interface.setup().opponent->look(u);
-      const Meeting meeting = opponent.meet(0, u, 0.0);
-      EXPECT_NEAR(meeting.gap, z, 1e-15) << x;
-      EXPECT_NEAR(meeting.normal[2], 1.0, 1e-15);
+      interface.setup().counterpart->look(u);
+      const ContactPoint contact_point = counterpart.meet(0, u, 0.0);
+      EXPECT_NEAR(contact_point.gap, z, 1e-15) << x;
+      EXPECT_NEAR(contact_point.normal[2], 1.0, 1e-15);
       double sum = 0.0;
       Eigen::Vector3d foot = Eigen::Vector3d::Zero();
       for (std::size_t i = 0; i < 4; ++i) {
-        sum += meeting.weights[i];
-        foot += meeting.weights[i] * scene.model->position().segment<3>(3 * meeting.partners[i]);
+        sum += contact_point.weights[i];
+        foot += contact_point.weights[i] * scene.model->position().segment<3>(3 * contact_point.partners[i]);
       }
       EXPECT_NEAR(sum, 1.0, 1e-15);
       EXPECT_LE((foot - Eigen::Vector3d(0.3 + x, 0.3 + 0.5 * x, 0.5)).norm(), 1e-14);
-      EXPECT_LE(opponent.gap_bound(0, u, 0.0), meeting.gap);
+      EXPECT_LE(counterpart.gap_bound(0, u, 0.0), contact_point.gap);
     }
   u[3 * node] = -0.5;  // 0.2 beyond the border, and below the surface
-  interface.setup().opponent->look(u);
-  EXPECT_GT(opponent.meet(0, u, 0.0).gap, 0.2);
+  interface.setup().counterpart->look(u);
+  EXPECT_GT(counterpart.meet(0, u, 0.0).gap, 0.2);
 }
 
 // Three balls of diameter 1 in a row at a wall: the last is thrown at the others and pressed with a force F
@@ -151,7 +151,7 @@ TEST(Chain, ImpulsesAddUpFromBallToBall) {
       {"name": "second", "law": "contact", "nodes": [2], "gap_offset": 1, "against": {"nodes": [1], "normal": [1]}}]})");
   Integrator integrator = integrator_of(scene);
   const auto impulse = [&](std::size_t k) {
-    return scene.interfaces[k]->impulse(scene.interfaces[k]->asked().at(0))[0];
+    return scene.interfaces[k]->impulse(scene.interfaces[k]->active().at(0))[0];
   };
   integrator.step();
   const double h = scene.dt,
@@ -196,7 +196,7 @@ TEST(Column, EachContactCarriesWhatLiesAboveIt) {
       if (integrator.steps() == 1) continue;  // takes the kick of half a step out, too
       for (int k = 0; k < balls; ++k) {
         const Interface& contact = *scene.interfaces[static_cast<std::size_t>(k)];
-        EXPECT_NEAR(contact.impulse(contact.asked().at(0))[0], 0.01 * (balls - k), 1e-12) << k;
+        EXPECT_NEAR(contact.impulse(contact.active().at(0))[0], 0.01 * (balls - k), 1e-12) << k;
       }
       EXPECT_LE(integrator.velocity().cwiseAbs().maxCoeff(), 1e-12);
     }
@@ -216,9 +216,9 @@ TEST(Column, ThatIsTooLongIsSaidToBe) {
   EXPECT_EQ(integrator.tally().unconverged, 1);
   double largest = 0.0, size = 0.0;
   for (const auto& contact : scene.interfaces) {
-    const int slot = contact->asked().at(0);
-    const double own = contact->delassus(slot) * contact->impulse(slot)[0],
-                 v_free = contact->relative(slot, integrator.velocity())[0] - own;
+    const int contact_index = contact->active().at(0);
+    const double own = contact->delassus(contact_index) * contact->impulse(contact_index)[0],
+                 v_free = contact->relative(contact_index, integrator.velocity())[0] - own;
     largest = std::max(largest, std::abs(own - std::max(0.0, -v_free)));
     size = std::max(size, own);
   }

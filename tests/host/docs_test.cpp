@@ -1,4 +1,6 @@
 // docs/scenes.md is complete: it names every key and every choice of the schema, and every shipped scene.
+#include "support/scene_files.hpp"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -88,10 +90,9 @@ TEST(ScenesPage, NamesEveryChoiceOfTheSchema) {
 TEST(ScenesPage, DerivesEveryShippedScene) {
   const std::string text = page();
   int scenes = 0;
-  for (const auto& file : std::filesystem::directory_iterator(root / "host_mock/scenes")) {
-    if (file.path().extension() != ".json") continue;
+  for (const std::filesystem::path& file : scene_files::all()) {
     ++scenes;
-    EXPECT_NE(text.find("**" + file.path().stem().string() + "**"), std::string::npos) << file.path();
+    EXPECT_NE(text.find("**" + file.stem().string() + "**"), std::string::npos) << file;
   }
   EXPECT_GT(scenes, 15);
 }

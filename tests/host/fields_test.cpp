@@ -1,5 +1,5 @@
 // Fields are read back with VTK itself, and hold what the integrator holds.
-#include "fields.hpp"
+#include "results/fields.hpp"
 
 #include "host_runner.hpp"
 #include "program_runner.hpp"
@@ -51,9 +51,7 @@ void expect_vectors(vtkUnstructuredGrid& grid, const char* name, const Dofs& wan
   for (int c = d; c < 3; ++c) EXPECT_EQ(field.at(0, c), 0.0);
 }
 
-json shipped(const std::string& name) {
-  return read_scene_source(std::filesystem::path(ILAW_SCENES) / (name + ".json"));
-}
+json shipped(const std::string& name) { return read_scene_source(scene_files::named(name + ".json")); }
 
 // Bonds form, hold and break in this scene; the upper nodes belong to no interface.
 TEST(Fields, HoldWhatTheIntegratorHolds) {
@@ -82,15 +80,16 @@ TEST(Fields, HoldWhatTheIntegratorHolds) {
         ruptures(*grid, "ruptures", 1);
     std::vector<bool> belongs(static_cast<std::size_t>(scene.model->node_count()));
     for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
-      const int node = interface.nodes()[k], place = static_cast<int>(k);
-      const int slot = interface.slot_of(place, integrator.displacement());
+      const int node = interface.nodes()[k], node_index = static_cast<int>(k);
+      const int contact_index = interface.contact_index_of(node_index, integrator.displacement());
       belongs[static_cast<std::size_t>(node)] = true;
       // The plane is z = 0.
       ASSERT_EQ(gap.at(node),
                 scene.model->position()[3 * node + 2] + integrator.displacement()[3 * node + 2]);
-      ASSERT_EQ(status.at(node), interface.was_asked(slot) ? interface.status(slot) : int{ILAW_FREE});
-      ASSERT_EQ(adhesion.at(node), interface.state(slot, 0));
-      ASSERT_EQ(ruptures.at(node), interface.state(slot, 1));
+      ASSERT_EQ(status.at(node),
+                interface.is_active(contact_index) ? interface.status(contact_index) : int{ILAW_FREE});
+      ASSERT_EQ(adhesion.at(node), interface.state(contact_index, 0));
+      ASSERT_EQ(ruptures.at(node), interface.state(contact_index, 1));
       bonded += status.at(node) == double{ILAW_BONDED};
       broken += ruptures.at(node) > 0.0;
     }

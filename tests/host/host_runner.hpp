@@ -1,9 +1,11 @@
 // host_runner.hpp - scenes as text, run in the test's own process.
 #pragma once
 
-#include "integrator.hpp"
-#include "scene.hpp"
-#include "validation.hpp"
+#include "support/scene_files.hpp"
+
+#include "scene/scene.hpp"
+#include "scene/validation.hpp"
+#include "step/integrator.hpp"
 
 #include <gtest/gtest.h>
 

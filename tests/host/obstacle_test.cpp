@@ -1,5 +1,5 @@
 // Obstacles against closed forms of their distances; prescribed motion and damping.
-#include "obstacle.hpp"
+#include "model/obstacle.hpp"
 
 #include "host_runner.hpp"
 

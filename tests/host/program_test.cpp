@@ -15,7 +15,7 @@
 namespace ilaw::host::testing {
 namespace {
 
-const std::string ball = std::string(ILAW_SCENES) + "/bouncing_ball.json";
+const std::string ball = scene_files::named("bouncing_ball.json").string();
 
 TEST(Program, RunsASceneAndLeavesHistoryAndSummary) {
   const auto folder = fresh_folder();
@@ -259,9 +259,7 @@ nlohmann::json summary_of(const nlohmann::json& scene) {
   return nlohmann::json::parse(text_of(folder / "summary.json"));
 }
 
-nlohmann::json shipped(const char* name) {
-  return nlohmann::json::parse(text_of(std::filesystem::path(ILAW_SCENES) / name));
-}
+nlohmann::json shipped(const char* name) { return nlohmann::json::parse(text_of(scene_files::named(name))); }
 
 // Every contact of every step is asked or skipped, and has a status.
 TEST(Summary, CountsWhoWasAskedAndWhoWasSkipped) {

@@ -124,7 +124,7 @@ TEST(Scene, ThatIsNoJsonIsRefused) {
 
 // The bounds of a range are all told, also those that do not belong to it.
 TEST(Scene, TellsWhereARangeEnds) {
-  json scene = json::parse(text_of(std::filesystem::path(ILAW_SCENES) / "block_impact.json"));
+  json scene = json::parse(text_of(scene_files::named("block_impact.json")));
   scene["model"]["blocks"][0]["material"]["poisson"] = 0.5;
   EXPECT_EQ(refusal_of(scene.dump()),
             "/model/blocks/0/material/poisson: found 0.5, expected number > -1 < 0.5");
@@ -143,7 +143,7 @@ TEST(Scene, WhoseLibraryIsNoLibraryIsRefusedThere) {
 
 // At the critical step itself a run is stable; what is beyond is refused where that is exact.
 TEST(Step, MayBeCriticalButNoLarger) {
-  json scene = json::parse(text_of(std::filesystem::path(ILAW_SCENES) / "two_bars.json"));
+  json scene = json::parse(text_of(scene_files::named("two_bars.json")));
   const double critical = 0.01;  // elements of 0.01, waves at 1
   scene["time"] = {{"dt", critical}, {"end", 0.1}};
   EXPECT_EQ(refusal_of(scene.dump()), "not refused");
@@ -177,7 +177,7 @@ TEST(Warnings, TellWhatCanHardlyBeMeant) {
 
 // For blocks the critical step is a bound from below.
 TEST(Warnings, TellOfAStepThatMayBeUnstable) {
-  json scene = json::parse(text_of(std::filesystem::path(ILAW_SCENES) / "block_impact.json"));
+  json scene = json::parse(text_of(scene_files::named("block_impact.json")));
   scene["time"] = {{"dt", 1e-3}, {"end", 0.01}};
   const std::vector<std::string> warnings = scene_of(scene.dump()).warnings;
   ASSERT_EQ(warnings.size(), 1U);
@@ -185,9 +185,9 @@ TEST(Warnings, TellOfAStepThatMayBeUnstable) {
 }
 
 TEST(Warnings, AreNotForTheShippedScenes) {
-  for (const auto& entry : std::filesystem::directory_iterator(ILAW_SCENES)) {
-    const std::vector<std::string> warnings = scene_of(text_of(entry.path())).warnings;
-    EXPECT_TRUE(warnings.empty()) << entry.path() << ": " << warnings.front();
+  for (const std::filesystem::path& file : scene_files::all()) {
+    const std::vector<std::string> warnings = scene_of(text_of(file)).warnings;
+    EXPECT_TRUE(warnings.empty()) << file << ": " << warnings.front();
   }
 }
 

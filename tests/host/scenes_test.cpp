@@ -5,13 +5,6 @@
 namespace ilaw::host::testing {
 namespace {
 
-std::vector<std::filesystem::path> shipped_scenes() {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(ILAW_SCENES)) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 class ShippedScene : public ::testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(ShippedScene, ClosesItsBalanceAndNeverGainsEnergyAtInterfaces) {
@@ -37,7 +30,7 @@ TEST_P(ShippedScene, ClosesItsBalanceAndNeverGainsEnergyAtInterfaces) {
   EXPECT_EQ(dissipated > 0.0, GetParam().stem() != "glued_bar");
 }
 
-INSTANTIATE_TEST_SUITE_P(Host, ShippedScene, ::testing::ValuesIn(shipped_scenes()),
+INSTANTIATE_TEST_SUITE_P(Host, ShippedScene, ::testing::ValuesIn(scene_files::all()),
                          [](const auto& drawn) { return drawn.param.stem().string(); });
 
 struct Event {
@@ -49,7 +42,7 @@ struct Event {
 // Instants at which node 0 heals or breaks, or its adhesion changes.
 std::vector<Event> events_of(const char* name) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  Scene scene = read_scene(std::filesystem::path(ILAW_SCENES) / name);
+  Scene scene = read_scene(scene_files::named(name));
   Integrator integrator = integrator_of(scene);
   std::vector<Event> events;
   double adhesion = 0.0;

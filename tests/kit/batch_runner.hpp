@@ -1,7 +1,7 @@
 // batch_runner.hpp - the same nodes through any layout of a batch, to compare results bit for bit.
 #pragma once
 
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <cstring>
 #include <random>

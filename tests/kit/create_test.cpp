@@ -1,5 +1,5 @@
 // What create refuses, and in which words: the parameter, its value, what is allowed.
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <limits>
 #include <span>

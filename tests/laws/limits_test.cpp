@@ -1,5 +1,5 @@
 // Limits in which one law is another, for each form of H.
-#include "random_nodes.hpp"
+#include "laws/random_nodes.hpp"
 
 #include <ostream>
 #include <tuple>

@@ -1,5 +1,5 @@
 // Parameters as tables in time and as values per node: whatever a law's description allows, for every law.
-#include "random_nodes.hpp"
+#include "laws/random_nodes.hpp"
 
 #include <algorithm>
 

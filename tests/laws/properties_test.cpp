@@ -1,6 +1,6 @@
 // What every law keeps for each form of H, on a million random steps each: its conditions, the energy, the
 // frame, the units; and the limits in which laws meet.
-#include "random_nodes.hpp"
+#include "laws/random_nodes.hpp"
 
 #include <limits>
 #include <map>

@@ -2,7 +2,7 @@
 // in other axes.
 #pragma once
 
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <cstring>
 #include <limits>

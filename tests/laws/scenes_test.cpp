@@ -1,5 +1,5 @@
 // The scenes that draw the figures of the laws' pages show what their text says.
-#include "../host/host_runner.hpp"
+#include "host/host_runner.hpp"
 
 #include <algorithm>
 
@@ -8,8 +8,7 @@ namespace {
 
 struct Shown {
   explicit Shown(const char* name)
-      : scene((setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1),
-               read_scene(std::filesystem::path(ILAW_SCENES) / name))),
+      : scene((setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1), read_scene(scene_files::named(name)))),
         integrator(integrator_of(scene)) {}
 
   template <class Look>

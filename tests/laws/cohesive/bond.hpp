@@ -1,7 +1,7 @@
 // bond.hpp - a cohesive node that is driven, or that a mass hangs on.
 #pragma once
 
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <limits>
 #include <random>

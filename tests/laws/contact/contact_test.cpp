@@ -1,5 +1,5 @@
 // Contact through the ABI: Moreau's and the predictive condition.
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <random>
 

@@ -1,6 +1,6 @@
 // Contact with friction through the ABI: closed forms, cone, complementarity, dissipation, limits,
 // invariances.
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <limits>
 #include <random>

@@ -1,5 +1,5 @@
 // The normal equation of the implicit penalty, through the ABI, against its defining equation in long double.
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <limits>
 #include <random>

@@ -1,5 +1,5 @@
 // A mass against a penalised obstacle, step by step, against the closed forms of continuous time.
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <limits>
 

@@ -1,5 +1,5 @@
 // Regularised friction, invariances, and bad parameters of the penalty law.
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <limits>
 #include <random>

@@ -1,5 +1,5 @@
 // The implicit penalty keeps the limit of the central-difference scheme, whatever its stiffness.
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <algorithm>
 #include <limits>

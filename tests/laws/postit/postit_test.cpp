@@ -1,5 +1,5 @@
 // The Post-it law through the ABI, against histories derived by hand.
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <limits>
 #include <random>

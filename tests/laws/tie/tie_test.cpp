@@ -1,5 +1,5 @@
 // The tie through the ABI: a bilateral constraint for any H, and its rupture, against closed forms.
-#include "law_runner.hpp"
+#include "support/law_runner.hpp"
 
 #include <limits>
 #include <random>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ilaw/kit/contact.hpp>
-#include <ilaw/kit/coulomb_full.hpp>
+#include <ilaw/kit/local_coulomb.hpp>
 #include <ilaw/kit/node.hpp>
 
 #include <type_traits>
@@ -38,15 +38,15 @@ friction_result<Vector> solve_contact_friction(const Delassus& delassus, double 
   return result;
 }
 
-// The entries of H in the order of local_problem, and whether the closed form above holds: without coupling,
+// The entries of H in the order of local_coulomb, and whether the closed form above holds: without coupling,
 // and with one tangential entry or one tangential velocity.
-inline local_problem problem_of(const scalar_delassus& h) {
+inline local_coulomb problem_of(const scalar_delassus& h) {
   return {.h = {h.h, h.h, h.h}, .q = {}, .mu = {}};
 }
-inline local_problem problem_of(const diagonal_delassus& h) {
+inline local_coulomb problem_of(const diagonal_delassus& h) {
   return {.h = {h.n, h.t1, h.t2}, .q = {}, .mu = {}};
 }
-inline local_problem problem_of(const full_delassus& h) {
+inline local_coulomb problem_of(const full_delassus& h) {
   return {.h = {h.nn, h.t11, h.t22, h.n1, h.n2, h.t12}, .q = {}, .mu = {}};
 }
 template <class Vector>
@@ -67,7 +67,7 @@ void apply_isotropic_friction(Node& node, double slack, Vector q, double frictio
 
 // The same by the local problem, which may be of any H.
 template <class Node>
-void apply_local_problem(Node& node, double slack, const local_problem& problem) {
+void apply_local_coulomb(Node& node, double slack, const local_coulomb& problem) {
   double r[3] = {};
   const contact_mode mode = slack <= 0.0 ? solve(problem, r) : contact_mode::free;
   node.impulse = {r[0], r[1], r[2]};
@@ -80,13 +80,13 @@ void apply_local_problem(Node& node, double slack, const local_problem& problem)
 // For an ellipse of coefficients along the tangents.
 template <class Node>
 void apply_any_friction(Node& node, double slack, vector q, double friction_1, double friction_2) {
-  local_problem problem = problem_of(node.delassus);
+  local_coulomb problem = problem_of(node.delassus);
   problem.q[0] = q.n;
   problem.q[1] = q.t1;
   problem.q[2] = q.t2;
   problem.mu[0] = friction_1;
   problem.mu[1] = friction_2;
-  apply_local_problem(node, slack, problem);
+  apply_local_coulomb(node, slack, problem);
 }
 
 // Contact with friction, by the closed form where it holds.

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/level.hpp>
+#include <ilaw/kit/detail/level.hpp>
 
 #include <bit>
 #include <cstdint>

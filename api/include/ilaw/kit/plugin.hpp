@@ -5,7 +5,7 @@
 #ifndef ILAW_BUILDING_PLUGIN
 #define ILAW_BUILDING_PLUGIN
 #endif
-#include <ilaw/kit/evaluate.hpp>
+#include <ilaw/kit/detail/evaluate.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 

@@ -1,0 +1,315 @@
+// batch_walk.hpp - blocks of a batch as columns: in place where the host's arrays allow it, else copies that
+// are turned to the local frame and back.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/instance.hpp>
+#include <ilaw/kit/detail/kernel.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+// Columns of a block that are copies: where the host's arrays are not consecutive, or are turned to the local
+// frame.
+template <class Law>
+struct block_room {
+  static constexpr int states = state_doubles<Law>;
+  column v_free[3], v_previous[3], delassus[6], gap, gap_offset, area, normal[3], tangent[3];
+  column impulse[3], velocity[3], energy[ILAW_ENERGY_COUNT], status, refused, rests;
+  column state_in[states + 1], state_out[states + 1];
+  column first_tangent[3], second_tangent[3];
+  std::int64_t nodes[has_memory<Law> ? block_size : 1];  // where history is, of listed nodes
+};
+
+// Entry of the host's state that holds double k of struct state; -1: a component beyond the dimension.
+template <class Law>
+int state_entry(int k, int dimension) {
+  int entry = 0, position = 0;
+  if constexpr (has_state<Law>)
+    for (const state_variable& v : Law::state_variables) {
+      if (k < position + v.doubles())
+        return k - position < v.components(dimension) ? entry + (k - position) : -1;
+      position += v.doubles();
+      entry += v.components(dimension);
+    }
+  return -1;
+}
+
+template <class Law, class Layout>
+class batch_walk {
+ public:
+  static constexpr int states = state_doubles<Law>;
+  static constexpr bool in_place = std::is_same_v<Layout, interleaved>;
+
+  batch_walk(const instance<Law>& made, const ilaw_batch& batch, block_room<Law>& room)
+      : made_(made), batch_(batch), room_(room), dimension_(static_cast<int>(made.dimension)) {}
+
+  // Fills the columns of the block that starts at position first.
+  void open(std::int64_t first) {
+    nodes_ = range(first);
+    block_.count = nodes_.count;
+    block_.time = batch_.time;
+    block_.velocity_step = batch_.velocity_step;
+    block_.position_step = batch_.position_step;
+    gather_inputs();
+    if (made_.frame == ILAW_FRAME_GLOBAL) gather_frame();
+    if (made_.frame == ILAW_FRAME_GLOBAL && dimension_ == 2) pad_turned_delassus();
+    open_state();
+    aim_outputs();
+  }
+
+  // Gives the nodes of a block their range and frame, for initialise.
+  void open_initial(std::int64_t first) {
+    nodes_ = range(first);
+    is_initial_ = true;
+    block_.area = optional(batch_.area, made_.inputs() & ILAW_INPUT_AREA, room_.area);
+    if (made_.carries_frame) gather_frame();
+  }
+
+  // Writes the first state of node i; says why not if it cannot: then the state is zero.
+  const char* initialise(const Law& law, int i) {
+    const std::int64_t node = nodes_.node(i);
+    for (std::int64_t c = 0; c < static_cast<std::int64_t>(made_.state_size); ++c)
+      at(batch_.state_out, node, c) = 0.0;
+    const double area = block_.area[i];
+    if (!finite(area) || area < 0.0) return "the area is not a finite number >= 0";
+    if (made_.carries_frame && !unit(columns::get(block_.axes, i))) return "the normal is not a unit vector";
+    kit::node<scalar_delassus, state_t<Law>> fresh{};
+    fresh.time = batch_.time;
+    fresh.area = area;
+    if constexpr (requires { law.initialise(fresh); }) law.initialise(fresh);
+    if (detail::state_defect<Law>(fresh.state) != 0.0) return "the state overflows";
+    if constexpr (has_state<Law>) {
+      const auto doubles = std::bit_cast<std::array<double, states>>(fresh.state);
+      for (int k = 0; k < states; ++k)
+        if (const int entry = state_entry<Law>(k, dimension_); entry >= 0)
+          at(batch_.state_out, node, entry) = doubles[k];
+    }
+    if (made_.carries_frame) keep_frame(i);
+    return nullptr;
+  }
+
+  node_block<Law>& block() { return block_; }
+  const node_range& nodes() const { return nodes_; }
+
+  // Writes what the block computed to the host's arrays. Outputs that are absent are left out.
+  void close() {
+    if (!in_place) scatter_vector(batch_.impulse, dimension_, nodes_, block_.impulse);
+    if (batch_.velocity.values) scatter_vector(batch_.velocity, dimension_, nodes_, block_.velocity);
+    if (batch_.energy.values)
+      for (int k = 0; k < ILAW_ENERGY_COUNT; ++k) scatter(batch_.energy, k, nodes_, block_.energy[k]);
+    if (batch_.status)
+      for (int i = 0; i < nodes_.count; ++i)
+        batch_.status[nodes_.node(i) * batch_.status_stride] = static_cast<std::uint8_t>(block_.status[i]);
+    for (int k = 0; k < states; ++k)
+      if (const int entry = state_entry<Law>(k, dimension_); entry >= 0)
+        scatter(batch_.state_out, entry, nodes_, block_.state_out[k]);
+  }
+
+  // The frame of an accepted step becomes the frame to carry on from.
+  void keep_frames() {
+    if (!made_.carries_frame) return;
+    const bool memory_moves = has_memory<Law> && !(made_.capabilities() & ILAW_CAN_REST);
+    for (int i = 0; i < nodes_.count; ++i)
+      if (block_.refused[i] == 0.0 && (memory_moves || block_.rests[i] == 0.0)) keep_frame(i);
+  }
+
+  bool any_refused() const {
+    std::uint64_t bits = 0;  // an integer reduction vectorises; refused is 0.0 or 1.0
+    for (int i = 0; i < nodes_.count; ++i) bits |= std::bit_cast<std::uint64_t>(block_.refused[i]);
+    return bits != 0;
+  }
+
+ private:
+  node_range range(std::int64_t first) const {
+    const std::int64_t left = batch_.node_count - first;
+    return {batch_.index, batch_.index64, first, batch_.index_base,
+            static_cast<int>(left < block_size ? left : block_size)};
+  }
+  static const double& at(const ilaw_input& a, std::int64_t node, std::int64_t c) {
+    return a.values[node * a.node_stride + c * a.component_stride];
+  }
+  static double& at(const ilaw_output& a, std::int64_t node, std::int64_t c) {
+    return a.values[node * a.node_stride + c * a.component_stride];
+  }
+
+  void keep_frame(int i) {
+    const axis n = columns::get(block_.axes, i), t = columns::get(block_.axes + 3, i);
+    const double entries[6] = {n.x, n.y, n.z, t.x, t.y, t.z};
+    for (int k = 0; k < 6; ++k) at(batch_.state_out, nodes_.node(i), made_.frame_offset() + k) = entries[k];
+  }
+
+  const double* optional(const ilaw_input& input, bool read, column& room) {
+    return read && input.values ? gather(input, 0, nodes_, room.values) : zeros.values;
+  }
+
+  // Vectors that may stay interleaved where the layout says so.
+  void gather_in_layout(const ilaw_input& input, column* room, const double** components) {
+    if constexpr (in_place) {
+      components[0] = input.values + 3 * nodes_.first;
+      prefetch_next(components[0], 3 * nodes_.count);
+    } else {
+      gather_vector(input, dimension_, nodes_, room, components);
+    }
+  }
+
+  void gather_inputs() {
+    const std::uint32_t reads = made_.inputs();
+    const bool previous =
+        batch_.v_previous.values && ((reads & ILAW_INPUT_V_PREVIOUS) || batch_.energy.values);
+    block_.previous_for_energy_only = !(reads & ILAW_INPUT_V_PREVIOUS);
+    gather_in_layout(batch_.v_free, room_.v_free, block_.v_free);
+    if (previous)
+      gather_vector(batch_.v_previous, dimension_, nodes_, room_.v_previous, block_.v_previous);
+    else
+      for (const double*& component : block_.v_previous) component = zeros.values;
+    block_.gap = optional(batch_.gap, reads & ILAW_INPUT_GAP, room_.gap);
+    block_.gap_offset = optional(batch_.gap_offset, reads & ILAW_INPUT_GAP, room_.gap_offset);
+    block_.area = optional(batch_.area, reads & ILAW_INPUT_AREA, room_.area);
+    gather_delassus();
+  }
+
+  // Missing dimensions are padded so that H stays positive definite; see delassus orders in ilaw.h.
+  void gather_delassus() {
+    const double** h = block_.delassus;
+    const auto component = [this](int c) {
+      return gather(batch_.delassus, c, nodes_, room_.delassus[c].values);
+    };
+    if (made_.delassus_form == ILAW_DELASSUS_SCALAR) {
+      h[0] = component(0);
+      for (int e = 1; e < 6; ++e) h[e] = e < 3 ? h[0] : zeros.values;
+      return;
+    }
+    for (int e = 0; e < 3; ++e) h[e] = e < dimension_ ? component(e) : h[0];
+    for (int e = 3; e < 6; ++e) h[e] = zeros.values;
+    if (dimension_ == 2) h[2] = h[1];  // or it would pass for anisotropic
+    if (made_.delassus_form != ILAW_DELASSUS_FULL) return;
+    if (dimension_ == 2) h[3] = component(2);
+    for (int e = 3; dimension_ == 3 && e < 6; ++e) h[e] = component(e);
+  }
+
+  // In two dimensions the second tangent is given the entry of the first, lest H pass for anisotropic.
+  void pad_turned_delassus() {
+    if (made_.delassus_form == ILAW_DELASSUS_SCALAR) return;
+    const double* const* h = block_.delassus;
+    double* padded = room_.delassus[4].values;
+    for (int i = 0; i < nodes_.count; ++i) {
+      const axis t = plane_tangent(2, columns::get(block_.axes, i));
+      padded[i] = t.x * t.x * h[0][i] + t.y * t.y * h[1][i] + 2.0 * t.x * t.y * h[3][i];
+    }
+    block_.delassus[2] = padded;
+  }
+
+  // Columns of the axes. Frames that follow from the normal alone are left to the kernel in three dimensions.
+  void gather_frame() {
+    gather_in_layout(batch_.normal, room_.normal, block_.axes);
+    if (!made_.stores_frame()) return;
+    for (int c = 0; c < 3; ++c) {
+      block_.axes[3 + c] = room_.first_tangent[c].values;
+      block_.axes[6 + c] = room_.second_tangent[c].values;
+    }
+    if (made_.tangent_given && dimension_ == 3)
+      gather_vector(batch_.tangent, dimension_, nodes_, room_.tangent, block_.axes + 3);
+    for (int i = 0; i < nodes_.count; ++i) set_tangents(i);
+  }
+
+  // A tangent that is none makes the second one NaN, and so the node's vectors.
+  void set_tangents(int i) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const axis n = columns::get(block_.axes, i), t1 = first_tangent(i);
+    const axis t2 = has_tangent(i) ? cross(n, t1) : axis{none, none, none};
+    const double first[] = {t1.x, t1.y, t1.z}, second[] = {t2.x, t2.y, t2.z};
+    for (int c = 0; c < 3; ++c) {
+      if (block_.axes[3 + c] == room_.first_tangent[c].values) room_.first_tangent[c].values[i] = first[c];
+      room_.second_tangent[c].values[i] = second[c];
+    }
+  }
+
+  axis first_tangent(int i) const {
+    const axis n = columns::get(block_.axes, i);
+    if (dimension_ < 3) return plane_tangent(dimension_, n);
+    if (made_.tangent_given) return columns::get(block_.axes + 3, i);
+    return carries_on() ? transported_tangent(stored_axis(i, 0), stored_axis(i, 3), n) : any_tangent(n);
+  }
+
+  // Whether there is a frame of the step before.
+  bool carries_on() const { return made_.carries_frame && !is_initial_; }
+
+  bool has_tangent(int i) const {
+    if (dimension_ < 3) return true;
+    if (made_.tangent_given) {
+      const axis t = columns::get(block_.axes + 3, i);
+      return unit(t) && orthogonal(t, columns::get(block_.axes, i));
+    }
+    if (!carries_on()) return true;
+    const axis n = stored_axis(i, 0), t = stored_axis(i, 3);
+    return unit(n) && unit(t) && orthogonal(n, t);
+  }
+
+  axis stored_axis(int i, int offset) const {
+    const ilaw_input& s = batch_.state_in;
+    const double* in = &at(s, nodes_.node(i), made_.frame_offset() + offset);
+    return {in[0], in[s.component_stride], in[2 * s.component_stride]};
+  }
+
+  void open_state() {
+    if (batch_.state_in.values) {
+      for (int k = 0; k < states; ++k) {
+        const int entry = state_entry<Law>(k, dimension_);
+        block_.state_in[k] =
+            entry >= 0 ? gather(batch_.state_in, entry, nodes_, room_.state_in[k].values) : zeros.values;
+      }
+      copy_unnamed_state();
+    } else {
+      for (int k = 0; k < states; ++k) block_.state_in[k] = zeros.values;
+    }
+    const ilaw_output& out = batch_.state_out;
+    block_.history_values = nullptr;
+    if (!has_memory<Law>) return;
+    block_.history_values = out.values + made_.memory_offset() * out.component_stride +
+                            (nodes_.listed() ? 0 : nodes_.first * out.node_stride);
+    block_.history_node_stride = out.node_stride;
+    block_.history_component_stride = out.component_stride;
+    block_.history_nodes = nodes_.listed() ? room_.nodes : nullptr;
+    for (int i = 0; nodes_.listed() && i < nodes_.count; ++i) room_.nodes[i] = nodes_.node(i);
+  }
+
+  // Memory and frame are worked on in state_out, which therefore starts as state_in.
+  void copy_unnamed_state() {
+    if (batch_.state_in.values == batch_.state_out.values) return;
+    const auto size = static_cast<std::int64_t>(made_.state_size);
+    for (std::int64_t c = made_.memory_offset(); c < size; ++c)
+      for (int i = 0; i < nodes_.count; ++i)
+        at(batch_.state_out, nodes_.node(i), c) = at(batch_.state_in, nodes_.node(i), c);
+  }
+
+  void aim_outputs() {
+    for (int c = 0; c < 3; ++c) {
+      block_.impulse[c] = in_place ? batch_.impulse.values + 3 * nodes_.first
+                                   : aim(batch_.impulse, c, c < dimension_, room_.impulse[c]);
+      block_.velocity[c] = aim(batch_.velocity, c, c < dimension_, room_.velocity[c]);
+    }
+    for (int k = 0; k < ILAW_ENERGY_COUNT; ++k)
+      block_.energy[k] = aim(batch_.energy, k, true, room_.energy[k]);
+    block_.status = room_.status.values;
+    block_.refused = room_.refused.values;
+    block_.rests = room_.rests.values;
+    for (int k = 0; k < states; ++k) {
+      const int entry = state_entry<Law>(k, dimension_);
+      block_.state_out[k] = aim(batch_.state_out, entry, entry >= 0, room_.state_out[k]);
+    }
+  }
+
+  double* aim(const ilaw_output& output, int component, bool exists, column& room) {
+    return exists && output.values ? target(output, component, nodes_, room.values) : room.values;
+  }
+
+  const instance<Law>& made_;
+  const ilaw_batch& batch_;
+  block_room<Law>& room_;
+  int dimension_;
+  bool is_initial_ = false;
+  node_range nodes_{};
+  node_block<Law> block_;
+};
+
+}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL

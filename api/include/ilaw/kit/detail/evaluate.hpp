@@ -1,0 +1,377 @@
+// evaluate.hpp - a batch from end to end: checks its arrays, walks it block by block, reports refused nodes.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/batch_walk.hpp>
+
+#include <string>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+// What is wrong with the arrays that evaluate or initialise needs; null when nothing is.
+template <class Law>
+const char* missing_input(const instance<Law>& made, const ilaw_batch& b, std::uint32_t needed) {
+  if ((needed & ILAW_INPUT_GAP) && !b.gap.values) return "gap is null";
+  if ((needed & ILAW_INPUT_V_PREVIOUS) && !b.v_previous.values) return "v_previous is null";
+  if ((needed & ILAW_INPUT_AREA) && !b.area.values) return "area is null";
+  if ((needed & ILAW_INPUT_NORMAL) && !b.normal.values) return "normal is null";
+  if ((needed & ILAW_INPUT_TANGENT) && !b.tangent.values) return "tangent is null";
+  if (made.per_node_count > 0 && !b.per_node_parameters) return "per_node_parameters is null";
+  for (std::uint32_t k = 0; k < made.per_node_count; ++k)
+    if (!b.per_node_parameters[k].values) return "values of a per-node parameter are null";
+  if (made.state_size > 0 && !b.state_out.values) return "state_out is null";
+  return nullptr;
+}
+
+// The smallest of a list of nodes: below index_base it would lead before the arrays.
+template <class Integer>
+Integer smallest(const Integer* index, std::int64_t count) {
+  Integer least = std::numeric_limits<Integer>::max();
+#pragma omp simd reduction(min : least)
+  for (std::int64_t k = 0; k < count; ++k) least = index[k] < least ? index[k] : least;
+  return least;
+}
+
+inline const char* wrong_index(const ilaw_batch& b) {
+  if (b.index_base != 0 && b.index_base != 1) return "index_base is neither 0 nor 1";
+  if (b.index && b.index64) return "index and index64 are both given";
+  if ((b.index && smallest(b.index, b.node_count) < b.index_base) ||
+      (b.index64 && smallest(b.index64, b.node_count) < b.index_base))
+    return "a node of the index list lies below index_base";
+  return nullptr;
+}
+
+inline const char* wrong_scalars(const ilaw_batch& b) {
+  if (b.node_count < 0) return "node_count is negative";
+  if (!finite(b.time)) return "time is not finite";
+  return wrong_index(b);
+}
+
+// Whether an output gives two numbers the same place.
+inline bool collides(const ilaw_output& a, std::int64_t nodes, std::int64_t components) {
+  return a.values && components > 0 &&
+         ((nodes > 1 && a.node_stride == 0) || (components > 1 && a.component_stride == 0));
+}
+
+template <class Law>
+const char* colliding_state(const instance<Law>& made, const ilaw_batch& b) {
+  const bool is_bad = collides(b.state_out, b.node_count, static_cast<std::int64_t>(made.state_size));
+  return is_bad ? "state_out has a stride of 0" : nullptr;
+}
+
+template <class Law>
+const char* colliding_output(const instance<Law>& made, const ilaw_batch& b) {
+  const std::int64_t n = b.node_count, d = made.dimension;
+  if (collides(b.impulse, n, d)) return "impulse has a stride of 0";
+  if (collides(b.velocity, n, d)) return "velocity has a stride of 0";
+  if (collides(b.energy, n, ILAW_ENERGY_COUNT)) return "energy has a stride of 0";
+  if (b.status && n > 1 && b.status_stride == 0) return "status_stride is 0";
+  return colliding_state(made, b);
+}
+
+template <class Law>
+const char* wrong_batch(const instance<Law>& made, const ilaw_batch& b) {
+  if (const char* wrong = wrong_scalars(b)) return wrong;
+  if (!(b.velocity_step > 0.0) || !finite(b.velocity_step)) return "velocity_step is not a finite number > 0";
+  if (!(b.position_step > 0.0) || !finite(b.position_step)) return "position_step is not a finite number > 0";
+  if (b.node_count == 0) return nullptr;
+  if (!b.v_free.values) return "v_free is null";
+  if (!b.delassus.values) return "delassus is null";
+  if (!b.impulse.values) return "impulse is null";
+  if (made.state_size > 0 && !b.state_in.values) return "state_in is null";
+  if (const char* wrong = colliding_output(made, b)) return wrong;
+  return missing_input(made, b, made.inputs() | (b.energy.values ? made.energy_inputs() : 0U));
+}
+
+inline std::int32_t refuse(ilaw_report* report, const char* reason,
+                           std::int32_t code = ILAW_INVALID_ARGUMENT) {
+  if (report)
+    write_sized(report, {.struct_size = 0,
+                         .reserved = 0,
+                         .bad_count = 0,
+                         .first_bad_node = -1,
+                         .reason = reason,
+                         .stable_velocity_step = infinity});
+  return code;
+}
+
+// Whether the vectors that a kernel may read and write in place are (3,n) arrays.
+template <class Law>
+bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
+  const auto is_interleaved = [](const auto& a) { return a.node_stride == 3 && a.component_stride == 1; };
+  return made.dimension == 3 && !b.index && !b.index64 && is_interleaved(b.v_free) &&
+         is_interleaved(b.impulse) && (made.frame == ILAW_FRAME_LOCAL || is_interleaved(b.normal));
+}
+
+// What a walk found.
+struct tally {
+  std::int64_t bad_count = 0, first_bad_node = -1;
+  const char* reason = nullptr;
+  double stable_velocity_step = infinity;
+
+  void add(std::int64_t node, const char* why) {
+    if (bad_count++ > 0) return;
+    first_bad_node = node;
+    reason = why;
+  }
+};
+
+// "state variable '...' is not what the law can have written", as static text.
+template <class Law, std::size_t V>
+struct range_reason {
+  static constexpr auto make() {
+    constexpr const char *head = "state variable '", *name = Law::state_variables[V].name,
+                         *tail = "' has a value that the law cannot have written";
+    constexpr auto size = [](const char* s) { return std::char_traits<char>::length(s); };
+    std::array<char, size(head) + size(name) + size(tail) + 1> text{};
+    std::size_t at = 0;
+    for (const char* part : {head, name, tail})
+      for (; *part; ++part) text[at++] = *part;
+    return text;
+  }
+  static constexpr auto text = make();
+};
+
+// The first state variable that is not what it may be; null where all are.
+template <class Law, std::size_t V = 0>
+const char* out_of_range(const state_t<Law>& state, int position = 0) {
+  if constexpr (has_state<Law>)
+    if constexpr (V < std::size(Law::state_variables)) {
+      constexpr const state_variable& v = Law::state_variables[V];
+      const auto doubles = std::bit_cast<std::array<double, state_doubles<Law>>>(state);
+      if (v.has_range() && !v.may_be(doubles[position])) return range_reason<Law, V>::text.data();
+      return out_of_range<Law, V + 1>(state, position + v.doubles());
+    }
+  return nullptr;
+}
+
+// Why a node was refused, from the same checks as step_node, in their order.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope>
+const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool tangent_given) {
+  const auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
+  if (defect(Frame::template at<Layout>(b.axes, i).unit_defect()) != 0.0)
+    return "the normal is not a unit vector";
+  bool framed = true;
+  if constexpr (std::is_same_v<Frame, stored_frame>) framed = defect(columns::get(b.axes + 6, i)) == 0.0;
+  if (!framed && tangent_given) return "the tangent is not a unit vector orthogonal to the normal";
+  if (framed && defect(n.v_free) != 0.0) return "v_free is not finite";
+  if (framed && n.delassus.positive_defect() != 0.0) return "H is not finite and positive definite";
+  if (defect(n.gap) != 0.0) return "the gap is not finite";
+  if (framed && defect(n.v_previous) != 0.0) return "v_previous is not finite";
+  if (!finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
+  if (!framed) return "the state holds no frame: it is not one that the law can have written";
+  if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
+  if (const char* wrong = out_of_range<Law>(n.state)) return wrong;
+  const double refused = step_node<Law, Delassus, Frame, Layout, Scope>(law, b, i).result.refused;
+  if (refused == anisotropic_delassus)
+    return "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal";
+  if (refused == no_solution) return "the law's equations have no solution for this H";
+  return "the impulse or the state overflows";
+}
+
+// The parameters of one node, where some are given per node; says what is wrong with them, null where nothing
+// is. Then law stays as it was: no step need stand what no parameter may be.
+template <class Law>
+const char* at_node(const instance<Law>& made, const ilaw_batch& batch, std::int64_t node, Law& law) {
+  Law own = law;
+  for (std::uint32_t k = 0; k < made.per_node_count; ++k) {
+    const ilaw_input& given = batch.per_node_parameters[k];
+    const double value = given.values[node * given.node_stride];
+    if (!in_range(*made.per_node[k], value)) return "a per-node parameter is out of range";
+    own.*made.per_node_members[k] = value;
+  }
+  if constexpr (requires { own.conflict(); })
+    if (const char* conflict = made.per_node_count > 0 ? own.conflict() : nullptr) return conflict;
+  law = own;
+  return nullptr;
+}
+
+// The whole of a batch; Varying: with parameters per node, one node at a time.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, bool Varying>
+struct evaluate_walk {
+  static tally run(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
+    block_room<Law> room;
+    batch_walk<Law, Layout> walk(made, batch, room);
+    tally found;
+    for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
+      walk.open(first);
+      run_nodes(made, law, batch, walk);
+      limit_step(made, law, batch, walk, found);
+      const bool refused = walk.any_refused();
+      if (refused) explain(made, law, batch, walk, found);
+      walk.close();
+      walk.keep_frames();
+    }
+    return found;
+  }
+
+ private:
+  // The smallest stable step of the block's good nodes, for laws that limit it.
+  static void limit_step(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
+                         batch_walk<Law, Layout>& walk, tally& found) {
+    if constexpr (limits_step<Law>) {
+      for (int i = 0; i < walk.nodes().count; ++i) {
+        if (walk.block().refused[i] != 0.0) continue;
+        Law own = law;
+        if constexpr (Varying) at_node(made, batch, walk.nodes().node(i), own);
+        const auto node = load_node<Law, Delassus, Frame, Layout, Scope>(walk.block(), i);
+        found.stable_velocity_step = smaller(found.stable_velocity_step, own.stable_velocity_step(node));
+      }
+    }
+  }
+
+  static void run_nodes(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
+                        batch_walk<Law, Layout>& walk) {
+    if constexpr (Varying)
+      run_varying(made, law, batch, walk);
+    else
+      in_its_form(law, [&walk](const auto& form) {
+        run_block<Law, Delassus, Frame, Layout, Scope>(form, walk.block());
+      });
+  }
+
+  // Flattened: passing nodes by memory from function to function costs more than a plain step.
+  [[gnu::noinline, gnu::flatten]] static void run_varying(const instance<Law>& made, const Law& law,
+                                                          const ilaw_batch& batch,
+                                                          batch_walk<Law, Layout>& walk) {
+    for (int i = 0; i < walk.nodes().count; ++i) {
+      Law own = law;
+      const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
+      run_node<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i, !wrong);
+    }
+  }
+
+  [[gnu::noinline, gnu::cold]] static void explain(const instance<Law>& made, const Law& law,
+                                                   const ilaw_batch& batch, batch_walk<Law, Layout>& walk,
+                                                   tally& found) {
+    for (int i = 0; i < walk.nodes().count; ++i) {
+      if (walk.block().refused[i] == 0.0) continue;
+      Law own = law;
+      const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
+      found.add(walk.nodes().node(i), wrong ? wrong
+                                            : refusal_reason<Law, Delassus, Frame, Layout, Scope>(
+                                                  own, walk.block(), i, made.tangent_given));
+    }
+  }
+};
+
+template <class Law, class Delassus, class Frame, class Layout>
+tally walk_laid_out(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
+  if (batch.velocity.values || batch.energy.values || batch.status)
+    return evaluate_walk<Law, Delassus, Frame, Layout, scope::outputs, false>::run(made, law, batch);
+  if constexpr ((Law::card.inputs & reads_v_previous) != 0)
+    if (made.inputs() & ILAW_INPUT_V_PREVIOUS)
+      return evaluate_walk<Law, Delassus, Frame, Layout, scope::with_previous, false>::run(made, law, batch);
+  return evaluate_walk<Law, Delassus, Frame, Layout, scope::impulse, false>::run(made, law, batch);
+}
+
+template <class Law, class Delassus, class Frame>
+tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
+  const Law law = made.at(batch.time);
+  if (made.per_node_count > 0)
+    return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
+  if constexpr (std::is_same_v<Delassus, scalar_delassus> && !std::is_same_v<Frame, stored_frame>)
+    if (all_interleaved(made, batch))
+      return walk_laid_out<Law, Delassus, Frame, interleaved>(made, law, batch);
+  return walk_laid_out<Law, Delassus, Frame, columns>(made, law, batch);
+}
+
+// A diagonal H turned out of its axes is full.
+template <class Law>
+tally walk_turned(const instance<Law>& made, const ilaw_batch& batch) {
+  if (made.delassus_form != ILAW_DELASSUS_SCALAR)
+    return walk_as<Law, full_delassus, stored_frame>(made, batch);
+  if constexpr (needs_no_tangents<Law>())
+    if (!made.stores_frame()) return walk_as<Law, scalar_delassus, normal_frame>(made, batch);
+  return walk_as<Law, scalar_delassus, stored_frame>(made, batch);
+}
+
+template <class Law>
+tally walk_local(const instance<Law>& made, const ilaw_batch& batch) {
+  if (made.delassus_form == ILAW_DELASSUS_SCALAR)
+    return walk_as<Law, scalar_delassus, local_frame>(made, batch);
+  return made.delassus_form == ILAW_DELASSUS_DIAGONAL
+             ? walk_as<Law, diagonal_delassus, local_frame>(made, batch)
+             : walk_as<Law, full_delassus, local_frame>(made, batch);
+}
+
+// An ilaw_kit_walk: a checked batch from end to end, compiled for this level.
+// Not inlined: nothing of it may be computed before the floating-point environment is set.
+template <class Law>
+[[gnu::noinline]] void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
+  const auto& made = *static_cast<const instance<Law>*>(opaque);
+  *static_cast<tally*>(found) =
+      made.frame == ILAW_FRAME_GLOBAL ? walk_turned(made, batch) : walk_local(made, batch);
+}
+
+inline std::int32_t give_report(ilaw_report* report, const tally& found) {
+  if (report)
+    write_sized(report, {.struct_size = 0,
+                         .reserved = 0,
+                         .bad_count = found.bad_count,
+                         .first_bad_node = found.first_bad_node,
+                         .reason = found.reason,
+                         .stable_velocity_step = found.stable_velocity_step});
+  return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
+}
+
+// The beginning of evaluate and initialise: hands on the instance and what is known of the batch.
+template <class Law, class Run>
+std::int32_t with_batch(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report, Run run) {
+  if (report && !is_complete(report)) return ILAW_INVALID_ARGUMENT;
+  if (!opaque || !given) return refuse(report, "instance or batch is null");
+  if (!is_complete(given)) return refuse(report, "struct_size of the batch is below that of version 1.0");
+  const ilaw_batch batch = read_sized(given);
+  if (batch.flags != 0) return refuse(report, "flags of the batch are not known", ILAW_UNSUPPORTED);
+  const float_environment own;
+  return run(of<Law>(opaque), batch);
+}
+
+template <class Law>
+std::int32_t evaluate(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
+  return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
+    if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
+    tally found;
+    (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
+    return give_report(report, found);
+  });
+}
+
+// First state of the nodes of a batch.
+template <class Law>
+[[gnu::noinline]] tally initialise_nodes(const instance<Law>& made, const ilaw_batch& batch) {
+  const Law law = made.at(batch.time);
+  block_room<Law> room;
+  batch_walk<Law, columns> walk(made, batch, room);
+  tally found;
+  for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
+    walk.open_initial(first);
+    for (int i = 0; i < walk.nodes().count; ++i) {
+      Law own = law;
+      const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
+      if (!wrong) wrong = walk.initialise(own, i);
+      if (wrong) found.add(walk.nodes().node(i), wrong);
+    }
+  }
+  return found;
+}
+
+template <class Law>
+const char* wrong_initial(const instance<Law>& made, const ilaw_batch& b) {
+  if (const char* wrong = wrong_scalars(b)) return wrong;
+  if (b.node_count == 0) return nullptr;
+  if (const char* wrong =
+          missing_input(made, b, made.inputs() & (ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT)))
+    return wrong;
+  return colliding_state(made, b);
+}
+
+template <class Law>
+std::int32_t initialise(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
+  return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
+    if (const char* wrong = wrong_initial(made, batch)) return refuse(report, wrong);
+    return give_report(report, made.state_size > 0 ? initialise_nodes(made, batch) : tally{});
+  });
+}
+
+}  // namespace ilaw::kit

@@ -1,0 +1,268 @@
+// kernel.hpp - the loop over the nodes of a block: builds each node from its columns, steps it, writes
+// columns. One loop serves every layout and frame; it is compiled once per instruction set (dispatch.hpp).
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/declare.hpp>
+#include <ilaw/kit/detail/frame.hpp>
+#include <ilaw/kit/detail/gather.hpp>
+
+#include <bit>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+// A block of nodes as columns. Pointers may lead into the host's arrays.
+template <class Law>
+struct node_block {
+  static constexpr int states = state_doubles<Law>;
+
+  int count;
+  double time, velocity_step, position_step;
+  const double* axes[9];  // normal, tangents; see frame.hpp
+  const double* v_free[3];
+  const double* v_previous[3];
+  const double* delassus[6];
+  const double *gap, *gap_offset, *area;
+  const double* state_in[states + 1];  // one more than needed: no array of length zero
+  double* history_values;              // in state_out, of the block's first node (of node 0 with an index)
+  std::int64_t history_node_stride, history_component_stride;
+  const std::int64_t* history_nodes;  // null: consecutive
+
+  double* impulse[3];
+  double* state_out[states + 1];
+  double* velocity[3];
+  double* energy[ILAW_ENERGY_COUNT];
+  double* status;
+  double* refused;  // 1 where the input was bad, else 0
+  double* rests;    // 1 where a carried frame stays as it was, else 0
+  bool previous_for_energy_only;
+
+  std::int64_t history_offset(int i) const {
+    return (history_nodes ? history_nodes[i] : i) * history_node_stride;
+  }
+};
+
+// What a kernel computes besides impulse and state, so that what is not asked for costs nothing: nothing,
+// v_previous read as well, or that and the optional outputs.
+enum class scope { impulse, with_previous, outputs };
+
+template <class Law, class Delassus, class Frame>
+using node_in = node<Delassus, state_t<Law>, typename Frame::vector_type>;
+
+template <class Law, class Delassus, class Frame>
+struct stepped {
+  node_in<Law, Delassus, Frame> result;
+  bool accepted;
+};
+
+namespace detail {
+
+template <class Delassus, std::size_t... K>
+Delassus delassus_at(const double* const* columns, int i, std::index_sequence<K...>) {
+  const double components[] = {columns[K][i]...};
+  return Delassus::from(components);
+}
+
+template <class Law, std::size_t... K>
+state_t<Law> state_at(const double* const* columns, int i, std::index_sequence<K...>) {
+  return std::bit_cast<state_t<Law>>(std::array<double, sizeof...(K)>{columns[K][i]...});
+}
+
+// Of a state that comes in: finite, and every scalar what its variable may be.
+template <class Law, std::size_t V = 0>
+double range_defect(const std::array<double, state_doubles<Law>>& state, int position = 0) {
+  if constexpr (V < std::size(Law::state_variables)) {
+    constexpr const state_variable& v = Law::state_variables[V];
+    const double rest = range_defect<Law, V + 1>(state, position + v.doubles());
+    if constexpr (v.has_range()) return rest + defect_unless(v.may_be(state[position]));
+    return rest;
+  }
+  return 0.0;
+}
+template <class Law>
+double state_defect(const state_t<Law>& state) {
+  double sum = 0.0;
+  if constexpr (has_state<Law>)
+    for (double s : std::bit_cast<std::array<double, state_doubles<Law>>>(state)) sum += defect(s);
+  return sum;
+}
+template <class Law>
+double incoming_state_defect(const state_t<Law>& state) {
+  if constexpr (has_state<Law>)
+    return state_defect<Law>(state) +
+           range_defect<Law>(std::bit_cast<std::array<double, state_doubles<Law>>>(state));
+  return 0.0;
+}
+
+template <class Law>
+bool same_bits(const state_t<Law>& a, const state_t<Law>& b) {
+  std::uint64_t different = 0;
+  if constexpr (has_state<Law>) {
+    const auto x = std::bit_cast<std::array<std::uint64_t, state_doubles<Law>>>(a);
+    const auto y = std::bit_cast<std::array<std::uint64_t, state_doubles<Law>>>(b);
+    for (std::size_t k = 0; k < x.size(); ++k) different |= x[k] ^ y[k];
+  }
+  return different == 0;
+}
+
+inline vector zero_unless_finite(vector a) {
+  const bool good = defect(a) == 0.0;
+  return {good ? a.n : 0.0, good ? a.t1 : 0.0, good ? a.t2 : 0.0};
+}
+inline projected_vector zero_unless_finite(projected_vector a) {
+  const bool good = defect(a) == 0.0;
+  return {good ? a.n : 0.0, good ? a.x : 0.0, good ? a.y : 0.0, good ? a.z : 0.0};
+}
+
+}  // namespace detail
+
+// Whether a law's instances may carry a frame in this kind of frame.
+template <class Law, class Frame>
+inline constexpr bool can_carry = std::is_same_v<Frame, stored_frame> &&
+                                  (has_memory<Law> || has_vector_state<Law>());
+
+// A node as it comes in, in its local frame. A normal that is no unit vector makes v_free a defect.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope>
+node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
+  node_in<Law, Delassus, Frame> n;
+  n.time = b.time;
+  n.velocity_step = b.velocity_step;
+  n.position_step = b.position_step;
+  const auto frame = Frame::template at<Layout>(b.axes, i);
+  n.v_free = frame.to_local(Layout::get(b.v_free, i));
+  n.v_free.n += frame.unit_defect();
+  if constexpr (Scope != scope::impulse) n.v_previous = frame.to_local(columns::get(b.v_previous, i));
+  if constexpr (Scope == scope::outputs)  // asking for energies must not change the motion
+    if (b.previous_for_energy_only) n.v_previous = detail::zero_unless_finite(n.v_previous);
+  n.delassus = frame.to_local(
+      detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{}));
+  n.gap = b.gap[i] - b.gap_offset[i];
+  n.area = b.area[i];
+  if constexpr (has_memory<Law>)
+    n.past = {b.history_values + b.history_offset(i), b.history_component_stride};
+  if constexpr (has_state<Law>)
+    n.state = detail::state_at<Law>(b.state_in, i, std::make_index_sequence<state_doubles<Law>>{});
+  return n;
+}
+
+template <class Law, scope Scope, class Node>
+double input_defect(const Node& n) {
+  double sum = defect(n.v_free) + n.delassus.positive_defect() + defect(n.gap);
+  if constexpr (Scope != scope::impulse) sum += defect(n.v_previous);
+  if constexpr ((Law::card.inputs & reads_area) != 0) sum += defect(n.area) + defect_unless(n.area >= 0.0);
+  return sum + detail::incoming_state_defect<Law>(n.state);
+}
+
+// Steps one node, and says whether its input was good and its result can be represented.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+stepped<Law, Delassus, Frame> step_node(const Form& law, const node_block<Law>& b, int i) {
+  auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
+  const double before = input_defect<Law, Scope>(n);
+  law.step(n);
+  const double after = defect(n.impulse) + detail::state_defect<Law>(n.state);
+  return {n, before + after + n.refused == 0.0};
+}
+
+// Energy split of ilaw.h from the work of the impulse, -r.(v^- + v)/2 less what was stored of it, normal and
+// tangential part apart. A reaction that meets a node moving away does positive work, which the external
+// force gives back within the same step: that is no dissipation, hence the positive parts.
+struct energy_split {
+  double friction, impact, rupture, stored;
+};
+template <class Node, class Vector>
+energy_split split_energy(const Node& n, Vector v) {
+  const Vector mean = n.v_previous + v;
+  const double normal = positive_part(-0.5 * normal_product(n.impulse, mean) - n.normal_gain);
+  const double tangential = positive_part(-0.5 * tangential_product(n.impulse, mean) - n.tangential_gain);
+  const bool broken = n.status == double{ILAW_BROKEN};
+  return {broken ? 0.0 : tangential, broken ? 0.0 : normal, (broken ? normal + tangential : 0.0) + n.rupture,
+          n.stored};
+}
+
+// Number by number: a choice between structs is a branch, which does not vectorise.
+template <class Law, std::size_t... K>
+void store_state(const node_block<Law>& b, int i, const state_t<Law>& after, const state_t<Law>& before,
+                 bool accepted, std::index_sequence<K...>) {
+  const auto next = std::bit_cast<std::array<double, sizeof...(K)>>(after);
+  const auto last = std::bit_cast<std::array<double, sizeof...(K)>>(before);
+  ((b.state_out[K][i] = accepted ? next[K] : last[K]), ...);
+}
+
+// A vector in the axes of the batch; where the node is refused, what the host is to find instead.
+template <class Frame, class Layout>
+axis outgoing(const double* const* axes, int i, typename Frame::vector_type a, bool accepted,
+              axis otherwise) {
+  const axis out = Frame::template at<Layout>(axes, i).to_global(a);
+  return {accepted ? out.x : otherwise.x, accepted ? out.y : otherwise.y, accepted ? out.z : otherwise.z};
+}
+
+template <class Law, class Frame, class Layout, class Node>
+void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted) {
+  const auto v = n.v_free + n.delassus.times(n.impulse);
+  columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, Layout::get(b.v_free, i)));
+  const energy_split e = split_energy(n, v);
+  const bool known = accepted & (defect(columns::get(b.v_previous, i)) == 0.0);
+  b.energy[ILAW_ENERGY_FRICTION][i] = known ? e.friction : 0.0;
+  b.energy[ILAW_ENERGY_IMPACT][i] = known ? e.impact : 0.0;
+  b.energy[ILAW_ENERGY_RUPTURE][i] = known ? e.rupture : 0.0;
+  b.energy[ILAW_ENERGY_STORED][i] = accepted ? e.stored : 0.0;
+  b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
+}
+
+// Whether a form of a law works with the law's memory. One that says it forgets runs in vector code.
+template <class Law, class Form>
+inline constexpr bool remembers = has_memory<Law> && !requires {
+  Form::forgets;
+};
+
+// Whether the step left all as it was: a frame that moved on alone would make skipping such a node, which its
+// host may do out of reach, another motion.
+template <class Law, class Node>
+bool rests(const Node& n, const state_t<Law>& before) {
+  const bool still = (n.impulse.n == 0.0) & (n.impulse.t1 == 0.0) & (n.impulse.t2 == 0.0);
+  return still & is_out_of_reach(n) & (n.status == double{ILAW_FREE}) &
+         detail::same_bits<Law>(n.state, before);
+}
+
+// Steps and writes node i; valid: what the caller knows of its parameters.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+void run_node(const Form& law, const node_block<Law>& b, int i, bool valid = true) {
+  auto [n, accepted] = step_node<Law, Delassus, Frame, Layout, Scope>(law, b, i);
+  accepted = accepted & valid;
+  Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
+  if constexpr (Scope == scope::outputs) store_outputs<Law, Frame, Layout>(b, i, n, accepted);
+  if constexpr (remembers<Law, Form>)
+    if (accepted) law.record(n, history{b.history_values + b.history_offset(i), b.history_component_stride});
+  if constexpr (has_state<Law> || can_carry<Law, Frame>) {
+    const state_t<Law> before = load_node<Law, Delassus, Frame, Layout, Scope>(b, i).state;
+    if constexpr (can_carry<Law, Frame>) b.rests[i] = rests<Law>(n, before) ? 1.0 : 0.0;
+    if constexpr (has_state<Law>)
+      store_state<Law>(b, i, n.state, before, accepted, std::make_index_sequence<state_doubles<Law>>{});
+  }
+  b.refused[i] = accepted ? 0.0 : 1.0;
+}
+
+// Calls run with the form of a law that its parameters ask for: a struct with a shorter step.
+template <class Law, class Run>
+void in_its_form(const Law& law, Run run) {
+  if constexpr (requires { law.in_form(run); })
+    law.in_form(run);
+  else
+    run(law);
+}
+
+// Runs a block with the same parameters at all nodes. Not inlined: GCC vectorises this loop only where it
+// stands alone. Form: the law, or the form of it that it chose for its parameters.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+[[gnu::noinline, gnu::flatten]] void run_block(const Form& law, const node_block<Law>& b) {
+  const Form l = law;  // copies, so that no store can alias a parameter or a time step
+  if constexpr (remembers<Law, Form>) {
+    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, b, i);
+  } else {
+    const node_block<Law> own = b;
+#pragma omp simd
+    for (int i = 0; i < own.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, own, i);
+  }
+}
+
+}  // namespace ilaw::kit

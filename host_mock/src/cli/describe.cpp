@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/describe.hpp"
+
+#include "cli/run.hpp"
+
+#include <ilaw/loader.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+struct Bit {
+  std::uint32_t value;
+  const char* name;
+};
+constexpr Bit dimension_bits[] = {{ILAW_DIMENSION_1, "1"}, {ILAW_DIMENSION_2, "2"}, {ILAW_DIMENSION_3, "3"}};
+constexpr Bit form_bits[] = {
+    {ILAW_DELASSUS_SCALAR, "scalar"}, {ILAW_DELASSUS_DIAGONAL, "diagonal"}, {ILAW_DELASSUS_FULL, "full"}};
+constexpr Bit input_bits[] = {{ILAW_INPUT_GAP, "gap"},
+                              {ILAW_INPUT_V_PREVIOUS, "v_previous"},
+                              {ILAW_INPUT_AREA, "area"},
+                              {ILAW_INPUT_NORMAL, "normal"},
+                              {ILAW_INPUT_TANGENT, "tangent"}};
+constexpr Bit varying_bits[] = {{ILAW_MAY_BE_TABLE, "table"}, {ILAW_MAY_BE_PER_NODE, "per_node"}};
+constexpr const char* state_kinds[] = {"scalar", "vector", "history", "axis"};
+
+template <std::size_t N>
+json names_of(std::uint32_t mask, const Bit (&bits)[N]) {
+  json names = json::array();
+  for (const Bit& bit : bits)
+    if (mask & bit.value) names.push_back(bit.name);
+  return names;
+}
+
+json number_or_inf(double value) { return std::isinf(value) ? json("inf") : json(value); }
+
+json describe_parameter(const ilaw_parameter& p) {
+  json out = {{"name", p.name}, {"symbol", p.symbol},          {"unit", p.unit},
+              {"doc", p.doc},   {"required", p.required != 0}, {"may_be", names_of(p.may_be, varying_bits)}};
+  if (p.kind == ILAW_PARAMETER_CHOICE) {
+    out["choices"] = std::vector<std::string>(p.choices, p.choices + p.choice_count);
+    if (!p.required) out["default"] = p.choices[static_cast<std::size_t>(p.default_value)];
+    return out;
+  }
+  out["kind"] = p.kind == ILAW_PARAMETER_COUNT ? "whole number" : "number";
+  out["minimum"] = p.minimum;
+  out["minimum_excluded"] = p.minimum_excluded != 0;
+  const bool unbounded = p.maximum == std::numeric_limits<double>::max();
+  out["maximum"] = unbounded ? json("inf") : json(p.maximum);
+  out["infinity_allowed"] = p.infinity_allowed != 0;
+  if (!p.required) out["default"] = number_or_inf(p.default_value);
+  return out;
+}
+
+json describe_law(const ilaw_law& law) {
+  json out = {{"id", law.id},
+              {"title", law.title},
+              {"doc", law.doc},
+              {"references", std::vector<std::string>(law.references, law.references + law.reference_count)},
+              {"dimensions", names_of(law.dimensions, dimension_bits)},
+              {"delassus_forms", names_of(law.delassus_forms, form_bits)},
+              {"inputs", names_of(law.inputs, input_bits)},
+              {"parameters", json::array()},
+              {"state", json::array()}};
+  for (std::uint32_t i = 0; i < law.parameter_count; ++i)
+    out["parameters"].push_back(describe_parameter(*law.parameters[i]));
+  for (std::uint32_t i = 0; i < law.state_variable_count; ++i) {
+    const ilaw_state_variable& v = *law.state_variables[i];
+    const char* kind = v.kind < std::size(state_kinds) ? state_kinds[v.kind] : "unknown";
+    out["state"].push_back({{"name", v.name}, {"unit", v.unit}, {"doc", v.doc}, {"kind", kind}});
+  }
+  return out;
+}
+
+json describe_library(const ilaw::library& library) {
+  const ilaw_plugin& plugin = library.plugin();
+  json out = {{"file", library.path()},    {"name", plugin.name},
+              {"version", plugin.version}, {"vendor", plugin.vendor},
+              {"licence", plugin.licence}, {"abi", {plugin.abi_major, plugin.abi_minor}},
+              {"laws", json::array()}};
+  for (std::uint32_t i = 0; i < plugin.law_count; ++i) out["laws"].push_back(describe_law(*plugin.laws[i]));
+  return out;
+}
+
+std::string text_of(const json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+
+std::string joined(const json& values) {
+  std::string text;
+  for (const json& value : values) text += (text.empty() ? "" : ", ") + text_of(value);
+  return text;
+}
+
+std::string range_of(const json& p) {
+  if (p.contains("choices")) return "one of " + joined(p["choices"]);
+  const bool closed = p["infinity_allowed"].get<bool>() || p["maximum"] != "inf";
+  return std::string(p["minimum_excluded"].get<bool>() ? "(" : "[") + text_of(p["minimum"]) + ", " +
+         text_of(p["infinity_allowed"].get<bool>() ? json("inf") : p["maximum"]) + (closed ? "]" : ")");
+}
+
+using Row = std::vector<std::string>;
+
+// Columns as wide as their longest entry; the last one is free.
+void print_rows(const std::vector<Row>& rows, const char* indent) {
+  std::vector<std::size_t> widths;
+  for (const Row& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t c = 0; c + 1 < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  for (const Row& row : rows) {
+    std::string line = indent;
+    for (std::size_t c = 0; c + 1 < row.size(); ++c)
+      line += row[c] + std::string(widths[c] + 2 - row[c].size(), ' ');
+    std::printf("%s%s\n", line.c_str(), row.back().c_str());
+  }
+}
+
+Row row_of_parameter(const json& p) {
+  return {text_of(p["name"]),
+          text_of(p["unit"]),
+          range_of(p),
+          p["required"].get<bool>() ? "required" : "default " + text_of(p["default"]),
+          p["may_be"].empty() ? "constant" : "or " + joined(p["may_be"]),
+          text_of(p["doc"])};
+}
+
+void print_law(const json& law) {
+  std::printf("\n%s - %s\n  %s\n", text_of(law["id"]).c_str(), text_of(law["title"]).c_str(),
+              text_of(law["doc"]).c_str());
+  std::printf("  dimensions: %s; H: %s; may read: %s\n", joined(law["dimensions"]).c_str(),
+              joined(law["delassus_forms"]).c_str(), joined(law["inputs"]).c_str());
+  std::printf("  parameters:\n");
+  std::vector<Row> rows;
+  for (const json& p : law["parameters"]) rows.push_back(row_of_parameter(p));
+  print_rows(rows, "    ");
+  rows.clear();
+  for (const json& v : law["state"])
+    rows.push_back({text_of(v["name"]), text_of(v["unit"]), text_of(v["kind"]), text_of(v["doc"])});
+  if (!rows.empty()) std::printf("  state:\n");
+  print_rows(rows, "    ");
+  std::printf("  references:\n");
+  for (const json& reference : law["references"]) std::printf("    %s\n", text_of(reference).c_str());
+}
+
+}  // namespace
+
+int list_laws() {
+  std::printf("search path: %s\n", ilaw::search_path().c_str());
+  std::vector<Row> rows;
+  for (const std::string& file : ilaw::search()) {
+    try {
+      const ilaw::library library(file);
+      const ilaw_plugin& plugin = library.plugin();
+      for (std::uint32_t i = 0; i < plugin.law_count; ++i)
+        rows.push_back({plugin.laws[i]->id, plugin.laws[i]->title,
+                        std::string(plugin.name) + " " + plugin.version, file});
+    } catch (const ilaw::error& error) {
+      rows.push_back({"-", "refused: " + std::string(error.what())});
+    }
+  }
+  print_rows(rows, "");
+  return exit_done;
+}
+
+int describe(const std::string& law_or_file, bool as_json) {
+  try {
+    const ilaw::library library(law_or_file);
+    const json description = describe_library(library);
+    if (as_json) {
+      std::printf("%s\n", description.dump(2).c_str());
+      return exit_done;
+    }
+    std::printf("%s %s (%s, %s), ABI %u.%u\n%s\n", library.plugin().name, library.plugin().version,
+                library.plugin().vendor, library.plugin().licence, library.plugin().abi_major,
+                library.plugin().abi_minor, library.path().c_str());
+    for (const json& law : description["laws"]) print_law(law);
+    return exit_done;
+  } catch (const ilaw::error& error) {
+    std::fprintf(stderr, "ilaw: %s\n", error.what());
+    return exit_bad_input;
+  }
+}
+
+}  // namespace ilaw::host

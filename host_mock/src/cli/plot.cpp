@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/plot.hpp"
+
+#include "cli/run.hpp"
+#include "results/gnuplot.hpp"
+#include "results/picture.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+Columns read_columns(const std::filesystem::path& history) {
+  std::ifstream stream(history);
+  std::string line;
+  std::getline(stream, line);
+  Columns columns{cells_of(line), {}, {}};
+  columns.all_zero.assign(columns.names.size(), true);
+  while (std::getline(stream, line)) {
+    const std::vector<std::string> cells = cells_of(line);
+    for (std::size_t k = 0; k < std::min(cells.size(), columns.names.size()); ++k) {
+      const double value = std::strtod(cells[k].c_str(), nullptr);
+      if (value != 0.0) columns.all_zero[k] = false;
+      if (columns.names[k].ends_with(".status")) columns.statuses.insert(static_cast<int>(value));
+    }
+  }
+  return columns;
+}
+
+// What the summary tells about the history; a folder without a summary is drawn all the same.
+Caption read_caption(const std::filesystem::path& folder) {
+  std::ifstream stream(folder / "summary.json");
+  const nlohmann::json summary = nlohmann::json::parse(stream, nullptr, false);
+  if (!summary.is_object()) return {folder.filename().string(), 0};
+  const auto value = [&](const char* pointer, auto otherwise) {
+    return summary.value(nlohmann::json::json_pointer(pointer), otherwise);
+  };
+  return {value("/scene/title", folder.filename().string()), value("/scene/source/output/every", 1)};
+}
+
+int refuse(const std::filesystem::path& history, const char* found) {
+  std::fprintf(stderr, "ilaw: %s: found %s, expected the history that `ilaw run` writes of watched nodes\n",
+               history.c_str(), found);
+  return exit_bad_input;
+}
+
+}  // namespace
+
+int plot(const std::filesystem::path& results) {
+  // gnuplot takes file names that begin with < or | for commands: an absolute path never does.
+  const std::filesystem::path folder = std::filesystem::absolute(results).lexically_normal();
+  const std::filesystem::path history = folder / "history.csv";
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(history, error);
+  if (status.type() == std::filesystem::file_type::not_found) return refuse(history, "no such file");
+  if (!std::filesystem::is_regular_file(status))
+    return refuse(history, error ? error.message().c_str() : "something that is no file");
+  const Columns columns = read_columns(history);
+  if (columns.names.size() < 2) return refuse(history, "no column besides time");
+
+  const std::filesystem::path script = folder / "history.gnuplot";
+  std::ofstream stream(script);
+  write_picture(stream, folder, columns, read_caption(folder));
+  stream.close();
+  if (!stream) {
+    std::fprintf(stderr, "ilaw: %s: cannot be written\n", script.c_str());
+    return exit_failed;
+  }
+  if (!run_gnuplot(script)) return exit_failed;
+  std::printf("%s\n%s\n", (results / "history.png").c_str(), (results / "history.svg").c_str());
+  return exit_done;
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/run.hpp"
+
+#include "base/files.hpp"
+#include "cli/progress.hpp"
+#include "results/checkpoint.hpp"
+#include "results/fields.hpp"
+#include "results/history.hpp"
+#include "results/summary.hpp"
+#include "scene/scene.hpp"
+#include "scene/validation.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Ctrl-C and kill end a run at the end of its step, with whole files.
+volatile std::sig_atomic_t stop_requested = 0;
+
+void request_stop(int /*signal*/) { stop_requested = 1; }
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// A run and what it writes. The constructor throws std::runtime_error where there is nothing to resume from,
+// or nothing can be written.
+class Run {
+ public:
+  Run(Scene& scene, const RunOptions& options)
+      : scene_(scene),
+        options_(options),
+        integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt),
+        fields_(scene, options.folder) {
+    if (options.resume) {
+      resume();
+      return;
+    }
+    history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
+    fields_.clear();
+  }
+
+  // Steps to the end, to a request to stop, or to a failure; the record says which.
+  void advance() {
+    Progress progress(integrator_.steps(), scene_.steps);
+    try {
+      if (!options_.resume && scene_.output.fields > 0) fields_.write(integrator_);
+      while (integrator_.steps() < scene_.steps && !stop_requested) {
+        integrator_.step();
+        write_outputs();
+        progress.show(integrator_.steps());
+      }
+      record.interrupted = integrator_.steps() < scene_.steps;
+      if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
+      history_->commit();
+    } catch (const std::exception& failure) {
+      record.failure = failure.what();
+      history_->keep_rows();
+    }
+  }
+
+  // Where that fails, and nothing did before, the run did.
+  void finish(double seconds_total) {
+    record.seconds_total = seconds_total;
+    record.warnings = integrator_.warnings();
+    try {
+      write_summary(scene_, integrator_, record, options_.folder);
+    } catch (const std::exception& failure) {
+      if (record.failure.empty()) record.failure = failure.what();
+    }
+  }
+
+  const Integrator& integrator() const { return integrator_; }
+  RunRecord record;
+
+ private:
+  void resume() {
+    const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder);
+    history_ = std::make_unique<History>(scene_, integrator_, options_.folder, checkpoint.history_size);
+    fields_.resume(checkpoint.fields);
+    record.resumed_at = integrator_.steps();
+  }
+
+  void write_outputs() {
+    const std::int64_t step = integrator_.steps();
+    const bool row = step % scene_.output.every == 0;
+    const bool field = scene_.output.fields > 0 && step % scene_.output.fields == 0;
+    const bool checkpoint = options_.checkpoint_every > 0 && step % options_.checkpoint_every == 0;
+    if (!row && !field && !checkpoint) return;
+    const Clock::time_point start = Clock::now();
+    if (row) history_->add_row(integrator_);
+    if (field) fields_.write(integrator_);
+    if (checkpoint) write_checkpoint_now();
+    record.seconds_output += seconds_since(start);
+  }
+
+  void write_checkpoint_now() {
+    write_checkpoint(scene_, integrator_, {history_->flush(), fields_.written()}, options_.folder);
+  }
+
+  Scene& scene_;
+  const RunOptions& options_;
+  Integrator integrator_;
+  Fields fields_;
+  std::unique_ptr<History> history_;
+};
+
+std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
+  try {
+    return read_scene(file);
+  } catch (const SceneError& error) {
+    std::fprintf(stderr, "ilaw: %s: %s\n", file.c_str(), error.what());
+  }
+  return std::nullopt;
+}
+
+std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
+  try {
+    return std::make_unique<Run>(scene, options);
+  } catch (const std::runtime_error& error) {
+    std::fprintf(stderr, "ilaw: %s\n", error.what());
+  }
+  return nullptr;
+}
+
+int report(const Scene& scene, const Integrator& integrator, const RunRecord& record,
+           const RunOptions& options) {
+  const std::filesystem::path& folder = options.folder;
+  if (!record.failure.empty()) {
+    std::fprintf(stderr, "ilaw: %s: failed after step %lld, time %g: %s\n", scene.file.c_str(),
+                 static_cast<long long>(integrator.steps()), integrator.time(), record.failure.c_str());
+    return exit_failed;
+  }
+  if (record.interrupted) {
+    std::fprintf(
+        stderr, "ilaw: %s: interrupted at step %lld of %lld; the files in %s are whole up to there%s\n",
+        scene.file.c_str(), static_cast<long long>(integrator.steps()), static_cast<long long>(scene.steps),
+        folder.c_str(), options.checkpoint_every > 0 ? ", and --resume goes on from there" : "");
+    return exit_failed;
+  }
+  std::printf("%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e%s; results in %s\n",
+              scene.title.c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
+              record.seconds_total, integrator.energy().balance_error,
+              scene.warnings.empty() && record.warnings.empty() ? "" : ", with warnings", folder.c_str());
+  return exit_done;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
+  std::optional<Scene> scene = read_or_explain(options.scene);
+  // What a run resumes from stands in its folder already.
+  if (!scene || !(options.resume || make_folder(options.folder))) return exit_bad_input;
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to report, not one to die of
+  const std::unique_ptr<Run> run = start_or_explain(*scene, options);
+  if (!run) return exit_bad_input;
+  const auto warn = [&](const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings)
+      std::fprintf(stderr, "ilaw: %s: warning: %s\n", options.scene.c_str(), warning.c_str());
+  };
+  warn(scene->warnings);
+  run->advance();
+  run->finish(seconds_since(start));
+  warn(run->record.warnings);
+  return report(*scene, run->integrator(), run->record, options);
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,86 @@
+// counterpart.hpp - what the nodes of an interface meet: a rigid obstacle, other nodes, or a surface of
+// another body.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "model/model.hpp"
+#include "model/obstacle.hpp"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace ilaw::host {
+
+// How one node meets its counterpart. The relative velocity of the contact is
+//   v = V_node - sum_i weight_i V_partner_i - (velocity of the obstacle).
+struct ContactPoint {
+  static constexpr int most_partners = 4;
+
+  double gap = 0.0;
+  Vector normal;
+  int partner_count = 0;
+  std::array<int, most_partners> partners{};
+  std::array<double, most_partners> weights{};
+};
+
+class Counterpart {
+ public:
+  virtual ~Counterpart() = default;
+
+  // Meeting of the interface's node at place in its list.
+  virtual ContactPoint meet(int node_index, const Dofs& u, double time) const = 0;
+  // A bound from below on the gap, cheap, that relative motion by a distance lowers by no more than the
+  // distance.
+  virtual double gap_bound(int node_index, const Dofs& u, double time) const = 0;
+  // Called before gap_bound and meet are asked about all places again.
+  virtual void look(const Dofs& /*u*/) {}
+  // How far the counterpart may go before the next look.
+  virtual double validity() const { return std::numeric_limits<double>::infinity(); }
+
+  // Mean velocity of a rigid counterpart between two times.
+  virtual Vector velocity(double from, double to) const = 0;
+  // Nodes that may be partners; empty for rigid counterparts.
+  virtual const std::vector<int>& partners() const = 0;
+  // Whether two contacts may have a partner in common.
+  virtual bool shares_partners() const { return false; }
+  virtual bool keeps_normal() const { return false; }
+};
+
+// A rigid obstacle.
+class RigidCounterpart : public Counterpart {
+ public:
+  RigidCounterpart(const Model& model, std::vector<int> nodes, std::unique_ptr<const Obstacle> obstacle);
+  ContactPoint meet(int node_index, const Dofs& u, double time) const override;
+  double gap_bound(int node_index, const Dofs& u, double time) const override;
+  Vector velocity(double from, double to) const override { return obstacle_->velocity(from, to); }
+  const std::vector<int>& partners() const override { return none_; }
+  bool keeps_normal() const override { return obstacle_->is_flat(); }
+
+ private:
+  Vector position(int node_index, const Dofs& u) const;
+
+  const Model& model_;
+  std::vector<int> nodes_, none_;
+  std::unique_ptr<const Obstacle> obstacle_;
+};
+
+// One other node for each node, across a given normal.
+class NodeCounterpart : public Counterpart {
+ public:
+  NodeCounterpart(const Model& model, std::vector<int> nodes, std::vector<int> partners, Vector normal);
+  ContactPoint meet(int node_index, const Dofs& u, double time) const override;
+  double gap_bound(int node_index, const Dofs& u, double time) const override {
+    return meet(node_index, u, time).gap;
+  }
+  Vector velocity(double /*from*/, double /*to*/) const override { return Vector::Zero(model_.dimension()); }
+  const std::vector<int>& partners() const override { return partners_; }
+  bool keeps_normal() const override { return true; }
+
+ private:
+  const Model& model_;
+  std::vector<int> nodes_, partners_;
+  Vector normal_;
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "contact/law_arguments.hpp"
+
+#include <deque>
+
+namespace ilaw::host {
+namespace {
+
+// The arguments of create, with the pointers that it wants; deque keeps addresses while growing.
+class ArgumentList {
+ public:
+  explicit ArgumentList(const Arguments& given) {
+    for (const auto& [name, value] : given.numbers) add(ILAW_VALUE_NUMBER, name).number = value;
+    for (const auto& [name, text] : given.texts) add(ILAW_VALUE_TEXT, name).text = text.c_str();
+    for (const auto& [name, pairs] : given.tables) {
+      ilaw_argument& argument = add(ILAW_VALUE_TABLE, name);
+      argument.values = pairs.data();
+      argument.count = pairs.size() / 2;
+    }
+    for (const auto& [name, values] : given.per_node)
+      per_node_.emplace_back(&add(ILAW_VALUE_PER_NODE, name), &values);
+    for (const ilaw_argument& argument : arguments_) pointers_.push_back(&argument);
+  }
+
+  const std::vector<const ilaw_argument*>& pointers() const { return pointers_; }
+  std::size_t node_count() const { return per_node_.empty() ? 0 : per_node_.front().second->size(); }
+
+  // From now on the values of one node stand for those per node. Returns whether this changed any.
+  bool take_node(std::size_t node_index) {
+    bool changed = false;
+    for (const auto& [argument, values] : per_node_) {
+      changed |= argument->kind != ILAW_VALUE_NUMBER || argument->number != (*values)[node_index];
+      argument->kind = ILAW_VALUE_NUMBER;
+      argument->number = (*values)[node_index];
+    }
+    return changed;
+  }
+
+  // Of the parameter that a law's message names first: laws put names in quotes.
+  std::string pointer_from(const std::string& message, std::optional<std::size_t> node_index) const {
+    const ilaw_argument* named = nullptr;
+    std::size_t first = std::string::npos;
+    for (const ilaw_argument& argument : arguments_)
+      if (const std::size_t at = message.find("'" + std::string(argument.name) + "'"); at < first) {
+        first = at;
+        named = &argument;
+      }
+    if (!named) return "";
+    std::string pointer = "/" + std::string(named->name);
+    for (const auto& [argument, values] : per_node_)
+      if (argument == named) pointer += "/per_node" + (node_index ? "/" + std::to_string(*node_index) : "");
+    return named->kind == ILAW_VALUE_TABLE ? pointer + "/table" : pointer;
+  }
+
+ private:
+  ilaw_argument& add(std::uint32_t kind, const std::string& name) {
+    ilaw_argument& argument = arguments_.emplace_back();
+    argument = {};
+    argument.struct_size = sizeof argument;
+    argument.kind = kind;
+    argument.name = name.c_str();
+    return argument;
+  }
+
+  std::deque<ilaw_argument> arguments_;
+  std::vector<std::pair<ilaw_argument*, const std::vector<double>*>> per_node_;
+  std::vector<const ilaw_argument*> pointers_;
+};
+
+// Straight through the law: the loader, which checks every instance, has seen one.
+void try_create(const ilaw_law& law, const ilaw_setup& setup) {
+  char message[1024];
+  ilaw_instance* made = nullptr;
+  const std::int32_t code = law.create(&setup, &made, message, sizeof message);
+  if (code != ILAW_OK) throw ilaw::error(code, message);
+  law.destroy(made);
+}
+
+}  // namespace
+
+ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
+                           const ilaw::library& library, int dimension) {
+  ArgumentList arguments(given);
+  ilaw_setup setup{};
+  setup.struct_size = sizeof setup;
+  setup.dimension = static_cast<std::uint32_t>(dimension);
+  setup.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.frame = ILAW_FRAME_GLOBAL;
+  setup.tangent_given = tangent.size() > 0 ? 1 : 0;
+  setup.arguments = arguments.pointers().data();
+  setup.argument_count = static_cast<std::uint32_t>(arguments.pointers().size());
+  std::optional<std::size_t> node_index;
+  try {
+    ilaw::interface created(library, law, setup);
+    // Values per node reach the law with the first batch only. Whether it allows those of a node together is
+    // found now, by an instance for that node alone; neighbours are often alike.
+    for (node_index = 0; *node_index < arguments.node_count(); ++*node_index)
+      if (arguments.take_node(*node_index)) try_create(created.law(), setup);
+    return created;
+  } catch (const ilaw::error& refusal) {
+    if (refusal.code() != ILAW_INVALID_PARAMETER) throw;
+    throw ParameterError(refusal, arguments.pointer_from(refusal.what(), node_index), node_index);
+  }
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,45 @@
+// law_arguments.hpp - parameters of a law, and how they reach the library.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/vector.hpp"
+
+#include <ilaw/loader.hpp>
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ilaw::host {
+
+// Parameters of a law as a scene gives them.
+struct Arguments {
+  std::map<std::string, double> numbers;
+  std::map<std::string, std::string> texts;
+  std::map<std::string, std::vector<double>> tables;    // pairs (time, value)
+  std::map<std::string, std::vector<double>> per_node;  // one value per node of the interface
+};
+
+// A parameter that a law refuses: where it stands below "parameters" (empty: no single one is at fault), and
+// whose values they are where they are given per node.
+class ParameterError : public ilaw::error {
+ public:
+  ParameterError(const ilaw::error& refusal, std::string pointer, std::optional<std::size_t> node_index)
+      : ilaw::error(refusal), pointer_(std::move(pointer)), place_(node_index) {}
+  const std::string& pointer() const { return pointer_; }
+  std::optional<std::size_t> node_index() const { return place_; }  // in the interface's list of nodes
+
+ private:
+  std::string pointer_;
+  std::optional<std::size_t> place_;
+};
+
+// Creates the law for nodes with spherical H and global axes; tangent is empty where none is given. Throws
+// ParameterError, also about values per node, or ilaw::error, with the law's message.
+ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
+                           const ilaw::library& library, int dimension);
+
+}  // namespace ilaw::host

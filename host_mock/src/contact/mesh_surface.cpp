@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "contact/mesh_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace ilaw::host {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Corners = std::array<Vector3d, 4>;
+
+// A place on a patch: xi and eta in [-1, 1], with what the contact needs there.
+struct Projection {
+  std::array<double, 4> weights;
+  Vector3d point, normal;
+  double distance;
+};
+
+std::array<double, 4> shape_functions(const Vector2d& at) {
+  const double a = 0.5 * (1.0 - at[0]), b = 0.5 * (1.0 + at[0]), c = 0.5 * (1.0 - at[1]),
+               d = 0.5 * (1.0 + at[1]);
+  return {a * c, b * c, b * d, a * d};
+}
+
+Vector3d along_xi(const Corners& x, const Vector2d& at) {
+  return 0.25 * ((1.0 - at[1]) * (x[1] - x[0]) + (1.0 + at[1]) * (x[2] - x[3]));
+}
+Vector3d along_eta(const Corners& x, const Vector2d& at) {
+  return 0.25 * ((1.0 - at[0]) * (x[3] - x[0]) + (1.0 + at[0]) * (x[2] - x[1]));
+}
+Vector3d point_of(const Corners& x, const Vector2d& at) {
+  const std::array<double, 4> n = shape_functions(at);
+  return n[0] * x[0] + n[1] * x[1] + n[2] * x[2] + n[3] * x[3];
+}
+
+// Gauss-Newton for the nearest point, which takes one step on a parallelogram; a coordinate that leaves the
+// patch is held at its edge.
+Projection project(const Vector3d& p, const Corners& x) {
+  Vector2d at = Vector2d::Zero();
+  for (int iteration = 0; iteration < 12; ++iteration) {
+    const Vector3d t1 = along_xi(x, at), t2 = along_eta(x, at), rest = p - point_of(x, at);
+    Eigen::Matrix2d metric;
+    metric << t1.dot(t1), t1.dot(t2), t1.dot(t2), t2.dot(t2);
+    Vector2d step = metric.inverse() * Vector2d(t1.dot(rest), t2.dot(rest));
+    const Vector2d free = at + step;
+    if (std::abs(free[0]) > 1.0) {
+      const double edge = std::copysign(1.0, free[0]);
+      step = {edge - at[0], (t2.dot(rest) - t1.dot(t2) * (edge - at[0])) / t2.dot(t2)};
+    } else if (std::abs(free[1]) > 1.0) {
+      const double edge = std::copysign(1.0, free[1]);
+      step = {(t1.dot(rest) - t1.dot(t2) * (edge - at[1])) / t1.dot(t1), edge - at[1]};
+    }
+    const Vector2d next = (at + step).cwiseMax(-1.0).cwiseMin(1.0);
+    const double moved = (next - at).cwiseAbs().maxCoeff();
+    at = next;
+    if (!(moved > 1e-14)) break;
+  }
+  const Vector3d point = point_of(x, at);
+  return {shape_functions(at), point, along_xi(x, at).cross(along_eta(x, at)).normalized(),
+          (p - point).norm()};
+}
+
+}  // namespace
+
+MeshSurface::MeshSurface(const Model& model, std::vector<int> nodes, const NodeSet& surface)
+    : model_(model),
+      nodes_(std::move(nodes)),
+      partners_(surface.nodes),
+      facets_(surface.facets),
+      nearest_(nodes_.size()),
+      bound_(nodes_.size()),
+      shortest_edge_(std::numeric_limits<double>::infinity()) {
+  find_neighbours();
+  const Dofs undeformed = Dofs::Zero(model.mass().size());
+  for (const Facet& facet : facets_)
+    for (std::size_t k = 0; k < 4; ++k)
+      shortest_edge_ = std::min(
+          shortest_edge_, (position(facet[k], undeformed) - position(facet[(k + 1) % 4], undeformed)).norm());
+  MeshSurface::look(undeformed);
+}
+
+void MeshSurface::find_neighbours() {
+  std::map<int, std::vector<std::size_t>> facets_at;
+  for (std::size_t f = 0; f < facets_.size(); ++f)
+    for (const int node : facets_[f]) facets_at[node].push_back(f);
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    std::set<std::size_t> around;
+    for (const int node : facets_[f]) around.insert(facets_at[node].begin(), facets_at[node].end());
+    neighbours_.emplace_back(around.begin(), around.end());
+  }
+}
+
+Vector3d MeshSurface::position(int node, const Dofs& u) const {
+  return model_.position().segment<3>(3 * Eigen::Index{node}) + u.segment<3>(3 * Eigen::Index{node});
+}
+
+Vector3d MeshSurface::center(const Facet& facet, const Dofs& u) const {
+  return 0.25 *
+         (position(facet[0], u) + position(facet[1], u) + position(facet[2], u) + position(facet[3], u));
+}
+
+double MeshSurface::radius(const Facet& facet, const Dofs& u) const {
+  const Vector3d middle = center(facet, u);
+  double largest = 0.0;
+  for (const int node : facet) largest = std::max(largest, (position(node, u) - middle).norm());
+  return largest;
+}
+
+// The nearest centre tells the facet, or a neighbour of it; its distance less the largest radius bounds the
+// gap, unless the point lies behind the surface.
+void MeshSurface::look(const Dofs& u) {
+  std::vector<Vector3d> centers;
+  double largest_radius = 0.0;
+  for (const Facet& facet : facets_) {
+    centers.push_back(center(facet, u));
+    largest_radius = std::max(largest_radius, radius(facet, u));
+  }
+#pragma omp parallel for schedule(static) if (nodes_.size() * facets_.size() > 100000)
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    const Vector3d p = position(nodes_[k], u);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t f = 0; f < centers.size(); ++f)
+      if (const double square = (p - centers[f]).squaredNorm(); square < least) {
+        least = square;
+        nearest_[k] = f;
+      }
+    const Facet& facet = facets_[nearest_[k]];
+    const Vector3d normal =
+        (position(facet[2], u) - position(facet[0], u)).cross(position(facet[3], u) - position(facet[1], u));
+    const bool in_front = normal.dot(p - centers[nearest_[k]]) > 0.0;
+    bound_[k] = in_front ? std::sqrt(least) - largest_radius : -std::numeric_limits<double>::infinity();
+  }
+}
+
+double MeshSurface::gap_bound(int node_index, const Dofs& /*u*/, double /*time*/) const {
+  return bound_[static_cast<std::size_t>(node_index)];
+}
+
+ContactPoint MeshSurface::meet(int node_index, const Dofs& u, double /*time*/) const {
+  const auto k = static_cast<std::size_t>(node_index);
+  const Vector3d p = position(nodes_[k], u);
+  Projection best{};
+  std::size_t facet = nearest_[k];
+  best.distance = std::numeric_limits<double>::infinity();
+  for (const std::size_t f : neighbours_[nearest_[k]]) {
+    const Corners corners{position(facets_[f][0], u), position(facets_[f][1], u), position(facets_[f][2], u),
+                          position(facets_[f][3], u)};
+    const Projection projection = project(p, corners);
+    if (projection.distance < best.distance) {
+      best = projection;
+      facet = f;
+    }
+  }
+  const double normal_distance = best.normal.dot(p - best.point);
+  const double beside = (p - best.point - normal_distance * best.normal).norm();
+  // A point that is nearest to an edge without facing the patch lies beyond the surface's border: it is not
+  // in contact.
+  const bool faces = beside <= 1e-6 * shortest_edge_;
+  return {faces ? normal_distance : best.distance, best.normal, ContactPoint::most_partners, facets_[facet],
+          best.weights};
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,43 @@
+// surface.hpp - nodes of one body against the facets of another: meshes need not match.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/counterpart.hpp"
+
+namespace ilaw::host {
+
+// A point is projected on the nearest facet, a bilinear patch of four nodes: the contact's partners are these
+// nodes, with the shape functions there as weights, so that impulses balance. Which facet is the nearest is
+// found among all at a look, and among that one's neighbours in between: sight is what a point may slide
+// meanwhile.
+class MeshSurface : public Counterpart {
+ public:
+  MeshSurface(const Model& model, std::vector<int> nodes, const NodeSet& surface);
+
+  ContactPoint meet(int node_index, const Dofs& u, double time) const override;
+  double gap_bound(int node_index, const Dofs& u, double time) const override;
+  void look(const Dofs& u) override;
+  double validity() const override { return 0.5 * shortest_edge_; }
+  Vector velocity(double /*from*/, double /*to*/) const override { return Vector::Zero(3); }
+  const std::vector<int>& partners() const override { return partners_; }
+  bool shares_partners() const override { return true; }
+
+ private:
+  using Facet = std::array<int, 4>;
+  Eigen::Vector3d position(int node, const Dofs& u) const;
+  Eigen::Vector3d center(const Facet& facet, const Dofs& u) const;
+  double radius(const Facet& facet, const Dofs& u) const;
+  void find_neighbours();
+
+  const Model& model_;
+  std::vector<int> nodes_, partners_;
+  std::vector<Facet> facets_;
+  std::vector<std::vector<std::size_t>>
+      neighbours_;                    // of a facet, and itself, in ascending order: which of two
+                                      // equally near ones is met does not depend on the look
+  std::vector<std::size_t> nearest_;  // facet, by place, at the last look
+  std::vector<double> bound_;         // of the gap, by place, at the last look
+  double shortest_edge_;
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,36 @@
+// bars.hpp - elastic bars in a line (1D): linear elements, lumped mass.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "model/model.hpp"
+
+namespace ilaw::host {
+
+struct BarSetup {
+  std::string name;
+  double start, length;  // from start to start + length
+  int elements;
+  double young, density, section, velocity;
+};
+
+// Sets of bar "b": "b", "b.left", "b.right".
+class Bars : public Model {
+ public:
+  explicit Bars(const std::vector<BarSetup>& bars);
+
+  bool has_internal_forces() const override { return true; }
+  void add_internal_forces(const Dofs& u, Dofs& force) const override;
+  double potential(const Dofs& u) const override;
+  // Element length over wave speed: with lumped mass exactly the limit 2/omega_max of the longest mesh.
+  double critical_step() const override { return critical_step_; }
+
+ private:
+  struct Run {
+    int first, elements;
+    double stiffness;  // of one element
+  };
+  std::vector<Run> runs_;  // one per bar
+  double critical_step_;
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/load.hpp"
+
+#include <utility>
+
+namespace ilaw::host {
+
+const std::vector<int>& Load::prescribed_nodes() const {
+  static const std::vector<int> none;
+  return none;
+}
+
+Gravity::Gravity(const Model& model, std::vector<int> nodes, Vector acceleration)
+    : model_(model), nodes_(std::move(nodes)), acceleration_(std::move(acceleration)) {}
+
+void Gravity::add_force(double /*time*/, Dofs& force) const {
+  const Eigen::Index d = acceleration_.size();
+  for (int node : nodes_)
+    force.segment(node * d, d) += model_.mass().segment(node * d, d).cwiseProduct(acceleration_);
+}
+
+Force::Force(std::vector<int> nodes, std::vector<double> shares, Vector direction, Table history)
+    : nodes_(std::move(nodes)),
+      shares_(std::move(shares)),
+      direction_(std::move(direction)),
+      history_(std::move(history)) {}
+
+void Force::add_force(double time, Dofs& force) const {
+  const Eigen::Index d = direction_.size();
+  const double size = history_.at(time)[0];
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    force.segment(nodes_[k] * d, d) += size * shares_[k] * direction_;
+}
+
+Shock::Shock(std::vector<int> nodes, double time, Vector impulse)
+    : nodes_(std::move(nodes)), time_(time), impulse_(std::move(impulse)) {}
+
+void Shock::add_impulse(StepTimes step, Dofs& impulse) const {
+  // An instant that is a multiple of dt only but for rounding belongs to the step that ends there; both ends
+  // of the interval move alike, so that it enters exactly one step.
+  const double slack = 1e-9 * (step.after - step.before);
+  if (!(time_ > step.before + slack && time_ <= step.after + slack)) return;
+  const Eigen::Index d = impulse_.size();
+  for (int node : nodes_) impulse.segment(node * d, d) += impulse_;
+}
+
+PrescribedMotion::PrescribedMotion(std::vector<int> nodes, std::vector<int> axes, int dimension,
+                                   Motion motion)
+    : nodes_(std::move(nodes)), axes_(std::move(axes)), dimension_(dimension), motion_(std::move(motion)) {}
+
+// Positions follow the motion: the velocity is its mean over the step to come.
+void PrescribedMotion::correct(StepTimes step, const Dofs& /*v_before*/, Dofs& v) const {
+  const Vector mean = motion_.velocity(step.after, step.after + (step.after - step.before));
+  for (int node : nodes_)
+    for (int axis : axes_) v[node * dimension_ + axis] = mean[axis];
+}
+
+void PrescribedMotion::start(double dt, const Dofs& v_start, Dofs& v) const {
+  correct({-dt, 0.0}, v_start, v);
+}
+
+Damping::Damping(std::vector<int> nodes, int dimension, double rate)
+    : nodes_(std::move(nodes)), dimension_(dimension), rate_(rate) {}
+
+void Damping::correct(StepTimes step, const Dofs& v_before, Dofs& v) const {
+  damp(step.after - step.before, v_before, v);
+}
+
+void Damping::start(double dt, const Dofs& v_start, Dofs& v) const { damp(0.5 * dt, v_start, v); }
+
+// m (v' - v_before) = m (v - v_before) - rate h m (v_before + v')/2, solved for v'.
+void Damping::damp(double duration, const Dofs& v_before, Dofs& v) const {
+  const double a = 0.5 * rate_ * duration;
+  const Eigen::Index d = dimension_;
+  for (int node : nodes_)
+    v.segment(node * d, d) = (v.segment(node * d, d) - a * v_before.segment(node * d, d)) / (1.0 + a);
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,106 @@
+// load.hpp - what acts on the nodes from outside.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/table.hpp"
+#include "model/model.hpp"
+#include "model/obstacle.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace ilaw::host {
+
+// The step from time t_n to t_{n+1} = t_n + dt.
+struct StepTimes {
+  double before, after;
+};
+
+class Load {
+ public:
+  virtual ~Load() = default;
+  // Adds the force at a time.
+  virtual void add_force(double /*time*/, Dofs& /*force*/) const {}
+  // Adds the impulses that fall into a step.
+  virtual void add_impulse(StepTimes /*step*/, Dofs& /*impulse*/) const {}
+  // Changes the velocity that a step would leave with, without interfaces; the change counts as an external
+  // impulse.
+  virtual void correct(StepTimes /*step*/, const Dofs& /*v_before*/, Dofs& /*v*/) const {}
+  // The same for the half step that a run starts with, from V_0 to V_{1/2}.
+  virtual void start(double /*dt*/, const Dofs& /*v_start*/, Dofs& /*v*/) const {}
+  virtual bool corrects() const { return false; }
+  // Nodes whose motion is prescribed.
+  virtual const std::vector<int>& prescribed_nodes() const;
+};
+
+using Loads = std::vector<std::unique_ptr<Load>>;
+
+class Gravity : public Load {
+ public:
+  Gravity(const Model& model, std::vector<int> nodes, Vector acceleration);
+  void add_force(double time, Dofs& force) const override;
+
+ private:
+  const Model& model_;
+  std::vector<int> nodes_;
+  Vector acceleration_;
+};
+
+// A force along a direction, of a size that is piecewise linear in time.
+class Force : public Load {
+ public:
+  // The size times its share acts on each node.
+  Force(std::vector<int> nodes, std::vector<double> shares, Vector direction, Table history);
+  void add_force(double time, Dofs& force) const override;
+
+ private:
+  std::vector<int> nodes_;
+  std::vector<double> shares_;
+  Vector direction_;
+  Table history_;
+};
+
+// An impulse at an instant s; it enters the step with t_n < s <= t_{n+1}.
+class Shock : public Load {
+ public:
+  Shock(std::vector<int> nodes, double time, Vector impulse);
+  void add_impulse(StepTimes step, Dofs& impulse) const override;
+
+ private:
+  std::vector<int> nodes_;
+  double time_;
+  Vector impulse_;
+};
+
+// Viscous damping by mass: the force -rate m (v_before + v)/2.
+class Damping : public Load {
+ public:
+  Damping(std::vector<int> nodes, int dimension, double rate);
+  void correct(StepTimes step, const Dofs& v_before, Dofs& v) const override;
+  void start(double dt, const Dofs& v_start, Dofs& v) const override;
+  bool corrects() const override { return true; }
+
+ private:
+  void damp(double duration, const Dofs& v_before, Dofs& v) const;
+
+  std::vector<int> nodes_;
+  int dimension_;
+  double rate_;
+};
+
+// Nodes that follow a given motion; axes that are not driven stay free.
+class PrescribedMotion : public Load {
+ public:
+  PrescribedMotion(std::vector<int> nodes, std::vector<int> axes, int dimension, Motion motion);
+  void correct(StepTimes step, const Dofs& v_before, Dofs& v) const override;
+  void start(double dt, const Dofs& v_start, Dofs& v) const override;
+  bool corrects() const override { return true; }
+  const std::vector<int>& prescribed_nodes() const override { return nodes_; }
+
+ private:
+  std::vector<int> nodes_, axes_;
+  int dimension_;
+  Motion motion_;
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/history.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+
+namespace ilaw::host {
+namespace {
+
+// Shortest text that reads back to the same double.
+std::string number(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+// Named state variables: histories mean nothing outside their law.
+template <class Visit>
+void for_each_state(const ilaw_instance_info& info, Visit visit) {
+  int entry = 0;
+  for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
+    const ilaw_state_variable& variable = *info.state_variables[i];
+    const auto count = static_cast<int>(variable.count);
+    if (variable.kind == ILAW_STATE_SCALAR) visit(std::string(variable.name), entry);
+    if (variable.kind == ILAW_STATE_VECTOR)
+      for (int k = 0; k < count; ++k) visit(variable.name + std::to_string(k), entry + k);
+    entry += count;
+  }
+}
+
+}  // namespace
+
+History::History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder)
+    : scene_(scene), file_(folder / "history.csv") {
+  find_contacts(integrator);
+  write_header();
+}
+
+History::History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder,
+                 std::uintmax_t size)
+    : scene_(scene), file_(folder / "history.csv", size) {
+  find_contacts(integrator);
+}
+
+void History::find_contacts(const Integrator& integrator) {
+  for (int node : scene_.output.watch) {
+    std::vector<Contact>& contacts = contacts_.emplace_back();
+    for (const auto& interface : scene_.interfaces) {
+      const auto found = std::find(interface->nodes().begin(), interface->nodes().end(), node);
+      if (found == interface->nodes().end()) continue;
+      const int node_index = static_cast<int>(found - interface->nodes().begin());
+      contacts.push_back({interface.get(), node_index,
+                          interface->contact_index_of(node_index, integrator.displacement()), ""});
+    }
+    const std::string name = "n" + std::to_string(node) + ".";
+    for (Contact& contact : contacts)
+      contact.prefix = contacts.size() == 1 ? name : name + contact.interface->name() + ".";
+  }
+}
+
+void History::write_header() {
+  std::ostream& out = file_.stream();
+  const int d = scene_.model->dimension();
+  out << "time";
+  for (std::size_t w = 0; w < contacts_.size(); ++w) {
+    const std::string node = "n" + std::to_string(scene_.output.watch[w]) + ".";
+    for (const char* quantity : {"u", "v", "r"})
+      for (int c = 0; c < d; ++c) out << ',' << node << quantity << c;
+    for (const Contact& contact : contacts_[w]) {
+      out << ',' << contact.prefix << "gap," << contact.prefix << "status";
+      for_each_state(contact.interface->info(),
+                     [&](const std::string& name, int) { out << ',' << contact.prefix << name; });
+    }
+  }
+  if (scene_.output.balance) {
+    out << ",balance.kinetic,balance.internal,balance.potential,balance.external_work,balance.interface_work,"
+           "balance.error";
+    for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c) out << ",balance.angular_momentum" << c;
+  }
+  out << '\n';
+}
+
+void History::add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse) {
+  std::ostream& out = file_.stream();
+  const int d = scene_.model->dimension();
+  const Eigen::Index node = static_cast<Eigen::Index>(scene_.output.watch[watched]) * d;
+  for (const Dofs* quantity : {&integrator.displacement(), &integrator.velocity(), &impulse})
+    for (int c = 0; c < d; ++c) out << ',' << number((*quantity)[node + c]);
+  for (const Contact& contact : contacts_[watched]) {
+    const Interface& interface = *contact.interface;
+    const int status =
+        interface.is_active(contact.contact_index) ? interface.status(contact.contact_index) : int{ILAW_FREE};
+    out << ',' << number(interface.gap_at(contact.node_index, integrator.displacement(), integrator.time()))
+        << ',' << status;
+    for_each_state(interface.info(), [&](const std::string&, int entry) {
+      out << ',' << number(interface.state(contact.contact_index, entry));
+    });
+  }
+}
+
+void History::add_row(const Integrator& integrator) {
+  std::ostream& out = file_.stream();
+  out << number(integrator.time());
+  if (!contacts_.empty()) {
+    const Dofs impulse = integrator.interface_impulse();
+    for (std::size_t w = 0; w < contacts_.size(); ++w) add_node(w, integrator, impulse);
+  }
+  if (scene_.output.balance) {
+    const EnergyReport energy = integrator.energy();
+    for (const double value : {energy.kinetic, energy.internal, energy.potential, energy.external_work,
+                               energy.interface_work, energy.balance_error})
+      out << ',' << number(value);
+    for (const double component : integrator.angular_momentum()) out << ',' << number(component);
+  }
+  out << '\n';
+  file_.check();
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,44 @@
+// history.hpp - history.csv: what the watched nodes do, as time goes on.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/files.hpp"
+#include "scene/scene.hpp"
+#include "step/integrator.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+// history.csv: a row per output instant, columns as in docs/scenes.md. Vectors are in the scene's axes.
+class History {
+ public:
+  History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder);
+  // Goes on after the first size bytes of an earlier run's.
+  History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder,
+          std::uintmax_t size);
+  void add_row(const Integrator& integrator);
+  std::uintmax_t flush() { return file_.flush(); }
+  void commit() { file_.commit(); }
+  void keep_rows() { file_.keep_lines(); }
+
+ private:
+  // A watched node in one interface.
+  struct Contact {
+    const Interface* interface;
+    int node_index, contact_index;
+    std::string prefix;  // "n0." or, where the node has several, "n0.<interface>."
+  };
+  void find_contacts(const Integrator& integrator);
+  void write_header();
+  void add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse);
+
+  const Scene& scene_;
+  AtomicFile file_;
+  std::vector<std::vector<Contact>> contacts_;  // per watched node
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/picture.hpp"
+
+#include "results/gnuplot.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <string_view>
+
+namespace ilaw::host {
+namespace {
+
+// A column of history.csv: "n3.floor.gap" is the gap of node n3, owner "n3 floor", and "n3.u1" component 1 of
+// u.
+struct Curve {
+  std::size_t column;  // from 1, as gnuplot counts
+  std::string node, owner, component;
+};
+
+struct Panel {
+  std::string quantity, label;
+  std::vector<Curve> curves;
+  bool summed = false;  // over time
+};
+
+struct Status {
+  const char* name;
+  const char* colour;
+};
+
+// Colours that colour-blind readers tell apart (Okabe and Ito 2008).
+constexpr const char* palette[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                   "#E69F00", "#56B4E9", "#000000"};
+constexpr Status statuses[] = {{"free", "#dcdcdc"},   {"closed", "#56B4E9"},   {"stick", "#0072B2"},
+                               {"slip", "#E69F00"},   {"bonded", "#009E73"},   {"broken", "#D55E00"},
+                               {"healed", "#CC79A7"}, {"bad_input", "#000000"}};
+
+// Sizes in pixels.
+constexpr double width = 1000, left = 95, right = 120, above = 45, below = 55, between = 18,
+                 curve_height = 120, row_height = 24, key_line = 18;
+
+bool is_component(std::string_view name) {
+  return name.size() == 2 && std::string_view("uvr").find(name[0]) != std::string_view::npos &&
+         std::isdigit(static_cast<unsigned char>(name[1]));
+}
+
+Panel& panel_of(const std::string& quantity, std::vector<Panel>& panels) {
+  const auto found = std::find_if(panels.begin(), panels.end(),
+                                  [&](const Panel& panel) { return panel.quantity == quantity; });
+  return found != panels.end() ? *found : panels.emplace_back(Panel{quantity, quantity, {}});
+}
+
+// The balance of the whole: energies in one panel, what must be small or constant in panels of its own.
+constexpr std::string_view balance = "balance.";
+void add_balance(const std::string& name, std::size_t column, std::vector<Panel>& panels) {
+  const std::string quantity = name.substr(balance.size());
+  const bool is_energy = quantity != "error" && !quantity.starts_with("angular_momentum");
+  const std::string label = is_energy ? "energy" : quantity == "error" ? "balance error" : "angular momentum";
+  const std::string legend = quantity.substr(0, quantity.find("_work"));
+  panel_of(label, panels).curves.push_back({column, legend, legend, ""});
+}
+
+bool is_motion(const Panel& panel) {
+  return panel.quantity == "gap" || panel.quantity == "u" || panel.quantity == "v" || panel.quantity == "r";
+}
+
+// The panels from top to bottom; those that stay empty go.
+std::vector<Panel> panels_of(const Columns& columns, int every) {
+  const std::vector<std::string>& header = columns.names;
+  std::vector<Panel> panels = {
+      {"gap", "gap", {}}, {"u", "displacement", {}}, {"v", "velocity", {}}, {"r", "impulse", {}}};
+  Panel status{"status", "status", {}};
+  for (std::size_t i = 1; i < header.size(); ++i) {
+    if (header[i].starts_with(balance)) {
+      add_balance(header[i], i + 1, panels);
+      continue;
+    }
+    const std::string owner = header[i].substr(0, header[i].rfind('.'));
+    std::string name = header[i].substr(owner.size() + 1), component;
+    if (is_component(name)) {
+      component = name;
+      name.resize(1);
+    }
+    Panel& panel = name == "status" ? status : panel_of(name, panels);
+    panel.curves.push_back({i + 1, owner.substr(0, owner.find('.')), owner, component});
+  }
+  // On a line, the gap tells the displacement.
+  const bool on_a_line =
+      !panels[2].curves.empty() && (panels[2].curves.size() == 1 || panels[2].curves[1].component == "v0");
+  if (on_a_line && !panels[0].curves.empty()) panels[1].curves.clear();
+  // A force is hardly seen beside a shock, but its sum is. A sum needs every step.
+  if (every == 1) panels.insert(panels.begin() + 4, {"r", "summed impulse", panels[3].curves, true});
+  // States that the scene does not use stay zero.
+  const auto is_zero = [&](const Curve& curve) { return columns.all_zero[curve.column - 1]; };
+  std::erase_if(panels, [&](const Panel& panel) {
+    return !is_motion(panel) && std::all_of(panel.curves.begin(), panel.curves.end(), is_zero);
+  });
+  panels.push_back(status);
+  std::erase_if(panels, [](const Panel& panel) { return panel.curves.empty(); });
+  return panels;
+}
+
+std::size_t node_count(const Panel& panel) {
+  std::set<std::string> nodes;
+  for (const Curve& curve : panel.curves) nodes.insert(curve.node);
+  return nodes.size();
+}
+
+std::size_t component_count(const Panel& panel) {
+  std::set<std::string> components;
+  for (const Curve& curve : panel.curves) components.insert(curve.component);
+  return components.size();
+}
+
+// The key tells nodes by colour and components by dash, each once, where there are several of both.
+bool has_split_key(const Panel& panel) { return node_count(panel) > 1 && component_count(panel) > 1; }
+
+std::string legend_of(const Panel& panel, const Curve& curve) {
+  if (panel.curves.size() == 1 || has_split_key(panel)) return "";
+  return component_count(panel) > 1 ? curve.owner + "." + curve.component : curve.owner;
+}
+
+// Room for the key on the right; the status needs a row per contact on the left, too.
+double height_of(const Panel& panel, const Columns& columns) {
+  if (panel.quantity == "status")
+    return std::max({row_height * static_cast<double>(panel.curves.size()),
+                     key_line * static_cast<double>(columns.statuses.size()), 2.0 * key_line});
+  const std::size_t lines =
+      has_split_key(panel) ? node_count(panel) + component_count(panel) : panel.curves.size();
+  return std::max(curve_height, key_line * static_cast<double>(lines));
+}
+
+// An impulse belongs to the step that ends at its row's time, a velocity to the half step after it.
+const char* style_of(const Panel& panel) {
+  if (panel.quantity == "v") return "steps";
+  return panel.quantity == "r" && !panel.summed ? "fsteps" : "lines";
+}
+
+std::string key_entry(const std::string& name, std::size_t dash, const char* colour) {
+  return ", NaN with lines linewidth 1.4 dashtype " + std::to_string(dash) + " linecolor rgb " +
+         in_quotes(colour) + " title " + in_quotes(name);
+}
+
+// A colour per node and a dash per component; a colour per component where there is one node.
+void draw_curves(std::ostream& script, const Panel& panel) {
+  script << "set yrange [*<0:0<*] noextend\nset ytics autofreq\n";
+  const bool many_nodes = node_count(panel) > 1;
+  std::size_t node = 0, within = 0;
+  std::string key, key_of_components;
+  for (std::size_t k = 0; k < panel.curves.size(); ++k) {
+    const Curve& curve = panel.curves[k];
+    const bool same_node = k > 0 && curve.node == panel.curves[k - 1].node;
+    within = same_node ? within + 1 : 0;
+    if (k > 0 && !same_node) ++node;
+    script << (k == 0 ? "plot " : ", ")
+           << "sum = 0, history using 1:" << (panel.summed ? "(sum = sum + $" : "($") << curve.column
+           << ") with " << style_of(panel) << " linewidth 1.4 dashtype " << (many_nodes ? within + 1 : 1)
+           << " linecolor rgb " << in_quotes(palette[(many_nodes ? node : k) % std::size(palette)])
+           << " title " << in_quotes(legend_of(panel, curve));
+    if (!has_split_key(panel)) continue;
+    if (within == 0) key += key_entry(curve.node, 1, palette[node % std::size(palette)]);
+    if (node == 0) key_of_components += key_entry(curve.component, within + 1, "#808080");
+  }
+  script << key << key_of_components << "\n";
+}
+
+// A row per contact. A status that lasts one step is a dot, thanks to round caps, and lies on top.
+void draw_status(std::ostream& script, const Panel& panel, const Columns& columns) {
+  const std::size_t rows = panel.curves.size();
+  script << "set yrange [" << static_cast<double>(rows) + 0.5 << ":0.5]\nset ytics (";
+  for (std::size_t row = 0; row < rows; ++row)
+    script << (row ? ", " : "") << in_quotes(panel.curves[row].owner) << " " << row + 1;
+  script << ") scale 0\n";
+  const char* separator = "plot ";
+  for (std::size_t k = 0; k < std::size(statuses); ++k) {
+    if (!columns.statuses.contains(static_cast<int>(k))) continue;
+    for (std::size_t row = 0; row < rows; ++row) {
+      script << separator << "before = -1, history using 1:(now = $" << panel.curves[row].column
+             << ", drawn = now == " << k << " || before == " << k << ", before = now, drawn ? " << row + 1
+             << " : NaN) with lines linewidth 7 linecolor rgb " << in_quotes(statuses[k].colour) << " title "
+             << in_quotes(row == 0 ? statuses[k].name : "");
+      separator = ", ";
+    }
+  }
+  script << "\n";
+}
+
+void draw(std::ostream& script, const std::string& terminal, const std::filesystem::path& file,
+          const std::vector<Panel>& panels, const Columns& columns, const std::string& title) {
+  double height = above + below - between;
+  for (const Panel& panel : panels) height += height_of(panel, columns) + between;
+  script << "set terminal " << terminal << " size " << width << "," << height
+         << " font 'sans,11' rounded background rgb 'white'\nset output " << in_quotes(file.string())
+         << "\nset multiplot title " << in_quotes(title) << " font ',14' noenhanced\n"
+         << "set lmargin at screen " << left / width << "\nset rmargin at screen " << 1.0 - right / width
+         << "\n";
+  double top = height - above;
+  for (const Panel& panel : panels) {
+    const double bottom = top - height_of(panel, columns);
+    script << "set tmargin at screen " << top / height << "\nset bmargin at screen " << bottom / height
+           << "\nset key at screen " << 1.0 - (right - 10.0) / width << "," << top / height
+           << " left top vertical maxcols 1 noenhanced samplen 2 Left reverse\nset label 1 "
+           << in_quotes(panel.label) << " noenhanced at screen 0.015," << 0.5 * (top + bottom) / height
+           << " center rotate by 90\n";
+    if (&panel == &panels.back()) script << "set xlabel 'time'\nset format x '%g'\n";
+    if (panel.quantity == "status")
+      draw_status(script, panel, columns);
+    else
+      draw_curves(script, panel);
+    top = bottom - between;
+  }
+  script << "unset multiplot\nunset output\n";
+}
+
+}  // namespace
+
+void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,
+                   const Caption& caption) {
+  const std::vector<Panel> panels = panels_of(columns, caption.every);
+  for (const auto& [terminal, kind] : {std::pair{"pngcairo", "png"}, std::pair{"svg", "svg"}}) {
+    script << "reset\nset datafile separator comma\nhistory = "
+           << in_quotes((folder / "history.csv").string())
+           << "\nset border 3 linecolor rgb '#808080'\nset tics nomirror textcolor rgb 'black'\n"
+           << "set grid linewidth 1 linecolor rgb '#d0d0d0'\nset xrange [*<0:*] noextend\n"
+           << "set offsets graph 0, graph 0, graph 0.06, graph 0.06\nset format x ''\nset format y '%.4g'\n"
+           << "set ytics noenhanced font ',10'\n";
+    draw(script, terminal, folder / ("history." + std::string(kind)), panels, columns, caption.title);
+  }
+}
+
+}  // namespace ilaw::host

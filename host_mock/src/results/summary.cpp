@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/summary.hpp"
+
+#include "base/files.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* status_names[ILAW_STATUS_COUNT] = {"free",   "closed", "stick",  "slip",
+                                                         "bonded", "broken", "healed", "bad_input"};
+
+json describe_interface(const Interface& interface) {
+  return {{"name", interface.name()},
+          {"law", interface.setup().law},
+          {"library", interface.library().path()},
+          {"library_version", interface.library().plugin().version},
+          {"nodes", interface.nodes().size()},
+          {"nodes_stored", interface.contact_count()},
+          {"state_size", interface.info().state_size},
+          {"bytes_per_node", interface.bytes_per_contact()}};
+}
+
+}  // namespace
+
+void write_summary(const Scene& scene, const Integrator& integrator, const RunRecord& record,
+                   const std::filesystem::path& folder) {
+  const EnergyReport energy = integrator.energy();
+  const Tally& tally = integrator.tally();
+  json statuses = json::object();
+  for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k) statuses[status_names[k]] = tally.status_counts[k];
+  const PhaseSeconds& seconds = integrator.seconds();
+  const double stepping = seconds.internal_forces + seconds.interfaces;
+  const double interface_share = stepping > 0.0 ? seconds.interfaces / stepping : 0.0;
+  json interfaces = json::array();
+  for (const auto& interface : scene.interfaces) interfaces.push_back(describe_interface(*interface));
+  std::vector<std::string> warnings = scene.warnings;
+  warnings.insert(warnings.end(), record.warnings.begin(), record.warnings.end());
+  const json summary = {
+      {"program", {{"name", "ilaw"}, {"version", ILAW_VERSION}, {"abi", {ILAW_ABI_MAJOR, ILAW_ABI_MINOR}}}},
+      {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", scene.source}}},
+      {"interfaces", interfaces},
+      {"resumed_at_step", record.resumed_at},
+      {"interrupted", record.interrupted},
+      {"failure", record.failure},
+      {"steps", integrator.steps()},
+      {"dt", scene.dt},
+      {"time", integrator.time()},
+      {"nodes", scene.model->node_count()},
+      {"energy",
+       {{"kinetic", energy.kinetic},
+        {"internal", energy.internal},
+        {"potential", energy.potential},
+        {"external_work", energy.external_work},
+        {"interface_work", energy.interface_work},
+        {"balance_error", energy.balance_error},
+        {"dissipated_friction", energy.by_law[ILAW_ENERGY_FRICTION]},
+        {"dissipated_impact", energy.by_law[ILAW_ENERGY_IMPACT]},
+        {"dissipated_rupture", energy.by_law[ILAW_ENERGY_RUPTURE]},
+        {"stored", energy.by_law[ILAW_ENERGY_STORED]},
+        {"least_dissipation", energy.least_dissipation},
+        {"reaction_work", energy.reaction_work}}},
+      {"warnings", warnings},
+      {"penetration_max", tally.penetration_max},
+      {"status_counts", statuses},
+      {"node_steps", {{"asked", tally.active}, {"skipped", tally.skipped}}},
+      {"coupling",
+       {{"sweeps", tally.sweeps},
+        {"sweeps_max", tally.sweeps_max},
+        {"residual_max", tally.coupling_residual_max},
+        {"steps_unconverged", tally.unconverged}}},
+      {"seconds",
+       {{"total", record.seconds_total},
+        {"internal_forces", integrator.seconds().internal_forces},
+        {"interfaces", integrator.seconds().interfaces},
+        {"output", record.seconds_output}}},
+      {"interface_share", interface_share}};
+  AtomicFile file(folder / "summary.json");
+  file.stream() << summary.dump(2) << '\n';
+  file.commit();
+}
+
+}  // namespace ilaw::host

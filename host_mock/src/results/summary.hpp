@@ -1,0 +1,27 @@
+// summary.hpp - summary.json: what ran, and what came of it.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "scene/scene.hpp"
+#include "step/integrator.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+struct RunRecord {
+  std::int64_t resumed_at = 0;  // step
+  bool interrupted = false;
+  std::string failure;                // empty: none
+  std::vector<std::string> warnings;  // of the integrator, at the end
+  double seconds_total = 0.0, seconds_output = 0.0;
+};
+
+// summary.json.
+void write_summary(const Scene& scene, const Integrator& integrator, const RunRecord& record,
+                   const std::filesystem::path& folder);
+
+}  // namespace ilaw::host

@@ -1,0 +1,46 @@
+// scene.hpp - a scene read from JSON: everything checked, nothing run yet.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/interface.hpp"
+#include "model/load.hpp"
+#include "model/model.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+struct OutputSetup {
+  std::int64_t every = 1;   // steps per row of the history
+  std::vector<int> watch;   // nodes
+  bool balance = false;     // energies and angular momentum in the history
+  std::int64_t fields = 0;  // steps per VTK file; 0: none
+};
+
+struct Scene {
+  std::filesystem::path file;
+  std::string title;
+  nlohmann::json source;
+  std::unique_ptr<Model> model;
+  Loads loads;
+  std::vector<std::unique_ptr<Interface>> interfaces;
+  double dt = 0.0;
+  std::int64_t steps = 0;
+  OutputSetup output;
+  std::vector<std::string> warnings;  // of what can run, but can hardly be meant
+};
+
+// Reads and checks a scene, loads its laws. Throws SceneError, whose message starts with the JSON pointer.
+Scene read_scene(const std::filesystem::path& file);
+
+// The same from parsed JSON; file: where relative library paths start from.
+nlohmann::json read_scene_source(const std::filesystem::path& file);
+Scene read_scene(nlohmann::json source, const std::filesystem::path& file);
+
+}  // namespace ilaw::host

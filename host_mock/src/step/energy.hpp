@@ -1,0 +1,60 @@
+// energy.hpp - the discrete energy balance of central difference, which closes to rounding for any law.
+//   E_n = 1/2 V_{n+1/2}^T M V_{n+1/2} + I_n,   E_{n+1} - E_n = (W_ext + W_int) of the step,
+// with the work of an impulse p over a step p . (V_{n+1/2} + V_{n+3/2})/2. For f_int = K u the internal part
+// is I_n = 1/2 U_n^T K U_{n+1}, worked out from the state at the end: the balance is then an identity that
+// only a correct scheme fulfils. For other models I_n is the sum of -h f_int . (V_{n+1/2} + V_{n+3/2})/2; how
+// far it is from the potential of U_n tells the scheme's own energy error.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "model/model.hpp"
+
+#include <ilaw/ilaw.h>
+
+#include <array>
+#include <iosfwd>
+
+namespace ilaw::host {
+
+struct EnergyReport {
+  double kinetic, internal, potential, external_work, interface_work, balance_error;
+  std::array<double, ILAW_ENERGY_COUNT> by_law;  // friction, impact, rupture dissipated; stored now
+  double least_dissipation;                      // smallest dissipation of one node in one step, >= 0
+  double reaction_work;                          // interface_work + dissipated + stored: see docs/scenes.md
+  double scale;                                  // largest energy or work met
+};
+
+class EnergyBalance {
+ public:
+  // The state (U_0, V_{1/2}) and U_1 that follows from it.
+  void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v);
+
+  // Impulses of a step, per degree of freedom, with the velocities at its ends.
+  void add_external(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);
+  void add_internal(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);
+  // Work of an interface on the bodies: in all, and relative to moving obstacles, to compare with what the
+  // laws dissipated.
+  void add_interface(double work, double relative_work);
+  void add_dissipation(int part, double energy);
+  void set_stored(double energy) { by_law_[ILAW_ENERGY_STORED] = energy; }
+
+  EnergyReport report(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) const;
+
+  void save(std::ostream& out) const;
+  void load(std::istream& in);
+
+ private:
+  // Extended precision: the sums run over millions of steps and must close to 1e-12.
+  using Sum = long double;
+  struct Sums {
+    Sum initial = 0, external_work = 0, internal_work = 0, interface_work = 0, relative_work = 0;
+    double least_dissipation = 0.0;
+    double largest = 0.0;  // of the energies and works met so far
+  };
+  void meet(Sum energy);
+
+  Sums sums_;
+  std::array<Sum, ILAW_ENERGY_COUNT> by_law_{};
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "study/exact.hpp"
+
+#include "base/scene_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+[[noreturn]] void refuse(const std::string& expected) { throw SceneError("/exact", "expected " + expected); }
+
+void require(bool good, const std::string& expected) {
+  if (!good) refuse(expected);
+}
+
+// Velocity that is constant between instants; displacement is its integral from 0.
+ExactNode piecewise(const std::vector<double>& instants, const std::vector<double>& velocities) {
+  const auto velocity = [=](double time) {
+    const auto k = std::upper_bound(instants.begin(), instants.end(), time) - instants.begin();
+    return velocities[static_cast<std::size_t>(k)];
+  };
+  const auto displacement = [=](double time) {
+    double sum = 0.0, from = 0.0;
+    for (std::size_t k = 0; k < velocities.size() && from < time; ++k) {
+      const double to = k < instants.size() ? std::min(instants[k], time) : time;
+      sum += velocities[k] * (to - from);
+      from = to;
+    }
+    return sum;
+  };
+  return {displacement, velocity, {}};
+}
+
+// First fall t1 = sqrt(2 h0/g); flights of 2 e^k t1, which start with e^k g t1 (Moreau 1988).
+ExactNode bouncing_ball(const Scene& scene) {
+  const json& model = scene.source["model"];
+  const std::string wanted = "one point at rest in 1D under gravity, above a plane, with law 'contact'";
+  require(model["type"] == "points" && model["points"].size() == 1 && model["dimension"] == 1, wanted);
+  const json loads = scene.source.value("loads", json::array());
+  require(loads.size() == 1 && loads[0]["type"] == "gravity" && !model["points"][0].contains("velocity"),
+          wanted);
+  const json& interface = scene.source["interfaces"][0];
+  require(scene.source["interfaces"].size() == 1 && interface["law"] == "contact" &&
+              interface.contains("obstacle"),
+          wanted);
+  const double g = -loads[0]["acceleration"][0].get<double>();
+  const double height =
+      model["points"][0]["position"][0].get<double>() - interface["obstacle"]["point"][0].get<double>();
+  require(g > 0.0 && height > 0.0, wanted);
+  const double e = interface.value("parameters", json::object()).value("restitution", 0.0);
+  const double fall = std::sqrt(2.0 * height / g);
+
+  // Start and speed of the flight that is under way.
+  const auto flight = [=](double time) {
+    double start = fall, speed = e * g * fall;
+    const double rest = e < 1.0 ? fall * (1.0 + e) / (1.0 - e) : INFINITY;
+    if (time >= rest) return std::pair{time, 0.0};
+    while (time > start + 2.0 * speed / g) {
+      start += 2.0 * speed / g;
+      speed *= e;
+    }
+    return std::pair{start, speed};
+  };
+  ExactNode node;
+  node.displacement = [=](double time) {
+    if (time < fall) return -0.5 * g * time * time;
+    const auto [start, speed] = flight(time);
+    return -height + (time - start) * (speed - 0.5 * g * (time - start));
+  };
+  node.velocity = [=](double time) {
+    if (time < fall) return -g * time;
+    const auto [start, speed] = flight(time);
+    return speed - g * (time - start);
+  };
+  node.instants.first_impulse = fall;
+  return node;
+}
+
+struct Bar {
+  double start, length, young, density, section, velocity;
+  double wave_speed() const { return std::sqrt(young / density); }
+  double impedance() const { return section * std::sqrt(young * density); }
+};
+
+Bar bar_of(const Scene& scene, std::size_t k) {
+  const json& bar = scene.source["model"]["bars"][k];
+  return {bar.value("start", 0.0),      bar["length"].get<double>(), bar["young"].get<double>(),
+          bar["density"].get<double>(), bar.value("section", 1.0),   bar.value("velocity", 0.0)};
+}
+
+// Contact for the return time 2L/c of a wave, at rest, then rebound at the speed of impact (Doyen et al.
+// 2011).
+ExactNode bar_on_wall(const Scene& scene) {
+  require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 1 &&
+              scene.source.value("loads", json::array()).empty() &&
+              scene.source["interfaces"][0].contains("obstacle"),
+          "one bar that flies against a plane, no loads");
+  const Bar bar = bar_of(scene, 0);
+  const double gap = bar.start - scene.source["interfaces"][0]["obstacle"]["point"][0].get<double>();
+  require(gap >= 0.0 && bar.velocity < 0.0, "a bar that flies towards the plane");
+  const double meets = -gap / bar.velocity, leaves = meets + 2.0 * bar.length / bar.wave_speed();
+  ExactNode node = piecewise({meets, leaves}, {bar.velocity, 0.0, -bar.velocity});
+  node.instants.first_impulse = meets;
+  node.instants.last_impulse = leaves;
+  return node;
+}
+
+// While no wave has come back both ends move at (Z_A v_A + Z_B v_B)/(Z_A + Z_B). With equal impedances the
+// shorter bar is then at rest relative to the longer one's initial speed, and so is the longer one's end,
+// until its own wave is back.
+std::vector<ExactNode> two_bars(const Scene& scene) {
+  require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 2 &&
+              scene.source.value("loads", json::array()).empty() && scene.output.watch.size() == 2,
+          "two bars, no loads, and both ends watched, that of the right bar first");
+  const Bar a = bar_of(scene, 0), b = bar_of(scene, 1);
+  const double gap = b.start - (a.start + a.length);
+  require(gap >= 0.0 && a.velocity > b.velocity, "a left bar that catches up with the right one");
+  const double meets = gap / (a.velocity - b.velocity);
+  const double back_a = 2.0 * a.length / a.wave_speed(), back_b = 2.0 * b.length / b.wave_speed();
+  const double together =
+      (a.impedance() * a.velocity + b.impedance() * b.velocity) / (a.impedance() + b.impedance());
+  const double end = scene.dt * static_cast<double>(scene.steps),
+               first_back = meets + std::min(back_a, back_b);
+  const bool equal = std::abs(a.impedance() - b.impedance()) <= 1e-12 * a.impedance() && back_a <= back_b;
+  require(end <= first_back || (equal && end <= meets + std::max(back_a, back_b)),
+          "an end before the first wave comes back, or a shorter left bar of equal impedance and an end "
+          "before the "
+          "second does");
+  const auto node = [&](double before) {
+    ExactNode exact = piecewise({meets, first_back}, {before, together, b.velocity});
+    exact.instants.first_impulse = meets;
+    return exact;
+  };
+  return {node(b.velocity), node(a.velocity)};
+}
+
+// The glue feels 2F from L/c on; it breaks R_Y/(2F) later if its window is longer, and the end then moves at
+// 2F/Z until the next reflection at 3L/c.
+ExactNode glued_bar(const Scene& scene) {
+  const json loads = scene.source.value("loads", json::array());
+  const json& interface = scene.source["interfaces"][0];
+  const std::string wanted =
+      "one bar, glued on the left by law 'postit' with initial_adhesion and memory, pulled at "
+      "its right end by a constant force";
+  require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 1, wanted);
+  require(loads.size() == 1 && loads[0]["type"] == "force" && loads[0]["history"].size() == 1, wanted);
+  require(interface["law"] == "postit" && interface.contains("parameters"), wanted);
+  const json& parameters = interface["parameters"];
+  require(parameters.contains("initial_adhesion") && parameters.value("memory", json(0.0)).is_number(),
+          wanted);
+  const Bar bar = bar_of(scene, 0);
+  const double force = loads[0]["history"][0][1].get<double>() * loads[0]["direction"][0].get<double>();
+  const double adhesion = parameters["initial_adhesion"].get<double>() * bar.section;
+  const double arrives = bar.length / bar.wave_speed(), breaks = arrives + adhesion / (2.0 * force);
+  require(force > 0.0 && parameters["memory"].get<double>() > adhesion / (2.0 * force) &&
+              breaks < 3.0 * arrives && scene.dt * static_cast<double>(scene.steps) <= 3.0 * arrives,
+          "a window longer than R_Y/(2F), and an end before the next reflection at 3L/c");
+  ExactNode node = piecewise({breaks}, {0.0, 2.0 * force / bar.impedance()});
+  node.instants.last_rupture = breaks;
+  return node;
+}
+
+}  // namespace
+
+std::vector<ExactNode> exact_solution(const Scene& scene) {
+  if (!scene.source.contains("exact")) return {};
+  const std::string type = scene.source["exact"]["type"].get<std::string>();
+  if (type == "two_bars") return two_bars(scene);
+  require(scene.output.watch.size() == 1, "one watched node, the one in contact");
+  if (type == "bouncing_ball") return {bouncing_ball(scene)};
+  return {type == "bar_on_wall" ? bar_on_wall(scene) : glued_bar(scene)};
+}
+
+}  // namespace ilaw::host

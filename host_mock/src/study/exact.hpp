@@ -1,0 +1,31 @@
+// exact.hpp - solutions in closed form of some scenes, to measure errors against. Derivations:
+// docs/scenes.md.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "scene/scene.hpp"
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace ilaw::host {
+
+// Instants of a contact, NaN where there is none.
+struct ContactInstants {
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double first_impulse = none, last_impulse = none, last_rupture = none;
+};
+
+// Of one watched node (1D): displacement and velocity in time.
+struct ExactNode {
+  std::function<double(double)> displacement, velocity;
+  ContactInstants instants;
+};
+
+// One per watched node, in the order of the scene; empty where the scene names no exact solution. Throws
+// SceneError where the scene is not one that the named solution covers.
+std::vector<ExactNode> exact_solution(const Scene& scene);
+
+}  // namespace ilaw::host

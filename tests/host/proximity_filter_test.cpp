@@ -1,0 +1,253 @@
+// Contacts that cannot be reached are not asked, and nobody notices: the same bits as when all are asked.
+#include "host_runner.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <omp.h>
+
+#include <cstring>
+#include <random>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+bool same_bits(const Dofs& a, const Dofs& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
+
+json asking_all(json scene) {
+  for (json& interface : scene["interfaces"]) interface["skip"] = false;
+  return scene;
+}
+
+// States of all contacts, by place, so that it does not matter when they were first asked.
+std::vector<double> states_of(Scene& scene, const Dofs& u) {
+  std::vector<double> states;
+  for (const auto& interface : scene.interfaces)
+    for (std::size_t node_index = 0; node_index < interface->nodes().size(); ++node_index) {
+      const int contact_index = interface->contact_index_of(static_cast<int>(node_index), u);
+      for (std::size_t entry = 0; entry < interface->info().state_size; ++entry)
+        states.push_back(interface->state(contact_index, static_cast<int>(entry)));
+    }
+  return states;
+}
+
+// Runs a scene in lockstep with itself asking all contacts; returns the tally of the one that skips.
+Tally expect_same_bits(const json& source) {
+  omp_set_num_threads(1);
+  Scene scene = scene_of(source.dump()), all = scene_of(asking_all(source).dump());
+  Integrator integrator = integrator_of(scene), asker = integrator_of(all);
+  while (integrator.steps() < scene.steps) {
+    integrator.step();
+    asker.step();
+    const bool same = same_bits(integrator.displacement(), asker.displacement()) &&
+                      same_bits(integrator.velocity(), asker.velocity()) &&
+                      same_bits(integrator.interface_impulse(), asker.interface_impulse());
+    if (!same) {
+      ADD_FAILURE() << "differs at step " << integrator.steps() << " of " << source.dump();
+      break;
+    }
+  }
+  const std::vector<double> states = states_of(scene, integrator.displacement()),
+                            wanted = states_of(all, asker.displacement());
+  EXPECT_EQ(states.size(), wanted.size());
+  EXPECT_TRUE(states.empty() ||
+              std::memcmp(states.data(), wanted.data(), states.size() * sizeof(double)) == 0);
+  EXPECT_GE(integrator.tally().skipped, asker.tally().skipped);  // those not born yet, or dead
+  EXPECT_EQ(integrator.tally().active + integrator.tally().skipped,
+            asker.tally().active + asker.tally().skipped);
+  EXPECT_EQ(integrator.tally().status_counts, asker.tally().status_counts);
+  return integrator.tally();
+}
+
+// ---- shipped scenes -------------------------------------------------------------------------------------
+
+json shipped(const std::filesystem::path& file) {
+  json scene = read_scene_source(file);
+  // Long ones are shortened and coarsened: what is tested is each step.
+  if (file.stem() == "dcb_peel") {
+    scene["model"]["blocks"][0]["elements"] = {40, 1, 2};
+    scene["time"]["end"] = 20.0;
+  }
+  if (file.stem() == "postit_3d") scene["model"]["blocks"][0]["elements"] = {20, 2, 1};
+  return scene;
+}
+
+class ProximityFilterInScene : public ::testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(ProximityFilterInScene, GivesTheBitsOfAskingAll) {
+  const Tally tally = expect_same_bits(shipped(GetParam()));
+  // In these, contacts are apart for a while.
+  for (const char* apart : {"bar_on_wall", "block_impact", "bouncing_ball", "two_blocks"})
+    if (GetParam().stem() == apart) {
+      EXPECT_GT(tally.skipped, 0);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Host, ProximityFilterInScene, ::testing::ValuesIn(scene_files::all()),
+                         [](const auto& drawn) { return drawn.param.stem().string(); });
+
+// ---- drawn scenes ---------------------------------------------------------------------------------------
+
+class Draw {
+ public:
+  explicit Draw(unsigned seed) : engine_(seed) {}
+  double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  double tenfold(double low, double high) { return std::pow(10.0, in(low, high)); }
+  int below(int count) { return std::uniform_int_distribution<int>(0, count - 1)(engine_); }
+  json vector(double size) { return {in(-size, size), in(-size, size)}; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+// A law that waits for its contacts, with a memory or without.
+json drawn_law(Draw& draw) {
+  switch (draw.below(4)) {
+    case 0:
+      return {{"law", "contact"}, {"parameters", {{"restitution", draw.in(0.0, 1.0)}}}};
+    case 1:
+      return {{"law", "coulomb"}, {"parameters", {{"friction", 0.3}, {"activation", "predictive"}}}};
+    case 2:
+      return {{"law", "postit"}, {"parameters", {{"memory", 0.1}, {"friction", 0.2}}}};
+    default:
+      return {{"law", "penalty"}, {"parameters", {{"stiffness", 10.0}, {"integration", "implicit"}}}};
+  }
+}
+
+// At rest, steady, or to and fro with speeds up to a hundred.
+json drawn_obstacle(Draw& draw) {
+  json obstacle =
+      draw.below(2)
+          ? json{{"type", "plane"}, {"point", {0.0, -2.0}}, {"normal", {draw.in(-1.0, 1.0), 1.0}}}
+          : json{{"type", "sphere"}, {"center", draw.vector(4.0)}, {"radius", draw.tenfold(-1.0, 0.3)}};
+  const int motion = draw.below(3);
+  if (motion == 1) obstacle["velocity"] = draw.vector(2.0);
+  if (motion == 2) {
+    obstacle["path"] = json::array();
+    for (double time = 0.0; time < 2.0; time += draw.in(0.02, 0.5))
+      obstacle["path"].push_back({time, draw.in(-1.0, 1.0), draw.in(-1.0, 1.0)});
+  }
+  return obstacle;
+}
+
+// Points of one interface each, so that sizes of impulses elsewhere cannot make up for a contact that is
+// missed.
+json drawn_points(Draw& draw) {
+  json points = json::array(), interfaces = json::array(), loads = json::array();
+  for (int k = 0; k < 8; ++k)
+    points.push_back({{"mass", draw.tenfold(-1.0, 1.0)},
+                      {"position", draw.vector(10.0)},
+                      {"velocity", draw.vector(draw.tenfold(-2.0, 2.0))}});
+  for (const json& nodes : {json{0, 1, 2}, json{3}, json{4, 5}, json{6, 7}}) {
+    json interface = drawn_law(draw);
+    interface["nodes"] = nodes;
+    interface["obstacle"] = drawn_obstacle(draw);
+    if (draw.below(3) == 0) interface["gap_offset"] = draw.in(-0.5, 0.5);
+    if (draw.below(3) == 0) interface["birth"] = draw.in(0.0, 1.0);
+    if (draw.below(3) == 0) interface["death"] = interface.value("birth", 0.0) + draw.in(0.1, 1.0);
+    interfaces.push_back(interface);
+  }
+  loads.push_back({{"type", "gravity"}, {"acceleration", draw.vector(10.0)}});
+  // Kicks that make all estimates from earlier steps worthless.
+  for (int k = 0; k < 6; ++k)
+    loads.push_back({{"type", "shock"},
+                     {"nodes", {draw.below(8)}},
+                     {"time", draw.in(0.1, 1.4)},
+                     {"impulse", draw.vector(draw.tenfold(-1.0, 3.0))}});
+  return {{"model", {{"type", "points"}, {"dimension", 2}, {"points", points}}},
+          {"time", {{"dt", draw.tenfold(-3.0, -2.0)}, {"end", 1.5}}},
+          {"loads", loads},
+          {"interfaces", interfaces}};
+}
+
+TEST(ProximityFilter, MissesNoContactOfDrawnPoints) {
+  std::int64_t active = 0, skipped = 0, touched = 0;
+  Draw draw(20);
+  for (int k = 0; k < 150 && !HasFailure(); ++k) {
+    const Tally tally = expect_same_bits(drawn_points(draw));
+    active += tally.active;
+    skipped += tally.skipped;
+    for (const int status : {ILAW_CLOSED, ILAW_STICK, ILAW_SLIP, ILAW_BONDED})
+      touched += tally.status_counts[static_cast<std::size_t>(status)];
+  }
+  // The scenes do meet contacts, and most node-steps need none.
+  EXPECT_GT(touched, 1000);
+  EXPECT_GT(skipped, active);
+}
+
+// A point flies at 100 towards a wall; a spring that is born around it for one step, late, throws it on at
+// 1000. The free motion says nothing of it, but the wall must act within that very step: its law looks ahead.
+TEST(ProximityFilter, SeesWhatAnotherInterfaceThrows) {
+  json scene = json::parse(R"({
+    "model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0], "velocity": [100]}]},
+    "time": {"dt": 0.001, "end": 0.04},
+    "interfaces": [
+      {"name": "spring", "law": "penalty", "parameters": {"stiffness": 1e5, "integration": "explicit"}, "nodes": [0],
+       "obstacle": {"type": "plane", "point": [10], "normal": [1]}},
+      {"name": "wall", "law": "contact", "parameters": {"activation": "predictive"}, "nodes": [0],
+       "obstacle": {"type": "plane", "point": [3.31], "normal": [-1]}}]})");
+  for (int step = 1; step < 33; ++step) {
+    scene["interfaces"][0]["birth"] = (step - 0.5) * 1e-3;
+    scene["interfaces"][0]["death"] = (step + 0.5) * 1e-3;
+    expect_same_bits(scene);
+    Scene run = scene_of(scene.dump());
+    Integrator integrator = integrator_of(run);
+    while (integrator.steps() < run.steps) integrator.step();
+    EXPECT_NEAR(integrator.displacement()[0], 3.31, 1e-12) << step;
+  }
+}
+
+json soft_block(const char* name, const json& corner, const json& size, const json& elements,
+                const json& velocity) {
+  return {{"name", name},
+          {"corner", corner},
+          {"size", size},
+          {"elements", elements},
+          {"velocity", velocity},
+          {"material", {{"type", "neo_hookean"}, {"young", 1e3}, {"poisson", 0.3}, {"density", 1.0}}}};
+}
+
+// Contacts share nodes, and are solved in an order that must not depend on who is asked: a block is thrown on
+// another one, with a third far above it, whose nodes come first in the list and would, if asked, meet the
+// same facets.
+TEST(ProximityFilter, KeepsTheOrderOfSharedNodes) {
+  Draw draw(21);
+  std::int64_t skipped = 0;
+  for (int k = 0; k < 12 && !HasFailure(); ++k) {
+    const double x = draw.in(-0.2, 0.4), y = draw.in(-0.2, 0.4);
+    const json thrown = {draw.in(-10.0, 10.0), draw.in(-10.0, 10.0), draw.in(-10.0, -1.0)};
+    json scene = {{"model",
+                   {{"type", "blocks"},
+                    {"blocks",
+                     {soft_block("lower", {0, 0, 0}, {1, 1, 0.3}, {3, 4, 1}, {0, 0, 0}),
+                      soft_block("far", {x, y, 4}, {0.7, 0.8, 0.4}, {4, 3, 2}, {0, 0, -1}),
+                      soft_block("near", {x, y, 0.35}, {0.7, 0.8, 0.4}, {4, 3, 2}, thrown)}}}},
+                  {"time", {{"cfl", 0.7}, {"end", 0.2}}},
+                  {"interfaces", json::array()}};
+    json nodes = json::array();
+    const Scene model = scene_of(scene.dump());
+    for (const char* face : {"far.z_min", "near.z_min"})
+      for (const int node : model.model->sets().at(face).nodes) nodes.push_back(node);
+    scene["interfaces"] = {
+        {{"name", "between"},
+         {"law", "coulomb"},
+         {"parameters", {{"friction", 0.3}}},
+         {"nodes", nodes},
+         {"against", {{"surface", "lower.z_max"}}}},
+        {{"name", "floor"},
+         {"law", "coulomb"},
+         {"parameters", {{"friction", 0.3}}},
+         {"nodes", "lower.z_min"},
+         {"obstacle",
+          {{"type", "plane"}, {"point", {0.0, 0.0, -0.05}}, {"normal", {draw.in(-0.3, 0.3), 0.0, 1.0}}}}}};
+    skipped += expect_same_bits(scene).skipped;
+  }
+  EXPECT_GT(skipped, 1000);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing

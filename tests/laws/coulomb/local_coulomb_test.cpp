@@ -1,0 +1,274 @@
+// The law for diagonal and full H, elliptical cones and kinetic friction, through the ABI.
+#include "kit/local_coulomb/draw.hpp"
+#include "support/law_runner.hpp"
+
+#include <limits>
+
+namespace ilaw::testing {
+namespace {
+
+constexpr double inf_value = std::numeric_limits<double>::infinity();
+constexpr double ulp = std::numeric_limits<double>::epsilon();
+
+// Many closed contacts at once, each with its own full H.
+class Contacts {
+ public:
+  Contacts(const Parameters& parameters, std::size_t count)
+      : interface_(make_law("coulomb", SetupBuilder(parameters, 3, ILAW_DELASSUS_FULL))),
+        q(count),
+        previous(count),
+        r(count),
+        v(count),
+        h(count),
+        status(count) {}
+
+  std::int32_t step() {
+    ilaw_batch b{};
+    b.struct_size = sizeof b;
+    b.node_count = static_cast<std::int64_t>(q.size());
+    b.velocity_step = b.position_step = 1e-3;
+    b.v_free = {q[0].data(), 3, 1};
+    b.v_previous = {previous[0].data(), 3, 1};
+    b.delassus = {h[0].data(), 6, 1};
+    b.gap = {&closed_, 0, 1};
+    b.impulse = {r[0].data(), 3, 1};
+    b.velocity = {v[0].data(), 3, 1};
+    b.status = status.data();
+    b.status_stride = 1;
+    report.struct_size = sizeof report;
+    return interface_.evaluate(b, &report);
+  }
+
+ private:
+  ilaw::interface interface_;
+  double closed_ = 0.0;
+
+ public:
+  std::vector<Vector> q, previous, r, v;
+  std::vector<std::array<double, 6>> h;
+  std::vector<std::uint8_t> status;
+  ilaw_report report{};
+};
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+void fill(Contacts& contacts, Draw& draw) {
+  for (std::size_t i = 0; i < contacts.q.size(); ++i) {
+    kit::local_coulomb p{};
+    draw.fill_coupled(p, 0.05);
+    draw.fill_pressed_velocity(p, 1.0);
+    std::copy(p.h, p.h + 6, contacts.h[i].begin());
+    std::copy(p.q, p.q + 3, contacts.q[i].begin());
+    if (i % 4 == 0) contacts.q[i][0] *= -1.0;
+  }
+}
+
+// The plugin is compiled for other processors and with other flags than this test: the same bits all the
+// same.
+TEST(CoulombAnyH, GivesTheBitsOfTheLocalSolver) {
+  for (const double friction_2 : {0.4, 0.1}) {
+    Contacts contacts({{{"friction", 0.4}, {"friction_2", friction_2}}, {}}, 100000);
+    Draw draw(41);
+    fill(contacts, draw);
+    ASSERT_EQ(contacts.step(), ILAW_OK);
+    for (std::size_t i = 0; i < contacts.q.size(); ++i) {
+      kit::local_coulomb p{{}, {}, {0.4, friction_2}};
+      std::copy(contacts.h[i].begin(), contacts.h[i].end(), p.h);
+      std::copy(contacts.q[i].begin(), contacts.q[i].end(), p.q);
+      double r[3];
+      const kit::contact_mode mode = kit::solve(p, r);
+      ASSERT_EQ(contacts.r[i], (Vector{r[0], r[1], r[2]})) << "contact " << i;
+      ASSERT_EQ(contacts.status[i], mode == kit::contact_mode::slip    ? ILAW_SLIP
+                                    : mode == kit::contact_mode::stick ? ILAW_STICK
+                                                                       : ILAW_FREE);
+    }
+  }
+}
+
+// Without force and restitution the work r.(v^- + v)/2 is never positive: r.v is the dissipation by slip, and
+// r.v^- = r.v - r.H r.
+TEST(CoulombAnyH, NeverCreatesEnergyAndDissipatesAtMost) {
+  Contacts contacts({{{"friction", 0.5}, {"friction_2", 0.2}}, {}}, 100000);
+  Draw draw(42);
+  fill(contacts, draw);
+  ASSERT_EQ(contacts.step(), ILAW_OK);
+  for (std::size_t i = 0; i < contacts.q.size(); ++i) {
+    const Vector &r = contacts.r[i], &v = contacts.v[i];
+    const double natural = (1.0 + dot(r, r)) * 30.0;
+    ASSERT_LE(dot(r, contacts.q[i]) + dot(r, v), 1e-14 * natural);
+    // No impulse of the ellipse takes more from this slip.
+    const double angle = draw.uniform(0.0, 6.2832);
+    const double other = r[0] * (0.5 * std::cos(angle) * v[1] + 0.2 * std::sin(angle) * v[2]);
+    ASSERT_LE(r[1] * v[1] + r[2] * v[2], other + 1e-14 * natural);
+  }
+}
+
+// Newton's coefficient where H couples: sticking, r = -H^-1 q with q = v^- + (e v_N^-, 0), the work is
+// -q.H^-1 q/2 + e r_N, for v^- = (-1, -w) a gain of (e^2 + w^2 - 1)/(2 (1 - w^2)). Equal coefficients lose 1
+// - e^2.
+TEST(CoulombAnyH, RestitutionCreatesEnergyWhereHCouplesUnlessItIsMoreaus) {
+  constexpr double w = 0.8;
+  for (const double e : {0.4, 0.8})
+    for (const bool moreau : {false, true}) {
+      NodeRun node(
+          "coulomb",
+          {{{"friction", 10.0}, {"restitution", e}, {"tangential_restitution", moreau ? e : 0.0}}, {}}, 1e-3,
+          ILAW_DELASSUS_FULL);
+      node.h = {1.0, 1.0, 1.0, w, 0.0, 0.0};
+      const Vector v{-1.0, -w, 0.0};
+      node.v_previous = v;
+      ASSERT_EQ(node.step(v), ILAW_OK);
+      const double work = 0.5 * (dot(node.r, v) + dot(node.r, node.v));
+      const double newton = (e * e + w * w - 1.0) / (2.0 * (1.0 - w * w));
+      EXPECT_NEAR(work, moreau ? -0.5 * (1.0 - e * e) : newton, 1e-14);
+    }
+}
+
+// H = diag(h_N, h_1, h_2): r_N = -q_N/h_N stands alone, and sliding is r_i = -q_i/(h_i + a) with a > 0 the
+// root of |r_T| = mu r_N, which decreases in a.
+TEST(CoulombAnyH, SlidesOnADiagonalHAtTheRootOfItsOneEquation) {
+  NodeRun node("coulomb", {{{"friction", 0.5}}, {}}, 1e-3, ILAW_DELASSUS_DIAGONAL);
+  Draw draw(44);
+  for (int k = 0; k < 5000; ++k) {
+    node.h = {draw.decade(-1, 1), draw.decade(-2, 2), draw.decade(-2, 2)};
+    const Vector q{-draw.uniform(0.1, 1.0), draw.normal(), draw.normal()};
+    ASSERT_EQ(node.step(q), ILAW_OK);
+    const double limit = -0.5 * q[0] / node.h[0];
+    const auto length = [&](double a) { return std::hypot(q[1] / (node.h[1] + a), q[2] / (node.h[2] + a)); };
+    double low = 0.0, high = std::hypot(q[1], q[2]) / limit;
+    for (int step = 0; step < 200; ++step) {
+      const double a = 0.5 * (low + high);
+      (length(a) > limit ? low : high) = a;
+    }
+    ASSERT_NEAR(node.r[0], -q[0] / node.h[0], 4 * ulp * node.r[0]);
+    ASSERT_NEAR(node.r[1], -q[1] / (node.h[1] + low), 1e-13 * limit + 1e-15);
+    ASSERT_NEAR(node.r[2], -q[2] / (node.h[2] + low), 1e-13 * limit + 1e-15);
+  }
+}
+
+TEST(CoulombAnyH, AnEllipseHasItsOwnCoefficientAlongEachAxis) {
+  NodeRun node("coulomb", {{{"friction", 0.5}, {"friction_2", 0.2}}, {}});
+  ASSERT_EQ(node.step({-1.0, 9.0, 0.0}), ILAW_OK);
+  EXPECT_EQ(node.status, ILAW_SLIP);
+  EXPECT_NEAR(node.r[1], -0.5, 2 * ulp);
+  EXPECT_EQ(node.r[2], 0.0);
+  ASSERT_EQ(node.step({-1.0, 0.0, 9.0}), ILAW_OK);
+  EXPECT_NEAR(node.r[2], -0.2, 2 * ulp);
+  EXPECT_EQ(node.r[1], 0.0);
+  // In between, the ellipse's normal is opposite to the slip: v_i proportional to r_i/mu_i^2.
+  ASSERT_EQ(node.step({-1.0, 3.0, 4.0}), ILAW_OK);
+  EXPECT_NEAR(std::hypot(node.r[1] / 0.5, node.r[2] / 0.2), 1.0, 4 * ulp);
+  EXPECT_NEAR(node.v[1] * node.r[2] / 0.04, node.v[2] * node.r[1] / 0.25, 1e-14);
+}
+
+TEST(CoulombAnyH, AnEllipseNeedsTangents) {
+  const Parameters parameters{{{"friction", 0.5}, {"friction_2", 0.2}}, {}};
+  try {
+    make_law("coulomb", SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL));
+    FAIL() << "accepted";
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("tell the two tangential axes apart"), std::string::npos)
+        << error.what();
+  }
+  make_law("coulomb", SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, true));
+}
+
+// mu(v) = mu_k + (mu - mu_k) exp(-decay |v_T|), at the velocity before the step.
+TEST(CoulombAnyH, FallsToTheKineticCoefficientWithTheSlipSpeed) {
+  for (const double decay : {0.0, 0.7, inf_value}) {
+    NodeRun node("coulomb", {{{"friction", 0.5}, {"kinetic_friction", 0.2}, {"decay", decay}}, {}});
+    for (const double speed : {0.0, 0.3, 2.0, 500.0}) {
+      node.v_previous = {0.0, 0.6 * speed, -0.8 * speed};
+      ASSERT_EQ(node.step({-1.0, 6.0, -8.0}), ILAW_OK);
+      const double left = speed == 0.0 ? 1.0 : std::exp(-decay * speed);
+      const double expected = 0.2 + 0.3 * left;
+      ASSERT_NEAR(node.r[1], -0.6 * expected, 4 * ulp) << "decay " << decay << ", speed " << speed;
+      ASSERT_NEAR(node.r[2], 0.8 * expected, 4 * ulp);
+    }
+  }
+}
+
+TEST(CoulombAnyH, AKineticCoefficientAboveTheStaticOneDoesNothing) {
+  NodeRun plain("coulomb", {{{"friction", 0.3}}, {}});
+  NodeRun above("coulomb", {{{"friction", 0.3}, {"kinetic_friction", 0.4}, {"decay", 1.0}}, {}});
+  Draw draw(45);
+  for (int k = 0; k < 1000; ++k) {
+    const Vector q{-std::abs(draw.normal()), draw.normal(), draw.normal()};
+    plain.v_previous = above.v_previous = {0.0, draw.normal(), draw.normal()};
+    ASSERT_EQ(plain.step(q), ILAW_OK);
+    ASSERT_EQ(above.step(q), ILAW_OK);
+    ASSERT_EQ(plain.r, above.r);
+  }
+}
+
+// Mass m on a spring k, pressed with N on a belt of speed V. It sticks until k x = mu N, then slips about x_k
+// = mu_k N/k as x = x_k + A cos(wt) + (V/w) sin(wt), A = (mu - mu_k) N/k, w^2 = k/m, until its speed is V
+// again: that is when tan(wt/2) = -A w/V, at x_k - A. Period: 2 A/V + (2 pi - 2 atan(A w/V))/w.
+TEST(CoulombAnyH, OscillatesBetweenStickAndSlipWithThePeriodOfTheClosedForm) {
+  constexpr double k = 4.0, weight = 10.0, belt = 0.3, mu = 0.5, mu_k = 0.3, w = 2.0, amplitude = 0.5;
+  const double period = 2.0 * amplitude / belt + (2.0 * M_PI - 2.0 * std::atan(amplitude * w / belt)) / w;
+  const auto measured = [&](double dt) {
+    NodeRun node("coulomb", {{{"friction", mu}, {"kinetic_friction", mu_k}}, {}}, dt);
+    double x = 0.0, v = belt, first = 0.0, last = 0.0;
+    int releases = 0;
+    bool stuck = true;
+    for (int step = 0; releases < 6; ++step) {
+      x += dt * v;
+      node.v_previous = {0.0, v - belt, 0.0};
+      EXPECT_EQ(node.step({-dt * weight, v - belt - dt * k * x, 0.0}), ILAW_OK);
+      v = node.v[1] + belt;
+      if (stuck && node.status == ILAW_SLIP) {
+        if (releases++ == 0) first = dt * step;
+        last = dt * step;
+        EXPECT_NEAR(x, mu * weight / k, 2.0 * dt * belt);
+      }
+      stuck = node.status == ILAW_STICK;
+    }
+    return (last - first) / 5.0;
+  };
+  EXPECT_NEAR(measured(1e-2), period, 2e-2);
+  EXPECT_NEAR(measured(1e-3), period, 2e-3);
+}
+
+// A ball, I = 2/5 m R^2, thrown on a plane with velocity V and spin: its lowest point, at U = V + spin x R,
+// has the inverse masses 1/m and 1/m + R^2/I = 7/(2m). It slides with U straight to zero, which takes
+// |U|/(7/2 mu g), while V loses 2/7 U: from then on it rolls, at 5/7 V where it was thrown without spin,
+// backwards where it was thrown with enough backspin.
+TEST(CoulombAnyH, ABallSlidesUntilItRolls) {
+  constexpr double m = 0.7, g = 9.81, mu = 0.3, h = 1e-4;
+  for (const auto& [v0, spin] : {std::pair{Vector{0.0, 2.0, 0.0}, Vector{}},
+                                 {Vector{0.0, 2.0, 0.0}, Vector{0.0, 7.0, 0.0}},
+                                 {Vector{0.0, 1.5, -0.4}, Vector{0.0, 0.3, 2.0}}}) {
+    NodeRun node("coulomb", {{{"friction", mu}}, {}}, h, ILAW_DELASSUS_DIAGONAL);
+    node.h = {1.0 / m, 3.5 / m, 3.5 / m};
+    const Vector u0{0.0, v0[1] + spin[1], v0[2] + spin[2]};
+    const double slides = std::hypot(u0[1], u0[2]) / (3.5 * mu * g);
+    Vector v = v0, turning = spin;  // of the centre; of the lowest point about it
+    for (int k = 1; k * h < 2.0 * slides; ++k) {
+      ASSERT_EQ(node.step({-h * g, v[1] + turning[1], v[2] + turning[2]}), ILAW_OK);
+      for (std::size_t c = 1; c < 3; ++c) {
+        v[c] += node.r[c] / m;
+        turning[c] += 2.5 / m * node.r[c];
+        const double left = std::max(1.0 - k * h / slides, 0.0);
+        ASSERT_NEAR(v[c] + turning[c], left * u0[c], 2.0 * h * mu * g * 3.5);
+      }
+      ASSERT_EQ(node.status, k * h < slides ? ILAW_SLIP : ILAW_STICK) << k * h << " of " << slides;
+    }
+    for (std::size_t c = 1; c < 3; ++c)
+      EXPECT_NEAR(v[c], v0[c] - u0[c] / 3.5, 2.0 * ulp * slides / h);  // an ulp of 2 per step
+  }
+}
+
+// Infinite friction that would have to pull: refused, with the reason.
+TEST(CoulombAnyH, SaysWhereThereIsNoSolution) {
+  NodeRun node("coulomb", {{{"friction", inf_value}}, {}}, 1e-3, ILAW_DELASSUS_FULL);
+  node.h = {1.0, 1.0, 1.0, 0.9, 0.0, 0.0};
+  EXPECT_EQ(node.step({-0.1, -1.0, 0.0}), ILAW_BAD_NODES);
+  EXPECT_STREQ(node.report.reason, "the law's equations have no solution for this H");
+  EXPECT_EQ(node.r, (Vector{}));
+  EXPECT_EQ(node.step({-0.1, 0.01, 0.0}), ILAW_OK);
+  EXPECT_EQ(node.status, ILAW_STICK);
+}
+
+}  // namespace
+}  // namespace ilaw::testing
