@@ -44,6 +44,12 @@ module ilaw
     procedure output_of_scalars, output_of_vectors
   end interface
 
+  ! Names the nodes of a batch: call ilaw_use_nodes(batch, nodes), with an array of integer(c_int32_t) or of
+  ! integer(c_int64_t) that has the target attribute and lives as long as the batch; its size is node_count.
+  interface ilaw_use_nodes
+    procedure use_nodes_32, use_nodes_64
+  end interface
+
   interface
     subroutine ilaw_library_close(library) bind(c, name='ilaw_library_close')
       import :: c_ptr
@@ -117,6 +123,28 @@ contains
 
     line = c_null_char
     code = ilaw_library_open(trim(name)//c_null_char, library, line, len(line, c_size_t))
+    message = blank_padded(line)
+  end function
+
+  ! The same by name alone, along the search path: for names that come from an input file.
+  integer(c_int32_t) function ilaw_open_named(name, library, message) result(code)
+    character(*), intent(in) :: name
+    type(c_ptr), intent(out) :: library
+    character(*), intent(out) :: message
+    interface
+      integer(c_int32_t) function ilaw_library_open_named(name, library, message, message_size) &
+        bind(c, name='ilaw_library_open_named')
+        import :: c_int32_t, c_ptr, c_char, c_size_t
+        character(kind=c_char), intent(in) :: name(*)
+        type(c_ptr), intent(out) :: library
+        character(kind=c_char), intent(out) :: message(*)
+        integer(c_size_t), value :: message_size
+      end function
+    end interface
+    character(len(message) + 1, c_char) :: line
+
+    line = c_null_char
+    code = ilaw_library_open_named(trim(name)//c_null_char, library, line, len(line, c_size_t))
     message = blank_padded(line)
   end function
 
@@ -291,6 +319,24 @@ contains
     same = input_of_vectors(a, nodes_first)
     output = ilaw_output(same%values, same%node_stride, same%component_stride)
   end function
+
+  subroutine use_nodes_32(batch, nodes)
+    type(ilaw_batch), intent(inout) :: batch
+    integer(c_int32_t), intent(in), target, contiguous :: nodes(:)
+    batch%node_count = size(nodes, kind=c_int64_t)
+    batch%index = c_null_ptr
+    if (size(nodes) > 0) batch%index = c_loc(nodes)
+    batch%index64 = c_null_ptr
+  end subroutine
+
+  subroutine use_nodes_64(batch, nodes)
+    type(ilaw_batch), intent(inout) :: batch
+    integer(c_int64_t), intent(in), target, contiguous :: nodes(:)
+    batch%node_count = size(nodes, kind=c_int64_t)
+    batch%index = c_null_ptr
+    batch%index64 = c_null_ptr
+    if (size(nodes) > 0) batch%index64 = c_loc(nodes)
+  end subroutine
 
   ! One vector that is the same at every node, such as the normal of a plane.
   function ilaw_uniform(a) result(input)

@@ -23,7 +23,8 @@ module ilaw_abi
 
   ! Form of H at a node, one bit each in masks.
   integer(c_int32_t), parameter :: &
-    ILAW_DELASSUS_SCALAR = 1, ILAW_DELASSUS_DIAGONAL = 2, ILAW_DELASSUS_FULL = 4
+    ILAW_DELASSUS_SCALAR = 1, ILAW_DELASSUS_DIAGONAL = 2, ILAW_DELASSUS_FULL = 4, &
+    ILAW_DELASSUS_TRANSVERSE = 8
 
   ! Axes of vectors and of H.
   integer(c_int32_t), parameter :: ILAW_FRAME_LOCAL = 0, ILAW_FRAME_GLOBAL = 1
@@ -38,7 +39,7 @@ module ilaw_abi
 
   ! What more a law can do, a bit mask.
   integer(c_int32_t), parameter :: &
-    ILAW_CAN_ADHERE = 1, ILAW_CAN_STORE_ENERGY = 2, ILAW_CAN_ACT_AT_DISTANCE = 4
+    ILAW_CAN_ADHERE = 1, ILAW_CAN_STORE_ENERGY = 2, ILAW_CAN_ACT_AT_DISTANCE = 4, ILAW_CAN_REST = 8
 
   ! Kind of a parameter, how its value is given, and ways to give it besides a constant (a bit mask).
   integer(c_int32_t), parameter :: &
@@ -47,9 +48,11 @@ module ilaw_abi
     ILAW_VALUE_NUMBER = 0, ILAW_VALUE_TEXT = 1, ILAW_VALUE_TABLE = 2, ILAW_VALUE_PER_NODE = 3
   integer(c_int32_t), parameter :: ILAW_MAY_BE_TABLE = 1, ILAW_MAY_BE_PER_NODE = 2
 
-  ! Kind of a state variable.
+  ! Kind of a state variable, and flags of one (a bit mask).
   integer(c_int32_t), parameter :: &
-    ILAW_STATE_SCALAR = 0, ILAW_STATE_VECTOR = 1, ILAW_STATE_HISTORY = 2, ILAW_STATE_AXIS = 3
+    ILAW_STATE_SCALAR = 0, ILAW_STATE_VECTOR = 1, ILAW_STATE_HISTORY = 2, ILAW_STATE_AXIS = 3, &
+    ILAW_STATE_TANGENTIAL = 4
+  integer(c_int32_t), parameter :: ILAW_VARIABLE_INTERNAL = 1
 
   ! Status of a node after a step.
   integer(c_int32_t), parameter :: &
@@ -71,9 +74,10 @@ module ilaw_abi
   end type
 
   type, bind(c) :: ilaw_state_variable
-    integer(c_int32_t) :: struct_size = 40, kind = 0
+    integer(c_int32_t) :: struct_size = 48, kind = 0
     type(c_ptr) :: name = c_null_ptr, unit = c_null_ptr, doc = c_null_ptr
     integer(c_int64_t) :: count = 0
+    integer(c_int32_t) :: flags = 0, reserved = 0
   end type
 
   type, bind(c) :: ilaw_argument
@@ -87,18 +91,19 @@ module ilaw_abi
   type, bind(c) :: ilaw_setup
     integer(c_int32_t) :: struct_size = 40
     integer(c_int32_t) :: dimension = 3, delassus_form = ILAW_DELASSUS_SCALAR, frame = ILAW_FRAME_LOCAL
-    real(c_double) :: velocity_step = 0
+    integer(c_int64_t) :: flags = 0
     type(c_ptr) :: arguments = c_null_ptr ! argument_count pointers to ilaw_argument; ilaw_create fills it
     integer(c_int32_t) :: argument_count = 0, tangent_given = 0
   end type
 
   type, bind(c) :: ilaw_instance_info
-    integer(c_int32_t) :: struct_size = 48
+    integer(c_int32_t) :: struct_size = 56
     integer(c_int32_t) :: inputs = 0, energy_inputs = 0, state_variable_count = 0
     integer(c_int64_t) :: state_size = 0
     type(c_ptr) :: state_variables = c_null_ptr     ! state_variable_count pointers to ilaw_state_variable
     type(c_ptr) :: per_node_parameters = c_null_ptr ! per_node_parameter_count pointers to text
     integer(c_int32_t) :: per_node_parameter_count = 0, capabilities = 0
+    integer(c_int32_t) :: state_version = 0, reserved = 0
   end type
 
   type, bind(c) :: ilaw_input
@@ -111,11 +116,13 @@ module ilaw_abi
     integer(c_int64_t) :: node_stride = 0, component_stride = 0
   end type
 
-  ! index_base is 1 here, for indices that count from 1 as Fortran's do.
+  ! index_base is 1 here, for indices that count from 1 as Fortran's do. A list of nodes is given as index, of
+  ! integer(c_int32_t), or as index64, of integer(c_int64_t), for codes built with integers of 8 bytes; not both.
   type, bind(c) :: ilaw_batch
-    integer(c_int32_t) :: struct_size = 384, index_base = 1
+    integer(c_int32_t) :: struct_size = 400, index_base = 1
+    integer(c_int64_t) :: flags = 0
     integer(c_int64_t) :: node_count = 0
-    type(c_ptr) :: index = c_null_ptr
+    type(c_ptr) :: index = c_null_ptr, index64 = c_null_ptr
     real(c_double) :: time = 0, velocity_step = 0, position_step = 0
     type(ilaw_input) :: v_free, delassus, gap, gap_offset, v_previous, area, normal, tangent
     type(c_ptr) :: per_node_parameters = c_null_ptr ! array of ilaw_input
@@ -126,28 +133,31 @@ module ilaw_abi
   end type
 
   type, bind(c) :: ilaw_report
-    integer(c_int32_t) :: struct_size = 32, reserved = 0
+    integer(c_int32_t) :: struct_size = 40, reserved = 0
     integer(c_int64_t) :: bad_count = 0
     integer(c_int64_t) :: first_bad_node = -1 ! counted from 0, whatever index_base is
     type(c_ptr) :: reason = c_null_ptr
+    real(c_double) :: stable_velocity_step = 0 ! infinity: any; 0: the library did not say
   end type
 
   ! A law; ilaw_interface_info, _initialise and _evaluate (module ilaw) call its functions.
   type, bind(c) :: ilaw_law
-    integer(c_int32_t) :: struct_size = 128
+    integer(c_int32_t) :: struct_size = 136
     integer(c_int32_t) :: dimensions = 0, delassus_forms = 0, inputs = 0, outputs = 0, capabilities = 0
     type(c_ptr) :: id = c_null_ptr, title = c_null_ptr, doc = c_null_ptr
     type(c_ptr) :: references = c_null_ptr, parameters = c_null_ptr, state_variables = c_null_ptr
     integer(c_int32_t) :: reference_count = 0, parameter_count = 0, state_variable_count = 0, reserved = 0
     type(c_funptr) :: create = c_null_funptr, destroy = c_null_funptr, info = c_null_funptr
     type(c_funptr) :: initialise = c_null_funptr, evaluate = c_null_funptr
+    type(c_funptr) :: extension = c_null_funptr
   end type
 
   type, bind(c) :: ilaw_plugin
-    integer(c_int32_t) :: struct_size = 56
+    integer(c_int32_t) :: struct_size = 64
     integer(c_int16_t) :: abi_major = 1, abi_minor = 0
     type(c_ptr) :: name = c_null_ptr, version = c_null_ptr, vendor = c_null_ptr, licence = c_null_ptr
     type(c_ptr) :: laws = c_null_ptr ! law_count pointers to ilaw_law
     integer(c_int32_t) :: law_count = 0, reserved = 0
+    type(c_funptr) :: extension = c_null_funptr
   end type
 end module ilaw_abi

@@ -1,6 +1,10 @@
-// description.hpp - checks everything that a library says of itself before anybody uses it.
+// description.hpp - checks everything that a library says of itself before anybody uses it, and keeps copies
+// of its structs as this version knows them: a host may read any member, whatever minor version wrote the
+// library.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+
+#include "checker.hpp"
 
 #include <ilaw/ilaw.h>
 
@@ -8,9 +12,18 @@
 
 namespace ilaw::loading {
 
-// Throw refusal: which file, what was found, what was expected.
-void check_plugin(const std::string& file, const ilaw_plugin* plugin);
-void check_instance_info(const std::string& file, const ilaw_law& law, const ilaw_instance_info& info,
-                         std::uint32_t dimension);
+// Throws refusal: which file, what was found, what was expected.
+const ilaw_plugin* checked_plugin(const std::string& file, const ilaw_plugin* given, storage& kept);
+
+// What an instance says of itself; file and law name it in messages, minor is that of its library.
+struct instance_origin {
+  const std::string& file;
+  const ilaw_law& law;
+  std::uint16_t minor;
+};
+
+// Replaces arrays in the info by checked copies.
+void check_instance_info(const instance_origin& origin, const ilaw_setup& setup, ilaw_instance_info& info,
+                         storage& kept);
 
 }  // namespace ilaw::loading

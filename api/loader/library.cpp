@@ -3,42 +3,52 @@
 #include <ilaw/loader.h>
 
 #include "description.hpp"
+#include "dynamic.hpp"
 #include "elf_file.hpp"
+#include "file.hpp"
 #include "refusal.hpp"
 #include "search.hpp"
 
-#include <dlfcn.h>
-#include <sys/stat.h>
-
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <list>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <string>
 
 struct ilaw_library {
   std::string path;
-  dev_t device;
-  ino_t inode;
+  std::uint64_t device, inode;
   void* handle;
-  const ilaw_plugin* plugin;
+  ilaw::loading::storage kept = {};
+  const ilaw_plugin* plugin = nullptr;
   long users = 0;  // openings and interfaces
 };
 
 struct ilaw_interface {
   ilaw_library* library;
   const ilaw_law* law;
-  ilaw_instance* instance;
+  ilaw_instance* instance = nullptr;
+  ilaw::loading::storage kept = {};
+  ilaw_instance_info info = {};
 };
 
 namespace {
 
 using ilaw::loading::refusal;
 
-// All libraries that are open; std::list keeps their addresses.
-std::mutex open_libraries_guard;
-std::list<ilaw_library> open_libraries;
+// All libraries that are open; std::list keeps their addresses. Never destroyed: interfaces that a host keeps
+// at namespace scope end after whatever this file would.
+struct registry {
+  std::mutex guard;
+  std::list<ilaw_library> open;
+};
+registry& libraries() {
+  static registry& all = *new registry;
+  return all;
+}
 
 void say(char* message, std::size_t size, const char* text) {
   if (message && size > 0) std::snprintf(message, size, "%s", text);
@@ -59,6 +69,9 @@ std::int32_t guarded(char* message, std::size_t size, Work work) {
   } catch (const std::exception& error) {
     say(message, size, error.what());
     return ILAW_BAD_LIBRARY;
+  } catch (...) {
+    say(message, size, "an exception of a library");
+    return ILAW_BAD_LIBRARY;
   }
 }
 
@@ -73,46 +86,55 @@ std::string other_version(void* handle) {
   return std::string("not a law library: the symbol ") + ILAW_ENTRY_NAME + " is missing";
 }
 
-const ilaw_plugin* described(const std::string& path, void* handle) {
+const ilaw_plugin* described(const std::string& path, void* handle, ilaw::loading::storage& kept) {
   void* symbol = dlsym(handle, ILAW_ENTRY_NAME);
   if (!symbol) throw refusal(ILAW_BAD_LIBRARY, path + ": " + other_version(handle));
   ilaw_entry_function entry = nullptr;
   std::memcpy(&entry, &symbol, sizeof entry);  // ISO C++ has no cast from object to function pointer
-  const ilaw_plugin* plugin = entry();
-  ilaw::loading::check_plugin(path, plugin);
-  return plugin;
+  return ilaw::loading::checked_plugin(path, entry(), kept);
 }
 
-ilaw_library* open_checked(const std::string& path, const struct stat& identity) {
+struct closer {
+  void operator()(void* handle) const { dlclose(handle); }
+};
+
+ilaw_library* open_checked(std::list<ilaw_library>& open, const std::string& path,
+                           const ilaw::loading::file_status& status) {
   ilaw::loading::check_shared_object(path);
-  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  std::unique_ptr<void, closer> handle(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL));
   if (!handle) throw refusal(ILAW_BAD_LIBRARY, path + ": cannot be loaded: " + dlerror());
-  try {
-    const ilaw_plugin* plugin = described(path, handle);
-    return &open_libraries.emplace_back(ilaw_library{path, identity.st_dev, identity.st_ino, handle, plugin});
-  } catch (...) {
-    dlclose(handle);
-    throw;
-  }
+  std::list<ilaw_library> made;
+  made.push_back(ilaw_library{path, status.device, status.inode, handle.get()});
+  made.back().plugin = described(path, handle.get(), made.back().kept);
+  handle.release();
+  open.splice(open.end(), made);
+  return &open.back();
 }
 
 ilaw_library* open_or_share(const std::string& path) {
-  struct stat identity {};
-  if (stat(path.c_str(), &identity) != 0) throw refusal(ILAW_NOT_FOUND, path + ": no such file");
-  const std::scoped_lock lock(open_libraries_guard);
+  const ilaw::loading::file_status status = ilaw::loading::status_of(path);
+  if (!status.exists) throw refusal(ILAW_NOT_FOUND, path + ": no such file");
+  registry& all = libraries();
+  const std::scoped_lock lock(all.guard);
   ilaw_library* found = nullptr;
-  for (ilaw_library& library : open_libraries)
-    if (library.device == identity.st_dev && library.inode == identity.st_ino) found = &library;
-  if (!found) found = open_checked(path, identity);
+  for (ilaw_library& library : all.open)
+    if (library.device == status.device && library.inode == status.inode) found = &library;
+  if (!found) found = open_checked(all.open, path, status);
   ++found->users;
   return found;
 }
 
+void use(ilaw_library& library) {
+  const std::scoped_lock lock(libraries().guard);
+  ++library.users;
+}
+
 void release(ilaw_library* library) {
-  const std::scoped_lock lock(open_libraries_guard);
+  registry& all = libraries();
+  const std::scoped_lock lock(all.guard);
   if (--library->users > 0) return;
   dlclose(library->handle);
-  open_libraries.remove_if([library](const ilaw_library& open) { return &open == library; });
+  all.open.remove_if([library](const ilaw_library& open) { return &open == library; });
 }
 
 const ilaw_law& chosen_law(const ilaw_library& library, const char* id) {
@@ -126,47 +148,91 @@ const ilaw_law& chosen_law(const ilaw_library& library, const char* id) {
                 library.path + ": no law '" + (id ? id : "") + "', expected one of: " + known);
 }
 
-ilaw_interface* create_interface(ilaw_library& library, const ilaw_law& law, const ilaw_setup& setup) {
+// What a law says may go to a terminal.
+std::string line_of(const char* text) {
+  std::string line(text);
+  if (ilaw::loading::clean_text(line, false)) return line;
+  for (char& c : line)
+    if (c < 0x20 || c > 0x7E) c = '?';
+  return line;
+}
+
+std::int32_t known_code(std::int32_t code) {
+  return code >= ILAW_OUT_OF_MEMORY && code < ILAW_OK ? code : std::int32_t{ILAW_BAD_LIBRARY};
+}
+
+ilaw_instance* created(const ilaw_library& library, const ilaw_law& law, const ilaw_setup& setup) {
   char text[1024] = "";
   ilaw_instance* instance = nullptr;
   const std::int32_t code = law.create(&setup, &instance, text, sizeof text);
-  if (code != ILAW_OK) throw refusal(code, text);
-  try {
-    ilaw_instance_info info{};
-    info.struct_size = sizeof info;
-    if (!instance || law.info(instance, &info) != ILAW_OK)
-      throw refusal(ILAW_BAD_LIBRARY,
-                    library.path + ": law '" + law.id + "': create gave no instance with info");
-    ilaw::loading::check_instance_info(library.path, law, info, setup.dimension);
-    return new ilaw_interface{&library, &law, instance};
-  } catch (...) {
-    law.destroy(instance);
-    throw;
-  }
+  text[sizeof text - 1] = '\0';
+  if (code == ILAW_OK && instance) return instance;
+  const std::string said = line_of(text);
+  const std::string silent =
+      library.path + ": law '" + law.id + "': create gave no instance, code " + std::to_string(code);
+  throw refusal(known_code(code), said.empty() ? silent : said);
+}
+
+std::unique_ptr<ilaw_interface> create_interface(ilaw_library& library, const ilaw_law& law,
+                                                 const ilaw_setup& setup) {
+  // Ends the instance when anything is wrong from here on, and holds the library meanwhile.
+  struct unmade {
+    void operator()(ilaw_interface* half) const {
+      if (half->instance) half->law->destroy(half->instance);
+      delete half;
+    }
+  };
+  std::unique_ptr<ilaw_interface, unmade> made(new ilaw_interface{&library, &law});
+  made->instance = created(library, law, setup);
+  made->info.struct_size = sizeof made->info;
+  if (law.info(made->instance, &made->info) != ILAW_OK)
+    throw refusal(ILAW_BAD_LIBRARY, library.path + ": law '" + law.id + "': info refuses its own instance");
+  made->info.struct_size = sizeof made->info;
+  ilaw::loading::check_instance_info({library.path, law, library.plugin->abi_minor}, setup, made->info,
+                                     made->kept);
+  return std::unique_ptr<ilaw_interface>(made.release());
+}
+
+// A report whose struct_size cannot be true is given to no library.
+bool usable(ilaw_report* report) { return !report || ilaw::loading::cleared(report); }
+
+std::int32_t open_with(std::string (*find)(const std::string&), const char* text, ilaw_library** library,
+                       char* message, std::size_t message_size) {
+  return guarded(message, message_size, [&]() -> std::int32_t {
+    if (library) *library = nullptr;
+    if (!text || !library || !*text)
+      throw refusal(ILAW_INVALID_ARGUMENT, "the name of the library, or where to put it, is null or empty");
+    *library = open_or_share(find(text));
+    return ILAW_OK;
+  });
 }
 
 }  // namespace
 
 int32_t ilaw_library_open(const char* name_or_path, ilaw_library** library, char* message,
                           size_t message_size) {
-  return guarded(message, message_size, [&]() -> std::int32_t {
-    if (!name_or_path || !library || !*name_or_path)
-      throw refusal(ILAW_INVALID_ARGUMENT, "name_or_path or library is null or empty");
-    *library = nullptr;
-    *library = open_or_share(ilaw::loading::find_library(name_or_path));
-    return ILAW_OK;
-  });
+  return open_with(ilaw::loading::find_library, name_or_path, library, message, message_size);
+}
+
+int32_t ilaw_library_open_named(const char* name, ilaw_library** library, char* message,
+                                size_t message_size) {
+  return open_with(ilaw::loading::find_named, name, library, message, message_size);
 }
 
 void ilaw_library_close(ilaw_library* library) {
   if (library) release(library);
 }
 
-const ilaw_plugin* ilaw_library_plugin(const ilaw_library* library) { return library->plugin; }
+const ilaw_plugin* ilaw_library_plugin(const ilaw_library* library) {
+  return library ? library->plugin : nullptr;
+}
 
-const char* ilaw_library_path(const ilaw_library* library) { return library->path.c_str(); }
+const char* ilaw_library_path(const ilaw_library* library) {
+  return library ? library->path.c_str() : nullptr;
+}
 
 const ilaw_law* ilaw_library_law(const ilaw_library* library, const char* id) {
+  if (!library || !id) return nullptr;
   for (std::uint32_t i = 0; i < library->plugin->law_count; ++i)
     if (std::strcmp(library->plugin->laws[i]->id, id) == 0) return library->plugin->laws[i];
   return nullptr;
@@ -178,52 +244,74 @@ int32_t ilaw_interface_create(ilaw_library* library, const char* id, const ilaw_
     if (!library || !setup || !interface)
       throw refusal(ILAW_INVALID_ARGUMENT, "library, setup or interface is null");
     *interface = nullptr;
-    *interface = create_interface(*library, chosen_law(*library, id), *setup);
-    const std::scoped_lock lock(open_libraries_guard);
-    ++library->users;
+    if (!ilaw::loading::plausible_size<ilaw_setup>(setup->struct_size))
+      throw refusal(ILAW_INVALID_ARGUMENT, "setup has struct_size " + std::to_string(setup->struct_size) +
+                                               ", expected at least " +
+                                               std::to_string(ilaw::loading::first_size<ilaw_setup>));
+    auto made = create_interface(*library, chosen_law(*library, id), *setup);
+    use(*library);
+    *interface = made.release();
     return ILAW_OK;
   });
 }
 
 void ilaw_interface_destroy(ilaw_interface* interface) {
   if (!interface) return;
+  ilaw_library* library = interface->library;
   interface->law->destroy(interface->instance);
-  release(interface->library);
   delete interface;
+  release(library);
 }
 
-const ilaw_law* ilaw_interface_law(const ilaw_interface* interface) { return interface->law; }
+const ilaw_law* ilaw_interface_law(const ilaw_interface* interface) {
+  return interface ? interface->law : nullptr;
+}
 
-const ilaw_instance* ilaw_interface_instance(const ilaw_interface* interface) { return interface->instance; }
+const ilaw_instance* ilaw_interface_instance(const ilaw_interface* interface) {
+  return interface ? interface->instance : nullptr;
+}
 
 int32_t ilaw_interface_info(const ilaw_interface* interface, ilaw_instance_info* info) {
-  return interface->law->info(interface->instance, info);
+  if (!interface || !info || !ilaw::loading::cleared(info)) return ILAW_INVALID_ARGUMENT;
+  const std::uint32_t room = info->struct_size;
+  // Members that only the host and the library know come from the library itself.
+  if (room > sizeof *info)
+    if (const std::int32_t code = interface->law->info(interface->instance, info); code != ILAW_OK)
+      return code;
+  std::memcpy(info, &interface->info, std::min<std::size_t>(room, sizeof *info));
+  info->struct_size = room;
+  return ILAW_OK;
 }
 
 int32_t ilaw_interface_initialise(const ilaw_interface* interface, const ilaw_batch* batch,
                                   ilaw_report* report) {
+  if (!interface || !usable(report)) return ILAW_INVALID_ARGUMENT;
   return interface->law->initialise(interface->instance, batch, report);
 }
 
 int32_t ilaw_interface_evaluate(const ilaw_interface* interface, const ilaw_batch* batch,
                                 ilaw_report* report) {
+  if (!interface || !usable(report)) return ILAW_INVALID_ARGUMENT;
   return interface->law->evaluate(interface->instance, batch, report);
 }
 
 int32_t ilaw_search(int32_t (*visit)(const char* path, void* context), void* context) {
-  try {
+  return guarded(nullptr, 0, [&]() -> std::int32_t {
+    if (!visit) return ILAW_INVALID_ARGUMENT;
     for (const std::string& file : ilaw::loading::library_files())
       if (const std::int32_t stop = visit(file.c_str(), context); stop != 0) return stop;
-  } catch (const std::bad_alloc&) {
-    return ILAW_OUT_OF_MEMORY;
-  }
-  return 0;
+    return 0;
+  });
 }
 
 size_t ilaw_search_path(char* buffer, size_t size) {
-  std::string text;
-  for (const std::string& folder : ilaw::loading::search_folders())
-    text += (text.empty() ? "" : ":") + folder;
-  say(buffer, size, text.c_str());
-  return text.size() + 1;
+  std::size_t needed = 0;
+  say(buffer, size, "");
+  guarded(nullptr, 0, [&]() -> std::int32_t {
+    const std::string text = ilaw::loading::joined(ilaw::loading::folders_searched().folders);
+    say(buffer, size, text.c_str());
+    needed = text.size() + 1;
+    return ILAW_OK;
+  });
+  return needed;
 }

@@ -1,75 +1,115 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search.hpp"
 
+#include "file.hpp"
 #include "refusal.hpp"
+
+#include <sys/auxv.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 #include <set>
-#include <sstream>
-#include <system_error>
+#include <string_view>
 
 namespace ilaw::loading {
 namespace {
 
-namespace fs = std::filesystem;
-
-void add_once(std::vector<std::string>& folders, const fs::path& folder) {
-  const std::string text = folder.lexically_normal().string();
-  if (std::find(folders.begin(), folders.end(), text) == folders.end()) folders.push_back(text);
+// "/a//b/./c/../" as "/a/b", by its letters alone.
+std::string normal(const std::string& path) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at < path.size();) {
+    const std::size_t end = std::min(path.find('/', at), path.size());
+    const std::string part = path.substr(at, end - at);
+    if (part == ".." && !parts.empty()) parts.pop_back();
+    if (!part.empty() && part != "." && part != "..") parts.push_back(part);
+    at = end + 1;
+  }
+  std::string text;
+  for (const std::string& part : parts) text += "/" + part;
+  return text.empty() ? "/" : text;
 }
 
-std::string joined(const std::vector<std::string>& folders) {
-  std::string text;
-  for (const std::string& folder : folders) text += (text.empty() ? "" : ":") + folder;
-  return text;
+void add_once(search_path& path, const std::string& folder) {
+  const std::string text = normal(folder);
+  std::vector<std::string>& list = status_of(text).anyone_writes ? path.left_out : path.folders;
+  if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+}
+
+void add_environment(search_path& path) {
+  const char* text = secure_getenv("ILAW_PATH");
+  if (!text) return;
+  const std::string entries(text);
+  for (std::size_t at = 0; at <= entries.size();) {
+    const std::size_t end = std::min(entries.find(':', at), entries.size());
+    // An empty or relative entry would mean the current folder, which is never searched.
+    if (end > at && entries[at] == '/') add_once(path, entries.substr(at, end - at));
+    at = end + 1;
+  }
+}
+
+// Not for a set-uid program: whoever links to it from elsewhere chooses what lies beside it.
+void add_beside_program(search_path& path) {
+  char program[4096];
+  if (getauxval(AT_SECURE) != 0) return;
+  const ssize_t length = readlink("/proc/self/exe", program, sizeof program);
+  if (length <= 0 || length == static_cast<ssize_t>(sizeof program)) return;
+  add_once(path, std::string(program, static_cast<std::size_t>(length)) + "/../../lib/ilaw");
+}
+
+bool ends_in_so(std::string_view name) { return name.size() > 3 && name.substr(name.size() - 3) == ".so"; }
+
+bool is_name(const std::string& text) {
+  const auto usual = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '+' || c == '.';
+  };
+  return !text.empty() && text.front() != '.' && std::all_of(text.begin(), text.end(), usual);
 }
 
 }  // namespace
 
-std::vector<std::string> search_folders() {
-  std::vector<std::string> folders;
-  if (const char* path = std::getenv("ILAW_PATH")) {
-    std::istringstream entries(path);
-    // An empty or relative entry would mean the current folder, which is never searched.
-    for (std::string entry; std::getline(entries, entry, ':');)
-      if (fs::path(entry).is_absolute()) add_once(folders, entry);
-  }
-  std::error_code error;
-  if (const fs::path program = fs::read_symlink("/proc/self/exe", error); !error)
-    add_once(folders, program.parent_path().parent_path() / "lib" / "ilaw");
-  add_once(folders, ILAW_INSTALLED_FOLDER);
-  return folders;
+std::string joined(const std::vector<std::string>& texts) {
+  std::string all;
+  for (const std::string& text : texts) all += (all.empty() ? "" : ":") + text;
+  return all;
+}
+
+search_path folders_searched() {
+  search_path path;
+  add_environment(path);
+  add_beside_program(path);
+  add_once(path, ILAW_INSTALLED_FOLDER);
+  return path;
+}
+
+std::string find_named(const std::string& name) {
+  if (!is_name(name))
+    throw refusal(ILAW_NOT_FOUND,
+                  "'" + name + "' is no name of a library, expected letters, digits, '_', '-', '+' and '.'");
+  const std::string file = ends_in_so(name) ? name : name + ".so";
+  const search_path path = folders_searched();
+  for (const std::string& folder : path.folders)
+    if (const std::string found = canonical(folder + "/" + file); !found.empty()) return found;
+  std::string where = joined(path.folders);
+  if (!path.left_out.empty())
+    where += "; not searched, since every user may write there: " + joined(path.left_out);
+  throw refusal(ILAW_NOT_FOUND, "'" + name + "': no " + file + " found, expected it in one of: " + where);
 }
 
 std::string find_library(const std::string& name_or_path) {
-  std::error_code error;
-  if (name_or_path.find('/') != std::string::npos) {
-    if (!fs::exists(name_or_path, error))
-      throw refusal(ILAW_NOT_FOUND, name_or_path + ": no such file, expected a law library");
-    return fs::canonical(name_or_path).string();
-  }
-  const std::string file = fs::path(name_or_path).extension() == ".so" ? name_or_path : name_or_path + ".so";
-  const std::vector<std::string> folders = search_folders();
-  for (const std::string& folder : folders)
-    if (fs::exists(fs::path(folder) / file, error)) return fs::canonical(fs::path(folder) / file).string();
-  throw refusal(ILAW_NOT_FOUND,
-                "'" + name_or_path + "': no " + file + " found, expected it in one of: " + joined(folders));
+  if (name_or_path.find('/') == std::string::npos) return find_named(name_or_path);
+  std::string found = canonical(name_or_path);
+  if (found.empty()) throw refusal(ILAW_NOT_FOUND, name_or_path + ": no such file, expected a law library");
+  return found;
 }
 
 std::vector<std::string> library_files() {
   std::vector<std::string> files;
   std::set<std::string> seen;
-  for (const std::string& folder : search_folders()) {
-    std::vector<fs::path> here;
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-      if (entry.path().extension() == ".so") here.push_back(entry.path());
-    std::sort(here.begin(), here.end());
-    for (const fs::path& path : here)
-      if (seen.insert(path.filename().string()).second) files.push_back(path.string());
-  }
+  for (const std::string& folder : folders_searched().folders)
+    for (const std::string& name : names_in(folder))
+      if (ends_in_so(name) && seen.insert(name).second) files.push_back(folder + "/" + name);
   return files;
 }
 

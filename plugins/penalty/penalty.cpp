@@ -29,7 +29,7 @@ struct penalty {
           "then any stiffness, infinite too, leaves the critical time step as it is and gives back the "
           "energy of an impact, or what a coefficient of restitution leaves of it.",
       .inputs = reads_gap | reads_v_previous,
-      .capabilities = ILAW_CAN_STORE_ENERGY};
+      .capabilities = ILAW_CAN_STORE_ENERGY | ILAW_CAN_REST};
 
   static constexpr const char* references[] = {
       "H. Hertz, 1882, Ueber die Beruehrung fester elastischer Koerper",
@@ -90,7 +90,10 @@ struct penalty {
     double normal, slip_1, slip_2;  // normal is always zero
   };
   static constexpr state_variable state_variables[] = {
-      {.name = "indentation", .unit = "m", .doc = "Of the implicit normal spring since it closed."},
+      {.name = "indentation",
+       .unit = "m",
+       .doc = "Of the implicit normal spring since it closed.",
+       .minimum = 0.0},
       {.name = "spring",
        .unit = "m",
        .doc = "Elastic part of the slip; normal component zero.",
@@ -113,6 +116,21 @@ struct penalty {
     return nullptr;
   }
 
+  // Explicit springs with a damper that lags: omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega)
+  // (Belytschko, Liu, Moran 2000, eq. 6.2.31). The normal spring is taken as closed, and as stiff as it is
+  // now.
+  template <class Node>
+  double stable_velocity_step(const Node& node) const {
+    if (integration == implicitly) return infinity;
+    const double penetration = positive_part(-node.gap), normal = node.delassus.normal();
+    const double tangent =
+        exponent == 1.0 ? stiffness : stiffness * exponent * power(penetration, exponent - 1.0);
+    const double pace = square_root(tangent * normal), half_damper = 0.5 * damping * normal;
+    const double closed = 2.0 / (length(pace, half_damper) + half_damper);
+    if (!(friction > 0.0)) return closed;
+    return smaller(closed, 2.0 / square_root(tangential_stiffness * largest_tangential(node.delassus)));
+  }
+
   template <class Run>
   void in_form(Run run) const;
   template <class Node>
@@ -121,6 +139,13 @@ struct penalty {
   }
 
  protected:
+  // Not below the largest inverse mass in the tangent plane, with what H couples to the normal.
+  static double largest_tangential(const scalar_delassus& h) { return h.h; }
+  static double largest_tangential(const diagonal_delassus& h) { return larger(h.t1, h.t2); }
+  static double largest_tangential(const full_delassus& h) {
+    return larger(h.t11 + absolute(h.n1), h.t22 + absolute(h.n2)) + absolute(h.t12);
+  }
+
   template <bool Linear>
   double spring_force(double penetration) const {
     if constexpr (Linear) return stiffness * penetration;
@@ -168,7 +193,6 @@ struct penalty {
       found.impulse = acts ? found.impulse : 0.0;
       rub(node, found.impulse, q, 0.5 * node.delassus.tangential() + softness);
     }
-    if (node.state.indentation < 0.0) node.refused = impossible_state;
     strain<Linear>(node, acts ? normal.next(found) : 0.0);
   }
 

@@ -31,7 +31,7 @@ struct postit {
           "under "
           "pressure, each time less after a rupture; contact with Coulomb friction where it is not bonded.",
       .inputs = reads_gap | reads_v_previous | reads_area,
-      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE};
+      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST};
 
   static constexpr const char* references[] = {
       "LaMCoS / Michelin, 2024, Post-it tests (slides), after hal-04146784: parameters, tests, windowed "
@@ -98,13 +98,20 @@ struct postit {
     double adhesion, ruptures, grace;
   };
   static constexpr state_variable state_variables[] = {
-      {.name = "adhesion", .unit = "N.s", .doc = "Adhesion of the node; 0 when it is not bonded."},
-      {.name = "ruptures", .doc = "Number of ruptures that counted so far."},
+      {.name = "adhesion",
+       .unit = "N.s",
+       .doc = "Adhesion of the node; 0 when it is not bonded.",
+       .minimum = 0.0},
+      {.name = "ruptures", .doc = "Number of ruptures that counted so far.", .minimum = 0.0, .whole = true},
       {.name = "grace",
        .unit = "s",
-       .doc = "Time that the bond has yet to hold for its rupture to count; 0: it counts."}};
-  static constexpr state_variable history_variable{
-      .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .kind = ILAW_STATE_HISTORY};
+       .doc = "Time that the bond has yet to hold for its rupture to count; 0: it counts.",
+       .minimum = 0.0}};
+  static constexpr state_variable history_variable{.name = "window",
+                                                   .unit = "N.s",
+                                                   .doc = "Impulses of the last memory.",
+                                                   .kind = ILAW_STATE_HISTORY,
+                                                   .internal = true};
 
   std::uint32_t inputs() const {
     return reads_gap | reads_v_previous |
@@ -112,7 +119,7 @@ struct postit {
   }
   // What is bonded from the start holds at any gap.
   std::uint32_t capabilities() const {
-    return std::uint32_t{ILAW_CAN_ADHERE} |
+    return std::uint32_t{ILAW_CAN_ADHERE | ILAW_CAN_REST} |
            (initial_adhesion > 0.0 ? std::uint32_t{ILAW_CAN_ACT_AT_DISTANCE} : 0U);
   }
   const char* conflict() const {
@@ -131,7 +138,7 @@ struct postit {
   template <class Node>
   void step(Node& node) const {
     const window::reading earlier = sums().before(node.history, interval_of(node));
-    node.refused = larger(earlier.refused, refusal_of(node.state));
+    node.refused = earlier.refused;
     if (node.refused != not_refused) return;
     if (node.state.adhesion > 0.0)
       step_bonded(node, earlier.sum);
@@ -149,12 +156,6 @@ struct postit {
 
  private:
   window sums() const { return {duration, buckets}; }
-
-  static double refusal_of(const state& s) {
-    const bool possible = s.adhesion >= 0.0 && s.grace >= 0.0 && s.ruptures >= 0.0 && s.ruptures < 0x1p53 &&
-                          floor_of(s.ruptures) == s.ruptures;
-    return possible ? not_refused : impossible_state;
-  }
 
   // (<-S_N>/R_Y)^2 + (<|S_T| - mu <S_N>>/(lambda R_Y))^2, which exceeds 1 at rupture.
   double criterion(vector sum, double adhesion) const {

@@ -23,7 +23,7 @@ struct tie {
                                      "memory exceed it in pull and shear "
                                      "together; frictionless contact is left.",
                                  .inputs = reads_gap | reads_v_previous | reads_area,
-                                 .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE};
+                                 .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST};
 
   static constexpr const char* references[] = {
       "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics"};
@@ -56,10 +56,16 @@ struct tie {
   struct state {
     double broken;
   };
-  static constexpr state_variable state_variables[] = {
-      {.name = "broken", .doc = "1 once the bond has broken, else 0."}};
-  static constexpr state_variable history_variable{
-      .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .kind = ILAW_STATE_HISTORY};
+  static constexpr state_variable state_variables[] = {{.name = "broken",
+                                                        .doc = "1 once the bond has broken, else 0.",
+                                                        .minimum = 0.0,
+                                                        .maximum = 1.0,
+                                                        .whole = true}};
+  static constexpr state_variable history_variable{.name = "window",
+                                                   .unit = "N.s",
+                                                   .doc = "Impulses of the last memory.",
+                                                   .kind = ILAW_STATE_HISTORY,
+                                                   .internal = true};
 
   std::uint32_t inputs() const { return strength < infinity ? card.inputs : 0U; }
   std::int64_t history_size() const { return window::doubles(duration, buckets); }
@@ -72,7 +78,7 @@ struct tie {
   template <class Node>
   void step(Node& node) const {
     const window::reading earlier = sums().before(node.history, interval_of(node));
-    node.refused = larger(earlier.refused, refusal_of(node.state));
+    node.refused = earlier.refused;
     if (node.refused != not_refused) return;
     if (node.state.broken != 0.0) {
       touch(node);
@@ -99,10 +105,6 @@ struct tie {
 
  private:
   window sums() const { return {duration, buckets}; }
-
-  static double refusal_of(const state& s) {
-    return s.broken == 0.0 || s.broken == 1.0 ? not_refused : impossible_state;
-  }
 
   // Pull and shear count alike, a press does not: nothing is torn by it.
   static double load(vector sum) { return length(positive_part(-sum.n), sum.t1, sum.t2); }

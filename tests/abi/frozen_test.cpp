@@ -56,14 +56,14 @@ TEST(Abi, FrozenHeadersAreTheBeginningsOfTodays) {
 // No padding hides between members: a member put there would change nothing that a size check sees.
 TEST(Abi, StructsHaveNoPadding) {
   EXPECT_EQ(sizeof(ilaw_parameter), 2 * 4 + 4 * 8 + 3 * 8 + 4 * 4 + 8 + 2 * 4);
-  EXPECT_EQ(sizeof(ilaw_state_variable), 2 * 4 + 3 * 8 + 8);
+  EXPECT_EQ(sizeof(ilaw_state_variable), 2 * 4 + 3 * 8 + 8 + 2 * 4);
   EXPECT_EQ(sizeof(ilaw_argument), 2 * 4 + 5 * 8);
   EXPECT_EQ(sizeof(ilaw_setup), 4 * 4 + 8 + 8 + 2 * 4);
-  EXPECT_EQ(sizeof(ilaw_instance_info), 4 * 4 + 8 + 2 * 8 + 2 * 4);
-  EXPECT_EQ(sizeof(ilaw_batch), 2 * 4 + 2 * 8 + 3 * 8 + 8 * 24 + 8 + 5 * 24 + 2 * 8);
-  EXPECT_EQ(sizeof(ilaw_report), 2 * 4 + 3 * 8);
-  EXPECT_EQ(sizeof(ilaw_law), 6 * 4 + 6 * 8 + 4 * 4 + 5 * 8);
-  EXPECT_EQ(sizeof(ilaw_plugin), 4 + 2 * 2 + 5 * 8 + 2 * 4);
+  EXPECT_EQ(sizeof(ilaw_instance_info), 4 * 4 + 8 + 2 * 8 + 4 * 4);
+  EXPECT_EQ(sizeof(ilaw_batch), 2 * 4 + 4 * 8 + 3 * 8 + 8 * 24 + 8 + 5 * 24 + 2 * 8);
+  EXPECT_EQ(sizeof(ilaw_report), 2 * 4 + 4 * 8);
+  EXPECT_EQ(sizeof(ilaw_law), 6 * 4 + 6 * 8 + 4 * 4 + 6 * 8);
+  EXPECT_EQ(sizeof(ilaw_plugin), 4 + 2 * 2 + 5 * 8 + 2 * 4 + 8);
 }
 
 }  // namespace

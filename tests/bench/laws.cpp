@@ -118,7 +118,6 @@ class Case {
     setup.dimension = 3;
     setup.delassus_form = subject.form;
     setup.frame = global ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL;
-    setup.velocity_step = 1e-3;
     setup.arguments = pointers.data();
     setup.argument_count = static_cast<std::uint32_t>(pointers.size());
     return {ilaw::library(subject.law), subject.law, setup};

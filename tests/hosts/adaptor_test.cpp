@@ -32,7 +32,6 @@ ilaw::interface coulomb_with_restitution() {
   setup.struct_size = sizeof setup;
   setup.dimension = 3;
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.velocity_step = step_length(0);
   setup.arguments = arguments;
   setup.argument_count = 2;
   return {ilaw::library(ILAW_PLUGIN_FOLDER "/coulomb.so"), "", setup};

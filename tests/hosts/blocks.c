@@ -56,7 +56,6 @@ static ilaw_interface* create_interface(const char* library_name) {
                             .dimension = 3,
                             .delassus_form = ILAW_DELASSUS_SCALAR,
                             .frame = ILAW_FRAME_GLOBAL,
-                            .velocity_step = h,
                             .arguments = arguments,
                             .argument_count = 2};
   ilaw_interface* interface;

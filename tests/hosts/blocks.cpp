@@ -56,7 +56,6 @@ ilaw::interface create_interface(const char* library_name) {
   setup.dimension = 3;
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
   setup.frame = ILAW_FRAME_GLOBAL;
-  setup.velocity_step = h;
   setup.arguments = arguments.data();
   setup.argument_count = arguments.size();
   return {ilaw::library(library_name), "", setup};  // the interface keeps the library loaded

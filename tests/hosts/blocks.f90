@@ -67,7 +67,6 @@ contains
     setup%dimension = 3
     setup%delassus_form = ILAW_DELASSUS_SCALAR
     setup%frame = ILAW_FRAME_GLOBAL
-    setup%velocity_step = h
     call values%set('friction', 0.3_c_double)
     call values%set('activation', 'moreau')
     if (ilaw_create(library, '', setup, values, interface, message) /= ILAW_OK) call fail('create', message)
@@ -78,8 +77,7 @@ contains
     integer(c_int32_t), parameter :: given = ior(ior(ILAW_INPUT_GAP, ILAW_INPUT_V_PREVIOUS), ILAW_INPUT_NORMAL)
     if (iand(ior(info%inputs, info%energy_inputs), not(given)) /= 0) &
       call fail('law', 'reads an input that this code does not have')
-    batch%node_count = size(floor_nodes)
-    batch%index = c_loc(floor_nodes) ! the arrays below are the solver's own, over all its nodes
+    call ilaw_use_nodes(batch, floor_nodes) ! the arrays below are the solver's own, over all its nodes
     batch%velocity_step = h
     batch%position_step = h
     batch%v_free = ilaw_input_of(v)

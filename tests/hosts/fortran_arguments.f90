@@ -58,7 +58,6 @@ contains
     interface = c_null_ptr
     code = ilaw_open(ilaw_text(library_name), library, text)
     if (code == ILAW_OK) then
-      setup%velocity_step = 1
       code = ilaw_create(library, merge('coulomb', 'absent ', way /= 6), setup, friction_given(way), interface, text)
       call ilaw_library_close(library)
     end if

@@ -51,7 +51,7 @@ contains
     type(ilaw_state_variable), target :: s
     integer(c_int64_t), allocatable :: layout(:)
     layout = [c_sizeof(s), at([c_loc(s%struct_size), c_loc(s%kind), c_loc(s%name), c_loc(s%unit), &
-                               c_loc(s%doc), c_loc(s%count)], c_loc(s))]
+                               c_loc(s%doc), c_loc(s%count), c_loc(s%flags), c_loc(s%reserved)], c_loc(s))]
   end function
 
   function argument_layout() result(layout)
@@ -66,7 +66,7 @@ contains
     integer(c_int64_t), allocatable :: layout(:)
     layout = [c_sizeof(s), at([ &
       c_loc(s%struct_size), c_loc(s%dimension), c_loc(s%delassus_form), c_loc(s%frame), &
-      c_loc(s%velocity_step), c_loc(s%arguments), c_loc(s%argument_count), c_loc(s%tangent_given)], c_loc(s))]
+      c_loc(s%flags), c_loc(s%arguments), c_loc(s%argument_count), c_loc(s%tangent_given)], c_loc(s))]
   end function
 
   function info_layout() result(layout)
@@ -75,7 +75,7 @@ contains
     layout = [c_sizeof(i), at([ &
       c_loc(i%struct_size), c_loc(i%inputs), c_loc(i%energy_inputs), c_loc(i%state_variable_count), &
       c_loc(i%state_size), c_loc(i%state_variables), c_loc(i%per_node_parameters), &
-      c_loc(i%per_node_parameter_count), c_loc(i%capabilities)], c_loc(i))]
+      c_loc(i%per_node_parameter_count), c_loc(i%capabilities), c_loc(i%state_version), c_loc(i%reserved)], c_loc(i))]
   end function
 
   function input_layout() result(layout)
@@ -94,7 +94,8 @@ contains
     type(ilaw_batch), target :: b
     integer(c_int64_t), allocatable :: layout(:)
     layout = [c_sizeof(b), at([ &
-      c_loc(b%struct_size), c_loc(b%index_base), c_loc(b%node_count), c_loc(b%index), c_loc(b%time), &
+      c_loc(b%struct_size), c_loc(b%index_base), c_loc(b%flags), c_loc(b%node_count), c_loc(b%index), &
+      c_loc(b%index64), c_loc(b%time), &
       c_loc(b%velocity_step), c_loc(b%position_step), c_loc(b%v_free), c_loc(b%delassus), c_loc(b%gap), &
       c_loc(b%gap_offset), c_loc(b%v_previous), c_loc(b%area), c_loc(b%normal), c_loc(b%tangent), &
       c_loc(b%per_node_parameters), c_loc(b%state_in), c_loc(b%state_out), c_loc(b%impulse), &
@@ -105,7 +106,8 @@ contains
     type(ilaw_report), target :: r
     integer(c_int64_t), allocatable :: layout(:)
     layout = [c_sizeof(r), at([c_loc(r%struct_size), c_loc(r%reserved), c_loc(r%bad_count), &
-                               c_loc(r%first_bad_node), c_loc(r%reason)], c_loc(r))]
+                               c_loc(r%first_bad_node), c_loc(r%reason), &
+                               c_loc(r%stable_velocity_step)], c_loc(r))]
   end function
 
   function law_layout() result(layout)
@@ -116,7 +118,7 @@ contains
       c_loc(l%capabilities), c_loc(l%id), c_loc(l%title), c_loc(l%doc), c_loc(l%references), &
       c_loc(l%parameters), c_loc(l%state_variables), c_loc(l%reference_count), c_loc(l%parameter_count), &
       c_loc(l%state_variable_count), c_loc(l%reserved), c_loc(l%create), c_loc(l%destroy), c_loc(l%info), &
-      c_loc(l%initialise), c_loc(l%evaluate)], c_loc(l))]
+      c_loc(l%initialise), c_loc(l%evaluate), c_loc(l%extension)], c_loc(l))]
   end function
 
   function plugin_layout() result(layout)
@@ -124,7 +126,8 @@ contains
     integer(c_int64_t), allocatable :: layout(:)
     layout = [c_sizeof(p), at([ &
       c_loc(p%struct_size), c_loc(p%abi_major), c_loc(p%abi_minor), c_loc(p%name), c_loc(p%version), &
-      c_loc(p%vendor), c_loc(p%licence), c_loc(p%laws), c_loc(p%law_count), c_loc(p%reserved)], c_loc(p))]
+      c_loc(p%vendor), c_loc(p%licence), c_loc(p%laws), c_loc(p%law_count), c_loc(p%reserved), &
+      c_loc(p%extension)], c_loc(p))]
   end function
 
   ! struct_size of variables that are merely declared, in the order of the header; -1 for the two without.

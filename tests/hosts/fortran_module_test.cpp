@@ -56,15 +56,9 @@ layout c_layout(int structure) {
     }
     case 3: {
       using T = ilaw_setup;
-      return {sizeof(T),
-              OFFSET(struct_size),
-              OFFSET(dimension),
-              OFFSET(delassus_form),
-              OFFSET(frame),
-              OFFSET(velocity_step),
-              OFFSET(arguments),
-              OFFSET(argument_count),
-              OFFSET(tangent_given)};
+      return {
+          sizeof(T),     OFFSET(struct_size), OFFSET(dimension),      OFFSET(delassus_form), OFFSET(frame),
+          OFFSET(flags), OFFSET(arguments),   OFFSET(argument_count), OFFSET(tangent_given)};
     }
     case 4: {
       using T = ilaw_instance_info;
@@ -77,7 +71,9 @@ layout c_layout(int structure) {
               OFFSET(state_variables),
               OFFSET(per_node_parameters),
               OFFSET(per_node_parameter_count),
-              OFFSET(capabilities)};
+              OFFSET(capabilities),
+              OFFSET(state_version),
+              OFFSET(reserved)};
     }
     case 5: {
       using T = ilaw_input;
@@ -92,8 +88,10 @@ layout c_layout(int structure) {
       return {sizeof(T),
               OFFSET(struct_size),
               OFFSET(index_base),
+              OFFSET(flags),
               OFFSET(node_count),
               OFFSET(index),
+              OFFSET(index64),
               OFFSET(time),
               OFFSET(velocity_step),
               OFFSET(position_step),

@@ -163,8 +163,7 @@ class Runner {
         form_(global && nodes.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL}
                                                              : nodes.form),
         interface_(make_law(law, SetupBuilder(in_units(law, parameters, units), nodes.dimension, form_,
-                                              global ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL,
-                                              RandomNodes::step * units.time, global))),
+                                              global ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL, global))),
         size_(interface_.info().state_size),
         r(nodes.count),
         v(nodes.count),

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -41,7 +42,6 @@ ilaw_setup setup_1d() {
   setup.struct_size = sizeof setup;
   setup.dimension = 1;
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.velocity_step = 1.0;
   return setup;
 }
 
@@ -65,8 +65,8 @@ INSTANTIATE_TEST_SUITE_P(
     Loader, RefusedLibrary,
     ::testing::Values(
         Refused{"null_function", "law 'zero': function 'evaluate' is null, expected a function"},
-        Refused{"small_law", "law 0: law has struct_size 96, expected at least 128"},
-        Refused{"small_plugin", "the description has struct_size 8, expected at least 56"},
+        Refused{"small_law", "law 0: law has struct_size 96, expected at least 136 and at most 4096"},
+        Refused{"small_plugin", "the description has struct_size 8, expected at least 64 and at most 4096"},
         Refused{"other_major_symbol", "a library for ABI major version 2, expected major version 1"},
         Refused{"other_major_field", "ABI version 2.0, expected major version 1"},
         Refused{"duplicate_law", "law 'zero' is declared twice"},
@@ -78,7 +78,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"bad_default",
                 "law 'zero': parameter 'strength': default 2.000000 lies outside its own range"},
         Refused{"long_count", "law 'zero': parameters has 4000000000 entries, expected at most 10000"},
-        Refused{"unknown_bits", "law 'zero': delassus_forms is 65, expected only the bits of 7"}),
+        Refused{"unknown_bits", "law 'zero': delassus_forms is 65, expected only the bits of 15"},
+        Refused{"control_text", "law 'zero': title has bytes that are no UTF-8 or control characters"},
+        Refused{"no_utf8", "law 'zero': title has bytes that are no UTF-8 or control characters"},
+        Refused{"overlong_utf8", "law 'zero': title has bytes that are no UTF-8 or control characters"}),
     [](const auto& drawn) { return drawn.param.name; });
 
 TEST(Loader, RefusesFilesThatAreNoLibraries) {
@@ -122,15 +125,93 @@ TEST(Loader, LoadsALibraryOfANewerMinorVersion) {
   EXPECT_EQ(r, 0.0);
 }
 
-TEST(Loader, RefusesAnInstanceWhoseStateDoesNotAddUp) {
-  const ilaw::library library(variant("wrong_state_size"));
+struct RefusedInfo {
+  const char* name;
+  std::int32_t code;
+  const char* found_and_expected;
+
+  friend void PrintTo(const RefusedInfo& refused, std::ostream* out) { *out << refused.name; }
+};
+
+class RefusedInstance : public ::testing::TestWithParam<RefusedInfo> {};
+
+// Also: it does not stay behind.
+TEST_P(RefusedInstance, IsNamedAndEnded) {
+  const ilaw::library library(variant(GetParam().name));
+  const auto* alive = static_cast<const int*>(library.law("zero")->extension("tests.instances/1"));
+  ASSERT_NE(alive, nullptr);
   try {
     const ilaw::interface law(library, "zero", setup_1d());
     FAIL() << "not refused";
   } catch (const ilaw::error& error) {
-    EXPECT_NE(std::string(error.what()).find("state_size is 3, expected the sum of the counts, 0"),
-              std::string::npos);
+    EXPECT_EQ(error.code(), GetParam().code);
+    EXPECT_NE(std::string(error.what()).find(GetParam().found_and_expected), std::string::npos)
+        << error.what();
   }
+  EXPECT_EQ(*alive, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Loader, RefusedInstance,
+    ::testing::Values(
+        RefusedInfo{"wrong_state_size", ILAW_BAD_LIBRARY,
+                    "state_size is 3, expected the sum of the counts, 0"},
+        RefusedInfo{"wrapping_state", ILAW_BAD_LIBRARY,
+                    "state variable 'first': count is 18446744073709551614"},
+        RefusedInfo{"huge_state", ILAW_BAD_LIBRARY, "expected at most 1048576"},
+        RefusedInfo{"wrong_count", ILAW_BAD_LIBRARY, "state variable 'first': count is 2, expected 1"},
+        RefusedInfo{"wrong_kind", ILAW_BAD_LIBRARY, "state variable 'first': kind is 77, expected at most 4"},
+        RefusedInfo{"wrong_flags", ILAW_BAD_LIBRARY, "flags is 256, expected only the bits of 1"},
+        RefusedInfo{"wrong_per_node", ILAW_BAD_LIBRARY,
+                    "per-node parameter 'strength' was not given per node"},
+        RefusedInfo{"unknown_input", ILAW_UNSUPPORTED, "reads inputs 1048576, expected only the bits of 31"},
+        RefusedInfo{"unknown_capability", ILAW_BAD_LIBRARY,
+                    "capabilities is 1048576, expected only the bits of 15"},
+        RefusedInfo{"refused_info", ILAW_BAD_LIBRARY, "info refuses its own instance"},
+        RefusedInfo{"odd_code", ILAW_BAD_LIBRARY, "create gave no instance, code 57"},
+        RefusedInfo{"odd_message", ILAW_INVALID_PARAMETER, "wrong ?[2J?"}),
+    [](const auto& drawn) { return drawn.param.name; });
+
+// A host of another minor version than the loader: its structs are longer, or as short as 1.0 had them.
+TEST(Loader, FillsStructsOfLongerHosts) {
+  struct Longer {
+    ilaw_instance_info info;
+    double appended[2];
+  } longer;
+  std::memset(&longer, 0xAB, sizeof longer);
+  longer.info.struct_size = sizeof longer;
+  const ilaw::library library(variant("good"));
+  const ilaw_setup setup = setup_1d();
+  ilaw_interface* law = nullptr;
+  ASSERT_EQ(ilaw_interface_create(library.get(), "zero", &setup, &law, nullptr, 0), ILAW_OK);
+  EXPECT_EQ(ilaw_interface_info(law, &longer.info), ILAW_OK);
+  EXPECT_EQ(longer.info.struct_size, sizeof longer);
+  EXPECT_EQ(longer.info.state_version, 0U);
+  EXPECT_EQ(longer.appended[0], 0.0);
+  EXPECT_EQ(longer.appended[1], 0.0);
+  longer.info.struct_size = 8;
+  EXPECT_EQ(ilaw_interface_info(law, &longer.info), ILAW_INVALID_ARGUMENT);
+  ilaw_interface_destroy(law);
+}
+
+TEST(Loader, RefusesStructsThatNoHostCanHaveFilled) {
+  const ilaw::library library(variant("good"));
+  ilaw_setup setup = setup_1d();
+  ilaw_interface* law = nullptr;
+  char message[256];
+  setup.struct_size = 12;
+  EXPECT_EQ(ilaw_interface_create(library.get(), "zero", &setup, &law, message, sizeof message),
+            ILAW_INVALID_ARGUMENT);
+  EXPECT_STREQ(message, "setup has struct_size 12, expected at least 40");
+  setup = setup_1d();
+  ASSERT_EQ(ilaw_interface_create(library.get(), "zero", &setup, &law, nullptr, 0), ILAW_OK);
+  ilaw_batch batch{};
+  batch.struct_size = sizeof batch;
+  ilaw_report report{};
+  EXPECT_EQ(ilaw_interface_evaluate(law, &batch, &report), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(ilaw_interface_initialise(law, &batch, &report), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(ilaw_interface_evaluate(nullptr, &batch, nullptr), ILAW_INVALID_ARGUMENT);
+  ilaw_interface_destroy(law);
 }
 
 TEST(Loader, NamesTheLawsOfALibrary) {

@@ -35,7 +35,7 @@ class SetupBuilder {
  public:
   explicit SetupBuilder(const Parameters& given, std::uint32_t dimension = 3,
                         std::uint32_t form = ILAW_DELASSUS_SCALAR, std::uint32_t frame = ILAW_FRAME_LOCAL,
-                        double step = 1e-3, bool tangent = false)
+                        bool tangent = false)
       : given_(given) {
     for (const auto& [name, value] : given_.numbers) {
       ilaw_argument& a = add(name, ILAW_VALUE_NUMBER);
@@ -53,7 +53,6 @@ class SetupBuilder {
     setup.dimension = dimension;
     setup.delassus_form = form;
     setup.frame = frame;
-    setup.velocity_step = step;
     setup.tangent_given = tangent;
     setup.arguments = pointers_.data();
     setup.argument_count = static_cast<std::uint32_t>(pointers_.size());
@@ -84,7 +83,7 @@ inline ilaw::interface make_law(const std::string& law, const SetupBuilder& buil
 struct NodeRun {
   NodeRun(const std::string& law, const Parameters& parameters, double step = 1e-3,
           std::uint32_t form = ILAW_DELASSUS_SCALAR)
-      : interface(make_law(law, SetupBuilder(parameters, 3, form, ILAW_FRAME_LOCAL, step))),
+      : interface(make_law(law, SetupBuilder(parameters, 3, form, ILAW_FRAME_LOCAL))),
         dt(step),
         state(std::max<std::size_t>(interface.info().state_size, 1)) {
     initialise();

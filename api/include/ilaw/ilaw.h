@@ -16,11 +16,27 @@
  *  - In the local frame, component 0 is normal, components 1 and 2 are tangential.
  *  - Ownership: the library owns every description and string it returns, for as long as it stays loaded.
  *    The host owns every array of a batch; the library keeps no pointer past the call that received it.
- *  - Every struct starts with struct_size, set by whoever fills the struct to the sizeof it was compiled
- *    with. A reader must not touch a member beyond it: minor versions only append members, so that hosts
- *    and libraries of different minor versions work together. A member that is absent counts as zero.
- *    Pointers to arrays of structs are arrays of pointers, since an element may grow.
- *  - No function throws, prints, exits, raises a signal or changes the floating-point environment.
+ *  - No function throws, prints, exits or raises a signal. evaluate and initialise leave the floating-point
+ *    environment (exception flags, trap masks, rounding mode, flush-to-zero) as they found it, and give the
+ *    same bits whatever it is.
+ *  - Threads: each function says from where it may be called. [any-thread]: from any thread, at the same time
+ *    as any other call. [exclusive]: from any thread, while no other call works on the same instance.
+ *
+ * How ABI 1 grows
+ *  - Every struct but ilaw_input and ilaw_output starts with struct_size, set by whoever fills the struct to
+ *    the sizeof it was compiled with. Minor versions only append members, at the end. A reader copies at most
+ *    struct_size bytes and takes what is absent as zero, so zero must mean what 1.0 did. What is smaller than
+ *    its ILAW_..._SIZE_1_0 is refused; what is larger than the reader's own struct is read up to that.
+ *  - Who writes into a struct of the other side (info, a report) writes no byte beyond its struct_size.
+ *  - ilaw_input and ilaw_output have no struct_size and stand by value in others and in arrays: they never
+ *    grow. Pointers to arrays of other structs are arrays of pointers, since an element may grow.
+ *  - energy has four parts and status eight codes for ever; more of either comes in a new array of the batch.
+ *  - Flags that a host sets ask for something: a library refuses a bit that it does not know, with
+ *    ILAW_UNSUPPORTED. Bits that a library sets in ilaw_instance_info.inputs or energy_inputs ask too: a host
+ *    refuses an instance that reads what it does not know. All other masks of a library only tell something:
+ *    unknown bits are ignored. A host takes a kind of parameter or state variable that it does not know as
+ *    text to show (a parameter) and as ILAW_STATE_HISTORY (a variable).
+ *  - New functions come as extensions (ilaw_plugin.extension, ilaw_law.extension), asked for by name.
  *
  * Pure C99, clean as C++17, needs nothing but <stdint.h> and <stddef.h>.
  * Source of the formulation: Moreau (1988), Unilateral contact and dry friction in finite freedom
@@ -61,7 +77,7 @@ enum {
   ILAW_BAD_NODES = 1,          /* evaluate: some nodes had bad input, see ilaw_report; the others are done */
   ILAW_INVALID_ARGUMENT = -1,  /* the call itself is wrong: null pointer, struct too small, count < 0 */
   ILAW_INVALID_PARAMETER = -2, /* a parameter is unknown, missing, out of range or wrongly combined */
-  ILAW_UNSUPPORTED = -3,       /* dimension, form of H or input that this law does not serve */
+  ILAW_UNSUPPORTED = -3,       /* dimension, form of H, input or flag that this law does not serve */
   ILAW_OUT_OF_MEMORY = -4,
   ILAW_NOT_FOUND = -5,   /* loader: no such library or law */
   ILAW_BAD_LIBRARY = -6, /* loader: not a law library, another major version, or a broken description */
@@ -74,8 +90,15 @@ enum { ILAW_DIMENSION_1 = 1 << 1, ILAW_DIMENSION_2 = 1 << 2, ILAW_DIMENSION_3 = 
  *   SCALAR    1 value:        H = h I (a lumped mass m gives h = 1/m)
  *   DIAGONAL  d values:       H_00, H_11, H_22, in the axes of the vectors
  *   FULL      d(d+1)/2 values: 1D H_00; 2D H_00 H_11 H_01; 3D H_00 H_11 H_22 H_01 H_02 H_12
- * One bit each in masks of forms. */
-enum { ILAW_DELASSUS_SCALAR = 1, ILAW_DELASSUS_DIAGONAL = 2, ILAW_DELASSUS_FULL = 4 };
+ *   TRANSVERSE 2 values:      normal h_N and tangential h_T, H = h_N n n^T + h_T (I - n n^T), in any axes
+ * (the second is there, and not read, also in dimension 1) One bit each in masks of forms; a law serves those
+ * in its mask. */
+enum {
+  ILAW_DELASSUS_SCALAR = 1,
+  ILAW_DELASSUS_DIAGONAL = 2,
+  ILAW_DELASSUS_FULL = 4,
+  ILAW_DELASSUS_TRANSVERSE = 8,
+};
 
 /* Axes in which vectors and H are given. */
 enum {
@@ -99,11 +122,22 @@ enum { ILAW_OUTPUT_VELOCITY = 1 << 0, ILAW_OUTPUT_STATUS = 1 << 1, ILAW_OUTPUT_E
 enum {
   ILAW_CAN_ADHERE = 1 << 0,       /* r_N may be negative */
   ILAW_CAN_STORE_ENERGY = 1 << 1, /* the stored part of the energy may be other than zero */
-  /* Without it a node whose state is as initialise left it gets r = 0 and keeps that state, bit for bit,
-   * whenever gap > 0 and gap + position_step * v_free_N > 0: a host need not ask nodes that are surely out of
-   * reach. */
+  /* Without it a node whose state is as initialise left it gets r = 0 and keeps that state, bit for bit, when
+   * it is out of reach: a host need not ask it. */
   ILAW_CAN_ACT_AT_DISTANCE = 1 << 2,
+  /* A node whose last status was ILAW_FREE gets r = 0, the same status, and keeps its state, bit for bit,
+   * when it is out of reach, whatever came before: a host need not ask it until it comes near. */
+  ILAW_CAN_REST = 1 << 3,
 };
+
+/* Out of reach is what this says, in double precision and in this order of operations, each of them rounded
+ * (no fused multiply-add). Laws use the same expression, so law, promise and host agree to the last bit.
+ *
+ *   g = gap - gap_offset          (the gap itself without an offset)
+ *   v_N = v_free_0                in the local frame
+ *   v_N = (n_0 v_free_0 + n_1 v_free_1) + n_2 v_free_2     in the global frame
+ *   out of reach: g > 0 and g + position_step * v_N > 0
+ */
 
 /* Kind of a parameter. */
 enum {
@@ -130,9 +164,15 @@ enum {
   ILAW_STATE_HISTORY = 2, /* any number of doubles, meaningful to the law alone, in the local frame */
   ILAW_STATE_AXIS = 3, /* d doubles: a unit vector in the host's axes, the only kind that a host which turns
                           its whole model must turn too; found in the global frame without tangents only */
+  ILAW_STATE_TANGENTIAL = 4, /* d-1 doubles: a vector without normal component, in the local frame */
 };
 
-/* Status of a node after a step. */
+/* Flags of a state variable, a bit mask. */
+enum { ILAW_VARIABLE_INTERNAL = 1 << 0 }; /* the law's bookkeeping: not for pictures and tables */
+
+/* Status of a node after a step. ABI 1 has these eight for ever. A host that finds another number has a
+ * broken library before it: it takes the node as ILAW_BAD_INPUT, and never uses a status as an index
+ * unchecked. */
 enum {
   ILAW_FREE = 0,   /* no impulse */
   ILAW_CLOSED = 1, /* pushed, no friction */
@@ -145,9 +185,9 @@ enum {
   ILAW_STATUS_COUNT = 8,
 };
 
-/* Components of the energy output, per node and step. The work of the impulse over the step is
- * r.(v_previous + v)/2, exactly, in a central-difference host; the parts below are what becomes of it.
- * Dissipated parts are never negative. */
+/* Components of the energy output, per node and step; ABI 1 has these four for ever. The work of the impulse
+ * over the step is r.(v_previous + v)/2, exactly, in a central-difference host; the parts below are what
+ * becomes of it. Dissipated parts are never negative. */
 enum {
   ILAW_ENERGY_FRICTION = 0, /* dissipated by friction */
   ILAW_ENERGY_IMPACT = 1,   /* dissipated by impact */
@@ -185,7 +225,10 @@ typedef struct ilaw_state_variable {
   const char* name; /* lower case, digits, underscore */
   const char* unit;
   const char* doc;
-  uint64_t count; /* doubles: 1 for SCALAR, d for VECTOR and AXIS; known from the instance for HISTORY */
+  uint64_t count; /* doubles: 1 for SCALAR, d for VECTOR and AXIS, d-1 for TANGENTIAL; known from the instance
+                     for HISTORY */
+  uint32_t flags; /* ILAW_VARIABLE_* mask */
+  uint32_t reserved; /* 0 */
 } ilaw_state_variable;
 
 /* A parameter with its value, for create. */
@@ -202,11 +245,10 @@ typedef struct ilaw_argument {
 /* What an instance will be used for. */
 typedef struct ilaw_setup {
   uint32_t struct_size;
-  uint32_t dimension;     /* 1, 2 or 3 */
-  uint32_t delassus_form; /* one of ILAW_DELASSUS_*: the form every batch will have */
-  uint32_t frame;         /* ILAW_FRAME_*: the frame every batch will have */
-  double velocity_step;   /* smallest velocity step expected, > 0: sizes memories; a smaller one is served
-                             with coarser memory */
+  uint32_t dimension;                    /* 1, 2 or 3 */
+  uint32_t delassus_form;                /* one of ILAW_DELASSUS_*: the form every batch will have */
+  uint32_t frame;                        /* ILAW_FRAME_*: the frame every batch will have */
+  uint64_t flags;                        /* 0: none is defined in 1.0; an unknown bit is refused */
   const ilaw_argument* const* arguments; /* argument_count pointers; may be null when 0 */
   uint32_t argument_count;
   uint32_t tangent_given; /* 1: batches in the global frame will carry a tangent */
@@ -226,6 +268,11 @@ typedef struct ilaw_instance_info {
   const char* const* per_node_parameters; /* names of parameters given per node, in the order of the batch */
   uint32_t per_node_parameter_count;
   uint32_t capabilities; /* ILAW_CAN_* mask: what the law can do with these parameters */
+  /* Raised by the law whenever it would read a state of before in another way. A host keeps it beside every
+   * state that it stores, with library, law, parameters and state_size, and takes a state with another
+   * version for none. */
+  uint32_t state_version;
+  uint32_t reserved; /* 0 */
 } ilaw_instance_info;
 
 /* ---- batch -------------------------------------------------------------------------------------- */
@@ -239,7 +286,8 @@ typedef struct ilaw_input {
   int64_t component_stride;
 } ilaw_input;
 
-/* As ilaw_input, written to. A node stride of 0 is allowed only for a batch of one node. */
+/* As ilaw_input, written to. A node stride of 0 is allowed only for a batch of one node. Both have this size
+ * for ever. */
 typedef struct ilaw_output {
   double* values;
   int64_t node_stride;
@@ -250,45 +298,54 @@ typedef struct ilaw_output {
  * Outputs may not overlap inputs or each other, except that state_out may be state_in. */
 typedef struct ilaw_batch {
   uint32_t struct_size;
-  int32_t index_base;    /* first value of an index: 0 in C, 1 in Fortran */
-  int64_t node_count;    /* nodes to evaluate */
-  const int32_t* index;  /* null: nodes 0 .. node_count-1; else node index[k] - index_base for each k, each
-                            node once; only these are read and written */
-  double time;           /* t_{n+1}, of the configuration that the gaps belong to */
-  double velocity_step;  /* > 0: an impulse is a force times it */
-  double position_step;  /* > 0: a predicted gap is gap + position_step * v_N */
-  ilaw_input v_free;     /* d: velocity without interface, relative to the obstacle [m/s] */
-  ilaw_input delassus;   /* H, see ILAW_DELASSUS_* [1/kg]; symmetric positive definite */
-  ilaw_input gap;        /* 1: signed distance at time [m] */
-  ilaw_input gap_offset; /* 1, optional: subtracted from the gap (thickness, initial slack) [m] */
-  ilaw_input v_previous; /* d: half-step velocity before this step, relative to the obstacle [m/s] */
-  ilaw_input area;       /* 1: tributary area [m^2], >= 0 */
-  ilaw_input normal;     /* d, global frame: unit normal */
-  ilaw_input tangent;    /* d, global frame, optional: unit tangent, orthogonal to the normal; turns with the
-                            material. Without it history vectors are carried from normal to normal by the
-                            shortest rotation */
+  int32_t index_base;     /* first value of an index: 0 in C, 1 in Fortran */
+  uint64_t flags;         /* 0: none is defined in 1.0; an unknown bit is refused */
+  int64_t node_count;     /* nodes to evaluate */
+  const int32_t* index;   /* null: nodes 0 .. node_count-1; else node index[k] - index_base for each k, each
+                             node once, none below index_base; only these are read and written */
+  const int64_t* index64; /* the same in 64 bits, for hosts that have such lists; not both */
+  double time;            /* t_{n+1}, of the configuration that the gaps belong to */
+  double velocity_step;   /* > 0: an impulse is a force times it */
+  double position_step;   /* > 0: a predicted gap is gap + position_step * v_N */
+  ilaw_input v_free;      /* d: velocity without interface, relative to the obstacle [m/s] */
+  ilaw_input delassus;    /* H, see ILAW_DELASSUS_* [1/kg]; symmetric positive definite */
+  ilaw_input gap;         /* 1: signed distance at time [m] */
+  ilaw_input gap_offset;  /* 1, optional: subtracted from the gap (thickness, initial slack) [m] */
+  ilaw_input v_previous;  /* d: half-step velocity before this step, relative to the obstacle [m/s] */
+  ilaw_input area;        /* 1: tributary area [m^2], >= 0 */
+  ilaw_input normal;  /* d, global frame: unit normal, to 1e-6 of its squared length. A pair of bodies keeps
+                         its roles, and so the sense of its normal, for life */
+  ilaw_input tangent; /* d, global frame, optional: unit tangent, orthogonal to the normal, both to 1e-6;
+                         turns with the material. Without it history vectors are carried from normal to
+                         normal by the shortest rotation; by a half turn about the stored tangent where the
+                         normal has turned to its opposite */
   const ilaw_input* per_node_parameters; /* 1 each, as many as the instance info says; may be null when 0 */
   ilaw_input state_in;                   /* s */
   ilaw_output state_out;                 /* s; may be the array of state_in, with the same strides */
   ilaw_output impulse;                   /* d: r [N.s] */
   ilaw_output velocity;                  /* d, optional: v = v_free + H r [m/s] */
-  ilaw_output energy;                    /* ILAW_ENERGY_COUNT, optional [J] */
+  ilaw_output energy;                    /* four: ILAW_ENERGY_*, optional [J] */
   uint8_t* status;                       /* optional: ILAW_FREE ... per node, at status[i * status_stride] */
   int64_t status_stride;
 } ilaw_batch;
 
-/* What evaluate has to say besides its return code. The caller sets struct_size. */
+/* What evaluate and initialise have to say besides the return code. The caller sets struct_size and zeroes
+ * the rest. */
 typedef struct ilaw_report {
   uint32_t struct_size;
   uint32_t reserved;      /* 0 */
   int64_t bad_count;      /* nodes with bad input */
   int64_t first_bad_node; /* the node number (without index_base) of the first in the batch, -1 when none */
   const char* reason;     /* of that node, or why the call was refused; static text, null when none */
+  double stable_velocity_step; /* largest velocity_step at which the law, as a spring between the host's
+                                  masses, is stable at every good node of the batch (position_step being as
+                                  long as it): explicit codes take it into their step control. Infinity where
+                                  the law needs none; 0: the library did not say */
 } ilaw_report;
 
 /* ---- laws and libraries ------------------------------------------------------------------------- */
 
-/* One law. All function pointers are set. All functions may be called from any thread. */
+/* One law. All function pointers are set, but extension, which may be null. */
 typedef struct ilaw_law {
   uint32_t struct_size;
   uint32_t dimensions;           /* ILAW_DIMENSION_* mask */
@@ -307,29 +364,35 @@ typedef struct ilaw_law {
   uint32_t state_variable_count;
   uint32_t reserved; /* 0 */
 
-  /* Checks the setup and makes an instance. On failure *instance is null and message (message_size bytes,
-   * may be null when 0) says which parameter, its value and what is allowed.
-   * Returns ILAW_OK, ILAW_INVALID_ARGUMENT, ILAW_INVALID_PARAMETER, ILAW_UNSUPPORTED, ILAW_OUT_OF_MEMORY. */
+  /* [any-thread] Checks the setup and makes an instance. On failure *instance is null and message
+   * (message_size bytes, may be null when 0) says which parameter, its value and what is allowed. Returns
+   * ILAW_OK, ILAW_INVALID_ARGUMENT, ILAW_INVALID_PARAMETER, ILAW_UNSUPPORTED, ILAW_OUT_OF_MEMORY. */
   int32_t (*create)(const ilaw_setup* setup, ilaw_instance** instance, char* message, size_t message_size);
 
-  /* Ends an instance; null is allowed. No evaluate of this instance may be running. */
+  /* [exclusive] Ends an instance; null is allowed. */
   void (*destroy)(ilaw_instance* instance);
 
-  /* Fills info up to info->struct_size, which the caller sets. The pointers live as long as the instance.
-   * Returns ILAW_OK or ILAW_INVALID_ARGUMENT. */
+  /* [any-thread] Fills info up to info->struct_size, which the caller sets. The pointers live as long as the
+   * instance. Returns ILAW_OK or ILAW_INVALID_ARGUMENT. */
   int32_t (*info)(const ilaw_instance* instance, ilaw_instance_info* info);
 
-  /* Writes the initial state of the nodes of a batch: reads node_count, index, index_base, time, area and
-   * normal, tangent (as the instance needs them), per_node_parameters; writes state_out. The rest of the
-   * batch may be zero. Returns as evaluate. */
+  /* [any-thread] Writes the initial state of the nodes of a batch: reads flags, node_count, index or index64,
+   * index_base, time, area and normal, tangent (as the instance needs them), per_node_parameters; writes
+   * state_out. The rest of the batch may be zero. Returns as evaluate. */
   int32_t (*initialise)(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report);
 
-  /* One step of a batch; pure: no allocation, lock, I/O or global. The result at a node depends on that
-   * node's inputs and the scalars of the batch alone, bit for bit: not on the other nodes, their order,
-   * the layout, threads or the processor. A node with bad input gets r = 0, state_out = state_in, status
-   * ILAW_BAD_INPUT, energy 0 and velocity = v_free; the others are evaluated as ever.
-   * report may be null. Returns ILAW_OK, ILAW_BAD_NODES, or ILAW_INVALID_ARGUMENT with nothing written. */
+  /* [any-thread] One step of a batch; pure: no allocation, lock, I/O or global. The result at a node depends
+   * on that node's inputs and the scalars of the batch alone, bit for bit: not on the other nodes, their
+   * order, the layout, threads, the processor, or which outputs are asked for. A node with bad input, of
+   * which a state that the law cannot have written is one, gets r = 0, state_out = state_in, status
+   * ILAW_BAD_INPUT, energy 0 and velocity = v_free; the others are evaluated as ever. report may be null.
+   * Returns ILAW_OK, ILAW_BAD_NODES, or ILAW_INVALID_ARGUMENT or ILAW_UNSUPPORTED with nothing written. */
   int32_t (*evaluate)(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report);
+
+  /* [any-thread] What this law has under a name besides: a table of functions whose type the name stands for,
+   * as the extension's own header says, null where it has none. Names begin with their owner and end with a
+   * version: "ilaw.something/1" is ours, "acme.something/1" somebody else's. */
+  const void* (*extension)(const char* name);
 } ilaw_law;
 
 /* A library of laws. */
@@ -343,10 +406,11 @@ typedef struct ilaw_plugin {
   const char* licence; /* SPDX identifier where there is one */
   const ilaw_law* const* laws;
   uint32_t law_count;
-  uint32_t reserved; /* 0 */
+  uint32_t reserved;                          /* 0 */
+  const void* (*extension)(const char* name); /* [any-thread] as a law's, of the whole library; may be null */
 } ilaw_plugin;
 
-/* The exported function. Returns the same constant description at every call. */
+/* [any-thread] The exported function. Returns the same constant description at every call. */
 typedef const ilaw_plugin* (*ilaw_entry_function)(void);
 #ifdef ILAW_BUILDING_PLUGIN
 ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void);
@@ -354,6 +418,19 @@ ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void);
 
 /* ---- layout, pinned ------------------------------------------------------------------------------ */
 
+/* Size of each struct in version 1.0, the least that a reader accepts, by its last member of that version. */
+#define ILAW_SIZE_TO(type, member) (offsetof(type, member) + sizeof(((type*)0)->member))
+#define ILAW_PARAMETER_SIZE_1_0 ILAW_SIZE_TO(ilaw_parameter, reserved)
+#define ILAW_STATE_VARIABLE_SIZE_1_0 ILAW_SIZE_TO(ilaw_state_variable, reserved)
+#define ILAW_ARGUMENT_SIZE_1_0 ILAW_SIZE_TO(ilaw_argument, count)
+#define ILAW_SETUP_SIZE_1_0 ILAW_SIZE_TO(ilaw_setup, tangent_given)
+#define ILAW_INSTANCE_INFO_SIZE_1_0 ILAW_SIZE_TO(ilaw_instance_info, reserved)
+#define ILAW_BATCH_SIZE_1_0 ILAW_SIZE_TO(ilaw_batch, status_stride)
+#define ILAW_REPORT_SIZE_1_0 ILAW_SIZE_TO(ilaw_report, stable_velocity_step)
+#define ILAW_LAW_SIZE_1_0 ILAW_SIZE_TO(ilaw_law, extension)
+#define ILAW_PLUGIN_SIZE_1_0 ILAW_SIZE_TO(ilaw_plugin, extension)
+
+/* Sizes, and the place of every member that is shorter than 8 bytes: no other can slip into padding. */
 #if UINTPTR_MAX == UINT64_MAX
 #if defined(__cplusplus)
 #define ILAW_PIN(name, condition) static_assert(condition, #name)
@@ -362,22 +439,55 @@ ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void);
 #endif
 #define ILAW_PIN_OFFSET(type, member, offset) ILAW_PIN(type##_##member, offsetof(type, member) == (offset))
 
-ILAW_PIN(parameter_size, sizeof(ilaw_parameter) == 96);
-ILAW_PIN_OFFSET(ilaw_parameter, name, 8);
-ILAW_PIN_OFFSET(ilaw_parameter, minimum, 40);
+ILAW_PIN(parameter_size_1_0, ILAW_PARAMETER_SIZE_1_0 == 96);
+ILAW_PIN_OFFSET(ilaw_parameter, kind, 4);
 ILAW_PIN_OFFSET(ilaw_parameter, required, 64);
-ILAW_PIN_OFFSET(ilaw_parameter, choices, 80);
+ILAW_PIN_OFFSET(ilaw_parameter, minimum_excluded, 68);
+ILAW_PIN_OFFSET(ilaw_parameter, infinity_allowed, 72);
+ILAW_PIN_OFFSET(ilaw_parameter, may_be, 76);
 ILAW_PIN_OFFSET(ilaw_parameter, choice_count, 88);
-ILAW_PIN(state_variable_size, sizeof(ilaw_state_variable) == 40);
-ILAW_PIN(argument_size, sizeof(ilaw_argument) == 48);
-ILAW_PIN(setup_size, sizeof(ilaw_setup) == 40);
-ILAW_PIN(instance_info_size, sizeof(ilaw_instance_info) == 48);
+ILAW_PIN_OFFSET(ilaw_parameter, reserved, 92);
+ILAW_PIN(state_variable_size_1_0, ILAW_STATE_VARIABLE_SIZE_1_0 == 48);
+ILAW_PIN_OFFSET(ilaw_state_variable, kind, 4);
+ILAW_PIN_OFFSET(ilaw_state_variable, flags, 40);
+ILAW_PIN_OFFSET(ilaw_state_variable, reserved, 44);
+ILAW_PIN(argument_size_1_0, ILAW_ARGUMENT_SIZE_1_0 == 48);
+ILAW_PIN_OFFSET(ilaw_argument, kind, 4);
+ILAW_PIN(setup_size_1_0, ILAW_SETUP_SIZE_1_0 == 40);
+ILAW_PIN_OFFSET(ilaw_setup, dimension, 4);
+ILAW_PIN_OFFSET(ilaw_setup, delassus_form, 8);
+ILAW_PIN_OFFSET(ilaw_setup, frame, 12);
+ILAW_PIN_OFFSET(ilaw_setup, argument_count, 32);
+ILAW_PIN_OFFSET(ilaw_setup, tangent_given, 36);
+ILAW_PIN(instance_info_size_1_0, ILAW_INSTANCE_INFO_SIZE_1_0 == 56);
+ILAW_PIN_OFFSET(ilaw_instance_info, inputs, 4);
+ILAW_PIN_OFFSET(ilaw_instance_info, energy_inputs, 8);
+ILAW_PIN_OFFSET(ilaw_instance_info, state_variable_count, 12);
+ILAW_PIN_OFFSET(ilaw_instance_info, per_node_parameter_count, 40);
+ILAW_PIN_OFFSET(ilaw_instance_info, capabilities, 44);
+ILAW_PIN_OFFSET(ilaw_instance_info, state_version, 48);
+ILAW_PIN_OFFSET(ilaw_instance_info, reserved, 52);
+ILAW_PIN(batch_size_1_0, ILAW_BATCH_SIZE_1_0 == 400);
+ILAW_PIN_OFFSET(ilaw_batch, index_base, 4);
+ILAW_PIN(report_size_1_0, ILAW_REPORT_SIZE_1_0 == 40);
+ILAW_PIN_OFFSET(ilaw_report, reserved, 4);
+ILAW_PIN(law_size_1_0, ILAW_LAW_SIZE_1_0 == 136);
+ILAW_PIN_OFFSET(ilaw_law, dimensions, 4);
+ILAW_PIN_OFFSET(ilaw_law, delassus_forms, 8);
+ILAW_PIN_OFFSET(ilaw_law, inputs, 12);
+ILAW_PIN_OFFSET(ilaw_law, outputs, 16);
+ILAW_PIN_OFFSET(ilaw_law, capabilities, 20);
+ILAW_PIN_OFFSET(ilaw_law, reference_count, 72);
+ILAW_PIN_OFFSET(ilaw_law, parameter_count, 76);
+ILAW_PIN_OFFSET(ilaw_law, state_variable_count, 80);
+ILAW_PIN_OFFSET(ilaw_law, reserved, 84);
+ILAW_PIN(plugin_size_1_0, ILAW_PLUGIN_SIZE_1_0 == 64);
+ILAW_PIN_OFFSET(ilaw_plugin, abi_major, 4);
+ILAW_PIN_OFFSET(ilaw_plugin, abi_minor, 6);
+ILAW_PIN_OFFSET(ilaw_plugin, law_count, 48);
+ILAW_PIN_OFFSET(ilaw_plugin, reserved, 52);
 ILAW_PIN(input_size, sizeof(ilaw_input) == 24);
 ILAW_PIN(output_size, sizeof(ilaw_output) == 24);
-ILAW_PIN(batch_size, sizeof(ilaw_batch) == 384);
-ILAW_PIN(report_size, sizeof(ilaw_report) == 32);
-ILAW_PIN(law_size, sizeof(ilaw_law) == 128);
-ILAW_PIN(plugin_size, sizeof(ilaw_plugin) == 56);
 #endif
 
 #ifdef __cplusplus

@@ -5,16 +5,22 @@
  *
  * Search path for a library given by name ("contact" -> "contact.so"), first match wins:
  *   1. the folders of the environment variable ILAW_PATH, separated by ':' (empty and relative entries
- *      are skipped),
- *   2. the installed folder: lib/ilaw beside the bin/ of the running program, then the folder fixed when
- *      the loader was built.
- * A text with a '/' in it is an explicit path; anything else is a name.
+ *      are skipped; the variable is not read in a set-uid program),
+ *   2. the installed folder: lib/ilaw beside the bin/ of the running program (not in a set-uid program),
+ *      then the folder fixed when the loader was built.
+ * A folder that every user may write to is not searched; the message of an opening that fails says so.
+ * A text with a '/' in it is an explicit path; anything else is a name: letters, digits, '_', '-', '+', '.',
+ * the first not '.'. A host that has names from an input file opens them by ilaw_library_open_named.
  *
- * Threading: all functions may be called from any thread; one object is not to be closed while in use.
+ * Threads: all functions are [any-thread] as ilaw.h says it: from any thread, at the same time as any other
+ * call; but one object is not to be closed or destroyed while another call uses it.
  * Ownership: a library stays loaded until it was closed as often as opened, and every interface
- * created from it is destroyed.
+ * created from it is destroyed. Objects may outlive main: nothing of the loader ends before them.
  * Errors: functions return an ILAW_* code of ilaw.h; message (message_size bytes, may be null when 0)
- * receives one line: which file, what was found, what was expected.
+ * receives one line: which file, what was found, what was expected. No function throws or prints.
+ * Versions: hosts and libraries of other minor versions work together. What ilaw_library_plugin,
+ * ilaw_library_law, ilaw_interface_law and ilaw_interface_info give is a checked copy, with zeros where the
+ * library had no member yet, of at least the size that the loader was built with.
  *
  * SPDX-License-Identifier: BSD-3-Clause
  */
@@ -25,6 +31,9 @@
 
 #ifdef __cplusplus
 extern "C" {
+#endif
+#if defined(ILAW_BUILDING_SHARED_LOADER)
+#pragma GCC visibility push(default)
 #endif
 
 /* An opened and checked library. */
@@ -37,6 +46,10 @@ typedef struct ilaw_interface ilaw_interface;
  * Returns ILAW_OK, ILAW_INVALID_ARGUMENT, ILAW_NOT_FOUND, ILAW_BAD_LIBRARY, ILAW_OUT_OF_MEMORY. */
 int32_t ilaw_library_open(const char* name_or_path, ilaw_library** library, char* message,
                           size_t message_size);
+
+/* As ilaw_library_open, along the search path alone: a text that is no name, "../evil" or "/tmp/evil.so", is
+ * ILAW_NOT_FOUND. For names that come from an input file. */
+int32_t ilaw_library_open_named(const char* name, ilaw_library** library, char* message, size_t message_size);
 
 /* Gives back one opening; null is allowed. */
 void ilaw_library_close(ilaw_library* library);
@@ -65,7 +78,8 @@ const ilaw_law* ilaw_interface_law(const ilaw_interface* interface);
 const ilaw_instance* ilaw_interface_instance(const ilaw_interface* interface);
 
 /* The law's info, initialise and evaluate (ilaw.h), for hosts that would rather not call through
- * function pointers (Fortran). */
+ * function pointers (Fortran). All that follows struct_size in info and report is zero before the library
+ * writes to it. */
 int32_t ilaw_interface_info(const ilaw_interface* interface, ilaw_instance_info* info);
 int32_t ilaw_interface_initialise(const ilaw_interface* interface, const ilaw_batch* batch,
                                   ilaw_report* report);
@@ -74,12 +88,15 @@ int32_t ilaw_interface_evaluate(const ilaw_interface* interface, const ilaw_batc
 
 /* Calls visit(path, context) for every file *.so of the search path, in search order, files that an
  * earlier folder hides left out. Opens none of them. Stops early when visit returns non-zero, and
- * returns that value. */
+ * returns that value; ILAW_OUT_OF_MEMORY where memory runs out. */
 int32_t ilaw_search(int32_t (*visit)(const char* path, void* context), void* context);
 
 /* The folders searched, separated by ':', written to buffer (cut at size); returns the length needed. */
 size_t ilaw_search_path(char* buffer, size_t size);
 
+#if defined(ILAW_BUILDING_SHARED_LOADER)
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

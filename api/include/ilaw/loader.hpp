@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,13 +27,9 @@ class error : public std::runtime_error {
 class library {
  public:
   // By name along the search path, or by explicit path; see loader.h.
-  explicit library(const std::string& name_or_path) {
-    char message[1024];
-    ilaw_library* opened = nullptr;
-    const std::int32_t code = ilaw_library_open(name_or_path.c_str(), &opened, message, sizeof message);
-    if (code != ILAW_OK) throw error(code, message);
-    handle_.reset(opened);
-  }
+  explicit library(const std::string& name_or_path) : library(ilaw_library_open, name_or_path) {}
+  // By name alone, for names from an input file.
+  static library named(const std::string& name) { return {ilaw_library_open_named, name}; }
 
   std::string path() const { return ilaw_library_path(handle_.get()); }
   const ilaw_plugin& plugin() const { return *ilaw_library_plugin(handle_.get()); }
@@ -44,6 +41,13 @@ class library {
   struct closer {
     void operator()(ilaw_library* library) const { ilaw_library_close(library); }
   };
+  library(std::int32_t (*open)(const char*, ilaw_library**, char*, std::size_t), const std::string& text) {
+    char message[1024];
+    ilaw_library* opened = nullptr;
+    const std::int32_t code = open(text.c_str(), &opened, message, sizeof message);
+    if (code != ILAW_OK) throw error(code, message);
+    handle_.reset(opened);
+  }
   std::unique_ptr<ilaw_library, closer> handle_;
 };
 
@@ -66,7 +70,8 @@ class interface {
   ilaw_instance_info info() const {
     ilaw_instance_info info{};
     info.struct_size = sizeof info;
-    ilaw_interface_info(handle_.get(), &info);
+    const std::int32_t code = ilaw_interface_info(handle_.get(), &info);
+    if (code != ILAW_OK) throw error(code, "info refuses its own instance");
     return info;
   }
 
@@ -88,12 +93,17 @@ class interface {
 // All *.so files of the search path; none is opened.
 inline std::vector<std::string> search() {
   std::vector<std::string> files;
-  ilaw_search(
+  const std::int32_t code = ilaw_search(
       [](const char* path, void* context) -> std::int32_t {
-        static_cast<std::vector<std::string>*>(context)->emplace_back(path);
+        try {
+          static_cast<std::vector<std::string>*>(context)->emplace_back(path);
+        } catch (const std::bad_alloc&) {  // not through C
+          return ILAW_OUT_OF_MEMORY;
+        }
         return 0;
       },
       &files);
+  if (code != 0) throw std::bad_alloc();
   return files;
 }
 
@@ -101,7 +111,7 @@ inline std::vector<std::string> search() {
 inline std::string search_path() {
   std::string text(ilaw_search_path(nullptr, 0), '\0');
   ilaw_search_path(text.data(), text.size());
-  text.pop_back();
+  if (!text.empty()) text.pop_back();  // the zero at its end
   return text;
 }
 

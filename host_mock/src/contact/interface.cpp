@@ -43,12 +43,12 @@ bool carries_axes(const ilaw_instance_info& info) {
 
 }  // namespace
 
-Interface::Interface(InterfaceSetup setup, const Model& model, double dt)
+Interface::Interface(InterfaceSetup setup, const Model& model)
     : setup_(std::move(setup)),
       model_(model),
       dimension_(model.dimension()),
       library_(setup_.library),
-      interface_(create_law(setup_.law, setup_.arguments, setup_.tangent, library_, dimension_, dt)),
+      interface_(create_law(setup_.law, setup_.arguments, setup_.tangent, library_, dimension_)),
       info_(interface_.info()),
       contact_index_of_(setup_.nodes.size(), -1),
       obstacle_velocity_(Vector::Zero(dimension_)),

@@ -51,7 +51,7 @@ struct Residual {
 class Interface {
  public:
   // Loads the library and creates the law; throws ilaw::error with the loader's or the law's message.
-  Interface(InterfaceSetup setup, const Model& model, double dt);
+  Interface(InterfaceSetup setup, const Model& model);
 
   const std::string& name() const { return setup_.name; }
   const InterfaceSetup& setup() const { return setup_; }

@@ -79,14 +79,13 @@ void try_create(const ilaw_law& law, const ilaw_setup& setup) {
 }  // namespace
 
 ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
-                           const ilaw::library& library, int dimension, double dt) {
+                           const ilaw::library& library, int dimension) {
   ArgumentList arguments(given);
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
   setup.dimension = static_cast<std::uint32_t>(dimension);
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
   setup.frame = ILAW_FRAME_GLOBAL;
-  setup.velocity_step = dt;
   setup.tangent_given = tangent.size() > 0 ? 1 : 0;
   setup.arguments = arguments.pointers().data();
   setup.argument_count = static_cast<std::uint32_t>(arguments.pointers().size());

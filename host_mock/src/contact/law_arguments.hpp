@@ -40,6 +40,6 @@ class ParameterError : public ilaw::error {
 // Creates the law for nodes with spherical H and global axes; tangent is empty where none is given. Throws
 // ParameterError, also about values per node, or ilaw::error, with the law's message.
 ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
-                           const ilaw::library& library, int dimension, double dt);
+                           const ilaw::library& library, int dimension);
 
 }  // namespace ilaw::host

@@ -325,7 +325,7 @@ std::unique_ptr<Interface> read_interface(const json& interface, std::size_t num
   setup.gap_offset = interface.value("gap_offset", 0.0);
   setup.keeps_all_active = !interface.value("skip", true);
   try {
-    auto made = std::make_unique<Interface>(std::move(setup), *scene.model, scene.dt);
+    auto made = std::make_unique<Interface>(std::move(setup), *scene.model);
     refuse_prescribed(*made, scene.loads, pointer + "/nodes");
     return made;
   } catch (const ParameterError& error) {

@@ -49,7 +49,6 @@ void expect_works(const std::string& file) {
   setup.struct_size = sizeof setup;
   setup.dimension = 3;
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.velocity_step = 0.01;
   setup.arguments = arguments;
   setup.argument_count = 1;
   const ilaw::interface law(library, "viscous", setup);

@@ -188,7 +188,7 @@ TEST(CohesiveProperties, RememberedSlipTurnsWithTheNormal) {
   const double step = 0.05;
   Bond local(p, step, 1.0, 1.0);
   const ilaw::interface global =
-      make_law("cohesive", SetupBuilder(p, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, step));
+      make_law("cohesive", SetupBuilder(p, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL));
   std::vector<double> state(global.info().state_size);
   Vector normal{1, 0, 0}, free{}, impulse{};
   ilaw_batch b = local.batch();

@@ -171,7 +171,7 @@ TEST(CoulombAnyH, AnEllipseNeedsTangents) {
     EXPECT_NE(std::string(error.what()).find("tell the two tangential axes apart"), std::string::npos)
         << error.what();
   }
-  make_law("coulomb", SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, 1e-3, true));
+  make_law("coulomb", SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, true));
 }
 
 // mu(v) = mu_k + (mu - mu_k) exp(-decay |v_T|), at the velocity before the step.

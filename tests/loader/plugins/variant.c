@@ -10,14 +10,61 @@ struct ilaw_instance {
   int unused;
 };
 
+static int instances; /* that live */
+
 static int32_t create(const ilaw_setup* setup, ilaw_instance** instance, char* message, size_t message_size) {
   (void)setup;
   if (message_size > 0) message[0] = '\0';
+#ifdef VARIANT_ODD_CODE
+  *instance = NULL;
+  return 57;
+#elif defined(VARIANT_ODD_MESSAGE)
+  *instance = NULL;
+  strncpy(message, "wrong \033[2J\xff", message_size);
+  return ILAW_INVALID_PARAMETER;
+#else
   *instance = malloc(sizeof **instance);
-  return *instance ? ILAW_OK : ILAW_OUT_OF_MEMORY;
+  if (!*instance) return ILAW_OUT_OF_MEMORY;
+  ++instances;
+  return ILAW_OK;
+#endif
 }
 
-static void destroy(ilaw_instance* instance) { free(instance); }
+static void destroy(ilaw_instance* instance) {
+  if (instance) --instances;
+  free(instance);
+}
+
+static const void* extension(const char* name) {
+  return strcmp(name, "tests.instances/1") == 0 ? &instances : NULL;
+}
+
+/* What an instance says wrong of its state and its parameters. */
+#if defined(VARIANT_WRAPPING_STATE)
+static const ilaw_state_variable first = {sizeof first, ILAW_STATE_HISTORY, "first", "1",
+                                          "",           UINT64_MAX - 1,     0,       0};
+#define STATE_SIZE 1
+#elif defined(VARIANT_HUGE_STATE)
+static const ilaw_state_variable first = {sizeof first, ILAW_STATE_HISTORY, "first", "1",
+                                          "",           (uint64_t)1 << 40,  0,       0};
+#define STATE_SIZE (((uint64_t)1 << 40) + 3)
+#elif defined(VARIANT_WRONG_COUNT)
+static const ilaw_state_variable first = {sizeof first, ILAW_STATE_SCALAR, "first", "1", "", 2, 0, 0};
+#define STATE_SIZE 5
+#elif defined(VARIANT_WRONG_KIND)
+static const ilaw_state_variable first = {sizeof first, 77, "first", "1", "", 1, 0, 0};
+#define STATE_SIZE 4
+#elif defined(VARIANT_WRONG_FLAGS)
+static const ilaw_state_variable first = {sizeof first, ILAW_STATE_SCALAR, "first", "1", "", 1, 256, 0};
+#define STATE_SIZE 4
+#endif
+#ifdef STATE_SIZE
+static const ilaw_state_variable second = {sizeof second, ILAW_STATE_HISTORY, "second", "1", "", 3, 0, 0};
+static const ilaw_state_variable* const state_variables[] = {&first, &second};
+#endif
+#ifdef VARIANT_WRONG_PER_NODE
+static const char* const per_node[] = {"strength"};
+#endif
 
 static int32_t info(const ilaw_instance* instance, ilaw_instance_info* out) {
   const uint32_t size = out->struct_size;
@@ -27,7 +74,26 @@ static int32_t info(const ilaw_instance* instance, ilaw_instance_info* out) {
 #ifdef VARIANT_WRONG_STATE_SIZE
   out->state_size = 3;
 #endif
+#ifdef STATE_SIZE
+  out->state_variables = state_variables;
+  out->state_variable_count = 2;
+  out->state_size = STATE_SIZE;
+#endif
+#ifdef VARIANT_WRONG_PER_NODE
+  out->per_node_parameters = per_node;
+  out->per_node_parameter_count = 1;
+#endif
+#ifdef VARIANT_UNKNOWN_INPUT
+  out->inputs = 1u << 20;
+#endif
+#ifdef VARIANT_UNKNOWN_CAPABILITY
+  out->capabilities = 1u << 20;
+#endif
+#ifdef VARIANT_REFUSED_INFO
+  return ILAW_INVALID_ARGUMENT;
+#else
   return ILAW_OK;
+#endif
 }
 
 static int32_t nothing(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report) {
@@ -89,6 +155,12 @@ typedef struct newer_law {
 #define TITLE ((const char*)16)
 #elif defined(VARIANT_NULL_TITLE)
 #define TITLE NULL
+#elif defined(VARIANT_CONTROL_TEXT)
+#define TITLE "No\033[2Jthing"
+#elif defined(VARIANT_NO_UTF8)
+#define TITLE "caf\xe9"
+#elif defined(VARIANT_OVERLONG_UTF8)
+#define TITLE "\xc0\xaf"
 #else
 #define TITLE "Nothing"
 #endif
@@ -128,7 +200,8 @@ static const newer_law zero = {{LAW_SIZE,
                                 destroy,
                                 info,
                                 nothing,
-                                EVALUATE},
+                                EVALUATE,
+                                extension},
                                1.0};
 
 static const ilaw_law* const laws[] = {&zero.law, &zero.law};
@@ -152,7 +225,7 @@ static const ilaw_plugin plugin = {
 #else
     1,
 #endif
-    0};
+    0,     NULL};
 
 #ifdef VARIANT_OTHER_MAJOR_SYMBOL
 ILAW_EXPORT const ilaw_plugin* ilaw_plugin_v2(void);

@@ -36,8 +36,9 @@ contact_condition contact_at(const Node& node, double restitution, double activa
   const double arrival = -positive_part(node.gap) * rate;
   const double predicted = rebound > 0.0 ? rebound : arrival;
   const bool predicts = activation == predictive;
-  return contact_leaving_at(predicts ? predicted : rebound, predicts ? node.v_free.n - arrival : node.gap,
-                            node.v_free.n, node.v_previous.n);
+  const double ahead = node.gap > 0.0 ? next_gap(node) : node.v_free.n;
+  return contact_leaving_at(predicts ? predicted : rebound, predicts ? ahead : node.gap, node.v_free.n,
+                            node.v_previous.n);
 }
 
 }  // namespace ilaw::kit

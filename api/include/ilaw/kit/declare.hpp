@@ -9,6 +9,9 @@
 //   static constexpr state_variable state_variables[];    in the order of struct state
 //   std::uint32_t inputs() const;                         what these parameters read (default: card.inputs)
 //   std::uint32_t capabilities() const;                   what these parameters can do (default: the card's)
+//   template <class Node> double stable_velocity_step(const Node&) const   if it limits the step: by how much
+//   at
+//                                                         this node, whatever its state; see ilaw_report
 //   template <class Run> void in_form(Run) const;         calls it with a struct whose step gives the same
 //                                                         bits without what these parameters turn off
 //   const char* conflict() const;                         why parameters do not go together, or null
@@ -45,6 +48,7 @@ struct law_card {
   std::uint32_t delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL;
   std::uint32_t inputs = reads_gap;
   std::uint32_t capabilities = 0;
+  std::uint32_t state_version = 1;  // to be raised with every change of what a state means
   // Whether step names t1 or t2. One that does not works on projected_vector too, which spares the host's
   // axes a tangent per node.
   bool names_tangents = true;
@@ -74,6 +78,27 @@ struct state_variable {
   const char* unit = "1";
   const char* doc = "";
   std::uint32_t kind = ILAW_STATE_SCALAR;
+  bool internal = false;  // bookkeeping, not for pictures
+  // What a scalar can be; a host's state with anything else is bad input. All are finite.
+  double minimum = -std::numeric_limits<double>::max();
+  double maximum = std::numeric_limits<double>::max();
+  bool whole = false;
+
+  constexpr int doubles() const {  // in struct state
+    return kind == ILAW_STATE_VECTOR ? 3 : (kind == ILAW_STATE_TANGENTIAL ? 2 : 1);
+  }
+  constexpr int components(int dimension) const {  // in the host's state
+    if (kind == ILAW_STATE_TANGENTIAL) return dimension - 1;
+    return kind == ILAW_STATE_VECTOR ? dimension : 1;
+  }
+  constexpr bool has_range() const {
+    return whole || minimum > -std::numeric_limits<double>::max() ||
+           maximum < std::numeric_limits<double>::max();
+  }
+  bool may_be(double value) const {
+    const bool inside = (value >= minimum) & (value <= maximum);
+    return whole ? inside & is_whole(value) : inside;
+  }
 };
 
 template <class Law>
@@ -84,6 +109,15 @@ template <class Law>
 concept has_history = requires {
   Law::history_variable;
 };
+
+// Whether a law remembers directions, which turn with the frame.
+template <class Law>
+constexpr bool has_vector_state() {
+  if constexpr (has_state<Law>)
+    for (const state_variable& v : Law::state_variables)
+      if (v.kind != ILAW_STATE_SCALAR) return true;
+  return false;
+}
 
 namespace detail {
 
@@ -101,7 +135,13 @@ struct state_of<Law> {
 template <class Law>
 using state_t = typename detail::state_of<Law>::type;
 
-// Doubles in struct state, vectors counted as three.
+// Whether a law says which steps it is stable at.
+template <class Law>
+concept limits_step = requires(const Law& law, const node<scalar_delassus, state_t<Law>>& n) {
+  law.stable_velocity_step(n);
+};
+
+// Doubles in struct state, vectors counted as three, tangential ones as two.
 template <class Law>
 inline constexpr int state_doubles = has_state<Law> ? static_cast<int>(sizeof(state_t<Law>) / sizeof(double))
                                                     : 0;
@@ -155,7 +195,9 @@ constexpr ilaw_state_variable abi_state_variable(const state_variable& v, std::u
           .name = v.name,
           .unit = v.unit,
           .doc = v.doc,
-          .count = count};
+          .count = count,
+          .flags = v.internal ? std::uint32_t{ILAW_VARIABLE_INTERNAL} : 0U,
+          .reserved = 0};
 }
 
 template <class Law>
@@ -169,12 +211,12 @@ inline constexpr std::size_t state_variable_count = declared_state_variables<Law
                                                     (has_history<Law> ? 1 : 0);
 
 template <class Law>
-constexpr auto abi_state_variables(std::uint64_t dimension, std::uint64_t history_size) {
+constexpr auto abi_state_variables(int dimension, std::uint64_t history_size) {
   std::array<ilaw_state_variable, state_variable_count<Law>> result{};
   std::size_t i = 0;
   if constexpr (has_state<Law>)
     for (const state_variable& v : Law::state_variables)
-      result[i++] = abi_state_variable(v, v.kind == ILAW_STATE_VECTOR ? dimension : 1);
+      result[i++] = abi_state_variable(v, static_cast<std::uint64_t>(v.components(dimension)));
   if constexpr (has_history<Law>) result[i] = abi_state_variable(Law::history_variable, history_size);
   return result;
 }

@@ -44,7 +44,8 @@ inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .destroy = destroy<Law>,
                                   .info = info<Law>,
                                   .initialise = initialise<Law>,
-                                  .evaluate = evaluate<Law>};
+                                  .evaluate = evaluate<Law>,
+                                  .extension = nullptr};
 
 // The description of a library with these laws.
 template <class... Laws>
@@ -61,7 +62,8 @@ class library {
                                     .licence = licence,
                                     .laws = pointers.data(),
                                     .law_count = sizeof...(Laws),
-                                    .reserved = 0};
+                                    .reserved = 0,
+                                    .extension = nullptr};
     return &plugin;
   }
 

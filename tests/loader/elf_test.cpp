@@ -1,0 +1,109 @@
+// Files that are almost law libraries: dlopen would die of what is wrong with them, so it is not asked.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ilaw/loader.hpp>
+
+#include <elf.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Bytes = std::vector<char>;
+
+Bytes whole_library() {
+  std::ifstream file(ILAW_TEST_PLUGINS "/good.so", std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+template <class Entry>
+Entry& entry_at(Bytes& bytes, std::uint64_t offset) {
+  return *reinterpret_cast<Entry*>(bytes.data() + offset);  // tables of ELF are aligned
+}
+
+Elf64_Ehdr& header(Bytes& bytes) { return entry_at<Elf64_Ehdr>(bytes, 0); }
+
+Elf64_Phdr& segment(Bytes& bytes, Elf64_Word type) {
+  for (std::uint64_t i = 0; i < header(bytes).e_phnum; ++i) {
+    auto& found = entry_at<Elf64_Phdr>(bytes, header(bytes).e_phoff + i * sizeof(Elf64_Phdr));
+    if (found.p_type == type) return found;
+  }
+  throw std::runtime_error("no such segment");
+}
+
+Elf64_Dyn& dynamic(Bytes& bytes, Elf64_Sxword tag) {
+  for (std::uint64_t at = segment(bytes, PT_DYNAMIC).p_offset;; at += sizeof(Elf64_Dyn)) {
+    auto& found = entry_at<Elf64_Dyn>(bytes, at);
+    if (found.d_tag == tag) return found;
+    if (found.d_tag == DT_NULL) throw std::runtime_error("no such entry");
+  }
+}
+
+// The code and message of opening those bytes, in a process of its own: some make the loader die.
+std::string answer_to(const Bytes& bytes) {
+  const std::string path = testing::TempDir() + "ilaw_elf_" + std::to_string(getpid()) + ".so";
+  std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  FILE* pipe = popen((ILAW_HOSTS "/search_host " + path + " 2>&1; echo status $?").c_str(), "r");
+  std::string text;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+  pclose(pipe);
+  unlink(path.c_str());
+  return text;
+}
+
+TEST(ElfFile, WholeOneIsOpened) { EXPECT_EQ(answer_to(whole_library()), "0\nstatus 0\n"); }
+
+struct Damage {
+  const char* name;
+  std::function<void(Bytes&)> done;
+
+  friend void PrintTo(const Damage& damage, std::ostream* out) { *out << damage.name; }
+};
+
+class DamagedElfFile : public testing::TestWithParam<Damage> {};
+
+TEST_P(DamagedElfFile, IsRefused) {
+  Bytes bytes = whole_library();
+  GetParam().done(bytes);
+  EXPECT_EQ(answer_to(bytes), std::to_string(ILAW_BAD_LIBRARY) + "\nstatus 0\n");
+}
+
+constexpr std::uint64_t nowhere = 0x7000000000;
+
+INSTANTIATE_TEST_SUITE_P(
+    Loader, DamagedElfFile,
+    testing::Values(
+        Damage{"BigEndian", [](Bytes& b) { b[EI_DATA] = ELFDATA2MSB; }},
+        Damage{"OtherVersion", [](Bytes& b) { header(b).e_version = 7; }},
+        Damage{"WrappingHeaders", [](Bytes& b) { header(b).e_phoff = UINT64_MAX - 55; }},
+        Damage{"NothingToLoad",
+               [](Bytes& b) {
+                 for (std::uint64_t i = 0; i < header(b).e_phnum; ++i) {
+                   auto& s = entry_at<Elf64_Phdr>(b, header(b).e_phoff + i * sizeof(Elf64_Phdr));
+                   if (s.p_type == PT_LOAD) s.p_type = PT_NULL;
+                 }
+               }},
+        Damage{"NoDynamicSegment", [](Bytes& b) { segment(b, PT_DYNAMIC).p_type = PT_NULL; }},
+        Damage{"DynamicSegmentElsewhere", [](Bytes& b) { segment(b, PT_DYNAMIC).p_vaddr = nowhere; }},
+        Damage{"HugeSegment", [](Bytes& b) { segment(b, PT_LOAD).p_memsz = UINT64_MAX / 2; }},
+        Damage{"SegmentLessThanItsFile", [](Bytes& b) { segment(b, PT_LOAD).p_memsz = 8; }},
+        Damage{"SegmentFarAway", [](Bytes& b) { segment(b, PT_LOAD).p_vaddr = nowhere << 12; }},
+        Damage{"OddAlignment", [](Bytes& b) { segment(b, PT_LOAD).p_align = 12288; }},
+        Damage{"NamesElsewhere", [](Bytes& b) { dynamic(b, DT_STRTAB).d_un.d_ptr = nowhere; }},
+        Damage{"SymbolsElsewhere", [](Bytes& b) { dynamic(b, DT_SYMTAB).d_un.d_ptr = nowhere; }},
+        Damage{"HashesElsewhere", [](Bytes& b) { dynamic(b, DT_GNU_HASH).d_un.d_ptr = nowhere; }},
+        Damage{"RelocationsElsewhere", [](Bytes& b) { dynamic(b, DT_RELA).d_un.d_ptr = nowhere; }},
+        Damage{"RelocationsWithoutEnd", [](Bytes& b) { dynamic(b, DT_RELASZ).d_un.d_val = 1 << 30; }},
+        Damage{"InitialiserElsewhere", [](Bytes& b) { dynamic(b, DT_INIT).d_un.d_ptr = nowhere; }},
+        Damage{"NeededNameElsewhere", [](Bytes& b) { dynamic(b, DT_NEEDED).d_un.d_val = 1 << 30; }},
+        Damage{"NoHashes", [](Bytes& b) { dynamic(b, DT_GNU_HASH).d_tag = DT_DEBUG; }}),
+    [](const auto& drawn) { return drawn.param.name; });
+
+}  // namespace

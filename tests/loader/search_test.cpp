@@ -1,0 +1,109 @@
+// Where libraries are looked for, and where never.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ilaw/loader.hpp>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Searched : public testing::Test {
+ protected:
+  Searched() {
+    std::string name = (fs::temp_directory_path() / "ilaw_search_XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
+    folder = name;
+    fs::permissions(folder, fs::perms(0755));
+    fs::create_directory(folder / "in");
+    fs::copy_file(ILAW_TEST_PLUGINS "/good.so", folder / "in" / "here.so");
+    fs::copy_file(ILAW_TEST_PLUGINS "/good.so", folder / "evil.so");
+    setenv("ILAW_PATH", (folder / "in").c_str(), 1);
+  }
+  ~Searched() override {
+    unsetenv("ILAW_PATH");
+    fs::remove_all(folder);
+  }
+
+  static std::string refusal_of(const std::string& name) {
+    try {
+      const ilaw::library library = ilaw::library::named(name);
+      return "";
+    } catch (const ilaw::error& error) {
+      EXPECT_EQ(error.code(), ILAW_NOT_FOUND) << error.what();
+      return error.what();
+    }
+  }
+
+  fs::path folder;
+};
+
+TEST_F(Searched, NameOfAnInputFileIsNeverAPath) {
+  EXPECT_EQ(refusal_of("here"), "");
+  EXPECT_EQ(refusal_of("here.so"), "");
+  for (const std::string& name : {std::string("../evil"), std::string("../evil.so"), std::string("./here"),
+                                  (folder / "evil.so").string(), std::string("in/../here"), std::string(".."),
+                                  std::string(".here"), std::string("he\nre"), std::string("here\x1b[2J")})
+    EXPECT_NE(refusal_of(name).find("is no name of a library"), std::string::npos) << name;
+}
+
+TEST_F(Searched, NamesWithOddLettersAreRefusedInEveryWay) {
+  EXPECT_THROW(ilaw::library("he re"), ilaw::error);
+  EXPECT_THROW(ilaw::library(".."), ilaw::error);
+}
+
+TEST_F(Searched, FolderThatEverybodyMayWriteToIsLeftOutAndNamed) {
+  fs::permissions(folder / "in", fs::perms(0777));
+  EXPECT_NE(
+      refusal_of("here").find("not searched, since every user may write there: " + (folder / "in").string()),
+      std::string::npos)
+      << refusal_of("here");
+  EXPECT_EQ(ilaw::search_path().find(folder.string()), std::string::npos);
+  for (const std::string& file : ilaw::search())
+    EXPECT_EQ(file.find(folder.string()), std::string::npos) << file;
+  EXPECT_NO_THROW(
+      ilaw::library((folder / "in" / "here.so").string()));  // an explicit path is the user's word
+}
+
+std::string output_of(const std::string& command) {
+  FILE* pipe = popen(command.c_str(), "r");
+  std::string text;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+  pclose(pipe);
+  return text;
+}
+
+TEST_F(Searched, SetUidProgramReadsNoEnvironmentAndLooksNotBesideItself) {
+  EXPECT_NE(output_of(ILAW_HOSTS "/search_host").find(folder.string()), std::string::npos);
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give a program away";
+  const fs::path program = folder / "bin" / "search_host";
+  fs::create_directory(folder / "bin");
+  fs::copy_file(ILAW_HOSTS "/search_host", program);
+  constexpr uid_t somebody = 12345;
+  ASSERT_EQ(chown(program.c_str(), somebody, somebody), 0);
+  EXPECT_NE(output_of(program.string()).find((folder / "lib" / "ilaw").string()), std::string::npos);
+  ASSERT_EQ(chmod(program.c_str(), 04755), 0);
+  EXPECT_EQ(output_of(program.string()).find(folder.string()), std::string::npos)
+      << output_of(program.string());
+}
+
+TEST_F(Searched, SharedLoaderSearchesTheSame) {
+  EXPECT_EQ(output_of(ILAW_HOSTS "/search_host_shared"), output_of(ILAW_HOSTS "/search_host"));
+  EXPECT_EQ(output_of(ILAW_HOSTS "/search_host_shared here"), "0\n");
+}
+
+// Its interface outlives main, and with it whatever the loader has. Freed memory reads as rubbish.
+TEST(LateHost, EndsWell) {
+  EXPECT_EQ(output_of("MALLOC_PERTURB_=165 " ILAW_HOSTS "/late_host " ILAW_TEST_PLUGINS
+                      "/good.so zero 2>&1; echo $?"),
+            "ended\n0\n");
+}
+
+}  // namespace

@@ -1,0 +1,52 @@
+// Laws give the same bits in hosts of every sort: compiled with -ffast-math, trapping floating-point
+// exceptions, with another rounding mode, threaded, with libraries loaded twice, globally, or again.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+#include <array>
+#include <cstdio>
+#include <sstream>
+#include <string>
+
+namespace {
+
+// What the host prints, and how it ended where not well.
+std::string digest_of(const std::string& host, const std::string& mode) {
+  std::string command = std::string(ILAW_HOSTS) + "/" + host + " " + mode;
+  std::istringstream laws(ILAW_ALL_LAWS);
+  for (std::string law; laws >> law;)
+    command += " " ILAW_PLUGIN_FOLDER "/" + law + ".so";
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::string text;
+  std::array<char, 256> line;
+  while (std::fgets(line.data(), line.size(), pipe)) text += line.data();
+  const int status = pclose(pipe);
+  if (status != 0)
+    text += "(status " + std::to_string(WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status)) + ")";
+  return text;
+}
+
+class UnusualHost : public testing::TestWithParam<const char*> {
+ protected:
+  static const std::string& plain() {
+    static const std::string digest = digest_of("unusual_host", "plain");
+    return digest;
+  }
+};
+
+TEST_P(UnusualHost, GetsTheSameBits) {
+  ASSERT_EQ(plain().size(), 17U) << plain();
+  EXPECT_EQ(digest_of("unusual_host", GetParam()), plain());
+}
+
+INSTANTIATE_TEST_SUITE_P(Loader, UnusualHost,
+                         testing::Values("trap", "flags", "upward", "flush", "threads", "twice", "global",
+                                         "reload"),
+                         [](const auto& drawn) { return std::string(drawn.param); });
+
+TEST_F(UnusualHost, CompiledWithFastMathGetsTheSameBits) {
+  EXPECT_EQ(digest_of("unusual_host_fast", "plain"), plain());
+}
+
+}  // namespace

@@ -1,0 +1,60 @@
+// Hosts of this version and of a later one with laws of this version and of a later one, in C, C++ and
+// Fortran: the same results, bit for bit.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+const std::vector<std::string> versions{"", "grown_"};
+
+std::string library(const std::string& version, const std::string& law) {
+  return (version.empty() ? ILAW_PLUGIN_FOLDER : ILAW_GROWN_PLUGINS) + ("/" + law + ".so");
+}
+
+std::string all_libraries(const std::string& version) {
+  std::string all;
+  std::istringstream laws(ILAW_ALL_LAWS);
+  for (std::string law; laws >> law;) all += " " + library(version, law);
+  return all;
+}
+
+std::string output_of(const std::string& program, const std::string& arguments) {
+  FILE* pipe = popen((ILAW_HOSTS "/" + program + " " + arguments + " 2>&1; echo status $?").c_str(), "r");
+  std::string text;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+  pclose(pipe);
+  return text;
+}
+
+TEST(Versions, AllLawsGiveTheSameInHostsOfBoth) {
+  const std::string expected = output_of("unusual_host", "plain" + all_libraries(""));
+  ASSERT_NE(expected.find("\nstatus 0\n"), std::string::npos) << expected;
+  for (const std::string& host : versions)
+    for (const std::string& laws : versions)
+      EXPECT_EQ(output_of(host + "unusual_host", "plain" + all_libraries(laws)), expected)
+          << "host '" << host << "', laws '" << laws << "'";
+}
+
+TEST(Versions, ExampleHostsPrintTheSameInEveryLanguage) {
+  std::istringstream names(ILAW_BLOCKS);
+  for (std::string name; names >> name;) {
+    const std::string expected = output_of(name, library("", "coulomb"));
+    ASSERT_NE(expected.find("\nstatus 0\n"), std::string::npos) << expected;
+    for (const std::string& host : versions)
+      for (const std::string& laws : versions)
+        EXPECT_EQ(output_of(host + name, library(laws, "coulomb")), expected)
+            << host << name << ", laws '" << laws << "'";
+  }
+}
+
+TEST(Versions, WhatOlderLawsDoNotKnowIsZero) {
+  for (const std::string& laws : versions)
+    EXPECT_EQ(output_of("grown_members", all_libraries(laws)), "status 0\n");
+}
+
+}  // namespace
