@@ -127,7 +127,6 @@ struct tie::unbreakable {
     const bool holds = node.state.broken == 0.0;
     node.impulse = {holds ? trial.n : node.impulse.n, holds ? trial.t1 : 0.0, holds ? trial.t2 : 0.0};
     node.status = holds ? double{ILAW_BONDED} : node.status;
-    node.refused = refusal_of(node.state);
   }
 };
 
