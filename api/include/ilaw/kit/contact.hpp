@@ -35,8 +35,9 @@ contact_condition contact_at(const Node& node, double restitution, double activa
   const double rate = 1.0 / node.position_step;  // the same for all nodes: divided once
   const double arrival = -positive_part(node.gap) * rate;
   const double predicted = rebound > 0.0 ? rebound : arrival;
+  // Where the gap is positive this is next_gap, to the last bit.
+  const double ahead = positive_part(node.gap) + node.position_step * node.v_free.n;
   const bool predicts = activation == predictive;
-  const double ahead = node.gap > 0.0 ? next_gap(node) : node.v_free.n;
   return contact_leaving_at(predicts ? predicted : rebound, predicts ? ahead : node.gap, node.v_free.n,
                             node.v_previous.n);
 }

@@ -91,7 +91,12 @@ struct diagonal_delassus {
   double positive_defect() const {
     return defect(n) + defect(t1) + defect(t2) + defect_unless(n >= smallest_delassus) +
            defect_unless(t1 >= smallest_delassus) + defect_unless(t2 >= smallest_delassus) +
-           defect_unless((n + t1 + t2) * (1.0 / n + 1.0 / t1 + 1.0 / t2) <= largest_condition);
+           condition_defect();
+  }
+  double condition_defect() const {
+    const double trace = n + t1 + t2, scale = power_scale_of(trace).down;
+    const double a = scale * n, b = scale * t1, c = scale * t2;
+    return defect_unless(scale * trace * (b * c + a * c + a * b) <= largest_condition * (a * b * c));
   }
   vector times(vector r) const { return {n * r.n, t1 * r.t1, t2 * r.t2}; }
   vector solve(vector v) const { return {v.n / n, v.t1 / t1, v.t2 / t2}; }
@@ -110,9 +115,12 @@ struct full_delassus {
   struct factors {
     double d0, d1, d2, l10, l20, l21;
 
-    double inverse_trace() const {
-      const double l = l10 * l21 - l20;
-      return 1.0 / d0 + (1.0 + l10 * l10) / d1 + (1.0 + l21 * l21 + l * l) / d2;
+    // Without a division: tr(H^-1) is the sum of these products over that of the pivots.
+    double condition_defect(double trace) const {
+      const double scale = power_scale_of(trace).down, l = l10 * l21 - l20;
+      const double a = scale * d0, b = scale * d1, c = scale * d2;
+      const double products = b * c + (1.0 + l10 * l10) * (a * c) + (1.0 + l21 * l21 + l * l) * (a * b);
+      return defect_unless(scale * trace * products <= largest_condition * (a * b * c));
     }
   };
   factors factorise() const {
@@ -125,8 +133,7 @@ struct full_delassus {
     const factors f = factorise();
     return defect(f.d0) + defect(f.d1) + defect(f.d2) + defect(f.l21) +
            defect_unless(f.d0 >= smallest_delassus) + defect_unless(f.d1 >= smallest_delassus) +
-           defect_unless(f.d2 >= smallest_delassus) +
-           defect_unless((nn + t11 + t22) * f.inverse_trace() <= largest_condition);
+           defect_unless(f.d2 >= smallest_delassus) + f.condition_defect(nn + t11 + t22);
   }
   vector times(vector r) const {
     return {nn * r.n + n1 * r.t1 + n2 * r.t2, n1 * r.n + t11 * r.t1 + t12 * r.t2,
