@@ -113,19 +113,21 @@ struct cohesive {
     vector opening;   // half a step before: the bond's
   };
   static constexpr state_variable state_variables[] = {
-      {.name = "damage", .doc = "0: intact, 1: broken."},
+      {.name = "damage", .doc = "0: intact, 1: broken.", .minimum = 0.0, .maximum = 1.0},
       {.name = "opening", .unit = "m", .doc = "Normal displacement since the start."},
       {.name = "slip_1", .unit = "m", .doc = "First tangential displacement.", .kind = ILAW_STATE_HISTORY},
       {.name = "slip_2", .unit = "m", .doc = "Second tangential displacement.", .kind = ILAW_STATE_HISTORY},
-      {.name = "mean_opening", .unit = "m", .doc = "Mean of the last two openings."},
+      {.name = "mean_opening", .unit = "m", .doc = "Mean of the last two openings.", .internal = true},
       {.name = "mean_slip_1",
        .unit = "m",
        .doc = "Mean of the last two of slip_1.",
-       .kind = ILAW_STATE_HISTORY},
+       .kind = ILAW_STATE_HISTORY,
+       .internal = true},
       {.name = "mean_slip_2",
        .unit = "m",
        .doc = "Mean of the last two of slip_2.",
-       .kind = ILAW_STATE_HISTORY}};
+       .kind = ILAW_STATE_HISTORY,
+       .internal = true}};
 
   const char* conflict() const {
     if ((strength == infinity) != (shear_strength() == infinity))

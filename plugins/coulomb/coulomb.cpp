@@ -25,6 +25,7 @@ struct coulomb {
           "cone, circular or elliptical, and dissipates at most. Exact for any symmetric positive definite "
           "H.",
       .inputs = reads_gap | reads_v_previous,
+      .capabilities = ILAW_CAN_REST,
       .names_tangents = false};
 
   static constexpr const char* references[] = {

@@ -28,7 +28,7 @@ struct penalty {
           "spring that slides on the cone. Explicit as most codes have it, or locally implicit: then any "
           "stiffness, infinite too, leaves the critical time step as it is.",
       .inputs = reads_gap | reads_v_previous,
-      .capabilities = ILAW_CAN_STORE_ENERGY};
+      .capabilities = ILAW_CAN_STORE_ENERGY | ILAW_CAN_REST};
 
   static constexpr const char* references[] = {
       "H. Hertz, 1882, Ueber die Beruehrung fester elastischer Koerper",
@@ -97,6 +97,21 @@ struct penalty {
     return nullptr;
   }
 
+  // Explicit springs with a damper that lags: omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega)
+  // (Belytschko, Liu, Moran 2000, eq. 6.2.31). The normal spring is taken as closed, and as stiff as it is
+  // now.
+  template <class Node>
+  double stable_velocity_step(const Node& node) const {
+    if (integration == implicitly) return infinity;
+    const double penetration = positive_part(-node.gap), normal = node.delassus.normal();
+    const double tangent =
+        exponent == 1.0 ? stiffness : stiffness * exponent * power(penetration, exponent - 1.0);
+    const double pace = square_root(tangent * normal), half_damper = 0.5 * damping * normal;
+    const double closed = 2.0 / (length(pace, half_damper) + half_damper);
+    if (!(friction > 0.0)) return closed;
+    return smaller(closed, 2.0 / square_root(tangential_stiffness * largest_tangential(node.delassus)));
+  }
+
   template <class Run>
   void in_form(Run run) const;
   template <class Node>
@@ -105,6 +120,13 @@ struct penalty {
   }
 
  protected:
+  // Not below the largest inverse mass in the tangent plane, with what H couples to the normal.
+  static double largest_tangential(const scalar_delassus& h) { return h.h; }
+  static double largest_tangential(const diagonal_delassus& h) { return larger(h.t1, h.t2); }
+  static double largest_tangential(const full_delassus& h) {
+    return larger(h.t11 + absolute(h.n1), h.t22 + absolute(h.n2)) + absolute(h.t12);
+  }
+
   template <bool Linear>
   double spring_force(double penetration) const {
     if constexpr (Linear) return stiffness * penetration;

@@ -31,7 +31,7 @@ struct postit {
           "under "
           "pressure, each time less after a rupture; contact with Coulomb friction where it is not bonded.",
       .inputs = reads_gap | reads_area,
-      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE};
+      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST};
 
   static constexpr const char* references[] = {
       "LaMCoS / Michelin, 2024, Post-it tests (slides), after hal-04146784: parameters, tests, windowed "
@@ -97,17 +97,23 @@ struct postit {
     double adhesion, ruptures;
   };
   static constexpr state_variable state_variables[] = {
-      {.name = "adhesion", .unit = "N.s", .doc = "Adhesion of the node; 0 when it is not bonded."},
-      {.name = "ruptures", .doc = "Number of ruptures so far."}};
-  static constexpr state_variable memory{
-      .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .kind = ILAW_STATE_HISTORY};
+      {.name = "adhesion",
+       .unit = "N.s",
+       .doc = "Adhesion of the node; 0 when it is not bonded.",
+       .minimum = 0.0},
+      {.name = "ruptures", .doc = "Number of ruptures so far.", .minimum = 0.0, .whole = true}};
+  static constexpr state_variable memory{.name = "window",
+                                         .unit = "N.s",
+                                         .doc = "Impulses of the last memory.",
+                                         .kind = ILAW_STATE_HISTORY,
+                                         .internal = true};
 
   std::uint32_t inputs() const {
     return reads_gap | (adhesion_limit < infinity || initial_adhesion > 0.0 ? reads_area : 0U);
   }
   // What is bonded from the start holds at any gap.
   std::uint32_t capabilities() const {
-    return std::uint32_t{ILAW_CAN_ADHERE} |
+    return std::uint32_t{ILAW_CAN_ADHERE | ILAW_CAN_REST} |
            (initial_adhesion > 0.0 ? std::uint32_t{ILAW_CAN_ACT_AT_DISTANCE} : 0U);
   }
   const char* conflict() const {

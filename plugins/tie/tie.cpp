@@ -24,7 +24,7 @@ struct tie {
                                      "memory exceed it in pull and shear "
                                      "together; frictionless contact is left.",
                                  .inputs = reads_gap | reads_area,
-                                 .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE};
+                                 .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST};
 
   static constexpr const char* references[] = {
       "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics"};
@@ -56,10 +56,16 @@ struct tie {
   struct state {
     double broken;
   };
-  static constexpr state_variable state_variables[] = {
-      {.name = "broken", .doc = "1 once the bond has broken, else 0."}};
-  static constexpr state_variable memory{
-      .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .kind = ILAW_STATE_HISTORY};
+  static constexpr state_variable state_variables[] = {{.name = "broken",
+                                                        .doc = "1 once the bond has broken, else 0.",
+                                                        .minimum = 0.0,
+                                                        .maximum = 1.0,
+                                                        .whole = true}};
+  static constexpr state_variable memory{.name = "window",
+                                         .unit = "N.s",
+                                         .doc = "Impulses of the last memory.",
+                                         .kind = ILAW_STATE_HISTORY,
+                                         .internal = true};
 
   std::uint32_t inputs() const { return strength < infinity ? reads_gap | reads_area : 0U; }
   std::int64_t memory_size(const ilaw_setup&) {

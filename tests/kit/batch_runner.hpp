@@ -70,6 +70,7 @@ struct Layout {
   bool separate_state = false, outputs = true;
   std::vector<std::int32_t> order{};  // index list; empty: none
   std::int32_t index_base = 0;
+  bool wide_index = false;  // of 64 bits
 };
 
 // An array of n nodes with c components in some layout, with guard values between and around.
@@ -135,6 +136,11 @@ inline Results run(const ilaw::interface& law, const Nodes& nodes, const Layout&
     for (std::int64_t i = first; i < first + count; ++i) part.push_back(static_cast<std::int32_t>(i));
     b.index = part.data();
     b.node_count = count;
+  }
+  const std::vector<std::int64_t> wide(layout.order.begin(), layout.order.end());
+  if (layout.wide_index) {
+    b.index64 = wide.data();
+    b.index = nullptr;
   }
   b.index_base = layout.index_base;
   b.velocity_step = b.position_step = 1e-3;

@@ -45,6 +45,8 @@ TEST_P(Contract, LayoutsGiveTheSameBits) {
       for (std::int32_t& i : order) ++i;
       EXPECT_TRUE(run(law, nodes, {.soa = true, .order = order, .index_base = 1}, global) == reference)
           << "base 1";
+      EXPECT_TRUE(run(law, nodes, {.order = order, .index_base = 1, .wide_index = true}, global) == reference)
+          << "64 bits";
     }
 }
 
@@ -128,53 +130,6 @@ TEST_P(Contract, ThreadsShareAnInstance) {
   for (Results& mine : results) threads.emplace_back([&law, &mine] { mine = run(law, Nodes(300), {}); });
   for (std::thread& thread : threads) thread.join();
   for (const Results& mine : results) EXPECT_TRUE(mine == reference);
-}
-
-// A structure with a smaller size is one of an older minor version: what it lacks counts as absent.
-TEST_P(Contract, ReportAndInfoAreFilledUpToTheSizeAsked) {
-  const ilaw::interface law = make(ILAW_FRAME_LOCAL);
-  ilaw_instance_info info;
-  std::memset(&info, 0x5a, sizeof info);
-  info.struct_size = offsetof(ilaw_instance_info, state_variables);
-  ASSERT_EQ(law.law().info(law.instance(), &info), ILAW_OK);
-  EXPECT_EQ(info.struct_size, offsetof(ilaw_instance_info, state_variables));
-  EXPECT_EQ(info.state_size, law.info().state_size);
-  unsigned char untouched[sizeof info.state_variables];
-  std::memset(untouched, 0x5a, sizeof untouched);
-  EXPECT_EQ(std::memcmp(&info.state_variables, untouched, sizeof untouched), 0);
-}
-
-// A batch from a host of an older minor version ends early, one from a newer host goes on beyond what is
-// known here.
-TEST(Minor, HostsOfOtherMinorVersionsAreServed) {
-  const SetupBuilder setup({{{"friction", 0.5}}, {}});
-  const ilaw::interface law = make_law("coulomb", setup);
-  const double v[] = {-1.0, 2.0, 0.0}, h = 1.0, gap = 0.0;
-  double r[3];
-  std::uint8_t status = 99;
-  struct {
-    ilaw_batch batch{};
-    double appended[4] = {1.0, 2.0, 3.0, 4.0};
-  } newer;
-  ilaw_batch& b = newer.batch;
-  b.struct_size = sizeof newer;
-  b.node_count = 1;
-  b.velocity_step = b.position_step = 1e-3;
-  b.v_free = {v, 3, 1};
-  b.delassus = {&h, 1, 1};
-  b.gap = {&gap, 1, 1};
-  b.impulse = {r, 3, 1};
-  b.status = &status;
-  EXPECT_EQ(law.evaluate(b), ILAW_OK);
-  EXPECT_EQ(status, ILAW_SLIP);
-  EXPECT_EQ(r[1], -0.5);
-
-  b.struct_size = offsetof(ilaw_batch, velocity);  // knows no optional outputs: what stands there is not read
-  status = 99;
-  r[1] = 0.0;
-  EXPECT_EQ(law.evaluate(b), ILAW_OK);
-  EXPECT_EQ(status, 99);
-  EXPECT_EQ(r[1], -0.5);
 }
 
 INSTANTIATE_TEST_SUITE_P(

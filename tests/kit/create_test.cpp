@@ -134,6 +134,33 @@ TEST(Create, TakesTablesThatReachInfinity) {
   }
 }
 
+// Parameters that go together at the start may not later: all times of all tables are looked at.
+TEST(Create, JudgesConflictsAtAllTimesOfTables) {
+  const auto tables_of = [](std::map<std::string, std::vector<double>> tables) {
+    Parameters parameters;
+    parameters.tables = std::move(tables);
+    return parameters;
+  };
+  EXPECT_EQ(
+      refusal_of("postit", tables_of({{"initial_adhesion", {0.0, 1.0}},
+                                      {"adhesion_limit", {0.0, 2.0, 1.0, 0.5, 3.0, 2.0}}})),
+      "law 'postit': parameter 'initial_adhesion' is larger than 'adhesion_limit', expected at most that; "
+      "found adhesion_limit = 0.5, initial_adhesion = 1 at time 1");
+  // In between the points of the one, at a point of the other.
+  EXPECT_EQ(
+      refusal_of("postit", tables_of({{"initial_adhesion", {0.0, 0.0, 0.5, 1.75, 1.0, 0.0}},
+                                      {"adhesion_limit", {0.0, 2.0, 1.0, 1.0}}})),
+      "law 'postit': parameter 'initial_adhesion' is larger than 'adhesion_limit', expected at most that; "
+      "found adhesion_limit = 1.5, initial_adhesion = 1.75 at time 0.5");
+  const double inf = std::numeric_limits<double>::infinity();
+  Parameters bond = tables_of(
+      {{"strength", {0.0, 1.0, 1.0, inf, 2.0, inf, 3.0, 1.0}}, {"strength_2", {0.0, 1.0, 3.0, 1.0}}});
+  bond.numbers["toughness"] = 1.0;
+  EXPECT_NE(refusal_of("cohesive", bond), "not refused");
+  bond.tables.at("strength") = {0.0, 1.0, 1.0, 2.0, 3.0, 1.0};
+  EXPECT_NO_THROW(make_law("cohesive", SetupBuilder(bond)));
+}
+
 // The slots of a memory are laid out when the law is made.
 TEST(Create, RefusesAMemoryThatVaries) {
   const double pairs[] = {0.0, 0.1, 1.0, 0.2};

@@ -117,6 +117,57 @@ TEST(Frame, MemoryFollowsTheNormalWithoutTangents) {
   expect_frame_indifference(turn(0, 0.7), turn(1, 0.15), false);
 }
 
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// What a law remembers is carried by the shortest rotation from one normal to the next, by any angle up to
+// the half turn, and by the half turn about the remembered tangent where the normal has become its opposite.
+TEST(Frame, MemoryFollowsTheNormalByAnyAngle) {
+  const ilaw::library library(ILAW_KIT_PROBE);
+  const SetupBuilder setup({{{"viscosity", 2.0}}, {}}, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
+  const ilaw::interface law(library, "kit_probe", setup.setup);
+  const std::size_t s = law.info().state_size;
+  const Matrix start = product(turn(0, 0.4), turn(2, 1.1));
+  const Vector n = times(start, {1, 0, 0}), across = times(start, {0, 1, 0}), along = times(start, {0, 0, 1});
+  const double pi = std::acos(-1.0), zero = 0.0, one = 1.0;
+  std::vector<double> angles = {pi, pi - 1e-3, pi - 1e-5, pi - 2e-6, 1e-9, 0.0};
+  for (int degrees = 1; degrees < 180; ++degrees) angles.push_back(degrees * pi / 180.0);
+  for (const double angle : angles) {
+    // The rotation about `along`: n to n cos + across sin.
+    Vector turned;
+    for (std::size_t c = 0; c < 3; ++c)
+      turned[c] = angle == pi ? -n[c] : std::cos(angle) * n[c] + std::sin(angle) * across[c];
+    std::vector<double> state(s), after(s);
+    Vector v{}, r{};
+    ilaw_batch b{};
+    b.struct_size = sizeof b;
+    b.node_count = 1;
+    b.velocity_step = b.position_step = 1e-3;
+    b.v_free = {v.data(), 0, 1};
+    b.delassus = {&one, 0, 1};
+    b.gap = {&zero, 0, 1};
+    b.normal = {n.data(), 0, 1};
+    b.impulse = {r.data(), 0, 1};
+    b.state_out = {state.data(), 0, 1};
+    ASSERT_EQ(law.initialise(b), ILAW_OK);
+    // Frame of the start, as (normal, tangent) at the end of the state, and what it says about two axes.
+    const Vector t1{state[s - 3], state[s - 2], state[s - 1]};
+    b.normal = {turned.data(), 0, 1};
+    b.state_in = {state.data(), 0, 1};
+    b.state_out = {after.data(), 0, 1};
+    ASSERT_EQ(law.evaluate(b), ILAW_OK);
+    const Vector t2{after[s - 3], after[s - 2], after[s - 1]};
+    // Opposite normals: the tangent stays. Else the part along the axis stays, and that across it turns.
+    Vector expected = t1;
+    for (std::size_t c = 0; angle != pi && c < 3; ++c)
+      expected[c] = dot(t1, along) * along[c] +
+                    dot(t1, across) * (std::cos(angle) * across[c] - std::sin(angle) * n[c]);
+    // The axis is known to an ulp of n over the sine of the angle.
+    const double tolerance = 1e-15 + 4e-16 / std::max(pi - angle, 1e-1 * (angle == pi ? 1.0 : 0.0) + 1e-9);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(t2[c], expected[c], tolerance) << "angle " << angle;
+    EXPECT_NEAR(dot(t2, turned), 0.0, 1e-15) << "angle " << angle;
+  }
+}
+
 class GlobalAxes : public ::testing::TestWithParam<std::tuple<int, std::uint32_t>> {};
 
 // A law that knows no direction but the normal gives the same in any axes.

@@ -25,7 +25,8 @@ contact_condition contact_at(const Node& node, double restitution, double activa
   const double rate = 1.0 / node.position_step;  // the same for all nodes: divided once
   const double arrival = -positive_part(node.gap) * rate;
   const double predicted = rebound > 0.0 ? rebound : arrival;
-  return {activation == predictive ? node.v_free.n - arrival : node.gap,
+  const double ahead = node.gap > 0.0 ? next_gap(node) : node.v_free.n;
+  return {activation == predictive ? ahead : node.gap,
           node.v_free.n - (activation == predictive ? predicted : rebound)};
 }
 

@@ -9,6 +9,9 @@
 //   static constexpr state_variable state_variables[];    in the order of struct state
 //   std::uint32_t inputs() const;                         what these parameters read (default: card.inputs)
 //   std::uint32_t capabilities() const;                   what these parameters can do (default: the card's)
+//   template <class Node> double stable_velocity_step(const Node&) const   if it limits the step: by how much
+//   at
+//                                                         this node, whatever its state; see ilaw_report
 //   template <class Run> void in_form(Run) const;         calls it with a struct whose step gives the same
 //                                                         bits without what these parameters turn off
 //   const char* conflict() const;                         why parameters do not go together, or null
@@ -76,6 +79,26 @@ struct state_variable {
   const char* doc = "";
   std::uint32_t kind = ILAW_STATE_SCALAR;
   bool internal = false;  // bookkeeping, not for pictures
+  // What a scalar can be; a host's state with anything else is bad input. All are finite.
+  double minimum = -std::numeric_limits<double>::max();
+  double maximum = std::numeric_limits<double>::max();
+  bool whole = false;
+
+  constexpr int doubles() const {  // in struct state
+    return kind == ILAW_STATE_VECTOR ? 3 : (kind == ILAW_STATE_TANGENTIAL ? 2 : 1);
+  }
+  constexpr int components(int dimension) const {  // in the host's state
+    if (kind == ILAW_STATE_TANGENTIAL) return dimension - 1;
+    return kind == ILAW_STATE_VECTOR ? dimension : 1;
+  }
+  constexpr bool has_range() const {
+    return whole || minimum > -std::numeric_limits<double>::max() ||
+           maximum < std::numeric_limits<double>::max();
+  }
+  bool may_be(double value) const {
+    const bool inside = (value >= minimum) & (value <= maximum);
+    return whole ? inside & is_whole(value) : inside;
+  }
 };
 
 template <class Law>
@@ -86,6 +109,15 @@ template <class Law>
 concept has_memory = requires {
   Law::memory;
 };
+
+// Whether a law remembers directions, which turn with the frame.
+template <class Law>
+constexpr bool has_vector_state() {
+  if constexpr (has_state<Law>)
+    for (const state_variable& v : Law::state_variables)
+      if (v.kind != ILAW_STATE_SCALAR) return true;
+  return false;
+}
 
 namespace detail {
 
@@ -103,7 +135,13 @@ struct state_of<Law> {
 template <class Law>
 using state_t = typename detail::state_of<Law>::type;
 
-// Doubles in struct state, vectors counted as three.
+// Whether a law says which steps it is stable at.
+template <class Law>
+concept limits_step = requires(const Law& law, const node<scalar_delassus, state_t<Law>>& n) {
+  law.stable_velocity_step(n);
+};
+
+// Doubles in struct state, vectors counted as three, tangential ones as two.
 template <class Law>
 inline constexpr int state_doubles = has_state<Law> ? static_cast<int>(sizeof(state_t<Law>) / sizeof(double))
                                                     : 0;
@@ -173,12 +211,12 @@ inline constexpr std::size_t state_variable_count = declared_state_variables<Law
                                                     (has_memory<Law> ? 1 : 0);
 
 template <class Law>
-constexpr auto abi_state_variables(std::uint64_t dimension, std::uint64_t memory_size) {
+constexpr auto abi_state_variables(int dimension, std::uint64_t memory_size) {
   std::array<ilaw_state_variable, state_variable_count<Law>> result{};
   std::size_t i = 0;
   if constexpr (has_state<Law>)
     for (const state_variable& v : Law::state_variables)
-      result[i++] = abi_state_variable(v, v.kind == ILAW_STATE_VECTOR ? dimension : 1);
+      result[i++] = abi_state_variable(v, static_cast<std::uint64_t>(v.components(dimension)));
   if constexpr (has_memory<Law>) result[i] = abi_state_variable(Law::memory, memory_size);
   return result;
 }

@@ -22,6 +22,11 @@ constexpr bool finite(double x) { return x - x == 0.0; }
 constexpr double larger(double a, double b) { return a > b ? a : b; }
 constexpr double smaller(double a, double b) { return a < b ? a : b; }
 constexpr double positive_part(double x) { return x > 0.0 ? x : 0.0; }
+// Adding and subtracting the number rounds to the nearest whole one, in vector code too.
+inline bool is_whole(double x) {
+  constexpr double to_integer = 0x1.8p52;
+  return ((x + to_integer) - to_integer == x) | (__builtin_fabs(x) >= 0x1p51);
+}
 inline double absolute(double x) { return __builtin_fabs(x); }
 inline double square_root(double x) { return __builtin_sqrt(x); }
 

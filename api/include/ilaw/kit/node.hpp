@@ -49,6 +49,10 @@ constexpr double tangential_product(projected_vector a, projected_vector b) {
 // Smallest H allowed: below it 1/H overflows.
 inline constexpr double smallest_delassus = std::numeric_limits<double>::min();
 
+// Largest tr(H) tr(H^-1) allowed, which no rotation changes: beyond it rounding decides whether H is
+// definite. It lies between the condition number and nine times that.
+inline constexpr double largest_condition = 0x1p43;
+
 // Checks give a defect: 0.0 where all is well, NaN where not. Defects add up, and need no branch and no
 // logical operation, which compilers vectorise less reliably than arithmetic.
 constexpr double defect(double x) { return x - x; }
@@ -56,8 +60,9 @@ constexpr double defect(vector a) { return defect(a.n) + defect(a.t1) + defect(a
 constexpr double defect(projected_vector a) { return defect(a.n) + defect(a.x) + defect(a.y) + defect(a.z); }
 constexpr double defect_unless(bool good) { return good ? 0.0 : std::numeric_limits<double>::quiet_NaN(); }
 
-// The three forms of H, with the same operations: H r, H^-1 v, and the defect of one that is not
-// finite and positive definite. anisotropy() is zero where closed forms for H = diag(h_N, h_T, h_T) hold.
+// The three forms of H, with the same operations: H r, H^-1 v, and the defect of one that is not finite and,
+// by largest_condition, positive definite. anisotropy() is zero where closed forms for H = diag(h_N, h_T,
+// h_T) hold.
 struct scalar_delassus {
   static constexpr int components = 1;
   double h;
@@ -85,7 +90,8 @@ struct diagonal_delassus {
   double anisotropy() const { return absolute(t1 - t2); }
   double positive_defect() const {
     return defect(n) + defect(t1) + defect(t2) + defect_unless(n >= smallest_delassus) +
-           defect_unless(t1 >= smallest_delassus) + defect_unless(t2 >= smallest_delassus);
+           defect_unless(t1 >= smallest_delassus) + defect_unless(t2 >= smallest_delassus) +
+           defect_unless((n + t1 + t2) * (1.0 / n + 1.0 / t1 + 1.0 / t2) <= largest_condition);
   }
   vector times(vector r) const { return {n * r.n, t1 * r.t1, t2 * r.t2}; }
   vector solve(vector v) const { return {v.n / n, v.t1 / t1, v.t2 / t2}; }
@@ -103,6 +109,11 @@ struct full_delassus {
   // LDL^T: pivots and multipliers. H is positive definite exactly when the pivots are positive.
   struct factors {
     double d0, d1, d2, l10, l20, l21;
+
+    double inverse_trace() const {
+      const double l = l10 * l21 - l20;
+      return 1.0 / d0 + (1.0 + l10 * l10) / d1 + (1.0 + l21 * l21 + l * l) / d2;
+    }
   };
   factors factorise() const {
     const double l10 = n1 / nn, l20 = n2 / nn;
@@ -114,7 +125,8 @@ struct full_delassus {
     const factors f = factorise();
     return defect(f.d0) + defect(f.d1) + defect(f.d2) + defect(f.l21) +
            defect_unless(f.d0 >= smallest_delassus) + defect_unless(f.d1 >= smallest_delassus) +
-           defect_unless(f.d2 >= smallest_delassus);
+           defect_unless(f.d2 >= smallest_delassus) +
+           defect_unless((nn + t11 + t22) * f.inverse_trace() <= largest_condition);
   }
   vector times(vector r) const {
     return {nn * r.n + n1 * r.t1 + n2 * r.t2, n1 * r.n + t11 * r.t1 + t12 * r.t2,
@@ -158,6 +170,16 @@ struct history {
 template <class Delassus>
 double rounding_of(const Delassus& delassus) {
   return 0x1p-46 * (delassus.normal() + delassus.tangential());
+}
+
+// See ilaw.h: what holds out of reach, to the last bit.
+template <class Node>
+double next_gap(const Node& node) {
+  return node.gap + node.position_step * node.v_free.n;
+}
+template <class Node>
+bool is_out_of_reach(const Node& node) {
+  return (node.gap > 0.0) & (next_gap(node) > 0.0);
 }
 
 // Refuses an H for which closed forms for diag(h_N, h_T, h_T) do not hold.

@@ -14,9 +14,10 @@ template <class Law>
 struct block_room {
   static constexpr int states = state_doubles<Law>;
   column v_free[3], v_previous[3], delassus[6], gap, gap_offset, area, normal[3], tangent[3];
-  column impulse[3], velocity[3], energy[ILAW_ENERGY_COUNT], status, refused;
+  column impulse[3], velocity[3], energy[ILAW_ENERGY_COUNT], status, refused, rests;
   column state_in[states + 1], state_out[states + 1];
   column first_tangent[3], second_tangent[3];
+  std::int64_t nodes[has_memory<Law> ? block_size : 1];  // where history is, of listed nodes
 };
 
 // Entry of the host's state that holds double k of struct state; -1: a component beyond the dimension.
@@ -25,10 +26,10 @@ int state_entry(int k, int dimension) {
   int entry = 0, position = 0;
   if constexpr (has_state<Law>)
     for (const state_variable& v : Law::state_variables) {
-      const bool is_vector = v.kind == ILAW_STATE_VECTOR;
-      if (k < position + (is_vector ? 3 : 1)) return k - position < dimension ? entry + (k - position) : -1;
-      position += is_vector ? 3 : 1;
-      entry += is_vector ? dimension : 1;
+      if (k < position + v.doubles())
+        return k - position < v.components(dimension) ? entry + (k - position) : -1;
+      position += v.doubles();
+      entry += v.components(dimension);
     }
   return -1;
 }
@@ -44,9 +45,7 @@ class batch_walk {
 
   // Fills the columns of the block that starts at position first.
   void open(std::int64_t first) {
-    const std::int64_t left = batch_.node_count - first;
-    nodes_ = {batch_.index, first, batch_.index_base,
-              static_cast<int>(left < block_size ? left : block_size)};
+    nodes_ = range(first);
     block_.count = nodes_.count;
     block_.time = batch_.time;
     block_.velocity_step = batch_.velocity_step;
@@ -60,9 +59,8 @@ class batch_walk {
 
   // Gives the nodes of a block their range and frame, for initialise.
   void open_initial(std::int64_t first) {
-    const std::int64_t left = batch_.node_count - first;
-    nodes_ = {batch_.index, first, batch_.index_base,
-              static_cast<int>(left < block_size ? left : block_size)};
+    nodes_ = range(first);
+    is_initial_ = true;
     block_.area = optional(batch_.area, made_.inputs() & ILAW_INPUT_AREA, room_.area);
     if (made_.carries_frame) gather_frame();
   }
@@ -110,8 +108,9 @@ class batch_walk {
   // The frame of an accepted step becomes the frame to carry on from.
   void keep_frames() {
     if (!made_.carries_frame) return;
+    const bool memory_moves = has_memory<Law> && !(made_.capabilities() & ILAW_CAN_REST);
     for (int i = 0; i < nodes_.count; ++i)
-      if (block_.refused[i] == 0.0) keep_frame(i);
+      if (block_.refused[i] == 0.0 && (memory_moves || block_.rests[i] == 0.0)) keep_frame(i);
   }
 
   bool any_refused() const {
@@ -121,6 +120,11 @@ class batch_walk {
   }
 
  private:
+  node_range range(std::int64_t first) const {
+    const std::int64_t left = batch_.node_count - first;
+    return {batch_.index, batch_.index64, first, batch_.index_base,
+            static_cast<int>(left < block_size ? left : block_size)};
+  }
   static const double& at(const ilaw_input& a, std::int64_t node, std::int64_t c) {
     return a.values[node * a.node_stride + c * a.component_stride];
   }
@@ -152,6 +156,7 @@ class batch_walk {
     const std::uint32_t reads = made_.inputs();
     const bool previous =
         batch_.v_previous.values && ((reads & ILAW_INPUT_V_PREVIOUS) || batch_.energy.values);
+    block_.previous_for_energy_only = !(reads & ILAW_INPUT_V_PREVIOUS);
     gather_in_layout(batch_.v_free, room_.v_free, block_.v_free);
     if (previous)
       gather_vector(batch_.v_previous, dimension_, nodes_, room_.v_previous, block_.v_previous);
@@ -207,8 +212,11 @@ class batch_walk {
     for (int i = 0; i < nodes_.count; ++i) set_tangents(i);
   }
 
+  // A tangent that is none makes the second one NaN, and so the node's vectors.
   void set_tangents(int i) {
-    const axis n = columns::get(block_.axes, i), t1 = first_tangent(i), t2 = cross(n, t1);
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const axis n = columns::get(block_.axes, i), t1 = first_tangent(i);
+    const axis t2 = has_tangent(i) ? cross(n, t1) : axis{none, none, none};
     const double first[] = {t1.x, t1.y, t1.z}, second[] = {t2.x, t2.y, t2.z};
     for (int c = 0; c < 3; ++c) {
       if (block_.axes[3 + c] == room_.first_tangent[c].values) room_.first_tangent[c].values[i] = first[c];
@@ -220,15 +228,27 @@ class batch_walk {
     const axis n = columns::get(block_.axes, i);
     if (dimension_ < 3) return plane_tangent(dimension_, n);
     if (made_.tangent_given) return columns::get(block_.axes + 3, i);
-    return made_.carries_frame && batch_.state_in.values ? carried_tangent(i) : any_tangent(n);
+    return carries_on() ? transported_tangent(stored_axis(i, 0), stored_axis(i, 3), n) : any_tangent(n);
   }
 
-  axis carried_tangent(int i) const {
+  // Whether there is a frame of the step before.
+  bool carries_on() const { return made_.carries_frame && !is_initial_; }
+
+  bool has_tangent(int i) const {
+    if (dimension_ < 3) return true;
+    if (made_.tangent_given) {
+      const axis t = columns::get(block_.axes + 3, i);
+      return unit(t) && orthogonal(t, columns::get(block_.axes, i));
+    }
+    if (!carries_on()) return true;
+    const axis n = stored_axis(i, 0), t = stored_axis(i, 3);
+    return unit(n) && unit(t) && orthogonal(n, t);
+  }
+
+  axis stored_axis(int i, int offset) const {
     const ilaw_input& s = batch_.state_in;
-    const double* in = s.values + nodes_.node(i) * s.node_stride + made_.frame_offset() * s.component_stride;
-    const std::int64_t c = s.component_stride;
-    return transported_tangent({in[0], in[c], in[2 * c]}, {in[3 * c], in[4 * c], in[5 * c]},
-                               columns::get(block_.axes, i));
+    const double* in = &at(s, nodes_.node(i), made_.frame_offset() + offset);
+    return {in[0], in[s.component_stride], in[2 * s.component_stride]};
   }
 
   void open_state() {
@@ -246,11 +266,11 @@ class batch_walk {
     block_.history_values = nullptr;
     if (!has_memory<Law>) return;
     block_.history_values = out.values + made_.memory_offset() * out.component_stride +
-                            (batch_.index ? 0 : nodes_.first * out.node_stride);
+                            (nodes_.listed() ? 0 : nodes_.first * out.node_stride);
     block_.history_node_stride = out.node_stride;
     block_.history_component_stride = out.component_stride;
-    block_.history_index = batch_.index ? batch_.index + nodes_.first : nullptr;
-    block_.history_index_base = batch_.index_base;
+    block_.history_nodes = nodes_.listed() ? room_.nodes : nullptr;
+    for (int i = 0; nodes_.listed() && i < nodes_.count; ++i) room_.nodes[i] = nodes_.node(i);
   }
 
   // Memory and frame are worked on in state_out, which therefore starts as state_in.
@@ -272,6 +292,7 @@ class batch_walk {
       block_.energy[k] = aim(batch_.energy, k, true, room_.energy[k]);
     block_.status = room_.status.values;
     block_.refused = room_.refused.values;
+    block_.rests = room_.rests.values;
     for (int k = 0; k < states; ++k) {
       const int entry = state_entry<Law>(k, dimension_);
       block_.state_out[k] = aim(batch_.state_out, entry, entry >= 0, room_.state_out[k]);
@@ -286,6 +307,7 @@ class batch_walk {
   const ilaw_batch& batch_;
   block_room<Law>& room_;
   int dimension_;
+  bool is_initial_ = false;
   node_range nodes_{};
   node_block<Law> block_;
 };

@@ -4,16 +4,9 @@
 
 #include <ilaw/kit/detail/batch_walk.hpp>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+#include <string>
 
-// A batch read up to the size its writer knew; absent members are zero.
-inline ilaw_batch known_batch(const ilaw_batch& given) {
-  ilaw_batch batch{};
-  const std::uint32_t size =
-      given.struct_size < sizeof(batch) ? given.struct_size : std::uint32_t{sizeof(batch)};
-  std::memcpy(&batch, &given, size);
-  return batch;
-}
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // What is wrong with the arrays that evaluate or initialise needs; null when nothing is.
 template <class Law>
@@ -30,11 +23,50 @@ const char* missing_input(const instance<Law>& made, const ilaw_batch& b, std::u
   return nullptr;
 }
 
+// The smallest of a list of nodes: below index_base it would lead before the arrays.
+template <class Integer>
+Integer smallest(const Integer* index, std::int64_t count) {
+  Integer least = std::numeric_limits<Integer>::max();
+#pragma omp simd reduction(min : least)
+  for (std::int64_t k = 0; k < count; ++k) least = index[k] < least ? index[k] : least;
+  return least;
+}
+
+inline const char* wrong_index(const ilaw_batch& b) {
+  if (b.index_base != 0 && b.index_base != 1) return "index_base is neither 0 nor 1";
+  if (b.index && b.index64) return "index and index64 are both given";
+  if ((b.index && smallest(b.index, b.node_count) < b.index_base) ||
+      (b.index64 && smallest(b.index64, b.node_count) < b.index_base))
+    return "a node of the index list lies below index_base";
+  return nullptr;
+}
+
 inline const char* wrong_scalars(const ilaw_batch& b) {
   if (b.node_count < 0) return "node_count is negative";
-  if (b.index_base != 0 && b.index_base != 1) return "index_base is neither 0 nor 1";
   if (!finite(b.time)) return "time is not finite";
-  return nullptr;
+  return wrong_index(b);
+}
+
+// Whether an output gives two numbers the same place.
+inline bool collides(const ilaw_output& a, std::int64_t nodes, std::int64_t components) {
+  return a.values && components > 0 &&
+         ((nodes > 1 && a.node_stride == 0) || (components > 1 && a.component_stride == 0));
+}
+
+template <class Law>
+const char* colliding_state(const instance<Law>& made, const ilaw_batch& b) {
+  const bool is_bad = collides(b.state_out, b.node_count, static_cast<std::int64_t>(made.state_size));
+  return is_bad ? "state_out has a stride of 0" : nullptr;
+}
+
+template <class Law>
+const char* colliding_output(const instance<Law>& made, const ilaw_batch& b) {
+  const std::int64_t n = b.node_count, d = made.dimension;
+  if (collides(b.impulse, n, d)) return "impulse has a stride of 0";
+  if (collides(b.velocity, n, d)) return "velocity has a stride of 0";
+  if (collides(b.energy, n, ILAW_ENERGY_COUNT)) return "energy has a stride of 0";
+  if (b.status && n > 1 && b.status_stride == 0) return "status_stride is 0";
+  return colliding_state(made, b);
 }
 
 template <class Law>
@@ -47,26 +79,28 @@ const char* wrong_batch(const instance<Law>& made, const ilaw_batch& b) {
   if (!b.delassus.values) return "delassus is null";
   if (!b.impulse.values) return "impulse is null";
   if (made.state_size > 0 && !b.state_in.values) return "state_in is null";
+  if (const char* wrong = colliding_output(made, b)) return wrong;
   return missing_input(made, b, made.inputs() | (b.energy.values ? made.energy_inputs() : 0U));
 }
 
-inline std::int32_t refuse(ilaw_report* report, const char* reason) {
+inline std::int32_t refuse(ilaw_report* report, const char* reason,
+                           std::int32_t code = ILAW_INVALID_ARGUMENT) {
   if (report)
-    fill_sized(report, {.struct_size = 0,
-                        .reserved = 0,
-                        .bad_count = 0,
-                        .first_bad_node = -1,
-                        .reason = reason,
-                        .stable_velocity_step = infinity});
-  return ILAW_INVALID_ARGUMENT;
+    write_sized(report, {.struct_size = 0,
+                         .reserved = 0,
+                         .bad_count = 0,
+                         .first_bad_node = -1,
+                         .reason = reason,
+                         .stable_velocity_step = infinity});
+  return code;
 }
 
 // Whether the vectors that a kernel may read and write in place are (3,n) arrays.
 template <class Law>
 bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
   const auto is_interleaved = [](const auto& a) { return a.node_stride == 3 && a.component_stride == 1; };
-  return made.dimension == 3 && !b.index && is_interleaved(b.v_free) && is_interleaved(b.impulse) &&
-         (made.frame == ILAW_FRAME_LOCAL || is_interleaved(b.normal));
+  return made.dimension == 3 && !b.index && !b.index64 && is_interleaved(b.v_free) &&
+         is_interleaved(b.impulse) && (made.frame == ILAW_FRAME_LOCAL || is_interleaved(b.normal));
 }
 
 // What a walk found.
@@ -82,18 +116,52 @@ struct tally {
   }
 };
 
+// "state variable '...' is not what the law can have written", as static text.
+template <class Law, std::size_t V>
+struct range_reason {
+  static constexpr auto make() {
+    constexpr const char *head = "state variable '", *name = Law::state_variables[V].name,
+                         *tail = "' has a value that the law cannot have written";
+    constexpr auto size = [](const char* s) { return std::char_traits<char>::length(s); };
+    std::array<char, size(head) + size(name) + size(tail) + 1> text{};
+    std::size_t at = 0;
+    for (const char* part : {head, name, tail})
+      for (; *part; ++part) text[at++] = *part;
+    return text;
+  }
+  static constexpr auto text = make();
+};
+
+// The first state variable that is not what it may be; null where all are.
+template <class Law, std::size_t V = 0>
+const char* out_of_range(const state_t<Law>& state, int position = 0) {
+  if constexpr (has_state<Law>)
+    if constexpr (V < std::size(Law::state_variables)) {
+      constexpr const state_variable& v = Law::state_variables[V];
+      const auto doubles = std::bit_cast<std::array<double, state_doubles<Law>>>(state);
+      if (v.has_range() && !v.may_be(doubles[position])) return range_reason<Law, V>::text.data();
+      return out_of_range<Law, V + 1>(state, position + v.doubles());
+    }
+  return nullptr;
+}
+
 // Why a node was refused, from the same checks as step_node, in their order.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
-const char* refusal_reason(const Law& law, const node_block<Law>& b, int i) {
+const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool tangent_given) {
   const auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
   if (defect(Frame::template at<Layout>(b.axes, i).unit_defect()) != 0.0)
     return "the normal is not a unit vector";
-  if (defect(n.v_free) != 0.0) return "v_free is not finite";
-  if (n.delassus.positive_defect() != 0.0) return "H is not finite and positive definite";
+  bool framed = true;
+  if constexpr (std::is_same_v<Frame, stored_frame>) framed = defect(columns::get(b.axes + 6, i)) == 0.0;
+  if (!framed && tangent_given) return "the tangent is not a unit vector orthogonal to the normal";
+  if (framed && defect(n.v_free) != 0.0) return "v_free is not finite";
+  if (framed && n.delassus.positive_defect() != 0.0) return "H is not finite and positive definite";
   if (defect(n.gap) != 0.0) return "the gap is not finite";
-  if (defect(n.v_previous) != 0.0) return "v_previous is not finite";
+  if (framed && defect(n.v_previous) != 0.0) return "v_previous is not finite";
   if (!finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
+  if (!framed) return "the state holds no frame: it is not one that the law can have written";
   if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
+  if (const char* wrong = out_of_range<Law>(n.state)) return wrong;
   const double refused = step_node<Law, Delassus, Frame, Layout, Scope>(law, b, i).result.refused;
   if (refused == anisotropic_delassus)
     return "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal";
@@ -128,6 +196,7 @@ struct evaluate_walk {
     for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
       walk.open(first);
       run_nodes(made, law, batch, walk);
+      limit_step(made, law, batch, walk, found);
       const bool refused = walk.any_refused();
       if (refused) explain(made, law, batch, walk, found);
       walk.close();
@@ -137,6 +206,20 @@ struct evaluate_walk {
   }
 
  private:
+  // The smallest stable step of the block's good nodes, for laws that limit it.
+  static void limit_step(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
+                         batch_walk<Law, Layout>& walk, tally& found) {
+    if constexpr (limits_step<Law>) {
+      for (int i = 0; i < walk.nodes().count; ++i) {
+        if (walk.block().refused[i] != 0.0) continue;
+        Law own = law;
+        if constexpr (Varying) at_node(made, batch, walk.nodes().node(i), own);
+        const auto node = load_node<Law, Delassus, Frame, Layout, Scope>(walk.block(), i);
+        found.stable_velocity_step = smaller(found.stable_velocity_step, own.stable_velocity_step(node));
+      }
+    }
+  }
+
   static void run_nodes(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
                         batch_walk<Law, Layout>& walk) {
     if constexpr (Varying)
@@ -165,8 +248,9 @@ struct evaluate_walk {
       if (walk.block().refused[i] == 0.0) continue;
       Law own = law;
       const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
-      found.add(walk.nodes().node(i),
-                wrong ? wrong : refusal_reason<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i));
+      found.add(walk.nodes().node(i), wrong ? wrong
+                                            : refusal_reason<Law, Delassus, Frame, Layout, Scope>(
+                                                  own, walk.block(), i, made.tangent_given));
     }
   }
 };
@@ -212,8 +296,9 @@ tally walk_local(const instance<Law>& made, const ilaw_batch& batch) {
 }
 
 // An ilaw_kit_walk: a checked batch from end to end, compiled for this level.
+// Not inlined: nothing of it may be computed before the floating-point environment is set.
 template <class Law>
-void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
+[[gnu::noinline]] void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
   const auto& made = *static_cast<const instance<Law>*>(opaque);
   *static_cast<tally*>(found) =
       made.frame == ILAW_FRAME_GLOBAL ? walk_turned(made, batch) : walk_local(made, batch);
@@ -221,29 +306,40 @@ void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
 
 inline std::int32_t give_report(ilaw_report* report, const tally& found) {
   if (report)
-    fill_sized(report, {.struct_size = 0,
-                        .reserved = 0,
-                        .bad_count = found.bad_count,
-                        .first_bad_node = found.first_bad_node,
-                        .reason = found.reason,
-                        .stable_velocity_step = found.stable_velocity_step});
+    write_sized(report, {.struct_size = 0,
+                         .reserved = 0,
+                         .bad_count = found.bad_count,
+                         .first_bad_node = found.first_bad_node,
+                         .reason = found.reason,
+                         .stable_velocity_step = found.stable_velocity_step});
   return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
+}
+
+// The beginning of evaluate and initialise: hands on the instance and what is known of the batch.
+template <class Law, class Run>
+std::int32_t with_batch(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report, Run run) {
+  if (report && !is_complete(report)) return ILAW_INVALID_ARGUMENT;
+  if (!opaque || !given) return refuse(report, "instance or batch is null");
+  if (!is_complete(given)) return refuse(report, "struct_size of the batch is below that of version 1.0");
+  const ilaw_batch batch = read_sized(given);
+  if (batch.flags != 0) return refuse(report, "flags of the batch are not known", ILAW_UNSUPPORTED);
+  const float_environment own;
+  return run(of<Law>(opaque), batch);
 }
 
 template <class Law>
 std::int32_t evaluate(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
-  if (!opaque || !given) return refuse(report, "instance or batch is null");
-  const instance<Law>& made = of<Law>(opaque);
-  const ilaw_batch batch = known_batch(*given);
-  if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
-  tally found;
-  (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
-  return give_report(report, found);
+  return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
+    if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
+    tally found;
+    (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
+    return give_report(report, found);
+  });
 }
 
 // First state of the nodes of a batch.
 template <class Law>
-tally initialise_nodes(const instance<Law>& made, const ilaw_batch& batch) {
+[[gnu::noinline]] tally initialise_nodes(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
   block_room<Law> room;
   batch_walk<Law, columns> walk(made, batch, room);
@@ -261,16 +357,21 @@ tally initialise_nodes(const instance<Law>& made, const ilaw_batch& batch) {
 }
 
 template <class Law>
+const char* wrong_initial(const instance<Law>& made, const ilaw_batch& b) {
+  if (const char* wrong = wrong_scalars(b)) return wrong;
+  if (b.node_count == 0) return nullptr;
+  if (const char* wrong =
+          missing_input(made, b, made.inputs() & (ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT)))
+    return wrong;
+  return colliding_state(made, b);
+}
+
+template <class Law>
 std::int32_t initialise(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
-  if (!opaque || !given) return refuse(report, "instance or batch is null");
-  const instance<Law>& made = of<Law>(opaque);
-  ilaw_batch batch = known_batch(*given);
-  const char* wrong = wrong_scalars(batch);
-  const std::uint32_t reads = made.inputs() & (ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT);
-  if (!wrong && batch.node_count > 0) wrong = missing_input(made, batch, reads);
-  if (wrong) return refuse(report, wrong);
-  if (made.state_size == 0) return give_report(report, {});
-  return give_report(report, initialise_nodes(made, batch));
+  return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
+    if (const char* wrong = wrong_initial(made, batch)) return refuse(report, wrong);
+    return give_report(report, made.state_size > 0 ? initialise_nodes(made, batch) : tally{});
+  });
 }
 
 }  // namespace ilaw::kit

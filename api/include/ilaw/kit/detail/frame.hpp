@@ -13,6 +13,7 @@ inline constexpr double unit_tolerance = 1e-6;
 struct axis {
   double x, y, z;
 };
+constexpr double defect(axis a) { return defect(a.x) + defect(a.y) + defect(a.z); }
 constexpr double dot(axis a, axis b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 constexpr axis cross(axis a, axis b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -26,21 +27,21 @@ inline axis any_tangent(axis n) {
   return {1.0 + sign * n.x * n.x * a, sign * (n.x * n.y * a), -sign * n.x};
 }
 
+constexpr bool orthogonal(axis a, axis b) { return __builtin_fabs(dot(a, b)) <= unit_tolerance; }
+
 // Carries a tangent from one normal to the next by the shortest rotation, which turns nothing about the
-// normal: R t = t - (n.t)/(1 + n.n') (n + n'), for t orthogonal to n' (Rodrigues); any tangent if the normal
-// flipped.
+// normal. For t orthogonal to n it is the reflection at the plane orthogonal to m = n + n',
+// R t = t - 2 (t.m)/(m.m) m (from Rodrigues' formula), accurate for every angle. Where the normal has turned
+// to its opposite all rotations are as short: it is then the half turn about the tangent, which stays.
 inline axis transported_tangent(axis before, axis tangent, axis n) {
-  const double cosine = dot(before, n);
-  const double s = dot(n, tangent) / (1.0 + cosine);
-  const axis moved{tangent.x - s * (n.x + before.x), tangent.y - s * (n.y + before.y),
-                   tangent.z - s * (n.z + before.z)};
+  const axis m{before.x + n.x, before.y + n.y, before.z + n.z};
+  const double square = dot(m, m);
+  const double s = square > unit_tolerance * unit_tolerance ? 2.0 * dot(tangent, m) / square : 0.0;
+  const axis moved{tangent.x - s * m.x, tangent.y - s * m.y, tangent.z - s * m.z};
   const double residue = dot(moved, n);  // rounding must not accumulate over millions of steps
   const axis flat{moved.x - residue * n.x, moved.y - residue * n.y, moved.z - residue * n.z};
   const double inverse = 1.0 / square_root(dot(flat, flat));
-  const axis fresh = any_tangent(n);
-  const bool usable = cosine > -0.5 && finite(inverse);
-  return {usable ? inverse * flat.x : fresh.x, usable ? inverse * flat.y : fresh.y,
-          usable ? inverse * flat.z : fresh.z};
+  return {inverse * flat.x, inverse * flat.y, inverse * flat.z};
 }
 
 // In the plane the tangent is the normal turned by a right angle; on the line it is never used.

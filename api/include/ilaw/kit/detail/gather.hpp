@@ -22,12 +22,17 @@ inline constexpr column zeros{};
 
 // The nodes of a block: consecutive from first, or listed.
 struct node_range {
-  const std::int32_t* index;  // null: consecutive
-  std::int64_t first;         // position in the batch
+  const std::int32_t* index;    // null: consecutive, or
+  const std::int64_t* index64;  // in 64 bits
+  std::int64_t first;           // position in the batch
   std::int32_t index_base;
   int count;
 
-  std::int64_t node(int i) const { return index ? std::int64_t{index[first + i]} - index_base : first + i; }
+  bool listed() const { return index || index64; }
+  std::int64_t node(int i) const {
+    if (index64) return index64[first + i] - index_base;
+    return index ? std::int64_t{index[first + i]} - index_base : first + i;
+  }
 };
 
 // Asks for the same part of the next block while this one is worked on: hardware prefetchers lose the many
@@ -46,6 +51,10 @@ inline const double* gather(const ilaw_input& input, int component, const node_r
     for (int i = 0; i < count; ++i) room[i] = values[(std::int64_t{index[i]} - nodes.index_base) * stride];
     return room;
   }
+  if (nodes.index64) {
+    for (int i = 0; i < count; ++i) room[i] = values[nodes.node(i) * stride];
+    return room;
+  }
   values += nodes.first * stride;
   if (stride == 1) {
     prefetch_next(values, count);
@@ -58,7 +67,7 @@ inline const double* gather(const ilaw_input& input, int component, const node_r
 // Gives the three components of a block of vectors; (3,n) arrays are transposed in one pass.
 inline void gather_vector(const ilaw_input& input, int dimension, const node_range& nodes, column* room,
                           const double** components) {
-  if (dimension == 3 && !nodes.index && input.node_stride == 3 && input.component_stride == 1) {
+  if (dimension == 3 && !nodes.listed() && input.node_stride == 3 && input.component_stride == 1) {
     const double* __restrict__ values = input.values + 3 * nodes.first;
     prefetch_next(values, 3 * nodes.count);
     double* __restrict__ a = room[0].values, * __restrict__ b = room[1].values, * __restrict__ c = room[2].values;
@@ -77,7 +86,7 @@ inline void gather_vector(const ilaw_input& input, int dimension, const node_ran
 
 // Where to write one component: in the host's array if it is consecutive, else in room, to be scattered.
 inline double* target(const ilaw_output& output, int component, const node_range& nodes, double* room) {
-  if (nodes.index || output.node_stride != 1) return room;
+  if (nodes.listed() || output.node_stride != 1) return room;
   return output.values + component * output.component_stride + nodes.first;
 }
 
@@ -92,6 +101,10 @@ inline void scatter(const ilaw_output& output, int component, const node_range& 
       values[(std::int64_t{index[i]} - nodes.index_base) * stride] = written[i];
     return;
   }
+  if (nodes.index64) {
+    for (int i = 0; i < nodes.count; ++i) values[nodes.node(i) * stride] = written[i];
+    return;
+  }
   values += nodes.first * stride;
   if (values == written) return;
   for (int i = 0; i < nodes.count; ++i) values[i * stride] = written[i];
@@ -99,7 +112,7 @@ inline void scatter(const ilaw_output& output, int component, const node_range& 
 
 inline void scatter_vector(const ilaw_output& output, int dimension, const node_range& nodes,
                            double* const* components) {
-  if (dimension == 3 && !nodes.index && output.node_stride == 3 && output.component_stride == 1) {
+  if (dimension == 3 && !nodes.listed() && output.node_stride == 3 && output.component_stride == 1) {
     double* __restrict__ values = output.values + 3 * nodes.first;
     const double* __restrict__ a = components[0], * __restrict__ b = components[1], * __restrict__ c = components[2];
 #pragma omp simd

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <ilaw/kit/detail/dispatch.hpp>
+#include <ilaw/kit/detail/float_environment.hpp>
 #include <ilaw/kit/detail/parameters.hpp>
+#include <ilaw/kit/detail/sized.hpp>
 
 #include <new>
 
@@ -12,16 +14,11 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 // The local frame is carried along in the state where a law remembers vectors and the host gives only
 // normals.
 inline constexpr state_variable frame_variables[] = {
-    {.name = "frame_normal", .doc = "Normal of the last step.", .kind = ILAW_STATE_AXIS},
-    {.name = "frame_tangent", .doc = "First tangent of the last step.", .kind = ILAW_STATE_AXIS}};
-
-template <class Law>
-constexpr bool has_vector_state() {
-  if constexpr (has_state<Law>)
-    for (const state_variable& v : Law::state_variables)
-      if (v.kind == ILAW_STATE_VECTOR || v.kind == ILAW_STATE_HISTORY) return true;
-  return false;
-}
+    {.name = "frame_normal", .doc = "Normal of the last step.", .kind = ILAW_STATE_AXIS, .internal = true},
+    {.name = "frame_tangent",
+     .doc = "First tangent of the last step.",
+     .kind = ILAW_STATE_AXIS,
+     .internal = true}};
 
 // Whether kernels may work from the normal alone: no tangent named, and no vector remembered, which would
 // need tangents to be written in.
@@ -77,9 +74,12 @@ struct instance {
   std::uint32_t energy_inputs() const { return ILAW_INPUT_V_PREVIOUS & ~inputs(); }
 
   std::uint32_t capabilities() const {
+    std::uint32_t mask = Law::card.capabilities;
     if constexpr (requires { law.capabilities(); })
-      if (table_count == 0 && per_node_count == 0) return law.capabilities();
-    return Law::card.capabilities;
+      if (table_count == 0 && per_node_count == 0) mask = law.capabilities();
+    // A frame follows the normal wherever the node is, unless the law says when its memory rests.
+    const bool frame_moves = carries_frame && has_memory<Law> && !(mask & ILAW_CAN_REST);
+    return frame_moves ? mask | ILAW_CAN_ACT_AT_DISTANCE : mask;
   }
 
   // The law as it is at a time: tables read.
@@ -138,6 +138,10 @@ class instance_builder {
                 static_cast<unsigned long long>(setup_.flags));
       return ILAW_UNSUPPORTED;
     }
+    if (setup_.tangent_given > 1) {
+      text_.add("law '%s': tangent_given %u is unknown: expected 0 or 1", id, setup_.tangent_given);
+      return ILAW_INVALID_ARGUMENT;
+    }
     made_.dimension = setup_.dimension;
     made_.delassus_form = setup_.delassus_form;
     made_.frame = setup_.frame;
@@ -153,12 +157,14 @@ class instance_builder {
       return ILAW_INVALID_ARGUMENT;
     }
     for (std::uint32_t k = 0; k < setup_.argument_count; ++k) {
-      const ilaw_argument* a = setup_.arguments[k];
-      if (!a || a->struct_size < sizeof(ilaw_argument) || !a->name) {
-        text_.add("law '%s': argument %u is null, too small or has no name", id, k);
+      const ilaw_argument* given = setup_.arguments[k];
+      const ilaw_argument a = is_complete(given) ? read_sized(given) : ilaw_argument{};
+      if (!a.name) {
+        text_.add("law '%s': argument %u is null, has a struct_size below %u or no name", id, k,
+                  least_size<ilaw_argument>);
         return ILAW_INVALID_ARGUMENT;
       }
-      if (const std::int32_t code = read_argument(*a); code != ILAW_OK) return code;
+      if (const std::int32_t code = read_argument(a); code != ILAW_OK) return code;
     }
     return ILAW_OK;
   }
@@ -224,13 +230,14 @@ class instance_builder {
   }
 
   std::int32_t check_together() {
-    // Values that come per node are checked together there.
-    if constexpr (requires { made_.law.conflict(); })
-      if (const char* conflict = made_.per_node_count > 0 ? nullptr : made_.law.conflict()) {
-        text_.add("law '%s': %s", id, conflict);
-        add_values_named_in(conflict);
-        return ILAW_INVALID_PARAMETER;
+    constexpr std::uint32_t known = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA;
+    static_assert((Law::card.inputs & ~known) == 0, "a law reads gap, v_previous and area at most");
+    if constexpr (requires { made_.law.inputs(); })
+      if (const std::uint32_t extra = made_.law.inputs() & ~Law::card.inputs) {
+        text_.add("law '%s': reads inputs 0x%x that its card does not name", id, extra);
+        return ILAW_UNSUPPORTED;
       }
+    if (const std::int32_t code = check_conflicts(); code != ILAW_OK) return code;
     if constexpr (requires { made_.law.tells_tangents_apart(); })
       if (with_unknowns().tells_tangents_apart() && setup_.frame == ILAW_FRAME_GLOBAL &&
           setup_.dimension == 3 && !setup_.tangent_given) {
@@ -241,7 +248,45 @@ class instance_builder {
     return ILAW_OK;
   }
 
-  void add_values_named_in(const char* text) {
+  // Values that come per node are checked together there. Tables are checked at all their times, which is
+  // enough for what is linear or convex in the parameters, and halfway to the next time of any of them, where
+  // a segment towards infinity is infinite already.
+  std::int32_t check_conflicts() {
+    if (made_.per_node_count > 0) return ILAW_OK;
+    if (made_.table_count == 0) return check_conflict(made_.law, nullptr);
+    for (std::uint32_t k = 0; k < made_.table_count; ++k)
+      for (std::uint64_t j = 0; j < made_.tables[k].count; ++j) {
+        const double time = made_.tables[k].pairs[2 * j], between = time + 0.5 * (next_time(time) - time);
+        for (const double instant : {time, between})
+          if (const std::int32_t code = check_conflict(made_.at(instant), &instant); code != ILAW_OK)
+            return code;
+      }
+    return ILAW_OK;
+  }
+
+  // Of any table; the same where none follows.
+  double next_time(double time) const {
+    double next = infinity;
+    for (std::uint32_t k = 0; k < made_.table_count; ++k)
+      next = smaller(next, made_.tables[k].next_time(time));
+    return next < infinity ? next : time;
+  }
+
+  std::int32_t check_conflict(const Law& law, const double* time) {
+    if constexpr (requires { law.conflict(); })
+      if (const char* conflict = law.conflict()) {
+        text_.add("law '%s': %s", id, conflict);
+        add_values_named_in(conflict, law);
+        if (time) {
+          text_.add(" at time ");
+          add_number(text_, *time);
+        }
+        return ILAW_INVALID_PARAMETER;
+      }
+    return ILAW_OK;
+  }
+
+  void add_values_named_in(const char* text, const Law& law) {
     const char* separator = "; found ";
     for (std::size_t i = 0; i < parameter_count; ++i) {
       const ilaw_parameter& p = detail::description<Law>::parameters[i];
@@ -249,7 +294,7 @@ class instance_builder {
       std::snprintf(quoted, sizeof quoted, "'%s'", p.name);
       if (!std::strstr(text, quoted)) continue;
       text_.add("%s%s = ", separator, p.name);
-      add_value(text_, p, made_.law.*Law::parameters[i].member);
+      add_value(text_, p, law.*Law::parameters[i].member);
       separator = ", ";
     }
   }
@@ -266,7 +311,8 @@ class instance_builder {
 
   std::int32_t lay_out_state() {
     if constexpr (has_memory<Law>) made_.memory_size = made_.law.memory_size(setup_);
-    const auto declared = detail::abi_state_variables<Law>(made_.dimension, made_.memory_size);
+    const auto declared =
+        detail::abi_state_variables<Law>(static_cast<int>(made_.dimension), made_.memory_size);
     for (const ilaw_state_variable& v : declared) append(v);
     made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.tangent_given &&
                           (made_.memory_size > 0 || has_vector_state<Law>());
@@ -284,7 +330,7 @@ class instance_builder {
   }
 
   instance<Law>& made_;
-  const ilaw_setup& setup_;
+  const ilaw_setup setup_;
   message& text_;
   bool given_[parameter_count + 1] = {};
 };
@@ -299,14 +345,15 @@ std::int32_t create(const ilaw_setup* setup, ilaw_instance** result, char* text,
   message said(text, text_size);
   if (!result) return ILAW_INVALID_ARGUMENT;
   *result = nullptr;
-  if (!setup || setup->struct_size < sizeof(ilaw_setup)) {
-    said.add("law '%s': setup is null or its struct_size is below %zu", Law::card.id, sizeof(ilaw_setup));
+  if (!is_complete(setup)) {
+    said.add("law '%s': setup is null or its struct_size is below %u", Law::card.id, least_size<ilaw_setup>);
     return ILAW_INVALID_ARGUMENT;
   }
+  const float_environment own;
   void* room = std::malloc(sizeof(instance<Law>));
   if (!room) return ILAW_OUT_OF_MEMORY;
   auto* made = new (room) instance<Law>{};
-  const std::int32_t code = instance_builder<Law>(*made, *setup, said).build();
+  const std::int32_t code = instance_builder<Law>(*made, read_sized(setup), said).build();
   if (code == ILAW_OK) {
     *result = reinterpret_cast<ilaw_instance*>(made);
   } else {
@@ -323,30 +370,21 @@ void destroy(ilaw_instance* opaque) {
   std::free(opaque);
 }
 
-// Writes as much of the current struct as the caller has room for.
-template <class Struct>
-void fill_sized(Struct* out, Struct value) {
-  const std::uint32_t size =
-      out->struct_size < sizeof(Struct) ? out->struct_size : std::uint32_t{sizeof(Struct)};
-  value.struct_size = out->struct_size;
-  std::memcpy(out, &value, size);
-}
-
 template <class Law>
 std::int32_t info(const ilaw_instance* opaque, ilaw_instance_info* out) {
-  if (!opaque || !out || out->struct_size < sizeof(std::uint32_t)) return ILAW_INVALID_ARGUMENT;
+  if (!opaque || !is_complete(out)) return ILAW_INVALID_ARGUMENT;
   const instance<Law>& made = of<Law>(opaque);
-  fill_sized(out, {.struct_size = 0,
-                   .inputs = made.inputs(),
-                   .energy_inputs = made.energy_inputs(),
-                   .state_variable_count = made.variable_count,
-                   .state_size = made.state_size,
-                   .state_variables = made.variable_pointers,
-                   .per_node_parameters = made.per_node_names,
-                   .per_node_parameter_count = made.per_node_count,
-                   .capabilities = made.capabilities(),
-                   .state_version = Law::card.state_version,
-                   .reserved = 0});
+  write_sized(out, {.struct_size = 0,
+                    .inputs = made.inputs(),
+                    .energy_inputs = made.energy_inputs(),
+                    .state_variable_count = made.variable_count,
+                    .state_size = made.state_size,
+                    .state_variables = made.variable_pointers,
+                    .per_node_parameters = made.per_node_names,
+                    .per_node_parameter_count = made.per_node_count,
+                    .capabilities = made.capabilities(),
+                    .state_version = Law::card.state_version,
+                    .reserved = 0});
   return ILAW_OK;
 }
 

@@ -26,8 +26,7 @@ struct node_block {
   const double* state_in[states + 1];  // one more than needed: no array of length zero
   double* history_values;              // in state_out, of the block's first node (of node 0 with an index)
   std::int64_t history_node_stride, history_component_stride;
-  const std::int32_t* history_index;  // null: consecutive nodes
-  std::int32_t history_index_base;
+  const std::int64_t* history_nodes;  // null: consecutive
 
   double* impulse[3];
   double* state_out[states + 1];
@@ -35,9 +34,11 @@ struct node_block {
   double* energy[ILAW_ENERGY_COUNT];
   double* status;
   double* refused;  // 1 where the input was bad, else 0
+  double* rests;    // 1 where a carried frame stays as it was, else 0
+  bool previous_for_energy_only;
 
   std::int64_t history_offset(int i) const {
-    return (history_index ? std::int64_t{history_index[i]} - history_index_base : i) * history_node_stride;
+    return (history_nodes ? history_nodes[i] : i) * history_node_stride;
   }
 };
 
@@ -67,6 +68,17 @@ state_t<Law> state_at(const double* const* columns, int i, std::index_sequence<K
   return std::bit_cast<state_t<Law>>(std::array<double, sizeof...(K)>{columns[K][i]...});
 }
 
+// Of a state that comes in: finite, and every scalar what its variable may be.
+template <class Law, std::size_t V = 0>
+double range_defect(const std::array<double, state_doubles<Law>>& state, int position = 0) {
+  if constexpr (V < std::size(Law::state_variables)) {
+    constexpr const state_variable& v = Law::state_variables[V];
+    const double rest = range_defect<Law, V + 1>(state, position + v.doubles());
+    if constexpr (v.has_range()) return rest + defect_unless(v.may_be(state[position]));
+    return rest;
+  }
+  return 0.0;
+}
 template <class Law>
 double state_defect(const state_t<Law>& state) {
   double sum = 0.0;
@@ -74,8 +86,40 @@ double state_defect(const state_t<Law>& state) {
     for (double s : std::bit_cast<std::array<double, state_doubles<Law>>>(state)) sum += defect(s);
   return sum;
 }
+template <class Law>
+double incoming_state_defect(const state_t<Law>& state) {
+  if constexpr (has_state<Law>)
+    return state_defect<Law>(state) +
+           range_defect<Law>(std::bit_cast<std::array<double, state_doubles<Law>>>(state));
+  return 0.0;
+}
+
+template <class Law>
+bool same_bits(const state_t<Law>& a, const state_t<Law>& b) {
+  std::uint64_t different = 0;
+  if constexpr (has_state<Law>) {
+    const auto x = std::bit_cast<std::array<std::uint64_t, state_doubles<Law>>>(a);
+    const auto y = std::bit_cast<std::array<std::uint64_t, state_doubles<Law>>>(b);
+    for (std::size_t k = 0; k < x.size(); ++k) different |= x[k] ^ y[k];
+  }
+  return different == 0;
+}
+
+inline vector zero_unless_finite(vector a) {
+  const bool good = defect(a) == 0.0;
+  return {good ? a.n : 0.0, good ? a.t1 : 0.0, good ? a.t2 : 0.0};
+}
+inline projected_vector zero_unless_finite(projected_vector a) {
+  const bool good = defect(a) == 0.0;
+  return {good ? a.n : 0.0, good ? a.x : 0.0, good ? a.y : 0.0, good ? a.z : 0.0};
+}
 
 }  // namespace detail
+
+// Whether a law's instances may carry a frame in this kind of frame.
+template <class Law, class Frame>
+inline constexpr bool can_carry = std::is_same_v<Frame, stored_frame> &&
+                                  (has_memory<Law> || has_vector_state<Law>());
 
 // A node as it comes in, in its local frame. A normal that is no unit vector makes v_free a defect.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
@@ -88,6 +132,8 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
   n.v_free = frame.to_local(Layout::get(b.v_free, i));
   n.v_free.n += frame.unit_defect();
   if constexpr (Scope != scope::impulse) n.v_previous = frame.to_local(columns::get(b.v_previous, i));
+  if constexpr (Scope == scope::outputs)  // asking for energies must not change the motion
+    if (b.previous_for_energy_only) n.v_previous = detail::zero_unless_finite(n.v_previous);
   n.delassus = frame.to_local(
       detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{}));
   n.gap = b.gap[i] - b.gap_offset[i];
@@ -104,7 +150,7 @@ double input_defect(const Node& n) {
   double sum = defect(n.v_free) + n.delassus.positive_defect() + defect(n.gap);
   if constexpr (Scope != scope::impulse) sum += defect(n.v_previous);
   if constexpr ((Law::card.inputs & reads_area) != 0) sum += defect(n.area) + defect_unless(n.area >= 0.0);
-  return sum + detail::state_defect<Law>(n.state);
+  return sum + detail::incoming_state_defect<Law>(n.state);
 }
 
 // Steps one node, and says whether its input was good and its result can be represented.
@@ -155,9 +201,10 @@ void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted
   const auto v = n.v_free + n.delassus.times(n.impulse);
   columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, Layout::get(b.v_free, i)));
   const energy_split e = split_energy(n, v);
-  b.energy[ILAW_ENERGY_FRICTION][i] = accepted ? e.friction : 0.0;
-  b.energy[ILAW_ENERGY_IMPACT][i] = accepted ? e.impact : 0.0;
-  b.energy[ILAW_ENERGY_RUPTURE][i] = accepted ? e.rupture : 0.0;
+  const bool known = accepted & (defect(columns::get(b.v_previous, i)) == 0.0);
+  b.energy[ILAW_ENERGY_FRICTION][i] = known ? e.friction : 0.0;
+  b.energy[ILAW_ENERGY_IMPACT][i] = known ? e.impact : 0.0;
+  b.energy[ILAW_ENERGY_RUPTURE][i] = known ? e.rupture : 0.0;
   b.energy[ILAW_ENERGY_STORED][i] = accepted ? e.stored : 0.0;
   b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
 }
@@ -168,6 +215,15 @@ inline constexpr bool remembers = has_memory<Law> && !requires {
   Form::forgets;
 };
 
+// Whether the step left all as it was: a frame that moved on alone would make skipping such a node, which its
+// host may do out of reach, another motion.
+template <class Law, class Node>
+bool rests(const Node& n, const state_t<Law>& before) {
+  const bool still = (n.impulse.n == 0.0) & (n.impulse.t1 == 0.0) & (n.impulse.t2 == 0.0);
+  return still & is_out_of_reach(n) & (n.status == double{ILAW_FREE}) &
+         detail::same_bits<Law>(n.state, before);
+}
+
 // Steps and writes node i; valid: what the caller knows of its parameters.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
 void run_node(const Form& law, const node_block<Law>& b, int i, bool valid = true) {
@@ -177,9 +233,11 @@ void run_node(const Form& law, const node_block<Law>& b, int i, bool valid = tru
   if constexpr (Scope == scope::outputs) store_outputs<Law, Frame, Layout>(b, i, n, accepted);
   if constexpr (remembers<Law, Form>)
     if (accepted) law.record(n, history{b.history_values + b.history_offset(i), b.history_component_stride});
-  if constexpr (has_state<Law>) {
+  if constexpr (has_state<Law> || can_carry<Law, Frame>) {
     const state_t<Law> before = load_node<Law, Delassus, Frame, Layout, Scope>(b, i).state;
-    store_state<Law>(b, i, n.state, before, accepted, std::make_index_sequence<state_doubles<Law>>{});
+    if constexpr (can_carry<Law, Frame>) b.rests[i] = rests<Law>(n, before) ? 1.0 : 0.0;
+    if constexpr (has_state<Law>)
+      store_state<Law>(b, i, n.state, before, accepted, std::make_index_sequence<state_doubles<Law>>{});
   }
   b.refused[i] = accepted ? 0.0 : 1.0;
 }

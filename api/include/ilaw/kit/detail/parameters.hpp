@@ -38,6 +38,19 @@ struct time_table {
   double* pairs;  // owned by the instance
   std::uint64_t count;
 
+  // The first of its times after one; infinity where there is none.
+  double next_time(double time) const {
+    std::uint64_t low = 0, high = count;
+    while (low < high) {
+      const std::uint64_t middle = (low + high) / 2;
+      if (pairs[2 * middle] > time)
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    return low < count ? pairs[2 * low] : infinity;
+  }
+
   // Piecewise linear, constant outside its ends.
   double at(double time) const {
     if (time <= pairs[0]) return pairs[1];

@@ -1,0 +1,158 @@
+// The floating-point environment of the host: left as it was found, and of no influence on the result.
+#include "batch_runner.hpp"
+
+#include <cfenv>
+#include <functional>
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+namespace ilaw::testing {
+namespace {
+
+struct Served {
+  const char* law;
+  Parameters parameters;
+  std::uint32_t form = ILAW_DELASSUS_SCALAR;
+};
+
+// With what divides by zero, overflows and makes NaN on the way.
+const std::vector<Served> laws = {
+    {"contact", {{{"restitution", 0.5}}, {{"activation", "predictive"}}}},
+    {"coulomb", {{{"friction", 0.3}, {"decay", 2.0}, {"kinetic_friction", 0.1}}, {}}},
+    {"coulomb", {{{"friction", 0.3}}, {}}, ILAW_DELASSUS_FULL},
+    {"postit",
+     {{{"initial_adhesion", 0.1}, {"memory", 0.01}, {"friction", 0.2}, {"efficiency_decrease", 3.0}}, {}}},
+    {"tie", {{{"strength", 1.0}, {"memory", 0.01}}, {}}, ILAW_DELASSUS_FULL},
+    {"penalty",
+     {{{"stiffness", 1e4}, {"friction", 0.3}, {"tangential_stiffness", 1e4}, {"exponent", 1.5}}, {}}},
+    {"penalty",
+     {{{"stiffness", 1e4}, {"friction", 0.3}, {"damping", 1.0}, {"exponent", 2.5}},
+      {{"integration", "implicit"}}}},
+    {"cohesive",
+     {{{"strength", 1.0}, {"toughness", 1e-3}, {"stiffness", 1e4}, {"friction", 0.3}},
+      {{"shape", "exponential"}}}}};
+
+// Nodes at rest, tiny, huge and none, besides those drawn.
+Nodes hostile_nodes(std::int64_t count, int components) {
+  Nodes nodes(count, 3, components);
+  const double odd[] = {0.0, -0.0, 5e-324, -1e-310, -3e-308, -1e300, 1e300, std::nan(""), -INFINITY};
+  for (std::size_t k = 0; k < 9; ++k)
+    for (std::size_t c = 0; c < 3; ++c) {
+      nodes.v_free[3 * (7 * k + 2) + c] = odd[(k + c) % 9];
+      nodes.v_previous[3 * (7 * k + 3) + c] = odd[(k + 2 * c) % 9];
+      nodes.gap[7 * k + 4] = odd[k];
+    }
+  return nodes;
+}
+
+struct Outcome {
+  std::vector<double> numbers;
+  std::vector<std::uint8_t> status;
+};
+
+// initialise and two steps, with nothing but calls of the law in between.
+Outcome outcome_of(const ilaw::interface& law, const Nodes& nodes) {
+  const auto n = static_cast<std::size_t>(nodes.count);
+  const std::size_t s = law.info().state_size;
+  Outcome out{std::vector<double>(n * (3 + 3 + 4 + s) + 1), std::vector<std::uint8_t>(n)};
+  double *r = out.numbers.data(), *v = r + 3 * n, *energy = v + 3 * n, *state = energy + 4 * n;
+  ilaw_batch b{};
+  b.struct_size = sizeof b;
+  b.node_count = nodes.count;
+  b.velocity_step = b.position_step = 1e-3;
+  b.v_free = {nodes.v_free.data(), 3, 1};
+  b.v_previous = {nodes.v_previous.data(), 3, 1};
+  b.delassus = {nodes.delassus.data(), nodes.hc, 1};
+  b.gap = {nodes.gap.data(), 1, 1};
+  b.area = {nodes.area.data(), 1, 1};
+  b.state_in = {state, static_cast<std::int64_t>(s), 1};
+  b.state_out = {state, static_cast<std::int64_t>(s), 1};
+  b.impulse = {r, 3, 1};
+  b.velocity = {v, 3, 1};
+  b.energy = {energy, 4, 1};
+  b.status = out.status.data();
+  b.status_stride = 1;
+  law.initialise(b);
+  law.evaluate(b);
+  b.time = 1e-3;
+  law.evaluate(b);
+  return out;
+}
+
+bool same(const Outcome& a, const Outcome& b) {
+  return a.status == b.status &&
+         std::memcmp(a.numbers.data(), b.numbers.data(), a.numbers.size() * sizeof(double)) == 0;
+}
+
+void for_all_laws(const std::function<void(const ilaw::interface&, const Nodes&)>& check) {
+  for (const Served& served : laws) {
+    SCOPED_TRACE(served.law);
+    const SetupBuilder setup(served.parameters, 3, served.form);
+    const ilaw::interface law = make_law(served.law, setup);
+    check(law, hostile_nodes(200, served.form == ILAW_DELASSUS_FULL ? 6 : 1));
+  }
+}
+
+TEST(FloatEnvironment, FlagsAreLeftAsTheyWere) {
+  for_all_laws([](const ilaw::interface& law, const Nodes& nodes) {
+    for (const int flags : {0, int{FE_DIVBYZERO}, FE_INEXACT | FE_UNDERFLOW}) {
+      std::feclearexcept(FE_ALL_EXCEPT);
+      std::feraiseexcept(flags);
+      const int before = std::fetestexcept(FE_ALL_EXCEPT);
+      outcome_of(law, nodes);
+      const int after = std::fetestexcept(FE_ALL_EXCEPT);
+      EXPECT_EQ(after, before);
+    }
+    std::feclearexcept(FE_ALL_EXCEPT);
+  });
+}
+
+TEST(FloatEnvironment, RoundingModeDoesNotMatterAndStays) {
+  for_all_laws([](const ilaw::interface& law, const Nodes& nodes) {
+    const Outcome nearest = outcome_of(law, nodes);
+    for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+      std::fesetround(mode);
+      const Outcome found = outcome_of(law, nodes);
+      const int after = std::fegetround();
+      std::fesetround(FE_TONEAREST);
+      EXPECT_EQ(after, mode);
+      EXPECT_TRUE(same(found, nearest)) << mode;
+    }
+  });
+}
+
+#if defined(__x86_64__)
+TEST(FloatEnvironment, FlushingToZeroDoesNotMatterAndStays) {
+  constexpr unsigned flush_to_zero = 0x8000, subnormals_are_zero = 0x0040;
+  for_all_laws([](const ilaw::interface& law, const Nodes& nodes) {
+    const Outcome expected = outcome_of(law, nodes);
+    const unsigned host = _mm_getcsr(), flushing = host | flush_to_zero | subnormals_are_zero;
+    _mm_setcsr(flushing);
+    const Outcome found = outcome_of(law, nodes);
+    const unsigned after = _mm_getcsr();
+    _mm_setcsr(host);
+    EXPECT_EQ(after, flushing);
+    EXPECT_TRUE(same(found, expected));
+  });
+}
+#endif
+
+#if defined(__GLIBC__)
+// As gfortran -ffpe-trap=invalid,zero,overflow,underflow: an exception inside a law would end the program.
+TEST(FloatEnvironment, HostsThatTrapLive) {
+  for_all_laws([](const ilaw::interface& law, const Nodes& nodes) {
+    const Outcome expected = outcome_of(law, nodes);
+    std::feclearexcept(FE_ALL_EXCEPT);
+    feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW | FE_UNDERFLOW);
+    const Outcome found = outcome_of(law, nodes);
+    const int trapping = fedisableexcept(FE_ALL_EXCEPT);
+    EXPECT_EQ(trapping, FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW | FE_UNDERFLOW);
+    EXPECT_TRUE(same(found, expected));
+  });
+}
+#endif
+
+}  // namespace
+}  // namespace ilaw::testing

@@ -1,0 +1,119 @@
+// Structs of other minor versions: what is shorter than 1.0 is refused, what is longer is served, and nobody
+// reads or writes beyond the size that the other side names.
+#include "law_runner.hpp"
+
+#include <cstring>
+
+namespace ilaw::testing {
+namespace {
+
+// A struct with what a later minor version would append.
+template <class Struct>
+struct Longer {
+  Longer() {
+    std::memset(appended, 0x5a, sizeof appended);
+    known.struct_size = sizeof *this;
+  }
+  bool is_untouched() const {
+    for (const unsigned char byte : appended)
+      if (byte != 0x5a) return false;
+    return true;
+  }
+  Struct known{};
+  unsigned char appended[40];
+};
+
+ilaw_batch batch_of_one() {
+  static const double v[] = {-1.0, 2.0, 0.0}, h = 1.0, gap = 0.0;
+  static double r[3];
+  ilaw_batch b{};
+  b.struct_size = sizeof b;
+  b.node_count = 1;
+  b.velocity_step = b.position_step = 1e-3;
+  b.v_free = {v, 3, 1};
+  b.delassus = {&h, 1, 1};
+  b.gap = {&gap, 1, 1};
+  b.impulse = {r, 3, 1};
+  return b;
+}
+
+// Between two values of r an evaluate that did nothing leaves it alone.
+TEST(Sized, BatchesAreReadUpToTheirSizeAndFromThatOfVersionOneOn) {
+  const SetupBuilder setup({{{"friction", 0.5}}, {}});
+  const ilaw::interface law = make_law("coulomb", setup);
+  Longer<ilaw_batch> batch;
+  batch.known = batch_of_one();
+  batch.known.struct_size = sizeof batch;
+  EXPECT_EQ(law.evaluate(batch.known), ILAW_OK);
+  EXPECT_EQ(batch.known.impulse.values[1], -0.5);
+  ilaw_report report{};
+  report.struct_size = sizeof report;
+  for (const std::size_t size : {std::size_t{0}, offsetof(ilaw_batch, velocity), ILAW_BATCH_SIZE_1_0 - 1})
+    for (const auto call : {law.law().evaluate, law.law().initialise}) {
+      batch.known.struct_size = static_cast<std::uint32_t>(size);
+      batch.known.impulse.values[1] = 7.0;
+      EXPECT_EQ(call(law.instance(), &batch.known, &report), ILAW_INVALID_ARGUMENT) << size;
+      EXPECT_STREQ(report.reason, "struct_size of the batch is below that of version 1.0");
+      EXPECT_EQ(batch.known.impulse.values[1], 7.0);
+    }
+}
+
+TEST(Sized, ReportsAreWrittenUpToTheirSize) {
+  const SetupBuilder setup({{{"friction", 0.5}}, {}});
+  const ilaw::interface law = make_law("coulomb", setup);
+  const ilaw_batch batch = batch_of_one();
+  Longer<ilaw_report> report;
+  report.known.bad_count = 99;
+  EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report.known), ILAW_OK);
+  EXPECT_EQ(report.known.bad_count, 0);
+  EXPECT_EQ(report.known.struct_size, sizeof report);
+  EXPECT_TRUE(report.is_untouched());
+  report.known.struct_size = ILAW_REPORT_SIZE_1_0 - 8;
+  report.known.bad_count = 99;
+  EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report.known), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(report.known.bad_count, 99);
+}
+
+TEST(Sized, InfosAreWrittenUpToTheirSize) {
+  const SetupBuilder setup({{{"friction", 0.5}}, {}});
+  const ilaw::interface law = make_law("coulomb", setup);
+  Longer<ilaw_instance_info> info;
+  EXPECT_EQ(law.law().info(law.instance(), &info.known), ILAW_OK);
+  EXPECT_EQ(info.known.state_version, 1U);
+  EXPECT_EQ(info.known.struct_size, sizeof info);
+  EXPECT_TRUE(info.is_untouched());
+  info.known.struct_size = ILAW_INSTANCE_INFO_SIZE_1_0 - 1;
+  info.known.state_version = 99;
+  EXPECT_EQ(law.law().info(law.instance(), &info.known), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(info.known.state_version, 99U);
+}
+
+TEST(Sized, SetupsAndArgumentsAreReadUpToTheirSizeAndFromThatOfVersionOneOn) {
+  const ilaw::library library(plugin_file("coulomb"));
+  const ilaw_law& law = *library.law("coulomb");
+  Longer<ilaw_argument> argument;
+  argument.known.name = "friction";
+  argument.known.number = 0.5;
+  const ilaw_argument* const arguments[] = {&argument.known};
+  Longer<ilaw_setup> setup;
+  setup.known.dimension = 3;
+  setup.known.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.known.arguments = arguments;
+  setup.known.argument_count = 1;
+  char message[200];
+  ilaw_instance* instance = nullptr;
+  const auto create = [&] { return law.create(&setup.known, &instance, message, sizeof message); };
+  EXPECT_EQ(create(), ILAW_OK) << message;
+  law.destroy(instance);
+  argument.known.struct_size = ILAW_ARGUMENT_SIZE_1_0 - 1;
+  EXPECT_EQ(create(), ILAW_INVALID_ARGUMENT);
+  EXPECT_STREQ(message, "law 'coulomb': argument 0 is null, has a struct_size below 48 or no name");
+  argument.known.struct_size = sizeof argument;
+  setup.known.struct_size = ILAW_SETUP_SIZE_1_0 - 1;
+  EXPECT_EQ(create(), ILAW_INVALID_ARGUMENT);
+  EXPECT_STREQ(message, "law 'coulomb': setup is null or its struct_size is below 40");
+  EXPECT_EQ(instance, nullptr);
+}
+
+}  // namespace
+}  // namespace ilaw::testing

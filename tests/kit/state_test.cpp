@@ -1,0 +1,147 @@
+// A state comes back from the host, and is never trusted: what the law cannot have written is bad input.
+#include "batch_runner.hpp"
+
+#include <limits>
+
+namespace ilaw::testing {
+namespace {
+
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+constexpr double inf_value = std::numeric_limits<double>::infinity();
+
+struct Foreign {
+  const char* law;
+  Parameters parameters;
+  const char* variable;
+  std::vector<double> values;
+};
+
+const std::vector<Foreign> foreign = {
+    {"postit", {{{"initial_adhesion", 1.0}}, {}}, "adhesion", {-1.0, nan_value, inf_value, -1e-300}},
+    {"postit", {{{"initial_adhesion", 1.0}}, {}}, "ruptures", {-1.0, 0.5, nan_value, inf_value}},
+    {"tie", {{{"strength", 1.0}}, {}}, "broken", {0.5, -1.0, 2.0, nan_value}},
+    {"tie", {}, "broken", {0.5, -1.0, 2.0, nan_value}},
+    {"cohesive", {{{"strength", 1.0}, {"toughness", 1.0}}, {}}, "damage", {-0.1, 1.1, nan_value}},
+    {"cohesive", {{{"strength", 1.0}, {"toughness", 1.0}}, {}}, "opening", {inf_value, nan_value}},
+    {"kit_probe", {{{"viscosity", 1.0}}, {}}, "count", {-1.0, 2.5, 1e9, nan_value}}};
+
+std::size_t offset_of(const ilaw_instance_info& info, const std::string& name) {
+  std::size_t at = 0;
+  for (std::uint32_t k = 0; k < info.state_variable_count; at += info.state_variables[k++]->count)
+    if (info.state_variables[k]->name == name) break;
+  return at;
+}
+
+ilaw::interface made(const std::string& law, const SetupBuilder& setup) {
+  return {ilaw::library(law == "kit_probe" ? ILAW_KIT_PROBE : plugin_file(law)), law, setup.setup};
+}
+
+// Three nodes that touch, with states of their own.
+struct Three {
+  explicit Three(const ilaw::interface& given) : law(given), size(given.info().state_size) {
+    state.assign(3 * size, 0.0);
+    b.struct_size = sizeof b;
+    b.node_count = 3;
+    b.velocity_step = b.position_step = 1e-3;
+    b.v_free = b.v_previous = {v, 3, 1};
+    b.normal = {normal, 0, 1};
+    b.delassus = {&one, 0, 1};
+    b.gap = {&zero, 0, 1};
+    b.area = {&one, 0, 1};
+    b.state_in = {state.data(), static_cast<std::int64_t>(size), 1};
+    b.state_out = {state.data(), static_cast<std::int64_t>(size), 1};
+    b.impulse = {r, 3, 1};
+    b.status = status;
+    b.status_stride = 1;
+    report.struct_size = sizeof report;
+    EXPECT_EQ(law.initialise(b), ILAW_OK);
+  }
+  Three(const Three&) = delete;
+
+  const ilaw::interface& law;
+  std::size_t size;
+  const double v[9] = {-1.0, 0.5, 0.0, -1.0, 0.5, 0.0, -1.0, 0.5, 0.0}, one = 1.0, zero = 0.0;
+  const double normal[3] = {0.6, 0.0, 0.8};
+  double r[9] = {};
+  std::uint8_t status[3] = {};
+  std::vector<double> state;
+  ilaw_batch b{};
+  ilaw_report report{};
+};
+
+TEST(ForeignState, IsBadInputAtItsNodeWithTheNameOfTheVariable) {
+  for (const Foreign& f : foreign)
+    for (const double value : f.values) {
+      const SetupBuilder setup(f.parameters);
+      const ilaw::interface law = made(f.law, setup);
+      Three nodes(law);
+      const std::size_t at = nodes.size + offset_of(law.info(), f.variable);
+      nodes.state[at] = value;
+      const std::vector<double> before = nodes.state;
+      SCOPED_TRACE(::testing::Message() << f.law << ", " << f.variable << " = " << value);
+      ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_BAD_NODES);
+      EXPECT_EQ(nodes.report.bad_count, 1);
+      EXPECT_EQ(nodes.report.first_bad_node, 1);
+      EXPECT_EQ(nodes.report.reason, std::isfinite(value)
+                                         ? "state variable '" + std::string(f.variable) +
+                                               "' has a value that the law cannot have written"
+                                         : std::string("the state is not finite"));
+      EXPECT_EQ(nodes.status[1], ILAW_BAD_INPUT);
+      EXPECT_EQ(std::memcmp(&nodes.state[nodes.size], &before[nodes.size], nodes.size * sizeof(double)), 0);
+      EXPECT_NE(nodes.status[0], ILAW_BAD_INPUT);
+      EXPECT_NE(nodes.status[2], ILAW_BAD_INPUT);
+    }
+}
+
+// The frame that the kit carries in the state is a frame, or none.
+TEST(ForeignState, FrameThatIsNoneIsBadInput) {
+  const SetupBuilder setup({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
+  const ilaw::interface law = made("kit_probe", setup);
+  struct Spoilt {
+    const char* variable;
+    std::size_t component;
+    double value;
+  };
+  for (const Spoilt& spoilt : {Spoilt{"frame_normal", 0, 0.0}, Spoilt{"frame_normal", 2, nan_value},
+                               Spoilt{"frame_tangent", 1, 2.0}, Spoilt{"frame_tangent", 0, inf_value}}) {
+    Three nodes(law);
+    nodes.state[nodes.size + offset_of(law.info(), spoilt.variable) + spoilt.component] = spoilt.value;
+    ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_BAD_NODES) << spoilt.variable;
+    EXPECT_EQ(nodes.report.bad_count, 1);
+    EXPECT_EQ(nodes.report.first_bad_node, 1);
+    EXPECT_STREQ(nodes.report.reason,
+                 "the state holds no frame: it is not one that the law can have written");
+  }
+}
+
+// Bookkeeping is marked, so that pictures and tables can leave it out.
+TEST(StateVariables, SayWhichAreInternal) {
+  const SetupBuilder setup({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
+  const ilaw_instance_info info = made("kit_probe", setup).info();
+  const std::map<std::string, std::uint32_t> expected = {{"count", 0},
+                                                         {"sum", 0},
+                                                         {"slip", 0},
+                                                         {"last", ILAW_VARIABLE_INTERNAL},
+                                                         {"frame_normal", ILAW_VARIABLE_INTERNAL},
+                                                         {"frame_tangent", ILAW_VARIABLE_INTERNAL}};
+  ASSERT_EQ(info.state_variable_count, expected.size());
+  for (std::uint32_t k = 0; k < info.state_variable_count; ++k)
+    EXPECT_EQ(info.state_variables[k]->flags, expected.at(info.state_variables[k]->name))
+        << info.state_variables[k]->name;
+}
+
+// A tangential vector takes d-1 doubles of the state, a vector d.
+TEST(StateVariables, HaveTheSizeOfTheirKind) {
+  for (const std::uint32_t d : {1U, 2U, 3U}) {
+    const SetupBuilder setup({{{"viscosity", 1.0}}, {}}, d);
+    const ilaw::interface law = made("kit_probe", setup);
+    EXPECT_EQ(law.info().state_size, 1 + d + (d - 1) + 2) << d;
+    for (std::uint32_t k = 0; k < law.info().state_variable_count; ++k) {
+      if (law.info().state_variables[k]->kind == ILAW_STATE_TANGENTIAL)
+        EXPECT_EQ(law.info().state_variables[k]->count, d - 1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ilaw::testing
