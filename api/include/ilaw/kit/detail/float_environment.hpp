@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/level.hpp>
+#include <ilaw/kit/detail/level.hpp>
 
 #if !defined(__x86_64__)
 #include <cfenv>

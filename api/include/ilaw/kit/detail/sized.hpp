@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ilaw/ilaw.h>
-#include <ilaw/kit/level.hpp>
+#include <ilaw/kit/detail/level.hpp>
 
 #include <cstdint>
 #include <cstring>
