@@ -9,17 +9,33 @@ function(ilaw_add_plugin name source)
      NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
     target_compile_definitions(${name} PRIVATE ILAW_KIT_OTHER_LEVELS)
     foreach(level v3 v4)
-      add_library(${name}_${level} OBJECT ${source})
-      target_link_libraries(${name}_${level} PRIVATE ilaw::kit)
-      target_compile_definitions(${name}_${level} PRIVATE ILAW_KIT_LEVEL=${level}
-                                                          ILAW_KIT_WALKS=ilaw_kit_walks_${level})
-      target_compile_options(${name}_${level} PRIVATE -march=x86-64-${level})
-      set_target_properties(${name}_${level} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-      target_sources(${name} PRIVATE $<TARGET_OBJECTS:${name}_${level}>)
+      ilaw_add_level(${name} ${source} ${level})
     endforeach()
     target_compile_options(${name}_v4 PRIVATE $<$<CXX_COMPILER_ID:GNU>:-mprefer-vector-width=512>)
   endif()
   set_target_properties(${name} PROPERTIES
     PREFIX "" SUFFIX ".so"
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/ilaw)
+endfunction()
+
+# The source at one level, as an object whose only global symbol is the function that gives its walks. All else is
+# made local: an inline function that has the same name at several levels, of a law's own header or of the standard
+# library, would else be merged by the linker, and code for the best processors run on the least.
+function(ilaw_add_level name source level)
+  find_program(ILAW_LD NAMES ld.bfd ld REQUIRED)
+  find_program(ILAW_OBJCOPY objcopy REQUIRED)
+  add_library(${name}_${level} OBJECT ${source})
+  target_link_libraries(${name}_${level} PRIVATE ilaw::kit)
+  target_compile_definitions(${name}_${level} PRIVATE ILAW_KIT_LEVEL=${level}
+                                                      ILAW_KIT_WALKS=ilaw_kit_walks_${level})
+  target_compile_options(${name}_${level} PRIVATE -march=x86-64-${level})
+  set_target_properties(${name}_${level} PROPERTIES POSITION_INDEPENDENT_CODE ON INTERPROCEDURAL_OPTIMIZATION OFF)
+  set(object ${CMAKE_CURRENT_BINARY_DIR}/${name}_${level}.o)
+  add_custom_command(OUTPUT ${object}
+    COMMAND ${ILAW_LD} -r --force-group-allocation -o ${object} $<TARGET_OBJECTS:${name}_${level}>
+    COMMAND ${ILAW_OBJCOPY} --keep-global-symbol=ilaw_kit_walks_${level} ${object}
+    DEPENDS ${name}_${level} $<TARGET_OBJECTS:${name}_${level}>
+    COMMAND_EXPAND_LISTS VERBATIM)
+  set_source_files_properties(${object} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+  target_sources(${name} PRIVATE ${object})
 endfunction()

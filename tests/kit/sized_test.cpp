@@ -1,6 +1,6 @@
 // Structs of other minor versions: what is shorter than 1.0 is refused, what is longer is served, and nobody
 // reads or writes beyond the size that the other side names.
-#include "law_runner.hpp"
+#include <support/law_runner.hpp>
 
 #include <cstring>
 
