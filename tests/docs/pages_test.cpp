@@ -140,7 +140,37 @@ TEST(Pages, LinksLeadSomewhere) {
   EXPECT_GT(links, 50);
 }
 
-// What the two tests above rest on.
+// Sources by their paths, with '/' before them.
+std::vector<std::string> sources() {
+  std::vector<std::string> found;
+  for (const char* folder : {"api", "docs", "host_mock", "plugins", "tests"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder))
+      if (entry.is_regular_file())
+        found.push_back('/' + entry.path().lexically_relative(root).generic_string());
+  return found;
+}
+
+// The pages that lead through the tree name files by the end of their paths, or by all of it.
+TEST(Pages, FilesThatTheMapNamesExist) {
+  static const std::regex file("`([A-Za-z0-9_/]+\\.(cpp|hpp|h|f90|sh|md))`");
+  const std::vector<std::string> all = sources();
+  int named = 0;
+  for (const char* page : {"docs/architecture.md", "docs/contributing.md"})
+    for (const Line& line : prose(root / page))
+      for (std::sregex_iterator found(line.text.begin(), line.text.end(), file), end; found != end;
+           ++found, ++named) {
+        const std::string name = '/' + (*found)[1].str();
+        EXPECT_TRUE(std::any_of(all.begin(), all.end(),
+                                [&](const std::string& source) {
+                                  return source.size() >= name.size() &&
+                                         source.compare(source.size() - name.size(), name.size(), name) == 0;
+                                }))
+            << page << ", line " << line.number << ": no file is called " << name.substr(1);
+      }
+  EXPECT_GT(named, 30);
+}
+
+// What the two tests at the top rest on.
 TEST(Pages, WhatIsTooLong) {
   const std::string word(101, 'a'), words = std::string(60, 'a') + ' ' + std::string(60, 'b');
   EXPECT_TRUE(is_too_long(words));
