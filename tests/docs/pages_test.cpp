@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -168,6 +169,22 @@ TEST(Pages, FilesThatTheMapNamesExist) {
             << page << ", line " << line.number << ": no file is called " << name.substr(1);
       }
   EXPECT_GT(named, 30);
+}
+
+TEST(Pages, ContributingNamesEveryBuildMode) {
+  const auto text_of = [](const path& file) {
+    std::ostringstream text;
+    text << std::ifstream(root / file).rdbuf();
+    return text.str();
+  };
+  const std::string page = text_of("docs/contributing.md"), presets = text_of("CMakePresets.json");
+  static const std::regex preset("\"name\": \"(\\w+)\"");
+  int modes = 0;
+  for (std::sregex_iterator found(presets.begin(), presets.end(), preset), end; found != end;
+       ++found, ++modes)
+    EXPECT_NE(page.find("| `" + (*found)[1].str() + "` |"), std::string::npos)
+        << "the build modes of docs/contributing.md leave out " << (*found)[1];
+  EXPECT_GT(modes, 4);
 }
 
 // What the two tests at the top rest on.
