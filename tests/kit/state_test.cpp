@@ -117,7 +117,8 @@ TEST(ForeignState, FrameThatIsNoneIsBadInput) {
 // Bookkeeping is marked, so that pictures and tables can leave it out.
 TEST(StateVariables, SayWhichAreInternal) {
   const SetupBuilder setup({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
-  const ilaw_instance_info info = made("kit_probe", setup).info();
+  const ilaw::interface law = made("kit_probe", setup);
+  const ilaw_instance_info info = law.info();
   const std::map<std::string, std::uint32_t> expected = {{"count", 0},
                                                          {"sum", 0},
                                                          {"slip", 0},

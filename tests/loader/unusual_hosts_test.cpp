@@ -15,8 +15,7 @@ namespace {
 std::string digest_of(const std::string& host, const std::string& mode) {
   std::string command = std::string(ILAW_HOSTS) + "/" + host + " " + mode;
   std::istringstream laws(ILAW_ALL_LAWS);
-  for (std::string law; laws >> law;)
-    command += " " ILAW_PLUGIN_FOLDER "/" + law + ".so";
+  for (std::string law; laws >> law;) command += " " ILAW_PLUGIN_FOLDER "/" + law + ".so";
   FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   std::string text;
   std::array<char, 256> line;

@@ -68,7 +68,8 @@ void add_geometry(vtkUnstructuredGrid& grid, const Model& model) {
     add_cell(mesh.nodes_per_cell == 8 ? VTK_HEXAHEDRON : VTK_LINE, &mesh.cells[k], mesh.nodes_per_cell);
 }
 
-// A state variable's place in the state of a node. Histories mean nothing outside their law.
+// A state variable's place in the state of a node. Histories and what is internal mean nothing outside their
+// law.
 struct StateArray {
   vtkDoubleArray* array;
   int entry, count;
@@ -82,7 +83,8 @@ std::vector<StateArray> add_states(vtkUnstructuredGrid& grid, const ilaw_instanc
     const ilaw_state_variable& variable = *info.state_variables[i];
     const bool vector = variable.kind == ILAW_STATE_VECTOR;
     const auto count = static_cast<int>(variable.count);
-    if (vector || variable.kind == ILAW_STATE_SCALAR)
+    const bool is_shown = (variable.flags & ILAW_VARIABLE_INTERNAL) == 0;
+    if (is_shown && (vector || variable.kind == ILAW_STATE_SCALAR))
       states.push_back(
           {add_array(grid, prefix + variable.name, node_count, vector ? 3 : 1, 0.0), entry, count});
     entry += count;
