@@ -33,7 +33,7 @@ struct cohesive {
           "Bond that holds up to its strength, then softens until its toughness is spent; unloads to the "
           "origin; contact and friction take over as it breaks. Solved with H for any initial stiffness, "
           "also infinite, without a limit on the time step. H isotropic in the tangent plane.",
-      .inputs = reads_gap | reads_area,
+      .inputs = reads_gap | reads_v_previous | reads_area,
       .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY | ILAW_CAN_ACT_AT_DISTANCE};
 
   static constexpr const char* references[] = {
@@ -322,9 +322,7 @@ struct cohesive {
   template <class Node>
   void touch(Node& node) const {
     const contact_condition contact = contact_at(node, 0.0, predictive);
-    auto q = node.v_free;
-    q.n = contact.excess;
-    apply_contact_friction(node, contact.slack, q, friction);
+    apply_contact_friction(node, contact_problem_of(contact, node.v_free, node.v_previous), friction);
     const vector next =
         node.state.position + node.position_step * (node.v_free + node.delassus.times(node.impulse));
     node.state.opening = 0.5 * (node.state.position + next);

@@ -34,10 +34,9 @@ struct contact {
       {.member = &contact::activation,
        .name = "activation",
        .doc = "moreau: acts where the gap is closed; predictive: acts where the next gap would be negative.",
+       .default_value = predictive,
        .choices = activation_choices,
        .choice_count = 2}};
-
-  std::uint32_t inputs() const { return reads_gap | (restitution > 0.0 ? reads_v_previous : 0U); }
 
   template <class Node>
   void step(Node& node) const {

@@ -76,15 +76,12 @@ struct coulomb {
       {.member = &coulomb::activation,
        .name = "activation",
        .doc = "moreau: acts where the gap is closed; predictive: acts where the next gap would be negative.",
+       .default_value = predictive,
        .choices = activation_choices,
        .choice_count = 2}};
 
   bool falls() const { return kinetic_friction < friction || kinetic_friction < second(); }
   bool tells_tangents_apart() const { return friction_2 != infinity && friction_2 != friction; }
-  std::uint32_t inputs() const {
-    const bool reads = restitution > 0.0 || tangential_restitution > 0.0 || falls();
-    return reads_gap | (reads ? reads_v_previous : 0U);
-  }
 
   // One coefficient at all speeds, which keeps the loop of the common case free of all that follows.
   struct plain;
@@ -93,12 +90,10 @@ struct coulomb {
 
   template <class Node>
   void step(Node& node) const {
-    const contact_condition contact = contact_at(node, restitution, activation);
     const double speed = node.v_previous.tangential_length();
     const bool slipped = speed > at_rest * node.v_free.tangential_length();
     const double left = slipped ? exp(-decay * speed) : 1.0;  // of the fall
-    apply_contact_friction(node, contact.slack, approach(node, contact), fallen(friction, left),
-                           fallen(second(), left));
+    apply_contact_friction(node, problem(node), fallen(friction, left), fallen(second(), left));
   }
 
  private:
@@ -112,10 +107,9 @@ struct coulomb {
   }
 
   template <class Node>
-  auto approach(const Node& node, contact_condition contact) const {
-    auto q = node.v_free + tangential_restitution * node.v_previous;
-    q.n = contact.excess;
-    return q;
+  auto problem(const Node& node) const {
+    return contact_problem_of(contact_at(node, restitution, activation), node.v_free, node.v_previous,
+                              tangential_restitution);
   }
 };
 
@@ -124,8 +118,7 @@ struct coulomb::plain {
 
   template <class Node>
   void step(Node& node) const {
-    const contact_condition contact = contact_at(node, law.restitution, law.activation);
-    apply_contact_friction(node, contact.slack, law.approach(node, contact), law.friction);
+    apply_contact_friction(node, law.problem(node), law.friction);
   }
 };
 

@@ -15,6 +15,7 @@ struct penalty {
   double stiffness;
   double damping;
   double exponent;
+  double restitution;
   double friction;
   double tangential_stiffness;
   double integration;
@@ -24,9 +25,9 @@ struct penalty {
       .title = "Penalised contact with regularised friction",
       .doc =
           "A spring (linear, or of Hertz's kind) with a Kelvin-Voigt damper instead of contact, and a "
-          "tangential "
-          "spring that slides on the cone. Explicit as most codes have it, or locally implicit: then any "
-          "stiffness, infinite too, leaves the critical time step as it is.",
+          "tangential spring that slides on the cone. Explicit as most codes have it, or locally implicit: "
+          "then any stiffness, infinite too, leaves the critical time step as it is and gives back the "
+          "energy of an impact, or what a coefficient of restitution leaves of it.",
       .inputs = reads_gap | reads_v_previous,
       .capabilities = ILAW_CAN_STORE_ENERGY | ILAW_CAN_REST};
 
@@ -35,7 +36,9 @@ struct penalty {
       "P. Wriggers, T. Vu Van, E. Stein, 1990, Finite element formulation of large deformation "
       "impact-contact "
       "problems with friction",
-      "J. C. Simo, T. J. R. Hughes, 1998, Computational inelasticity: return mapping"};
+      "J. C. Simo, T. J. R. Hughes, 1998, Computational inelasticity: return mapping",
+      "J. C. Simo, N. Tarnow, 1992, The discrete energy-momentum method",
+      "T. Schwager, T. Poeschel, 2007, Coefficient of restitution and linear-dashpot model revisited"};
 
   static constexpr parameter<penalty> parameters[] = {
       {.member = &penalty::stiffness,
@@ -57,6 +60,12 @@ struct penalty {
        .default_value = 1.0,
        .minimum = 1.0,
        .maximum = 8.0},
+      {.member = &penalty::restitution,
+       .name = "restitution",
+       .symbol = "e",
+       .doc = "Part of the normal velocity that an impact gives back (implicit; explicit: 1, see damping).",
+       .default_value = 1.0,
+       .maximum = 1.0},
       {.member = &penalty::friction,
        .name = "friction",
        .symbol = "mu",
@@ -72,24 +81,34 @@ struct penalty {
        .infinity_allowed = true},
       {.member = &penalty::integration,
        .name = "integration",
-       .doc = "explicit: forces from the gap and slip of the step; implicit: from those it leads to.",
+       .doc = "explicit: forces from the gap and slip of the step; implicit: from their mean over the step.",
        .choices = integration_choices,
        .choice_count = 2}};
 
   struct state {
+    double indentation;
     double normal, slip_1, slip_2;  // normal is always zero
   };
   static constexpr state_variable state_variables[] = {
+      {.name = "indentation",
+       .unit = "m",
+       .doc = "Of the implicit normal spring since it closed.",
+       .minimum = 0.0},
       {.name = "spring",
        .unit = "m",
        .doc = "Elastic part of the slip; normal component zero.",
        .kind = ILAW_STATE_VECTOR}};
 
   std::uint32_t inputs() const {
-    return reads_gap | (integration != implicitly && damping > 0.0 ? reads_v_previous : 0U);
+    return reads_gap | (integration == implicitly || damping > 0.0 ? reads_v_previous : 0U);
   }
   const char* conflict() const {
+    if (restitution < 1.0 && (damping > 0.0 || exponent != 1.0))
+      return "parameter 'restitution' below 1 sets the damper of a linear spring: it needs 'damping' 0 and "
+             "'exponent' 1";
     if (integration == implicitly) return nullptr;
+    if (restitution < 1.0)
+      return "parameter 'restitution' must be 1 where 'integration' is explicit; 'damping' takes energy there";
     if (stiffness == infinity) return "parameter 'stiffness' must be finite where 'integration' is explicit";
     if (friction > 0.0 && tangential_stiffness == infinity)
       return "parameter 'tangential_stiffness' must be finite where 'integration' is explicit and 'friction' "
@@ -155,70 +174,120 @@ struct penalty {
     node.status = normal > 0.0 ? closed : double{ILAW_FREE};
   }
 
+  // The mean over the step of forces that the step ends with, so that springs give back what they took: see
+  // penalty.md. q + H/2 r is the mean velocity of what slips.
   template <bool Linear, class Node>
-  void step_implicitly(Node& node) const {
-    const double rate = 1.0 / node.position_step;
-    const vector spring{0.0, node.state.slip_1, node.state.slip_2};
+  void step_implicitly(Node& node, double damping_ratio) const {
+    penalty_law::compression normal = compression_of(node, damping_ratio);
+    const bool acts =
+        node.state.indentation > 0.0 || node.gap + 0.5 * node.position_step * node.v_previous.n <= 0.0;
+    const double rate = 2.0 / node.velocity_step;
     const double softness = rate / (node.velocity_step * tangential_stiffness);
-    const vector q = node.v_free + rate * spring;
-    if (friction > 0.0 && node.delassus.anisotropy() != 0.0)
-      rub_any<Linear>(node, q, softness);
-    else
-      rub(node, normal_impulse<Linear>(node), q, node.delassus.tangential() + softness);
-
-    const double compliance = node.position_step * softness;
-    node.state = {0.0, 0.0 - compliance * node.impulse.t1, 0.0 - compliance * node.impulse.t2};
-    const vector strained{0.0, node.state.slip_1, node.state.slip_2};
-    const vector v = node.v_free + node.delassus.times(node.impulse);
-    const double normal = potential<Linear>(positive_part(-(node.gap + node.position_step * v.n)));
-    const double tangential = tangential_potential(strained, strained);
-    node.normal_gain = normal - potential<Linear>(positive_part(-node.gap));
-    node.tangential_gain = tangential - tangential_potential(spring, spring);
-    node.stored = normal + tangential;
+    const vector spring{0.0, node.state.slip_1, node.state.slip_2};
+    const vector q = 0.5 * (node.v_free + held(node) * node.v_previous) + rate * spring;
+    penalty_law::compression::solution found{0.0, false};
+    if (friction > 0.0 && node.delassus.anisotropy() != 0.0) {
+      found = rub_any<Linear>(node, acts, normal, q, softness);
+    } else {
+      found = Linear ? normal.linear() : normal.power_law();
+      found.impulse = acts ? found.impulse : 0.0;
+      rub(node, found.impulse, q, 0.5 * node.delassus.tangential() + softness);
+    }
+    strain<Linear>(node, acts ? normal.next(found) : 0.0);
   }
 
-  // The same for any H: springs are inverse masses beside its own, which makes this Coulomb's local problem.
-  // Where H couples the normal to the tangents, the normal spring must be one as well: linear and without
-  // damper.
+  // What the step leaves in the springs. One that sticks moves along; one that slides keeps no more than its
+  // force holds, in the direction of its end.
   template <bool Linear, class Node>
-  void rub_any(Node& node, vector q, double softness) const {
+  void strain(Node& node, double indentation) const {
+    const double h = node.velocity_step, per_impulse = 1.0 / (h * tangential_stiffness);
+    const vector spring{0.0, node.state.slip_1, node.state.slip_2}, r = node.impulse;
+    const vector v = node.v_free + node.delassus.times(r);
+    const vector moved = spring + (0.5 * h) * (node.v_previous + v);
+    const double most = per_impulse * r.tangential_length(), length = moved.tangential_length();
+    const bool is_stiff = h * h * tangential_stiffness * node.delassus.tangential() > 4.0;
+    const bool slides = node.status != double{ILAW_STICK};
+    const double kept = slides && length > most ? most / length : 1.0;
+    const bool by_force = is_stiff && !slides, holds = tangential_stiffness < infinity && friction > 0.0;
+    const auto next = [&](double before, double after, double impulse) {
+      const double end = by_force ? 0.0 - 2.0 * per_impulse * impulse - before : kept * after;
+      return holds ? end : 0.0;
+    };
+    const vector strained{0.0, next(spring.t1, moved.t1, r.t1), next(spring.t2, moved.t2, r.t2)};
+    const double stored_normal = potential<Linear>(indentation);
+    const double stored_tangential = tangential_potential(strained, strained);
+    node.normal_gain = stored_normal - potential<Linear>(node.state.indentation);
+    node.tangential_gain = stored_tangential - tangential_potential(spring, spring);
+    node.stored = stored_normal + stored_tangential;
+    node.state = {indentation, 0.0, strained.t1, strained.t2};
+  }
+
+  template <class Node>
+  penalty_law::compression compression_of(const Node& node, double damping_ratio) const {
+    const double h = node.velocity_step, delassus = node.delassus.normal();
+    const double pace = h * square_root(stiffness) * square_root(delassus);
+    const double reached =
+        2.0 * damping_ratio * (pace / (h * delassus)) / (1.0 + (0.25 + 0.5 * damping_ratio) * pace);
+    const double damper = damping / (1.0 + 0.5 * h * damping * delassus);
+    return {.free = node.v_free.n,
+            .previous = node.v_previous.n,
+            .delassus = delassus,
+            .step = h,
+            .indentation = stiffness < infinity ? node.state.indentation : 0.0,
+            .stiffness = stiffness,
+            .exponent = exponent,
+            .damping = stiffness < infinity ? reached + damper : 0.0,
+            .lead = 1.0 / (1.0 + restitution) - 0.5};
+  }
+
+  // How much of the velocity before a step counts for a spring's mean: all; where it is rigid what of it the
+  // free velocity has turned round, so that stopping it does no work.
+  template <class Node>
+  double held(const Node& node) const {
+    const double speed = tangential_product(node.v_previous, node.v_previous);
+    const double turned = 0.0 - tangential_product(node.v_free, node.v_previous);
+    const double part = turned > 0.0 ? turned / larger(turned, speed) : 0.0;
+    return tangential_stiffness < infinity ? 1.0 : part;
+  }
+
+  // The same for any H. Tangents with a normal impulse that is known are Coulomb's local problem without
+  // coupling, the tangential spring an inverse mass beside H; what their impulse does to the normal leaves
+  // one equation for one unknown. A rigid spring has none to find: Coulomb's local problem as it is.
+  template <bool Linear, class Node>
+  penalty_law::compression::solution rub_any(Node& node, bool acts, penalty_law::compression& normal,
+                                             vector q, double softness) const {
     local_coulomb problem = problem_of(node.delassus);
+    const double coupling_1 = problem.h[3], coupling_2 = problem.h[4], nn = problem.h[0];
+    for (double& entry : problem.h) entry *= 0.5;
     problem.h[1] += softness;
     problem.h[2] += softness;
+    problem.mu[0] = problem.mu[1] = friction;
     problem.q[1] = q.t1;
     problem.q[2] = q.t2;
-    problem.mu[0] = problem.mu[1] = friction;
-    const bool couples = absolute(problem.h[3]) + absolute(problem.h[4]) > rounding_of(node.delassus);
-    const bool is_inverse_mass = stiffness == infinity || (Linear && damping == 0.0);
-    if (is_inverse_mass) {
-      problem.h[0] += 1.0 / (node.velocity_step * node.position_step * stiffness);
-      problem.q[0] = node.v_free.n + acting_gap(node) * (1.0 / node.position_step);
-    } else {
-      problem.h[3] = problem.h[4] = 0.0;
-      problem.q[0] = -problem.h[0] * normal_impulse<Linear>(node);
+    if (stiffness == infinity) {
+      problem.q[0] = 0.5 * (normal.free + (normal.previous < 0.0 ? restitution : 1.0) * normal.previous);
+      apply_local_coulomb(node, acts ? -1.0 : 1.0, problem);
+      return {node.impulse.n, false};
     }
-    apply_local_coulomb(node, stiffness > 0.0 ? -1.0 : 1.0, problem);
-    if (couples && !is_inverse_mass) node.refused = anisotropic_delassus;
-  }
-
-  // A rigid spring does not push out what has penetrated already.
-  template <class Node>
-  double acting_gap(const Node& node) const {
-    return stiffness < infinity ? node.gap : positive_part(node.gap);
-  }
-
-  // r = h <k <-g'>^p - c v_N> where the next gap g' = g + h v_N, v_N = v_free + H r, is closed; else r keeps
-  // it from opening, if anything does.
-  template <bool Linear, class Node>
-  double normal_impulse(const Node& node) const {
-    const double gap = acting_gap(node);
-    const penalty_law::compression problem{.velocity = node.v_free.n,
-                                           .reach = node.v_free.n + gap * (1.0 / node.position_step),
-                                           .delassus = node.delassus.normal(),
-                                           .velocity_step = node.velocity_step,
-                                           .position_step = node.position_step};
-    if constexpr (Linear) return problem.linear(gap, stiffness, damping);
-    return problem.power_law(stiffness, damping, exponent);
+    problem.h[3] = problem.h[4] = 0.0;
+    const double free = normal.free;
+    const auto tangents = [&](double r) {
+      problem.q[0] = -problem.h[0] * r;
+      problem.q[1] = q.t1 + 0.5 * coupling_1 * r;
+      problem.q[2] = q.t2 + 0.5 * coupling_2 * r;
+      apply_local_coulomb(node, -1.0, problem);
+      node.impulse.n = r;
+      return free + coupling_1 * node.impulse.t1 + coupling_2 * node.impulse.t2;
+    };
+    penalty_law::compression::solution found{0.0, false};
+    if (acts && coupling_1 == 0.0 && coupling_2 == 0.0)
+      found = Linear ? normal.linear() : normal.power_law();
+    else if (acts)
+      found.impulse = normal.impulse_where([&](double r) { return normal.given(tangents(r) + nn * r) - r; });
+    normal.free = tangents(acts ? found.impulse : 0.0);
+    if (!finite(found.impulse)) node.refused = no_solution;
+    found.opens = normal.travel(normal.free + nn * found.impulse) > normal.indentation;
+    return found;
   }
 
   // Forces of the configuration and the half step before: the stiffness eats the critical time step. The
@@ -238,7 +307,8 @@ struct penalty {
     const vector v = node.v_free + node.delassus.times(node.impulse);
     const vector kept{0.0, 0.0 - per_impulse * node.impulse.t1, 0.0 - per_impulse * node.impulse.t2};
     const vector next{0.0, kept.t1 + strains * v.t1, kept.t2 + strains * v.t2};
-    node.state = {0.0, next.t1, next.t2};
+    if (node.state.indentation != 0.0) node.refused = impossible_state;
+    node.state = {0.0, 0.0, next.t1, next.t2};
 
     // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
     const vector mean = node.v_previous + v;
@@ -252,10 +322,12 @@ struct penalty {
 // The four forms, chosen per batch: loops without a power vectorise.
 template <bool Implicit, bool Linear>
 struct penalty_form : penalty {
+  double damping_ratio;
+
   template <class Node>
   void step(Node& node) const {
     if constexpr (Implicit)
-      step_implicitly<Linear>(node);
+      step_implicitly<Linear>(node, damping_ratio);
     else
       step_explicitly<Linear>(node);
   }
@@ -265,10 +337,11 @@ template <class Run>
 void penalty::in_form(Run run) const {
   const bool is_implicit = integration == implicitly;
   const bool is_linear = exponent == 1.0 || stiffness == infinity;
-  if (is_implicit && is_linear) run(penalty_form<true, true>{*this});
-  if (is_implicit && !is_linear) run(penalty_form<true, false>{*this});
-  if (!is_implicit && is_linear) run(penalty_form<false, true>{*this});
-  if (!is_implicit && !is_linear) run(penalty_form<false, false>{*this});
+  const double ratio = penalty_law::damping_ratio(restitution);
+  if (is_implicit && is_linear) run(penalty_form<true, true>{*this, ratio});
+  if (is_implicit && !is_linear) run(penalty_form<true, false>{*this, ratio});
+  if (!is_implicit && is_linear) run(penalty_form<false, true>{*this, ratio});
+  if (!is_implicit && !is_linear) run(penalty_form<false, false>{*this, ratio});
 }
 
 }  // namespace

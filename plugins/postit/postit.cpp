@@ -9,19 +9,19 @@ using namespace ilaw::kit;
 constexpr const char* rupture_choices[] = {"brittle", "saturated"};
 constexpr double saturated = 1.0;
 
-// A pull exactly at the limit holds, whatever the rounding of its windowed sum.
-constexpr double at_the_limit = 1.0 + 1e-12;
+// A pull exactly at the limit holds, whatever the rounding of its windowed sum; the criterion is of its
+// square.
+constexpr double at_the_limit = 1.0 + 2.0 * window_slack;
 
 struct postit {
   double adhesion_limit;
   double efficiency_decrease;
-  double memory_time;
+  double duration;  // of the window
   double tangent_influence;
   double friction;
   double rupture;
   double initial_adhesion;
   double buckets;
-  double slots = 0.0;  // of the window, from the setup
 
   static constexpr law_card card{
       .id = "postit",
@@ -30,7 +30,7 @@ struct postit {
           "Rigid bond that breaks when the impulses of the last memory exceed its adhesion, and forms again "
           "under "
           "pressure, each time less after a rupture; contact with Coulomb friction where it is not bonded.",
-      .inputs = reads_gap | reads_area,
+      .inputs = reads_gap | reads_v_previous | reads_area,
       .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST};
 
   static constexpr const char* references[] = {
@@ -53,7 +53,7 @@ struct postit {
        .default_value = infinity,
        .minimum_excluded = true,
        .infinity_allowed = true},
-      {.member = &postit::memory_time,
+      {.member = &postit::duration,
        .name = "memory",
        .symbol = "tau_Y",
        .unit = "s",
@@ -87,29 +87,35 @@ struct postit {
       {.member = &postit::buckets,
        .name = "buckets",
        .symbol = "B",
-       .doc = "Slots of the memory: the sum is exact when there are at least memory over time step.",
+       .doc = "Buckets of the window, which is of third order in their width memory/B.",
        .default_value = 16.0,
        .minimum = 1.0,
        .maximum = 4096.0,
-       .whole = true}};
+       .whole = true,
+       .fixed = true}};
 
   struct state {
-    double adhesion, ruptures;
+    double adhesion, ruptures, grace;
   };
   static constexpr state_variable state_variables[] = {
       {.name = "adhesion",
        .unit = "N.s",
        .doc = "Adhesion of the node; 0 when it is not bonded.",
        .minimum = 0.0},
-      {.name = "ruptures", .doc = "Number of ruptures so far.", .minimum = 0.0, .whole = true}};
-  static constexpr state_variable memory{.name = "window",
-                                         .unit = "N.s",
-                                         .doc = "Impulses of the last memory.",
-                                         .kind = ILAW_STATE_HISTORY,
-                                         .internal = true};
+      {.name = "ruptures", .doc = "Number of ruptures that counted so far.", .minimum = 0.0, .whole = true},
+      {.name = "grace",
+       .unit = "s",
+       .doc = "Time that the bond has yet to hold for its rupture to count; 0: it counts.",
+       .minimum = 0.0}};
+  static constexpr state_variable history_variable{.name = "window",
+                                                   .unit = "N.s",
+                                                   .doc = "Impulses of the last memory.",
+                                                   .kind = ILAW_STATE_HISTORY,
+                                                   .internal = true};
 
   std::uint32_t inputs() const {
-    return reads_gap | (adhesion_limit < infinity || initial_adhesion > 0.0 ? reads_area : 0U);
+    return reads_gap | reads_v_previous |
+           (adhesion_limit < infinity || initial_adhesion > 0.0 ? reads_area : 0U);
   }
   // What is bonded from the start holds at any gap.
   std::uint32_t capabilities() const {
@@ -122,10 +128,7 @@ struct postit {
                  "at most that"
                : nullptr;
   }
-  std::int64_t memory_size(const ilaw_setup&) {
-    slots = static_cast<double>(window::slot_count(memory_time, buckets, 0.0));
-    return window::doubles(static_cast<std::int64_t>(slots));
-  }
+  std::int64_t history_size() const { return window::doubles(duration, buckets); }
 
   template <class Node>
   void initialise(Node& node) const {
@@ -134,23 +137,25 @@ struct postit {
 
   template <class Node>
   void step(Node& node) const {
-    const vector past = sums().sum(node.past, node.time, node.velocity_step);
+    const window::reading earlier = sums().before(node.history, interval_of(node));
+    node.refused = earlier.refused;
+    if (node.refused != not_refused) return;
     if (node.state.adhesion > 0.0)
-      step_bonded(node, past);
+      step_bonded(node, earlier.sum);
     else
-      touch(node, node.v_free, {});
-    heal(node, node.status == double{ILAW_BROKEN} ? vector{} : past);
+      step_unbonded(node);
+    heal(node, node.status == double{ILAW_BROKEN} ? vector{} : earlier.sum);
   }
 
   // A rupture clears the window; what it then holds is the impulse of this step.
   template <class Node>
   void record(const Node& node, history own) const {
     if (node.status == double{ILAW_BROKEN}) sums().clear(own);
-    sums().add(own, node.time, node.velocity_step, node.impulse);
+    sums().add(own, interval_of(node), node.impulse);
   }
 
  private:
-  window sums() const { return {memory_time, static_cast<std::int64_t>(slots)}; }
+  window sums() const { return {duration, buckets}; }
 
   // (<-S_N>/R_Y)^2 + (<|S_T| - mu <S_N>>/(lambda R_Y))^2, which exceeds 1 at rupture.
   double criterion(vector sum, double adhesion) const {
@@ -161,45 +166,65 @@ struct postit {
     return pull * pull + shear * shear;
   }
 
+  // Free: the next rupture counts.
   template <class Node>
-  void step_bonded(Node& node, vector past) const {
-    const vector trial = -node.delassus.solve(node.v_free);
-    if (criterion(past + trial, node.state.adhesion) <= at_the_limit) {
+  void step_unbonded(Node& node) const {
+    touch(node, node.v_free, {});
+    if (node.gap > 0.0 && node.status == double{ILAW_FREE}) node.state.grace = 0.0;
+  }
+
+  template <class Node>
+  void step_bonded(Node& node, vector earlier) const {
+    const vector trial = stopping_impulse(node);
+    if (criterion(earlier + trial, node.state.adhesion) <= at_the_limit) {
       node.impulse = trial;
       node.status = ILAW_BONDED;
+      node.state.grace = still_to_hold(node.state.grace, node.velocity_step);
       return;
     }
-    const vector held = rupture == saturated ? held_part(past, trial, node.state.adhesion) * trial : vector{};
+    const vector held =
+        rupture == saturated ? held_part(earlier, trial, node.state.adhesion) * trial : vector{};
     node.state.adhesion = 0.0;
-    node.state.ruptures += 1.0;
+    count_rupture(node.state, node.velocity_step);
     touch(node, node.v_free + node.delassus.times(held), held);
     node.status = ILAW_BROKEN;
   }
 
+  // Sliding under pressure bonds and breaks in every step. A rupture counts only if the node was free since
+  // the last one, or the bond held for the window, and for one step at least.
+  void count_rupture(state& s, double step) const {
+    if (s.grace == 0.0) s.ruptures += 1.0;
+    s.grace = smaller(larger(duration, step), std::numeric_limits<double>::max());
+  }
+  static double still_to_hold(double grace, double step) {
+    const double rest = grace - step;
+    return rest > window_slack * step ? rest : 0.0;
+  }
+
   // The part of the trial impulse that takes the sum to the limit; bisection to the last bit.
-  double held_part(vector past, vector trial, double adhesion) const {
+  double held_part(vector earlier, vector trial, double adhesion) const {
     double holds = 0.0, breaks = 1.0;
-    if (criterion(past, adhesion) > 1.0) return 0.0;
+    if (criterion(earlier, adhesion) > 1.0) return 0.0;
     for (double middle = 0.5; middle > holds && middle < breaks; middle = 0.5 * (holds + breaks))
-      (criterion(past + middle * trial, adhesion) <= 1.0 ? holds : breaks) = middle;
+      (criterion(earlier + middle * trial, adhesion) <= 1.0 ? holds : breaks) = middle;
     return holds;
   }
 
   // Contact and friction, on top of what a breaking bond still gave.
   template <class Node>
   void touch(Node& node, vector velocity, vector held) const {
-    apply_contact_friction(node, node.gap, velocity, friction);
+    apply_plain_contact(node, velocity, friction);
     node.impulse = node.impulse + held;
   }
 
   // Pressing bonds: R_Y = max(R_Y, min(eta(b) <S_N>, R_Y,max)).
   template <class Node>
-  void heal(Node& node, vector past) const {
+  void heal(Node& node, vector earlier) const {
     if (!(node.impulse.n > 0.0)) return;
     const double efficiency =
         efficiency_decrease < infinity ? exp(-node.state.ruptures / efficiency_decrease) : 1.0;
     const double limit = adhesion_limit < infinity ? adhesion_limit * node.area : infinity;
-    const double gained = smaller(efficiency * positive_part(past.n + node.impulse.n), limit);
+    const double gained = smaller(efficiency * positive_part(earlier.n + node.impulse.n), limit);
     const bool forms = node.state.adhesion == 0.0 && gained > 0.0 && node.status != double{ILAW_BROKEN};
     node.state.adhesion = larger(node.state.adhesion, gained);
     if (forms) node.status = ILAW_HEALED;

@@ -7,13 +7,12 @@ namespace {
 using namespace ilaw::kit;
 
 // A pull exactly at the limit holds, whatever the rounding of its windowed sum.
-constexpr double at_the_limit = 1.0 + 1e-12;
+constexpr double at_the_limit = 1.0 + window_slack;
 
 struct tie {
   double strength;
-  double memory_time;
+  double duration;  // of the window
   double buckets;
-  double slots = 0.0;  // of the window, from the setup
 
   static constexpr law_card card{.id = "tie",
                                  .title = "Bilateral bond, breakable (spot weld)",
@@ -23,7 +22,7 @@ struct tie {
                                      "is given, the bond breaks for good when the impulses of the last "
                                      "memory exceed it in pull and shear "
                                      "together; frictionless contact is left.",
-                                 .inputs = reads_gap | reads_area,
+                                 .inputs = reads_gap | reads_v_previous | reads_area,
                                  .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST};
 
   static constexpr const char* references[] = {
@@ -37,7 +36,7 @@ struct tie {
        .doc = "Impulse per area, over the memory, that the bond can carry in pull and shear.",
        .default_value = infinity,
        .infinity_allowed = true},
-      {.member = &tie::memory_time,
+      {.member = &tie::duration,
        .name = "memory",
        .symbol = "tau_Y",
        .unit = "s",
@@ -47,11 +46,12 @@ struct tie {
       {.member = &tie::buckets,
        .name = "buckets",
        .symbol = "B",
-       .doc = "Slots of the memory: the sum is exact when there are at least memory over time step.",
+       .doc = "Buckets of the window, which is of third order in their width memory/B.",
        .default_value = 16.0,
        .minimum = 1.0,
        .maximum = 4096.0,
-       .whole = true}};
+       .whole = true,
+       .fixed = true}};
 
   struct state {
     double broken;
@@ -61,17 +61,14 @@ struct tie {
                                                         .minimum = 0.0,
                                                         .maximum = 1.0,
                                                         .whole = true}};
-  static constexpr state_variable memory{.name = "window",
-                                         .unit = "N.s",
-                                         .doc = "Impulses of the last memory.",
-                                         .kind = ILAW_STATE_HISTORY,
-                                         .internal = true};
+  static constexpr state_variable history_variable{.name = "window",
+                                                   .unit = "N.s",
+                                                   .doc = "Impulses of the last memory.",
+                                                   .kind = ILAW_STATE_HISTORY,
+                                                   .internal = true};
 
-  std::uint32_t inputs() const { return strength < infinity ? reads_gap | reads_area : 0U; }
-  std::int64_t memory_size(const ilaw_setup&) {
-    slots = static_cast<double>(window::slot_count(memory_time, buckets, 0.0));
-    return window::doubles(static_cast<std::int64_t>(slots));
-  }
+  std::uint32_t inputs() const { return strength < infinity ? card.inputs : 0U; }
+  std::int64_t history_size() const { return window::doubles(duration, buckets); }
 
   // Without strength and memory: nothing to sum.
   struct unbreakable;
@@ -80,13 +77,16 @@ struct tie {
 
   template <class Node>
   void step(Node& node) const {
+    const window::reading earlier = sums().before(node.history, interval_of(node));
+    node.refused = earlier.refused;
+    if (node.refused != not_refused) return;
     if (node.state.broken != 0.0) {
       touch(node);
       return;
     }
     const vector trial = -node.delassus.solve(node.v_free);
     const double limit = strength < infinity ? strength * node.area : infinity;
-    if (load(sums().sum(node.past, node.time, node.velocity_step) + trial) <= limit * at_the_limit) {
+    if (load(earlier.sum + trial) <= limit * at_the_limit) {
       node.impulse = trial;
       node.status = ILAW_BONDED;
       return;
@@ -99,19 +99,20 @@ struct tie {
   // A broken bond needs no window any more.
   template <class Node>
   void record(const Node& node, history own) const {
-    if (node.status == double{ILAW_BONDED}) sums().add(own, node.time, node.velocity_step, node.impulse);
+    if (node.status == double{ILAW_BONDED}) sums().add(own, interval_of(node), node.impulse);
     if (node.status == double{ILAW_BROKEN}) sums().clear(own);
   }
 
  private:
-  window sums() const { return {memory_time, static_cast<std::int64_t>(slots)}; }
+  window sums() const { return {duration, buckets}; }
 
   // Pull and shear count alike, a press does not: nothing is torn by it.
   static double load(vector sum) { return length(positive_part(-sum.n), sum.t1, sum.t2); }
 
   template <class Node>
   static void touch(Node& node) {
-    node.impulse.n = node.gap <= 0.0 ? positive_part(-node.v_free.n / node.delassus.normal()) : 0.0;
+    const contact_condition contact = contact_leaving_at(0.0, node.gap, node.v_free.n, node.v_previous.n);
+    node.impulse.n = contact.slack <= 0.0 ? positive_part(-contact.excess / node.delassus.normal()) : 0.0;
     node.status = node.impulse.n > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
   }
 };
@@ -131,7 +132,7 @@ struct tie::unbreakable {
 
 template <class Run>
 void tie::in_form(Run run) const {
-  if (strength == infinity && memory_time == 0.0)
+  if (strength == infinity && duration == 0.0)
     run(unbreakable{});
   else
     run(*this);

@@ -50,10 +50,15 @@ struct Case {
 std::vector<Law> laws_of(const Case& one, const std::vector<double>& stiffnesses) {
   const json& own = one.source["interfaces"][0];
   std::vector<Law> laws{{own["law"], own["parameters"]}};
-  for (const char* integration : {"explicit", "implicit"})
-    for (const double stiffness : stiffnesses)
-      laws.push_back(
-          {"penalty", {{"stiffness", stiffness * one.stiffness}, {"integration", integration}}, stiffness});
+  for (const double k : stiffnesses)
+    laws.push_back({"penalty", {{"stiffness", k * one.stiffness}, {"integration", "explicit"}}, k});
+  // With the restitution of the case's own law; none is for a body that gives the rebound itself.
+  const double restitution = own["parameters"].value("restitution", 0.0);
+  for (const double k : stiffnesses)
+    laws.push_back(
+        {"penalty",
+         {{"stiffness", k * one.stiffness}, {"integration", "implicit"}, {"restitution", restitution}},
+         k});
   return laws;
 }
 

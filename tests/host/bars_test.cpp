@@ -148,7 +148,7 @@ ContactNode contact_node(double cfl, int elements) {
                          R"(, "young": 2.1e11, "density": 7847.0, "section": 6.45e-4, "velocity": -5.0}]},
     "time": {"cfl": )" + number(cfl) +
                          R"(, "end": )" + number(end) + R"(},
-    "interfaces": [{"law": "contact", "nodes": "bar.left",
+    "interfaces": [{"law": "contact", "parameters": {"activation": "moreau"}, "nodes": "bar.left",
                     "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})");
   Integrator integrator = integrator_of(scene);
   double u_error = 0.0, u_sum = 0.0, v_error = 0.0, v_sum = 0.0, peak_force = 0.0;
@@ -245,7 +245,7 @@ std::string bar_between_walls(double cfl, int elements, double restitution, doub
          std::to_string(elements) + R"(, "young": 1.0, "density": 1.0, "velocity": -0.1}]},
     "time": {"cfl": )" +
          number(cfl) + R"(, "end": )" + number(end) + R"(},
-    "interfaces": [{"name": "left", "law": "contact", "nodes": "bar.left", "parameters": {"restitution": )" +
+    "interfaces": [{"name": "left", "law": "contact", "nodes": "bar.left", "parameters": {"activation": "moreau", "restitution": )" +
          number(restitution) + R"(},
                     "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}},
                    {"name": "right", "law": "contact", "nodes": "bar.right", "parameters": {"restitution": 1.0},
@@ -291,31 +291,33 @@ TEST(BarBetweenWalls, KeepsItsEnergyUpToTheCriticalStep) {
   }
 }
 
-// e < 1: r v^- (1 - e)/2 is taken, but for reactions on an end that still moves off within the step (v^- >
-// 0), which give as much: an artefact of the step that the summary calls reaction work.
-TEST(BarBetweenWalls, GainsNothingButTheWorkOfReactionsOnEndsThatMoveOff) {
+// e < 1: an impact takes r |v^-| (1 - e)/2. An end that still moves off within the step (v^- > 0) is turned
+// round at that speed, which takes nothing and gives nothing.
+TEST(BarBetweenWalls, LosesWhatItsImpactsTakeAndGainsNothing) {
   for (const double cfl : {0.5, 0.9, 0.999, 1.0}) {
     constexpr int elements = 10;
     Scene scene = scene_of(bar_between_walls(cfl, elements, 0.9, 1e5 * cfl / elements));
     Integrator integrator = integrator_of(scene);
     const int left = node_of(scene, "bar.left");
-    double energy = total(integrator.energy()), gained = 0.0;
+    double energy = total(integrator.energy());
     const double initial = energy;
+    int turned = 0;
     while (integrator.steps() < scene.steps) {
       const double v = integrator.velocity()[left];
       integrator.step();
-      const double work = 0.5 * (1.0 - 0.9) * integrator.interface_impulse()[left] * v;
+      const double r = integrator.interface_impulse()[left];
+      if (r > 0.0 && v > 0.0) ++turned;
+      const double work = 0.5 * (1.0 - 0.9) * r * std::min(v, 0.0);
       const EnergyReport now = integrator.energy();
       ASSERT_NEAR(total(now), energy + work, rounding_of(integrator, elements))
           << cfl << ", step " << integrator.steps();
-      gained += std::max(work, 0.0);
       energy = total(now);
       if (cfl < 1.0) {
         ASSERT_LE(energy, initial) << cfl << ", step " << integrator.steps();
       }
     }
-    EXPECT_NEAR(integrator.energy().reaction_work, gained, 1e-10 * initial);
-    EXPECT_GT(gained, 0.0);
+    EXPECT_NEAR(integrator.energy().reaction_work, 0.0, 1e-12 * initial);
+    EXPECT_GT(turned, 0);
     if (cfl < 1.0) {
       EXPECT_LE(energy, 0.1 * initial);
     }

@@ -17,7 +17,8 @@ std::string ball(double restitution, double h, double end, double height) {
          number(height) + R"(]}]}, "time": {"dt": )" + number(h) + R"(, "end": )" + number(end) +
          R"(}, "loads": [{"type": "gravity", "acceleration": [-10.0]}], "interfaces": [{"law": "contact", "parameters": {"restitution": )" +
          number(restitution) +
-         R"(}, "nodes": "all", "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})";
+         R"(, "activation": "moreau"}, "nodes": "all",
+             "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})";
 }
 
 // Height of a ball dropped from h0 under gravity g: first fall t1 = sqrt(2 h0/g), then flights k of 2 e^k t1,

@@ -171,7 +171,7 @@ TEST(WrongBatch, IsRefusedWithNothingWritten) {
     b.struct_size = sizeof b;
     b.node_count = 1;
     b.velocity_step = b.position_step = 1e-3;
-    b.v_free = {&v, 0, 0};
+    b.v_free = b.v_previous = {&v, 0, 0};
     b.delassus = {&h, 0, 0};
     b.gap = {&gap, 0, 0};
     b.impulse = {r, 0, 1};
@@ -186,11 +186,7 @@ TEST(WrongBatch, IsRefusedWithNothingWritten) {
       {"delassus is null", [](ilaw_batch& b) { b.delassus.values = nullptr; }},
       {"gap is null", [](ilaw_batch& b) { b.gap.values = nullptr; }},
       {"impulse is null", [](ilaw_batch& b) { b.impulse.values = nullptr; }},
-      {"v_previous is null",
-       [](ilaw_batch& b) {
-         static double e[4];
-         b.energy = {e, 0, 1};
-       }},
+      {"v_previous is null", [](ilaw_batch& b) { b.v_previous.values = nullptr; }},
       {"node_count is negative", [](ilaw_batch& b) { b.node_count = -1; }},
       {"index_base is neither 0 nor 1", [](ilaw_batch& b) { b.index_base = 2; }},
       {"a node of the index list lies below index_base",

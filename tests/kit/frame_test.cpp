@@ -47,7 +47,7 @@ class TurningNode {
     b.node_count = 1;
     b.velocity_step = b.position_step = 1e-3;
     b.time = 1e-3 * ++steps_;
-    b.v_free = {v.data(), 0, 1};
+    b.v_free = b.v_previous = {v.data(), 0, 1};
     b.delassus = {&h, 0, 1};
     b.gap = {&gap, 0, 1};
     b.area = {&area, 0, 1};

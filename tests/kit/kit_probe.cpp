@@ -26,9 +26,9 @@ struct kit_probe {
       {.name = "count", .doc = "steps", .minimum = 0.0, .maximum = 1e6, .whole = true},
       {.name = "sum", .unit = "N.s", .doc = "impulses", .kind = ILAW_STATE_VECTOR},
       {.name = "slip", .unit = "m", .doc = "of closed steps", .kind = ILAW_STATE_TANGENTIAL}};
-  static constexpr state_variable memory{
+  static constexpr state_variable history_variable{
       .name = "last", .doc = "last two v_N", .kind = ILAW_STATE_HISTORY, .internal = true};
-  std::int64_t memory_size(const ilaw_setup&) const { return 2; }
+  std::int64_t history_size() const { return 2; }
 
   // r = -c (v_free + H r), solved for r, plus a pull along the remembered sum so that memory matters.
   template <class Node>
@@ -36,7 +36,7 @@ struct kit_probe {
     const double c = n.gap <= 0.0 ? viscosity : 0.0;
     const double h = n.delassus.normal();
     const double factor = -c / (1.0 + c * h);
-    n.impulse = factor * n.v_free - 0.125 * vector{n.past[0], n.state.sum_t1, n.state.sum_t2} -
+    n.impulse = factor * n.v_free - 0.125 * vector{n.history[0], n.state.sum_t1, n.state.sum_t2} -
                 0.25 * vector{0.0, n.state.slip_1, n.state.slip_2};
     n.state.count += 1.0;
     n.state.sum_n += n.impulse.n;

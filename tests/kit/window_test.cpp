@@ -1,157 +1,391 @@
-// The window of impulses against the sum over all impulses with age < tau.
+// The window of impulses against the exact integral of the force over the last tau.
 #include <ilaw/kit/window.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <deque>
+#include <cstring>
+#include <functional>
+#include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace {
 
+using ilaw::kit::impossible_state;
+using ilaw::kit::infinity;
+using ilaw::kit::not_refused;
+using ilaw::kit::step_interval;
+using ilaw::kit::time_before_history;
 using ilaw::kit::vector;
 using ilaw::kit::window;
 
-// A window in memory of its own, and the same with everything remembered.
-class Windows {
+constexpr double ratios[] = {1.5, 8.5, 33.7, 100.5, 1000.3};  // tau/h
+constexpr double bucket_counts[] = {4, 8, 16, 64};
+
+// A window with a history of its own, which is told impulses by the interval over which they act.
+class Window {
  public:
-  Windows(double duration, double buckets, double smallest_step)
-      : duration_(duration),
-        slots_(window::slot_count(duration, buckets, smallest_step)),
-        memory_(static_cast<std::size_t>(window::doubles(slots_)) + 1) {}
+  Window(double duration, double buckets, double begin)
+      : end(begin),
+        window_(duration, buckets),
+        history(static_cast<std::size_t>(window::doubles(duration, buckets))) {}
 
-  // A step: the sum before it, then its impulse. Returns the sum with it.
+  // The sum with the impulse of a step of length h.
   vector step(double h, vector impulse) {
-    time_ += h;
-    const window w(duration_, slots_);
-    const vector sum = w.sum(ilaw::kit::history{memory_.data(), 1}, time_, h) + impulse;
-    w.add({memory_.data(), 1}, time_, h, impulse);
-    all_.push_front({time_, impulse});
-    while (all_.back().time <= time_ - 2.0 * duration_ - 1.0) all_.pop_back();
-    step_ = h;
-    return sum;
+    end += h;
+    return step_to(end, h, impulse);
   }
+  vector step_to(double time, double h, vector impulse) {
+    end = time;
+    const window::reading earlier = before(h);
+    EXPECT_EQ(earlier.refused, not_refused) << "end " << end;
+    window_.add(own(), {end, h}, impulse);
+    return earlier.sum + impulse;
+  }
+  window::reading before(double h) { return window_.before(own(), {end, h}); }
+  ilaw::kit::history own() { return {history.data(), 1}; }
 
-  // Impulses of age < tau, ages equal to tau but for rounding left out.
-  vector exact() const {
-    vector sum;
-    for (const Entry& e : all_)
-      if (&e == &all_.front() || time_ - e.time < duration_ - 1e-6 * step_) sum = sum + e.impulse;
-    return sum;
-  }
-  // Sum of |r_N| over the ages [tau - width, tau + width].
-  double near_the_edge(double width) const {
-    double sum = 0.0;
-    for (const Entry& e : all_)
-      if (std::abs(time_ - e.time - duration_) <= width) sum += std::abs(e.impulse.n);
-    return sum;
-  }
+  double end;
 
  private:
-  struct Entry {
-    double time;
-    vector impulse;
-  };
-  double duration_;
-  std::int64_t slots_;
-  std::vector<double> memory_;
-  std::deque<Entry> all_;
-  double time_ = -3.0, step_ = 0.0;  // time may start anywhere
+  window window_;
+
+ public:
+  std::vector<double> history;
 };
 
-TEST(Window, IsExactWithABucketPerStep) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  for (const int steps : {1, 2, 7, 80}) {
-    Windows windows(steps * 1e-3, steps, 1e-3);
-    for (int k = 0; k < 2000; ++k) {
-      const vector sum = windows.step(1e-3, {uniform(random), uniform(random), uniform(random)});
-      const vector exact = windows.exact();
-      ASSERT_NEAR(sum.n, exact.n, 1e-13) << steps << " steps, step " << k;  // 80 terms below 1
-      ASSERT_NEAR(sum.t2, exact.t2, 1e-13);
-    }
+// Steps of size h, or of size h +- 50 % at random.
+class Steps {
+ public:
+  Steps(double h, bool varies) : h_(h), varies_(varies) {}
+  double next() { return varies_ ? h_ * (0.5 + static_cast<double>(random_() >> 11) * 0x1p-53) : h_; }
+
+ private:
+  double h_;
+  bool varies_;
+  std::mt19937_64 random_{7};
+};
+
+// A force by its integral, from which every step gets the exact impulse: what is off is the window.
+using Integral = std::function<double(double)>;
+
+// Largest |S - integral over the last tau| over 5 tau, once the window is full of a force that acts from
+// -inf.
+double largest_error(const Integral& integral, double tau, double h, double buckets, bool varies) {
+  Window w(tau, buckets, -3.0 * tau);
+  Steps steps(h, varies);
+  double largest = 0.0;
+  while (w.end < 4.0 * tau) {
+    const double step = steps.next();
+    const double sum = w.step(step, {integral(w.end + step) - integral(w.end), 0, 0}).n;
+    if (w.end > -tau) largest = std::max(largest, std::abs(sum - (integral(w.end) - integral(w.end - tau))));
   }
+  return largest;
+}
+
+TEST(Window, NeedsAStateThatDependsOnItsParametersAlone) {
+  EXPECT_EQ(window::doubles(0.0, 16), 0);
+  EXPECT_EQ(window::doubles(infinity, 16), 3);
+  EXPECT_EQ(window::doubles(1e-9, 16), 55);
+  EXPECT_EQ(window::doubles(1e9, 16), 55);
+  EXPECT_EQ(window::doubles(1.0, 1), 10);
 }
 
 TEST(Window, OfNoDurationIsTheOwnImpulse) {
-  Windows windows(0.0, 16, 1e-3);
-  for (int k = 0; k < 10; ++k) EXPECT_EQ(windows.step(1e-3, {1.0 + k, 0, 0}).n, 1.0 + k);
+  Window w(0.0, 16, 0.0);
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(w.step(1e-3, {1.0 + k, 0, 0}).n, 1.0 + k);
+}
+
+TEST(Window, ShorterThanAStepIsTheOwnImpulse) {
+  Window w(0.9e-3, 16, 0.0);
+  for (int k = 0; k < 100; ++k) EXPECT_EQ(w.step(1e-3, {1.0 + k, 0, 0}).n, 1.0 + k);
 }
 
 TEST(Window, OfInfiniteDurationIsTheSumOfAll) {
-  Windows windows(ilaw::kit::infinity, 16, 1e-3);
+  Window w(infinity, 16, 0.0);
   double all = 0.0;
-  for (int k = 0; k < 1000; ++k) EXPECT_EQ(windows.step(1e-3, {0.5 + k, 0, 0}).n, all += 0.5 + k);
+  for (int k = 0; k < 1000; ++k) EXPECT_EQ(w.step(1e-3, {0.5 + k, 0, 0}).n, all += 0.5 + k);
 }
 
-// The bound of window.hpp: one slot, of duration tau/B and at most a step more, on either side of the edge.
-TEST(Window, WithSixteenBucketsErrsByAtMostOneSlot) {
-  std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  constexpr double tau = 0.1, h = 1e-4;
-  Windows windows(tau, 16, h);
-  double largest = 0.0;
-  for (int k = 0; k < 20000; ++k) {
-    const double r = k % 37 == 0 ? 20.0 * uniform(random) : uniform(random);
-    const vector sum = windows.step(h, {r, 0, 0});
-    const double error = std::abs(sum.n - windows.exact().n);
-    ASSERT_LE(error, windows.near_the_edge(tau / 16 + 2 * h) + 1e-12) << k;
-    largest = std::max(largest, error);
+// A force F from long before: S = F tau at any ratio, with any number of buckets and any steps.
+TEST(Window, OfAConstantForceIsForceTimesDuration) {
+  for (const double ratio : ratios)
+    for (const double buckets : {1.0, 2.0, 3.0, 4.0, 16.0, 64.0, 999.0})
+      for (const bool varies : {false, true})
+        EXPECT_LE(largest_error([](double t) { return 3.0 * t; }, 1.0, 1.0 / ratio, buckets, varies), 1e-12)
+            << "tau/h " << ratio << ", " << buckets << " buckets, varies " << varies;
+}
+
+// A step is spread evenly although the force in it is not, which matters where an edge cuts it: at most
+// h^2 F'/8 at each of three edges, those of the oldest bucket and that of tau.
+double cut_steps(double longest) { return 3.0 * longest * longest / 8.0; }
+
+// Whether the slope in the oldest bucket is known in every step.
+bool knows_slope(double longest, double w) { return longest <= 1.0 - 2.0 * w; }
+
+TEST(Window, OfALinearForceIsExactButForTheStepsThatAnEdgeCuts) {
+  for (const double ratio : ratios)
+    for (const double buckets : {1.0, 2.0, 4.0, 16.0, 64.0})
+      for (const bool varies : {false, true}) {
+        const double h = 1.0 / ratio, longest = varies ? 1.5 * h : h, w = 1.0 / buckets;
+        EXPECT_LE(largest_error([](double t) { return 0.5 * t * t + 10.0 * t; }, 1.0, h, buckets, varies),
+                  (knows_slope(longest, w) ? 0.0 : w * w / 8.0) + cut_steps(longest) + 1e-12)
+            << "tau/h " << ratio << ", " << buckets << " buckets, varies " << varies;
+      }
+}
+
+// F = 2 + sin(t) keeps its sign, so that no slope is limited: w^3 |F''|/(9 sqrt 3), and the steps.
+TEST(Window, OfASmoothForceKeepsItsBound) {
+  for (const double ratio : ratios)
+    for (const double buckets : {2.0, 4.0, 8.0, 16.0, 64.0})
+      for (const bool varies : {false, true}) {
+        const double h = 1.0 / ratio, longest = varies ? 1.5 * h : h, w = 1.0 / buckets;
+        const double error =
+            largest_error([](double t) { return 2.0 * t - std::cos(t); }, 1.0, h, buckets, varies);
+        EXPECT_LE(error, (knows_slope(longest, w) ? w * w * w / (9.0 * std::sqrt(3.0)) : w * w / 8.0) +
+                             cut_steps(longest))
+            << "tau/h " << ratio << ", " << buckets << " buckets, varies " << varies;
+      }
+}
+
+// Where it changes its sign the slope is limited: w^2 |F'|/8.
+TEST(Window, OfAForceThatChangesItsSignIsOfSecondOrder) {
+  for (const double ratio : {100.5, 1000.3})
+    for (const double buckets : {1.0, 2.0, 4.0, 8.0, 16.0, 64.0}) {
+      const double error =
+          largest_error([](double t) { return -std::cos(3.0 * t) / 3.0; }, 1.0, 1.0 / ratio, buckets, true);
+      EXPECT_LE(error, 3.0 / (8.0 * buckets * buckets) + 3.0 * cut_steps(1.5 / ratio))
+          << ratio << " " << buckets;
+    }
+}
+
+TEST(Window, IsOfThirdOrderInTheBucket) {
+  const auto error = [](double buckets) {
+    return largest_error([](double t) { return 2.0 * t - std::cos(3.0 * t) / 3.0; }, 1.0, 1e-5, buckets,
+                         false);
+  };
+  for (const double coarse : {4.0, 8.0}) EXPECT_GT(std::log2(error(coarse) / error(2.0 * coarse)), 2.85);
+}
+
+// With one bucket the integral is interpolated linearly: w^2 |F'|/8.
+TEST(Window, OfOneBucketIsOfSecondOrder) {
+  for (const double tau : {0.5, 0.1}) {
+    const double error =
+        largest_error([](double t) { return 2.0 * t - std::cos(t); }, tau, tau / 500.3, 1, false);
+    EXPECT_LE(error, tau * tau / 8.0 * 1.01) << tau;
+    EXPECT_GE(error, tau * tau / 8.0 * 0.8) << tau;
   }
-  EXPECT_GT(largest, 1e-3);  // it is an approximation, and the test sees it
 }
 
-TEST(Window, OfAConstantForceIsForceTimesDurationWithAnyNumberOfBuckets) {
-  for (const double buckets : {1.0, 2.0, 3.0, 16.0, 999.0, 1000.0}) {
-    Windows windows(0.1, buckets, 1e-4);
-    for (int k = 0; k < 5000; ++k) {
-      const double sum = windows.step(1e-4, {3e-4, 0, 0}).n;
-      if (k >= 1000) {
-        ASSERT_NEAR(sum, 0.3, 3.0e-4) << buckets << " buckets, step " << k;  // one impulse
+// A force that is switched on: never more than the exact sum, so that what holds for ever holds; and off by
+// at most w J/4 while the jump's bucket leaves.
+TEST(Window, OfAForceSwitchedOnNeverExceedsForceTimesDuration) {
+  for (const double ratio : ratios)
+    for (const double buckets : bucket_counts) {
+      Window w(1.0, buckets, 5.123);
+      const double begin = w.end, h = 1.0 / ratio;
+      while (w.end < begin + 3.0) {
+        const double sum = w.step(h, {h, 0, 0}).n, exact = std::min(w.end - begin, 1.0);
+        ASSERT_LE(sum, exact + h * (w.end - begin < 1.0 + h ? 1.0 : 0.0) + 1e-12) << ratio << " " << buckets;
+        ASSERT_GE(sum, exact - 0.25 / buckets - 1e-12) << ratio << " " << buckets << " at " << w.end - begin;
       }
     }
-  }
 }
 
+// A shock counts whole until tau - w after its step, and is gone tau + w after it.
+TEST(Window, KeepsAShockWholeAndLosesItWhole) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (const double ratio : {8.5, 33.7, 100.5, 1000.3})
+    for (const double buckets : bucket_counts)
+      for (int draw = 0; draw < 20; ++draw) {
+        Window w(1.0, buckets, 100.0 * uniform(random) - 50.0);
+        const double h = 1.0 / ratio, begin = w.end;
+        w.step(h, {0.6, 0, -0.3});
+        while (w.end < begin + 3.0) {
+          const vector sum = w.step(h, {});
+          const double age = w.end - begin - h;
+          if (age <= 1.0 - 1.0 / buckets - h) {
+            ASSERT_NEAR(sum.n, 0.6, 1e-15) << ratio << " " << buckets << " age " << age;
+            ASSERT_NEAR(sum.t2, -0.3, 1e-15);
+          }
+          if (age >= 1.0 + 1.0 / buckets) {
+            ASSERT_EQ(sum.n, 0.0) << ratio << " " << buckets << " age " << age;
+          }
+          ASSERT_GE(sum.n, 0.0);
+          ASSERT_LE(sum.n, 0.6 + 1e-15);
+        }
+      }
+}
+
+// Both clocks that hosts keep: the number of the step times h, and a sum of steps, which rounds at each.
 TEST(Window, DoesNotDriftInTenMillionSteps) {
-  std::mt19937_64 random(4);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const std::int64_t slots = window::slot_count(8e-3, 8, 1e-3);
-  std::vector<double> memory(static_cast<std::size_t>(window::doubles(slots)));
-  const window w(8e-3, slots);
-  std::vector<double> last(8, 0.0);
-  for (std::int64_t k = 0; k < 10000000; ++k) {
-    const double time = static_cast<double>(k + 1) * 1e-3, r = 1e6 * uniform(random);
-    last[static_cast<std::size_t>(k % 8)] = r;
-    if (k > 9999900) {
-      double exact = 0.0;
-      for (double value : last) exact += value;
-      const double sum = w.sum(ilaw::kit::history{memory.data(), 1}, time, 1e-3).n + r;
-      ASSERT_NEAR(sum, exact, 8e6 * 1e-15 * 8);  // a fresh sum of 8 terms below 1e6
+  constexpr double tau = 1.0, h = tau / 1000.3;
+  for (const bool adds_up : {false, true}) {
+    Window w(tau, 16, 0.0);
+    double largest = 0.0;
+    for (std::int64_t k = 1; k <= 10000000; ++k) {
+      const double end = adds_up ? w.end + h : static_cast<double>(k) * h;
+      const double sum = w.step_to(end, h, {h, 0, 0}).n;
+      if (end > 2.0 * tau) largest = std::max(largest, std::abs(sum - tau));
     }
-    w.add({memory.data(), 1}, time, 1e-3, {r, 0, 0});
+    EXPECT_LE(largest, adds_up ? ilaw::kit::window_slack : 1e-11) << adds_up;
   }
 }
 
-// Halving the step in mid-run (also with fewer buckets than steps) leaves only the error of the
-// discretisation.
-TEST(Window, TakesAnyChangeOfStep) {
-  const auto force = [](double t) { return std::sin(9.0 * t); };
-  for (const double buckets : {8.0, 40.0, 400.0}) {
-    Windows windows(0.2, buckets, 5e-4);
-    double time = -3.0;
-    for (int k = 0; k < 3000; ++k) {
-      const double h = k < 700 ? 1e-3 : (k < 1500 ? 5e-4 : (k % 3 == 0 ? 2e-3 : 7e-4));
-      time += h;
-      const double sum = windows.step(h, {h * force(time), 0, 0}).n;
-      if (k < 250) continue;
-      const double integral = (std::cos(9.0 * (time - 0.2)) - std::cos(9.0 * time)) / 9.0;
-      // A slot of tau/B and a step, half of which the linear part can err by, and a step at either end.
-      ASSERT_NEAR(sum, integral, 0.5 * 0.2 / buckets + 2.0 * 2e-3) << buckets << " buckets, step " << k;
+// After millions of random impulses it is, bit for bit, a window that saw the last ones alone.
+TEST(Window, ForgetsWhatIsOlderThanItsDuration) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> uniform(-1e6, 1e6);
+  Window old(8.3e-3, 8, 0.0), young(8.3e-3, 8, 0.0);
+  constexpr int count = 1000000;
+  for (int k = 1; k <= count; ++k) {
+    const vector impulse{uniform(random), uniform(random), uniform(random)};
+    const vector sum = old.step_to(k * 1e-3, 1e-3, impulse);
+    if (k <= count - 50) continue;
+    const vector fresh = young.step_to(k * 1e-3, 1e-3, impulse);
+    if (k > count - 35) {
+      ASSERT_EQ(sum.n, fresh.n) << k;
+      ASSERT_EQ(sum.t1, fresh.t1) << k;
     }
   }
+}
+
+// Steps without impulse may be left out: the state stays as it was, and later sums have the same bits.
+TEST(Window, NeedNotBeToldOfStepsWithoutImpulse) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const double ratio : ratios) {
+    Window asked(1.0, 8, -2.0), skipped(1.0, 8, -2.0);
+    const double h = 1.0 / ratio;
+    bool acts = true;
+    for (int k = 0; k < 5000; ++k) {
+      if (random() % 20 == 0) acts = !acts;
+      const vector impulse = acts ? vector{uniform(random), uniform(random), 0} : vector{};
+      const std::vector<double> before = asked.history;
+      const vector sum = asked.step(h, impulse);
+      if (!acts) {
+        ASSERT_EQ(asked.history, before) << ratio << " " << k;
+        continue;
+      }
+      ASSERT_EQ(sum.n, skipped.step_to(asked.end, h, impulse).n) << ratio << " " << k;
+      ASSERT_EQ(asked.history, skipped.history) << ratio << " " << k;
+    }
+  }
+}
+
+// The tangential part turns with the impulses: no axis is preferred.
+TEST(Window, IsIsotropicInTheTangentPlane) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  Window plain(1.0, 4, 0.0), turned(1.0, 4, 0.0);
+  for (int k = 0; k < 20000; ++k) {
+    const vector r{uniform(random), uniform(random), uniform(random)};
+    const vector a = plain.step(0.0137, r);
+    const vector b = turned.step(0.0137, {r.n, c * r.t1 - s * r.t2, s * r.t1 + c * r.t2});
+    ASSERT_EQ(a.n, b.n);
+    ASSERT_NEAR(c * a.t1 - s * a.t2, b.t1, 1e-13) << k;
+    ASSERT_NEAR(s * a.t1 + c * a.t2, b.t2, 1e-13) << k;
+  }
+}
+
+TEST(Window, SeesAClockThatIsSetBack) {
+  Window w(1.0, 16, 100.0);
+  for (int k = 0; k < 500; ++k) w.step(0.01, {0.01, 0, 0});
+  const double now = w.end;
+  for (const double back : {0.2, 1.0, 100.0, 1e6}) {
+    w.end = now - back;
+    EXPECT_EQ(w.before(0.01).refused, time_before_history) << back;
+  }
+  w.end = now - 0.05;  // less than a bucket: a host whose steps shrink may fall back by part of one
+  EXPECT_EQ(w.before(0.01).refused, not_refused);
+  w.step(0.01, {0.01, 0, 0});
+}
+
+// An abrupt change of the step in a host that knows one step alone: ends may fall back by part of a step.
+TEST(Window, TakesAnyChangeOfStep) {
+  Window w(1.0, 16, 0.0);
+  double time = 0.0;
+  for (int k = 0; k < 4000; ++k) {
+    const double h = (k / 50) % 2 == 0 ? 0.04 : 1e-3;
+    time += h;
+    const double sum = w.step_to(time + 0.5 * h, h, {h, 0, 0}).n;
+    if (time > 3.0) {
+      ASSERT_NEAR(sum, 1.0, 0.08) << k;  // two steps
+    }
+  }
+}
+
+// Whatever a history holds, nothing but it is touched, and a reading is finite or refused.
+TEST(Window, TouchesNothingButItsHistory) {
+  std::mt19937_64 random(8);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> odd = {nan,  infinity, -infinity,  1e300, -1e300, 9e15, -9e15, 0.5, -1.0,
+                                   -0.0, 5e-324,   4611686e12, 1e19,  -1e19,  2e9,  17.0,  16.0};
+  constexpr std::size_t guard = 64, size = 55;
+  for (int draw = 0; draw < 200000; ++draw) {
+    std::array<double, guard + size + guard> memory{};
+    for (double& x : memory) x = odd[random() % odd.size()];
+    if (draw % 3 == 0) memory[guard] = static_cast<double>(random() % 2000);
+    const auto before = memory;
+    const window w(1.0, 16);
+    const ilaw::kit::history own{memory.data() + guard, 1};
+    const double times[] = {0.0, 30.0, -1e5, 1e20, 0.99 + static_cast<double>(draw % 1999) / 16.0};
+    const step_interval step{times[random() % 5], draw % 2 == 0 ? 0.01 : 0.3};
+    const window::reading reading = w.before(own, step);
+    if (reading.refused == not_refused) {
+      ASSERT_TRUE(std::isfinite(reading.sum.n) && std::isfinite(reading.sum.t1)) << "draw " << draw;
+      w.add(own, step, {1.0, 0.5, 0.0});
+    }
+    ASSERT_EQ(std::memcmp(memory.data(), before.data(), guard * sizeof(double)), 0) << "draw " << draw;
+    ASSERT_EQ(std::memcmp(memory.data() + guard + size, before.data() + guard + size, guard * sizeof(double)),
+              0)
+        << "draw " << draw;
+  }
+}
+
+// A clock so far on that a step is below its resolution: impulses still count, whole.
+TEST(Window, CountsStepsThatItsClockCannotResolve) {
+  Window w(1.0, 16, 0x1p46);
+  for (int k = 1; k <= 100; ++k) EXPECT_EQ(w.step_to(0x1p46, 1e-4, {1.0, 0, 0}).n, k);
+  Window beyond(1e-9, 16, 1e9);
+  for (int k = 1; k <= 100; ++k) EXPECT_EQ(beyond.step_to(1e9, 1e-10, {1.0, 0, 0}).n, 1.0);
+}
+
+TEST(Window, RefusesANumberOfABucketThatItCannotHaveWritten) {
+  for (const double stamp :
+       {0.5, -2.25, 1e16, -1e300, infinity, -infinity, std::numeric_limits<double>::quiet_NaN()}) {
+    Window w(1.0, 16, 3.0);
+    w.history[0] = stamp;
+    EXPECT_EQ(w.before(0.01).refused, impossible_state) << stamp;
+  }
+  Window future(1.0, 16, 3.0);
+  future.history[0] = 1000.0;
+  EXPECT_EQ(future.before(0.01).refused, time_before_history);
+}
+
+// A number of the history that is not finite is found as soon as it counts, at the latest when the next
+// bucket opens.
+TEST(Window, RefusesASumThatIsNotFinite) {
+  for (const double bad : {infinity, std::numeric_limits<double>::quiet_NaN()})
+    for (std::size_t entry = 1; entry < 55; ++entry) {
+      Window w(1.0, 16, 0.0);
+      for (int k = 0; k < 305; ++k) w.step(0.01, {0.01, 0.02, 0.03});
+      w.history[entry] = bad;
+      bool refused = false;
+      for (int k = 0; k < 8 && !refused; ++k) {  // 0.08 is more than a bucket
+        w.end += 0.01;
+        const window::reading reading = w.before(0.01);
+        refused = reading.refused == impossible_state;
+        if (!refused) window(1.0, 16).add(w.own(), {w.end, 0.01}, {0.01, 0.02, 0.03});
+      }
+      EXPECT_TRUE(refused) << "entry " << entry;
+    }
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ struct Limit {
 };
 std::ostream& operator<<(std::ostream& out, const Limit& limit) { return out << limit.name; }
 
-const std::map<std::string, std::string> predictive{{"activation", "predictive"}},
-    implicit{{"integration", "implicit"}};
+const std::map<std::string, std::string> moreau{{"activation", "moreau"}},
+    predictive{{"activation", "predictive"}};
 
 const std::vector<Limit> limits = {
     {"coulomb_without_friction_is_contact", "coulomb", {{{"friction", 0.0}}, {}}, "contact", {}},
@@ -29,18 +29,8 @@ const std::vector<Limit> limits = {
      "postit",
      {{{"friction", 0.4}, {"adhesion_limit", 0.0}}, {}},
      "coulomb",
-     {{{"friction", 0.4}}, {}}},
-    {"rigid_penalty_is_contact",
-     "penalty",
-     {{{"stiffness", inf_value}}, implicit},
-     "contact",
-     {{}, predictive}},
-    {"rigid_penalty_with_friction_is_coulomb",
-     "penalty",
-     {{{"stiffness", inf_value}, {"friction", 0.4}}, implicit},
-     "coulomb",
-     {{{"friction", 0.4}}, predictive}},
-    {"tie_without_strength_is_contact", "tie", {{{"strength", 0.0}}, {}}, "contact", {}},
+     {{{"friction", 0.4}}, moreau}},
+    {"tie_without_strength_is_contact", "tie", {{{"strength", 0.0}}, {}}, "contact", {{}, moreau}},
     {"cohesive_of_infinite_strength_is_tie",
      "cohesive",
      {{{"strength", inf_value}, {"toughness", 1.0}}, {}},

@@ -199,14 +199,12 @@ class Runner {
     return interface_.evaluate(b, &report);
   }
 
-  // The named state variable of node i.
+  // The named state variable of node i; NaN where there is none.
   double named(const char* name, std::size_t i) const {
-    const ilaw_instance_info info = interface_.info();
-    std::size_t at = i * size_;
-    for (std::uint32_t k = 0; k < info.state_variable_count; at += info.state_variables[k++]->count)
-      if (std::strcmp(info.state_variables[k]->name, name) == 0) return state[at];
-    return std::numeric_limits<double>::quiet_NaN();
+    const std::size_t at = place_of(name, i);
+    return at < state.size() ? state[at] : std::numeric_limits<double>::quiet_NaN();
   }
+  void set(const char* name, std::size_t i, double value) { state.at(place_of(name, i)) = value; }
 
   // An impulse or velocity in the local axes and the units of RandomNodes.
   Vector local(std::size_t i, const Vector& a, double unit) const {
@@ -215,6 +213,13 @@ class Runner {
   }
 
  private:
+  std::size_t place_of(const char* name, std::size_t i) const {
+    const ilaw_instance_info info = interface_.info();
+    std::size_t at = i * size_;
+    for (std::uint32_t k = 0; k < info.state_variable_count; at += info.state_variables[k++]->count)
+      if (std::strcmp(info.state_variables[k]->name, name) == 0) return at;
+    return state.size();
+  }
   void write_inputs() {
     for (std::size_t i = 0; i < nodes_.count; ++i) {
       v_free_[i] = outward(i, nodes_.v_free[i]);
@@ -241,9 +246,12 @@ class Runner {
       half = transposed(half);
       for (std::size_t k = 0; k < 3; ++k) m[k] = times(to_host, half[k]);
     }
-    h_[i] = nodes_.dimension == 2 && form_ == ILAW_DELASSUS_FULL
-                ? std::array<double, 6>{m[0][0], m[1][1], m[0][1]}
-                : std::array<double, 6>{m[0][0], m[1][1], m[2][2], m[0][1], m[0][2], m[1][2]};
+    if (nodes_.dimension == 1)
+      h_[i] = {m[0][0]};
+    else
+      h_[i] = nodes_.dimension == 2 && form_ == ILAW_DELASSUS_FULL
+                  ? std::array<double, 6>{m[0][0], m[1][1], m[0][1]}
+                  : std::array<double, 6>{m[0][0], m[1][1], m[2][2], m[0][1], m[0][2], m[1][2]};
     for (double& entry : h_[i]) entry /= units_.mass;
   }
 
@@ -253,7 +261,8 @@ class Runner {
     b.struct_size = sizeof b;
     b.node_count = static_cast<std::int64_t>(nodes_.count);
     b.time = time * units_.time;
-    b.velocity_step = b.position_step = RandomNodes::step * units_.time;
+    b.velocity_step = velocity_step * units_.time;
+    b.position_step = position_step * units_.time;
     b.v_free = {v_free_[0].data(), 3, 1};
     b.v_previous = {v_previous_[0].data(), 3, 1};
     b.delassus = {h_[0].data(), 6, 1};
@@ -279,7 +288,7 @@ class Runner {
   std::size_t size_;
 
  public:
-  double time = 0.0;
+  double time = 0.0, velocity_step = RandomNodes::step, position_step = RandomNodes::step;
   std::vector<ilaw_input> per_node;  // in the order of the instance
   std::vector<Vector> r, v;
   std::vector<std::array<double, 4>> energy;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -128,7 +129,8 @@ struct NodeRun {
     b.struct_size = sizeof b;
     b.node_count = 1;
     b.time = time;
-    b.velocity_step = b.position_step = dt;
+    b.velocity_step = dt;
+    b.position_step = position_dt.value_or(dt);
     b.v_free = {v_free.data(), 0, 1};
     b.delassus = {h.data(), 0, 1};
     b.gap = {&gap, 0, 1};
@@ -139,6 +141,7 @@ struct NodeRun {
 
   ilaw::interface interface;
   double time = 0.0, dt;
+  std::optional<double> position_dt;  // where it is not dt
   Vector v_free{}, v_previous{}, r{}, v{};
   std::array<double, 6> h{1.0};
   double gap = 0.0, area = 1.0;

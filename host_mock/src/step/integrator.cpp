@@ -69,8 +69,8 @@ double largest_speed(const Dofs& v, Eigen::Index d) {
 constexpr double coupling_tolerance = 1e-14;
 constexpr int most_sweeps = 1000, patience = 20;
 
-// Part of the largest energy that reactions may put in before a warning: what the time step makes of them is
-// far less.
+// Part of the largest energy that interfaces may put in before a warning: a penalty that suits its step puts
+// in far less.
 constexpr double much_energy = 0.1;
 
 }  // namespace
@@ -292,8 +292,8 @@ std::vector<std::string> Integrator::warnings() const {
         tally_.coupling_residual_max, most_sweeps, coupling_tolerance);
   const EnergyReport energy = this->energy();
   if (energy.reaction_work > much_energy * energy.scale)
-    say("interfaces put in the energy %.2g, where %.2g is the largest in the run: a penalty too stiff for the "
-        "time step does, and one that is pressed in at the start",
+    say("interfaces put in the energy %.2g, where %.2g is the largest in the run: an explicit penalty too stiff "
+        "for the time step does, and one that is pressed in at the start; contact, friction and bonds do not",
         energy.reaction_work, energy.scale);
   return warnings;
 }

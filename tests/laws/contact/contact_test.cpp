@@ -8,11 +8,12 @@ namespace {
 
 constexpr double ulp = 2.3e-16;
 
+// A node that was leaving is not stopped: that would put energy in. It turns round at most at its speed.
 TEST(Contact, KeepsMoreausComplementarity) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-300.0, 150.0);
   for (const double restitution : {0.0, 0.5, 1.0}) {
-    NodeRun node("contact", {{{"restitution", restitution}}, {}});
+    NodeRun node("contact", {{{"restitution", restitution}}, {{"activation", "moreau"}}});
     for (int k = 0; k < 100000; ++k) {
       const double scale = std::pow(10.0, exponent(random));
       const double v = scale * uniform(random), before = scale * uniform(random);
@@ -23,7 +24,7 @@ TEST(Contact, KeepsMoreausComplementarity) {
       ASSERT_GE(node.r[0], 0.0);
       ASSERT_EQ(node.r[1], 0.0);
       ASSERT_EQ(node.r[2], 0.0);
-      const double left = node.v[0] + restitution * before;
+      const double left = node.v[0] + (before < 0.0 ? restitution : 1.0) * before;
       if (node.gap > 0.0) {
         ASSERT_EQ(node.r[0], 0.0);
       } else {

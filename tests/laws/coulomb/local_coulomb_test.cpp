@@ -103,10 +103,10 @@ TEST(CoulombAnyH, NeverCreatesEnergyAndDissipatesAtMost) {
   }
 }
 
-// Newton's coefficient where H couples: sticking, r = -H^-1 q with q = v^- + (e v_N^-, 0), the work is
-// -q.H^-1 q/2 + e r_N, for v^- = (-1, -w) a gain of (e^2 + w^2 - 1)/(2 (1 - w^2)). Equal coefficients lose 1
-// - e^2.
-TEST(CoulombAnyH, RestitutionCreatesEnergyWhereHCouplesUnlessItIsMoreaus) {
+// Newton's coefficient where H couples (Kane 1984): sticking, r = -H^-1 q with q = v^- + (e v_N^-, 0), the
+// work is -q.H^-1 q/2 + e r_N, for v^- = (-1, -w) a gain of (e^2 + w^2 - 1)/(2 (1 - w^2)), which the law
+// takes off. Equal coefficients lose 1 - e^2.
+TEST(CoulombAnyH, RestitutionCreatesNoEnergyWhereHCouples) {
   constexpr double w = 0.8;
   for (const double e : {0.4, 0.8})
     for (const bool moreau : {false, true}) {
@@ -120,7 +120,7 @@ TEST(CoulombAnyH, RestitutionCreatesEnergyWhereHCouplesUnlessItIsMoreaus) {
       ASSERT_EQ(node.step(v), ILAW_OK);
       const double work = 0.5 * (dot(node.r, v) + dot(node.r, node.v));
       const double newton = (e * e + w * w - 1.0) / (2.0 * (1.0 - w * w));
-      EXPECT_NEAR(work, moreau ? -0.5 * (1.0 - e * e) : newton, 1e-14);
+      EXPECT_NEAR(work, moreau ? -0.5 * (1.0 - e * e) : std::min(newton, 0.0), 1e-14);
     }
 }
 
@@ -132,6 +132,7 @@ TEST(CoulombAnyH, SlidesOnADiagonalHAtTheRootOfItsOneEquation) {
   for (int k = 0; k < 5000; ++k) {
     node.h = {draw.decade(-1, 1), draw.decade(-2, 2), draw.decade(-2, 2)};
     const Vector q{-draw.uniform(0.1, 1.0), draw.normal(), draw.normal()};
+    node.v_previous = {};
     ASSERT_EQ(node.step(q), ILAW_OK);
     const double limit = -0.5 * q[0] / node.h[0];
     const auto length = [&](double a) { return std::hypot(q[1] / (node.h[1] + a), q[2] / (node.h[2] + a)); };
@@ -266,6 +267,7 @@ TEST(CoulombAnyH, SaysWhereThereIsNoSolution) {
   EXPECT_EQ(node.step({-0.1, -1.0, 0.0}), ILAW_BAD_NODES);
   EXPECT_STREQ(node.report.reason, "the law's equations have no solution for this H");
   EXPECT_EQ(node.r, (Vector{}));
+  node.v_previous = {};
   EXPECT_EQ(node.step({-0.1, 0.01, 0.0}), ILAW_OK);
   EXPECT_EQ(node.status, ILAW_STICK);
 }

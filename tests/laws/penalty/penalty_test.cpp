@@ -15,7 +15,7 @@ Parameters with(const std::string& integration, std::map<std::string, double> nu
 }
 
 // Pressed to r_N = h k 0.01 and dragged at speed (0.6, -0.8) V: the spring gives k_T V t until mu N, then
-// slides. Explicit, the spring lags by the step it is found at.
+// slides. Explicit, the spring lags by the step it is found at; implicit, it is the mean of the step.
 TEST(PenaltyFriction, SticksUpToTheConeThenSlides) {
   constexpr double h = 1e-3, stiffness = 1e4, tangential = 2e3, friction = 0.4, speed = 0.5;
   for (const char* integration : {"explicit", "implicit"}) {
@@ -26,13 +26,16 @@ TEST(PenaltyFriction, SticksUpToTheConeThenSlides) {
         h);
     node.gap = -0.01;   // a normal force of 100
     node.h[0] = 1e-12;  // a driven node
+    node.v_previous = {0.0, 0.6 * speed, -0.8 * speed};
+    const bool is_explicit = integration == std::string("explicit");
+    if (!is_explicit) node.state[0] = 0.01;
     double dissipated = 0.0;
     for (int k = 1; k <= 100; ++k) {
       ASSERT_EQ(node.step({0.0, 0.6 * speed, -0.8 * speed}), ILAW_OK);
-      const double lag = integration == std::string("explicit") ? 1.0 : 0.0;
+      const double lag = is_explicit ? 1.0 : 0.5;
       const double force = std::min(tangential * speed * h * (k - lag), friction * 100.0);
-      EXPECT_NEAR(node.r[1], -0.6 * h * force, 1e-14) << integration << " " << k;
-      EXPECT_NEAR(node.r[2], 0.8 * h * force, 1e-14);
+      EXPECT_NEAR(node.r[1], -0.6 * h * force, 1e-12) << integration << " " << k;
+      EXPECT_NEAR(node.r[2], 0.8 * h * force, 1e-12);
       EXPECT_NEAR(node.r[0], h * 100.0, 1e-12);
       if (k > 1 && k != 40 && k != 41) {  // on the cone itself rounding decides
         EXPECT_EQ(node.status, force < friction * 100.0 ? ILAW_STICK : ILAW_SLIP) << k;
@@ -51,36 +54,69 @@ TEST(PenaltyFriction, LiftedContactForgets) {
     NodeRun node("penalty",
                  with(integration, {{"stiffness", 1e4}, {"tangential_stiffness", 1e3}, {"friction", 1.0}}));
     node.gap = -0.01;
-    ASSERT_EQ(node.step({0.0, 1.0, 0.0}), ILAW_OK);
-    EXPECT_NE(node.state[1], 0.0);
+    ASSERT_EQ(node.step({-1.0, 1.0, 0.0}), ILAW_OK);
+    EXPECT_NE(node.state[2], 0.0);
+    ASSERT_EQ(node.step({100.0, 1.0, 0.0}), ILAW_OK);  // opens within this step
+    EXPECT_GT(node.r[0], 0.0);
     node.gap = 1.0;
-    ASSERT_EQ(node.step({0.0, 1.0, 0.0}), ILAW_OK);
+    ASSERT_EQ(node.step({100.0, 1.0, 0.0}), ILAW_OK);
     for (const double entry : node.state) EXPECT_EQ(entry, 0.0);
     EXPECT_EQ(node.status, ILAW_FREE);
   }
 }
 
-// Both stiffnesses infinite: Coulomb friction with predictive contact, bit for bit, also for mu = inf.
+// Both stiffnesses infinite: Newton's impact with Coulomb friction, also for mu = inf, of a node that arrives
+// without slip before; half a step decides about the gap.
 TEST(PenaltyFriction, RigidSpringsAreCoulomb) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-100.0, 100.0);
-  for (const double friction : {0.0, 0.4, inf_value}) {
-    NodeRun node("penalty", with("implicit", {{"stiffness", inf_value}, {"friction", friction}}));
-    NodeRun coulomb("coulomb", {{{"friction", friction}}, {{"activation", "predictive"}}});
-    for (int k = 0; k < 200000; ++k) {
-      const double scale = std::pow(10.0, exponent(random));
-      const Vector v{scale * uniform(random), scale * uniform(random), scale * uniform(random)};
-      node.gap = coulomb.gap = 1e-3 * scale * uniform(random);
-      node.h[0] = coulomb.h[0] = 1.0 + 0.9 * uniform(random);
-      ASSERT_EQ(node.step(v), ILAW_OK);
-      ASSERT_EQ(coulomb.step(v), ILAW_OK);
-      ASSERT_EQ(node.r, coulomb.r);
-      for (const double entry : node.state) ASSERT_EQ(entry, 0.0);
-      if (friction > 0.0) {
-        ASSERT_EQ(node.status, coulomb.status);
+  for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_FULL})
+    for (const double friction : {0.0, 0.4, inf_value})
+      for (const double e : {0.0, 0.6, 1.0}) {
+        NodeRun node("penalty",
+                     with("implicit", {{"stiffness", inf_value}, {"friction", friction}, {"restitution", e}}),
+                     1e-3, form);
+        NodeRun coulomb("coulomb", {{{"friction", friction}, {"restitution", e}}, {{"activation", "moreau"}}},
+                        1e-3, form);
+        const double coupling = friction < inf_value ? 0.3 : 0.0;
+        int closed = 0;
+        for (int k = 0; k < 20000; ++k) {
+          const double scale = std::pow(10.0, exponent(random));
+          const Vector v{scale * uniform(random), scale * uniform(random), scale * uniform(random)};
+          node.v_previous = coulomb.v_previous = {-scale * std::abs(uniform(random)), 0.0, 0.0};
+          node.gap = 1e-3 * scale * uniform(random);
+          coulomb.gap = node.gap + 0.5 * node.dt * node.v_previous[0];
+          const double size = 1.0 + 0.9 * uniform(random), couples = size * coupling * uniform(random);
+          node.h = coulomb.h = {size, size, 0.7 * size, couples, -0.5 * couples, 0.3 * couples};
+          ASSERT_EQ(node.step(v), ILAW_OK);
+          ASSERT_EQ(coulomb.step(v), ILAW_OK);
+          const double rounding = 32 * ulp * scale / size;
+          for (std::size_t c = 0; c < 3; ++c)
+            ASSERT_NEAR(node.r[c], coulomb.r[c], rounding) << "mu " << friction << ", e " << e << ", k " << k;
+          for (const double entry : node.state) ASSERT_EQ(entry, 0.0);
+          closed += node.r[0] > 0.0;
+        }
+        EXPECT_GT(closed, 4000);
       }
-    }
+}
+
+// A rigid tangential spring that meets a node whose slip turned round within the step stops it without
+// giving it energy; Coulomb's stick would, by what the free velocity lost.
+TEST(PenaltyFriction, RigidStickDoesNoWork) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  NodeRun node("penalty", with("implicit", {{"stiffness", 1e5}, {"friction", 0.4}}));
+  int turned = 0;
+  for (int k = 0; k < 100000; ++k) {
+    const Vector before{uniform(random), uniform(random), uniform(random)};
+    node.v_previous = before;
+    node.state = {std::abs(uniform(random)) * 1e-2, 0.0, 0.0, 0.0};
+    ASSERT_EQ(node.step({uniform(random), uniform(random), uniform(random)}), ILAW_OK);
+    const double work = 0.5 * (node.r[1] * (before[1] + node.v[1]) + node.r[2] * (before[2] + node.v[2]));
+    ASSERT_LE(work, 4 * ulp) << k;
+    turned += before[1] * node.v_free[1] + before[2] * node.v_free[2] < 0.0 && node.status == ILAW_STICK;
   }
+  EXPECT_GT(turned, 5000);
 }
 
 // Without friction only the normal row of H counts.
@@ -88,88 +124,107 @@ TEST(Penalty, WithoutFrictionServesAnyH) {
   NodeRun smooth("penalty", with("implicit", {{"stiffness", 1e3}}), 1e-2, ILAW_DELASSUS_FULL);
   smooth.h = {4.0, 3.0, 2.0, 1.0, -0.5, 0.25};
   smooth.gap = -0.1;
+  smooth.state[0] = 0.1;
   ASSERT_EQ(smooth.step({-2.0, 1.0, 1.0}), ILAW_OK);
-  // r (1/(h^2 k) + H_NN) = -(v + g/h) = 12.
-  EXPECT_NEAR(smooth.r[0], 12.0 / 14.0, 1e-15);
-  EXPECT_NEAR(smooth.v[1], 1.0 + 12.0 / 14.0, 1e-15);
+  // r (1 + h^2 k H_NN/4) = h k (x - h (v_free + v^-)/4) = 10 * 0.105.
+  EXPECT_NEAR(smooth.r[0], 1.05 / 1.1, 1e-15);
+  EXPECT_NEAR(smooth.v[1], 1.0 + 1.05 / 1.1, 1e-15);
 }
 
-// With friction: the spring of a sticking node is in equilibrium, and one that slides is at the cone, its
-// rate of slip u_T = (xi + h v_T - xi')/h against it. Each of the springs and H as they are, coupling and
-// all.
+// With friction: the spring of a sticking node moves along and pulls with its mean, one that slides pulls
+// with mu r_N the way its mean would be strained. Whatever the normal spring, coupling and all.
 TEST(Penalty, WithFrictionServesAnyH) {
   constexpr double h = 1e-2, k = 1e3, tangential = 600.0, mu = 0.3;
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  int sticking = 0, slipping = 0;
-  NodeRun node("penalty",
-               with("implicit", {{"stiffness", k}, {"tangential_stiffness", tangential}, {"friction", mu}}),
-               h, ILAW_DELASSUS_FULL);
-  for (int trial = 0; trial < 20000; ++trial) {
-    node.h = {4.0, 3.0, 2.0, uniform(random), uniform(random), uniform(random)};
-    node.gap = 0.05 * uniform(random);
-    const double before[] = {node.state[1], node.state[2]};
-    ASSERT_EQ(node.step({uniform(random), 0.2 * uniform(random), 0.2 * uniform(random)}), ILAW_OK);
-    const double next = node.gap + h * node.v[0];
-    ASSERT_NEAR(node.r[0], h * k * std::max(-next, 0.0), 1e-14);
-    const double shear = std::hypot(node.r[1], node.r[2]);
-    ASSERT_LE(shear, mu * node.r[0] * (1.0 + 8 * ulp));
-    double against = 0.0, slip = 0.0;
-    for (std::size_t c = 0; c < 2; ++c) {
-      ASSERT_NEAR(node.r[c + 1], -h * tangential * node.state[c + 1], 1e-15);
-      const double u = before[c] + h * node.v[c + 1] - node.state[c + 1];
-      against -= u * node.r[c + 1];
-      slip = std::hypot(slip, u);
-    }
-    if (node.r[0] > 0.0) {
-      ASSERT_NEAR(against, slip * mu * node.r[0], 1e-16);
-    }
-    sticking += node.status == ILAW_STICK;
-    slipping += node.status == ILAW_SLIP;
-  }
-  EXPECT_GT(sticking, 1000);
-  EXPECT_GT(slipping, 1000);
-}
-
-// A normal spring that is no inverse mass cannot be coupled to the tangents; uncoupled it serves any H.
-TEST(Penalty, RefusesACouplingThatItHasNoSolutionFor) {
-  for (const std::map<std::string, double>& more :
-       {std::map<std::string, double>{{"damping", 1.0}}, {{"exponent", 1.5}}}) {
+  for (const std::map<std::string, double>& more : {std::map<std::string, double>{},
+                                                    {{"damping", 5.0}},
+                                                    {{"restitution", 0.3}},
+                                                    {{"exponent", 1.5}, {"damping", 1.0}}}) {
     std::map<std::string, double> numbers = more;
-    numbers.insert({{"stiffness", 1e3}, {"friction", 0.2}});
-    NodeRun node("penalty", with("implicit", numbers), 1e-2, ILAW_DELASSUS_FULL);
-    node.gap = -0.1;
-    node.h = {4.0, 3.0, 2.0, 1.0, -0.5, 0.25};
-    EXPECT_EQ(node.step({-2.0, 1.0, 1.0}), ILAW_BAD_NODES);
-    node.h = {4.0, 3.0, 2.0, 0.0, 0.0, 0.25};
-    EXPECT_EQ(node.step({-2.0, 1.0, 1.0}), ILAW_OK);
+    numbers.insert({{"stiffness", k}, {"tangential_stiffness", tangential}, {"friction", mu}});
+    const bool plain = more.empty();
+    NodeRun node("penalty", with("implicit", numbers), h, ILAW_DELASSUS_FULL);
+    int sticking = 0, slipping = 0;
+    for (int trial = 0; trial < 10000; ++trial) {
+      node.h = {4.0, 3.0, 2.0, uniform(random), uniform(random), uniform(random)};
+      node.gap = 0.05 * uniform(random);
+      const Vector previous = {uniform(random), 0.2 * uniform(random), 0.2 * uniform(random)};
+      node.v_previous = previous;
+      const std::vector<double> before = node.state;
+      ASSERT_EQ(node.step({uniform(random), 0.2 * uniform(random), 0.2 * uniform(random)}), ILAW_OK);
+      if (plain && node.state[0] > 0.0) {
+        ASSERT_NEAR(node.r[0], 0.5 * h * k * (before[0] + node.state[0]), 1e-13);
+        ASSERT_NEAR(node.state[0], before[0] - 0.5 * h * (previous[0] + node.v[0]), 1e-15);
+      }
+      const double shear = std::hypot(node.r[1], node.r[2]);
+      ASSERT_LE(shear, mu * node.r[0] * (1.0 + 8 * ulp));
+      double along = 0.0, strain = 0.0;
+      for (std::size_t c = 1; c < 3; ++c) {
+        const double mean = before[c + 1] + 0.25 * h * (previous[c] + node.v[c]);
+        along -= mean * node.r[c];
+        strain = std::hypot(strain, mean);
+        if (node.status != ILAW_STICK) continue;
+        ASSERT_NEAR(node.r[c], -0.5 * h * tangential * (before[c + 1] + node.state[c + 1]), 1e-13);
+      }
+      if (node.status == ILAW_SLIP) {
+        ASSERT_NEAR(along, strain * mu * node.r[0], 1e-13 * strain);
+        ASSERT_GE(h * tangential * strain, shear * (1.0 - 1e-12));
+      }
+      sticking += node.status == ILAW_STICK;
+      slipping += node.status == ILAW_SLIP;
+    }
+    EXPECT_GT(sticking, 500);
+    EXPECT_GT(slipping, 500);
   }
 }
 
-// The two steps: an impulse is a force times the velocity step, a gap moves by the position step.
+// The two steps: an impulse is a force times the velocity step, and the indentation moves by it as well, so
+// that the work comes back; the position step predicts the gap that closes.
 TEST(Penalty, UsesEachStepWhereItBelongs) {
   NodeRun node(
       "penalty",
       with("implicit",
-           {{"stiffness", 500.0}, {"damping", 7.0}, {"tangential_stiffness", 90.0}, {"friction", 5.0}}));
-  const double hv = 2e-3, hp = 3e-3, gap = -0.02, inverse_mass = 0.5;
-  const Vector v_free{-1.0, 0.3, 0.0};
-  ilaw_batch b = node.batch();
-  Vector r{}, v{};
-  std::vector<double> state(node.state.size());
-  b.velocity_step = hv;
-  b.position_step = hp;
-  b.v_free = {v_free.data(), 0, 1};
-  b.delassus = {&inverse_mass, 0, 1};
-  b.gap = {&gap, 0, 1};
-  b.state_in = {state.data(), 0, 1};
-  b.state_out = {state.data(), 0, 1};
-  b.impulse = {r.data(), 0, 1};
-  b.velocity = {v.data(), 0, 1};
-  ASSERT_EQ(node.interface.evaluate(b), ILAW_OK);
-  EXPECT_NEAR(r[0], hv * (500.0 * -(gap + hp * v[0]) - 7.0 * v[0]), 1e-15);
-  EXPECT_NEAR(r[1], -hv * 90.0 * hp * v[1], 1e-16);
-  EXPECT_NEAR(state[1], hp * v[1], 1e-17);
+           {{"stiffness", 500.0}, {"damping", 7.0}, {"tangential_stiffness", 90.0}, {"friction", 5.0}}),
+      2e-3);
+  const double h = 2e-3;
+  node.position_dt = 3e-3;
+  node.h[0] = 0.5;
+  const double damper = 7.0 / (1.0 + 0.5 * h * 7.0 * 0.5);
+  for (const double gap : {1.4e-3, 1.6e-3}) {  // closed where g + l v^-/2 <= 0: up to 1.5e-3
+    node.state = {0.0, 0.0, 0.0, 0.0};
+    node.gap = gap;
+    node.v_previous = {-1.0, 0.2, 0.0};
+    ASSERT_EQ(node.step({-1.0, 0.3, 0.0}), ILAW_OK);
+    if (gap > 1.5e-3) {
+      EXPECT_EQ(node.r[0], 0.0);
+      continue;
+    }
+    const double mean = 0.5 * (node.v[0] - 1.0), slip = 0.5 * (node.v[1] + 0.2);
+    EXPECT_NEAR(node.r[0], h * (500.0 * 0.5 * (0.0 - h * mean) - damper * mean), 1e-15);
+    EXPECT_NEAR(node.state[0], -h * mean, 1e-17);
+    EXPECT_NEAR(node.r[1], -h * 90.0 * 0.5 * h * slip, 1e-16);
+    EXPECT_NEAR(node.state[2], h * slip, 1e-17);
+  }
+}
+
+// A state from elsewhere is refused, and nothing is lost: r = 0, the state as it was.
+TEST(Penalty, RefusesStateThatItCannotHaveWritten) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [integration, x, reason] :
+       {std::tuple<const char*, double, const char*>{"implicit", -1e-9, "cannot have written"},
+        {"explicit", 1e-9, "cannot have written"},
+        {"implicit", nan, "not finite"},
+        {"implicit", inf_value, "not finite"}}) {
+    NodeRun node("penalty", with(integration, {{"stiffness", 1e3}}));
+    node.gap = -0.01;
+    node.state[0] = x;
+    ASSERT_EQ(node.step({-1.0, 0.0, 0.0}), ILAW_BAD_NODES) << integration << " " << x;
+    EXPECT_NE(std::string(node.report.reason).find(reason), std::string::npos) << node.report.reason;
+    EXPECT_EQ(node.r[0], 0.0);
+    EXPECT_EQ(node.status, ILAW_BAD_INPUT);
+    EXPECT_TRUE(node.state[0] == x || (std::isnan(x) && std::isnan(node.state[0])));
+  }
 }
 
 // The explicit form: the configuration and the half step before, not what the step leads to.
@@ -216,8 +271,10 @@ TEST(Penalty, PerNodeStiffnessGivesTheSameBits) {
       for (int k = 0; k < 1000; ++k) {
         const Vector v{uniform(random), uniform(random), uniform(random)};
         node.gap = 1e-3 * uniform(random) - 5e-4;
+        const Vector previous = node.v_previous;
         ASSERT_EQ(node.step(v), ILAW_OK);
         ilaw_batch b = node.batch();
+        b.v_previous = {previous.data(), 0, 1};
         b.state_in = {state.data(), 0, 1};
         b.state_out = {state.data(), 0, 1};
         b.impulse = {r.data(), 0, 1};
@@ -230,7 +287,7 @@ TEST(Penalty, PerNodeStiffnessGivesTheSameBits) {
 }
 
 // A million random steps of nodes with memory: r_N pushes, |r_T| <= mu r_N, a power of ten in stiffness at a
-// time; where no force acts (v_free = v^-), no implicit step creates energy, and none counts as negative.
+// time; no energy counts as negative.
 TEST(Penalty, RandomHistoriesKeepTheCone) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0), decades(-4.0, 8.0), stable(-4.0, 3.0);
@@ -253,7 +310,6 @@ TEST(Penalty, RandomHistoriesKeepTheCone) {
       node.gap = k % 20 == 0 ? 0.02 * uniform(random) : node.gap + h * node.v[0];
       const Vector v{uniform(random) - 0.3, uniform(random), uniform(random)};
       node.v_previous = v;
-      const Vector spring{0.0, node.state[1], node.state[2]};
       ASSERT_EQ(node.step(v), ILAW_OK) << node.report.reason;
       ASSERT_GE(node.r[0], 0.0);
       const double shear = std::hypot(node.r[1], node.r[2]);
@@ -263,15 +319,6 @@ TEST(Penalty, RandomHistoriesKeepTheCone) {
       for (const double energy : node.energy) ASSERT_GE(energy, 0.0);
       slipping += node.status == ILAW_SLIP;
       sticking += node.status == ILAW_STICK;
-      if (!implicit) continue;
-      const double p = history % 5 ? 1.0 : 1.5, sunk = std::max(-node.gap, 0.0);
-      const double before = stiffness * std::pow(sunk, p + 1.0) / (p + 1.0) +
-                            0.5 * tangential * (spring[1] * spring[1] + spring[2] * spring[2]);
-      double work = 0.0;
-      for (std::size_t c = 0; c < 3; ++c) work += 0.5 * node.r[c] * (v[c] + node.v[c]);
-      const double after = node.energy[ILAW_ENERGY_STORED];
-      ASSERT_LE(work + after - before, 1e-13 * (std::abs(work) + after + before))
-          << "stiffness " << stiffness;
     }
   }
   EXPECT_GT(slipping, 100000);
@@ -332,6 +379,10 @@ TEST(Penalty, RefusesBadParameters) {
         {"implicit", {{"stiffness", 1.0}, {"tangential_stiffness", 0.0}}, "'tangential_stiffness' = 0"},
         {"implicit", {{"stiffness", 1.0}, {"exponent", 0.5}}, "'exponent' = 0.5"},
         {"implicit", {{"stiffness", 1.0}, {"damping", inf_value}}, "'damping' = inf"},
+        {"implicit", {{"stiffness", 1.0}, {"restitution", 1.1}}, "'restitution' = 1.1"},
+        {"implicit", {{"stiffness", 1.0}, {"restitution", 0.5}, {"damping", 2.0}}, "damping = 2"},
+        {"implicit", {{"stiffness", 1.0}, {"restitution", 0.5}, {"exponent", 1.5}}, "exponent = 1.5"},
+        {"explicit", {{"stiffness", 1.0}, {"restitution", 0.5}}, "restitution = 0.5"},
         {"backwards", {{"stiffness", 1.0}}, "'integration' = \"backwards\""}}) {
     const SetupBuilder setup(with(integration, numbers));
     try {

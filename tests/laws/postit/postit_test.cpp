@@ -1,5 +1,5 @@
 // The Post-it law through the ABI, against histories derived by hand.
-#include "support/law_runner.hpp"
+#include "support/rupture_instants.hpp"
 
 #include <limits>
 #include <random>
@@ -91,6 +91,17 @@ TEST(Postit, RuptureInstantConvergesWithTheStep) {
   EXPECT_GE((n * sxy - sx * sy) / (n * sxx - sx * sx), 0.9);
 }
 
+const BondLaw bond{
+    "postit",
+    [](double limit, double buckets) {
+      return Parameters{{{"initial_adhesion", limit}, {"memory", 1.0}, {"buckets", buckets}}, {}};
+    },
+    {1.0, 0.0, 0.0}};
+
+TEST(Postit, BreaksWhenTheExactIntegralPassesTheAdhesion) { expect_rupture_instants(bond); }
+
+TEST(Postit, DoubleShocksBreakWithinTheWindow) { expect_double_shocks(bond); }
+
 // Two shocks break together when within tau and p1 + p2 > R, and hold when farther apart.
 TEST(Postit, ShocksAddUpWithinTheWindowOnly) {
   for (const auto& [distance, breaks] : {std::pair{50, true}, {79, true}, {80, false}, {200, false}}) {
@@ -121,7 +132,7 @@ TEST(Postit, AdhesionFollowsRupturesLimitAndArea) {
   for (int ruptures = 0; ruptures < 25; ++ruptures) {
     const double press = 0.1 + 0.02 * ruptures;
     node.position = {};
-    node.v = {};
+    node.v = node.v_previous = {};
     EXPECT_EQ(node.push({-press, 0, 0}), ILAW_HEALED);
     const double expected = std::min(std::exp(-ruptures / 10.0) * press, 0.4);
     EXPECT_NEAR(node.named("adhesion"), expected, 4e-16);
@@ -172,12 +183,120 @@ TEST(Postit, SaturatedRuptureGivesWhatWasLeft) {
   EXPECT_EQ(brittle.r[0], 0.0);
 }
 
+// A block under a press of 1 that is pushed sideways at 2, from rest on a bond of P tau, and then back gently
+// until it sticks again; steps share no factor with the times or with each other.
+constexpr double sliding_steps[] = {0.0097, 0.00113, 0.000107};
+
+struct Pushed : Glued {
+  Pushed(double step, double friction, const char* rupture)
+      : Glued({{{"efficiency_decrease", 10.0},
+                {"memory", 0.05},
+                {"friction", friction},
+                {"tangent_influence", 0.8}},
+               {{"rupture", rupture}}},
+              step) {}
+
+  void hold(double end, double press, double shear) {
+    while (time < end) push({-dt * press, dt * shear, 0.0});
+  }
+};
+
+template <class Check>
+void slide(Check check) {
+  for (const double h : sliding_steps)
+    for (const double friction : {0.5, 0.0})
+      for (const char* rupture : {"brittle", "saturated"}) {
+        SCOPED_TRACE(::testing::Message() << "h " << h << ", mu " << friction << ", " << rupture);
+        Pushed node(h, friction, rupture);
+        check(node);
+      }
+}
+
+// One rupture: the adhesion left is exp(-1/10) P tau. The ramp 20 (t - 1.25) then puts 20 tau (t - 1.25 -
+// tau/2) into the window, which is that adhesion at t = 1.32024.
+TEST(Postit, ASlideUnderPressureIsOneRupture) {
+  slide([](Pushed& node) {
+    node.hold(0.3, 1.0, 0.0);
+    node.hold(0.4, 1.0, 2.0);
+    EXPECT_EQ(node.status, ILAW_BROKEN);  // still sliding
+    node.hold(1.0, 1.0, -0.5);
+    EXPECT_EQ(node.status, ILAW_BONDED);
+    node.hold(1.2, 1.0, 0.0);
+    EXPECT_EQ(node.named("ruptures"), 1.0);
+    const double adhesion = std::exp(-0.1) * 0.05;
+    EXPECT_NEAR(node.named("adhesion"), adhesion, 1e-12);
+    node.hold(1.25, 0.0, 0.0);
+    while (node.time < 1.5 && node.status != ILAW_BROKEN)
+      node.push({node.dt * 20.0 * (node.time + node.dt - 1.25), 0.0, 0.0});
+    EXPECT_NEAR(node.time, 1.25 + 0.025 + adhesion / (20.0 * 0.05), 0.6 * node.dt);
+    EXPECT_EQ(node.named("ruptures"), 2.0);  // the bond had held
+  });
+}
+
+// Each of ten pulses breaks a bond that has held, and counts.
+TEST(Postit, ShearPulsesCountOnceEach) {
+  slide([](Pushed& node) {
+    for (int pulse = 0; pulse < 10; ++pulse) {
+      node.hold(pulse + 0.3, 1.0, 0.0);
+      EXPECT_EQ(node.status, ILAW_BONDED) << pulse;
+      node.hold(pulse + 0.36, 1.0, 2.0);
+      node.hold(pulse + 1.0, 1.0, -0.2);
+    }
+    node.hold(10.3, 1.0, 0.0);
+    EXPECT_EQ(node.named("ruptures"), 10.0);
+    EXPECT_NEAR(node.named("adhesion"), std::exp(-1.0) * 0.05, 1e-12);
+  });
+}
+
+// What was torn off and pressed on again counts, however short it held.
+TEST(Postit, ASeparationMakesTheNextRuptureCount) {
+  Glued node({{{"efficiency_decrease", 10.0}, {"memory", 0.05}}, {}}, 1e-3);
+  for (int k = 0; k < 7; ++k) {
+    node.position = {};
+    node.v = {};
+    EXPECT_EQ(node.push({-0.1, 0, 0}), ILAW_HEALED);
+    EXPECT_EQ(node.push({0.5, 0, 0}), ILAW_BROKEN);
+    for (int free = 0; free < 60; ++free) EXPECT_EQ(node.push({0, 0, 0}), ILAW_FREE);
+    EXPECT_EQ(node.named("ruptures"), k + 1.0);
+  }
+}
+
+// Off and out of reach the state is left bit for bit, whatever the time: a host need not ask. Its window and
+// its later bits are those of a node that was asked in every step.
+TEST(Postit, AFreeNodeOutOfReachKeepsItsState) {
+  const Parameters parameters{{{"efficiency_decrease", 10.0}, {"memory", 0.05}, {"friction", 0.3}}, {}};
+  Glued asked(parameters, 1e-3), skipped(parameters, 1e-3);
+  for (Glued* node : {&asked, &skipped}) {
+    node->push({-0.1, 0.02, 0});
+    for (int k = 0; k < 20; ++k) node->push({-1e-3, 1e-3, 0});
+    EXPECT_EQ(node->push({0.5, 0.1, 0}), ILAW_BROKEN);
+    EXPECT_EQ(node->push({0, 0, 0}), ILAW_FREE);
+    EXPECT_GT(node->gap, 0.0);
+  }
+  const std::vector<double> before = asked.state;
+  for (int k = 0; k < 200; ++k) {
+    EXPECT_EQ(asked.push({-1e-4, 0, 0}), ILAW_FREE);
+    ASSERT_EQ(asked.state, before) << k;
+  }
+  skipped.steps = asked.steps;
+  for (Glued* node : {&asked, &skipped}) {
+    node->position = {};
+    node->v = {};
+  }
+  for (int k = 0; k < 100; ++k) {
+    const Vector push{k % 9 == 0 ? 0.4 : -0.1, 0.01 * k, 0};
+    ASSERT_EQ(asked.push(push), skipped.push(push)) << k;
+    ASSERT_EQ(asked.r, skipped.r) << k;
+    ASSERT_EQ(asked.state, skipped.state) << k;
+  }
+}
+
 // Without adhesion the law is coulomb, bit for bit.
 TEST(Postit, WithoutAdhesionIsCoulomb) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-300.0, 150.0);
   NodeRun glue("postit", {{{"adhesion_limit", 0.0}, {"friction", 0.4}}, {}});
-  NodeRun friction("coulomb", {{{"friction", 0.4}}, {}});
+  NodeRun friction("coulomb", {{{"friction", 0.4}}, {{"activation", "moreau"}}});
   for (int k = 0; k < 100000; ++k) {
     const double scale = std::pow(10.0, exponent(random));
     const Vector v{scale * uniform(random), scale * uniform(random), scale * uniform(random)};
@@ -221,6 +340,9 @@ TEST(Postit, RandomHistoriesKeepTheInvariants) {
       b.time = a.time * duration;
       a.gap = mirror.gap = gap;
       b.gap = gap * length;
+      a.v_previous = v;  // no force: a bond that forms stops the node
+      b.v_previous = {v[0] * speed, v[1] * speed, v[2] * speed};
+      mirror.v_previous = {v[0], -v[1], v[2]};
       ASSERT_EQ(a.step(v), ILAW_OK);
       ASSERT_EQ(b.step({v[0] * speed, v[1] * speed, v[2] * speed}), ILAW_OK);
       ASSERT_EQ(mirror.step({v[0], -v[1], v[2]}), ILAW_OK);

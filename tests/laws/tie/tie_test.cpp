@@ -1,5 +1,5 @@
 // The tie through the ABI: a bilateral constraint for any H, and its rupture, against closed forms.
-#include "support/law_runner.hpp"
+#include "support/rupture_instants.hpp"
 
 #include <limits>
 #include <random>
@@ -104,7 +104,7 @@ TEST(Tie, BrokenIsContact) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Tied node({{{"strength", 0.5}, {"memory", 0.1}}, {}}, 1e-3);
-  NodeRun contact("contact", {});
+  NodeRun contact("contact", {{}, {{"activation", "moreau"}}});
   ASSERT_EQ(node.push({1.0, 0, 0}), ILAW_BROKEN);
   EXPECT_EQ(node.r, Vector{});
   EXPECT_EQ(node.v[0], 1.0);
@@ -144,6 +144,8 @@ TEST(Tie, RandomHistoriesKeepTheInvariants) {
       a.gap = mirror.gap = uniform(random);
       b.gap = a.gap * length;
       a.v_previous = v;
+      b.v_previous = {v[0] * speed, v[1] * speed, v[2] * speed};
+      mirror.v_previous = {v[0], -v[1], v[2]};
       ASSERT_EQ(a.step(v), ILAW_OK);
       ASSERT_EQ(b.step({v[0] * speed, v[1] * speed, v[2] * speed}), ILAW_OK);
       ASSERT_EQ(mirror.step({v[0], -v[1], v[2]}), ILAW_OK);
@@ -159,6 +161,17 @@ TEST(Tie, RandomHistoriesKeepTheInvariants) {
   }
   EXPECT_GT(broken, 100);
 }
+
+// In shear, which the windowed sum carries through frames and slopes of its own.
+const BondLaw bond{"tie",
+                   [](double limit, double buckets) {
+                     return Parameters{{{"strength", limit}, {"memory", 1.0}, {"buckets", buckets}}, {}};
+                   },
+                   {0.0, 0.6, -0.8}};
+
+TEST(Tie, BreaksWhenTheExactIntegralPassesTheStrength) { expect_rupture_instants(bond); }
+
+TEST(Tie, ShocksAddUpWithinTheWindow) { expect_double_shocks(bond); }
 
 TEST(Tie, RefusesBadParameters) {
   for (const auto& [name, value] :

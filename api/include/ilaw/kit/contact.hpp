@@ -11,9 +11,19 @@ inline constexpr const char* activation_choices[] = {"moreau", "predictive"};
 inline constexpr double moreau = 0.0, predictive = 1.0;
 
 // Contact asks 0 <= excess + H_NN r_N _|_ r_N >= 0 where slack <= 0, and r_N = 0 elsewhere.
+// rest = v_free,N + v_N^- - excess <= 0: the work of r_N over the step is r_N rest/2 then, for any H.
 struct contact_condition {
-  double slack, excess;
+  double slack, excess, rest;
 };
+
+// A contact that must leave with v_N = target, were it not for its energy: in a central-difference host the
+// work of r over the step is r.(v^- + v)/2, whatever the steps. So v_N <= -v_N^- where it is pressed: a node
+// that was leaving is not stopped, but turns round at most at the speed with which it left. Near the critical
+// step such nodes are met, and stopping them makes the motion diverge. Restitution asks for less by itself.
+constexpr contact_condition contact_leaving_at(double target, double slack, double v_free,
+                                               double v_previous) {
+  return {slack, larger(v_free - target, v_free + v_previous), smaller(v_previous + target, 0.0)};
+}
 
 // moreau: where the gap is closed, v_N + e v_N^- >= 0 (Moreau 1988).
 // predictive: where the next gap would not be positive, v_N >= -g/h, so that it is never negative. An impact
@@ -25,9 +35,10 @@ contact_condition contact_at(const Node& node, double restitution, double activa
   const double rate = 1.0 / node.position_step;  // the same for all nodes: divided once
   const double arrival = -positive_part(node.gap) * rate;
   const double predicted = rebound > 0.0 ? rebound : arrival;
+  const bool predicts = activation == predictive;
   const double ahead = node.gap > 0.0 ? next_gap(node) : node.v_free.n;
-  return {activation == predictive ? ahead : node.gap,
-          node.v_free.n - (activation == predictive ? predicted : rebound)};
+  return contact_leaving_at(predicts ? predicted : rebound, predicts ? ahead : node.gap, node.v_free.n,
+                            node.v_previous.n);
 }
 
 }  // namespace ilaw::kit

@@ -16,8 +16,8 @@
 //                                                         bits without what these parameters turn off
 //   const char* conflict() const;                         why parameters do not go together, or null
 //   template <class Node> void initialise(Node&) const;   first state (default: zeros)
-//   static constexpr state_variable memory;               declares a history, of
-//   std::int64_t memory_size(const setup&) const          doubles, which step reads as node.past and
+//   static constexpr state_variable history_variable;     declares a history, of
+//   std::int64_t history_size() const;                    doubles, which step reads as node.history and
 //   template <class Node> void record(const Node&, history) const   writes once the step is accepted
 //
 // SPDX-License-Identifier: BSD-3-Clause
@@ -106,8 +106,8 @@ concept has_state = requires {
   typename Law::state;
 };
 template <class Law>
-concept has_memory = requires {
-  Law::memory;
+concept has_history = requires {
+  Law::history_variable;
 };
 
 // Whether a law remembers directions, which turn with the frame.
@@ -208,16 +208,16 @@ constexpr std::size_t declared_state_variables() {
 
 template <class Law>
 inline constexpr std::size_t state_variable_count = declared_state_variables<Law>() +
-                                                    (has_memory<Law> ? 1 : 0);
+                                                    (has_history<Law> ? 1 : 0);
 
 template <class Law>
-constexpr auto abi_state_variables(int dimension, std::uint64_t memory_size) {
+constexpr auto abi_state_variables(int dimension, std::uint64_t history_size) {
   std::array<ilaw_state_variable, state_variable_count<Law>> result{};
   std::size_t i = 0;
   if constexpr (has_state<Law>)
     for (const state_variable& v : Law::state_variables)
       result[i++] = abi_state_variable(v, static_cast<std::uint64_t>(v.components(dimension)));
-  if constexpr (has_memory<Law>) result[i] = abi_state_variable(Law::memory, memory_size);
+  if constexpr (has_history<Law>) result[i] = abi_state_variable(Law::history_variable, history_size);
   return result;
 }
 

@@ -152,8 +152,10 @@ struct full_delassus {
 inline constexpr double not_refused = 0.0;
 inline constexpr double anisotropic_delassus = 1.0;  // the law has no closed form for this H
 inline constexpr double no_solution = 2.0;           // the law's equations have none for this input
+inline constexpr double impossible_state = 3.0;      // the law cannot have written this state
+inline constexpr double time_before_history = 4.0;   // the clock was set back
 
-// Memory of a law beyond its named state: doubles of one node, wherever the host keeps them.
+// History of a law beyond its named state: doubles of one node, wherever the host keeps them.
 struct const_history {
   const double* values;
   std::int64_t stride;
@@ -200,7 +202,7 @@ struct node {
   Delassus delassus;
   double gap;   // offset already taken off
   double area;  // zero unless the law reads it
-  const_history past;
+  const_history history;
 
   Vector impulse;
   State state;          // comes in as it was, leaves as it is

@@ -1,21 +1,25 @@
-// window.hpp - the sum of a node's impulses over the last tau, with a bounded number of slots and for any
+// window.hpp - the sum of a node's impulses over the last tau, from a bounded number of buckets and for any
 // time steps.
 //
-// An impulse of age a counts while a < tau; the step's own has age 0 and always counts. With tau = m h these
-// are exactly m impulses, so a constant force F gives F tau.
+// The impulse of a step is spread evenly over the step's interval [e - h, e], which ends half a position step
+// after the configuration: the intervals of successive steps touch, also when the step varies. Buckets of
+// width w = tau/B stand on a fixed grid in absolute time, b_j over [j w, (j + 1) w). With k = floor(e/w) and
+// theta = (k + 1) - e/w, the part of the oldest bucket that tau still covers, the sum is
+//   S = r + b_k + (b_{k-1} + ... + b_{k-B+1}) + theta b_{k-B} + theta (1 - theta)/2 sigma,
+// its last term by a force that is linear in the oldest bucket: sigma = b_{k-B+1} - b_{k-B}, limited to twice
+// b_{k-B} so that no force changes its sign within a bucket (van Leer 1979, in normal and tangential part).
+// The own impulse counts whole: where h >= tau, S = r.
 //
-// A slot keeps the sum of the impulses of some consecutive steps, and the times of the first and last of
-// them. A new slot is begun when tau/B have passed since the current one began (with every step if tau <= B
-// h). No running sum is kept, so nothing drifts: the sum is that of the slots.
+// Error, for a force F that is smooth over the two oldest buckets: for F = x^2/2 over buckets [0, 1] and
+// [1, 2], b = 1/6 and sigma = 1, and with u = 1 - theta the sum of the oldest is off by u (1 - u) (2 - u)/6,
+// at most 1/(9 sqrt 3). Hence |S - integral of F| <= w^3 |F''|/(9 sqrt 3), and constant and linear forces are
+// exact. Where the slope is limited, or not known since the step began less than a bucket after the oldest
+// (h > tau - 2 w), |S - integral| <= w^2 |F'|/8 (linear interpolation of the integral). A step that the edge
+// of a bucket cuts adds up to h^2 |F'|/8. Where F jumps by J within the oldest bucket: w J/4. A shock is
+// exact until tau - w after it, and fades over the width of its bucket.
 //
-// B+1 slots never overflow, for constant or varying h: slots begin at least tau/B apart, so at most B of them
-// began within the last tau, and at most one that began before still has a live impulse, its successor having
-// begun within the last tau. The slot to be overwritten is therefore expired.
-//
-// Error: none (but rounding) when each slot has one step. Else only the one slot that tau cuts is not known
-// exactly; it counts with the part of its duration that is alive, so the error is at most the sum of |r| in
-// that slot, whose steps span no more than tau/B. For a force that is constant over the slot the part is
-// exact.
+// No sum runs on: that of the middle buckets is formed anew whenever k turns, so nothing drifts. Of time the
+// state holds the number of the newest bucket alone. A step without impulse leaves it as it is, bit for bit.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -25,91 +29,193 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
+// Sums are compared with limits up to this part of the limit: an e/w of 1e6 leaves some 1e-10 of rounding, as
+// does a clock that adds up its steps.
+inline constexpr double window_slack = 1e-9;
+
+// The largest whole number up to x, for |x| < 2^63.
+inline double floor_of(double x) {
+  const auto cut = static_cast<double>(static_cast<std::int64_t>(x));
+  return cut > x ? cut - 1.0 : cut;
+}
+
+// The time over which a step's impulse acts: from half step to half step.
+struct step_interval {
+  double end, length;
+};
+template <class Node>
+step_interval interval_of(const Node& node) {
+  return {node.time + 0.5 * node.position_step, node.velocity_step};
+}
+
 class window {
  public:
-  // Slots for a duration and a number of buckets B, if steps are no smaller than smallest_step.
-  static std::int64_t slot_count(double duration, double buckets, double smallest_step) {
+  // Doubles of history that a duration and a number of buckets B need, whatever the time step.
+  static std::int64_t doubles(double duration, double buckets) {
     if (duration == 0.0) return 0;
-    if (duration == infinity) return 1;
-    const double steps = __builtin_ceil(duration / smallest_step * (1.0 - rounding));
-    return static_cast<std::int64_t>(smaller(buckets, larger(steps, 1.0))) + 1;
+    if (duration == infinity) return 3;
+    return first_bucket + 3 * (static_cast<std::int64_t>(buckets) + 1);
   }
-  static std::int64_t doubles(std::int64_t slots) { return slots == 0 ? 0 : 1 + slots * slot_doubles; }
 
-  window(double duration, std::int64_t slots) : duration_(duration), slots_(slots) {}
+  window(double duration, double buckets)
+      : duration_(duration), per_width_(buckets / duration), buckets_(buckets) {}
 
-  // The sum of the impulses before the step that ends at time.
+  // The sum of the impulses before the step, within tau of its end; or why there is none.
+  struct reading {
+    vector sum;
+    double refused = not_refused;
+  };
   template <class History>
-  vector sum(const History& memory, double time, double step) const {
-    vector total;
-    for (std::int64_t k = 0; k < slots_; ++k) {
-      const slot s = read(memory, k);
-      const double part = live_part(s, time, step);
-      if (part > 0.0) total = total + (part == 1.0 ? s.impulse : part * s.impulse);
-    }
-    return total;
+  reading before(const History& own, step_interval step) const {
+    if (duration_ == 0.0) return {};
+    if (duration_ == infinity) return checked(read(own, 0));
+    const double stamp = own[0], end = step.end * per_width_;
+    if (!is_stamp(stamp)) return {{}, impossible_state};
+    if (stamp == empty || !on_grid(end)) return {};
+    const double newest = bucket_of(stamp), now = floor_of(end), k = larger(now, newest);
+    // A host whose position step is not the next one may fall back by a part of its last step.
+    if (now < newest - 1.0) return {{}, time_before_history};
+    if (step.length >= duration_ || k - newest > buckets_) return {};
+    const std::int64_t oldest = place_of(k - buckets_), latest = before_in_ring(oldest);
+    const vector middle = k == newest ? read(own, middle_sum) : sum_between(own, k, newest);
+    const vector current = k == newest ? read(own, at(latest)) : vector{};
+    return checked((middle + current) + live_part(own, oldest, k - buckets_, end, step, newest));
   }
 
-  // Takes the step's own impulse in.
-  void add(const history& memory, double time, double step, vector impulse) const {
-    if (slots_ == 0 || (impulse.n == 0.0 && impulse.t1 == 0.0 && impulse.t2 == 0.0)) return;
-    auto current = static_cast<std::int64_t>(memory[0]);  // counted from 1; 0: none yet
-    if (current == 0 || begins_new(read(memory, current - 1), time, step)) {
-      current = current % slots_ + 1;
-      memory[0] = static_cast<double>(current);
-      write(memory, current - 1, {impulse, time, time});
-      return;
+  // Takes the step's own impulse in. The history is one that before() did not refuse.
+  void add(const history& own, step_interval step, vector impulse) const {
+    if (duration_ == 0.0 || (impulse.n == 0.0 && impulse.t1 == 0.0 && impulse.t2 == 0.0)) return;
+    if (duration_ == infinity) return write(own, 0, read(own, 0) + impulse);
+    const double end = step.end * per_width_;
+    if (!on_grid(end)) return;
+    const double now = floor_of(end), begin = end - step.length * per_width_;
+    const double newest = own[0] == empty ? now - buckets_ - 1.0 : bucket_of(own[0]);
+    const double k = larger(now, newest);
+    if (k == newest && begin >= k) {
+      const std::int64_t current = at(place_of(k));
+      return write(own, current, read(own, current) + impulse);
     }
-    const slot s = read(memory, current - 1);
-    write(memory, current - 1, {s.impulse + impulse, s.first, time});
+    clear_between(own, newest, k);
+    spread(own, impulse, begin, end, k);
+    write(own, middle_sum, sum_between(own, k, k));
+    own[0] = stamp_of(k);
   }
 
-  void clear(const history& memory) const {
-    for (std::int64_t k = 0; k < doubles(slots_); ++k) memory[k] = 0.0;
+  // An empty window is one without a newest bucket; what else its history holds does not count.
+  void clear(const history& own) const {
+    if (duration_ == infinity) write(own, 0, {});
+    if (duration_ > 0.0 && duration_ < infinity) own[0] = empty;
   }
 
  private:
-  static constexpr std::int64_t slot_doubles = 5;
-  // Ages are differences of times: what is equal but for rounding is equal.
-  static constexpr double rounding = 1e-9;
-  static constexpr double age_slack = 1e-6;  // of a step
+  // The history: number of the newest bucket, sum of the middle ones, and a ring of B + 1 buckets.
+  static constexpr std::int64_t middle_sum = 1, first_bucket = 4;
+  // Numbers of buckets that a double and a cast hold with room to spare. A grid finer than that is finer than
+  // the clock: no step lies within tau of another.
+  static constexpr double largest_number = 0x1p51;
 
-  // An empty slot has no impulse, and its times do not matter.
-  struct slot {
-    vector impulse;
-    double first, last;
-  };
+  // The newest bucket is kept as a number other than zero, so that zeros are an empty window.
+  static constexpr double empty = 0.0;
+  static double stamp_of(double bucket) { return bucket >= 0.0 ? bucket + 1.0 : bucket; }
+  static double bucket_of(double stamp) { return stamp > 0.0 ? stamp - 1.0 : stamp; }
+  static bool on_grid(double x) { return absolute(x) < largest_number; }
+  static bool is_stamp(double stamp) {
+    return absolute(stamp) <= largest_number && floor_of(stamp) == stamp;  // false for NaN
+  }
+
   template <class History>
-  static slot read(const History& memory, std::int64_t k) {
-    const std::int64_t at = 1 + k * slot_doubles;
-    return {{memory[at], memory[at + 1], memory[at + 2]}, memory[at + 3], memory[at + 4]};
+  static vector read(const History& own, std::int64_t k) {
+    return {own[k], own[k + 1], own[k + 2]};
   }
-  static void write(const history& memory, std::int64_t k, const slot& s) {
-    const std::int64_t at = 1 + k * slot_doubles;
-    memory[at] = s.impulse.n;
-    memory[at + 1] = s.impulse.t1;
-    memory[at + 2] = s.impulse.t2;
-    memory[at + 3] = s.first;
-    memory[at + 4] = s.last;
+  static void write(const history& own, std::int64_t k, vector sum) {
+    own[k] = sum.n;
+    own[k + 1] = sum.t1;
+    own[k + 2] = sum.t2;
+  }
+  static reading checked(vector sum) { return {sum, defect(sum) == 0.0 ? not_refused : impossible_state}; }
+
+  // Places in the ring: bucket j stands at j modulo B + 1, so that the next bucket to open takes that of the
+  // oldest.
+  std::int64_t ring_size() const { return static_cast<std::int64_t>(buckets_) + 1; }
+  std::int64_t place_of(double bucket) const {
+    const double size = buckets_ + 1.0;
+    const double place = bucket - floor_of(bucket * (1.0 / size)) * size;  // the quotient may be one off
+    return static_cast<std::int64_t>(place < 0.0 ? place + size : (place < size ? place : place - size));
+  }
+  std::int64_t after(std::int64_t place) const { return place + 1 < ring_size() ? place + 1 : 0; }
+  std::int64_t before_in_ring(std::int64_t place) const { return (place > 0 ? place : ring_size()) - 1; }
+  static std::int64_t at(std::int64_t place) { return first_bucket + 3 * place; }
+
+  // The sum of the buckets between the oldest and k, of which those after newest are not open yet: in two
+  // runs of neighbours.
+  template <class History>
+  vector sum_between(const History& own, double k, double newest) const {
+    const double first = (k - buckets_) + 1.0;
+    const auto count = static_cast<std::int64_t>(smaller(k - 1.0, newest) - first) + 1;
+    const std::int64_t place = place_of(first), room = ring_size() - place;
+    const std::int64_t before_end = count < room ? count : room;
+    return sum_of(own, place, before_end) + sum_of(own, 0, count - before_end);
+  }
+  template <class History>
+  static vector sum_of(const History& own, std::int64_t place, std::int64_t count) {
+    vector even, odd;  // two sums that do not wait for each other
+    const std::int64_t end = at(place + count);
+    std::int64_t k = at(place);
+    for (; k + 3 < end; k += 6) {
+      even = even + read(own, k);
+      odd = odd + read(own, k + 3);
+    }
+    return k < end ? (even + read(own, k)) + odd : even + odd;
   }
 
-  bool begins_new(const slot& current, double time, double step) const {
-    if (duration_ == infinity) return false;
-    const auto buckets = static_cast<double>(slots_ - 1);
-    if (duration_ <= buckets * step * (1.0 + rounding)) return true;
-    return time - current.first >= duration_ / buckets - age_slack * step;
+  // What of the oldest bucket tau still covers. A step may have begun within this bucket or the next, which
+  // are then filled up to there.
+  template <class History>
+  vector live_part(const History& own, std::int64_t place, double oldest, double end, step_interval step,
+                   double newest) const {
+    const vector bucket = read(own, at(place));
+    const double begin = end - step.length * per_width_, filled = smaller(oldest + 1.0, begin);
+    if (filled <= oldest) return {};
+    const double live = filled - (end - buckets_);
+    const double part = smaller(1.0, begin < oldest + 1.0 ? live / (filled - oldest) : live);
+    if (begin < oldest + 2.0) return part * bucket;
+    const vector next = oldest + 1.0 <= newest ? read(own, at(after(place))) : vector{};
+    return part * bucket + (0.5 * part * (1.0 - part)) * limited_difference(bucket, next);
+  }
+  static vector limited_difference(vector bucket, vector next) {
+    vector difference = next - bucket;
+    const double most = 2.0 * absolute(bucket.n);
+    difference.n = smaller(larger(difference.n, -most), most);
+    const double larger_part = larger(absolute(bucket.t1), absolute(bucket.t2));
+    if (absolute(difference.t1) + absolute(difference.t2) <= 2.0 * larger_part) return difference;
+    const double allowed = 2.0 * bucket.tangential_length(), found = difference.tangential_length();
+    const double factor = found > allowed ? allowed / found : 1.0;
+    return {difference.n, factor * difference.t1, factor * difference.t2};
   }
 
-  double live_part(const slot& s, double time, double step) const {
-    if (duration_ == infinity) return 1.0;
-    const double limit = duration_ - age_slack * step;
-    if (time - s.last >= limit) return 0.0;
-    if (time - s.first < limit) return 1.0;
-    return smaller(1.0, (s.last - (time - duration_)) / (s.last - s.first + step));
+  // Opens the buckets after newest up to k.
+  void clear_between(const history& own, double newest, double k) const {
+    const double first = larger(newest + 1.0, k - buckets_);
+    std::int64_t place = place_of(first);
+    for (double j = first; j <= k; j += 1.0, place = after(place)) write(own, at(place), {});
   }
 
-  double duration_;
-  std::int64_t slots_;
+  // Over the buckets that [begin, end] covers, as far as tau reaches; the last takes what is left, so that
+  // the whole arrives. end may lie before bucket k.
+  void spread(const history& own, vector impulse, double begin, double end, double k) const {
+    const bool is_whole = begin >= k - buckets_;
+    const double first = is_whole ? floor_of(begin) : k - buckets_, last = floor_of(end);
+    vector left = impulse;
+    std::int64_t place = place_of(first);
+    for (double j = first; j <= last; j += 1.0, place = after(place)) {
+      const double overlap = smaller(j + 1.0, end) - larger(j, begin);
+      const vector part = is_whole && j == last ? left : (overlap / (end - begin)) * impulse;
+      left = left - part;
+      write(own, at(place), read(own, at(place)) + part);
+    }
+  }
+
+  double duration_, per_width_, buckets_;
 };
 
 }  // namespace ilaw::kit

@@ -17,7 +17,7 @@ struct block_room {
   column impulse[3], velocity[3], energy[ILAW_ENERGY_COUNT], status, refused, rests;
   column state_in[states + 1], state_out[states + 1];
   column first_tangent[3], second_tangent[3];
-  std::int64_t nodes[has_memory<Law> ? block_size : 1];  // where history is, of listed nodes
+  std::int64_t nodes[has_history<Law> ? block_size : 1];  // where history is, of listed nodes
 };
 
 // Entry of the host's state that holds double k of struct state; -1: a component beyond the dimension.
@@ -108,9 +108,9 @@ class batch_walk {
   // The frame of an accepted step becomes the frame to carry on from.
   void keep_frames() {
     if (!made_.carries_frame) return;
-    const bool memory_moves = has_memory<Law> && !(made_.capabilities() & ILAW_CAN_REST);
+    const bool history_moves = has_history<Law> && !(made_.capabilities() & ILAW_CAN_REST);
     for (int i = 0; i < nodes_.count; ++i)
-      if (block_.refused[i] == 0.0 && (memory_moves || block_.rests[i] == 0.0)) keep_frame(i);
+      if (block_.refused[i] == 0.0 && (history_moves || block_.rests[i] == 0.0)) keep_frame(i);
   }
 
   bool any_refused() const {
@@ -264,8 +264,8 @@ class batch_walk {
     }
     const ilaw_output& out = batch_.state_out;
     block_.history_values = nullptr;
-    if (!has_memory<Law>) return;
-    block_.history_values = out.values + made_.memory_offset() * out.component_stride +
+    if (!has_history<Law>) return;
+    block_.history_values = out.values + made_.history_offset() * out.component_stride +
                             (nodes_.listed() ? 0 : nodes_.first * out.node_stride);
     block_.history_node_stride = out.node_stride;
     block_.history_component_stride = out.component_stride;
@@ -273,11 +273,11 @@ class batch_walk {
     for (int i = 0; nodes_.listed() && i < nodes_.count; ++i) room_.nodes[i] = nodes_.node(i);
   }
 
-  // Memory and frame are worked on in state_out, which therefore starts as state_in.
+  // History and frame are worked on in state_out, which therefore starts as state_in.
   void copy_unnamed_state() {
     if (batch_.state_in.values == batch_.state_out.values) return;
     const auto size = static_cast<std::int64_t>(made_.state_size);
-    for (std::int64_t c = made_.memory_offset(); c < size; ++c)
+    for (std::int64_t c = made_.history_offset(); c < size; ++c)
       for (int i = 0; i < nodes_.count; ++i)
         at(batch_.state_out, nodes_.node(i), c) = at(batch_.state_in, nodes_.node(i), c);
   }

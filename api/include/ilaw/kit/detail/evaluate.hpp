@@ -166,6 +166,8 @@ const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool
   if (refused == anisotropic_delassus)
     return "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal";
   if (refused == no_solution) return "the law's equations have no solution for this H";
+  if (refused == impossible_state) return "the state is not one that the law can have written";
+  if (refused == time_before_history) return "the time lies before what the state remembers";
   return "the impulse or the state overflows";
 }
 

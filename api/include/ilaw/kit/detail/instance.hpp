@@ -24,7 +24,7 @@ inline constexpr state_variable frame_variables[] = {
 // need tangents to be written in.
 template <class Law>
 constexpr bool needs_no_tangents() {
-  return !Law::card.names_tangents && !has_memory<Law> && !has_vector_state<Law>();
+  return !Law::card.names_tangents && !has_history<Law> && !has_vector_state<Law>();
 }
 
 template <class Law>
@@ -35,7 +35,7 @@ struct instance {
   Law law;
   std::uint32_t dimension, delassus_form, frame, tangent_given;
   ilaw_kit_walk walk = nullptr;  // null: this level's own
-  std::int64_t memory_size = 0;
+  std::int64_t history_size = 0;
   bool carries_frame = false;
   time_table tables[parameter_count + 1];
   std::uint32_t table_count = 0;
@@ -49,9 +49,9 @@ struct instance {
   std::uint32_t variable_count = 0;
   std::uint64_t state_size = 0;
 
-  // Where the named state, the memory and the frame start in the state of a node.
-  std::int64_t memory_offset() const {
-    return static_cast<std::int64_t>(state_size) - memory_size - frame_size();
+  // Where the named state, the history and the frame start in the state of a node.
+  std::int64_t history_offset() const {
+    return static_cast<std::int64_t>(state_size) - history_size - frame_size();
   }
   std::int64_t frame_size() const { return carries_frame ? 6 : 0; }
   std::int64_t frame_offset() const { return static_cast<std::int64_t>(state_size) - frame_size(); }
@@ -78,7 +78,7 @@ struct instance {
     if constexpr (requires { law.capabilities(); })
       if (table_count == 0 && per_node_count == 0) mask = law.capabilities();
     // A frame follows the normal wherever the node is, unless the law says when its memory rests.
-    const bool frame_moves = carries_frame && has_memory<Law> && !(mask & ILAW_CAN_REST);
+    const bool frame_moves = carries_frame && has_history<Law> && !(mask & ILAW_CAN_REST);
     return frame_moves ? mask | ILAW_CAN_ACT_AT_DISTANCE : mask;
   }
 
@@ -310,12 +310,12 @@ class instance_builder {
   }
 
   std::int32_t lay_out_state() {
-    if constexpr (has_memory<Law>) made_.memory_size = made_.law.memory_size(setup_);
+    if constexpr (has_history<Law>) made_.history_size = made_.law.history_size();
     const auto declared =
-        detail::abi_state_variables<Law>(static_cast<int>(made_.dimension), made_.memory_size);
+        detail::abi_state_variables<Law>(static_cast<int>(made_.dimension), made_.history_size);
     for (const ilaw_state_variable& v : declared) append(v);
     made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.tangent_given &&
-                          (made_.memory_size > 0 || has_vector_state<Law>());
+                          (made_.history_size > 0 || has_vector_state<Law>());
     if (made_.carries_frame)
       for (const state_variable& v : frame_variables) append(detail::abi_state_variable(v, 3));
     return ILAW_OK;

@@ -119,7 +119,7 @@ inline projected_vector zero_unless_finite(projected_vector a) {
 // Whether a law's instances may carry a frame in this kind of frame.
 template <class Law, class Frame>
 inline constexpr bool can_carry = std::is_same_v<Frame, stored_frame> &&
-                                  (has_memory<Law> || has_vector_state<Law>());
+                                  (has_history<Law> || has_vector_state<Law>());
 
 // A node as it comes in, in its local frame. A normal that is no unit vector makes v_free a defect.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
@@ -138,8 +138,8 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
       detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{}));
   n.gap = b.gap[i] - b.gap_offset[i];
   n.area = b.area[i];
-  if constexpr (has_memory<Law>)
-    n.past = {b.history_values + b.history_offset(i), b.history_component_stride};
+  if constexpr (has_history<Law>)
+    n.history = {b.history_values + b.history_offset(i), b.history_component_stride};
   if constexpr (has_state<Law>)
     n.state = detail::state_at<Law>(b.state_in, i, std::make_index_sequence<state_doubles<Law>>{});
   return n;
@@ -164,16 +164,18 @@ stepped<Law, Delassus, Frame> step_node(const Form& law, const node_block<Law>& 
 }
 
 // Energy split of ilaw.h from the work of the impulse, -r.(v^- + v)/2 less what was stored of it, normal and
-// tangential part apart. A reaction that meets a node moving away does positive work, which the external
-// force gives back within the same step: that is no dissipation, hence the positive parts.
+// tangential part apart. Where H couples them one may be negative, and is then taken off the other, so that
+// both are dissipations and their sum stays the work.
 struct energy_split {
   double friction, impact, rupture, stored;
 };
 template <class Node, class Vector>
 energy_split split_energy(const Node& n, Vector v) {
   const Vector mean = n.v_previous + v;
-  const double normal = positive_part(-0.5 * normal_product(n.impulse, mean) - n.normal_gain);
-  const double tangential = positive_part(-0.5 * tangential_product(n.impulse, mean) - n.tangential_gain);
+  const double along_normal = -0.5 * normal_product(n.impulse, mean) - n.normal_gain;
+  const double along_tangents = -0.5 * tangential_product(n.impulse, mean) - n.tangential_gain;
+  const double normal = positive_part(along_normal + smaller(along_tangents, 0.0));
+  const double tangential = positive_part(along_tangents + smaller(along_normal, 0.0));
   const bool broken = n.status == double{ILAW_BROKEN};
   return {broken ? 0.0 : tangential, broken ? 0.0 : normal, (broken ? normal + tangential : 0.0) + n.rupture,
           n.stored};
@@ -209,9 +211,9 @@ void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted
   b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
 }
 
-// Whether a form of a law works with the law's memory. One that says it forgets runs in vector code.
+// Whether a form of a law works with the law's history. One that says it forgets runs in vector code.
 template <class Law, class Form>
-inline constexpr bool remembers = has_memory<Law> && !requires {
+inline constexpr bool remembers = has_history<Law> && !requires {
   Form::forgets;
 };
 

@@ -1,0 +1,81 @@
+// Every law's contact on a bar between two walls, up to the critical step: interfaces put no energy in. There
+// the end of the bar often moves off within the step whose forces would press it: a contact that stops it
+// does positive work, and the motion diverges within some hundred steps.
+#include "host_runner.hpp"
+
+#include <ostream>
+
+namespace ilaw::host::testing {
+namespace {
+
+struct Case {
+  const char* name;
+  const char* interface;  // law and parameters
+  double start = 0.5;     // of a bar of length 1, between walls at 0 and 2
+  double far_wall = 2.0;
+};
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+// A bond that is made at the start, where it may be at a distance, has to be broken, or to be made in touch.
+const std::vector<Case> cases = {
+    {"contact", R"("law": "contact")"},
+    {"contact_05", R"("law": "contact", "parameters": {"restitution": 0.5})"},
+    {"contact_1", R"("law": "contact", "parameters": {"restitution": 1.0})"},
+    {"contact_moreau", R"("law": "contact", "parameters": {"activation": "moreau"})"},
+    {"contact_moreau_05", R"("law": "contact", "parameters": {"activation": "moreau", "restitution": 0.5})"},
+    {"coulomb", R"("law": "coulomb", "parameters": {"friction": 0.3})"},
+    {"coulomb_moreau", R"("law": "coulomb", "parameters": {"friction": 0.3, "activation": "moreau"})"},
+    {"postit", R"("law": "postit")"},
+    {"postit_that_wears", R"("law": "postit", "parameters": {"efficiency_decrease": 5.0})"},
+    {"postit_without_adhesion", R"("law": "postit", "parameters": {"adhesion_limit": 0.0})"},
+    {"tie_broken", R"("law": "tie", "parameters": {"strength": 1e-9})"},
+    {"cohesive_broken", R"("law": "cohesive", "parameters": {"strength": 1.0, "toughness": 0.0})"},
+    {"cohesive", R"("law": "cohesive", "parameters": {"strength": 0.05, "toughness": 1e-4})", 0.0, 1.0},
+    {"cohesive_that_holds", R"("law": "cohesive", "parameters": {"strength": 10.0, "toughness": 1.0})", 0.0,
+     1.0}};
+
+std::string scene_text(const Case& drawn, double cfl, int elements) {
+  const auto text = [](double value) {
+    char digits[40];
+    std::snprintf(digits, sizeof digits, "%.17g", value);
+    return std::string(digits);
+  };
+  const auto interface = [&](const char* end, double wall, const char* normal) {
+    return std::string(R"({"name": ")") + end + R"(", "nodes": "bar.)" + end + R"(", )" + drawn.interface +
+           R"(, "obstacle": {"type": "plane", "point": [)" + text(wall) + R"(], "normal": [)" + normal +
+           "]}}";
+  };
+  return R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": )" + text(drawn.start) +
+         R"(, "length": 1.0, "elements": )" + std::to_string(elements) +
+         R"(, "young": 1.0, "density": 1.0, "velocity": -0.1}]}, "time": {"cfl": )" + text(cfl) +
+         R"(, "end": 1e9}, "interfaces": [)" + interface("left", 0.0, "1.0") + ", " +
+         interface("right", drawn.far_wall, "-1.0") + "]}";
+}
+
+class CriticalStep : public ::testing::TestWithParam<Case> {};
+
+// The number of steps may be set, for a run of a million.
+TEST_P(CriticalStep, InterfacesPutNoEnergyIn) {
+  const char* given = std::getenv("ILAW_TEST_STEPS");
+  const int steps = given ? std::atoi(given) : 20000;
+  for (const double cfl : {0.9, 0.98, 0.99, 0.995, 0.999, 1.0}) {
+    Scene scene = scene_of(scene_text(GetParam(), cfl, 20));
+    Integrator integrator = integrator_of(scene);
+    const EnergyReport first = integrator.energy();
+    const double initial = first.kinetic + first.internal;
+    double most = 0.0;
+    for (int k = 0; k < steps && most < 1.0; ++k) {
+      integrator.step();
+      most = std::max(most, integrator.energy().interface_work / initial);
+    }
+    EXPECT_LE(most, 1e-10) << "of the energy put in at cfl " << cfl << " within " << integrator.steps()
+                           << " steps";
+    EXPECT_LE(integrator.energy().reaction_work, 1e-10 * initial) << "cfl " << cfl;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, CriticalStep, ::testing::ValuesIn(cases),
+                         [](const auto& drawn) { return std::string(drawn.param.name); });
+
+}  // namespace
+}  // namespace ilaw::host::testing
