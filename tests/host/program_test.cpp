@@ -271,7 +271,7 @@ TEST(Summary, CountsWhoWasAskedAndWhoWasSkipped) {
   const auto steps = skipping["steps"].get<std::int64_t>();
   for (const nlohmann::json& summary : {skipping, asking}) {
     const nlohmann::json& count = summary["node_steps"];
-    EXPECT_EQ(count["asked"].get<std::int64_t>() + count["skipped"].get<std::int64_t>(), nodes * steps);
+    EXPECT_EQ(count["active"].get<std::int64_t>() + count["skipped"].get<std::int64_t>(), nodes * steps);
     std::int64_t sum = 0;
     for (const auto& [status, times] : summary["status_counts"].items()) sum += times.get<std::int64_t>();
     EXPECT_EQ(sum, nodes * steps);

@@ -66,7 +66,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
       {"warnings", warnings},
       {"penetration_max", tally.penetration_max},
       {"status_counts", statuses},
-      {"node_steps", {{"asked", tally.active}, {"skipped", tally.skipped}}},
+      {"node_steps", {{"active", tally.active}, {"skipped", tally.skipped}}},
       {"coupling",
        {{"sweeps", tally.sweeps},
         {"sweeps_max", tally.sweeps_max},

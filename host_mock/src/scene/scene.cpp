@@ -297,8 +297,8 @@ Vector read_tangent(const json& interface, const InterfaceSetup& setup, const Mo
   if (!interface.contains("tangent")) return {};
   Vector tangent = read_direction(interface["tangent"], model.dimension(), pointer).normalized();
   if (!setup.counterpart->keeps_normal())
-    throw SceneError(pointer, "found a tangent, expected none: the normal of the opponent turns");
-  if (std::abs(tangent.dot(setup.counterpart->meet(0, Dofs::Zero(model.mass().size()), 0.0).normal)) > 1e-9)
+    throw SceneError(pointer, "found a tangent, expected none: the normal of the counterpart turns");
+  if (std::abs(tangent.dot(setup.counterpart->contact_point(0, Dofs::Zero(model.mass().size()), 0.0).normal)) > 1e-9)
     throw SceneError(pointer,
                      "found " + interface["tangent"].dump() + ", expected a direction across the normal");
   return tangent;
