@@ -14,9 +14,9 @@ Scene shipped(const char* name) {
   return read_scene(scene_files::named(name));
 }
 
-// Each law asked once more about what the sweeps left: Signorini and Coulomb, to rounding of the largest
-// speed. Contact arrives at gap 0, but turns a node that was leaving no faster than it left; friction is
-// Coulomb's unless it would push a node whose slip turned round, which it may do less than that.
+// What the sweeps left fulfils each law: Signorini and Coulomb, to rounding of the largest speed. Contact
+// arrives at gap 0, but turns a node that was leaving no faster than it left; friction is Coulomb's unless it
+// would push a node whose slip turned round, which it may do less than that.
 void expect_law(const Interface& interface, int contact_index, const Dofs& v, const Dofs& before,
                 double h_step, double friction, double speed) {
   const Vector relative = interface.relative(contact_index, v) - interface.obstacle_velocity();
