@@ -46,13 +46,14 @@ void fill(Draw& draw, const Array& a, const std::vector<std::int64_t>& used, std
 
 double value(Draw& draw, const ilaw_parameter& p) {
   if (p.infinity_allowed && draw.one_in(6)) return of_bits(0x7FF0000000000000);
-  if (draw.one_in(6)) return p.maximum < 1e300 ? p.maximum : 1e6;
-  if (draw.one_in(6) && !p.minimum_excluded && p.minimum > -1e300) return p.minimum;
-  const double low = p.minimum > -1e6 ? p.minimum : -1e6;
-  const double reach = p.maximum - low < 10.0 ? p.maximum - low : draw.one_in(3) ? 1e4 : 2.0;
-  const double drawn = low + (reach < p.maximum - low ? reach : p.maximum - low) * (1.0 - draw.unit());
-  if (p.kind != ILAW_PARAMETER_COUNT) return drawn;
-  return static_cast<double>(static_cast<std::int64_t>(drawn < 40.0 ? drawn : 40.0));
+  const bool count = p.kind == ILAW_PARAMETER_COUNT;
+  const double most = count ? 40.0 : 1e6;  // no state of thousands of doubles
+  const double high = p.maximum < most ? p.maximum : most, low = p.minimum > -1e6 ? p.minimum : -1e6;
+  if (draw.one_in(6)) return high;
+  if (draw.one_in(6) && !p.minimum_excluded) return low;
+  const double reach = draw.one_in(3) ? 1e4 : 2.0;
+  const double drawn = low + (reach < high - low ? reach : high - low) * (1.0 - draw.unit());
+  return count ? static_cast<double>(static_cast<std::int64_t>(drawn)) : drawn;
 }
 
 ilaw_argument argument(Draw& draw, const ilaw_parameter& p, std::array<double, 6>& table) {
@@ -272,9 +273,11 @@ void Runner::call(Call function, Tally& tally) {
 
 void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated, Tally& tally) {
   const auto refuse = [&](const std::string& what) {
-    if (tally.wrong.empty())
-      tally.wrong =
-          std::string(drawn_.interface().law().id) + ": batch " + std::to_string(tally.batches) + ": " + what;
+    if (!tally.wrong.empty()) return;
+    tally.wrong = std::string(drawn_.interface().law().id) + " (dimension " +
+                  std::to_string(drawn_.dimension()) + ", form of H " + std::to_string(drawn_.form()) +
+                  (drawn_.global() ? ", global" : ", local") + "): batch " + std::to_string(tally.batches) +
+                  ": " + what;
   };
   if (code < 0) {
     ++tally.refused;
@@ -290,7 +293,8 @@ void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated,
   for (const std::int64_t node : nodes_) {
     bool zero = true;
     for (std::size_t c = 0; c < drawn_.dimension(); ++c) {
-      if (!is_finite(impulse_.at(node, c)))
+      // In the host's axes one that is next to the largest double may overflow as it is turned.
+      if (!drawn_.global() && !is_finite(impulse_.at(node, c)))
         refuse("an impulse of " + std::to_string(impulse_.at(node, c)) + " at node " + std::to_string(node));
       zero = zero && impulse_.at(node, c) == 0.0;
     }
@@ -298,7 +302,7 @@ void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated,
     if (batch_.status && status_[static_cast<std::size_t>(node * batch_.status_stride)] >= ILAW_STATUS_COUNT)
       refuse("a status that is none");
     for (std::size_t c = 0; energy_.values && c < ILAW_ENERGY_STORED; ++c)
-      if (!is_finite(energy_.at(node, c)) || energy_.at(node, c) < 0.0)
+      if (!(energy_.at(node, c) >= 0.0))  // infinite where its terms are beyond the largest double
         refuse("a dissipated energy of " + std::to_string(energy_.at(node, c)));
   }
 }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -86,7 +87,7 @@ class Arena {
     used_ += 2;
     double* first = doubles_.data() + used_;
     used_ += count + 2;
-    if (used_ > capacity) __builtin_trap();
+    if (used_ > capacity) throw std::length_error("a batch larger than the arena");
     return first;
   }
 

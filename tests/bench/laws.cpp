@@ -12,6 +12,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/csv.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -220,9 +222,10 @@ void measure(const std::function<std::unique_ptr<Case>()>& make, Triad& triad, s
   }
   std::printf("%9lld  %-52s %8.2f ns/node  triad %7.1f GB/s  ratio %6.2f\n", static_cast<long long>(nodes),
               one->label().c_str(), median(times), median(bandwidths), median(ratios));
-  if (csv)
-    *csv << nodes << ',' << one->label() << ',' << median(times) << ',' << median(bandwidths) << ','
-         << median(ratios) << '\n';
+  if (!csv) return;
+  ilaw::host::CsvWriter row(*csv, 6);
+  row << nodes << one->label() << median(times) << median(bandwidths) << median(ratios);
+  row.end_row();
 }
 
 // Every law as a host has it most often, and what its options cost.

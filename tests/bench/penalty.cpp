@@ -1,6 +1,7 @@
 // Penalty beside contact in the same scenes: largest stable step, penetration, energy that the interface
 // creates or takes, error against run time. docs/results tells the cases and what was measured.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/csv.hpp"
 #include "scene/scene.hpp"
 #include "study/errors.hpp"
 
@@ -212,8 +213,7 @@ Row measured(const Case& one, const Law& law, const Row* contact, const Trace* r
 }
 
 // Run times are ratios to those of contact, which comes first.
-void measure(const Case& one, const std::vector<double>& stiffnesses, std::ofstream& table,
-             std::ofstream& sweep) {
+void measure(const Case& one, const std::vector<double>& stiffnesses, CsvWriter& table, CsvWriter& sweep) {
   const std::vector<Law> laws = laws_of(one, stiffnesses);
   const bool exact = one.source.contains("exact");
   const Trace finest = exact ? Trace{} : reference_of(one, laws);
@@ -222,12 +222,15 @@ void measure(const Case& one, const std::vector<double>& stiffnesses, std::ofstr
     rows.push_back(measured(one, law, rows.empty() ? nullptr : &rows.front(), exact ? nullptr : &finest));
   const double contact_finest = rows.front().sweep.back().seconds;
   for (const Row& row : rows) {
-    table << one.name << ',' << row.law.name() << ',' << row.limit << ',' << row.linear << ',' << row.h << ','
-          << row.run.penetration / one.length << ',' << row.run.energy_max << ',' << row.run.energy_end << ','
-          << row.accuracy.error << ',' << row.accuracy.seconds / row.contact_seconds << '\n';
-    for (std::size_t k = 0; k < row.levels.size(); ++k)
-      sweep << one.name << ',' << row.law.name() << ',' << row.levels[k].h << ',' << row.levels[k].mesh << ','
-            << row.sweep[k].error << ',' << row.sweep[k].seconds / contact_finest << '\n';
+    table << one.name << row.law.name() << row.limit << row.linear << row.h
+          << row.run.penetration / one.length << row.run.energy_max << row.run.energy_end
+          << row.accuracy.error << row.accuracy.seconds / row.contact_seconds;
+    table.end_row();
+    for (std::size_t k = 0; k < row.levels.size(); ++k) {
+      sweep << one.name << row.law.name() << row.levels[k].h << row.levels[k].mesh << row.sweep[k].error
+            << row.sweep[k].seconds / contact_finest;
+      sweep.end_row();
+    }
   }
 }
 
@@ -246,10 +249,16 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     std::filesystem::create_directories(folder);
-    std::ofstream table(folder / "penalty.csv"), sweep(folder / "penalty_sweep.csv");
-    table << "body,law (k / k_0),largest stable h / h_cd,2/omega_max / h_cd,h used / h_cd,penetration / L,"
-             "largest energy gain / E_0,energy from interface at end / E_0,u_L2,run time / contact's\n";
-    sweep << "body,law,h / h_cd,elements,u_L2,run time / contact's finest\n";
+    std::ofstream table_file(folder / "penalty.csv"), sweep_file(folder / "penalty_sweep.csv");
+    CsvWriter table(table_file, 6), sweep(sweep_file, 6);
+    for (const char* column : {"body", "law (k / k_0)", "largest stable h / h_cd", "2/omega_max / h_cd",
+                               "h used / h_cd", "penetration / L", "largest energy gain / E_0",
+                               "energy from interface at end / E_0", "u_L2", "run time / contact's"})
+      table << column;
+    table.end_row();
+    for (const char* column : {"body", "law", "h / h_cd", "elements", "u_L2", "run time / contact's finest"})
+      sweep << column;
+    sweep.end_row();
     Case bar = read_case("bar", bar_file);
     const json& body = bar.source["model"]["bars"][0];
     bar.stiffness = body["young"].get<double>() * body["elements"].get<int>() / body["length"].get<double>();

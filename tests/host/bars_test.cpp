@@ -9,12 +9,6 @@
 namespace ilaw::host::testing {
 namespace {
 
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
-
 int node_of(const Scene& scene, const char* set) { return scene.model->sets().at(set).nodes[0]; }
 
 // Forces of an interface on one node, impulse over dt, per step.

@@ -120,7 +120,7 @@ std::filesystem::path written(const json& scene, const std::filesystem::path& fo
 }
 
 // What must not depend on whether a run was interrupted: all but the time it took, and which contacts were
-// asked, which depends on when one last looked.
+// active, which depends on when the near ones were last found.
 json results_of(const std::filesystem::path& folder) {
   json summary = json::parse(text_of(folder / "summary.json"));
   for (const char* key : {"seconds", "interface_share", "resumed_at_step", "node_steps"}) summary.erase(key);

@@ -14,9 +14,9 @@ Scene shipped(const char* name) {
   return read_scene(scene_files::named(name));
 }
 
-// Each law asked once more about what the sweeps left: Signorini and Coulomb, to rounding of the largest
-// speed. Contact arrives at gap 0, but turns a node that was leaving no faster than it left; friction is
-// Coulomb's unless it would push a node whose slip turned round, which it may do less than that.
+// What the sweeps left fulfils each law: Signorini and Coulomb, to rounding of the largest speed. Contact
+// arrives at gap 0, but turns a node that was leaving no faster than it left; friction is Coulomb's unless it
+// would push a node whose slip turned round, which it may do less than that.
 void expect_law(const Interface& interface, int contact_index, const Dofs& v, const Dofs& before,
                 double h_step, double friction, double speed) {
   const Vector relative = interface.relative(contact_index, v) - interface.obstacle_velocity();
@@ -127,8 +127,8 @@ TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
       u[3 * node] = x;
       u[3 * node + 1] = 0.5 * x;
       u[3 * node + 2] = -0.1 + z;
-      interface.setup().counterpart->look(u);
-      const ContactPoint contact_point = counterpart.meet(0, u, 0.0);
+      interface.setup().counterpart->refresh(u);
+      const ContactPoint contact_point = counterpart.contact_point(0, u, 0.0);
       EXPECT_NEAR(contact_point.gap, z, 1e-15) << x;
       EXPECT_NEAR(contact_point.normal[2], 1.0, 1e-15);
       double sum = 0.0;
@@ -142,8 +142,8 @@ TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
       EXPECT_LE(counterpart.gap_bound(0, u, 0.0), contact_point.gap);
     }
   u[3 * node] = -0.5;  // 0.2 beyond the border, and below the surface
-  interface.setup().counterpart->look(u);
-  EXPECT_GT(counterpart.meet(0, u, 0.0).gap, 0.2);
+  interface.setup().counterpart->refresh(u);
+  EXPECT_GT(counterpart.contact_point(0, u, 0.0).gap, 0.2);
 }
 
 // Three balls of diameter 1 in a row at a wall: the last is thrown at the others and pressed with a force F

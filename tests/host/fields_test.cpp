@@ -103,13 +103,17 @@ TEST(Fields, HoldWhatTheIntegratorHolds) {
   EXPECT_GT(broken, 100);
 }
 
+// The first file of a scene.
+auto first_grid(Scene& scene) {
+  const auto folder = fresh_folder();
+  Fields(scene, folder).write(integrator_of(scene));
+  return grid_of(folder / "fields_000000.vtu");
+}
+
 // Cells are hexahedra of positive volume that fill the block; nodes stand where the model has them.
 TEST(Fields, HaveTheMeshOfTheModel) {
-  const auto folder = fresh_folder();
   Scene scene = scene_of(shipped("block_impact").dump());
-  Integrator integrator = integrator_of(scene);
-  Fields(scene, folder).write(integrator);
-  const auto grid = grid_of(folder / "fields_000000.vtu");
+  const auto grid = first_grid(scene);
   for (int node = 0; node < scene.model->node_count(); ++node) {
     std::array<double, 3> x{};
     grid->GetPoint(node, x.data());
@@ -133,11 +137,8 @@ TEST(Fields, HaveTheMeshOfTheModel) {
 
 // Two interfaces: arrays are told apart by name. Bars are lines, points are vertices.
 TEST(Fields, NameTheInterfaceWhereThereAreSeveral) {
-  const auto folder = fresh_folder();
   Scene scene = scene_of(shipped("block_impact").dump());
-  Integrator integrator = integrator_of(scene);
-  Fields(scene, folder).write(integrator);
-  const auto grid = grid_of(folder / "fields_000000.vtu");
+  const auto grid = first_grid(scene);
   const int node = scene.model->sets().at("block.x_max").nodes[0];
   // Center (0.215, 0.05, 0.08), radius 0.1, from the corner (0.1, 0, 0.02).
   EXPECT_NEAR(Field(*grid, "ball.gap", 1).at(node),

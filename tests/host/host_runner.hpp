@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -36,6 +37,13 @@ inline Scene scene_of(const std::string& text) {
 
 inline Integrator integrator_of(Scene& scene) {
   return Integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
+}
+
+// Of a number in a scene, all its digits.
+inline std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
 }
 
 // Slope of log(error) over log(h) by least squares.

@@ -80,7 +80,7 @@ TEST(Tangent, IsRefusedWhereItCannotBe) {
   scene["interfaces"][0]["tangent"] = {1.0, 0.0, 0.0};
   scene["interfaces"][0]["obstacle"] = {{"type", "sphere"}, {"center", {0.0, 0.0, -1.0}}, {"radius", 1.0}};
   EXPECT_EQ(refusal_of(scene),
-            "/interfaces/0/tangent: found a tangent, expected none: the normal of the opponent turns");
+            "/interfaces/0/tangent: found a tangent, expected none: the normal of the counterpart turns");
 }
 
 // ---- birth and death ------------------------------------------------------------------------------------

@@ -6,12 +6,6 @@
 namespace ilaw::host::testing {
 namespace {
 
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
-
 std::string ball(double restitution, double h, double end, double height) {
   return R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 2.0, "position": [)" +
          number(height) + R"(]}]}, "time": {"dt": )" + number(h) + R"(, "end": )" + number(end) +

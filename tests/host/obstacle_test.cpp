@@ -64,10 +64,10 @@ TEST(RoundObstacle, HasANormalAtItsCenter) {
 TEST(Obstacle, HasAGapThatIsADistanceAlongItsNormal) {
   std::mt19937_64 random(5);
   for (int draw = 0; draw < 10000; ++draw) {
-    const Vector3d place = random_vector(random), direction = random_vector(random);
-    const Plane plane(place, direction, still());
-    const Sphere sphere(place, 0.7, still());
-    const Cylinder cylinder(place, direction, 0.7, still());
+    const Vector3d point = random_vector(random), direction = random_vector(random);
+    const Plane plane(point, direction, still());
+    const Sphere sphere(point, 0.7, still());
+    const Cylinder cylinder(point, direction, 0.7, still());
     const Vector3d x = random_vector(random);
     for (const Obstacle* obstacle : std::initializer_list<const Obstacle*>{&plane, &sphere, &cylinder}) {
       const Surface surface = obstacle->at(x, 0.0);

@@ -1,4 +1,4 @@
-// The `ilaw` program as a user meets it: exit codes, messages, files.
+// The `ilaw` program as a user sees it: exit codes, messages, files.
 #include "host_runner.hpp"
 #include "program_runner.hpp"
 
@@ -103,7 +103,7 @@ TEST(Program, NamesWhatItDoesNotKnow) {
             std::string("ilaw: --checkpoint-every: Value 0 not in range 1 to 1000000000000000").size());
 }
 
-// The law is not blamed for the velocities that it is asked with.
+// The law is not blamed for the velocities that it is given.
 TEST(Program, FailsWithCodeOneWhereTheMotionOverflows) {
   const auto folder = fresh_folder();
   std::ofstream(folder / "scene.json") << R"({"model": {"type": "points", "dimension": 1,
@@ -261,25 +261,25 @@ nlohmann::json summary_of(const nlohmann::json& scene) {
 
 nlohmann::json shipped(const char* name) { return nlohmann::json::parse(text_of(scene_files::named(name))); }
 
-// Every contact of every step is asked or skipped, and has a status.
-TEST(Summary, CountsWhoWasAskedAndWhoWasSkipped) {
+// Every contact of every step is active or skipped, and has a status.
+TEST(Summary, CountsActiveAndSkippedContacts) {
   nlohmann::json scene = shipped("block_impact.json");
   const auto nodes = 9 * 9 * 9 + 9 * 9;
   const nlohmann::json skipping = summary_of(scene);
   for (auto& interface : scene["interfaces"]) interface["skip"] = false;
-  const nlohmann::json asking = summary_of(scene);
+  const nlohmann::json complete = summary_of(scene);
   const auto steps = skipping["steps"].get<std::int64_t>();
-  for (const nlohmann::json& summary : {skipping, asking}) {
+  for (const nlohmann::json& summary : {skipping, complete}) {
     const nlohmann::json& count = summary["node_steps"];
-    EXPECT_EQ(count["asked"].get<std::int64_t>() + count["skipped"].get<std::int64_t>(), nodes * steps);
+    EXPECT_EQ(count["active"].get<std::int64_t>() + count["skipped"].get<std::int64_t>(), nodes * steps);
     std::int64_t sum = 0;
     for (const auto& [status, times] : summary["status_counts"].items()) sum += times.get<std::int64_t>();
     EXPECT_EQ(sum, nodes * steps);
   }
-  EXPECT_EQ(asking["node_steps"]["skipped"], 0);
+  EXPECT_EQ(complete["node_steps"]["skipped"], 0);
   EXPECT_GT(skipping["node_steps"]["skipped"], nodes * steps / 2);
-  EXPECT_EQ(asking["status_counts"], skipping["status_counts"]);
-  EXPECT_EQ(asking["interfaces"][0]["nodes_stored"], 9 * 9 * 9);
+  EXPECT_EQ(complete["status_counts"], skipping["status_counts"]);
+  EXPECT_EQ(complete["interfaces"][0]["nodes_stored"], 9 * 9 * 9);
   EXPECT_LT(skipping["interfaces"][0]["nodes_stored"], 9 * 9 * 9);
 }
 

@@ -1,4 +1,4 @@
-// Contacts that cannot be reached are not asked, and nobody notices: the same bits as when all are asked.
+// Contacts that cannot be reached are left out, which changes no bit: the same as when all are active.
 #include "host_runner.hpp"
 
 #include <nlohmann/json.hpp>
@@ -18,12 +18,12 @@ bool same_bits(const Dofs& a, const Dofs& b) {
          std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
-json asking_all(json scene) {
+json with_all_active(json scene) {
   for (json& interface : scene["interfaces"]) interface["skip"] = false;
   return scene;
 }
 
-// States of all contacts, by place, so that it does not matter when they were first asked.
+// States of all contacts, by node, so that it does not matter when each became active.
 std::vector<double> states_of(Scene& scene, const Dofs& u) {
   std::vector<double> states;
   for (const auto& interface : scene.interfaces)
@@ -35,31 +35,31 @@ std::vector<double> states_of(Scene& scene, const Dofs& u) {
   return states;
 }
 
-// Runs a scene in lockstep with itself asking all contacts; returns the tally of the one that skips.
+// Runs a scene in lockstep with itself with all contacts active; returns the tally of the one that skips.
 Tally expect_same_bits(const json& source) {
   omp_set_num_threads(1);
-  Scene scene = scene_of(source.dump()), all = scene_of(asking_all(source).dump());
-  Integrator integrator = integrator_of(scene), asker = integrator_of(all);
+  Scene scene = scene_of(source.dump()), all = scene_of(with_all_active(source).dump());
+  Integrator integrator = integrator_of(scene), complete = integrator_of(all);
   while (integrator.steps() < scene.steps) {
     integrator.step();
-    asker.step();
-    const bool same = same_bits(integrator.displacement(), asker.displacement()) &&
-                      same_bits(integrator.velocity(), asker.velocity()) &&
-                      same_bits(integrator.interface_impulse(), asker.interface_impulse());
+    complete.step();
+    const bool same = same_bits(integrator.displacement(), complete.displacement()) &&
+                      same_bits(integrator.velocity(), complete.velocity()) &&
+                      same_bits(integrator.interface_impulse(), complete.interface_impulse());
     if (!same) {
       ADD_FAILURE() << "differs at step " << integrator.steps() << " of " << source.dump();
       break;
     }
   }
   const std::vector<double> states = states_of(scene, integrator.displacement()),
-                            wanted = states_of(all, asker.displacement());
+                            wanted = states_of(all, complete.displacement());
   EXPECT_EQ(states.size(), wanted.size());
   EXPECT_TRUE(states.empty() ||
               std::memcmp(states.data(), wanted.data(), states.size() * sizeof(double)) == 0);
-  EXPECT_GE(integrator.tally().skipped, asker.tally().skipped);  // those not born yet, or dead
+  EXPECT_GE(integrator.tally().skipped, complete.tally().skipped);  // those not born yet, or dead
   EXPECT_EQ(integrator.tally().active + integrator.tally().skipped,
-            asker.tally().active + asker.tally().skipped);
-  EXPECT_EQ(integrator.tally().status_counts, asker.tally().status_counts);
+            complete.tally().active + complete.tally().skipped);
+  EXPECT_EQ(integrator.tally().status_counts, complete.tally().status_counts);
   return integrator.tally();
 }
 
@@ -174,7 +174,7 @@ TEST(ProximityFilter, MissesNoContactOfDrawnPoints) {
     for (const int status : {ILAW_CLOSED, ILAW_STICK, ILAW_SLIP, ILAW_BONDED})
       touched += tally.status_counts[static_cast<std::size_t>(status)];
   }
-  // The scenes do meet contacts, and most node-steps need none.
+  // The scenes do have contacts, and most node-steps need none.
   EXPECT_GT(touched, 1000);
   EXPECT_GT(skipped, active);
 }
@@ -211,9 +211,9 @@ json soft_block(const char* name, const json& corner, const json& size, const js
           {"material", {{"type", "neo_hookean"}, {"young", 1e3}, {"poisson", 0.3}, {"density", 1.0}}}};
 }
 
-// Contacts share nodes, and are solved in an order that must not depend on who is asked: a block is thrown on
-// another one, with a third far above it, whose nodes come first in the list and would, if asked, meet the
-// same facets.
+// Contacts share nodes, and are solved in an order that must not depend on which are active: a block is
+// thrown on another one, with a third far above it, whose nodes come first in the list and would, if active,
+// share the same facets.
 TEST(ProximityFilter, KeepsTheOrderOfSharedNodes) {
   Draw draw(21);
   std::int64_t skipped = 0;

@@ -42,6 +42,25 @@ contains
     end select
   end function
 
+  ! A batch of the nodes 3, 1 and 7, listed in integers of 4 or of 8 bytes, or of none.
+  type(ilaw_batch) function fortran_nodes(width) result(batch) bind(c)
+    integer(c_int), value :: width
+    integer(c_int32_t), target, save :: nodes_32(3) = [3, 1, 7]
+    integer(c_int64_t), target, save :: nodes_64(3) = [3, 1, 7]
+    call ilaw_use_nodes(batch, nodes_64) ! what another list was there before is forgotten
+    if (width == 4) call ilaw_use_nodes(batch, nodes_32)
+    if (width == 0) call ilaw_use_nodes(batch, nodes_32(1:0))
+  end function
+
+  ! Opens by name alone.
+  integer(c_int32_t) function fortran_open_named(name) result(code) bind(c)
+    type(c_ptr), value :: name
+    type(c_ptr) :: library
+    character(200) :: text
+    code = ilaw_open_named(ilaw_text(name), library, text)
+    call ilaw_library_close(library)
+  end function
+
   ! Creates an interface with coulomb, the friction given in one of the ways there are; message is the loader's.
   integer(c_int32_t) function fortran_create(library_name, way, per_node_count, message) result(code) bind(c)
     type(c_ptr), value :: library_name

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <enumerators.hpp>
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@ ilaw_batch fortran_default_batch();
 void fortran_enumerators(std::int32_t* values);
 ilaw_input fortran_input(int section);
 ilaw_output fortran_output(int section);
+ilaw_batch fortran_nodes(int width);
+std::int32_t fortran_open_named(const char* name);
 std::int32_t fortran_create(const char* library, int way, std::int32_t* per_node_count, char* message);
 }
 
@@ -46,8 +49,8 @@ layout c_layout(int structure) {
     }
     case 1: {
       using T = ilaw_state_variable;
-      return {sizeof(T),    OFFSET(struct_size), OFFSET(kind), OFFSET(name),
-              OFFSET(unit), OFFSET(doc),         OFFSET(count)};
+      return {sizeof(T),   OFFSET(struct_size), OFFSET(kind),  OFFSET(name),    OFFSET(unit),
+              OFFSET(doc), OFFSET(count),       OFFSET(flags), OFFSET(reserved)};
     }
     case 2: {
       using T = ilaw_argument;
@@ -114,8 +117,13 @@ layout c_layout(int structure) {
     }
     case 8: {
       using T = ilaw_report;
-      return {sizeof(T),         OFFSET(struct_size),    OFFSET(reserved),
-              OFFSET(bad_count), OFFSET(first_bad_node), OFFSET(reason)};
+      return {sizeof(T),
+              OFFSET(struct_size),
+              OFFSET(reserved),
+              OFFSET(bad_count),
+              OFFSET(first_bad_node),
+              OFFSET(reason),
+              OFFSET(stable_velocity_step)};
     }
     case 9: {
       using T = ilaw_law;
@@ -140,13 +148,14 @@ layout c_layout(int structure) {
               OFFSET(destroy),
               OFFSET(info),
               OFFSET(initialise),
-              OFFSET(evaluate)};
+              OFFSET(evaluate),
+              OFFSET(extension)};
     }
     default: {
       using T = ilaw_plugin;
       return {sizeof(T),    OFFSET(struct_size), OFFSET(abi_major), OFFSET(abi_minor),
               OFFSET(name), OFFSET(version),     OFFSET(vendor),    OFFSET(licence),
-              OFFSET(laws), OFFSET(law_count),   OFFSET(reserved)};
+              OFFSET(laws), OFFSET(law_count),   OFFSET(reserved),  OFFSET(extension)};
     }
   }
 }
@@ -179,6 +188,8 @@ TEST(FortranModule, DeclaredBatchIsEmptyAndCountsFromOne) {
   EXPECT_EQ(batch.index_base, 1);
   EXPECT_EQ(batch.node_count, 0);
   EXPECT_EQ(batch.index, nullptr);
+  EXPECT_EQ(batch.index64, nullptr);
+  EXPECT_EQ(batch.flags, 0U);
   for (const ilaw_input& input : {batch.v_free, batch.delassus, batch.gap, batch.gap_offset, batch.v_previous,
                                   batch.area, batch.normal, batch.tangent, batch.state_in})
     EXPECT_EQ(input.values, nullptr);
@@ -242,6 +253,26 @@ TEST(FortranModule, OutputsAreTheArraysThatInputsAre) {
     EXPECT_EQ(output.node_stride, input.node_stride);
     EXPECT_EQ(output.component_stride, input.component_stride);
   }
+}
+
+TEST(FortranModule, ListsNodesInBothWidths) {
+  const ilaw_batch narrow = fortran_nodes(4), wide = fortran_nodes(8), none = fortran_nodes(0);
+  ASSERT_NE(narrow.index, nullptr);
+  ASSERT_NE(wide.index64, nullptr);
+  EXPECT_EQ(narrow.index64, nullptr);
+  EXPECT_EQ(wide.index, nullptr);
+  EXPECT_EQ(none.index, nullptr);
+  EXPECT_EQ(none.index64, nullptr);
+  EXPECT_EQ(none.node_count, 0);
+  for (const ilaw_batch& batch : {narrow, wide}) EXPECT_EQ(batch.node_count, 3);
+  EXPECT_EQ(std::vector<std::int32_t>(narrow.index, narrow.index + 3), (std::vector<std::int32_t>{3, 1, 7}));
+  EXPECT_EQ(std::vector<std::int64_t>(wide.index64, wide.index64 + 3), (std::vector<std::int64_t>{3, 1, 7}));
+}
+
+TEST(FortranModule, OpensByNameAlone) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  EXPECT_EQ(fortran_open_named("coulomb"), ILAW_OK);
+  EXPECT_EQ(fortran_open_named(ILAW_PLUGIN_FOLDER "/coulomb.so"), ILAW_NOT_FOUND);
 }
 
 struct creation {

@@ -54,6 +54,25 @@ TEST(HostsPage, QuotesCodeThatIsBuiltAndRun) {
   EXPECT_EQ(languages.size(), sources.size());
 }
 
+// A reader who copies the excerpts of one language leaves out no call that every host must make.
+TEST(HostsPage, QuotesEveryMandatoryCall) {
+  const std::map<std::string, std::vector<std::string>> calls{
+      {"c",
+       {"ilaw_library_open(", "ilaw_interface_create(", "ilaw_interface_info(", "ilaw_interface_initialise(",
+        "ilaw_interface_evaluate(", "ilaw_interface_destroy("}},
+      {"cpp", {"ilaw::library(", "interface.info(", "interface.initialise(", "interface.evaluate("}},
+      {"fortran",
+       {"ilaw_open(", "ilaw_create(", "ilaw_interface_info(", "ilaw_interface_initialise(",
+        "ilaw_interface_evaluate(", "ilaw_interface_destroy("}}};
+  std::map<std::string, std::string> quoted;
+  for (const code_block& block : code_blocks(read(ILAW_DOCS "/hosts.md")))
+    quoted[block.language] += block.text;
+  for (const auto& [language, wanted] : calls)
+    for (const std::string& call : wanted)
+      EXPECT_NE(quoted[language].find(call), std::string::npos)
+          << "docs/hosts.md does not show " << call << ") in " << language;
+}
+
 std::set<std::string> names(const std::string& text, const char* pattern) {
   const std::regex name(pattern);
   std::set<std::string> found;

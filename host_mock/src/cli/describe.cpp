@@ -1,7 +1,8 @@
+// `ilaw describe`: all laws of a library, found by law name or file, as text or JSON.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/describe.hpp"
+#include "cli/commands.hpp"
 
-#include "cli/run.hpp"
+#include "base/exit_code.hpp"
 
 #include <ilaw/loader.hpp>
 
@@ -108,23 +109,6 @@ std::string range_of(const json& p) {
          text_of(p["infinity_allowed"].get<bool>() ? json("inf") : p["maximum"]) + (closed ? "]" : ")");
 }
 
-using Row = std::vector<std::string>;
-
-// Columns as wide as their longest entry; the last one is free.
-void print_rows(const std::vector<Row>& rows, const char* indent) {
-  std::vector<std::size_t> widths;
-  for (const Row& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t c = 0; c + 1 < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-  }
-  for (const Row& row : rows) {
-    std::string line = indent;
-    for (std::size_t c = 0; c + 1 < row.size(); ++c)
-      line += row[c] + std::string(widths[c] + 2 - row[c].size(), ' ');
-    std::printf("%s%s\n", line.c_str(), row.back().c_str());
-  }
-}
-
 Row row_of_parameter(const json& p) {
   return {text_of(p["name"]),
           text_of(p["unit"]),
@@ -152,26 +136,6 @@ void print_law(const json& law) {
   for (const json& reference : law["references"]) std::printf("    %s\n", text_of(reference).c_str());
 }
 
-}  // namespace
-
-int list_laws() {
-  std::printf("search path: %s\n", ilaw::search_path().c_str());
-  std::vector<Row> rows;
-  for (const std::string& file : ilaw::search()) {
-    try {
-      const ilaw::library library(file);
-      const ilaw_plugin& plugin = library.plugin();
-      for (std::uint32_t i = 0; i < plugin.law_count; ++i)
-        rows.push_back({plugin.laws[i]->id, plugin.laws[i]->title,
-                        std::string(plugin.name) + " " + plugin.version, file});
-    } catch (const ilaw::error& error) {
-      rows.push_back({"-", "refused: " + std::string(error.what())});
-    }
-  }
-  print_rows(rows, "");
-  return exit_done;
-}
-
 int describe(const std::string& law_or_file, bool as_json) {
   try {
     const ilaw::library library(law_or_file);
@@ -189,6 +153,22 @@ int describe(const std::string& law_or_file, bool as_json) {
     std::fprintf(stderr, "ilaw: %s\n", error.what());
     return exit_bad_input;
   }
+}
+
+}  // namespace
+
+void add_describe(CLI::App& app, Action& chosen) {
+  struct Options {
+    std::string law;
+    bool as_json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("describe", "Describe a law: parameters, state, references");
+  command->add_option("law", options->law, "Name of a law, or path of a library")->required();
+  command->add_flag("--json", options->as_json, "Print JSON");
+  command->footer("Example: ilaw describe coulomb --json");
+  command->callback(
+      [options, &chosen] { chosen = [options] { return describe(options->law, options->as_json); }; });
 }
 
 }  // namespace ilaw::host

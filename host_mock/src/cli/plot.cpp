@@ -1,7 +1,9 @@
+// `ilaw plot`: the history of a run as a picture, drawn by gnuplot.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/plot.hpp"
+#include "cli/commands.hpp"
 
-#include "cli/run.hpp"
+#include "base/csv.hpp"
+#include "base/exit_code.hpp"
 #include "results/gnuplot.hpp"
 #include "results/picture.hpp"
 
@@ -10,8 +12,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -19,21 +21,14 @@
 namespace ilaw::host {
 namespace {
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
 Columns read_columns(const std::filesystem::path& history) {
   std::ifstream stream(history);
   std::string line;
   std::getline(stream, line);
-  Columns columns{cells_of(line), {}, {}};
+  Columns columns{csv_cells(line), {}, {}};
   columns.all_zero.assign(columns.names.size(), true);
   while (std::getline(stream, line)) {
-    const std::vector<std::string> cells = cells_of(line);
+    const std::vector<std::string> cells = csv_cells(line);
     for (std::size_t k = 0; k < std::min(cells.size(), columns.names.size()); ++k) {
       const double value = std::strtod(cells[k].c_str(), nullptr);
       if (value != 0.0) columns.all_zero[k] = false;
@@ -60,8 +55,7 @@ int refuse(const std::filesystem::path& history, const char* found) {
   return exit_bad_input;
 }
 
-}  // namespace
-
+// Reads history.csv and summary.json of a run's folder and writes history.png and history.svg beside them.
 int plot(const std::filesystem::path& results) {
   // gnuplot takes file names that begin with < or | for commands: an absolute path never does.
   const std::filesystem::path folder = std::filesystem::absolute(results).lexically_normal();
@@ -85,6 +79,16 @@ int plot(const std::filesystem::path& results) {
   if (!run_gnuplot(script)) return exit_failed;
   std::printf("%s\n%s\n", (results / "history.png").c_str(), (results / "history.svg").c_str());
   return exit_done;
+}
+
+}  // namespace
+
+void add_plot(CLI::App& app, Action& chosen) {
+  const auto results = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("plot", "Draw the history of a run: history.png and history.svg");
+  command->add_option("folder", *results, "Folder that `ilaw run` wrote")->required();
+  command->footer("Example: ilaw plot results");
+  command->callback([results, &chosen] { chosen = [results] { return plot(*results); }; });
 }
 
 }  // namespace ilaw::host

@@ -1,19 +1,23 @@
+// `ilaw run`: a scene from JSON to results.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/run.hpp"
+#include "cli/commands.hpp"
 
+#include "base/exit_code.hpp"
 #include "base/files.hpp"
+#include "base/scene_error.hpp"
 #include "cli/progress.hpp"
 #include "results/checkpoint.hpp"
 #include "results/fields.hpp"
 #include "results/history.hpp"
 #include "results/summary.hpp"
 #include "scene/scene.hpp"
-#include "scene/validation.hpp"
 
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -24,6 +28,13 @@ namespace ilaw::host {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::filesystem::path scene, folder;
+  std::int64_t checkpoint_every = 0;  // steps; 0: never
+  bool resume = false;
+  int threads = 1;
+};
 
 // Ctrl-C and kill end a run at the end of its step, with whole files.
 volatile std::sig_atomic_t stop_requested = 0;
@@ -38,7 +49,7 @@ double seconds_since(Clock::time_point start) {
 // or nothing can be written.
 class Run {
  public:
-  Run(Scene& scene, const RunOptions& options)
+  Run(Scene& scene, const Options& options)
       : scene_(scene),
         options_(options),
         integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt),
@@ -110,7 +121,7 @@ class Run {
   }
 
   Scene& scene_;
-  const RunOptions& options_;
+  const Options& options_;
   Integrator integrator_;
   Fields fields_;
   std::unique_ptr<History> history_;
@@ -125,7 +136,7 @@ std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
   return std::nullopt;
 }
 
-std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
+std::unique_ptr<Run> start_or_explain(Scene& scene, const Options& options) {
   try {
     return std::make_unique<Run>(scene, options);
   } catch (const std::runtime_error& error) {
@@ -135,7 +146,7 @@ std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
 }
 
 int report(const Scene& scene, const Integrator& integrator, const RunRecord& record,
-           const RunOptions& options) {
+           const Options& options) {
   const std::filesystem::path& folder = options.folder;
   if (!record.failure.empty()) {
     std::fprintf(stderr, "ilaw: %s: failed after step %lld, time %g: %s\n", scene.file.c_str(),
@@ -156,9 +167,8 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
   return exit_done;
 }
 
-}  // namespace
-
-int run(const RunOptions& options) {
+int run(const Options& options) {
+  set_threads(options.threads);
   const Clock::time_point start = Clock::now();
   std::optional<Scene> scene = read_or_explain(options.scene);
   // What a run resumes from stands in its folder already.
@@ -177,6 +187,24 @@ int run(const RunOptions& options) {
   run->finish(seconds_since(start));
   warn(run->record.warnings);
   return report(*scene, run->integrator(), run->record, options);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& chosen) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
+  command->add_option("scene", options->scene, "Scene file (JSON)")->required();
+  command->add_option("--out", options->folder, "Folder for the results, made if it does not exist")
+      ->required();
+  command
+      ->add_option("--checkpoint-every", options->checkpoint_every,
+                   "Steps between checkpoints, from which --resume goes on")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000'000}));
+  command->add_flag("--resume", options->resume, "Go on from the checkpoint in the folder, to the same bits");
+  add_threads(*command, options->threads);
+  command->footer("Example: ilaw run plugins/contact/bouncing_ball.json --out results");
+  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 
 }  // namespace ilaw::host

@@ -21,8 +21,8 @@ Vector RigidCounterpart::position(int node_index, const Dofs& u) const {
   return position_of(model_, nodes_[static_cast<std::size_t>(node_index)], u);
 }
 
-ContactPoint RigidCounterpart::meet(int node_index, const Dofs& u, double time) const {
-  const Surface surface = obstacle_->at(position(node_index, u), time);
+ContactPoint RigidCounterpart::contact_point(int node_index, const Dofs& u, double time) const {
+  const RigidSurface surface = obstacle_->at(position(node_index, u), time);
   return {surface.gap, surface.normal, 0, {}, {}};
 }
 
@@ -34,7 +34,7 @@ NodeCounterpart::NodeCounterpart(const Model& model, std::vector<int> nodes, std
                                  Vector normal)
     : model_(model), nodes_(std::move(nodes)), partners_(std::move(partners)), normal_(std::move(normal)) {}
 
-ContactPoint NodeCounterpart::meet(int node_index, const Dofs& u, double /*time*/) const {
+ContactPoint NodeCounterpart::contact_point(int node_index, const Dofs& u, double /*time*/) const {
   const auto k = static_cast<std::size_t>(node_index);
   const Vector apart = position_of(model_, nodes_[k], u) - position_of(model_, partners_[k], u);
   return {apart.dot(normal_), normal_, 1, {partners_[k]}, {1.0}};

@@ -1,4 +1,4 @@
-// counterpart.hpp - what the nodes of an interface meet: a rigid obstacle, other nodes, or a surface of
+// counterpart.hpp - what the nodes of an interface touch: a rigid obstacle, other nodes, or a surface of
 // another body.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace ilaw::host {
 
-// How one node meets its counterpart. The relative velocity of the contact is
+// Where a node faces its counterpart, and how. The relative velocity of the contact is
 //   v = V_node - sum_i weight_i V_partner_i - (velocity of the obstacle).
 struct ContactPoint {
   static constexpr int most_partners = 4;
@@ -28,14 +28,14 @@ class Counterpart {
  public:
   virtual ~Counterpart() = default;
 
-  // Meeting of the interface's node at place in its list.
-  virtual ContactPoint meet(int node_index, const Dofs& u, double time) const = 0;
+  // Of the node at node_index in the interface's list.
+  virtual ContactPoint contact_point(int node_index, const Dofs& u, double time) const = 0;
   // A bound from below on the gap, cheap, that relative motion by a distance lowers by no more than the
   // distance.
   virtual double gap_bound(int node_index, const Dofs& u, double time) const = 0;
-  // Called before gap_bound and meet are asked about all places again.
-  virtual void look(const Dofs& /*u*/) {}
-  // How far the counterpart may go before the next look.
+  // Called before the gap bounds of all nodes are taken anew.
+  virtual void refresh(const Dofs& /*u*/) {}
+  // How far nodes and counterpart may approach before the next refresh.
   virtual double validity() const { return std::numeric_limits<double>::infinity(); }
 
   // Mean velocity of a rigid counterpart between two times.
@@ -51,7 +51,7 @@ class Counterpart {
 class RigidCounterpart : public Counterpart {
  public:
   RigidCounterpart(const Model& model, std::vector<int> nodes, std::unique_ptr<const Obstacle> obstacle);
-  ContactPoint meet(int node_index, const Dofs& u, double time) const override;
+  ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
   double gap_bound(int node_index, const Dofs& u, double time) const override;
   Vector velocity(double from, double to) const override { return obstacle_->velocity(from, to); }
   const std::vector<int>& partners() const override { return none_; }
@@ -69,9 +69,9 @@ class RigidCounterpart : public Counterpart {
 class NodeCounterpart : public Counterpart {
  public:
   NodeCounterpart(const Model& model, std::vector<int> nodes, std::vector<int> partners, Vector normal);
-  ContactPoint meet(int node_index, const Dofs& u, double time) const override;
+  ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
   double gap_bound(int node_index, const Dofs& u, double time) const override {
-    return meet(node_index, u, time).gap;
+    return contact_point(node_index, u, time).gap;
   }
   Vector velocity(double /*from*/, double /*to*/) const override { return Vector::Zero(model_.dimension()); }
   const std::vector<int>& partners() const override { return partners_; }

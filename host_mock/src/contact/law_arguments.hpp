@@ -28,13 +28,13 @@ struct Arguments {
 class ParameterError : public ilaw::error {
  public:
   ParameterError(const ilaw::error& refusal, std::string pointer, std::optional<std::size_t> node_index)
-      : ilaw::error(refusal), pointer_(std::move(pointer)), place_(node_index) {}
+      : ilaw::error(refusal), pointer_(std::move(pointer)), node_index_(node_index) {}
   const std::string& pointer() const { return pointer_; }
-  std::optional<std::size_t> node_index() const { return place_; }  // in the interface's list of nodes
+  std::optional<std::size_t> node_index() const { return node_index_; }  // in the interface's list of nodes
 
  private:
   std::string pointer_;
-  std::optional<std::size_t> place_;
+  std::optional<std::size_t> node_index_;
 };
 
 // Creates the law for nodes with spherical H and global axes; tangent is empty where none is given. Throws

@@ -17,7 +17,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Corners = std::array<Vector3d, 4>;
 
-// A place on a patch: xi and eta in [-1, 1], with what the contact needs there.
+// A point on a patch: xi and eta in [-1, 1], with what the contact needs there.
 struct Projection {
   std::array<double, 4> weights;
   Vector3d point, normal;
@@ -84,7 +84,7 @@ MeshSurface::MeshSurface(const Model& model, std::vector<int> nodes, const NodeS
     for (std::size_t k = 0; k < 4; ++k)
       shortest_edge_ = std::min(
           shortest_edge_, (position(facet[k], undeformed) - position(facet[(k + 1) % 4], undeformed)).norm());
-  MeshSurface::look(undeformed);
+  MeshSurface::refresh(undeformed);
 }
 
 void MeshSurface::find_neighbours() {
@@ -116,7 +116,7 @@ double MeshSurface::radius(const Facet& facet, const Dofs& u) const {
 
 // The nearest centre tells the facet, or a neighbour of it; its distance less the largest radius bounds the
 // gap, unless the point lies behind the surface.
-void MeshSurface::look(const Dofs& u) {
+void MeshSurface::refresh(const Dofs& u) {
   std::vector<Vector3d> centers;
   double largest_radius = 0.0;
   for (const Facet& facet : facets_) {
@@ -144,7 +144,7 @@ double MeshSurface::gap_bound(int node_index, const Dofs& /*u*/, double /*time*/
   return bound_[static_cast<std::size_t>(node_index)];
 }
 
-ContactPoint MeshSurface::meet(int node_index, const Dofs& u, double /*time*/) const {
+ContactPoint MeshSurface::contact_point(int node_index, const Dofs& u, double /*time*/) const {
   const auto k = static_cast<std::size_t>(node_index);
   const Vector3d p = position(nodes_[k], u);
   Projection best{};

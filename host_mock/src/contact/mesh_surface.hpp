@@ -1,4 +1,4 @@
-// surface.hpp - nodes of one body against the facets of another: meshes need not match.
+// mesh_surface.hpp - nodes of one body against the facets of another: meshes need not match.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,15 +8,15 @@ namespace ilaw::host {
 
 // A point is projected on the nearest facet, a bilinear patch of four nodes: the contact's partners are these
 // nodes, with the shape functions there as weights, so that impulses balance. Which facet is the nearest is
-// found among all at a look, and among that one's neighbours in between: sight is what a point may slide
-// meanwhile.
+// found among all at a refresh, and among that one's neighbours in between: validity is what a point may
+// slide meanwhile.
 class MeshSurface : public Counterpart {
  public:
   MeshSurface(const Model& model, std::vector<int> nodes, const NodeSet& surface);
 
-  ContactPoint meet(int node_index, const Dofs& u, double time) const override;
+  ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
   double gap_bound(int node_index, const Dofs& u, double time) const override;
-  void look(const Dofs& u) override;
+  void refresh(const Dofs& u) override;
   double validity() const override { return 0.5 * shortest_edge_; }
   Vector velocity(double /*from*/, double /*to*/) const override { return Vector::Zero(3); }
   const std::vector<int>& partners() const override { return partners_; }
@@ -34,9 +34,9 @@ class MeshSurface : public Counterpart {
   std::vector<Facet> facets_;
   std::vector<std::vector<std::size_t>>
       neighbours_;                    // of a facet, and itself, in ascending order: which of two
-                                      // equally near ones is met does not depend on the look
-  std::vector<std::size_t> nearest_;  // facet, by place, at the last look
-  std::vector<double> bound_;         // of the gap, by place, at the last look
+                                      // equally near ones is taken does not depend on the refresh
+  std::vector<std::size_t> nearest_;  // facet, by node_index, at the last refresh
+  std::vector<double> bound_;         // of the gap, by node_index, at the last refresh
   double shortest_edge_;
 };
 

@@ -1,13 +1,13 @@
-// reach.hpp - which contacts may be touched before one looks again, so that the others are not asked.
+// proximity_filter.hpp - which contacts may touch in the coming steps, so that the law leaves out the others.
 //
-// At a look, contacts with a gap bound of at most a horizon D are near. Since then nodes and obstacles have
-// approached each other by no more than the sum of (step x largest closing speed), whatever happened to them,
-// so that the gap of any other contact is still larger than D minus that sum. Within the next step it can
-// close by no more than step x (largest closing speed while impulses are sought): where other contacts may
-// make nodes faster, the integrator checks the bound it gave and solves again with a larger one. While the
+// At a refresh, contacts with a gap bound of at most a horizon D are near. Since then nodes and obstacles
+// have approached each other by no more than the sum of (step x largest closing speed), whatever happened to
+// them, so that the gap of any other contact is still larger than D minus that sum. Within the next step it
+// can close by no more than step x (largest closing speed while impulses are sought): where other contacts
+// may make nodes faster, the coupled solve checks the bound it gave and repeats with a larger one. While the
 // sum of both stays below D, a contact that is not near has gap > 0 and gap + h v_N > 0: a law that does not
 // act at a distance gives it r = 0, and leaves the state it was initialised with (ilaw.h,
-// ILAW_CAN_ACT_AT_DISTANCE). Asking it would change nothing, to the bit.
+// ILAW_CAN_ACT_AT_DISTANCE). Evaluating it would change nothing, to the bit.
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -18,26 +18,28 @@ namespace ilaw::host {
 
 class ProximityFilter {
  public:
-  // Speeds bound the closing speeds of the step that led here and of the coming one.
-  // Says whether it is time to look; sight bounds the horizon.
+  // Whether the near contacts must be found anew. Speeds bound the closing speeds of the step that led here
+  // and of the coming one; validity bounds the horizon.
   bool refresh_due(double dt, double speed_before, double speed_after, double validity) {
     approached_ += rounding * dt * speed_before;
     const double ahead = rounding * dt * speed_after;
-    if (looked_ && approached_ + ahead < horizon_) return false;
+    if (valid_ && approached_ + ahead < horizon_) return false;
     approached_ = 0.0;
     horizon_ = std::min(steps_ahead * dt * speed_before, validity);
     horizon_ = std::max(horizon_, 2.0 * ahead);  // never shorter than the step itself
-    looked_ = true;
+    valid_ = true;
     return true;
   }
-  bool is_near(double gap_bound) const { return !(gap_bound > horizon_); }
-  void forget() { looked_ = false; }
+  // Whether a contact may touch before the next refresh.
+  bool may_touch(double gap_bound) const { return !(gap_bound > horizon_); }
+  // The next step needs a refresh, whatever moved.
+  void invalidate() { valid_ = false; }
 
  private:
   static constexpr double steps_ahead = 16.0;
   static constexpr double rounding = 1.0 + 1e-9;  // sums and gaps are rounded: a bound must not be
 
-  bool looked_ = false;
+  bool valid_ = false;
   double approached_ = 0.0, horizon_ = 0.0;
 };
 

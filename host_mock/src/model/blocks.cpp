@@ -62,7 +62,7 @@ NodeSet face_of(const Grid& grid, const Eigen::Vector3d& element_size, const Fac
   return set;
 }
 
-// Length of the area vectors of all faces together: what a node offers to whatever it meets where no face is
+// Length of the area vectors of all faces together: what a node offers to whatever it touches where no face is
 // named.
 std::vector<double> boundary_areas(const std::string& block, const Grid& grid,
                                    const std::map<std::string, NodeSet>& sets) {

@@ -5,7 +5,7 @@ namespace ilaw::host {
 namespace {
 
 // Distance to a centre or an axis, less the radius; a point that is on it is pushed out along any direction.
-Surface round_surface(const Vector& from_center, double radius, const Vector& any_direction) {
+RigidSurface round_surface(const Vector& from_center, double radius, const Vector& any_direction) {
   const double distance = from_center.norm();
   if (distance == 0.0) return {-radius, any_direction};
   return {distance - radius, from_center / distance};
@@ -24,19 +24,19 @@ Vector across(const Vector& axis) {
 Plane::Plane(Vector point, const Vector& normal, Motion motion)
     : Obstacle(std::move(motion)), point_(std::move(point)), normal_(normal.normalized()) {}
 
-Surface Plane::shape_at(const Vector& x) const { return {(x - point_).dot(normal_), normal_}; }
+RigidSurface Plane::shape_at(const Vector& x) const { return {(x - point_).dot(normal_), normal_}; }
 
 Sphere::Sphere(Vector center, double radius, Motion motion)
     : Obstacle(std::move(motion)), center_(std::move(center)), radius_(radius) {}
 
-Surface Sphere::shape_at(const Vector& x) const {
+RigidSurface Sphere::shape_at(const Vector& x) const {
   return round_surface(x - center_, radius_, Vector::Unit(x.size(), 0));
 }
 
 Cylinder::Cylinder(Vector point, const Vector& axis, double radius, Motion motion)
     : Obstacle(std::move(motion)), point_(std::move(point)), axis_(axis.normalized()), radius_(radius) {}
 
-Surface Cylinder::shape_at(const Vector& x) const {
+RigidSurface Cylinder::shape_at(const Vector& x) const {
   const Vector offset = x - point_;
   return round_surface(offset - offset.dot(axis_) * axis_, radius_, across(axis_));
 }

@@ -1,4 +1,4 @@
-// obstacle.hpp - rigid surfaces that interfaces meet. They may move along, but do not turn.
+// obstacle.hpp - rigid surfaces that nodes touch. They may move along, but do not turn.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -28,7 +28,7 @@ class Motion {
   std::optional<Table> path_;
 };
 
-struct Surface {
+struct RigidSurface {
   double gap;     // signed distance, > 0 outside
   Vector normal;  // unit, from obstacle to body
 };
@@ -40,7 +40,7 @@ class Obstacle {
   Obstacle(const Obstacle&) = delete;
   Obstacle& operator=(const Obstacle&) = delete;
 
-  Surface at(const Vector& x, double time) const { return shape_at(x - motion_.displacement(time)); }
+  RigidSurface at(const Vector& x, double time) const { return shape_at(x - motion_.displacement(time)); }
   // Mean, between two times.
   Vector velocity(double from, double to) const { return motion_.velocity(from, to); }
   // Whether the normal is the same everywhere.
@@ -48,7 +48,7 @@ class Obstacle {
 
  private:
   // The obstacle where it is at time 0.
-  virtual Surface shape_at(const Vector& x) const = 0;
+  virtual RigidSurface shape_at(const Vector& x) const = 0;
 
   Motion motion_;
 };
@@ -59,7 +59,7 @@ class Plane : public Obstacle {
   bool is_flat() const override { return true; }
 
  private:
-  Surface shape_at(const Vector& x) const override;
+  RigidSurface shape_at(const Vector& x) const override;
   Vector point_, normal_;
 };
 
@@ -69,7 +69,7 @@ class Sphere : public Obstacle {
   Sphere(Vector center, double radius, Motion motion);
 
  private:
-  Surface shape_at(const Vector& x) const override;
+  RigidSurface shape_at(const Vector& x) const override;
   Vector center_;
   double radius_;
 };
@@ -80,7 +80,7 @@ class Cylinder : public Obstacle {
   Cylinder(Vector point, const Vector& axis, double radius, Motion motion);
 
  private:
-  Surface shape_at(const Vector& x) const override;
+  RigidSurface shape_at(const Vector& x) const override;
   Vector point_, axis_;
   double radius_;
 };

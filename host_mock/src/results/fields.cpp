@@ -51,9 +51,9 @@ void add_geometry(vtkUnstructuredGrid& grid, const Model& model) {
   points->SetDataTypeToDouble();
   const int d = model.dimension();
   for (Eigen::Index i = 0; i < model.position().size(); i += d) {
-    double node_index[3] = {0.0, 0.0, 0.0};
-    for (int c = 0; c < d; ++c) node_index[c] = model.position()[i + c];
-    points->InsertNextPoint(node_index);
+    double x[3] = {0.0, 0.0, 0.0};
+    for (int c = 0; c < d; ++c) x[c] = model.position()[i + c];
+    points->InsertNextPoint(x);
   }
   grid.SetPoints(points);
   const Mesh& mesh = model.mesh();
@@ -68,8 +68,8 @@ void add_geometry(vtkUnstructuredGrid& grid, const Model& model) {
     add_cell(mesh.nodes_per_cell == 8 ? VTK_HEXAHEDRON : VTK_LINE, &mesh.cells[k], mesh.nodes_per_cell);
 }
 
-// A state variable's place in the state of a node. Histories and what is internal mean nothing outside their
-// law.
+// Where a state variable stands in the state of a node. Histories and what is internal mean nothing outside
+// their law.
 struct StateArray {
   vtkDoubleArray* array;
   int entry, count;

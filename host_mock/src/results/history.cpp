@@ -2,17 +2,10 @@
 #include "results/history.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 
 namespace ilaw::host {
 namespace {
-
-// Shortest text that reads back to the same double.
-std::string number(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
 
 // Named state variables: histories mean nothing outside their law.
 template <class Visit>
@@ -31,14 +24,14 @@ void for_each_state(const ilaw_instance_info& info, Visit visit) {
 }  // namespace
 
 History::History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder)
-    : scene_(scene), file_(folder / "history.csv") {
+    : scene_(scene), file_(folder / "history.csv"), table_(file_.stream()) {
   find_contacts(integrator);
   write_header();
 }
 
 History::History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder,
                  std::uintmax_t size)
-    : scene_(scene), file_(folder / "history.csv", size) {
+    : scene_(scene), file_(folder / "history.csv", size), table_(file_.stream()) {
   find_contacts(integrator);
 }
 
@@ -59,48 +52,46 @@ void History::find_contacts(const Integrator& integrator) {
 }
 
 void History::write_header() {
-  std::ostream& out = file_.stream();
   const int d = scene_.model->dimension();
-  out << "time";
+  table_ << "time";
   for (std::size_t w = 0; w < contacts_.size(); ++w) {
     const std::string node = "n" + std::to_string(scene_.output.watch[w]) + ".";
     for (const char* quantity : {"u", "v", "r"})
-      for (int c = 0; c < d; ++c) out << ',' << node << quantity << c;
+      for (int c = 0; c < d; ++c) table_ << node + quantity + std::to_string(c);
     for (const Contact& contact : contacts_[w]) {
-      out << ',' << contact.prefix << "gap," << contact.prefix << "status";
+      table_ << contact.prefix + "gap" << contact.prefix + "status";
       for_each_state(contact.interface->info(),
-                     [&](const std::string& name, int) { out << ',' << contact.prefix << name; });
+                     [&](const std::string& name, int) { table_ << contact.prefix + name; });
     }
   }
   if (scene_.output.balance) {
-    out << ",balance.kinetic,balance.internal,balance.potential,balance.external_work,balance.interface_work,"
-           "balance.error";
-    for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c) out << ",balance.angular_momentum" << c;
+    for (const char* quantity :
+         {"kinetic", "internal", "potential", "external_work", "interface_work", "error"})
+      table_ << std::string("balance.") + quantity;
+    for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c)
+      table_ << "balance.angular_momentum" + std::to_string(c);
   }
-  out << '\n';
+  table_.end_row();
 }
 
 void History::add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse) {
-  std::ostream& out = file_.stream();
   const int d = scene_.model->dimension();
   const Eigen::Index node = static_cast<Eigen::Index>(scene_.output.watch[watched]) * d;
   for (const Dofs* quantity : {&integrator.displacement(), &integrator.velocity(), &impulse})
-    for (int c = 0; c < d; ++c) out << ',' << number((*quantity)[node + c]);
+    for (int c = 0; c < d; ++c) table_ << (*quantity)[node + c];
   for (const Contact& contact : contacts_[watched]) {
     const Interface& interface = *contact.interface;
     const int status =
         interface.is_active(contact.contact_index) ? interface.status(contact.contact_index) : int{ILAW_FREE};
-    out << ',' << number(interface.gap_at(contact.node_index, integrator.displacement(), integrator.time()))
-        << ',' << status;
+    table_ << interface.gap_at(contact.node_index, integrator.displacement(), integrator.time()) << status;
     for_each_state(interface.info(), [&](const std::string&, int entry) {
-      out << ',' << number(interface.state(contact.contact_index, entry));
+      table_ << interface.state(contact.contact_index, entry);
     });
   }
 }
 
 void History::add_row(const Integrator& integrator) {
-  std::ostream& out = file_.stream();
-  out << number(integrator.time());
+  table_ << integrator.time();
   if (!contacts_.empty()) {
     const Dofs impulse = integrator.interface_impulse();
     for (std::size_t w = 0; w < contacts_.size(); ++w) add_node(w, integrator, impulse);
@@ -109,10 +100,10 @@ void History::add_row(const Integrator& integrator) {
     const EnergyReport energy = integrator.energy();
     for (const double value : {energy.kinetic, energy.internal, energy.potential, energy.external_work,
                                energy.interface_work, energy.balance_error})
-      out << ',' << number(value);
-    for (const double component : integrator.angular_momentum()) out << ',' << number(component);
+      table_ << value;
+    for (const double component : integrator.angular_momentum()) table_ << component;
   }
-  out << '\n';
+  table_.end_row();
   file_.check();
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/csv.hpp"
 #include "base/files.hpp"
 #include "scene/scene.hpp"
 #include "step/integrator.hpp"
@@ -38,6 +39,7 @@ class History {
 
   const Scene& scene_;
   AtomicFile file_;
+  CsvWriter table_;
   std::vector<std::vector<Contact>> contacts_;  // per watched node
 };
 

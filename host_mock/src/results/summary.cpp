@@ -24,14 +24,32 @@ json describe_interface(const Interface& interface) {
           {"bytes_per_node", interface.bytes_per_contact()}};
 }
 
+json describe_energy(const EnergyReport& energy) {
+  return {{"kinetic", energy.kinetic},
+          {"internal", energy.internal},
+          {"potential", energy.potential},
+          {"external_work", energy.external_work},
+          {"interface_work", energy.interface_work},
+          {"balance_error", energy.balance_error},
+          {"dissipated_friction", energy.by_law[ILAW_ENERGY_FRICTION]},
+          {"dissipated_impact", energy.by_law[ILAW_ENERGY_IMPACT]},
+          {"dissipated_rupture", energy.by_law[ILAW_ENERGY_RUPTURE]},
+          {"stored", energy.by_law[ILAW_ENERGY_STORED]},
+          {"least_dissipation", energy.least_dissipation},
+          {"reaction_work", energy.reaction_work}};
+}
+
+json describe_statuses(const Tally& tally) {
+  json statuses = json::object();
+  for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k) statuses[status_names[k]] = tally.status_counts[k];
+  return statuses;
+}
+
 }  // namespace
 
 void write_summary(const Scene& scene, const Integrator& integrator, const RunRecord& record,
                    const std::filesystem::path& folder) {
-  const EnergyReport energy = integrator.energy();
   const Tally& tally = integrator.tally();
-  json statuses = json::object();
-  for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k) statuses[status_names[k]] = tally.status_counts[k];
   const PhaseSeconds& seconds = integrator.seconds();
   const double stepping = seconds.internal_forces + seconds.interfaces;
   const double interface_share = stepping > 0.0 ? seconds.interfaces / stepping : 0.0;
@@ -50,23 +68,11 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
       {"dt", scene.dt},
       {"time", integrator.time()},
       {"nodes", scene.model->node_count()},
-      {"energy",
-       {{"kinetic", energy.kinetic},
-        {"internal", energy.internal},
-        {"potential", energy.potential},
-        {"external_work", energy.external_work},
-        {"interface_work", energy.interface_work},
-        {"balance_error", energy.balance_error},
-        {"dissipated_friction", energy.by_law[ILAW_ENERGY_FRICTION]},
-        {"dissipated_impact", energy.by_law[ILAW_ENERGY_IMPACT]},
-        {"dissipated_rupture", energy.by_law[ILAW_ENERGY_RUPTURE]},
-        {"stored", energy.by_law[ILAW_ENERGY_STORED]},
-        {"least_dissipation", energy.least_dissipation},
-        {"reaction_work", energy.reaction_work}}},
+      {"energy", describe_energy(integrator.energy())},
       {"warnings", warnings},
       {"penetration_max", tally.penetration_max},
-      {"status_counts", statuses},
-      {"node_steps", {{"asked", tally.active}, {"skipped", tally.skipped}}},
+      {"status_counts", describe_statuses(tally)},
+      {"node_steps", {{"active", tally.active}, {"skipped", tally.skipped}}},
       {"coupling",
        {{"sweeps", tally.sweeps},
         {"sweeps_max", tally.sweeps_max},
@@ -74,8 +80,8 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
         {"steps_unconverged", tally.unconverged}}},
       {"seconds",
        {{"total", record.seconds_total},
-        {"internal_forces", integrator.seconds().internal_forces},
-        {"interfaces", integrator.seconds().interfaces},
+        {"internal_forces", seconds.internal_forces},
+        {"interfaces", seconds.interfaces},
         {"output", record.seconds_output}}},
       {"interface_share", interface_share}};
   AtomicFile file(folder / "summary.json");

@@ -29,7 +29,7 @@ struct Scene {
   nlohmann::json source;
   std::unique_ptr<Model> model;
   Loads loads;
-  std::vector<std::unique_ptr<Interface>> interfaces;
+  Interfaces interfaces;
   double dt = 0.0;
   std::int64_t steps = 0;
   OutputSetup output;

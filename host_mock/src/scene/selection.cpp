@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/selection.hpp"
 
-#include "base/scene_error.hpp"
+#include "scene/json_text.hpp"
+#include "scene/values.hpp"
 
 #include <set>
 
@@ -11,55 +12,54 @@ namespace {
 using nlohmann::json;
 
 std::string names_of(const Model& model, bool with_facets) {
-  std::string names;
+  std::vector<std::string> names;
   for (const auto& [name, set] : model.sets())
-    if (!with_facets || !set.facets.empty()) names += (names.empty() ? "" : ", ") + name;
-  return names.empty() ? "no name: the model has none" : names;
+    if (!with_facets || !set.facets.empty()) names.push_back(name);
+  return names.empty() ? "no name: the model has none" : joined(names);
 }
 
 const NodeSet& find_set(const std::string& name, const Model& model, bool with_facets,
                         const std::string& pointer) {
   const auto found = model.sets().find(name);
   if (found == model.sets().end() || (with_facets && found->second.facets.empty()))
-    throw SceneError(pointer, "found \"" + name + "\", expected one of " + names_of(model, with_facets));
+    throw mistake(pointer, "\"" + name + "\"", "one of " + names_of(model, with_facets));
   return found->second;
 }
 
-// The part of a set whose places in it are given.
-NodeSet part_of(const NodeSet& set, const std::vector<std::size_t>& node_indices) {
+// The part of a set whose indices in it are given.
+NodeSet part_of(const NodeSet& set, const std::vector<std::size_t>& indices) {
   NodeSet part;
-  for (const std::size_t node_index : node_indices) {
-    part.nodes.push_back(set.nodes[node_index]);
-    part.areas.push_back(set.areas[node_index]);
+  for (const std::size_t index : indices) {
+    part.nodes.push_back(set.nodes[index]);
+    part.areas.push_back(set.areas[index]);
   }
   return part;
 }
 
 NodeSet listed(const json& numbers, const Model& model, const std::string& pointer) {
-  std::vector<std::size_t> node_indices;
+  std::vector<std::size_t> indices;
   std::set<int> seen;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const std::string where = pointer + "/" + std::to_string(k);
+    const std::string where = at(pointer, k);
     const int node = numbers[k].get<int>();
     if (node >= model.node_count())
-      throw SceneError(where, "found node " + std::to_string(node) + ", expected 0 to " +
-                                  std::to_string(model.node_count() - 1));
+      throw mistake(where, "node " + std::to_string(node), "0 to " + std::to_string(model.node_count() - 1));
     if (!seen.insert(node).second)
-      throw SceneError(where, "found node " + std::to_string(node) + " twice, expected each node once");
-    node_indices.push_back(static_cast<std::size_t>(node));
+      throw mistake(where, "node " + std::to_string(node) + " twice", "each node once");
+    indices.push_back(static_cast<std::size_t>(node));
   }
-  return part_of(model.sets().at("all"), node_indices);
+  return part_of(model.sets().at("all"), indices);
 }
 
 Vector position_of(const Model& model, int node) {
   return model.position().segment(node * model.dimension(), model.dimension());
 }
 
-NodeSet nearest(const Vector& node_index, const Model& model) {
+NodeSet nearest(const Vector& x, const Model& model) {
   std::size_t best = 0;
   for (std::size_t node = 1; node < static_cast<std::size_t>(model.node_count()); ++node)
-    if ((position_of(model, static_cast<int>(node)) - node_index).squaredNorm() <
-        (position_of(model, static_cast<int>(best)) - node_index).squaredNorm())
+    if ((position_of(model, static_cast<int>(node)) - x).squaredNorm() <
+        (position_of(model, static_cast<int>(best)) - x).squaredNorm())
       best = node;
   return part_of(model.sets().at("all"), {best});
 }
@@ -68,25 +68,16 @@ NodeSet inside(const json& selection, const Model& model, const std::string& poi
   const NodeSet& set = find_set(selection.value("of", "all"), model, false, pointer + "/of");
   const Vector low = read_vector(selection["box"][0], model.dimension(), pointer + "/box/0");
   const Vector high = read_vector(selection["box"][1], model.dimension(), pointer + "/box/1");
-  std::vector<std::size_t> node_indices;
+  std::vector<std::size_t> indices;
   for (std::size_t k = 0; k < set.nodes.size(); ++k) {
     const Vector x = position_of(model, set.nodes[k]);
-    if ((x.array() >= low.array()).all() && (x.array() <= high.array()).all()) node_indices.push_back(k);
+    if ((x.array() >= low.array()).all() && (x.array() <= high.array()).all()) indices.push_back(k);
   }
-  if (node_indices.empty()) throw SceneError(pointer + "/box", "found no node inside, expected at least one");
-  return part_of(set, node_indices);
+  if (indices.empty()) throw mistake(pointer + "/box", "no node inside", "at least one");
+  return part_of(set, indices);
 }
 
 }  // namespace
-
-Vector read_vector(const json& value, int dimension, const std::string& pointer) {
-  if (static_cast<int>(value.size()) != dimension)
-    throw SceneError(pointer, "found " + std::to_string(value.size()) + " components, expected " +
-                                  std::to_string(dimension) + ", the dimension of the model");
-  Vector vector(dimension);
-  for (int i = 0; i < dimension; ++i) vector[i] = value[static_cast<std::size_t>(i)].get<double>();
-  return vector;
-}
 
 NodeSet select_nodes(const json& nodes, const Model& model, const std::string& pointer) {
   if (nodes.is_string()) return find_set(nodes.get<std::string>(), model, false, pointer);

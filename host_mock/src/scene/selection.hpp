@@ -1,8 +1,7 @@
-// selection.hpp - nodes that a scene names: by set, by number, by place.
+// selection.hpp - nodes that a scene names: by set, by number, by position.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "base/vector.hpp"
 #include "model/model.hpp"
 
 #include <nlohmann/json.hpp>
@@ -17,8 +16,5 @@ NodeSet select_nodes(const nlohmann::json& nodes, const Model& model, const std:
 
 // As above, for a set that must have facets.
 const NodeSet& select_surface(const std::string& name, const Model& model, const std::string& pointer);
-
-// A vector of the model's dimension.
-Vector read_vector(const nlohmann::json& value, int dimension, const std::string& pointer);
 
 }  // namespace ilaw::host

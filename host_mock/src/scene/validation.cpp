@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/validation.hpp"
 
+#include "scene/json_text.hpp"
+
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -62,7 +64,7 @@ const json& child(const json& part, const std::string& token, bool is_index) {
              : nothing;
 }
 
-// What the schema allows at one place, in words.
+// What the schema allows for a value, in words.
 std::string allowed(const json& part) {
   if (part.contains("anyOf")) {
     std::string text;
@@ -70,9 +72,9 @@ std::string allowed(const json& part) {
     return text;
   }
   if (part.contains("enum")) {
-    std::string text = "one of ";
-    for (const json& one : part["enum"]) text += (text == "one of " ? "" : ", ") + one.dump();
-    return text;
+    std::vector<std::string> values;
+    for (const json& one : part["enum"]) values.push_back(one.dump());
+    return "one of " + joined(values);
   }
   std::string text = part.value("type", "a value");
   if (part.contains("items") && resolved(part["items"]).contains("type"))
@@ -87,20 +89,20 @@ std::string allowed(const json& part) {
 }
 
 void explain_keys(const json& value, const json& part, const std::string& pointer) {
-  std::string keys;
-  for (const auto& [key, ignored] : part["properties"].items()) keys += (keys.empty() ? "" : ", ") + key;
+  std::vector<std::string> keys;
+  for (const auto& [key, ignored] : part["properties"].items()) keys.push_back(key);
   for (const auto& [key, ignored] : value.items()) {
     if (part["properties"].contains(key)) continue;
     std::string nearest;
     for (const auto& [candidate, also_ignored] : part["properties"].items())
       if (edits(key, candidate) <= 2 && (nearest.empty() || edits(key, candidate) < edits(key, nearest)))
         nearest = candidate;
-    throw SceneError(pointer + "/" + key, "unknown key, expected one of: " + keys +
+    throw SceneError(pointer + "/" + key, "unknown key, expected one of: " + joined(keys) +
                                               (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
   }
 }
 
-// Says in words what valijson found wrong at a value; the place is known, the words come from the schema.
+// Says in words what valijson found wrong at a value; the pointer is known, the words come from the schema.
 [[noreturn]] void explain(const json& value, const json& part, const std::string& pointer,
                           const std::string& description) {
   if (value.is_object() && part.contains("properties")) {
@@ -111,10 +113,10 @@ void explain_keys(const json& value, const json& part, const std::string& pointe
     if (part.contains("additionalProperties")) explain_keys(value, part, pointer);
   }
   if (part.is_null()) throw SceneError(pointer, description + " Found " + shortened(value));
-  throw SceneError(pointer, "found " + shortened(value) + ", expected " + allowed(part));
+  throw mistake(pointer, shortened(value), allowed(part));
 }
 
-// valijson names a place as <root>, [3], ["key"].
+// valijson names a value as <root>, [3], ["key"].
 std::string token_of(const std::string& context) {
   const std::string inside = context.substr(1, context.size() - 2);
   return inside.front() == '"' || inside.front() == '\'' ? inside.substr(1, inside.size() - 2) : inside;
@@ -205,11 +207,10 @@ void validate_scene(const json& scene) {
   };
   validate_typed(scene["model"], "model", "/model");
   for (std::size_t i = 0; scene.contains("loads") && i < scene["loads"].size(); ++i)
-    validate_typed(scene["loads"][i], "load", "/loads/" + std::to_string(i));
+    validate_typed(scene["loads"][i], "load", at("/loads", i));
   for (std::size_t i = 0; i < scene["interfaces"].size(); ++i)
     if (scene["interfaces"][i].contains("obstacle"))
-      validate_typed(scene["interfaces"][i]["obstacle"], "obstacle",
-                     "/interfaces/" + std::to_string(i) + "/obstacle");
+      validate_typed(scene["interfaces"][i]["obstacle"], "obstacle", at("/interfaces", i) + "/obstacle");
 }
 
 }  // namespace ilaw::host

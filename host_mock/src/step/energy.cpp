@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/energy.hpp"
 
+#include "base/bytes.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <istream>
-#include <ostream>
-#include <stdexcept>
 
 namespace ilaw::host {
 namespace {
@@ -37,16 +36,16 @@ void EnergyBalance::start(const Model& model, const Dofs& u, const Dofs& u_next,
   sums_.initial = kinetic_energy(model, v);
   sums_.initial += model.is_linear() ? mixed_potential(model, u, u_next) : model.potential(u);
   if (!model.is_linear()) sums_.internal_work = -static_cast<Sum>(model.potential(u));
-  meet(sums_.initial);
+  note_size(sums_.initial);
 }
 
-void EnergyBalance::meet(Sum energy) {
+void EnergyBalance::note_size(Sum energy) {
   sums_.largest = std::max(sums_.largest, std::abs(static_cast<double>(energy)));
 }
 
 void EnergyBalance::add_external(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after) {
   sums_.external_work += work(impulse, v_before, v_after);
-  meet(sums_.external_work);
+  note_size(sums_.external_work);
 }
 
 void EnergyBalance::add_internal(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after) {
@@ -56,7 +55,7 @@ void EnergyBalance::add_internal(const Dofs& impulse, const Dofs& v_before, cons
 void EnergyBalance::add_interface(double work, double relative_work) {
   sums_.interface_work += work;
   sums_.relative_work += relative_work;
-  meet(sums_.interface_work);
+  note_size(sums_.interface_work);
 }
 
 void EnergyBalance::add_dissipation(int part, double energy) {
@@ -89,15 +88,32 @@ EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs
   return report;
 }
 
+Vector angular_momentum(const Model& model, const Dofs& u, const Dofs& v) {
+  const Eigen::Index d = model.dimension();
+  std::array<long double, 3> sum{};
+  for (Eigen::Index i = 0; i < u.size(); i += d) {
+    std::array<long double, 3> x{}, p{};
+    for (Eigen::Index c = 0; c < d; ++c) {
+      x[static_cast<std::size_t>(c)] = static_cast<long double>(model.position()[i + c]) + u[i + c];
+      p[static_cast<std::size_t>(c)] = static_cast<long double>(model.mass()[i + c]) * v[i + c];
+    }
+    for (std::size_t c = 0; c < 3; ++c)
+      sum[c] += x[(c + 1) % 3] * p[(c + 2) % 3] - x[(c + 2) % 3] * p[(c + 1) % 3];
+  }
+  Vector momentum(d == 1 ? 0 : d == 2 ? 1 : 3);
+  for (Eigen::Index c = 0; c < momentum.size(); ++c)
+    momentum[c] = static_cast<double>(sum[static_cast<std::size_t>(d == 2 ? 2 : c)]);
+  return momentum;
+}
+
 void EnergyBalance::save(std::ostream& out) const {
-  out.write(reinterpret_cast<const char*>(&sums_), sizeof sums_);
-  out.write(reinterpret_cast<const char*>(&by_law_), sizeof by_law_);
+  write_value(out, sums_);
+  write_value(out, by_law_);
 }
 
 void EnergyBalance::load(std::istream& in) {
-  in.read(reinterpret_cast<char*>(&sums_), sizeof sums_);
-  in.read(reinterpret_cast<char*>(&by_law_), sizeof by_law_);
-  if (!in) throw std::runtime_error("the checkpoint is damaged");
+  read_value(in, sums_);
+  read_value(in, by_law_);
 }
 
 }  // namespace ilaw::host

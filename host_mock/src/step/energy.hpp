@@ -7,6 +7,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/vector.hpp"
 #include "model/model.hpp"
 
 #include <ilaw/ilaw.h>
@@ -21,7 +22,7 @@ struct EnergyReport {
   std::array<double, ILAW_ENERGY_COUNT> by_law;  // friction, impact, rupture dissipated; stored now
   double least_dissipation;                      // smallest dissipation of one node in one step, >= 0
   double reaction_work;                          // interface_work + dissipated + stored: see docs/scenes.md
-  double scale;                                  // largest energy or work met
+  double scale;                                  // largest energy or work so far
 };
 
 class EnergyBalance {
@@ -49,12 +50,15 @@ class EnergyBalance {
   struct Sums {
     Sum initial = 0, external_work = 0, internal_work = 0, interface_work = 0, relative_work = 0;
     double least_dissipation = 0.0;
-    double largest = 0.0;  // of the energies and works met so far
+    double largest = 0.0;  // of the energies and works so far
   };
-  void meet(Sum energy);
+  void note_size(Sum energy);
 
   Sums sums_;
   std::array<Sum, ILAW_ENERGY_COUNT> by_law_{};
 };
+
+// About the origin: one component in 2D, three in 3D, none in 1D.
+Vector angular_momentum(const Model& model, const Dofs& u, const Dofs& v);
 
 }  // namespace ilaw::host

@@ -5,6 +5,7 @@
 
 #include <ilaw/ilaw.h>
 #include <ilaw/kit/detail/level.hpp>
+#include <ilaw/kit/detail/processor.hpp>
 
 #include <cstdlib>
 #include <cstring>
@@ -28,14 +29,9 @@ inline const ilaw_kit_walk* best_walks() {
   const auto allowed = [cap](const char* level) {
     return !cap || (std::strcmp(cap, "baseline") != 0 && std::strcmp(cap, level) >= 0);
   };
-  __builtin_cpu_init();
-  if (allowed("v4") && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl"))
-    return ilaw_kit_walks_v4();
-  if (allowed("v3") && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") &&
-      __builtin_cpu_supports("fma"))
-    return ilaw_kit_walks_v3();
+  const processor here = this_processor();
+  if (allowed("v4") && serves(here, level_v4)) return ilaw_kit_walks_v4();
+  if (allowed("v3") && serves(here, level_v3)) return ilaw_kit_walks_v3();
 #endif
   return nullptr;
 }

@@ -1,0 +1,34 @@
+// What several commands use.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace ilaw::host {
+
+void add_threads(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "Threads; any number gives the same bits")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
+void set_threads(int threads) { omp_set_num_threads(threads); }
+
+void print_rows(const std::vector<Row>& rows, const char* indent) {
+  std::vector<std::size_t> widths;
+  for (const Row& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t c = 0; c + 1 < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  for (const Row& row : rows) {
+    std::string line = indent;
+    for (std::size_t c = 0; c + 1 < row.size(); ++c)
+      line += row[c] + std::string(widths[c] + 2 - row[c].size(), ' ');
+    std::printf("%s%s\n", line.c_str(), row.back().c_str());
+  }
+}
+
+}  // namespace ilaw::host

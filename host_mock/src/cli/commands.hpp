@@ -1,0 +1,32 @@
+// commands.hpp - the commands of the program, one file each: its options, and what it does. They say on
+// stderr what goes wrong, and return an ExitCode.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+using Action = std::function<int()>;
+
+// Each adds a command; chosen becomes what it does where it is the one that the user gave.
+void add_run(CLI::App& app, Action& chosen);
+void add_plot(CLI::App& app, Action& chosen);
+void add_converge(CLI::App& app, Action& chosen);
+void add_list(CLI::App& app, Action& chosen);
+void add_describe(CLI::App& app, Action& chosen);
+
+// The option --threads, for commands that run scenes.
+void add_threads(CLI::App& command, int& threads);
+void set_threads(int threads);
+
+// Columns as wide as their longest entry; the last one is free.
+using Row = std::vector<std::string>;
+void print_rows(const std::vector<Row>& rows, const char* indent);
+
+}  // namespace ilaw::host

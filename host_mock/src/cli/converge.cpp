@@ -1,0 +1,99 @@
+// `ilaw converge`: errors of a scene and their orders.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands.hpp"
+
+#include "base/exit_code.hpp"
+#include "base/files.hpp"
+#include "base/scene_error.hpp"
+#include "study/convergence.hpp"
+#include "study/convergence_files.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+struct Options {
+  std::filesystem::path scene, folder;
+  // What the scene says under "converge", unless given here.
+  std::optional<int> levels;
+  std::optional<double> factor;
+  std::optional<std::string> refine;  // "time" or "mesh"
+  int threads = 1;
+};
+
+Sweep sweep_of(const json& source, const Options& options) {
+  const json given = source.value("converge", json::object());
+  const std::string refine = options.refine.value_or(given.value("refine", "time"));
+  return {options.levels.value_or(given.value("levels", 5)),
+          options.factor.value_or(given.value("factor", 2.0)), given.value("first", 1.0), refine == "mesh"};
+}
+
+// A number in ten columns, "-" where there is none.
+void print(const char* format, double value) {
+  char text[32] = "-";
+  if (std::isfinite(value)) std::snprintf(text, sizeof text, format, value);
+  std::printf(" %10s", std::string_view(text) == "-0.00" ? "0.00" : text);
+}
+
+void print_table(const ErrorTable& table) {
+  std::printf("%12s %10s %10s %10s %10s %10s\n", "dt", "seconds", ErrorTable::norms[0], ErrorTable::norms[1],
+              ErrorTable::norms[2], ErrorTable::norms[3]);
+  for (std::size_t k = 0; k < table.errors.size(); ++k) {
+    std::printf("%12.4g %10.2g", table.runs[k].dt, table.runs[k].seconds);
+    for (std::size_t n = 0; n < ErrorTable::norms.size(); ++n) print("%.2e", table.error(k, n));
+    std::printf("\n");
+  }
+  std::printf("%23s", "order");
+  for (std::size_t n = 0; n < ErrorTable::norms.size(); ++n) print("%.2f", table.order(n));
+  std::printf("\n");
+}
+
+int converge(const Options& options) {
+  set_threads(options.threads);
+  ErrorTable table;
+  std::string title;
+  const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
+  try {
+    const json source = read_scene_source(options.scene);
+    const Sweep sweep = sweep_of(source, options);
+    title = source.value("title", options.scene.stem().string());
+    check_sweep(source, sweep, options.scene);  // before anything is written
+    if (!make_folder(folder)) return exit_bad_input;
+    table = run_levels(source, sweep, options.scene);
+    write_convergence(table, sweep, title, folder);
+  } catch (const SceneError& error) {
+    std::fprintf(stderr, "ilaw: %s: %s\n", options.scene.c_str(), error.what());
+    return exit_bad_input;
+  }
+  print_table(table);
+  return draw_convergence(table, title, folder) ? exit_done : exit_failed;
+}
+
+}  // namespace
+
+void add_converge(CLI::App& app, Action& chosen) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "converge", "Run a scene with ever smaller steps (and meshes) and measure its errors and their order");
+  command->add_option("scene", options->scene, "Scene file (JSON)")->required();
+  command->add_option("--out", options->folder, "Folder for converge.csv, .json, .png and .svg")->required();
+  command->add_option("--levels", options->levels, "Runs, the scene's own among them")
+      ->check(CLI::Range(2, 12));
+  command->add_option("--factor", options->factor, "Refinement from run to run")
+      ->check(CLI::Range(1.01, 10.0));
+  command->add_option("--refine", options->refine, "time, or mesh (with the time step)")
+      ->check(CLI::IsMember({"time", "mesh"}));
+  add_threads(*command, options->threads);
+  command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out results");
+  command->callback([options, &chosen] { chosen = [options] { return converge(*options); }; });
+}
+
+}  // namespace ilaw::host

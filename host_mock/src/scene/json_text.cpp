@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/json_text.hpp"
+
+namespace ilaw::host {
+
+std::string at(const std::string& pointer, std::size_t index) {
+  return pointer + "/" + std::to_string(index);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+SceneError mistake(const std::string& pointer, const std::string& found, const std::string& expected) {
+  return {pointer, "found " + found + ", expected " + expected};
+}
+
+void require_one_of(const nlohmann::json& object, const char* one, const char* other,
+                    const std::string& allowed, const std::string& pointer) {
+  if (object.contains(one) != object.contains(other)) return;
+  const std::string both = std::string("both '") + one + "' and '" + other + "'";
+  throw mistake(pointer, object.contains(one) ? both : "neither", "one of " + allowed);
+}
+
+}  // namespace ilaw::host

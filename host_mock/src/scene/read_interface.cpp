@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/read_interface.hpp"
+
+#include "scene/arguments.hpp"
+#include "scene/json_text.hpp"
+#include "scene/read_counterpart.hpp"
+#include "scene/selection.hpp"
+#include "scene/values.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+// A node that follows a given path cannot give way to an interface.
+void refuse_prescribed(const Interface& interface, const Loads& loads, const std::string& pointer) {
+  std::set<int> driven;
+  for (const auto& load : loads)
+    driven.insert(load->prescribed_nodes().begin(), load->prescribed_nodes().end());
+  for (const std::vector<int>* nodes : {&interface.nodes(), &interface.setup().counterpart->partners()})
+    for (const int node : *nodes)
+      if (driven.count(node))
+        throw mistake(pointer, "node " + std::to_string(node) + ", whose motion is prescribed by a load",
+                      "nodes that are free to move");
+}
+
+// An explicit path is relative to the scene, not to wherever the user happens to be.
+std::string library_of(const json& interface, const std::filesystem::path& scene_file) {
+  std::string library = interface.value("library", interface["law"].get<std::string>());
+  if (library.find('/') == std::string::npos) return library;
+  return (std::filesystem::absolute(scene_file).parent_path() / library).string();
+}
+
+std::string known_libraries() {
+  std::vector<std::string> names;
+  for (const std::string& file : ilaw::search()) names.push_back(std::filesystem::path(file).stem().string());
+  return names.empty() ? "none" : joined(names);
+}
+
+// The first tangent, for laws that tell the two apart: one direction for the whole interface, which must be
+// flat.
+Vector read_tangent(const json& interface, const InterfaceSetup& setup, const Model& model,
+                    const std::string& pointer) {
+  if (!interface.contains("tangent")) return {};
+  Vector tangent = read_direction(interface["tangent"], model.dimension(), pointer).normalized();
+  if (!setup.counterpart->keeps_normal())
+    throw mistake(pointer, "a tangent", "none: the normal of the counterpart turns");
+  if (std::abs(tangent.dot(
+          setup.counterpart->contact_point(0, Dofs::Zero(model.mass().size()), 0.0).normal)) > 1e-9)
+    throw mistake(pointer, interface["tangent"].dump(), "a direction across the normal");
+  return tangent;
+}
+
+InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene& scene, const NodeSet& own,
+                          const std::string& pointer) {
+  InterfaceSetup setup;
+  setup.name = interface.value("name", "interface" + std::to_string(number));
+  setup.law = interface["law"].get<std::string>();
+  setup.library = library_of(interface, scene.file);
+  setup.nodes = own.nodes;
+  setup.areas = own.areas;
+  setup.counterpart = read_counterpart(interface, own, *scene.model, pointer);
+  setup.arguments = read_arguments(interface.value("parameters", json::object()), setup.nodes.size(),
+                                   pointer + "/parameters");
+  setup.birth = interface.value("birth", setup.birth);
+  setup.death = interface.value("death", setup.death);
+  if (setup.death <= setup.birth)
+    throw mistake(pointer + "/death", interface["death"].dump(),
+                  "a time after birth, " + json(setup.birth).dump());
+  setup.tangent = read_tangent(interface, setup, *scene.model, pointer + "/tangent");
+  setup.gap_offset = interface.value("gap_offset", 0.0);
+  setup.keeps_all_active = !interface.value("skip", true);
+  return setup;
+}
+
+// What the loader or the law refuses, at the key that it is about.
+[[noreturn]] void refuse_law(const ilaw::error& error, const json& interface, const std::string& pointer) {
+  const std::string library = pointer + (interface.contains("library") ? "/library" : "/law");
+  if (error.code() == ILAW_BAD_LIBRARY) throw SceneError(library, error.what());
+  if (error.code() == ILAW_NOT_FOUND)
+    throw SceneError(library, std::string(error.what()) + "; libraries found: " + known_libraries());
+  throw SceneError(pointer, error.what());
+}
+
+}  // namespace
+
+std::unique_ptr<Interface> read_interface(std::size_t number, const Scene& scene) {
+  const json& interface = scene.source["interfaces"][number];
+  const std::string pointer = at("/interfaces", number);
+  const NodeSet own = select_nodes(interface["nodes"], *scene.model, pointer + "/nodes");
+  try {
+    auto made = std::make_unique<Interface>(read_setup(interface, number, scene, own, pointer), *scene.model);
+    refuse_prescribed(*made, scene.loads, pointer + "/nodes");
+    return made;
+  } catch (const ParameterError& error) {
+    const std::string whose =
+        error.node_index() ? " (node " + std::to_string(own.nodes[*error.node_index()]) + ")" : "";
+    throw SceneError(pointer + "/parameters" + error.pointer(), error.what() + whose);
+  } catch (const ilaw::error& error) {
+    refuse_law(error, interface, pointer);
+  }
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/read_load.hpp"
+
+#include "scene/json_text.hpp"
+#include "scene/selection.hpp"
+#include "scene/values.hpp"
+
+#include <numeric>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+// Part of a total force for each node, by tributary area.
+std::vector<double> shares_of(const NodeSet& set, const std::string& pointer) {
+  const double sum = std::accumulate(set.areas.begin(), set.areas.end(), 0.0);
+  if (!(sum > 0.0)) throw SceneError(pointer, "the nodes have no area to share a total force by");
+  std::vector<double> shares = set.areas;
+  for (double& share : shares) share /= sum;
+  return shares;
+}
+
+std::unique_ptr<Load> read_prescribed(const json& load, const NodeSet& set, int d,
+                                      const std::string& pointer) {
+  std::vector<int> axes(static_cast<std::size_t>(d));
+  std::iota(axes.begin(), axes.end(), 0);
+  if (load.contains("axes")) axes = load["axes"].get<std::vector<int>>();
+  for (const int axis : axes)
+    if (axis >= d)
+      throw mistake(pointer + "/axes", "axis " + std::to_string(axis), "0 to " + std::to_string(d - 1));
+  return std::make_unique<PrescribedMotion>(set.nodes, axes, d, read_motion(load, d, pointer));
+}
+
+}  // namespace
+
+std::unique_ptr<Load> read_load(const json& load, const Model& model, const std::string& pointer) {
+  const int d = model.dimension();
+  const std::string type = load["type"].get<std::string>();
+  const NodeSet set = select_nodes(load.value("nodes", json("all")), model, pointer + "/nodes");
+  if (type == "gravity")
+    return std::make_unique<Gravity>(model, set.nodes,
+                                     read_vector(load["acceleration"], d, pointer + "/acceleration"));
+  if (type == "force") {
+    const std::vector<double> shares = load.value("total", false)
+                                           ? shares_of(set, pointer + "/nodes")
+                                           : std::vector<double>(set.nodes.size(), 1.0);
+    return std::make_unique<Force>(set.nodes, shares,
+                                   read_vector(load["direction"], d, pointer + "/direction"),
+                                   read_table(load["history"], 1, pointer + "/history"));
+  }
+  if (type == "damping") return std::make_unique<Damping>(set.nodes, d, load["rate"].get<double>());
+  if (type == "motion") return read_prescribed(load, set, d, pointer);
+  const double time = load["time"].get<double>();
+  if (time <= 0.0) throw mistake(pointer + "/time", load["time"].dump(), "a time > 0");
+  return std::make_unique<Shock>(set.nodes, time, read_vector(load["impulse"], d, pointer + "/impulse"));
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/read_model.hpp"
+
+#include "model/bars.hpp"
+#include "model/blocks.hpp"
+#include "model/points.hpp"
+#include "model/rotating_spring.hpp"
+#include "scene/json_text.hpp"
+#include "scene/values.hpp"
+
+#include <array>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+std::unique_ptr<Model> read_points(const json& model) {
+  const int d = model["dimension"].get<int>();
+  std::vector<PointMass> points;
+  for (std::size_t k = 0; k < model["points"].size(); ++k) {
+    const json& point = model["points"][k];
+    const std::string pointer = at("/model/points", k);
+    points.push_back({point["mass"].get<double>(), point.value("area", 1.0),
+                      read_vector(point["position"], d, pointer + "/position"),
+                      read_vector_or_zero(point, "velocity", d, pointer),
+                      point.contains("stiffness") ? read_vector(point["stiffness"], d, pointer + "/stiffness")
+                                                  : Vector()});
+  }
+  return std::make_unique<Points>(d, points);
+}
+
+std::unique_ptr<Model> read_rotating_spring(const json& model) {
+  return std::make_unique<RotatingSpring>(SpringSetup{
+      model["mass"].get<double>(), model["stiffness"].get<double>(), model["length"].get<double>(),
+      model.value("area", 1.0), read_vector(model["position"], 2, "/model/position"),
+      read_vector_or_zero(model, "velocity", 2, "/model")});
+}
+
+// Bodies are named in a scene, or bar0, bar1 ...
+class BodyNames {
+ public:
+  explicit BodyNames(const char* kind) : kind_(kind) {}
+  std::string next(const json& body, const std::string& pointer) {
+    std::string name = body.value("name", kind_ + std::to_string(seen_.size()));
+    if (name == "all" || !seen_.insert(name).second)
+      throw mistake(pointer + "/name", "'" + name + "'", "a name of its own for each body, other than 'all'");
+    return name;
+  }
+
+ private:
+  std::string kind_;
+  std::set<std::string> seen_;
+};
+
+std::unique_ptr<Model> read_bars(const json& model) {
+  std::vector<BarSetup> bars;
+  BodyNames names("bar");
+  for (std::size_t k = 0; k < model["bars"].size(); ++k) {
+    const json& bar = model["bars"][k];
+    bars.push_back({names.next(bar, at("/model/bars", k)), bar.value("start", 0.0),
+                    bar["length"].get<double>(), bar["elements"].get<int>(), bar["young"].get<double>(),
+                    bar["density"].get<double>(), bar.value("section", 1.0), bar.value("velocity", 0.0)});
+  }
+  return std::make_unique<Bars>(bars);
+}
+
+Material read_material(const json& material) {
+  return {material["type"] == "linear" ? MaterialLaw::linear : MaterialLaw::neo_hookean,
+          material["young"].get<double>(), material["poisson"].get<double>(),
+          material["density"].get<double>()};
+}
+
+std::unique_ptr<Model> read_blocks(const json& model) {
+  std::vector<BlockSetup> blocks;
+  BodyNames names("block");
+  double nodes = 0.0;
+  for (std::size_t k = 0; k < model["blocks"].size(); ++k) {
+    const json& block = model["blocks"][k];
+    const std::string pointer = at("/model/blocks", k);
+    const auto elements = block["elements"].get<std::array<int, 3>>();
+    nodes += (elements[0] + 1.0) * (elements[1] + 1.0) * (elements[2] + 1.0);
+    constexpr double most_nodes = 5e8;  // 3 degrees of freedom each must fit a 32-bit number
+    if (nodes > most_nodes)
+      throw mistake(pointer + "/elements",
+                    block["elements"].dump() + ", which makes " + json(nodes).dump() + " nodes",
+                    "at most 5e8");
+    blocks.push_back({names.next(block, pointer), read_vector_or_zero(block, "corner", 3, pointer),
+                      read_vector(block["size"], 3, pointer + "/size"),
+                      read_vector_or_zero(block, "velocity", 3, pointer), elements,
+                      read_material(block["material"])});
+  }
+  return std::make_unique<Blocks>(blocks);
+}
+
+}  // namespace
+
+std::unique_ptr<Model> read_model(const json& model) {
+  const std::string type = model["type"].get<std::string>();
+  if (type == "points") return read_points(model);
+  if (type == "rotating_spring") return read_rotating_spring(model);
+  return type == "bars" ? read_bars(model) : read_blocks(model);
+}
+
+}  // namespace ilaw::host

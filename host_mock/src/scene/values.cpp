@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/values.hpp"
+
+#include "scene/json_text.hpp"
+
+#include <vector>
+
+namespace ilaw::host {
+
+using nlohmann::json;
+
+Vector read_vector(const json& value, int dimension, const std::string& pointer) {
+  if (static_cast<int>(value.size()) != dimension)
+    throw mistake(pointer, std::to_string(value.size()) + " components",
+                  std::to_string(dimension) + ", the dimension of the model");
+  Vector vector(dimension);
+  for (int i = 0; i < dimension; ++i) vector[i] = value[static_cast<std::size_t>(i)].get<double>();
+  return vector;
+}
+
+Vector read_vector_or_zero(const json& object, const char* key, int dimension, const std::string& pointer) {
+  if (!object.contains(key)) return Vector::Zero(dimension);
+  return read_vector(object[key], dimension, pointer + "/" + key);
+}
+
+Vector read_direction(const json& value, int dimension, const std::string& pointer) {
+  Vector direction = read_vector(value, dimension, pointer);
+  if (direction.norm() == 0.0) throw mistake(pointer, "a vector of length 0", "a direction");
+  return direction;
+}
+
+Table read_table(const json& rows, int width, const std::string& pointer) {
+  std::vector<double> times;
+  std::vector<Vector> values;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (static_cast<int>(rows[k].size()) != width + 1)
+      throw mistake(at(pointer, k), std::to_string(rows[k].size()) + " numbers",
+                    std::to_string(width + 1) + " (time and values)");
+    const double time = rows[k][0].get<double>();
+    if (!times.empty() && time <= times.back())
+      throw mistake(at(pointer, k), "time " + rows[k][0].dump(), "one after " + rows[k - 1][0].dump());
+    times.push_back(time);
+    Vector value(width);
+    for (int i = 0; i < width; ++i) value[i] = rows[k][static_cast<std::size_t>(i) + 1].get<double>();
+    values.push_back(value);
+  }
+  return {times, values};
+}
+
+Motion read_motion(const json& object, int dimension, const std::string& pointer) {
+  if (object.contains("velocity") && object.contains("path"))
+    throw mistake(pointer, "both 'velocity' and 'path'", "at most one of them");
+  if (object.contains("path")) return Motion(read_table(object["path"], dimension, pointer + "/path"));
+  return Motion(read_vector_or_zero(object, "velocity", dimension, pointer));
+}
+
+}  // namespace ilaw::host

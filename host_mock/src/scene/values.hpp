@@ -1,0 +1,29 @@
+// values.hpp - vectors, tables and motions of a scene. All throw SceneError at the pointer.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/table.hpp"
+#include "base/vector.hpp"
+#include "model/obstacle.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace ilaw::host {
+
+// A vector of the model's dimension.
+Vector read_vector(const nlohmann::json& value, int dimension, const std::string& pointer);
+// Of a key that may be left out.
+Vector read_vector_or_zero(const nlohmann::json& object, const char* key, int dimension,
+                           const std::string& pointer);
+// Any vector but zero.
+Vector read_direction(const nlohmann::json& value, int dimension, const std::string& pointer);
+
+// Rows of a table: time first, then width values.
+Table read_table(const nlohmann::json& rows, int width, const std::string& pointer);
+
+// "velocity", "path" or neither.
+Motion read_motion(const nlohmann::json& object, int dimension, const std::string& pointer);
+
+}  // namespace ilaw::host

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/warnings.hpp"
+
+#include "scene/json_text.hpp"
+
+#include <string>
+
+namespace ilaw::host {
+
+using nlohmann::json;
+
+void warn_of_times(Scene& scene) {
+  const double end = static_cast<double>(scene.steps) * scene.dt;
+  const auto warn_if_late = [&](const json& parts, const char* key, const std::string& pointer) {
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (parts[i].contains(key) && parts[i][key].get<double>() > end)
+        scene.warnings.push_back(at(pointer, i) + "/" + key + ": found " + parts[i][key].dump() +
+                                 ", after the end of the run, " + json(end).dump());
+  };
+  warn_if_late(scene.source.value("loads", json::array()), "time", "/loads");
+  warn_if_late(scene.source["interfaces"], "birth", "/interfaces");
+  const double wanted = scene.source["time"]["end"].get<double>();
+  if (scene.dt > wanted * (1.0 + 1e-9))
+    scene.warnings.push_back("/time/end: found " + json(wanted).dump() + ", less than one step, " +
+                             json(scene.dt).dump() + ", which is taken all the same");
+  if (scene.output.every > scene.steps)
+    scene.warnings.push_back("/output/every: found " + std::to_string(scene.output.every) +
+                             ": the history has no row in " + std::to_string(scene.steps) + " steps");
+}
+
+void warn_of_start(Scene& scene) {
+  const Dofs start = Dofs::Zero(scene.model->mass().size());
+  const double rounding = 1e-12 * scene.model->position().cwiseAbs().maxCoeff();
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    const Interface& interface = *scene.interfaces[i];
+    if (!interface.setup().counterpart->partners().empty()) continue;
+    std::size_t count = 0, deepest = 0;
+    double least = 0.0;
+    for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
+      const double gap = interface.gap_at(static_cast<int>(k), start, 0.0);
+      if (gap < -rounding) ++count;
+      if (gap < least) {
+        least = gap;
+        deepest = k;
+      }
+    }
+    if (count > 0)
+      scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(count) +
+                               " node(s) start inside the obstacle, node " +
+                               std::to_string(interface.nodes()[deepest]) + " by " + json(-least).dump());
+  }
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,14 @@
+// warnings.hpp - what a scene can run with, but can hardly mean.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "scene/scene.hpp"
+
+namespace ilaw::host {
+
+// Times at which nothing can happen any more.
+void warn_of_times(Scene& scene);
+// Nodes that start inside a rigid obstacle: most laws throw them out of it.
+void warn_of_start(Scene& scene);
+
+}  // namespace ilaw::host

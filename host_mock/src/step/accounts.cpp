@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "step/accounts.hpp"
+
+#include "base/bytes.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace ilaw::host {
+namespace {
+
+// Part of the largest energy that interfaces may put in before a warning: a penalty that suits its step puts
+// in far less.
+constexpr double much_energy = 0.1;
+
+}  // namespace
+
+void Accounts::add_solution(const CoupledContacts::Outcome& outcome) {
+  tally_.sweeps += outcome.sweeps;
+  tally_.sweeps_max = std::max(tally_.sweeps_max, outcome.sweeps);
+  tally_.coupling_residual_max = std::max(tally_.coupling_residual_max, outcome.residual);
+  if (outcome.residual > CoupledContacts::tolerance) ++tally_.unconverged;
+}
+
+void Accounts::add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step) {
+  if (step.external_impulse) energy_.add_external(*step.external_impulse, step.v_before, step.v);
+  if (!model.is_linear()) energy_.add_internal(step.internal_impulse, step.v_before, step.v);
+  for (const auto& interface : interfaces) add_interface(*interface, step);
+  double stored = 0.0;
+  for (const auto& interface : interfaces)
+    for (const std::int32_t contact_index : interface->active())
+      stored += interface->energy(contact_index, ILAW_ENERGY_STORED);
+  energy_.set_stored(stored);
+}
+
+void Accounts::add_interface(const Interface& interface, const StepRecord& step) {
+  const Vector drift = interface.obstacle_velocity() + interface.obstacle_velocity_before();
+  double work = 0.0, relative_work = 0.0;
+  for (const std::int32_t contact_index : interface.active()) {
+    tally_.penetration_max = std::max(tally_.penetration_max, -interface.gap(contact_index));
+    ++tally_.status_counts[static_cast<std::size_t>(interface.status(contact_index))];
+    // Also where there is no impulse: a penalty that lets go may still have stored something.
+    for (int part = 0; part < ILAW_ENERGY_STORED; ++part)
+      energy_.add_dissipation(part, interface.energy(contact_index, part));
+    if (interface.status(contact_index) == ILAW_FREE && interface.impulse(contact_index).isZero(0.0))
+      continue;
+    const Vector sum =
+        interface.relative(contact_index, step.v_before) + interface.relative(contact_index, step.v);
+    work += 0.5 * interface.impulse(contact_index).dot(sum);
+    relative_work += 0.5 * interface.impulse(contact_index).dot(sum - drift);
+  }
+  energy_.add_interface(work, relative_work);
+  const auto active = static_cast<std::int64_t>(interface.active().size());
+  const auto skipped = static_cast<std::int64_t>(interface.nodes().size()) - active;
+  tally_.active += active;
+  tally_.skipped += skipped;
+  tally_.status_counts[ILAW_FREE] += skipped;
+}
+
+std::vector<std::string> Accounts::warnings(std::int64_t steps, const EnergyReport& energy) const {
+  std::vector<std::string> warnings;
+  const auto say = [&](const char* format, auto... values) {
+    std::array<char, 256> text{};
+    std::snprintf(text.data(), text.size(), format, values...);
+    warnings.emplace_back(text.data());
+  };
+  if (tally_.unconverged > 0)
+    say("contacts that share nodes are not solved in %lld of %lld steps: residual up to %.1e after %d sweeps, "
+        "expected %g",
+        static_cast<long long>(tally_.unconverged), static_cast<long long>(steps),
+        tally_.coupling_residual_max, CoupledContacts::most_sweeps, CoupledContacts::tolerance);
+  if (energy.reaction_work > much_energy * energy.scale)
+    say("interfaces put in the energy %.2g, where %.2g is the largest in the run: an explicit penalty too stiff "
+        "for the time step does, and one that is pressed in at the start; contact, friction and bonds do not",
+        energy.reaction_work, energy.scale);
+  return warnings;
+}
+
+void Accounts::save(std::ostream& out) const {
+  energy_.save(out);
+  write_value(out, tally_);
+}
+
+void Accounts::load(std::istream& in) {
+  energy_.load(in);
+  read_value(in, tally_);
+}
+
+}  // namespace ilaw::host

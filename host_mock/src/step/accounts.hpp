@@ -1,0 +1,58 @@
+// accounts.hpp - what a run adds up step by step: the energy balance, and counts of what happened.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/interface.hpp"
+#include "step/coupled_contacts.hpp"
+#include "step/energy.hpp"
+
+#include <array>
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+// What happened so far.
+struct Tally {
+  std::int64_t active = 0, skipped = 0;  // node-steps
+  std::int64_t sweeps = 0;               // over all steps
+  std::int64_t unconverged = 0;          // steps that ended above the tolerance
+  int sweeps_max = 0;
+  double coupling_residual_max = 0.0;  // at the end of any step
+  double penetration_max = 0.0;
+  std::array<std::int64_t, ILAW_STATUS_COUNT> status_counts{};
+};
+
+// A step that is done: its impulses per degree of freedom, and the velocities at its ends.
+struct StepRecord {
+  const Dofs* external_impulse;  // null: no loads
+  const Dofs &internal_impulse, &v_before, &v;
+};
+
+class Accounts {
+ public:
+  // The state (U_0, V_{1/2}) and U_1 that follows from it.
+  void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) {
+    energy_.start(model, u, u_next, v);
+  }
+  void add_solution(const CoupledContacts::Outcome& outcome);
+  void add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step);
+
+  const EnergyBalance& energy() const { return energy_; }
+  const Tally& tally() const { return tally_; }
+  // What a reader of the results must know.
+  std::vector<std::string> warnings(std::int64_t steps, const EnergyReport& energy) const;
+
+  void save(std::ostream& out) const;
+  void load(std::istream& in);
+
+ private:
+  void add_interface(const Interface& interface, const StepRecord& step);
+
+  EnergyBalance energy_;
+  Tally tally_;
+};
+
+}  // namespace ilaw::host

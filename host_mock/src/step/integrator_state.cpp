@@ -1,0 +1,51 @@
+// What surrounds the steps: how a run starts, what is read of it, and where it can go on from.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/bytes.hpp"
+#include "step/integrator.hpp"
+
+namespace ilaw::host {
+
+// Half a kick takes V_0 to V_{1/2}.
+Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt)
+    : model_(model),
+      loads_(loads),
+      interfaces_(interfaces),
+      dt_(dt),
+      u_(Dofs::Zero(model.mass().size())),
+      v_(model.initial_velocity()),
+      v_before_(v_),
+      external_impulse_(u_),
+      internal_impulse_(u_),
+      inverse_mass_(model.mass().cwiseInverse()) {
+  if (share_nodes(interfaces_)) coupled_.emplace(model_, interfaces_);
+  Dofs force = Dofs::Zero(u_.size());
+  for (const auto& load : loads_) load->add_force(0.0, force);
+  model_.add_internal_forces(u_, force);
+  v_ += 0.5 * dt_ * force.cwiseQuotient(model_.mass());
+  for (const auto& load : loads_) load->start(dt_, v_before_, v_);
+  accounts_.start(model_, u_, u_ + dt_ * v_, v_);
+}
+
+Dofs Integrator::interface_impulse() const {
+  Dofs impulse = Dofs::Zero(u_.size());
+  for (const auto& interface : interfaces_)
+    for (const std::int32_t contact_index : interface->active())
+      interface->add_impulse(contact_index, impulse);
+  return impulse;
+}
+
+void Integrator::save(std::ostream& out) const {
+  write_value(out, steps_);
+  for (const Dofs* dofs : {&u_, &v_}) write_array(out, dofs->data(), static_cast<std::size_t>(dofs->size()));
+  accounts_.save(out);
+  for (const auto& interface : interfaces_) interface->save(out);
+}
+
+void Integrator::load(std::istream& in) {
+  read_value(in, steps_);
+  for (Dofs* dofs : {&u_, &v_}) read_array(in, dofs->data(), static_cast<std::size_t>(dofs->size()));
+  accounts_.load(in);
+  for (const auto& interface : interfaces_) interface->load(in, u_);
+}
+
+}  // namespace ilaw::host

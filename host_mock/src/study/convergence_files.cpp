@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "study/convergence_files.hpp"
+
+#include "base/csv.hpp"
+#include "base/files.hpp"
+#include "results/gnuplot.hpp"
+
+#include <fstream>
+#include <ostream>
+#include <utility>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+void write_table(const ErrorTable& table, const std::filesystem::path& folder) {
+  AtomicFile file(folder / "converge.csv");
+  CsvWriter csv(file.stream(), 10);
+  csv << "dt"
+      << "steps"
+      << "seconds";
+  for (const char* norm : ErrorTable::norms) csv << norm;
+  csv.end_row();
+  for (std::size_t k = 0; k < table.errors.size(); ++k) {
+    csv << table.runs[k].dt << table.runs[k].steps << table.runs[k].seconds;
+    for (std::size_t n = 0; n < ErrorTable::norms.size(); ++n) csv.add_if_finite(table.error(k, n));
+    csv.end_row();
+  }
+  file.commit();
+}
+
+void write_orders(const ErrorTable& table, const Sweep& sweep, const std::string& title,
+                  const std::filesystem::path& folder) {
+  json orders;
+  for (std::size_t n = 0; n < ErrorTable::norms.size(); ++n)
+    orders[ErrorTable::norms[n]] = table.order(n);  // NaN is written as null
+  AtomicFile file(folder / "converge.json");
+  file.stream() << json{{"title", title},
+                        {"reference", table.exact ? "exact solution" : "finest run"},
+                        {"refined", sweep.with_mesh ? "mesh and time step" : "time step"},
+                        {"levels", sweep.levels},
+                        {"orders", orders}}
+                       .dump(2)
+                << '\n';
+  file.commit();
+}
+
+// Errors over one column of the table, in the given unit.
+struct Abscissa {
+  int column;
+  double unit;
+  const char *label, *key_corner;
+};
+
+void write_panel(const ErrorTable& table, const std::string& csv, const Abscissa& over,
+                 std::ostream& script) {
+  script << "set xlabel '" << over.label << "'\nset key bottom " << over.key_corner << " noenhanced\nplot ";
+  for (std::size_t n = 0; n < 3; ++n)
+    script << (n ? ", " : "") << csv << " using ($" << over.column << '/' << over.unit << "):" << n + 4
+           << " with linespoints linewidth 1.5 pointtype " << n + 5 << " title '" << ErrorTable::norms[n]
+           << "'";
+  if (over.column == 1) {
+    const double h = table.runs[0].dt, top = table.error(0, 0);
+    script << ", " << top / h << "*x with lines dashtype 2 linecolor rgb '#808080' title 'order 1'";
+  }
+  script << "\n";
+}
+
+// Errors over the time step, and over the run time.
+void write_convergence_script(const ErrorTable& table, const std::string& title,
+                              const std::filesystem::path& folder, std::ostream& script) {
+  for (const auto& [terminal, kind] : {std::pair{"pngcairo", "png"}, std::pair{"svg", "svg"}}) {
+    script << "reset\nset datafile separator comma\nset terminal " << terminal
+           << " size 1000,460 font 'sans,11' background rgb 'white'\nset output "
+           << in_quotes((folder / ("converge." + std::string(kind))).string())
+           << "\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\nset "
+              "ylabel 'relative error'\nset multiplot layout 1,2 title "
+           << in_quotes(title) << " noenhanced\n";
+    // Run times of machines differ: over that of the finest run that is compared.
+    const double finest = table.runs[table.errors.size() - 1].seconds;
+    const std::string csv = in_quotes((folder / "converge.csv").string());
+    write_panel(table, csv, {1, 1.0, "time step", "right"}, script);
+    write_panel(table, csv, {3, finest, "run time / that of the finest run", "left"}, script);
+    script << "unset multiplot\nunset output\n";
+  }
+}
+
+}  // namespace
+
+void write_convergence(const ErrorTable& table, const Sweep& sweep, const std::string& title,
+                       const std::filesystem::path& folder) {
+  write_table(table, folder);
+  write_orders(table, sweep, title, folder);
+}
+
+bool draw_convergence(const ErrorTable& table, const std::string& title,
+                      const std::filesystem::path& folder) {
+  const std::filesystem::path script = folder / "converge.gnuplot";
+  std::ofstream stream(script);
+  write_convergence_script(table, title, folder, stream);
+  stream.close();
+  return run_gnuplot(script);
+}
+
+}  // namespace ilaw::host

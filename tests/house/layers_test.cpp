@@ -1,0 +1,117 @@
+// Who may include whom (docs/architecture.md): what lies lower knows nothing of what stands on it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The folders of host_mock/src from the ground up: each may include itself and those before it.
+const std::vector<std::string> floors = {"base",  "model",   "contact", "step",
+                                         "scene", "results", "study",   "cli"};
+
+std::string first_folder(const std::string& path) { return path.substr(0, path.find('/')); }
+
+auto floor_of(const std::string& path) { return std::find(floors.begin(), floors.end(), first_folder(path)); }
+
+std::string complaint_of_host(const std::string& inside, const std::string& header, bool quoted) {
+  if (header.starts_with("ilaw/kit"))
+    return "the kit is for authors of laws, hosts need ilaw.h and the loader";
+  if (!quoted) return "";
+  const auto target = floor_of(header);
+  if (target == floors.end()) return "no such floor";
+  return target > floor_of(inside) ? "runs up from " + first_folder(inside) + " to " + *target : "";
+}
+
+std::string complaint_of_api(const std::string& inside, const std::string& header, bool quoted) {
+  if (header.find("host_mock") != std::string::npos || (quoted && floor_of(header) != floors.end()))
+    return "the interface knows no host";
+  const bool of_laws = inside.starts_with("include/ilaw/kit");
+  return !of_laws && header.starts_with("ilaw/kit") ? "the loader knows no kit" : "";
+}
+
+std::string complaint_of_law(const std::string& header, bool quoted) {
+  if (quoted) return header.find('/') != std::string::npos ? "a law stays in its folder" : "";
+  if (!header.starts_with("ilaw/") || header == "ilaw/ilaw.h" || header == "ilaw/kit.hpp") return "";
+  static const std::regex public_kit("ilaw/kit/[^/]+\\.hpp");
+  return std::regex_match(header, public_kit) ? "" : "a law includes the kit's public headers alone";
+}
+
+// Empty where a file of the tree may include a header.
+std::string complaint(const std::string& file, const std::string& header, bool quoted) {
+  const auto inside = [&](const std::string& folder) { return file.substr(folder.size()); };
+  for (const std::string folder : {"host_mock/src/", "api/", "plugins/"}) {
+    if (!file.starts_with(folder)) continue;
+    if (folder == "api/") return complaint_of_api(inside(folder), header, quoted);
+    return folder == "plugins/" ? complaint_of_law(header, quoted)
+                                : complaint_of_host(inside(folder), header, quoted);
+  }
+  return "";
+}
+
+std::vector<std::string> complaints_of(const fs::path& file, const std::string& name) {
+  static const std::regex include("\\s*#\\s*include\\s*([<\"])([^>\"]+)[>\"].*");
+  std::vector<std::string> complaints;
+  std::ifstream stream(file);
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    std::smatch found;
+    if (!std::regex_match(line, found, include)) continue;
+    const std::string said = complaint(name, found[2], found[1] == "\"");
+    if (!said.empty())
+      complaints.push_back(name + ":" + std::to_string(number) + ": " + found[2].str() + ": " + said);
+  }
+  return complaints;
+}
+
+TEST(Layers, NoIncludeRunsUp) {
+  const fs::path root = ILAW_SOURCE;
+  std::string all;
+  int files = 0;
+  for (const char* folder : {"host_mock/src", "api", "plugins"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      const std::string extension = entry.path().extension();
+      if (extension != ".cpp" && extension != ".hpp" && extension != ".h" && extension != ".c") continue;
+      ++files;
+      for (const std::string& said : complaints_of(entry.path(), fs::relative(entry.path(), root)))
+        all += said + "\n";
+    }
+  EXPECT_EQ(all, "");
+  EXPECT_GT(files, 90);
+}
+
+TEST(Layers, EveryFolderOfTheHostIsAFloor) {
+  for (const auto& entry : fs::directory_iterator(fs::path(ILAW_SOURCE) / "host_mock/src"))
+    EXPECT_NE(floor_of(entry.path().filename()), floors.end()) << entry.path();
+}
+
+// The test itself: what it must refuse, and what not.
+TEST(Layers, IncludesThatRunUpAreSeen) {
+  const std::vector<std::tuple<std::string, std::string, bool, bool>> cases = {
+      {"host_mock/src/step/integrator.cpp", "scene/scene.hpp", true, false},
+      {"host_mock/src/scene/scene.cpp", "step/energy.hpp", true, true},
+      {"host_mock/src/base/files.cpp", "cli/commands.hpp", true, false},
+      {"host_mock/src/cli/run.cpp", "base/files.hpp", true, true},
+      {"host_mock/src/model/bars.cpp", "attic/bars.hpp", true, false},
+      {"host_mock/src/contact/law.cpp", "ilaw/kit/node.hpp", false, false},
+      {"host_mock/src/contact/law.cpp", "ilaw/loader.hpp", false, true},
+      {"api/loader/library.cpp", "base/files.hpp", true, false},
+      {"api/loader/library.cpp", "ilaw/kit.hpp", false, false},
+      {"api/include/ilaw/kit/plugin.hpp", "ilaw/kit/detail/instance.hpp", false, true},
+      {"plugins/tie/tie.cpp", "ilaw/kit/detail/gather.hpp", false, false},
+      {"plugins/tie/tie.cpp", "ilaw/kit/window.hpp", false, true},
+      {"plugins/tie/tie.cpp", "../cohesive/root.hpp", true, false},
+      {"plugins/tie/tie.cpp", "cmath", false, true}};
+  for (const auto& [file, header, quoted, allowed] : cases)
+    EXPECT_EQ(complaint(file, header, quoted).empty(), allowed) << file << " includes " << header;
+}
+
+}  // namespace
