@@ -179,8 +179,9 @@ struct penalty {
   template <bool Linear, class Node>
   void step_implicitly(Node& node, double damping_ratio) const {
     penalty_law::compression normal = compression_of(node, damping_ratio);
-    const bool acts =
-        node.state.indentation > 0.0 || node.gap + 0.5 * node.position_step * node.v_previous.n <= 0.0;
+    const bool enters =
+        !is_out_of_reach(node) && node.gap + 0.5 * node.position_step * node.v_previous.n <= 0.0;
+    const bool acts = node.state.indentation > 0.0 || enters;
     const double rate = 2.0 / node.velocity_step;
     const double softness = rate / (node.velocity_step * tangential_stiffness);
     const vector spring{0.0, node.state.slip_1, node.state.slip_2};

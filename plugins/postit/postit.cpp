@@ -170,7 +170,7 @@ struct postit {
   template <class Node>
   void step_unbonded(Node& node) const {
     touch(node, node.v_free, {});
-    if (node.gap > 0.0 && node.status == double{ILAW_FREE}) node.state.grace = 0.0;
+    if (node.status == double{ILAW_FREE}) node.state.grace = 0.0;
   }
 
   template <class Node>

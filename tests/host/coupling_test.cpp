@@ -35,7 +35,10 @@ void expect_law(const Interface& interface, int contact_index, const Dofs& v, co
   }
   EXPECT_NEAR(v_n, least, tolerance);
   EXPECT_LE(h * r_t.norm(), h * friction * r_n * (1.0 + 1e-12) + tolerance);
-  if (v_t.norm() > tolerance && r_t.dot(relative_before) <= 0.0) {
+  const Vector before_t = relative_before - relative_before.dot(normal) * normal;
+  if (r_t.norm() == 0.0) {
+    EXPECT_LE(v_t.dot(before_t + v_t), tolerance * speed);  // any friction would have pushed
+  } else if (v_t.norm() > tolerance && r_t.dot(relative_before) <= 0.0) {
     EXPECT_NEAR(r_t.dot(v_t), -friction * r_n * v_t.norm(), (friction * r_n + r_t.norm()) * tolerance);
   }
 }

@@ -336,7 +336,7 @@ TEST(Tangent, ThatIsNoneIsBadInput) {
     b.struct_size = sizeof b;
     b.node_count = 1;
     b.velocity_step = b.position_step = 1e-3;
-    b.v_free = {v, 0, 1};
+    b.v_free = b.v_previous = {v, 0, 1};
     b.delassus = {&h, 0, 1};
     b.gap = {&gap, 0, 1};
     b.normal = {normal, 0, 1};

@@ -30,7 +30,7 @@ ilaw_batch batch_of_one() {
   b.struct_size = sizeof b;
   b.node_count = 1;
   b.velocity_step = b.position_step = 1e-3;
-  b.v_free = {v, 3, 1};
+  b.v_free = b.v_previous = {v, 3, 1};
   b.delassus = {&h, 1, 1};
   b.gap = {&gap, 1, 1};
   b.impulse = {r, 3, 1};

@@ -55,7 +55,7 @@ class ContactArrays {
   std::vector<double> v_free, v_previous, normal, impulse, previous_impulse;
   std::vector<double> delassus, gap, area, energy, state;
   std::vector<std::uint8_t> status;
-  std::vector<std::uint8_t> touched;  // the law may have changed the state that it was initialised with
+  std::vector<std::uint8_t> touched;  // not known to do nothing out of reach: neither fresh nor at rest
 
  private:
   std::size_t first_component(int contact) const {

@@ -44,6 +44,7 @@ int Interface::contact_index_of(int node_index, const Dofs& u) {
   for (std::size_t p = 0; p < info().per_node_parameter_count; ++p)
     parameters.push_back(setup_.arguments.per_node.at(info().per_node_parameters[p])[k]);
   contacts_.add(node_index, setup_.areas[k], parameters);
+  contacts_.touched.back() = law_.acts_at_distance();
   contacts_.delassus.back() = 1.0 / model_.mass()[setup_.nodes[k] * dimension_];
   const int made = contacts_.index_of(k);
   initialise(made, u);
@@ -61,17 +62,18 @@ void Interface::initialise(int contact_index, const Dofs& u) {
 }
 
 bool Interface::may_skip() const {
-  if (setup_.keeps_all_active || law_.acts_at_distance()) return false;
+  if (setup_.keeps_all_active || (law_.acts_at_distance() && !law_.rests())) return false;
   return setup_.counterpart->keeps_normal() || !law_.carries_axes();
 }
 
-// Touched contacts with a state stay near for good: only fresh ones are known to do nothing at a distance.
+// Touched contacts stay near: only fresh ones, and those at rest, are known to do nothing at a distance.
 void Interface::refresh_near(const StepView& step) {
   near_.clear();
   setup_.counterpart->refresh(step.u);
   for (std::size_t k = 0; k < setup_.nodes.size(); ++k) {
     const int node_index = static_cast<int>(k), contact_index = contacts_.index_of(k);
-    const bool touched = contact_index >= 0 && contacts_.touched[at(contact_index)];
+    const bool touched =
+        contact_index >= 0 ? contacts_.touched[at(contact_index)] != 0 : law_.acts_at_distance();
     if (touched || !may_skip() ||
         proximity_.may_touch(setup_.counterpart->gap_bound(node_index, step.u, step.time) -
                              setup_.gap_offset))
@@ -116,7 +118,7 @@ void Interface::locate(int contact_index, const StepView& step) {
 
 bool Interface::is_idle(int contact_index) const {
   const std::size_t k = at(contact_index);
-  return !law_.acts_at_distance() && !contacts_.touched[k] && contacts_.gap[k] > closing_;
+  return !contacts_.touched[k] && contacts_.gap[k] > closing_;
 }
 
 void Interface::gather(const ContactList& contacts, const Dofs& v, const StepView& step) {
@@ -132,7 +134,21 @@ void Interface::gather(const ContactList& contacts, const Dofs& v, const StepVie
 }
 
 void Interface::evaluate(const ContactList& contacts, const StepView& step) {
-  check(law_.evaluate(timed(contacts_.step_batch(), step.time, step.dt), contacts));
+  const Answer answer = law_.evaluate(timed(contacts_.step_batch(), step.time, step.dt), contacts);
+  check(answer);
+  check_status(contacts);
+  stable_step_ = std::min(stable_step_, answer.report.stable_velocity_step);
+}
+
+// ABI 1 has eight statuses for ever: any other number is a broken library's.
+void Interface::check_status(const ContactList& contacts) const {
+  for (const std::int32_t contact_index : contacts)
+    if (const int found = status(contact_index); found >= ILAW_STATUS_COUNT)
+      throw ilaw::error(ILAW_BAD_LIBRARY, "interface '" + setup_.name + "' (law '" + setup_.law +
+                                              "', library " + library().path() + "): found status " +
+                                              std::to_string(found) + " at node " +
+                                              std::to_string(node_of(contact_index)) +
+                                              ", expected 0 to " + std::to_string(ILAW_STATUS_COUNT - 1));
 }
 
 double Interface::apply(const ContactList& contacts, Dofs& v) {
@@ -160,7 +176,13 @@ void Interface::accept(double dt) {
   if (info().state_size == 0) return;
   for (const std::int32_t contact_index : active_) {
     const bool in_reach = !(gap(contact_index) > dt * v_free(contact_index).norm());
-    if (status(contact_index) != ILAW_FREE || in_reach) contacts_.touched[at(contact_index)] = 1;
+    std::uint8_t& touched = contacts_.touched[at(contact_index)];
+    if (status(contact_index) != ILAW_FREE)
+      touched = 1;
+    else if (law_.rests())
+      touched = 0;
+    else if (in_reach)
+      touched = 1;
     contacts_.accept_state(contact_index);
   }
 }

@@ -64,6 +64,9 @@ class Interface {
   // The step is done: its state becomes the state before the next.
   void accept(double dt);
 
+  // The largest step at which the law was stable at all contacts evaluated so far; infinity: it needs none.
+  double stable_step() const { return stable_step_; }
+
   // Where contacts may share nodes, they are evaluated more than once per step.
   void evaluate_repeatedly() { contacts_.keep_state_in(); }
   // Whether a contact cannot act in this step, like those that are not active (proximity_filter.hpp).
@@ -115,6 +118,7 @@ class Interface {
   void initialise(int contact_index, const Dofs& u);
   ilaw_batch timed(ilaw_batch batch, double time, double dt) const;
   void check(const Answer& answer) const;
+  void check_status(const ContactList& contacts) const;
 
   InterfaceSetup setup_;
   const Model& model_;
@@ -122,6 +126,7 @@ class Interface {
   Law law_;
   ContactArrays contacts_;
   ProximityFilter proximity_;
+  double stable_step_ = std::numeric_limits<double>::infinity();
   double closing_ = 0.0;  // how far a gap may close in the coming step
   ContactList near_, active_;
   Vector obstacle_velocity_, obstacle_velocity_before_;

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 namespace ilaw::host {
 
 Law::Law(const std::string& library, const std::string& law, const Arguments& arguments,
          const Vector& tangent, int dimension)
-    : library_(library),
+    : library_(library.find('/') == std::string::npos ? ilaw::library::named(library)
+                                                      : ilaw::library(library)),
       interface_(create_law(law, arguments, tangent, library_, dimension)),
       info_(interface_.info()) {}
 
@@ -40,9 +42,15 @@ Answer Law::evaluate(const ilaw_batch& batch, const std::vector<std::int32_t>& c
     answer.report.struct_size = sizeof(ilaw_report);
     answer.code = interface_.evaluate(part, &answer.report);
   }
-  for (const Answer& answer : answers)
+  Answer all{ILAW_OK, {}};
+  all.report.stable_velocity_step = std::numeric_limits<double>::infinity();
+  for (const Answer& answer : answers) {
     if (answer.code != ILAW_OK) return answer;
-  return {ILAW_OK, {}};
+    // 0: a library that does not say
+    if (const double stable = answer.report.stable_velocity_step; stable > 0.0)
+      all.report.stable_velocity_step = std::min(all.report.stable_velocity_step, stable);
+  }
+  return all;
 }
 
 }  // namespace ilaw::host

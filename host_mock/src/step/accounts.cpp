@@ -50,6 +50,7 @@ void Accounts::add_interface(const Interface& interface, const StepRecord& step)
     relative_work += 0.5 * interface.impulse(contact_index).dot(sum - drift);
   }
   energy_.add_interface(work, relative_work);
+  tally_.stable_step = std::min(tally_.stable_step, interface.stable_step());
   const auto active = static_cast<std::int64_t>(interface.active().size());
   const auto skipped = static_cast<std::int64_t>(interface.nodes().size()) - active;
   tally_.active += active;
@@ -57,7 +58,8 @@ void Accounts::add_interface(const Interface& interface, const StepRecord& step)
   tally_.status_counts[ILAW_FREE] += skipped;
 }
 
-std::vector<std::string> Accounts::warnings(std::int64_t steps, const EnergyReport& energy) const {
+std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt,
+                                            const EnergyReport& energy) const {
   std::vector<std::string> warnings;
   const auto say = [&](const char* format, auto... values) {
     std::array<char, 256> text{};
@@ -69,6 +71,10 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, const EnergyRepo
         "expected %g",
         static_cast<long long>(tally_.unconverged), static_cast<long long>(steps),
         tally_.coupling_residual_max, CoupledContacts::most_sweeps, CoupledContacts::tolerance);
+  if (dt > tally_.stable_step)
+    say("the time step is %g, where a law is stable up to %g at its nodes: an explicit spring is too stiff for "
+        "it",
+        dt, tally_.stable_step);
   if (energy.reaction_work > much_energy * energy.scale)
     say("interfaces put in the energy %.2g, where %.2g is the largest in the run: an explicit penalty too stiff "
         "for the time step does, and one that is pressed in at the start; contact, friction and bonds do not",

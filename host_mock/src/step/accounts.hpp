@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <iosfwd>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Tally {
   int sweeps_max = 0;
   double coupling_residual_max = 0.0;  // at the end of any step
   double penetration_max = 0.0;
+  double stable_step = std::numeric_limits<double>::infinity();  // the least that a law asked for
   std::array<std::int64_t, ILAW_STATUS_COUNT> status_counts{};
 };
 
@@ -43,7 +45,7 @@ class Accounts {
   const EnergyBalance& energy() const { return energy_; }
   const Tally& tally() const { return tally_; }
   // What a reader of the results must know.
-  std::vector<std::string> warnings(std::int64_t steps, const EnergyReport& energy) const;
+  std::vector<std::string> warnings(std::int64_t steps, double dt, const EnergyReport& energy) const;
 
   void save(std::ostream& out) const;
   void load(std::istream& in);

@@ -41,7 +41,7 @@ class Integrator {
   const PhaseSeconds& seconds() const { return seconds_; }
   const Tally& tally() const { return accounts_.tally(); }
   // What a reader of the results must know.
-  std::vector<std::string> warnings() const { return accounts_.warnings(steps_, energy()); }
+  std::vector<std::string> warnings() const { return accounts_.warnings(steps_, dt_, energy()); }
 
   // Everything that the next step depends on; a run that goes on from it gives the same bits.
   void save(std::ostream& out) const;

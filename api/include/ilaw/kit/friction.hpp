@@ -149,16 +149,6 @@ inline double dissipative_part(double r_a, double r_Hr) {
   return r_a + r_Hr > 0.0 ? positive_part(-r_a / r_Hr) : 1.0;
 }
 
-// The part of an impulse that stops the node, r = -H^-1 v_free, which does no positive work r.v^-/2: all of
-// it unless the node was moving before, and turned round within the step.
-template <class Node>
-vector stopping_impulse(const Node& node) {
-  const vector r = -node.delassus.solve(node.v_free), v = node.v_previous;
-  const double given = normal_product(r, v) + tangential_product(r, v);
-  const double taken = normal_product(r, node.v_free) + tangential_product(r, node.v_free);
-  return given > 0.0 ? dissipative_part(taken + given, -taken) * r : r;
-}
-
 // Takes the positive work off a solution for any H, whose work is r.(rest + u)/2 with u_N = 0, r_T.u_T <= 0.
 // With the part s of r_T alone it is that of c2 s^2 + c1 s + c0; the largest part without positive work is
 // that of the closed form where H does not couple. Where it does, c0 > 0 may be left, and the whole impulse
@@ -180,6 +170,16 @@ void take_off_positive_work(Node& node, vector q, vector rest) {
                                         normal_product(r, h_all) + tangential_product(r, h_all));
   r = whole * r;
   if (part * whole < sticking_part) node.status = r.n > 0.0 ? double{ILAW_SLIP} : double{ILAW_FREE};
+}
+
+// The impulse that stops the node, r = -H^-1 v_free, without positive work r.v^-/2: all of it unless the node
+// was moving before, and turned round within the step.
+template <class Node>
+vector stopping_impulse(Node node) {
+  node.impulse = -node.delassus.solve(node.v_free);
+  node.status = ILAW_STICK;
+  take_off_positive_work(node, node.v_free, node.v_previous);
+  return node.impulse;
 }
 
 // For an ellipse of coefficients along the tangents.
