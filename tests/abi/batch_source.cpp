@@ -293,8 +293,7 @@ void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated,
   for (const std::int64_t node : nodes_) {
     bool zero = true;
     for (std::size_t c = 0; c < drawn_.dimension(); ++c) {
-      // In the host's axes one that is next to the largest double may overflow as it is turned.
-      if (!drawn_.global() && !is_finite(impulse_.at(node, c)))
+      if (!is_finite(impulse_.at(node, c)))
         refuse("an impulse of " + std::to_string(impulse_.at(node, c)) + " at node " + std::to_string(node));
       zero = zero && impulse_.at(node, c) == 0.0;
     }

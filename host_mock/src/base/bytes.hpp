@@ -1,5 +1,5 @@
-// bytes.hpp - values as the bytes of a checkpoint, and back. Reading throws std::runtime_error where the
-// bytes cannot be what was written.
+// bytes.hpp - values as the bytes of a checkpoint, and back. Reading throws std::runtime_error
+// where the bytes cannot be what was written.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

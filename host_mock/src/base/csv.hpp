@@ -15,7 +15,8 @@ namespace ilaw::host {
 
 class CsvWriter {
  public:
-  // digits: significant ones of numbers that are not whole; 0: as few as read back to the same double.
+  // digits: significant ones of numbers that are not whole; 0: as few as read back to the same
+  // double.
   explicit CsvWriter(std::ostream& out, int digits = 0) : out_(out), digits_(digits) {}
 
   CsvWriter& operator<<(std::string_view text) {

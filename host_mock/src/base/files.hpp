@@ -8,8 +8,8 @@
 
 namespace ilaw::host {
 
-// Makes the folder that --out names, if it does not exist, and tries whether files can be made in it; says on
-// stderr why they cannot.
+// Makes the folder that --out names, if it does not exist, and tries whether files can be made in
+// it; says on stderr why they cannot.
 bool make_folder(const std::filesystem::path& folder);
 
 // A file that appears under its name only when it is complete: written beside it, then renamed.

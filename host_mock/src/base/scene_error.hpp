@@ -7,8 +7,8 @@
 
 namespace ilaw::host {
 
-// A mistake in a scene: JSON pointer, what was found, what is allowed. Without pointer: one of the whole
-// file.
+// A mistake in a scene: JSON pointer, what was found, what is allowed. Without pointer: one of the
+// whole file.
 class SceneError : public std::runtime_error {
  public:
   explicit SceneError(const std::string& found_and_expected) : std::runtime_error(found_and_expected) {}

@@ -1,5 +1,5 @@
-// commands.hpp - the commands of the program, one file each: its options, and what it does. They say on
-// stderr what goes wrong, and return an ExitCode.
+// commands.hpp - the commands of the program, one file each: its options, and what it does. They
+// say on stderr what goes wrong, and return an ExitCode.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

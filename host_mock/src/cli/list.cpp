@@ -1,4 +1,5 @@
-// `ilaw list`: the laws of all libraries on the search path; a broken library is listed with its refusal.
+// `ilaw list`: the laws of all libraries on the search path; a broken library is listed with its
+// refusal.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.hpp"
 

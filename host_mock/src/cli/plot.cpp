@@ -55,7 +55,8 @@ int refuse(const std::filesystem::path& history, const char* found) {
   return exit_bad_input;
 }
 
-// Reads history.csv and summary.json of a run's folder and writes history.png and history.svg beside them.
+// Reads history.csv and summary.json of a run's folder and writes history.png and history.svg
+// beside them.
 int plot(const std::filesystem::path& results) {
   // gnuplot takes file names that begin with < or | for commands: an absolute path never does.
   const std::filesystem::path folder = std::filesystem::absolute(results).lexically_normal();

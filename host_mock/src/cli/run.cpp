@@ -45,8 +45,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A run and what it writes. The constructor throws std::runtime_error where there is nothing to resume from,
-// or nothing can be written.
+// A run and what it writes. The constructor throws std::runtime_error where there is nothing to
+// resume from, or nothing can be written.
 class Run {
  public:
   Run(Scene& scene, const Options& options)

@@ -1,7 +1,8 @@
 // contact_arrays.hpp - the arrays that a law reads and writes, one entry per contact.
 //
-// A node of the interface has its index in the interface's list of nodes (node_index) and, from when it is
-// first needed, its index in these arrays (contact_index). Nodes that were never near have no entry.
+// A node of the interface has its index in the interface's list of nodes (node_index) and, from
+// when it is first needed, its index in these arrays (contact_index). Nodes that were never near
+// have no entry.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -22,7 +23,8 @@ class ContactArrays {
   std::size_t count() const { return node_index.size(); }
   // Of the node at node_index; -1: none yet.
   int index_of(std::size_t node) const { return contact_index_[node]; }
-  // Appends the contact of a node, with its values of the law's parameters per node; its state is zero.
+  // Appends the contact of a node, with its values of the law's parameters per node; its state is
+  // zero.
   void add(int node, double node_area, const std::vector<double>& node_parameters);
 
   // The d components of a vector, for one contact.
@@ -55,7 +57,7 @@ class ContactArrays {
   std::vector<double> v_free, v_previous, normal, impulse, previous_impulse;
   std::vector<double> delassus, gap, area, energy, state;
   std::vector<std::uint8_t> status;
-  std::vector<std::uint8_t> touched;  // not known to do nothing out of reach: neither fresh nor at rest
+  std::vector<std::uint8_t> touched;  // neither fresh nor at rest: must be evaluated out of reach, too
 
  private:
   std::size_t first_component(int contact) const {

@@ -1,5 +1,5 @@
-// counterpart.hpp - what the nodes of an interface touch: a rigid obstacle, other nodes, or a surface of
-// another body.
+// counterpart.hpp - what the nodes of an interface touch: a rigid obstacle, other nodes, or a
+// surface of another body.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -30,8 +30,8 @@ class Counterpart {
 
   // Of the node at node_index in the interface's list.
   virtual ContactPoint contact_point(int node_index, const Dofs& u, double time) const = 0;
-  // A bound from below on the gap, cheap, that relative motion by a distance lowers by no more than the
-  // distance.
+  // A bound from below on the gap, cheap, that relative motion by a distance lowers by no more than
+  // the distance.
   virtual double gap_bound(int node_index, const Dofs& u, double time) const = 0;
   // Called before the gap bounds of all nodes are taken anew.
   virtual void refresh(const Dofs& /*u*/) {}

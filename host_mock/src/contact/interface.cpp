@@ -51,9 +51,9 @@ int Interface::contact_index_of(int node_index, const Dofs& u) {
   return made;
 }
 
-// The state that the law starts with at time 0, whenever the contact is made. Its axes are those of the first
-// time that it is active: where the normal turns, a law whose state has axes is active from the first step
-// (may_skip).
+// The state that the law starts with at time 0, whenever the contact is made. Its axes are those of
+// the first time that it is active: where the normal turns, a law whose state has axes is active
+// from the first step (may_skip).
 void Interface::initialise(int contact_index, const Dofs& u) {
   contacts_.vector(contacts_.normal, contact_index) =
       setup_.counterpart->contact_point(contacts_.node_index[at(contact_index)], u, 0.0).normal;
@@ -66,7 +66,8 @@ bool Interface::may_skip() const {
   return setup_.counterpart->keeps_normal() || !law_.carries_axes();
 }
 
-// Touched contacts stay near: only fresh ones, and those at rest, are known to do nothing at a distance.
+// Touched contacts stay near: only fresh ones, and those at rest, are known to do nothing at a
+// distance.
 void Interface::refresh_near(const StepView& step) {
   near_.clear();
   setup_.counterpart->refresh(step.u);
@@ -160,7 +161,7 @@ double Interface::apply(const ContactList& contacts, Dofs& v) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const std::int32_t contact_index = contacts[i];
     const Vector added = impulse(contact_index) - contacts_.vector(contacts_.previous_impulse, contact_index);
-    if (added.isZero(0.0)) continue;  // idle contacts may share nodes, which they must not even write
+    if (added.isZero(0.0)) continue;  // idle contacts must not even write nodes they share
     const auto move = [&](int node, double weight) {
       v.segment(node * d, d) += (weight / model_.mass()[node * d]) * added;
       speed = std::max(speed, v.segment(node * d, d).norm());

@@ -1,6 +1,7 @@
-// interface.hpp - one interface of a scene: the contacts between some nodes and their counterpart, and the
-// law that acts there. It brings together the law (law.hpp), its arrays (contact_arrays.hpp), what the nodes
-// touch (counterpart.hpp), and which of them are near (proximity_filter.hpp).
+// interface.hpp - one interface of a scene: the contacts between some nodes and their counterpart,
+// and the law that acts there. It brings together the law (law.hpp), its arrays
+// (contact_arrays.hpp), what the nodes touch (counterpart.hpp), and which of them are near
+// (proximity_filter.hpp).
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -23,7 +24,7 @@ struct InterfaceSetup {
   std::vector<int> nodes;
   std::vector<double> areas;  // tributary, per node
   std::unique_ptr<Counterpart> counterpart;
-  double birth = 0.0, death = std::numeric_limits<double>::infinity();  // acts for birth <= t < death
+  double birth = 0.0, death = std::numeric_limits<double>::infinity();  // while birth <= t < death
   Vector tangent;                 // first tangent of all nodes; empty: none given
   double gap_offset = 0.0;        // taken off every gap: thickness, radius
   bool keeps_all_active = false;  // also contacts that cannot be reached: same results, more work
@@ -35,14 +36,15 @@ struct StepView {
   const Dofs& v_before;  // at the half step before time
   double time, dt;
   double speed_before;  // at the half step before time
-  double speed_after;   // while impulses are sought: of v_free, and of what other contacts may make of it
+  double speed_after;   // of v_free, and of what other contacts may make of it
 };
 
 using ContactList = std::vector<std::int32_t>;  // by contact_index
 
 class Interface {
  public:
-  // Loads the library and creates the law; throws ilaw::error with the loader's or the law's message.
+  // Loads the library and creates the law; throws ilaw::error with the loader's or the law's
+  // message.
   Interface(InterfaceSetup setup, const Model& model);
 
   const std::string& name() const { return setup_.name; }
@@ -52,14 +54,16 @@ class Interface {
   const std::vector<int>& nodes() const { return setup_.nodes; }
 
   // ---- a step, in the order of the calls ----
-  // Chooses the active contacts, by contact_index, and finds their gaps, normals, partners and delassus.
+  // Chooses the active contacts, by contact_index, and finds their gaps, normals, partners and
+  // delassus.
   void open_step(const StepView& step);
   const ContactList& active() const { return active_; }
   // What the listed contacts see of the velocities v, without their own impulses: v_free.
   void gather(const ContactList& contacts, const Dofs& v, const StepView& step);
   // The law: impulse, state, energies and status. Throws ilaw::error on bad nodes.
   void evaluate(const ContactList& contacts, const StepView& step);
-  // Adds to v what the impulses have changed by since gather. Returns the largest speed of a node it moved.
+  // Adds to v what the impulses have changed by since gather. Returns the largest speed of a node
+  // it moved.
   double apply(const ContactList& contacts, Dofs& v);
   // The step is done: its state becomes the state before the next.
   void accept(double dt);
@@ -69,7 +73,8 @@ class Interface {
 
   // Where contacts may share nodes, they are evaluated more than once per step.
   void evaluate_repeatedly() { contacts_.keep_state_in(); }
-  // Whether a contact cannot act in this step, like those that are not active (proximity_filter.hpp).
+  // Whether a contact cannot act in this step, like those that are not active
+  // (proximity_filter.hpp).
   bool is_idle(int contact_index) const;
   // Adds to the impulse of a contact, for apply to pass on; change has a component per dimension.
   void change_impulse(int contact_index, const Vector& change);

@@ -1,5 +1,5 @@
-// law.hpp - a law as this host holds it: the library, the instance made from a scene's parameters, and its
-// two calls, initialise and evaluate.
+// law.hpp - a law as this host holds it: the library, the instance made from a scene's parameters,
+// and its two calls, initialise and evaluate.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,8 +13,8 @@
 
 namespace ilaw::host {
 
-// What a law answered: ILAW_OK and the stable step of all, or the code and the report of the first part of
-// the batch that it refused.
+// What a law answered: ILAW_OK and the stable step of all, or the code and the report of the first
+// part of the batch that it refused.
 struct Answer {
   std::int32_t code;
   ilaw_report report;
@@ -34,7 +34,8 @@ class Law {
   // Whether the state holds axes, which turn with the normal from step to step.
   bool carries_axes() const;
 
-  // Both work on the listed entries of the batch's arrays; evaluate shares a long list among threads.
+  // Both work on the listed entries of the batch's arrays; evaluate shares a long list among
+  // threads.
   Answer initialise(ilaw_batch batch, const std::vector<std::int32_t>& contacts) const;
   Answer evaluate(const ilaw_batch& batch, const std::vector<std::int32_t>& contacts) const;
 

@@ -92,8 +92,8 @@ ilaw::interface create_law(const std::string& law, const Arguments& given, const
   std::optional<std::size_t> node_index;
   try {
     ilaw::interface created(library, law, setup);
-    // Values per node reach the law with the first batch only. Whether it allows those of a node together is
-    // found now, by an instance for that node alone; neighbours are often alike.
+    // Values per node reach the law with the first batch only. Whether it allows those of a node
+    // together is found now, by an instance for that node alone; neighbours are often alike.
     for (node_index = 0; *node_index < arguments.node_count(); ++*node_index)
       if (arguments.take_node(*node_index)) try_create(created.law(), setup);
     return created;

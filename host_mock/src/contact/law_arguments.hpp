@@ -23,8 +23,8 @@ struct Arguments {
   std::map<std::string, std::vector<double>> per_node;  // one value per node of the interface
 };
 
-// A parameter that a law refuses: where it stands below "parameters" (empty: no single one is at fault), and
-// whose values they are where they are given per node.
+// A parameter that a law refuses: where it stands below "parameters" (empty: no single one is at
+// fault), and whose values they are where they are given per node.
 class ParameterError : public ilaw::error {
  public:
   ParameterError(const ilaw::error& refusal, std::string pointer, std::optional<std::size_t> node_index)
@@ -37,8 +37,8 @@ class ParameterError : public ilaw::error {
   std::optional<std::size_t> node_index_;
 };
 
-// Creates the law for nodes with spherical H and global axes; tangent is empty where none is given. Throws
-// ParameterError, also about values per node, or ilaw::error, with the law's message.
+// Creates the law for nodes with spherical H and global axes; tangent is empty where none is given.
+// Throws ParameterError, also about values per node, or ilaw::error, with the law's message.
 ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
                            const ilaw::library& library, int dimension);
 

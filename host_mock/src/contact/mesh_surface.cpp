@@ -41,8 +41,8 @@ Vector3d point_of(const Corners& x, const Vector2d& at) {
   return n[0] * x[0] + n[1] * x[1] + n[2] * x[2] + n[3] * x[3];
 }
 
-// Gauss-Newton for the nearest point, which takes one step on a parallelogram; a coordinate that leaves the
-// patch is held at its edge.
+// Gauss-Newton for the nearest point, which takes one step on a parallelogram; a coordinate that
+// leaves the patch is held at its edge.
 Projection project(const Vector3d& p, const Corners& x) {
   Vector2d at = Vector2d::Zero();
   for (int iteration = 0; iteration < 12; ++iteration) {
@@ -114,8 +114,8 @@ double MeshSurface::radius(const Facet& facet, const Dofs& u) const {
   return largest;
 }
 
-// The nearest centre tells the facet, or a neighbour of it; its distance less the largest radius bounds the
-// gap, unless the point lies behind the surface.
+// The nearest centre tells the facet, or a neighbour of it; its distance less the largest radius
+// bounds the gap, unless the point lies behind the surface.
 void MeshSurface::refresh(const Dofs& u) {
   std::vector<Vector3d> centers;
   double largest_radius = 0.0;
@@ -161,8 +161,8 @@ ContactPoint MeshSurface::contact_point(int node_index, const Dofs& u, double /*
   }
   const double normal_distance = best.normal.dot(p - best.point);
   const double beside = (p - best.point - normal_distance * best.normal).norm();
-  // A point that is nearest to an edge without facing the patch lies beyond the surface's border: it is not
-  // in contact.
+  // A point that is nearest to an edge without facing the patch lies beyond the surface's border:
+  // it is not in contact.
   const bool faces = beside <= 1e-6 * shortest_edge_;
   return {faces ? normal_distance : best.distance, best.normal, ContactPoint::most_partners, facets_[facet],
           best.weights};

@@ -6,10 +6,10 @@
 
 namespace ilaw::host {
 
-// A point is projected on the nearest facet, a bilinear patch of four nodes: the contact's partners are these
-// nodes, with the shape functions there as weights, so that impulses balance. Which facet is the nearest is
-// found among all at a refresh, and among that one's neighbours in between: validity is what a point may
-// slide meanwhile.
+// A point is projected on the nearest facet, a bilinear patch of four nodes: the contact's partners
+// are these nodes, with the shape functions there as weights, so that impulses balance. Which facet
+// is the nearest is found among all at a refresh, and among that one's neighbours in between:
+// validity is what a point may slide meanwhile.
 class MeshSurface : public Counterpart {
  public:
   MeshSurface(const Model& model, std::vector<int> nodes, const NodeSet& surface);

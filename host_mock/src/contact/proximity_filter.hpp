@@ -1,13 +1,15 @@
-// proximity_filter.hpp - which contacts may touch in the coming steps, so that the law leaves out the others.
+// proximity_filter.hpp - which contacts may touch in the coming steps, so that the law leaves out
+// the others.
 //
-// At a refresh, contacts with a gap bound of at most a horizon D are near. Since then nodes and obstacles
-// have approached each other by no more than the sum of (step x largest closing speed), whatever happened to
-// them, so that the gap of any other contact is still larger than D minus that sum. Within the next step it
-// can close by no more than step x (largest closing speed while impulses are sought): where other contacts
-// may make nodes faster, the coupled solve checks the bound it gave and repeats with a larger one. While the
-// sum of both stays below D, a contact that is not near has gap > 0 and gap + h v_N > 0: a law that does not
-// act at a distance gives it r = 0, and leaves the state it was initialised with (ilaw.h,
-// ILAW_CAN_ACT_AT_DISTANCE). Evaluating it would change nothing, to the bit.
+// At a refresh, contacts with a gap bound of at most a horizon D are near. Since then nodes and
+// obstacles have approached each other by no more than the sum of (step x largest closing speed),
+// whatever happened to them, so that the gap of any other contact is still larger than D minus that
+// sum. Within the next step it can close by no more than step x (largest closing speed while
+// impulses are sought): where other contacts may make nodes faster, the coupled solve checks the
+// bound it gave and repeats with a larger one. While the sum of both stays below D, a contact that
+// is not near has gap > 0 and gap + h v_N > 0: a law that does not act at a distance gives it
+// r = 0, and leaves the state it was initialised with (ilaw.h, ILAW_CAN_ACT_AT_DISTANCE).
+// Evaluating it would change nothing, to the bit.
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -18,8 +20,8 @@ namespace ilaw::host {
 
 class ProximityFilter {
  public:
-  // Whether the near contacts must be found anew. Speeds bound the closing speeds of the step that led here
-  // and of the coming one; validity bounds the horizon.
+  // Whether the near contacts must be found anew. Speeds bound the closing speeds of the step that
+  // led here and of the coming one; validity bounds the horizon.
   bool refresh_due(double dt, double speed_before, double speed_after, double validity) {
     approached_ += rounding * dt * speed_before;
     const double ahead = rounding * dt * speed_after;

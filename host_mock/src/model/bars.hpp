@@ -21,7 +21,8 @@ class Bars : public Model {
   bool has_internal_forces() const override { return true; }
   void add_internal_forces(const Dofs& u, Dofs& force) const override;
   double potential(const Dofs& u) const override;
-  // Element length over wave speed: with lumped mass exactly the limit 2/omega_max of the longest mesh.
+  // Element length over wave speed: with lumped mass exactly the limit 2/omega_max of the longest
+  // mesh.
   double critical_step() const override { return critical_step_; }
 
  private:

@@ -26,7 +26,8 @@ struct Grid {
   int node_count() const { return (elements[0] + 1) * (elements[1] + 1) * (elements[2] + 1); }
 };
 
-// A face: its axis, its side, and the two axes in it such that first x second points out of the block.
+// A face: its axis, its side, and the two axes in it such that first x second points out of the
+// block.
 struct Face {
   const char* name;
   int axis, side, first, second;
@@ -62,8 +63,8 @@ NodeSet face_of(const Grid& grid, const Eigen::Vector3d& element_size, const Fac
   return set;
 }
 
-// Length of the area vectors of all faces together: what a node offers to whatever it touches where no face is
-// named.
+// Length of the area vectors of all faces together: what a node offers to whatever it touches where
+// no face is named.
 std::vector<double> boundary_areas(const std::string& block, const Grid& grid,
                                    const std::map<std::string, NodeSet>& sets) {
   std::vector<Eigen::Vector3d> vectors(static_cast<std::size_t>(grid.node_count()), Eigen::Vector3d::Zero());

@@ -1,9 +1,10 @@
-// blocks.hpp - boxes of 8-node hexahedra (3D), linear elastic or compressible neo-Hookean with large
-// displacements.
+// blocks.hpp - boxes of 8-node hexahedra (3D), linear elastic or compressible neo-Hookean with
+// large displacements.
 //
-// Full 2x2x2 integration: it has no zero-energy modes, so no hourglass stiffness to choose, whose value would
-// show in every convergence table. All elements of a box are alike, so shape gradients are computed once; a
-// linear box keeps one 24x24 stiffness for all its elements. Matrix-free otherwise.
+// Full 2x2x2 integration: it has no zero-energy modes, so no hourglass stiffness to choose, whose
+// value would show in every convergence table. All elements of a box are alike, so shape gradients
+// are computed once; a linear box keeps one 24x24 stiffness for all its elements. Matrix-free
+// otherwise.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,17 +20,20 @@ struct BlockSetup {
   Material material;
 };
 
-// Sets of block "b": "b", and its faces "b.x_min", "b.x_max", ... "b.z_max" with their areas and facets.
+// Sets of block "b": "b", and its faces "b.x_min", "b.x_max", ... "b.z_max" with their areas and
+// facets.
 class Blocks : public Model {
  public:
   explicit Blocks(const std::vector<BlockSetup>& blocks);
 
   bool has_internal_forces() const override { return true; }
   bool is_linear() const override;
-  // Threads give the bits of one: every second layer of elements at a time, each layer by one thread.
+  // Threads give the bits of one: every second layer of elements at a time, each layer by one
+  // thread.
   void add_internal_forces(const Dofs& u, Dofs& force) const override;
   double potential(const Dofs& u) const override;
-  // From the largest eigenvalue of one element, which bounds that of the whole (Irons and Treharne 1971).
+  // From the largest eigenvalue of one element, which bounds that of the whole (Irons and Treharne
+  // 1971).
   double critical_step() const override { return critical_step_; }
   bool critical_step_is_exact() const override { return false; }
 
@@ -49,8 +53,8 @@ class Blocks : public Model {
     std::array<int, 8> corners;  // nodes of an element, from its first
 
     int element_first(const std::array<int, 3>& at) const;
-    // Displacements relative to the first node: rounding then grows with strain, not with how far a block has
-    // moved.
+    // Displacements relative to the first node: rounding then grows with strain, not with how far a
+    // block has moved.
     ElementVector gather(const Dofs& u, int element_first) const;
     ElementVector internal_force(const ElementVector& u) const;
     double energy(const ElementVector& u) const;

@@ -36,8 +36,8 @@ Shock::Shock(std::vector<int> nodes, double time, Vector impulse)
     : nodes_(std::move(nodes)), time_(time), impulse_(std::move(impulse)) {}
 
 void Shock::add_impulse(StepTimes step, Dofs& impulse) const {
-  // An instant that is a multiple of dt only but for rounding belongs to the step that ends there; both ends
-  // of the interval move alike, so that it enters exactly one step.
+  // An instant that is a multiple of dt only but for rounding belongs to the step that ends there;
+  // both ends of the interval move alike, so that it enters exactly one step.
   const double slack = 1e-9 * (step.after - step.before);
   if (!(time_ > step.before + slack && time_ <= step.after + slack)) return;
   const Eigen::Index d = impulse_.size();

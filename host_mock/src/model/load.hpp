@@ -23,8 +23,8 @@ class Load {
   virtual void add_force(double /*time*/, Dofs& /*force*/) const {}
   // Adds the impulses that fall into a step.
   virtual void add_impulse(StepTimes /*step*/, Dofs& /*impulse*/) const {}
-  // Changes the velocity that a step would leave with, without interfaces; the change counts as an external
-  // impulse.
+  // Changes the velocity that a step would leave with, without interfaces; the change counts as an
+  // external impulse.
   virtual void correct(StepTimes /*step*/, const Dofs& /*v_before*/, Dofs& /*v*/) const {}
   // The same for the half step that a run starts with, from V_0 to V_{1/2}.
   virtual void start(double /*dt*/, const Dofs& /*v_start*/, Dofs& /*v*/) const {}

@@ -1,4 +1,5 @@
-// model.hpp - what the integrator knows of a body: lumped mass, geometry, internal forces. Matrix-free.
+// model.hpp - what the integrator knows of a body: lumped mass, geometry, internal forces.
+// Matrix-free.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,7 +17,8 @@ namespace ilaw::host {
 // One value per degree of freedom: dimension consecutive values per node, as a (d,n) array.
 using Dofs = Eigen::VectorXd;
 
-// Nodes with a name, which scenes use instead of numbers. Areas are tributary, on the set's own surface.
+// Nodes with a name, which scenes use instead of numbers. Areas are tributary, on the set's own
+// surface.
 struct NodeSet {
   std::vector<int> nodes;
   std::vector<double> areas;
@@ -55,12 +57,13 @@ class Model {
   virtual bool has_internal_forces() const { return false; }
   // Adds -f_int(u) to force.
   virtual void add_internal_forces(const Dofs& /*u*/, Dofs& /*force*/) const {}
-  // Whether f_int = K u, so that central difference's own energy has the potential part 1/2 u_n^T K u_{n+1}.
+  // Whether f_int = K u, so that central difference's own energy has the potential part 1/2 u_n^T K
+  // u_{n+1}.
   virtual bool is_linear() const { return true; }
   // Energy stored in the deformed body.
   virtual double potential(const Dofs& /*u*/) const { return 0.0; }
-  // A bound from below on the largest stable step of central difference (about the undeformed body where the
-  // model is not linear); infinite without internal forces.
+  // A bound from below on the largest stable step of central difference (about the undeformed body
+  // where the model is not linear); infinite without internal forces.
   virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }
   // Whether no larger step is stable.
   virtual bool critical_step_is_exact() const { return true; }

@@ -4,7 +4,8 @@
 namespace ilaw::host {
 namespace {
 
-// Distance to a centre or an axis, less the radius; a point that is on it is pushed out along any direction.
+// Distance to a centre or an axis, less the radius; a point that is on it is pushed out along any
+// direction.
 RigidSurface round_surface(const Vector& from_center, double radius, const Vector& any_direction) {
   const double distance = from_center.norm();
   if (distance == 0.0) return {-radius, any_direction};

@@ -10,7 +10,8 @@
 
 namespace ilaw::host {
 
-// How something rigid moves: it stands still, at constant velocity, or along a piecewise-linear path.
+// How something rigid moves: it stands still, at constant velocity, or along a piecewise-linear
+// path.
 class Motion {
  public:
   explicit Motion(Vector velocity) : velocity_(std::move(velocity)) {}

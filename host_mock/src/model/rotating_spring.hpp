@@ -1,7 +1,8 @@
-// rotating_spring.hpp - a mass on a linear spring that turns freely about the origin: two degrees of freedom,
-// large rotations.
+// rotating_spring.hpp - a mass on a linear spring that turns freely about the origin: two degrees
+// of freedom, large rotations.
 //   f_int(x) = k (|x| - L) x/|x|
-// The force is central, so that central difference keeps the angular momentum x_n x m v_{n+1/2} to rounding.
+// The force is central, so that central difference keeps the angular momentum x_n x m v_{n+1/2} to
+// rounding.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -19,8 +19,8 @@ struct Checkpoint {
 void write_checkpoint(const Scene& scene, const Integrator& integrator, const Checkpoint& checkpoint,
                       const std::filesystem::path& folder);
 
-// Brings the integrator to where the checkpoint in folder stands. Throws std::runtime_error where there is
-// none, or one of another scene or law.
+// Brings the integrator to where the checkpoint in folder stands. Throws std::runtime_error where
+// there is none, or one of another scene or law.
 Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder);
 
 }  // namespace ilaw::host

@@ -68,8 +68,8 @@ void add_geometry(vtkUnstructuredGrid& grid, const Model& model) {
     add_cell(mesh.nodes_per_cell == 8 ? VTK_HEXAHEDRON : VTK_LINE, &mesh.cells[k], mesh.nodes_per_cell);
 }
 
-// Where a state variable stands in the state of a node. Histories and what is internal mean nothing outside
-// their law.
+// Where a state variable stands in the state of a node. Histories and what is internal mean nothing
+// outside their law.
 struct StateArray {
   vtkDoubleArray* array;
   int entry, count;

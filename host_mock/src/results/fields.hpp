@@ -16,9 +16,9 @@ class Fields {
  public:
   Fields(const Scene& scene, std::filesystem::path folder) : scene_(scene), folder_(std::move(folder)) {}
 
-  // Writes one file: u, v, r per node, and per interface gap, status and state variables (vectors in the
-  // node's local frame, normal first). A node that an interface does not have gets gap NaN and status -1.
-  // With several interfaces, arrays are called <interface>.gap and so on.
+  // Writes one file: u, v, r per node, and per interface gap, status and state variables (vectors
+  // in the node's local frame, normal first). A node that an interface does not have gets gap NaN
+  // and status -1. With several interfaces, arrays are called <interface>.gap and so on.
   void write(const Integrator& integrator);
 
   // Removes those of an earlier run in the folder, which this one would not replace.

@@ -14,7 +14,8 @@
 
 namespace ilaw::host {
 
-// history.csv: a row per output instant, columns as in docs/scenes.md. Vectors are in the scene's axes.
+// history.csv: a row per output instant, columns as in docs/scenes.md. Vectors are in the scene's
+// axes.
 class History {
  public:
   History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder);

@@ -11,8 +11,8 @@
 namespace ilaw::host {
 namespace {
 
-// A column of history.csv: "n3.floor.gap" is the gap of node n3, owner "n3 floor", and "n3.u1" component 1 of
-// u.
+// A column of history.csv: "n3.floor.gap" is the gap of node n3, owner "n3 floor", and "n3.u1"
+// component 1 of u.
 struct Curve {
   std::size_t column;  // from 1, as gnuplot counts
   std::string node, owner, component;
@@ -51,7 +51,8 @@ Panel& panel_of(const std::string& quantity, std::vector<Panel>& panels) {
   return found != panels.end() ? *found : panels.emplace_back(Panel{quantity, quantity, {}});
 }
 
-// The balance of the whole: energies in one panel, what must be small or constant in panels of its own.
+// The balance of the whole: energies in one panel, what must be small or constant in panels of its
+// own.
 constexpr std::string_view balance = "balance.";
 void add_balance(const std::string& name, std::size_t column, std::vector<Panel>& panels) {
   const std::string quantity = name.substr(balance.size());

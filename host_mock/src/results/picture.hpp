@@ -22,9 +22,10 @@ struct Columns {
   std::set<int> statuses;      // those that occur in a row
 };
 
-// A script that draws folder/history.csv as folder/history.png and .svg: panels over a common time for gap
-// (and displacement in 2D and 3D), velocity, impulse and its running sum, each state variable of the laws
-// that is not zero throughout, and the status as a band per node. folder is absolute.
+// A script that draws folder/history.csv as folder/history.png and .svg: panels over a common time
+// for gap (and displacement in 2D and 3D), velocity, impulse and its running sum, each state
+// variable of the laws that is not zero throughout, and the status as a band per node. folder is
+// absolute.
 void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,
                    const Caption& caption);
 

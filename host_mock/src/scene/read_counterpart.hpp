@@ -11,7 +11,8 @@
 
 namespace ilaw::host {
 
-// "obstacle" or "against" of an interface between its own nodes and that. Throws SceneError at the pointer.
+// "obstacle" or "against" of an interface between its own nodes and that. Throws SceneError at the
+// pointer.
 std::unique_ptr<Counterpart> read_counterpart(const nlohmann::json& interface, const NodeSet& own,
                                               const Model& model, const std::string& pointer);
 

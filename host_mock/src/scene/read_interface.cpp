@@ -43,8 +43,8 @@ std::string known_libraries() {
   return names.empty() ? "none" : joined(names);
 }
 
-// The first tangent, for laws that tell the two apart: one direction for the whole interface, which must be
-// flat.
+// The first tangent, for laws that tell the two apart: one direction for the whole interface, which
+// must be flat.
 Vector read_tangent(const json& interface, const InterfaceSetup& setup, const Model& model,
                     const std::string& pointer) {
   if (!interface.contains("tangent")) return {};

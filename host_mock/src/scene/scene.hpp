@@ -36,7 +36,8 @@ struct Scene {
   std::vector<std::string> warnings;  // of what can run, but can hardly be meant
 };
 
-// Reads and checks a scene, loads its laws. Throws SceneError, whose message starts with the JSON pointer.
+// Reads and checks a scene, loads its laws. Throws SceneError, whose message starts with the JSON
+// pointer.
 Scene read_scene(const std::filesystem::path& file);
 
 // The same from parsed JSON; file: where relative library paths start from.

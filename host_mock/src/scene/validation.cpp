@@ -22,7 +22,8 @@ namespace {
 using nlohmann::json;
 using Adapter = valijson::adapters::NlohmannJsonAdapter;
 
-// Fewest edits that turn one word into another, to suggest the key that was meant (Levenshtein 1966).
+// Fewest edits that turn one word into another, to suggest the key that was meant (Levenshtein
+// 1966).
 std::size_t edits(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -102,7 +103,8 @@ void explain_keys(const json& value, const json& part, const std::string& pointe
   }
 }
 
-// Says in words what valijson found wrong at a value; the pointer is known, the words come from the schema.
+// Says in words what valijson found wrong at a value; the pointer is known, the words come from the
+// schema.
 [[noreturn]] void explain(const json& value, const json& part, const std::string& pointer,
                           const std::string& description) {
   if (value.is_object() && part.contains("properties")) {
@@ -152,8 +154,8 @@ void validate(const json& value, const json& part, const std::string& base) {
   explain_error(value, part, base, *deepest);
 }
 
-// Looks for keys that come twice, which JSON leaves undefined. A reader of its own: nlohmann's parser with a
-// callback goes through all of an array after each of its objects.
+// Looks for keys that come twice, which JSON leaves undefined. A reader of its own: nlohmann's
+// parser with a callback goes through all of an array after each of its objects.
 class DuplicateKeys : public nlohmann::json_sax<json> {
  public:
   bool start_object(std::size_t /*size*/) override {

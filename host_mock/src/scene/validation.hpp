@@ -12,7 +12,8 @@ namespace ilaw::host {
 
 extern const char* const scene_schema_text;
 
-// Parses text; refuses duplicate keys and numbers that are too large. Throws SceneError with line and column.
+// Parses text; refuses duplicate keys and numbers that are too large. Throws SceneError with line
+// and column.
 nlohmann::json parse_scene(const std::string& text);
 
 // Checks against the schema; throws SceneError for the most deeply nested mistake.

@@ -9,8 +9,8 @@
 namespace ilaw::host {
 namespace {
 
-// Part of the largest energy that interfaces may put in before a warning: a penalty that suits its step puts
-// in far less.
+// Part of the largest energy that interfaces may put in before a warning: a penalty that suits its
+// step puts in far less.
 constexpr double much_energy = 0.1;
 
 }  // namespace

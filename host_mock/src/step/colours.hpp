@@ -1,5 +1,5 @@
-// colours.hpp - the active contacts of an interface in groups that can be solved at once, as no two contacts
-// of a group share a node.
+// colours.hpp - the active contacts of an interface in groups that can be solved at once, as no two
+// contacts of a group share a node.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,8 +14,9 @@ class Colours {
  public:
   explicit Colours(int node_count) : of_node_(static_cast<std::size_t>(node_count)) {}
 
-  // For the active contacts of a step that the interface has opened. Idle ones are kept apart, whatever nodes
-  // they share: the order of those that act must not depend on how many others are active.
+  // For the active contacts of a step that the interface has opened. Idle ones are kept apart,
+  // whatever nodes they share: the order of those that act must not depend on how many others are
+  // active.
   void assign(const Interface& interface);
 
   // Calls visit(contacts) with what may be solved at once, in the order of solution.

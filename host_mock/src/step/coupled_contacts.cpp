@@ -23,8 +23,9 @@ CoupledContacts::CoupledContacts(const Model& model, Interfaces& interfaces)
   for (const auto& interface : interfaces_) interface->evaluate_repeatedly();
 }
 
-// Which contacts may act follows from a bound on speeds. Where impulses of other contacts make a node faster,
-// the step is solved again with a larger one: whether that happens does not depend on which are active.
+// Which contacts may act follows from a bound on speeds. Where impulses of other contacts make a
+// node faster, the step is solved again with a larger one: whether that happens does not depend on
+// which are active.
 CoupledContacts::Outcome CoupledContacts::solve(StepView step, Dofs& v) {
   const double speed = std::max(step.speed_before, step.speed_after);
   const Dofs v_free = v;
@@ -85,9 +86,10 @@ void CoupledContacts::for_each_acting(Visit visit) const {
     colours_[i].for_each_acting([&](const ContactList& contacts) { visit(*interfaces_[i], contacts); });
 }
 
-// Every impulse is what its law answered to some velocity of its contact: how far the contact is from that
-// velocity, relative to the largest velocity there is, or that an impulse makes. Zero where all laws hold.
-// Of contacts that may act: what the idle ones were evaluated with must not matter.
+// Every impulse is what its law answered to some velocity of its contact: how far the contact is
+// from that velocity, relative to the largest velocity there is, or that an impulse makes. Zero
+// where all laws hold. Of contacts that may act: what the idle ones were evaluated with must not
+// matter.
 double CoupledContacts::residual(double speed, const Dofs& v) const {
   double change = 0.0, size = speed;
   for_each_acting([&](const Interface& interface, const ContactList& contacts) {

@@ -1,5 +1,5 @@
-// coupled_contacts.hpp - the impulses of a step where contacts share nodes, so that each law depends on the
-// impulses of the others: block Gauss-Seidel over the contacts, accelerated.
+// coupled_contacts.hpp - the impulses of a step where contacts share nodes, so that each law
+// depends on the impulses of the others: block Gauss-Seidel over the contacts, accelerated.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,8 +16,8 @@ bool share_nodes(const Interfaces& interfaces);
 
 class CoupledContacts {
  public:
-  // Sweeps stop at this residual. They are fast where contacts share few nodes; along a column of n of them
-  // it takes n^2 sweeps, which are accelerated where there were some already.
+  // Sweeps stop at this residual. They are fast where contacts share few nodes; along a column of n
+  // of them it takes n^2 sweeps, which are accelerated where there were some already.
   static constexpr double tolerance = 1e-14;
   static constexpr int most_sweeps = 1000;
 
@@ -27,7 +27,8 @@ class CoupledContacts {
     int sweeps;
     double residual;
   };
-  // Opens the step in all interfaces, and takes v from v_free to the velocities that fulfil all laws.
+  // Opens the step in all interfaces, and takes v from v_free to the velocities that fulfil all
+  // laws.
   Outcome solve(StepView step, Dofs& v);
 
  private:

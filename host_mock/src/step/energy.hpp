@@ -1,9 +1,11 @@
-// energy.hpp - the discrete energy balance of central difference, which closes to rounding for any law.
+// energy.hpp - the discrete energy balance of central difference, which closes to rounding for any
+// law.
 //   E_n = 1/2 V_{n+1/2}^T M V_{n+1/2} + I_n,   E_{n+1} - E_n = (W_ext + W_int) of the step,
-// with the work of an impulse p over a step p . (V_{n+1/2} + V_{n+3/2})/2. For f_int = K u the internal part
-// is I_n = 1/2 U_n^T K U_{n+1}, worked out from the state at the end: the balance is then an identity that
-// only a correct scheme fulfils. For other models I_n is the sum of -h f_int . (V_{n+1/2} + V_{n+3/2})/2; how
-// far it is from the potential of U_n tells the scheme's own energy error.
+// with the work of an impulse p over a step p . (V_{n+1/2} + V_{n+3/2})/2. For f_int = K u the
+// internal part is I_n = 1/2 U_n^T K U_{n+1}, worked out from the state at the end: the balance is
+// then an identity that only a correct scheme fulfils. For other models I_n is the sum of -h
+// f_int . (V_{n+1/2} + V_{n+3/2})/2; how far it is from the potential of U_n tells the scheme's own
+// energy error.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -33,8 +35,8 @@ class EnergyBalance {
   // Impulses of a step, per degree of freedom, with the velocities at its ends.
   void add_external(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);
   void add_internal(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);
-  // Work of an interface on the bodies: in all, and relative to moving obstacles, to compare with what the
-  // laws dissipated.
+  // Work of an interface on the bodies: in all, and relative to moving obstacles, to compare with
+  // what the laws dissipated.
   void add_interface(double work, double relative_work);
   void add_dissipation(int part, double energy);
   void set_stored(double energy) { by_law_[ILAW_ENERGY_STORED] = energy; }

@@ -61,8 +61,8 @@ void Integrator::correct(StepTimes step) {
   external_impulse_ += model_.mass().cwiseProduct(v_ - uncorrected);
 }
 
-// Each law is evaluated once, for all its contacts together. Where contacts share nodes it is evaluated until
-// all laws agree on the velocities.
+// Each law is evaluated once, for all its contacts together. Where contacts share nodes it is
+// evaluated until all laws agree on the velocities.
 void Integrator::add_reactions(double time) {
   const Eigen::Index d = model_.dimension();
   const StepView step{u_, v_before_, time, dt_, largest_speed(v_before_, d), largest_speed(v_, d)};

@@ -26,7 +26,8 @@ class Integrator {
  public:
   Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt);
 
-  // One step. Throws ilaw::error when a law refuses a node, std::runtime_error when the motion is not finite.
+  // One step. Throws ilaw::error when a law refuses a node, std::runtime_error when the motion is
+  // not finite.
   void step();
 
   std::int64_t steps() const { return steps_; }

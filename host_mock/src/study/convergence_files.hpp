@@ -13,8 +13,8 @@ namespace ilaw::host {
 void write_convergence(const ErrorTable& table, const Sweep& sweep, const std::string& title,
                        const std::filesystem::path& folder);
 
-// converge.png and .svg, by gnuplot: errors over the time step, and over the run time. The folder is
-// absolute. Says on stderr why there are none.
+// converge.png and .svg, by gnuplot: errors over the time step, and over the run time. The folder
+// is absolute. Says on stderr why there are none.
 bool draw_convergence(const ErrorTable& table, const std::string& title, const std::filesystem::path& folder);
 
 }  // namespace ilaw::host

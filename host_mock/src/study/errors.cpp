@@ -53,7 +53,8 @@ struct Sample {
   Dofs displacement, velocity;
 };
 
-// Linear between entries, constant beyond the ends. In the step of a jump velocities are between both sides.
+// Linear between entries, constant beyond the ends. In the step of a jump velocities are between
+// both sides.
 Dofs between(const std::vector<Dofs>& entries, double at) {
   at = std::clamp(at, 0.0, static_cast<double>(entries.size() - 1));
   const auto before = static_cast<std::size_t>(at);

@@ -39,9 +39,9 @@ Errors errors_against(const Trace& reference, const Trace& trace);
 // roundings. In time units for instants, relative to the end of the run.
 constexpr double rounding_level = 1e-11;
 
-// Slope of log(error) over log(h) by least squares, without the errors that are at rounding level (that part
-// of scale, the size of the quantity): these no longer depend on h. NaN where that leaves fewer than three
-// errors, or where one is missing.
+// Slope of log(error) over log(h) by least squares, without the errors that are at rounding level
+// (that part of scale, the size of the quantity): these no longer depend on h. NaN where that
+// leaves fewer than three errors, or where one is missing.
 double order_of(const std::vector<double>& h, const std::vector<double>& errors, double scale = 1.0);
 
 }  // namespace ilaw::host

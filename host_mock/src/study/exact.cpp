@@ -92,8 +92,8 @@ Bar bar_of(const Scene& scene, std::size_t k) {
           bar["density"].get<double>(), bar.value("section", 1.0),   bar.value("velocity", 0.0)};
 }
 
-// Contact for the return time 2L/c of a wave, at rest, then rebound at the speed of impact (Doyen et al.
-// 2011).
+// Contact for the return time 2L/c of a wave, at rest, then rebound at the speed of impact (Doyen
+// et al. 2011).
 ExactNode bar_on_wall(const Scene& scene) {
   require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 1 &&
               scene.source.value("loads", json::array()).empty() &&
@@ -109,9 +109,9 @@ ExactNode bar_on_wall(const Scene& scene) {
   return node;
 }
 
-// While no wave has come back both ends move at (Z_A v_A + Z_B v_B)/(Z_A + Z_B). With equal impedances the
-// shorter bar is then at rest relative to the longer one's initial speed, and so is the longer one's end,
-// until its own wave is back.
+// While no wave has come back both ends move at (Z_A v_A + Z_B v_B)/(Z_A + Z_B). With equal
+// impedances the shorter bar is then at rest relative to the longer one's initial speed, and so is
+// the longer one's end, until its own wave is back.
 std::vector<ExactNode> two_bars(const Scene& scene) {
   require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 2 &&
               scene.source.value("loads", json::array()).empty() && scene.output.watch.size() == 2,
@@ -138,8 +138,8 @@ std::vector<ExactNode> two_bars(const Scene& scene) {
   return {node(b.velocity), node(a.velocity)};
 }
 
-// The glue feels 2F from L/c on; it breaks R_Y/(2F) later if its window is longer, and the end then moves at
-// 2F/Z until the next reflection at 3L/c.
+// The glue feels 2F from L/c on; it breaks R_Y/(2F) later if its window is longer, and the end then
+// moves at 2F/Z until the next reflection at 3L/c.
 ExactNode glued_bar(const Scene& scene) {
   const json loads = scene.source.value("loads", json::array());
   const json& interface = scene.source["interfaces"][0];

@@ -24,8 +24,8 @@ struct ExactNode {
   ContactInstants instants;
 };
 
-// One per watched node, in the order of the scene; empty where the scene names no exact solution. Throws
-// SceneError where the scene is not one that the named solution covers.
+// One per watched node, in the order of the scene; empty where the scene names no exact solution.
+// Throws SceneError where the scene is not one that the named solution covers.
 std::vector<ExactNode> exact_solution(const Scene& scene);
 
 }  // namespace ilaw::host
