@@ -229,6 +229,22 @@ void measure(const std::function<std::unique_ptr<Case>()>& make, Triad& triad, s
          << median(ratios) << '\n';
 }
 
+void measure_all(const std::vector<LawCase>& cases, std::int64_t nodes, const Options& options,
+                 std::ostream* csv) {
+  const auto triad = std::make_unique<Triad>(nodes);
+  for (const LawCase& one : cases) {
+    const auto add = [&](Way way) {
+      measure([&] { return std::make_unique<Case>(Subject(one), way, nodes); }, *triad, nodes, options, csv);
+    };
+    if (one.more.value("in_all_layouts", false))
+      for (const bool outputs : {false, true})
+        for (const bool global : {false, true})
+          for (const bool soa : {false, true}) add({global, soa, outputs});
+    else
+      add({});
+  }
+}
+
 void write_header(std::ostream* csv) {
   if (csv) *csv << "nodes,case,ns_per_node,triad_GB_per_s,ratio\n";
 }
@@ -248,19 +264,5 @@ int main(int argc, char** argv) {
   write_header(csv.get());
   std::vector<LawCase> cases = ilaw::testing::law_cases("benchmarks");
   std::erase_if(cases, [&](const LawCase& one) { return !options.law.empty() && one.law != options.law; });
-  for (const std::int64_t nodes : options.sizes) {
-    Triad triad(nodes);
-    for (const LawCase& one : cases) {
-      const auto add = [&](Way way) {
-        measure([&] { return std::make_unique<Case>(Subject(one), way, nodes); }, triad, nodes, options,
-                csv.get());
-      };
-      if (one.more.value("in_all_layouts", false))
-        for (const bool outputs : {false, true})
-          for (const bool global : {false, true})
-            for (const bool soa : {false, true}) add({global, soa, outputs});
-      else
-        add({});
-    }
-  }
+  for (const std::int64_t nodes : options.sizes) measure_all(cases, nodes, options, csv.get());
 }

@@ -1,5 +1,5 @@
-// What every law keeps for each form of H: its conditions and the energy, on a million random steps each; the
-// frame and the units.
+// What every law keeps for each form of H: its conditions and the energy, on half a million random steps each;
+// the frame and the units.
 //
 // A case of the section "properties" names the "statuses" that must occur, and what its law is:
 //   friction, friction_2   the cone that its impulse stays in; 0
@@ -22,8 +22,8 @@ namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 constexpr std::size_t node_count = 1000, steps = 50;
-// In 2D and 3D together a million random steps. Other units and axes show in any of them, or in none.
-constexpr std::size_t histories = 10, histories_compared = 2;
+// In 2D and 3D together half a million random steps. Other units and axes show in any of them, or in none.
+constexpr std::size_t histories = 5, histories_compared = 2;
 
 struct Law {
   explicit Law(const LawCase& given)
