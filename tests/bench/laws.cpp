@@ -40,17 +40,12 @@ struct Subject {
   explicit Subject(const LawCase& given)
       : law(given.law),
         what(given.more.value("what", "")),
-        form(form_of(given.more.value("form", "scalar"))),
+        form(ilaw::testing::form_of(given)),
         per_node(given.more.value("per_node", "")),
         parameters(given.parameters) {
     if (per_node.empty()) return;
     value = parameters.numbers.extract(per_node).mapped();
     parameters.per_node = {per_node};
-  }
-  static std::uint32_t form_of(const std::string& name) {
-    for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL})
-      if (name == ilaw::testing::name_of_form(form)) return form;
-    throw std::runtime_error("no form of H is called " + name);
   }
 
   std::string law, what;

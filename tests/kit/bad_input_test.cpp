@@ -301,8 +301,10 @@ TEST(EnergyOutput, DoesNotChangeTheMotionWhereThePreviousVelocityIsNone) {
     EXPECT_EQ(with.impulse, without.impulse) << name;
     EXPECT_EQ(with.state, without.state) << name;
     for (std::size_t i = 0; i < 130; ++i) {
-      if (!std::isfinite(nodes.v_previous[3 * i] + nodes.v_previous[3 * i + 1] + nodes.v_previous[3 * i + 2]))
+      if (!std::isfinite(nodes.v_previous[3 * i] + nodes.v_previous[3 * i + 1] +
+                         nodes.v_previous[3 * i + 2])) {
         EXPECT_EQ(with.energy[4 * i] + with.energy[4 * i + 1] + with.energy[4 * i + 2], 0.0) << name << i;
+      }
     }
   }
 }

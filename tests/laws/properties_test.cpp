@@ -1,5 +1,5 @@
-// What every law keeps for each form of H: its conditions and the energy, on half a million random steps each;
-// the frame and the units.
+// What every law keeps for each form of H: its conditions and the energy, on half a million random steps
+// each; the frame and the units.
 //
 // A case of the section "properties" names the "statuses" that must occur, and what its law is:
 //   friction, friction_2   the cone that its impulse stays in; 0
@@ -212,7 +212,8 @@ INSTANTIATE_TEST_SUITE_P(Laws, AnyLaw,
 
 // A law without cases would be left out of all this, and of the tests of the kit.
 TEST(EveryLaw, BringsItsCases) {
-  for (const char* section : {"contract", "bad_input", "options", "properties", "benchmarks"}) {
+  for (const char* section :
+       {"contract", "bad_input", "environment", "reach", "options", "properties", "benchmarks"}) {
     std::set<std::string> served;
     for (const LawCase& given : law_cases(section)) served.insert(given.law);
     for (const std::string& law : laws_of_tree())

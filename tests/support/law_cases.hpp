@@ -3,11 +3,13 @@
 //
 //   contract     layouts, threads, instruction sets (kit_test)
 //   bad_input    what a node is refused for (kit_test)
+//   environment  no influence of the host's floating-point environment; "form" of H, scalar (kit_test)
+//   reach        what a host may skip (kit_test)
 //   frame        memory that turns with the axes; for laws that remember vectors (kit_test)
 //   options      tables in time and values per node: name as many parameters as go together (laws_test)
 //   properties   conditions, energy, units, axes (laws_test; its head explains the further keys)
 //   limits       parameters with which the law is another, bit for bit (laws_test)
-//   benchmarks   what ilaw_bench_laws times
+//   benchmarks   what ilaw_bench_laws times (its head explains the further keys)
 //
 // A case has "parameters" (numbers, "inf", choices; {} if left out) and, where a law has several, a "name".
 #pragma once
@@ -82,6 +84,14 @@ inline std::vector<LawCase> law_cases(const std::string& section) {
 
 inline const char* name_of_form(std::uint32_t form) {
   return form == ILAW_DELASSUS_SCALAR ? "scalar" : form == ILAW_DELASSUS_DIAGONAL ? "diagonal" : "full";
+}
+
+// The "form" of H of a case, scalar if left out.
+inline std::uint32_t form_of(const LawCase& given) {
+  const std::string name = given.more.value("form", "scalar");
+  for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL})
+    if (name == name_of_form(form)) return form;
+  throw std::runtime_error(given.name + ": no form of H is called " + name);
 }
 
 }  // namespace ilaw::testing
