@@ -7,7 +7,7 @@ packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev
 for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsiconos-numerics-dev qemu-user)
 case ${1:-} in
   tests) packages+=("${for_tests[@]}") ;;
-  ci) packages+=("${for_tests[@]}" clang-format clang-tidy clang libclang-rt-14-dev) ;;
+  ci) packages+=("${for_tests[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache) ;;
   results) packages+=("${for_tests[@]}" jq) ;;
 esac
 

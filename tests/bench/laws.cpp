@@ -1,12 +1,16 @@
 // Time per node of each law beside a triad kernel, in the same run.
 //
-//   ilaw_bench_laws [--nodes N] [--repetitions K] [--out FILE.csv]
+//   ilaw_bench_laws [--law NAME] [--nodes N] [--repetitions K] [--out FILE.csv]
+//
+// What is timed is the section "benchmarks" of tests/laws/<law>/cases.json: "parameters", "what" (these in
+// words), "form" of H (scalar), "per_node" (a parameter that comes per node), "in_all_layouts" (and frames,
+// with and without optional outputs).
 //
 // Each repetition times the triad a = b + s c (counted at 24 bytes per element, as STREAM does) and then each
 // case; medians over the repetitions are reported. "ratio" is the time over what the bytes of the case cost
 // at the triad's bandwidth: 1 is as fast as memory allows (out of cache), the unit in which to compare
 // machines.
-#include <ilaw/loader.hpp>
+#include "support/law_cases.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -30,13 +34,27 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+using ilaw::testing::LawCase;
+using ilaw::testing::SetupBuilder;
+
 // A law with parameters, and how its inputs come.
 struct Subject {
-  std::string law, what;  // what: the parameters in words
-  std::vector<std::pair<const char*, double>> numbers = {};
-  std::pair<const char*, const char*> choice = {nullptr, nullptr};
-  std::uint32_t form = ILAW_DELASSUS_SCALAR;
-  const char* per_node = nullptr;  // a parameter of numbers that is given per node
+  explicit Subject(const LawCase& given)
+      : law(given.law),
+        what(given.more.value("what", "")),
+        form(ilaw::testing::form_of(given)),
+        per_node(given.more.value("per_node", "")),
+        parameters(given.parameters) {
+    if (per_node.empty()) return;
+    value = parameters.numbers.extract(per_node).mapped();
+    parameters.per_node = {per_node};
+  }
+
+  std::string law, what;
+  std::uint32_t form;
+  std::string per_node;
+  double value = 0.0;  // of the parameter that is given per node
+  ilaw::testing::Parameters parameters;
 };
 
 struct Way {
@@ -70,9 +88,7 @@ class Case {
     state_.resize(static_cast<std::size_t>(state_size_ * nodes));
     if (way.outputs) velocity_.resize(static_cast<std::size_t>(3 * nodes));
     if (way.outputs) status_.resize(static_cast<std::size_t>(nodes));
-    for (const auto& [name, value] : subject.numbers)
-      if (subject.per_node && std::string(name) == subject.per_node)
-        per_node_.assign(static_cast<std::size_t>(nodes), value);
+    if (!subject.per_node.empty()) per_node_.assign(static_cast<std::size_t>(nodes), subject.value);
     lay_out();
     if (interface_.initialise(batch_) != ILAW_OK) std::abort();
     batch_.state_in = {state_.data(), state_size_, 1};
@@ -93,9 +109,9 @@ class Case {
   }
   std::string label() const {
     return subject_.law + (subject_.what.empty() ? "" : " " + subject_.what) +
-           (subject_.form == ILAW_DELASSUS_SCALAR     ? ""
-            : subject_.form == ILAW_DELASSUS_DIAGONAL ? " diagonal H"
-                                                      : " full H") +
+           (subject_.form == ILAW_DELASSUS_SCALAR
+                ? ""
+                : std::string(" ") + ilaw::testing::name_of_form(subject_.form) + " H") +
            (way_.global ? " global" : " local") + (way_.soa ? " SoA" : " AoS") +
            (way_.outputs ? " outputs" : "");
   }
@@ -103,26 +119,9 @@ class Case {
 
  private:
   static ilaw::interface create(const Subject& subject, bool global) {
-    std::vector<ilaw_argument> arguments;
-    for (const auto& [name, value] : subject.numbers) {
-      const bool varies = subject.per_node && std::string(name) == subject.per_node;
-      arguments.push_back({sizeof(ilaw_argument),
-                           std::uint32_t{varies ? ILAW_VALUE_PER_NODE : ILAW_VALUE_NUMBER}, name, value,
-                           nullptr, nullptr, 0});
-    }
-    if (subject.choice.first)
-      arguments.push_back({sizeof(ilaw_argument), ILAW_VALUE_TEXT, subject.choice.first, 0.0,
-                           subject.choice.second, nullptr, 0});
-    std::vector<const ilaw_argument*> pointers;
-    for (const ilaw_argument& argument : arguments) pointers.push_back(&argument);
-    ilaw_setup setup{};
-    setup.struct_size = sizeof setup;
-    setup.dimension = 3;
-    setup.delassus_form = subject.form;
-    setup.frame = global ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL;
-    setup.arguments = pointers.data();
-    setup.argument_count = static_cast<std::uint32_t>(pointers.size());
-    return {ilaw::library(subject.law), subject.law, setup};
+    const SetupBuilder builder(subject.parameters, 3, subject.form,
+                               global ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL);
+    return {ilaw::library(subject.law), subject.law, builder.setup};
   }
 
   template <class Next>
@@ -204,7 +203,7 @@ double median(std::vector<double> values) {
 struct Options {
   std::vector<std::int64_t> sizes{2000, 10000000};
   int repetitions = 7;
-  std::string out;
+  std::string law, out;
 };
 
 // Each case alone in memory, alternated with the triad, so that drifts of the machine hit both.
@@ -228,31 +227,20 @@ void measure(const std::function<std::unique_ptr<Case>()>& make, Triad& triad, s
   row.end_row();
 }
 
-// Every law as a host has it most often, and what its options cost.
-std::vector<Subject> subjects() {
-  const std::uint32_t diagonal = ILAW_DELASSUS_DIAGONAL, full = ILAW_DELASSUS_FULL;
-  const std::pair<const char*, const char*> implicit{"integration", "implicit"};
-  const double never = 1e12;
-  return {
-      {"contact", "", {}, {}, diagonal},
-      {"contact", "", {}, {}, full},
-      {"coulomb", "", {{"friction", 0.3}}, {}, diagonal},
-      {"coulomb", "", {{"friction", 0.3}}, {}, full},
-      {"coulomb", "kinetic", {{"friction", 0.3}, {"kinetic_friction", 0.2}, {"decay", 1.0}}},
-      {"coulomb", "elliptical", {{"friction", 0.3}, {"friction_2", 0.2}}},
-      {"coulomb", "friction per node", {{"friction", 0.3}}, {}, ILAW_DELASSUS_SCALAR, "friction"},
-      {"postit", "memory", {{"friction", 0.3}, {"memory", 0.01}, {"buckets", 4.0}}},
-      {"penalty", "explicit", {{"stiffness", 1e4}}},
-      {"penalty", "implicit", {{"stiffness", 1e4}}, implicit},
-      {"penalty", "implicit friction", {{"stiffness", 1e4}, {"friction", 0.3}}, implicit},
-      {"penalty", "implicit friction", {{"stiffness", 1e4}, {"friction", 0.3}}, implicit, full},
-      {"penalty", "implicit Hertz", {{"stiffness", 1e4}, {"exponent", 1.5}}, implicit},
-      {"tie", "unbreakable"},
-      {"tie", "unbreakable", {}, {}, full},
-      {"tie", "memory", {{"strength", never}, {"memory", 0.01}, {"buckets", 4.0}}},
-      {"cohesive", "holding", {{"strength", never}, {"toughness", never}}},
-      {"cohesive", "softening", {{"strength", 1e-3}, {"toughness", 1e6}}},
-  };
+void measure_all(const std::vector<LawCase>& cases, std::int64_t nodes, const Options& options,
+                 std::ostream* csv) {
+  const auto triad = std::make_unique<Triad>(nodes);
+  for (const LawCase& one : cases) {
+    const auto add = [&](Way way) {
+      measure([&] { return std::make_unique<Case>(Subject(one), way, nodes); }, *triad, nodes, options, csv);
+    };
+    if (one.more.value("in_all_layouts", false))
+      for (const bool outputs : {false, true})
+        for (const bool global : {false, true})
+          for (const bool soa : {false, true}) add({global, soa, outputs});
+    else
+      add({});
+  }
 }
 
 void write_header(std::ostream* csv) {
@@ -264,6 +252,7 @@ void write_header(std::ostream* csv) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app("Time per node of each law beside a triad kernel");
+  app.add_option("--law", options.law, "This law alone");
   app.add_option("--nodes", options.sizes, "Nodes in a batch")->expected(1, 8)->capture_default_str();
   app.add_option("--repetitions", options.repetitions, "Medians are over so many")->capture_default_str();
   app.add_option("--out", options.out, "CSV file to write as well");
@@ -271,17 +260,7 @@ int main(int argc, char** argv) {
   std::unique_ptr<std::ofstream> csv;
   if (!options.out.empty()) csv = std::make_unique<std::ofstream>(options.out);
   write_header(csv.get());
-  const std::vector<Subject> in_all_ways = {
-      {"contact", ""}, {"coulomb", "", {{"friction", 0.3}}}, {"postit", "", {{"friction", 0.3}}}};
-  for (const std::int64_t nodes : options.sizes) {
-    Triad triad(nodes);
-    const auto add = [&](const Subject& subject, Way way) {
-      measure([&] { return std::make_unique<Case>(subject, way, nodes); }, triad, nodes, options, csv.get());
-    };
-    for (const Subject& subject : in_all_ways)
-      for (const bool outputs : {false, true})
-        for (const bool global : {false, true})
-          for (const bool soa : {false, true}) add(subject, {global, soa, outputs});
-    for (const Subject& subject : subjects()) add(subject, {});
-  }
+  std::vector<LawCase> cases = ilaw::testing::law_cases("benchmarks");
+  std::erase_if(cases, [&](const LawCase& one) { return !options.law.empty() && one.law != options.law; });
+  for (const std::int64_t nodes : options.sizes) measure_all(cases, nodes, options, csv.get());
 }

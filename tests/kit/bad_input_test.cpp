@@ -1,6 +1,8 @@
 // Bad input at a node: nothing happens to it, everything happens to the others, and the report says so.
 #include "batch_runner.hpp"
 
+#include "support/law_cases.hpp"
+
 #include <functional>
 #include <limits>
 
@@ -19,14 +21,7 @@ struct Bad {
   friend void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
 };
 
-struct Served {
-  const char* law;
-  Parameters parameters;
-
-  friend void PrintTo(const Served& served, std::ostream* out) { *out << served.law; }
-};
-
-class BadInput : public ::testing::TestWithParam<std::tuple<Served, Bad>> {};
+class BadInput : public ::testing::TestWithParam<std::tuple<LawCase, Bad>> {};
 
 TEST_P(BadInput, IsRefusedAtItsNodeOnly) {
   const auto& [served, spoilt] = GetParam();
@@ -64,15 +59,6 @@ TEST_P(BadInput, IsRefusedAtItsNodeOnly) {
   }
 }
 
-const std::vector<Served> laws = {
-    {"contact", {{{"restitution", 0.5}}, {}}},
-    {"coulomb", {{{"friction", 0.3}, {"restitution", 0.5}}, {}}},
-    {"postit", {{{"adhesion_limit", 1.0}, {"initial_adhesion", 0.5}, {"memory", 0.01}}, {}}},
-    {"tie", {{{"strength", 1.0}, {"memory", 0.01}}, {}}},
-    {"penalty",
-     {{{"stiffness", 1e4}, {"damping", 1.0}, {"friction", 0.3}, {"tangential_stiffness", 1e4}}, {}}},
-    {"cohesive", {{{"strength", 1.0}, {"toughness", 1e-3}, {"friction", 0.3}}, {}}}};
-
 const std::vector<Bad> inputs = {
     {"nan_velocity", [](Nodes& n) { n.v_free[211] = nan_value; }, "v_free is not finite"},
     {"infinite_velocity", [](Nodes& n) { n.v_free[210] = inf_value; }, "v_free is not finite"},
@@ -98,15 +84,18 @@ const std::vector<Bad> inputs = {
      "the normal is not a unit vector"},
     {"nan_normal", [](Nodes& n) { n.normal[210] = nan_value; }, "the normal is not a unit vector"}};
 
-std::string name_of(const ::testing::TestParamInfo<std::tuple<Served, Bad>>& drawn) {
-  return std::string(std::get<0>(drawn.param).law) + "_" + std::get<1>(drawn.param).name;
+std::string name_of(const ::testing::TestParamInfo<std::tuple<LawCase, Bad>>& drawn) {
+  return std::get<0>(drawn.param).name + "_" + std::get<1>(drawn.param).name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, BadInput,
-                         ::testing::Combine(::testing::ValuesIn(laws), ::testing::ValuesIn(inputs)), name_of);
+                         ::testing::Combine(::testing::ValuesIn(law_cases("bad_input")),
+                                            ::testing::ValuesIn(inputs)),
+                         name_of);
 
 INSTANTIATE_TEST_SUITE_P(Coulomb, BadInput,
-                         ::testing::Combine(::testing::Values(laws[1]),
+                         ::testing::Combine(::testing::Values(LawCase{
+                                                "coulomb", "coulomb", {{{"friction", 0.3}}, {}}, {}}),
                                             ::testing::Values(Bad{"overflow",
                                                                   [](Nodes& n) {
                                                                     for (int c = 0; c < 3; ++c)
@@ -297,11 +286,10 @@ TEST(Initialise, ReadsNoState) {
 // A velocity before the step that only the energies need: without it the motion is the same, and its
 // dissipation is not known.
 TEST(EnergyOutput, DoesNotChangeTheMotionWhereThePreviousVelocityIsNone) {
-  for (const Served& served : {Served{"kit_probe", {{{"viscosity", 2.0}}, {}}},
-                               Served{"tie", {{{"strength", 1.0}, {"memory", 0.01}}, {}}},
-                               Served{"cohesive", {{{"strength", 1.0}, {"toughness", 1e-3}}, {}}}}) {
-    const SetupBuilder setup(served.parameters);
-    const std::string name = served.law;
+  std::vector<LawCase> served = law_cases("bad_input");
+  served.push_back({"kit_probe", "kit_probe", {{{"viscosity", 2.0}}, {}}, {}});
+  for (const auto& [name, ignored, parameters, more] : served) {
+    const SetupBuilder setup(parameters);
     const ilaw::interface law(ilaw::library(name == "kit_probe" ? ILAW_KIT_PROBE : plugin_file(name)), name,
                               setup.setup);
     if (law.info().inputs & ILAW_INPUT_V_PREVIOUS) continue;
@@ -313,8 +301,10 @@ TEST(EnergyOutput, DoesNotChangeTheMotionWhereThePreviousVelocityIsNone) {
     EXPECT_EQ(with.impulse, without.impulse) << name;
     EXPECT_EQ(with.state, without.state) << name;
     for (std::size_t i = 0; i < 130; ++i) {
-      if (!std::isfinite(nodes.v_previous[3 * i] + nodes.v_previous[3 * i + 1] + nodes.v_previous[3 * i + 2]))
+      if (!std::isfinite(nodes.v_previous[3 * i] + nodes.v_previous[3 * i + 1] +
+                         nodes.v_previous[3 * i + 2])) {
         EXPECT_EQ(with.energy[4 * i] + with.energy[4 * i + 1] + with.energy[4 * i + 2], 0.0) << name << i;
+      }
     }
   }
 }

@@ -1,6 +1,8 @@
 // The contract of evaluate: a node's result depends on its own inputs alone, bit for bit.
 #include "batch_runner.hpp"
 
+#include "support/law_cases.hpp"
+
 #include <algorithm>
 #include <cstdlib>
 #include <numeric>
@@ -9,14 +11,7 @@
 namespace ilaw::testing {
 namespace {
 
-struct Case {
-  const char* law;
-  Parameters parameters;
-
-  friend void PrintTo(const Case& shown, std::ostream* out) { *out << shown.law; }
-};
-
-class Contract : public ::testing::TestWithParam<Case> {
+class Contract : public ::testing::TestWithParam<LawCase> {
  protected:
   ilaw::interface make(std::uint32_t frame, std::uint32_t form = ILAW_DELASSUS_SCALAR,
                        std::uint32_t d = 3) const {
@@ -62,8 +57,8 @@ TEST_P(Contract, EveryFormOfHGivesTheSameBitsInAllLayoutsAndInstructionSets) {
         if (!(any.law().delassus_forms & static_cast<std::uint32_t>(form))) continue;
         SCOPED_TRACE(::testing::Message() << "d " << d << ", form " << form << ", frame " << frame);
         const bool global = frame == ILAW_FRAME_GLOBAL;
-        const auto made = [&] {
-          return make(frame, static_cast<std::uint32_t>(form), static_cast<std::uint32_t>(d));
+        const auto made = [&, form_of_h = static_cast<std::uint32_t>(form)] {
+          return make(frame, form_of_h, static_cast<std::uint32_t>(d));
         };
         const Nodes nodes(130, d, components);
         std::vector<std::int32_t> order(130);
@@ -132,37 +127,11 @@ TEST_P(Contract, ThreadsShareAnInstance) {
   for (const Results& mine : results) EXPECT_TRUE(mine == reference);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Laws, Contract,
-    ::testing::Values(
-        Case{"contact", {{{"restitution", 0.3}}, {}}}, Case{"contact", {{}, {{"activation", "predictive"}}}},
-        Case{"coulomb", {{{"friction", 0.3}, {"restitution", 0.5}}, {}}},
-        Case{"coulomb", {{{"friction", 0.3}, {"tangential_restitution", 0.5}}, {}}},
-        Case{"postit",
-             {{{"memory", 0.01},
-               {"friction", 0.2},
-               {"tangent_influence", 0.8},
-               {"adhesion_limit", 0.3},
-               {"initial_adhesion", 0.2},
-               {"buckets", 4}},
-              {}}},
-        Case{"tie", {{{"strength", 2.0}, {"memory", 0.01}}, {}}},
-        Case{"penalty",
-             {{{"stiffness", 1e6}, {"damping", 20.0}, {"friction", 0.3}, {"tangential_stiffness", 1e5}}, {}}},
-        Case{"penalty",
-             {{{"stiffness", 1e6}, {"friction", 0.3}, {"tangential_stiffness", 1e5}},
-              {{"integration", "implicit"}}}},
-        Case{"penalty",
-             {{{"stiffness", 1e6}, {"exponent", 2.3}, {"damping", 20.0}}, {{"integration", "implicit"}}}},
-        Case{"cohesive",
-             {{{"strength", 10.0}, {"toughness", 0.02}, {"strength_2", 15.0}, {"mixing_exponent", 1.7}}, {}}},
-        Case{"cohesive",
-             {{{"strength", 10.0}, {"toughness", 0.02}, {"stiffness", 1e4}, {"friction", 0.4}},
-              {{"shape", "exponential"}}}},
-        Case{"cohesive",
-             {{{"strength", 10.0}, {"toughness", 0.02}, {"stiffness", 1e4}, {"delay_time", 2e-3}}, {}}},
-        Case{"kit_probe", {{{"viscosity", 2.0}}, {}}}),
-    [](const auto& drawn) { return std::string(drawn.param.law) + "_" + std::to_string(drawn.index); });
+const auto name_of = [](const ::testing::TestParamInfo<LawCase>& drawn) { return drawn.param.name; };
+INSTANTIATE_TEST_SUITE_P(Laws, Contract, ::testing::ValuesIn(law_cases("contract")), name_of);
+INSTANTIATE_TEST_SUITE_P(Kit, Contract,
+                         ::testing::Values(LawCase{"kit_probe", "kit_probe", {{{"viscosity", 2.0}}, {}}, {}}),
+                         name_of);
 
 }  // namespace
 }  // namespace ilaw::testing

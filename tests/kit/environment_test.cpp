@@ -1,6 +1,8 @@
 // The floating-point environment of the host: left as it was found, and of no influence on the result.
 #include "batch_runner.hpp"
 
+#include "support/law_cases.hpp"
+
 #include <cfenv>
 #include <functional>
 
@@ -11,28 +13,8 @@
 namespace ilaw::testing {
 namespace {
 
-struct Served {
-  const char* law;
-  Parameters parameters;
-  std::uint32_t form = ILAW_DELASSUS_SCALAR;
-};
-
 // With what divides by zero, overflows and makes NaN on the way.
-const std::vector<Served> laws = {
-    {"contact", {{{"restitution", 0.5}}, {{"activation", "predictive"}}}},
-    {"coulomb", {{{"friction", 0.3}, {"decay", 2.0}, {"kinetic_friction", 0.1}}, {}}},
-    {"coulomb", {{{"friction", 0.3}}, {}}, ILAW_DELASSUS_FULL},
-    {"postit",
-     {{{"initial_adhesion", 0.1}, {"memory", 0.01}, {"friction", 0.2}, {"efficiency_decrease", 3.0}}, {}}},
-    {"tie", {{{"strength", 1.0}, {"memory", 0.01}}, {}}, ILAW_DELASSUS_FULL},
-    {"penalty",
-     {{{"stiffness", 1e4}, {"friction", 0.3}, {"tangential_stiffness", 1e4}, {"exponent", 1.5}}, {}}},
-    {"penalty",
-     {{{"stiffness", 1e4}, {"friction", 0.3}, {"damping", 1.0}, {"exponent", 2.5}},
-      {{"integration", "implicit"}}}},
-    {"cohesive",
-     {{{"strength", 1.0}, {"toughness", 1e-3}, {"stiffness", 1e4}, {"friction", 0.3}},
-      {{"shape", "exponential"}}}}};
+const std::vector<LawCase> laws = law_cases("environment");
 
 // Nodes at rest, tiny, huge and none, besides those drawn.
 Nodes hostile_nodes(std::int64_t count, int components) {
@@ -87,11 +69,12 @@ bool same(const Outcome& a, const Outcome& b) {
 }
 
 void for_all_laws(const std::function<void(const ilaw::interface&, const Nodes&)>& check) {
-  for (const Served& served : laws) {
+  for (const LawCase& served : laws) {
     SCOPED_TRACE(served.law);
-    const SetupBuilder setup(served.parameters, 3, served.form);
+    const std::uint32_t form = form_of(served);
+    const SetupBuilder setup(served.parameters, 3, form);
     const ilaw::interface law = make_law(served.law, setup);
-    check(law, hostile_nodes(200, served.form == ILAW_DELASSUS_FULL ? 6 : 1));
+    check(law, hostile_nodes(200, form == ILAW_DELASSUS_FULL ? 6 : form == ILAW_DELASSUS_DIAGONAL ? 3 : 1));
   }
 }
 

@@ -1,6 +1,8 @@
 // Vectors in the host's axes, with a normal per node, give what the local frame gives, turned.
 #include "batch_runner.hpp"
 
+#include "support/law_cases.hpp"
+
 namespace ilaw::testing {
 namespace {
 
@@ -94,16 +96,8 @@ void expect_frame_indifference(const std::string& file, const std::string& law, 
 void expect_frame_indifference(const Matrix& start, const Matrix& each_step, bool tangent) {
   expect_frame_indifference(ILAW_KIT_PROBE, "kit_probe", {{{"viscosity", 2.0}}, {}}, start, each_step,
                             tangent);
-  expect_frame_indifference(plugin_file("tie"), "tie", {{{"strength", 40.0}, {"memory", 0.02}}, {}}, start,
-                            each_step, tangent);
-  expect_frame_indifference(
-      plugin_file("penalty"), "penalty",
-      {{{"stiffness", 1e6}, {"friction", 0.9}, {"tangential_stiffness", 1e5}}, {{"integration", "implicit"}}},
-      start, each_step, tangent);
-  expect_frame_indifference(
-      plugin_file("cohesive"), "cohesive",
-      {{{"strength", 5.0}, {"toughness", 10.0}, {"stiffness", 200.0}, {"friction", 0.3}}, {}}, start,
-      each_step, tangent);
+  for (const LawCase& law : law_cases("frame"))
+    expect_frame_indifference(plugin_file(law.law), law.law, law.parameters, start, each_step, tangent);
 }
 
 TEST(Frame, MemoryFollowsTheMaterialWithTangents) {
@@ -172,7 +166,8 @@ class GlobalAxes : public ::testing::TestWithParam<std::tuple<int, std::uint32_t
 
 // A law that knows no direction but the normal gives the same in any axes.
 TEST_P(GlobalAxes, GiveTheLocalResultTurned) {
-  const auto [d, form] = GetParam();
+  const int d = std::get<0>(GetParam());
+  const std::uint32_t form = std::get<1>(GetParam());
   const auto dimension = static_cast<std::uint32_t>(d);
   const int components = form == ILAW_DELASSUS_SCALAR     ? 1
                          : form == ILAW_DELASSUS_DIAGONAL ? d

@@ -1,34 +1,17 @@
 // What a host may skip: nodes out of reach, by the expression of ilaw.h, to the last bit.
 #include "batch_runner.hpp"
 
-#include <limits>
+#include "support/law_cases.hpp"
 
 namespace ilaw::testing {
 namespace {
 
-constexpr double inf_value = std::numeric_limits<double>::infinity();
-
-struct Served {
-  const char* law;
-  Parameters parameters;
-};
-
-const std::vector<Served> laws = {
-    {"contact", {{{"restitution", 0.8}}, {{"activation", "predictive"}}}},
-    {"contact", {{{"restitution", 0.8}}, {{"activation", "moreau"}}}},
-    {"coulomb", {{{"friction", 0.3}, {"restitution", 0.8}}, {{"activation", "predictive"}}}},
-    {"postit", {{{"memory", 0.02}, {"friction", 0.3}}, {}}},
-    {"tie", {{{"strength", 1e-3}, {"memory", 0.02}}, {}}},
-    {"penalty", {{{"stiffness", 1e4}, {"friction", 0.3}, {"tangential_stiffness", 1e4}}, {}}},
-    {"penalty",
-     {{{"stiffness", 1e4}, {"friction", 0.3}, {"tangential_stiffness", 1e4}}, {{"integration", "implicit"}}}},
-    {"penalty", {{{"stiffness", inf_value}, {"friction", 0.3}}, {{"integration", "implicit"}}}},
-    {"cohesive", {{{"strength", 1e-3}, {"toughness", 1e-6}, {"friction", 0.3}}, {}}}};
+const std::vector<LawCase> laws = law_cases("reach");
 
 // One node in the host's axes, without tangents: the frame goes along in the state.
 class Node {
  public:
-  explicit Node(const Served& served, std::uint32_t frame)
+  explicit Node(const LawCase& served, std::uint32_t frame)
       : law(make_law(served.law, SetupBuilder(served.parameters, 3, ILAW_DELASSUS_SCALAR, frame))),
         state(law.info().state_size + 1) {
     b.struct_size = sizeof b;
@@ -101,7 +84,7 @@ void draw_borderline(Node& node, bool global, std::mt19937_64& random) {
 
 TEST(OutOfReach, FreshNodesAreLeftAloneToTheLastBit) {
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
-    for (const Served& served : laws) {
+    for (const LawCase& served : laws) {
       Node node(served, frame);
       if (node.law.info().capabilities & ILAW_CAN_ACT_AT_DISTANCE) continue;
       const bool global = frame == ILAW_FRAME_GLOBAL;
@@ -123,7 +106,7 @@ TEST(OutOfReach, FreshNodesAreLeftAloneToTheLastBit) {
 // After any history: what was free last stays so, with its state, for as long as it is out of reach.
 TEST(OutOfReach, NodesThatWereFreeRest) {
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
-    for (const Served& served : laws) {
+    for (const LawCase& served : laws) {
       Node node(served, frame);
       if (!(node.law.info().capabilities & ILAW_CAN_REST)) continue;
       const bool global = frame == ILAW_FRAME_GLOBAL;

@@ -1,66 +1,23 @@
-// Limits in which one law is another, for each form of H.
+// Limits in which one law is another, for each form of H. A case of the section "limits" names the other law,
+// "limit", and its parameters, "limit_parameters"; "inertia": see properties_test.cpp.
 #include "laws/random_nodes.hpp"
 
-#include <ostream>
 #include <tuple>
 
 namespace ilaw::testing {
 namespace {
 
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 constexpr std::size_t node_count = 1000, steps = 500;  // in 2D and 3D together: a million
 
-struct Limit {
-  const char* name;
-  const char* law;
-  Parameters parameters;
-  const char* limit;
-  Parameters limit_parameters;
-  Inertia inertia = Inertia::any;
-};
-std::ostream& operator<<(std::ostream& out, const Limit& limit) { return out << limit.name; }
-
-const std::map<std::string, std::string> moreau{{"activation", "moreau"}},
-    predictive{{"activation", "predictive"}};
-
-const std::vector<Limit> limits = {
-    {"coulomb_without_friction_is_contact", "coulomb", {{{"friction", 0.0}}, {}}, "contact", {}},
-    {"postit_without_adhesion_is_coulomb",
-     "postit",
-     {{{"friction", 0.4}, {"adhesion_limit", 0.0}}, {}},
-     "coulomb",
-     {{{"friction", 0.4}}, moreau}},
-    {"tie_without_strength_is_contact", "tie", {{{"strength", 0.0}}, {}}, "contact", {{}, moreau}},
-    {"cohesive_of_infinite_strength_is_tie",
-     "cohesive",
-     {{{"strength", inf_value}, {"toughness", 1.0}}, {}},
-     "tie",
-     {},
-     Inertia::isotropic},
-    {"cohesive_without_toughness_is_coulomb",
-     "cohesive",
-     {{{"strength", 1e3}, {"toughness", 0.0}, {"friction", 0.4}}, {}},
-     "coulomb",
-     {{{"friction", 0.4}}, predictive},
-     Inertia::isotropic}};
-
-using Drawn = std::tuple<Limit, std::uint32_t, std::uint32_t>;
-
-std::string name_of(const ::testing::TestParamInfo<Drawn>& drawn) {
-  const std::uint32_t form = std::get<1>(drawn.param);
-  return std::string(std::get<0>(drawn.param).name) +
-         (form == ILAW_DELASSUS_SCALAR     ? "_scalar_"
-          : form == ILAW_DELASSUS_DIAGONAL ? "_diagonal_"
-                                           : "_full_") +
-         std::to_string(std::get<2>(drawn.param)) + "D";
-}
+using Drawn = std::tuple<LawCase, std::uint32_t, std::uint32_t>;
 
 class Limits : public ::testing::TestWithParam<Drawn> {};
 
 TEST_P(Limits, GiveTheSameBits) {
-  const auto& [limit, form, dimension] = GetParam();
-  RandomNodes nodes(node_count, dimension, form, limit.inertia, 12);
-  Runner run(limit.law, limit.parameters, nodes), other(limit.limit, limit.limit_parameters, nodes);
+  const auto& [law, form, dimension] = GetParam();
+  RandomNodes nodes(node_count, dimension, form, inertia_of(law), 12);
+  Runner run(law.law, law.parameters, nodes),
+      other(law.more.at("limit"), parameters_of(law.more.value("limit_parameters", json::object())), nodes);
   run.initialise();
   other.initialise();
   int acting = 0;
@@ -81,12 +38,9 @@ TEST_P(Limits, GiveTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, Limits,
-                         ::testing::Combine(::testing::ValuesIn(limits),
-                                            ::testing::Values(std::uint32_t{ILAW_DELASSUS_SCALAR},
-                                                              std::uint32_t{ILAW_DELASSUS_DIAGONAL},
-                                                              std::uint32_t{ILAW_DELASSUS_FULL}),
+                         ::testing::Combine(::testing::ValuesIn(law_cases("limits")), delassus_forms,
                                             ::testing::Values(2U, 3U)),
-                         name_of);
+                         name_of_combination);
 
 }  // namespace
 }  // namespace ilaw::testing

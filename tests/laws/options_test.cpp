@@ -1,54 +1,13 @@
 // Parameters as tables in time and as values per node: whatever a law's description allows, for every law.
 #include "laws/random_nodes.hpp"
+#include "support/law_cases.hpp"
 
 #include <algorithm>
 
 namespace ilaw::testing {
 namespace {
 
-struct Given {
-  const char* law;
-  Parameters parameters;
-};
-std::ostream& operator<<(std::ostream& out, const Given& given) { return out << given.law; }
-
-const std::vector<Given> laws = {{"contact", {{{"restitution", 0.4}}, {}}},
-                                 {"coulomb",
-                                  {{{"friction", 0.5},
-                                    {"kinetic_friction", 0.3},
-                                    {"decay", 2.0},
-                                    {"friction_2", 0.4},
-                                    {"restitution", 0.2},
-                                    {"tangential_restitution", 0.1}},
-                                   {}}},
-                                 {"penalty",
-                                  {{{"stiffness", 1e6},
-                                    {"damping", 20.0},
-                                    {"exponent", 1.5},
-                                    {"friction", 0.3},
-                                    {"tangential_stiffness", 1e5}},
-                                   {{"integration", "implicit"}}}},
-                                 {"postit",
-                                  {{{"adhesion_limit", 2.0},
-                                    {"efficiency_decrease", 5.0},
-                                    {"tangent_influence", 0.8},
-                                    {"friction", 0.3},
-                                    {"initial_adhesion", 1.0}},
-                                   {}}},
-                                 {"tie", {{{"strength", 2.0}}, {}}},
-                                 {"cohesive",
-                                  {{{"strength", 500.0},
-                                    {"toughness", 0.5},
-                                    {"strength_2", 700.0},
-                                    {"toughness_2", 0.9},
-                                    {"mixing_exponent", 2.0},
-                                    {"stiffness", 1e7},
-                                    {"friction", 0.3},
-                                    {"delay_time", 1e-4},
-                                    {"delay_exponent", 2.0}},
-                                   {}}}};
-
-class OptionsOf : public ::testing::TestWithParam<Given> {
+class OptionsOf : public ::testing::TestWithParam<LawCase> {
  protected:
   // Steps that both ways must give the same bits for.
   void expect_same(Runner& a, Runner& b) {
@@ -80,35 +39,37 @@ class OptionsOf : public ::testing::TestWithParam<Given> {
     return found;
   }
 
-  const Given& law = GetParam();
+  // A constant that is given in this way, as "give" writes it, changes no bit.
+  template <class Give>
+  void expect_no_change(std::uint32_t way, Give give) {
+    const auto varying = numbers(way);
+    EXPECT_GE(varying.size(), 1U);
+    for (const ilaw_parameter* parameter : varying) {
+      SCOPED_TRACE(parameter->name);
+      Parameters parameters = law.parameters;
+      const double value = parameters.numbers.extract(parameter->name).mapped();
+      give(parameters, parameter->name, value);
+      Runner constant(law.law, law.parameters, nodes), varied(law.law, parameters, nodes);
+      const std::vector<double> values(nodes.count, value);
+      varied.per_node = {{values.data(), 1, 1}};
+      expect_same(constant, varied);
+    }
+  }
+
+  const LawCase& law = GetParam();
   ilaw::library library{plugin_file(law.law)};
   RandomNodes nodes{500, 3, ILAW_DELASSUS_SCALAR, Inertia::any, 13};
 };
 
 TEST_P(OptionsOf, AConstantGivenPerNodeGivesTheSameBits) {
-  const auto varying = numbers(ILAW_MAY_BE_PER_NODE);
-  EXPECT_GE(varying.size(), 1U);
-  for (const ilaw_parameter* parameter : varying) {
-    Parameters parameters = law.parameters;
-    const double value = parameters.numbers.extract(parameter->name).mapped();
-    parameters.per_node = {parameter->name};
-    Runner constant(law.law, law.parameters, nodes), per_node(law.law, parameters, nodes);
-    const std::vector<double> values(nodes.count, value);
-    per_node.per_node = {{values.data(), 1, 1}};
-    expect_same(constant, per_node);
-  }
+  expect_no_change(ILAW_MAY_BE_PER_NODE,
+                   [](Parameters& parameters, const char* name, double) { parameters.per_node = {name}; });
 }
 
 TEST_P(OptionsOf, AConstantTableGivesTheSameBits) {
-  const auto varying = numbers(ILAW_MAY_BE_TABLE);
-  EXPECT_GE(varying.size(), 1U);
-  for (const ilaw_parameter* parameter : varying) {
-    Parameters parameters = law.parameters;
-    const double value = parameters.numbers.extract(parameter->name).mapped();
-    parameters.tables[parameter->name] = {0.0, value, 3.5 * RandomNodes::step, value, 1.0, value};
-    Runner constant(law.law, law.parameters, nodes), table(law.law, parameters, nodes);
-    expect_same(constant, table);
-  }
+  expect_no_change(ILAW_MAY_BE_TABLE, [](Parameters& parameters, const char* name, double value) {
+    parameters.tables[name] = {0.0, value, 3.5 * RandomNodes::step, value, 1.0, value};
+  });
 }
 
 // Each node has the value of its own array entry, whatever the others have: as in a batch where it is the
@@ -209,8 +170,8 @@ TEST_P(OptionsOf, TablesArePiecewiseLinearInTime) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, OptionsOf, ::testing::ValuesIn(laws),
-                         [](const auto& drawn) { return std::string(drawn.param.law); });
+INSTANTIATE_TEST_SUITE_P(Laws, OptionsOf, ::testing::ValuesIn(law_cases("options")),
+                         [](const auto& drawn) { return drawn.param.name; });
 
 }  // namespace
 }  // namespace ilaw::testing

@@ -2,11 +2,14 @@
 // in other axes.
 #pragma once
 
-#include "support/law_runner.hpp"
+#include "support/law_cases.hpp"
 
 #include <cstring>
 #include <limits>
 #include <random>
+#include <regex>
+#include <sstream>
+#include <tuple>
 
 namespace ilaw::testing {
 
@@ -18,21 +21,26 @@ struct Units {
   double impulse() const { return mass * velocity(); }
   double energy() const { return impulse() * velocity(); }
 
-  // Of a parameter by its declared unit; p is the exponent of a penalty stiffness.
-  double of(const std::string& unit, double p) const {
-    const double force = mass * length / (time * time), area = length * length;
-    const std::map<std::string, double> known = {
-        {"1", 1.0},
-        {"s", time},
-        {"s/m", 1.0 / velocity()},
-        {"N/m", force / length},
-        {"N.s/m", force / velocity()},
-        {"N/m^2", force / area},
-        {"N/m^3", force / (area * length)},
-        {"J/m^2", force / length},
-        {"N.s/m^2", impulse() / area},
-        {"N/m^p", p == 1.0 ? force / length : force / (length * std::sqrt(length))}};
-    return known.at(unit);
+  // Of a parameter by its declared unit, say N.s/m^2 or N/m^p; exponents: the values of letters like p.
+  double of(const std::string& unit, const std::map<std::string, double>& exponents) const {
+    const double force = mass * length / (time * time);
+    const std::map<std::string, double> known = {{"1", 1.0},  {"kg", mass}, {"m", length},
+                                                 {"s", time}, {"N", force}, {"J", force * length}};
+    double product = 1.0;
+    bool divides = false;
+    std::istringstream factors(std::regex_replace(unit, std::regex("[./]"), " $& "));
+    for (std::string factor; factors >> factor;) {
+      if (factor == "." || factor == "/") {
+        divides = factor == "/";
+        continue;
+      }
+      const std::size_t caret = factor.find('^');
+      const std::string base = factor.substr(0, caret),
+                        power = caret == std::string::npos ? "1" : factor.substr(caret + 1);
+      const double exponent = exponents.contains(power) ? exponents.at(power) : std::stod(power);
+      product *= std::pow(known.at(base), divides ? -exponent : exponent);
+    }
+    return product;
   }
 };
 
@@ -40,11 +48,16 @@ struct Units {
 inline Parameters in_units(const std::string& law, Parameters parameters, const Units& units) {
   const ilaw::library library(plugin_file(law));
   const ilaw_law& description = *library.law(law);
-  const double p = parameters.numbers.contains("exponent") ? parameters.numbers.at("exponent") : 1.0;
+  std::map<std::string, double> exponents;
+  for (std::uint32_t k = 0; k < description.parameter_count; ++k) {
+    const ilaw_parameter& parameter = *description.parameters[k];
+    const auto given = parameters.numbers.find(parameter.name);
+    exponents[parameter.symbol] = given == parameters.numbers.end() ? parameter.default_value : given->second;
+  }
   for (std::uint32_t k = 0; k < description.parameter_count; ++k) {
     const ilaw_parameter& parameter = *description.parameters[k];
     if (parameters.numbers.contains(parameter.name))
-      parameters.numbers[parameter.name] *= units.of(parameter.unit, p);
+      parameters.numbers[parameter.name] *= units.of(parameter.unit, exponents);
   }
   return parameters;
 }
@@ -72,6 +85,20 @@ inline Matrix transposed(const Matrix& m) {
 // Which H a law is given: any of its form, or one without coupling and with equal tangential entries, written
 // in that form.
 enum class Inertia { any, isotropic };
+
+inline Inertia inertia_of(const LawCase& given) {
+  return given.more.value("inertia", "any") == "isotropic" ? Inertia::isotropic : Inertia::any;
+}
+
+// Each law in each form of H, in 2D and 3D.
+inline const auto delassus_forms =
+    ::testing::Values(std::uint32_t{ILAW_DELASSUS_SCALAR}, std::uint32_t{ILAW_DELASSUS_DIAGONAL},
+                      std::uint32_t{ILAW_DELASSUS_FULL});
+inline std::string name_of_combination(
+    const ::testing::TestParamInfo<std::tuple<LawCase, std::uint32_t, std::uint32_t>>& drawn) {
+  const auto& [law, form, dimension] = drawn.param;
+  return law.name + "_" + name_of_form(form) + "_" + std::to_string(dimension) + "D";
+}
 
 class RandomNodes {
  public:

@@ -9,7 +9,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <deque>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,7 +21,12 @@ namespace ilaw::testing {
 
 using Vector = std::array<double, 3>;
 
+// Of this build, or of the build of a copy of the tree that is tested (see law_cases.hpp).
 inline std::string plugin_file(const std::string& law) {
+  if (const char* folder = std::getenv("ILAW_TEST_PLUGINS")) {
+    const std::string file = std::string(folder) + "/" + law + ".so";
+    if (std::filesystem::exists(file)) return file;
+  }
   return std::string(ILAW_PLUGIN_FOLDER) + "/" + law + ".so";
 }
 

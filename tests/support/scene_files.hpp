@@ -10,14 +10,21 @@
 
 namespace scene_files {
 
-// All of them, in the order of their names. ILAW_SOURCE is the root of the tree.
-inline std::vector<std::filesystem::path> all() {
-  const std::filesystem::path root = ILAW_SOURCE;
+// Scenes below a folder of the tree, whose root is ILAW_SOURCE.
+inline std::vector<std::filesystem::path> below(const char* folder) {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(root / "host_mock/scenes"))
-    files.push_back(entry.path());
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "plugins"))
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(std::filesystem::path(ILAW_SOURCE) / folder))
     if (entry.path().extension() == ".json") files.push_back(entry.path());
+  return files;
+}
+inline std::vector<std::filesystem::path> of_host() { return below("host_mock/scenes"); }
+inline std::vector<std::filesystem::path> of_laws() { return below("plugins"); }
+
+// All of them, in the order of their names.
+inline std::vector<std::filesystem::path> all() {
+  std::vector<std::filesystem::path> files = of_host();
+  for (const std::filesystem::path& file : of_laws()) files.push_back(file);
   std::sort(files.begin(), files.end(),
             [](const auto& a, const auto& b) { return a.filename() < b.filename(); });
   return files;

@@ -61,9 +61,7 @@ long double energy(const local_coulomb& p, const Exact& r) {
 
 // A coupling that strong needs a nearly singular H and a large coefficient.
 local_coulomb strongly_coupled(Draw& draw) {
-  local_coulomb p{};
-  draw.fill_coupled(p, 1e-3);
-  draw.fill_pressed_velocity(p, 1.0);
+  local_coulomb p = draw.pressed_coupled(1e-3);
   p.mu[0] = p.mu[1] = draw.decade(-0.5, 1.0);
   return p;
 }
@@ -119,9 +117,7 @@ TEST(LocalProblemChoice, SticksWhereItCan) {
 TEST(LocalProblemChoice, FollowsQContinuouslyWhereTheSolutionIsAlone) {
   Draw draw(23);
   for (int path = 0; path < 50; ++path) {
-    local_coulomb p{};
-    draw.fill_coupled(p, 0.5);
-    draw.fill_pressed_velocity(p, 1.0);
+    local_coulomb p = draw.pressed_coupled(0.5);
     p.mu[0] = p.mu[1] = 0.3;
     const double from[] = {p.q[0], p.q[1], p.q[2]}, angle = draw.uniform(0.0, 6.28);
     double before[3];

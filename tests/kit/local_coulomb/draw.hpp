@@ -45,6 +45,14 @@ class Draw {
     p.q[2] = scale * normal();
   }
 
+  // Both, without friction yet.
+  kit::local_coulomb pressed_coupled(double floor) {
+    kit::local_coulomb p{};
+    fill_coupled(p, floor);
+    fill_pressed_velocity(p, 1.0);
+    return p;
+  }
+
  private:
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;

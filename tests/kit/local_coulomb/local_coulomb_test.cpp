@@ -58,9 +58,7 @@ TEST(LocalProblem, HoldsItsConditionsForAnyFullH) {
   long double worst = 0.0L;
   int slips = 0, sticks = 0;
   for (int k = 0; k < 500000; ++k) {
-    local_coulomb p{};
-    draw.fill_coupled(p, 1e-3);
-    draw.fill_pressed_velocity(p, 1.0);
+    local_coulomb p = draw.pressed_coupled(1e-3);
     p.mu[0] = p.mu[1] = draw.decade(-2.0, 1.0);
     const Solved s = solved(p);
     (s.mode == contact_mode::slip ? slips : sticks) += 1;
@@ -78,9 +76,7 @@ TEST(LocalProblem, IsRoundedOnceWhereHAmplifies) {
   long double worst = 0.0L;
   int amplified = 0;
   for (int k = 0; k < 300000; ++k) {
-    local_coulomb p{};
-    draw.fill_coupled(p, 1e-3);
-    draw.fill_pressed_velocity(p, 1.0);
+    local_coulomb p = draw.pressed_coupled(1e-3);
     p.mu[0] = p.mu[1] = draw.decade(-1.0, 0.5);
     const Solved s = solved(p);
     if (s.natural < 50.0L * largest({p.q[0], p.q[1], p.q[2]})) continue;
@@ -172,9 +168,7 @@ TEST(LocalProblem, IsTheClosedFormWithoutCouplingAndAnisotropy) {
 TEST(LocalProblem, WithoutFrictionIsTheNormalRowAlone) {
   Draw draw(5);
   for (int k = 0; k < 10000; ++k) {
-    local_coulomb p{};
-    draw.fill_coupled(p, 0.1);
-    draw.fill_pressed_velocity(p, 1.0);
+    local_coulomb p = draw.pressed_coupled(0.1);
     double r[3];
     ASSERT_EQ(kit::solve(p, r), contact_mode::slip);
     ASSERT_NEAR(r[0], -p.q[0] / p.h[0], 4 * static_cast<double>(ulp) * r[0]);
@@ -186,9 +180,7 @@ TEST(LocalProblem, WithoutFrictionIsTheNormalRowAlone) {
 TEST(LocalProblem, IsFreeWhereTheNormalVelocityOpens) {
   Draw draw(6);
   for (int k = 0; k < 10000; ++k) {
-    local_coulomb p{};
-    draw.fill_coupled(p, 0.1);
-    draw.fill_pressed_velocity(p, 1.0);
+    local_coulomb p = draw.pressed_coupled(0.1);
     p.q[0] = k % 2 ? -p.q[0] : 0.0;
     p.mu[0] = p.mu[1] = draw.decade(-3.0, 3.0);
     const Solved s = solved(p);
@@ -205,9 +197,7 @@ TEST(LocalProblem, InfiniteFrictionSticksOrHasNoSolution) {
   Draw draw(7);
   int none = 0, held = 0;
   for (int k = 0; k < 100000; ++k) {
-    local_coulomb p{};
-    draw.fill_coupled(p, 0.1);
-    draw.fill_pressed_velocity(p, 1.0);
+    local_coulomb p = draw.pressed_coupled(0.1);
     p.mu[0] = p.mu[1] = inf_value;
     const Solved s = solved(p);
     const Solved rough =
@@ -236,9 +226,7 @@ TEST(LocalProblem, ExtremeEllipsesAreTheirLimits) {
   Draw draw(8);
   int compared = 0;
   for (int k = 0; k < 20000; ++k) {
-    local_coulomb p{};
-    draw.fill_coupled(p, 0.3);
-    draw.fill_pressed_velocity(p, 1.0);
+    local_coulomb p = draw.pressed_coupled(0.3);
     for (int axis = 0; axis < 2; ++axis)
       for (const double extreme : {0.0, inf_value}) {
         p.mu[axis] = extreme;
@@ -259,9 +247,7 @@ TEST(LocalProblem, ExtremeEllipsesAreTheirLimits) {
 TEST(LocalProblem, IsTheSameInOtherUnitsAndAxes) {
   Draw draw(9);
   for (int k = 0; k < 100000; ++k) {
-    local_coulomb p{};
-    draw.fill_coupled(p, 0.3);
-    draw.fill_pressed_velocity(p, 1.0);
+    local_coulomb p = draw.pressed_coupled(0.3);
     p.mu[0] = draw.decade(-1.0, 0.0);
     p.mu[1] = draw.decade(-1.0, 0.0);
     double r[3], other[3], exchanged[3];

@@ -1,0 +1,41 @@
+// A law to copy: a dashpot that pushes and never pulls. See template_law.md for the equations and for what to
+// replace.
+#include <ilaw/kit.hpp>
+
+namespace {
+
+using namespace ilaw::kit;
+
+struct template_law {
+  double damping;
+
+  static constexpr law_card card{.id = "template_law",
+                                 .title = "One-sided dashpot",
+                                 .doc =
+                                     "Where the gap is closed, a pressure proportional to the speed of "
+                                     "approach; nothing where the bodies separate.",
+                                 .inputs = reads_gap | reads_area,
+                                 .names_tangents = false};
+
+  static constexpr const char* references[] = {"The linear dashpot, made one-sided by this project"};
+
+  static constexpr parameter<template_law> parameters[] = {{.member = &template_law::damping,
+                                                            .name = "damping",
+                                                            .symbol = "c",
+                                                            .unit = "N.s/m^3",
+                                                            .doc = "Pressure over the speed of approach.",
+                                                            .required = true}};
+
+  // r_N = h c A <-(v_free + H_NN r_N)>, solved for r_N: the dashpot is one more inverse mass beside H_NN.
+  template <class Node>
+  void step(Node& node) const {
+    const double compliance = 1.0 / (node.velocity_step * damping * node.area);
+    const double impulse = positive_part(-node.v_free.n / (node.delassus.normal() + compliance));
+    node.impulse.n = node.gap <= 0.0 ? impulse : 0.0;
+    node.status = node.impulse.n > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
+  }
+};
+
+}  // namespace
+
+ILAW_PLUGIN("template_law", "1.0.0", "ilaw", "BSD-3-Clause", template_law)

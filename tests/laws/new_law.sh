@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# A new law touches folders of its own alone: in a copy of the tree, template_law is copied by the very commands
+# of its page, and the copy builds, is described, run, tested and timed without another edit.
+# Usage: new_law.sh SOURCE CMAKE C++ PROGRAMS, the last being the folder of ilaw, kit_test, laws_test, ilaw_bench_laws.
+set -euo pipefail
+source=$1 cmake=$2 compiler=$3 programs=$4
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+cp -r "$source"/{CMakeLists.txt,LICENSE,README.md,api,docs,host_mock,plugins,tests} "$tree"
+cd "$tree"
+
+awk '/^```sh$/ { inside = 1; next } /^```$/ { if (inside) exit } inside' plugins/template_law/template_law.md >copy.sh
+bash -euo pipefail copy.sh
+if grep -r template_law plugins/my_law tests/laws/my_law; then
+  echo "the copy still names the template" >&2
+  exit 1
+fi
+
+quietly() { "$@" >log 2>&1 || { cat log >&2; exit 1; }; }
+quietly "$cmake" -S . -B build -G Ninja -DILAW_TESTS=ON -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER="$compiler"
+quietly "$cmake" --build build --target my_law my_law_test
+
+export ILAW_PATH=$tree/build/lib/ilaw ILAW_TEST_TREE=$tree ILAW_TEST_PLUGINS=$tree/build/lib/ilaw
+"$programs/ilaw" describe my_law
+quietly "$programs/ilaw" run plugins/my_law/my_law.json --out results
+test -s results/history.csv
+
+# Its own tests and the check of its library; then what the tests of all laws say of it.
+quietly ctest --test-dir build --output-on-failure --no-tests=error -R '^(my_law|plugin_is_portable[.]my_law)'
+for program in kit_test laws_test; do
+  count=$("$programs/$program" --gtest_list_tests --gtest_filter='*/my_law*' | grep -c 'my_law')
+  quietly "$programs/$program" --gtest_brief=1 --gtest_filter='*/my_law*:EveryLaw.*'
+  echo "$program: $count tests of my_law"
+done
+"$programs/ilaw_bench_laws" --law my_law --nodes 1000 --repetitions 1 | grep my_law

@@ -1,0 +1,87 @@
+// template_law through the ABI: its equation, its motion in time, and its limits.
+#include "laws/random_nodes.hpp"
+
+namespace ilaw::testing {
+namespace {
+
+constexpr double ulp = 0x1p-52;
+
+// r_N = h c A <-v_N> with the velocity after the step, for any form of H.
+TEST(template_law, KeepsItsEquation) {
+  for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL})
+    for (const double damping : {0.0, 1e-3, 1.0, 1e3, 1e6}) {
+      RandomNodes nodes(1000, 3, form, Inertia::any, 1);
+      Runner run("template_law", {{{"damping", damping}}, {}}, nodes);
+      nodes.draw();
+      for (double& gap : nodes.gap) gap = nodes.uniform();
+      ASSERT_EQ(run.evaluate(), ILAW_OK) << run.report.reason;
+      for (std::size_t i = 0; i < nodes.count; ++i) {
+        SCOPED_TRACE(::testing::Message() << "node " << i << ", form " << form << ", damping " << damping);
+        const double c = nodes.gap[i] <= 0.0 ? RandomNodes::step * damping * nodes.area[i] : 0.0;
+        ASSERT_EQ(run.r[i][1], 0.0);
+        ASSERT_EQ(run.r[i][2], 0.0);
+        // Cancellation leaves ulps of v_free in v_N.
+        ASSERT_NEAR(run.r[i][0], c * std::max(0.0, -run.v[i][0]), 4 * ulp * (1.0 + c));
+        ASSERT_EQ(run.status[i], run.r[i][0] > 0.0 ? ILAW_CLOSED : ILAW_FREE);
+      }
+    }
+}
+
+// A mass that meets the dashpot at speed V: each step divides its speed by 1 + h c A/m, and at time t it is
+// V exp(-c A t/m) but for the order of the step.
+TEST(template_law, SlowsAMassExponentially) {
+  const double mass = 2.0, area = 0.5, damping = 3.0, speed = 4.0, end = 2.0, rate = damping * area / mass;
+  double errors[3];
+  const double steps[] = {0.05, 0.02, 0.008};
+  for (int k = 0; k < 3; ++k) {
+    const double h = steps[k];
+    NodeRun node("template_law", {{{"damping", damping}}, {}}, h);
+    node.h[0] = 1.0 / mass;
+    node.area = area;
+    node.gap = -1e-3;
+    node.v = node.v_previous = {-speed, 0.0, 0.0};
+    const auto count = static_cast<int>(std::lround(end / h));
+    double energy = 0.0;
+    for (int step = 0; step < count; ++step) {
+      ASSERT_EQ(node.step(node.v), ILAW_OK);
+      energy += node.energy[ILAW_ENERGY_IMPACT];
+    }
+    EXPECT_NEAR(-node.v[0], speed * std::pow(1.0 + h * rate, -count), 1e-13) << "h " << h;
+    EXPECT_NEAR(energy, 0.5 * mass * (speed * speed - node.v[0] * node.v[0]), 1e-12) << "h " << h;
+    errors[k] = std::abs(node.v[0] + speed * std::exp(-rate * end));
+  }
+  for (int k = 1; k < 3; ++k)
+    EXPECT_NEAR(std::log(errors[k] / errors[k - 1]) / std::log(steps[k] / steps[k - 1]), 1.0, 0.05);
+}
+
+TEST(template_law, NeverPullsAndNeedsAClosedGapAndAnArea) {
+  NodeRun node("template_law", {{{"damping", 1e3}}, {}});
+  const auto impulse = [&](double gap, double area, double velocity) {
+    node.gap = gap;
+    node.area = area;
+    EXPECT_EQ(node.step({velocity, 1.0, -1.0}), ILAW_OK) << node.report.reason;
+    return node.r[0];
+  };
+  EXPECT_GT(impulse(0.0, 1.0, -1.0), 0.0);
+  EXPECT_EQ(impulse(1e-9, 1.0, -1.0), 0.0);
+  EXPECT_EQ(impulse(0.0, 0.0, -1.0), 0.0);
+  EXPECT_EQ(impulse(0.0, 1.0, 1.0), 0.0);
+}
+
+// The same impulse, turned, in axes that are turned at random.
+TEST(template_law, IsIndifferentToTheFrame) {
+  RandomNodes nodes(1000, 3, ILAW_DELASSUS_FULL, Inertia::any, 2);
+  const Parameters parameters{{{"damping", 500.0}}, {}};
+  Runner local("template_law", parameters, nodes), turned("template_law", parameters, nodes, true);
+  nodes.draw();
+  ASSERT_EQ(local.evaluate(), ILAW_OK) << local.report.reason;
+  ASSERT_EQ(turned.evaluate(), ILAW_OK) << turned.report.reason;
+  for (std::size_t i = 0; i < nodes.count; ++i) {
+    const Vector r = turned.local(i, turned.r[i], 1.0);
+    for (std::size_t c = 0; c < 3; ++c)
+      ASSERT_NEAR(r[c], local.r[i][c], 1e-13 * (1.0 + local.r[i][0])) << "node " << i << ", seed 2";
+  }
+}
+
+}  // namespace
+}  // namespace ilaw::testing

@@ -1,0 +1,97 @@
+// law_cases.hpp - the laws of the tree and the parameters that the tests of all laws give them, found by
+// looking: each tests/laws/<law>/cases.json brings its own, in sections named for the tests that read them.
+//
+//   contract     layouts, threads, instruction sets (kit_test)
+//   bad_input    what a node is refused for (kit_test)
+//   environment  no influence of the host's floating-point environment; "form" of H, scalar (kit_test)
+//   reach        what a host may skip (kit_test)
+//   frame        memory that turns with the axes; for laws that remember vectors (kit_test)
+//   options      tables in time and values per node: name as many parameters as go together (laws_test)
+//   properties   conditions, energy, units, axes (laws_test; its head explains the further keys)
+//   limits       parameters with which the law is another, bit for bit (laws_test)
+//   benchmarks   what ilaw_bench_laws times (its head explains the further keys)
+//
+// A case has "parameters" (numbers, "inf", choices; {} if left out) and, where a law has several, a "name".
+#pragma once
+
+#include "law_runner.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+namespace ilaw::testing {
+
+using json = nlohmann::json;
+
+// The tree whose laws are tested: this one, unless a test looks at a copy of it.
+inline std::filesystem::path tree_of_laws() {
+  const char* other = std::getenv("ILAW_TEST_TREE");
+  return other ? other : ILAW_SOURCE;
+}
+
+inline Parameters parameters_of(const json& given) {
+  Parameters parameters;
+  for (const auto& [name, value] : given.items())
+    if (value.is_number())
+      parameters.numbers[name] = value.get<double>();
+    else if (value == "inf")
+      parameters.numbers[name] = std::numeric_limits<double>::infinity();
+    else
+      parameters.texts[name] = value.get<std::string>();
+  return parameters;
+}
+
+struct LawCase {
+  std::string law, name;  // name: letters, digits and underscores, as test names have
+  Parameters parameters;
+  json more;  // the whole entry
+
+  friend std::ostream& operator<<(std::ostream& out, const LawCase& shown) { return out << shown.name; }
+};
+
+inline LawCase law_case(const std::string& law, const json& entry) {
+  const std::string suffix = entry.value("name", "");
+  return {law, suffix.empty() ? law : law + "_" + suffix,
+          parameters_of(entry.value("parameters", json::object())), entry};
+}
+
+// Names of the folders of plugins/ that hold a law.
+inline std::vector<std::string> laws_of_tree() {
+  std::vector<std::string> laws;
+  for (const auto& entry : std::filesystem::directory_iterator(tree_of_laws() / "plugins")) {
+    const std::string law = entry.path().filename().string();
+    if (std::filesystem::exists(entry.path() / (law + ".cpp"))) laws.push_back(law);
+  }
+  std::sort(laws.begin(), laws.end());
+  return laws;
+}
+
+// The cases that all laws bring for a section.
+inline std::vector<LawCase> law_cases(const std::string& section) {
+  std::vector<LawCase> cases;
+  for (const std::string& law : laws_of_tree()) {
+    const std::filesystem::path file = tree_of_laws() / "tests/laws" / law / "cases.json";
+    if (!std::filesystem::exists(file)) continue;  // said by the test EveryLaw.BringsItsCases
+    const json sections = json::parse(std::ifstream(file));
+    for (const json& entry : sections.value(section, json::array())) cases.push_back(law_case(law, entry));
+  }
+  return cases;
+}
+
+inline const char* name_of_form(std::uint32_t form) {
+  return form == ILAW_DELASSUS_SCALAR ? "scalar" : form == ILAW_DELASSUS_DIAGONAL ? "diagonal" : "full";
+}
+
+// The "form" of H of a case, scalar if left out.
+inline std::uint32_t form_of(const LawCase& given) {
+  const std::string name = given.more.value("form", "scalar");
+  for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL})
+    if (name == name_of_form(form)) return form;
+  throw std::runtime_error(given.name + ": no form of H is called " + name);
+}
+
+}  // namespace ilaw::testing
