@@ -1,5 +1,5 @@
-// docs/scenes.md is complete: it names every key and every choice of the schema, and every scene of the host. A
-// law's scene is named by the law's page.
+// docs/scenes.md is complete: it names every key and every choice of the schema, and every scene of the host.
+// A law's scene is named by the law's page.
 #include "support/scene_files.hpp"
 
 #include <gtest/gtest.h>

@@ -148,8 +148,8 @@ void Interface::check_status(const ContactList& contacts) const {
       throw ilaw::error(ILAW_BAD_LIBRARY, "interface '" + setup_.name + "' (law '" + setup_.law +
                                               "', library " + library().path() + "): found status " +
                                               std::to_string(found) + " at node " +
-                                              std::to_string(node_of(contact_index)) +
-                                              ", expected 0 to " + std::to_string(ILAW_STATUS_COUNT - 1));
+                                              std::to_string(node_of(contact_index)) + ", expected 0 to " +
+                                              std::to_string(ILAW_STATUS_COUNT - 1));
 }
 
 double Interface::apply(const ContactList& contacts, Dofs& v) {

@@ -58,8 +58,7 @@ void Accounts::add_interface(const Interface& interface, const StepRecord& step)
   tally_.status_counts[ILAW_FREE] += skipped;
 }
 
-std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt,
-                                            const EnergyReport& energy) const {
+std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const EnergyReport& energy) const {
   std::vector<std::string> warnings;
   const auto say = [&](const char* format, auto... values) {
     std::array<char, 256> text{};
