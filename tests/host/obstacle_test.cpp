@@ -24,14 +24,15 @@ Vector3d random_vector(std::mt19937_64& random) {
 
 TEST(Plane, MeasuresAlongItsNormalWhateverItsLength) {
   const Plane plane(Vector3d(1, 2, 3), Vector3d(0, 0, 5), still());
-  const Surface surface = plane.at(Vector3d(-4, 7, 1), 0.0);
+  const RigidSurface surface = plane.at(Vector3d(-4, 7, 1), 0.0);
   EXPECT_EQ(surface.gap, -2.0);
   EXPECT_EQ(Vector3d(surface.normal), Vector3d(0, 0, 1));
 }
 
 TEST(Sphere, MeasuresFromItsCenterInsideAndOutside) {
   const Sphere sphere(Vector3d(1, 0, 0), 2.0, still());
-  const Surface outside = sphere.at(Vector3d(1, 3, 4), 0.0), inside = sphere.at(Vector3d(1, 0, -0.5), 0.0);
+  const RigidSurface outside = sphere.at(Vector3d(1, 3, 4), 0.0),
+                     inside = sphere.at(Vector3d(1, 0, -0.5), 0.0);
   EXPECT_NEAR(outside.gap, 3.0, 1e-15);
   EXPECT_NEAR((Vector3d(outside.normal) - Vector3d(0, 0.6, 0.8)).norm(), 0.0, 1e-15);
   EXPECT_EQ(inside.gap, -1.5);
@@ -40,7 +41,7 @@ TEST(Sphere, MeasuresFromItsCenterInsideAndOutside) {
 
 TEST(Cylinder, MeasuresFromItsAxisWhateverItsLength) {
   const Cylinder cylinder(Vector3d(0, 0, 1), Vector3d(0, 7, 0), 0.5, still());
-  const Surface surface = cylinder.at(Vector3d(3, 100, 5), 0.0);
+  const RigidSurface surface = cylinder.at(Vector3d(3, 100, 5), 0.0);
   EXPECT_NEAR(surface.gap, 4.5, 1e-14);
   EXPECT_NEAR((Vector3d(surface.normal) - Vector3d(0.6, 0, 0.8)).norm(), 0.0, 1e-15);
 }
@@ -52,7 +53,7 @@ TEST(RoundObstacle, HasANormalAtItsCenter) {
   EXPECT_EQ(sphere.at(Vector3d(1, 2, 3), 0.0).normal.norm(), 1.0);
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 3, 0), Vector3d(1, 1, 0)}) {
     const Cylinder cylinder(Vector3d::Zero(), axis, 1.0, still());
-    const Surface surface = cylinder.at(Vector3d::Zero(), 0.0);
+    const RigidSurface surface = cylinder.at(Vector3d::Zero(), 0.0);
     EXPECT_EQ(surface.gap, -1.0);
     EXPECT_NEAR(surface.normal.norm(), 1.0, 1e-15);
     EXPECT_NEAR(surface.normal.dot(axis), 0.0, 1e-15);
@@ -70,7 +71,7 @@ TEST(Obstacle, HasAGapThatIsADistanceAlongItsNormal) {
     const Cylinder cylinder(point, direction, 0.7, still());
     const Vector3d x = random_vector(random);
     for (const Obstacle* obstacle : std::initializer_list<const Obstacle*>{&plane, &sphere, &cylinder}) {
-      const Surface surface = obstacle->at(x, 0.0);
+      const RigidSurface surface = obstacle->at(x, 0.0);
       ASSERT_NEAR(surface.normal.norm(), 1.0, 1e-15);
       ASSERT_NEAR(obstacle->at(x - surface.gap * surface.normal, 0.0).gap, 0.0, 1e-14) << draw;
       ASSERT_NEAR(obstacle->at(x + 0.3 * surface.normal, 0.0).gap, surface.gap + 0.3, 1e-14) << draw;
