@@ -44,7 +44,7 @@ struct contact {
     const double normal =
         condition.slack <= 0.0 ? positive_part(-condition.excess / node.delassus.normal()) : 0.0;
     node.impulse.n = normal;
-    node.status = normal > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
+    node.status = normal > 0.0 ? status::closed : status::free;
   }
 };
 

@@ -169,9 +169,9 @@ struct penalty {
     q.n = -normal;
     const auto result = solve_contact_friction(diagonal_delassus{1.0, softness, softness}, -1.0, q, friction);
     node.impulse = result.impulse;
-    const double rubbed = result.slips ? double{ILAW_SLIP} : double{ILAW_STICK};
-    const double closed = friction > 0.0 ? rubbed : double{ILAW_CLOSED};
-    node.status = normal > 0.0 ? closed : double{ILAW_FREE};
+    const double rubbed = result.slips ? status::slip : status::stick;
+    const double closed = friction > 0.0 ? rubbed : status::closed;
+    node.status = normal > 0.0 ? closed : status::free;
   }
 
   // The mean over the step of forces that the step ends with, so that springs give back what they took: see
@@ -207,7 +207,7 @@ struct penalty {
     const vector moved = spring + (0.5 * h) * (node.v_previous + v);
     const double most = per_impulse * r.tangential_length(), length = moved.tangential_length();
     const bool is_stiff = h * h * tangential_stiffness * node.delassus.tangential() > 4.0;
-    const bool slides = node.status != double{ILAW_STICK};
+    const bool slides = node.status != status::stick;
     const double kept = slides && length > most ? most / length : 1.0;
     const bool by_force = is_stiff && !slides, holds = tangential_stiffness < infinity && friction > 0.0;
     const auto next = [&](double before, double after, double impulse) {

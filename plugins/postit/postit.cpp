@@ -144,13 +144,13 @@ struct postit {
       step_bonded(node, earlier.sum);
     else
       step_unbonded(node);
-    heal(node, node.status == double{ILAW_BROKEN} ? vector{} : earlier.sum);
+    heal(node, node.status == status::broken ? vector{} : earlier.sum);
   }
 
   // A rupture clears the window; what it then holds is the impulse of this step.
   template <class Node>
   void record(const Node& node, history own) const {
-    if (node.status == double{ILAW_BROKEN}) sums().clear(own);
+    if (node.status == status::broken) sums().clear(own);
     sums().add(own, interval_of(node), node.impulse);
   }
 
@@ -170,7 +170,7 @@ struct postit {
   template <class Node>
   void step_unbonded(Node& node) const {
     touch(node, node.v_free, {});
-    if (node.status == double{ILAW_FREE}) node.state.grace = 0.0;
+    if (node.status == status::free) node.state.grace = 0.0;
   }
 
   template <class Node>
@@ -178,7 +178,7 @@ struct postit {
     const vector trial = stopping_impulse(node);
     if (criterion(earlier + trial, node.state.adhesion) <= at_the_limit) {
       node.impulse = trial;
-      node.status = ILAW_BONDED;
+      node.status = status::bonded;
       node.state.grace = still_to_hold(node.state.grace, node.velocity_step);
       return;
     }
@@ -187,7 +187,7 @@ struct postit {
     node.state.adhesion = 0.0;
     count_rupture(node.state, node.velocity_step);
     touch(node, node.v_free + node.delassus.times(held), held);
-    node.status = ILAW_BROKEN;
+    node.status = status::broken;
   }
 
   // Sliding under pressure bonds and breaks in every step. A rupture counts only if the node was free since
@@ -225,9 +225,9 @@ struct postit {
         efficiency_decrease < infinity ? exp(-node.state.ruptures / efficiency_decrease) : 1.0;
     const double limit = adhesion_limit < infinity ? adhesion_limit * node.area : infinity;
     const double gained = smaller(efficiency * positive_part(earlier.n + node.impulse.n), limit);
-    const bool forms = node.state.adhesion == 0.0 && gained > 0.0 && node.status != double{ILAW_BROKEN};
+    const bool forms = node.state.adhesion == 0.0 && gained > 0.0 && node.status != status::broken;
     node.state.adhesion = larger(node.state.adhesion, gained);
-    if (forms) node.status = ILAW_HEALED;
+    if (forms) node.status = status::healed;
   }
 };
 

@@ -88,19 +88,19 @@ struct tie {
     const double limit = strength < infinity ? strength * node.area : infinity;
     if (load(earlier.sum + trial) <= limit * at_the_limit) {
       node.impulse = trial;
-      node.status = ILAW_BONDED;
+      node.status = status::bonded;
       return;
     }
     touch(node);
     node.state.broken = 1.0;
-    node.status = ILAW_BROKEN;
+    node.status = status::broken;
   }
 
   // A broken bond needs no window any more.
   template <class Node>
   void record(const Node& node, history own) const {
-    if (node.status == double{ILAW_BONDED}) sums().add(own, interval_of(node), node.impulse);
-    if (node.status == double{ILAW_BROKEN}) sums().clear(own);
+    if (node.status == status::bonded) sums().add(own, interval_of(node), node.impulse);
+    if (node.status == status::broken) sums().clear(own);
   }
 
  private:
@@ -113,7 +113,7 @@ struct tie {
   static void touch(Node& node) {
     const contact_condition contact = contact_leaving_at(0.0, node.gap, node.v_free.n, node.v_previous.n);
     node.impulse.n = contact.slack <= 0.0 ? positive_part(-contact.excess / node.delassus.normal()) : 0.0;
-    node.status = node.impulse.n > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
+    node.status = node.impulse.n > 0.0 ? status::closed : status::free;
   }
 };
 
@@ -126,7 +126,7 @@ struct tie::unbreakable {
     touch(node);  // if the state says broken, by a strength that there was
     const bool holds = node.state.broken == 0.0;
     node.impulse = {holds ? trial.n : node.impulse.n, holds ? trial.t1 : 0.0, holds ? trial.t2 : 0.0};
-    node.status = holds ? double{ILAW_BONDED} : node.status;
+    node.status = holds ? status::bonded : node.status;
   }
 };
 
