@@ -60,17 +60,11 @@ struct penalty {
        .default_value = 1.0,
        .minimum = 1.0,
        .maximum = 8.0},
-      {.member = &penalty::restitution,
-       .name = "restitution",
-       .symbol = "e",
-       .doc = "Part of the normal velocity that an impact gives back (implicit; explicit: 1, see damping).",
-       .default_value = 1.0,
-       .maximum = 1.0},
-      {.member = &penalty::friction,
-       .name = "friction",
-       .symbol = "mu",
-       .doc = "Coefficient of friction.",
-       .infinity_allowed = true},
+      restitution_parameter(&penalty::restitution)
+          .with_doc(
+              "Part of the normal velocity that an impact gives back (implicit; explicit: 1, see damping).")
+          .with_default(1.0),
+      friction_parameter(&penalty::friction),
       {.member = &penalty::tangential_stiffness,
        .name = "tangential_stiffness",
        .symbol = "k_T",

@@ -53,13 +53,7 @@ struct postit {
        .default_value = infinity,
        .minimum_excluded = true,
        .infinity_allowed = true},
-      {.member = &postit::duration,
-       .name = "memory",
-       .symbol = "tau_Y",
-       .unit = "s",
-       .doc = "Duration over which impulses are summed; 0: the step's own impulse alone.",
-       .infinity_allowed = true,
-       .fixed = true},
+      memory_parameter(&postit::duration),
       {.member = &postit::tangent_influence,
        .name = "tangent_influence",
        .symbol = "lambda",
@@ -67,11 +61,7 @@ struct postit {
        .default_value = infinity,
        .minimum_excluded = true,
        .infinity_allowed = true},
-      {.member = &postit::friction,
-       .name = "friction",
-       .symbol = "mu",
-       .doc = "Coefficient of friction.",
-       .infinity_allowed = true},
+      friction_parameter(&postit::friction),
       {.member = &postit::rupture,
        .name = "rupture",
        .doc = "brittle: the breaking step gives no adhesive impulse; saturated: it gives what was left up to "
@@ -84,15 +74,7 @@ struct postit {
        .symbol = "R_Y,0",
        .unit = "N.s/m^2",
        .doc = "Adhesion per area at the start."},
-      {.member = &postit::buckets,
-       .name = "buckets",
-       .symbol = "B",
-       .doc = "Buckets of the window, which is of third order in their width memory/B.",
-       .default_value = 16.0,
-       .minimum = 1.0,
-       .maximum = 4096.0,
-       .whole = true,
-       .fixed = true}};
+      buckets_parameter(&postit::buckets)};
 
   struct state {
     double adhesion, ruptures, grace;
@@ -107,11 +89,7 @@ struct postit {
        .unit = "s",
        .doc = "Time that the bond has yet to hold for its rupture to count; 0: it counts.",
        .minimum = 0.0}};
-  static constexpr state_variable history_variable{.name = "window",
-                                                   .unit = "N.s",
-                                                   .doc = "Impulses of the last memory.",
-                                                   .kind = ILAW_STATE_HISTORY,
-                                                   .internal = true};
+  static constexpr state_variable history_variable = window_variable;
 
   std::uint32_t inputs() const {
     return reads_gap | reads_v_previous |

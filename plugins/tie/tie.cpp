@@ -36,22 +36,8 @@ struct tie {
        .doc = "Impulse per area, over the memory, that the bond can carry in pull and shear.",
        .default_value = infinity,
        .infinity_allowed = true},
-      {.member = &tie::duration,
-       .name = "memory",
-       .symbol = "tau_Y",
-       .unit = "s",
-       .doc = "Duration over which impulses are summed; 0: the step's own impulse alone.",
-       .infinity_allowed = true,
-       .fixed = true},
-      {.member = &tie::buckets,
-       .name = "buckets",
-       .symbol = "B",
-       .doc = "Buckets of the window, which is of third order in their width memory/B.",
-       .default_value = 16.0,
-       .minimum = 1.0,
-       .maximum = 4096.0,
-       .whole = true,
-       .fixed = true}};
+      memory_parameter(&tie::duration),
+      buckets_parameter(&tie::buckets)};
 
   struct state {
     double broken;
@@ -61,11 +47,7 @@ struct tie {
                                                         .minimum = 0.0,
                                                         .maximum = 1.0,
                                                         .whole = true}};
-  static constexpr state_variable history_variable{.name = "window",
-                                                   .unit = "N.s",
-                                                   .doc = "Impulses of the last memory.",
-                                                   .kind = ILAW_STATE_HISTORY,
-                                                   .internal = true};
+  static constexpr state_variable history_variable = window_variable;
 
   std::uint32_t inputs() const { return strength < infinity ? card.inputs : 0U; }
   std::int64_t history_size() const { return window::doubles(duration, buckets); }

@@ -71,6 +71,23 @@ struct parameter {
   bool fixed = false;  // no table and no value per node: the layout of the state depends on it
   const char* const* choices = nullptr;
   std::uint32_t choice_count = 0;
+
+  // Copies that differ in one thing, for the parameters of common_parameters.hpp.
+  constexpr parameter with_doc(const char* text) const {
+    parameter copy = *this;
+    copy.doc = text;
+    return copy;
+  }
+  constexpr parameter with_default(double value) const {
+    parameter copy = *this;
+    copy.default_value = value;
+    return copy;
+  }
+  constexpr parameter as_required() const {
+    parameter copy = *this;
+    copy.required = true;
+    return copy;
+  }
 };
 
 struct state_variable {
