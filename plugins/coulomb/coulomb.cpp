@@ -101,12 +101,10 @@ struct coulomb {
   }
 };
 
-struct coulomb::plain {
-  coulomb law;
-
+struct coulomb::plain : coulomb {
   template <class Node>
   void step(Node& node) const {
-    apply_contact_friction(node, law.problem(node), law.friction);
+    apply_contact_friction(node, problem(node), friction);
   }
 };
 

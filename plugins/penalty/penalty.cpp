@@ -125,14 +125,17 @@ struct penalty {
     return smaller(closed, 2.0 / square_root(tangential_stiffness * largest_tangential(node.delassus)));
   }
 
+  // Explicit or implicit, linear or not: loops without a power vectorise.
+  template <bool Implicit, bool Linear>
+  struct form;
   template <class Run>
   void in_form(Run run) const;
   template <class Node>
   void step(Node& node) const {
-    in_form([&node](const auto& form) { form.step(node); });
+    in_form([&node](const auto& chosen) { chosen.step(node); });
   }
 
- protected:
+ private:
   // Not below the largest inverse mass in the tangent plane, with what H couples to the normal.
   static double largest_tangential(const scalar_delassus& h) { return h.h; }
   static double largest_tangential(const diagonal_delassus& h) { return larger(h.t1, h.t2); }
@@ -314,9 +317,8 @@ struct penalty {
   }
 };
 
-// The four forms, chosen per batch: loops without a power vectorise.
 template <bool Implicit, bool Linear>
-struct penalty_form : penalty {
+struct penalty::form : penalty {
   double damping_ratio;
 
   template <class Node>
@@ -333,10 +335,10 @@ void penalty::in_form(Run run) const {
   const bool is_implicit = integration == implicitly;
   const bool is_linear = exponent == 1.0 || stiffness == infinity;
   const double ratio = penalty_law::damping_ratio(restitution);
-  if (is_implicit && is_linear) run(penalty_form<true, true>{*this, ratio});
-  if (is_implicit && !is_linear) run(penalty_form<true, false>{*this, ratio});
-  if (!is_implicit && is_linear) run(penalty_form<false, true>{*this, ratio});
-  if (!is_implicit && !is_linear) run(penalty_form<false, false>{*this, ratio});
+  if (is_implicit && is_linear) run(form<true, true>{*this, ratio});
+  if (is_implicit && !is_linear) run(form<true, false>{*this, ratio});
+  if (!is_implicit && is_linear) run(form<false, true>{*this, ratio});
+  if (!is_implicit && !is_linear) run(form<false, false>{*this, ratio});
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ struct tie {
   }
 };
 
-struct tie::unbreakable {
+struct tie::unbreakable : tie {
   static constexpr bool forgets = true;
 
   template <class Node>
@@ -115,7 +115,7 @@ struct tie::unbreakable {
 template <class Run>
 void tie::in_form(Run run) const {
   if (strength == infinity && duration == 0.0)
-    run(unbreakable{});
+    run(unbreakable{*this});
   else
     run(*this);
 }
