@@ -23,14 +23,15 @@
 // law's. in_form calls run once, with the form that the parameters ask for or with the law itself:
 //   struct plain;                                         in the law, as is the declaration of in_form
 //   struct law::plain : law {                             behind the law
-//     static constexpr bool forgets = true;               if the law has a history that this step leaves
-//     alone template <class Node> void step(Node&) const;
+//     static constexpr bool forgets = true;               where the law has a history: this step needs none
+//     template <class Node> void step(Node&) const;
 //   };
 //   template <class Run> void law::in_form(Run run) const {
 //     if (friction == 0.0) run(plain{*this}); else run(*this);
 //   }
 // The kit asks for a form once per block of nodes that share their parameters. Where these vary from node to
-// node it takes the law's own step, so that must serve all of them.
+// node it takes the law's own step, which serves all of them: in a law that is nothing but forms by calling
+// in_form itself, as penalty does.
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
