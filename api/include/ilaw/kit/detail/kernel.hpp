@@ -223,8 +223,8 @@ inline constexpr bool remembers = has_history<Law> && !requires {
 template <class Law, class Node>
 bool rests(const Node& n, const state_t<Law>& before) {
   const bool still = (n.impulse.n == 0.0) & (n.impulse.t1 == 0.0) & (n.impulse.t2 == 0.0);
-  return still & is_out_of_reach(n) & (n.status == status::free) &
-         detail::same_bits<Law>(n.state, before);
+  const bool free = is_out_of_reach(n) & (n.status == status::free);
+  return still && free && detail::same_bits<Law>(n.state, before);
 }
 
 // Steps and writes node i; valid: what the caller knows of its parameters.
