@@ -41,6 +41,28 @@ TEST(Program, RunsASceneAndLeavesHistoryAndSummary) {
   EXPECT_FALSE(std::filesystem::exists(folder / "history.csv.partial"));
 }
 
+// A scene of one mass that slides on a floor, under the law.
+std::string sliding_mass(const std::string& law, const std::string& parameters) {
+  return R"({"model": {"type": "points", "dimension": 3,
+               "points": [{"mass": 1, "position": [0, 0, 0], "velocity": [0.1, 0, 0]}]},
+             "time": {"dt": 0.01, "end": 0.02}, "output": {"watch": [0]},
+             "interfaces": [{"law": ")" +
+         law + R"(", "parameters": )" + parameters + R"(, "nodes": "all",
+                             "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})";
+}
+
+// mean_opening and what is named history stay in the state and out of the table.
+TEST(Program, HistoryLeavesOutTheLawsBookkeeping) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << sliding_mass("cohesive", R"({"strength": 1, "toughness": 1})");
+  const Outcome outcome =
+      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  ASSERT_EQ(outcome.code, 0) << outcome.output;
+  const std::string history = text_of(folder / "history.csv");
+  EXPECT_EQ(history.substr(0, history.find('\n')),
+            "time,n0.u0,n0.u1,n0.u2,n0.v0,n0.v1,n0.v2,n0.r0,n0.r1,n0.r2,n0.gap,n0.status,n0.damage,n0.opening");
+}
+
 TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   const auto folder = fresh_folder();
   EXPECT_EQ(run_program("").code, 2);
