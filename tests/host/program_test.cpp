@@ -124,7 +124,8 @@ TEST(Program, FailsWithCodeOneWhereALawGivesAnUnknownStatus) {
   const auto folder = fresh_folder();
   std::ofstream(folder / "scene.json") << R"({"model": {"type": "points", "dimension": 1, "points": [
       {"mass": 1, "position": [1]}, {"mass": 1, "position": [0]}]}, "time": {"dt": 0.5, "end": 1},
-    "interfaces": [{"name": "floor", "law": "zero", "library": ")" ILAW_ODD_STATUS R"(", "nodes": [1], "skip": false,
+    "interfaces": [{"name": "floor", "law": "zero", "library": ")" ILAW_ODD_STATUS
+                                          R"(", "nodes": [1], "skip": false,
                     "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})";
   const Outcome outcome =
       run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
