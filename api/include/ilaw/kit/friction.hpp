@@ -62,7 +62,7 @@ fraction stopping_part(const Delassus& delassus, double normal, Vector q, double
   const fraction part = root_of_work(square, -(square + along), impact);
   const bool gains = along < impact;
   const bool far = part.under == infinity;  // v^- is so much larger than q that nothing is left
-  return {gains ? (far ? 0.0 : part.over) : 1.0, gains && !far ? part.under : 1.0};
+  return {gains ? (far ? 0.0 : part.over) : 1.0, (gains & !far) ? part.under : 1.0};
 }
 
 template <class Vector>
