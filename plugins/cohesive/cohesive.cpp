@@ -90,11 +90,7 @@ struct cohesive {
        .default_value = infinity,
        .minimum_excluded = true,
        .infinity_allowed = true},
-      {.member = &cohesive::friction,
-       .name = "friction",
-       .symbol = "mu",
-       .doc = "Coefficient of friction of what is broken.",
-       .infinity_allowed = true},
+      friction_parameter(&cohesive::friction).with_doc("Coefficient of friction of what is broken."),
       {.member = &cohesive::delay_time,
        .name = "delay_time",
        .symbol = "tau_c",
@@ -314,7 +310,7 @@ struct cohesive {
     const double stored_before = node.area * energy_of(secant_of(s.damage), z.size(z.opening));
     node.stored = node.area * energy_of(secant_of(found.damage), m.size);
     node.rupture = positive_part(node.normal_gain + node.tangential_gain - (node.stored - stored_before));
-    node.status = found.damage < 1.0 ? double{ILAW_BONDED} : double{ILAW_BROKEN};
+    node.status = found.damage < 1.0 ? status::bonded : status::broken;
     s = {found.damage, z.next_position(m), m.opening};
   }
 

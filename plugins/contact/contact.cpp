@@ -25,18 +25,8 @@ struct contact {
       "D. Doyen, A. Ern, S. Piperno, 2011, Time-integration schemes for the finite element dynamic Signorini "
       "problem"};
 
-  static constexpr parameter<contact> parameters[] = {
-      {.member = &contact::restitution,
-       .name = "restitution",
-       .symbol = "e",
-       .doc = "Newton's coefficient: normal velocity after an impact over the one before, reversed.",
-       .maximum = 1.0},
-      {.member = &contact::activation,
-       .name = "activation",
-       .doc = "moreau: acts where the gap is closed; predictive: acts where the next gap would be negative.",
-       .default_value = predictive,
-       .choices = activation_choices,
-       .choice_count = 2}};
+  static constexpr parameter<contact> parameters[] = {restitution_parameter(&contact::restitution),
+                                                      activation_parameter(&contact::activation)};
 
   template <class Node>
   void step(Node& node) const {
@@ -44,7 +34,7 @@ struct contact {
     const double normal =
         condition.slack <= 0.0 ? positive_part(-condition.excess / node.delassus.normal()) : 0.0;
     node.impulse.n = normal;
-    node.status = normal > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
+    node.status = normal > 0.0 ? status::closed : status::free;
   }
 };
 

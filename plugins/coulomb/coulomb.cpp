@@ -36,12 +36,9 @@ struct coulomb {
       "Coulomb friction in hair dynamics"};
 
   static constexpr parameter<coulomb> parameters[] = {
-      {.member = &coulomb::friction,
-       .name = "friction",
-       .symbol = "mu",
-       .doc = "Coefficient of friction; inf forbids slip while the contact is pressed.",
-       .required = true,
-       .infinity_allowed = true},
+      friction_parameter(&coulomb::friction)
+          .with_doc("Coefficient of friction; inf forbids slip while the contact is pressed.")
+          .as_required(),
       {.member = &coulomb::kinetic_friction,
        .name = "kinetic_friction",
        .symbol = "mu_k",
@@ -63,22 +60,13 @@ struct coulomb {
        .doc = "Coefficient along the second tangent, friction being the first's; inf: the same as friction.",
        .default_value = infinity,
        .infinity_allowed = true},
-      {.member = &coulomb::restitution,
-       .name = "restitution",
-       .symbol = "e",
-       .doc = "Newton's coefficient: normal velocity after an impact over the one before, reversed.",
-       .maximum = 1.0},
+      restitution_parameter(&coulomb::restitution),
       {.member = &coulomb::tangential_restitution,
        .name = "tangential_restitution",
        .symbol = "e_T",
        .doc = "Part of the tangential velocity before the step that a sticking contact reverses.",
        .maximum = 1.0},
-      {.member = &coulomb::activation,
-       .name = "activation",
-       .doc = "moreau: acts where the gap is closed; predictive: acts where the next gap would be negative.",
-       .default_value = predictive,
-       .choices = activation_choices,
-       .choice_count = 2}};
+      activation_parameter(&coulomb::activation)};
 
   bool falls() const { return kinetic_friction < friction || kinetic_friction < second(); }
   bool tells_tangents_apart() const { return friction_2 != infinity && friction_2 != friction; }
@@ -113,12 +101,10 @@ struct coulomb {
   }
 };
 
-struct coulomb::plain {
-  coulomb law;
-
+struct coulomb::plain : coulomb {
   template <class Node>
   void step(Node& node) const {
-    apply_contact_friction(node, law.problem(node), law.friction);
+    apply_contact_friction(node, problem(node), friction);
   }
 };
 

@@ -60,17 +60,11 @@ struct penalty {
        .default_value = 1.0,
        .minimum = 1.0,
        .maximum = 8.0},
-      {.member = &penalty::restitution,
-       .name = "restitution",
-       .symbol = "e",
-       .doc = "Part of the normal velocity that an impact gives back (implicit; explicit: 1, see damping).",
-       .default_value = 1.0,
-       .maximum = 1.0},
-      {.member = &penalty::friction,
-       .name = "friction",
-       .symbol = "mu",
-       .doc = "Coefficient of friction.",
-       .infinity_allowed = true},
+      restitution_parameter(&penalty::restitution)
+          .with_doc(
+              "Part of the normal velocity that an impact gives back (implicit; explicit: 1, see damping).")
+          .with_default(1.0),
+      friction_parameter(&penalty::friction),
       {.member = &penalty::tangential_stiffness,
        .name = "tangential_stiffness",
        .symbol = "k_T",
@@ -131,14 +125,17 @@ struct penalty {
     return smaller(closed, 2.0 / square_root(tangential_stiffness * largest_tangential(node.delassus)));
   }
 
+  // Explicit or implicit, linear or not: loops without a power vectorise.
+  template <bool Implicit, bool Linear>
+  struct form;
   template <class Run>
   void in_form(Run run) const;
   template <class Node>
   void step(Node& node) const {
-    in_form([&node](const auto& form) { form.step(node); });
+    in_form([&node](const auto& chosen) { chosen.step(node); });
   }
 
- protected:
+ private:
   // Not below the largest inverse mass in the tangent plane, with what H couples to the normal.
   static double largest_tangential(const scalar_delassus& h) { return h.h; }
   static double largest_tangential(const diagonal_delassus& h) { return larger(h.t1, h.t2); }
@@ -169,9 +166,9 @@ struct penalty {
     q.n = -normal;
     const auto result = solve_contact_friction(diagonal_delassus{1.0, softness, softness}, -1.0, q, friction);
     node.impulse = result.impulse;
-    const double rubbed = result.slips ? double{ILAW_SLIP} : double{ILAW_STICK};
-    const double closed = friction > 0.0 ? rubbed : double{ILAW_CLOSED};
-    node.status = normal > 0.0 ? closed : double{ILAW_FREE};
+    const double rubbed = result.slips ? status::slip : status::stick;
+    const double closed = friction > 0.0 ? rubbed : status::closed;
+    node.status = normal > 0.0 ? closed : status::free;
   }
 
   // The mean over the step of forces that the step ends with, so that springs give back what they took: see
@@ -207,7 +204,7 @@ struct penalty {
     const vector moved = spring + (0.5 * h) * (node.v_previous + v);
     const double most = per_impulse * r.tangential_length(), length = moved.tangential_length();
     const bool is_stiff = h * h * tangential_stiffness * node.delassus.tangential() > 4.0;
-    const bool slides = node.status != double{ILAW_STICK};
+    const bool slides = node.status != status::stick;
     const double kept = slides && length > most ? most / length : 1.0;
     const bool by_force = is_stiff && !slides, holds = tangential_stiffness < infinity && friction > 0.0;
     const auto next = [&](double before, double after, double impulse) {
@@ -320,9 +317,8 @@ struct penalty {
   }
 };
 
-// The four forms, chosen per batch: loops without a power vectorise.
 template <bool Implicit, bool Linear>
-struct penalty_form : penalty {
+struct penalty::form : penalty {
   double damping_ratio;
 
   template <class Node>
@@ -339,10 +335,10 @@ void penalty::in_form(Run run) const {
   const bool is_implicit = integration == implicitly;
   const bool is_linear = exponent == 1.0 || stiffness == infinity;
   const double ratio = penalty_law::damping_ratio(restitution);
-  if (is_implicit && is_linear) run(penalty_form<true, true>{*this, ratio});
-  if (is_implicit && !is_linear) run(penalty_form<true, false>{*this, ratio});
-  if (!is_implicit && is_linear) run(penalty_form<false, true>{*this, ratio});
-  if (!is_implicit && !is_linear) run(penalty_form<false, false>{*this, ratio});
+  if (is_implicit && is_linear) run(form<true, true>{*this, ratio});
+  if (is_implicit && !is_linear) run(form<true, false>{*this, ratio});
+  if (!is_implicit && is_linear) run(form<false, true>{*this, ratio});
+  if (!is_implicit && !is_linear) run(form<false, false>{*this, ratio});
 }
 
 }  // namespace

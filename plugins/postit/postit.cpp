@@ -53,13 +53,7 @@ struct postit {
        .default_value = infinity,
        .minimum_excluded = true,
        .infinity_allowed = true},
-      {.member = &postit::duration,
-       .name = "memory",
-       .symbol = "tau_Y",
-       .unit = "s",
-       .doc = "Duration over which impulses are summed; 0: the step's own impulse alone.",
-       .infinity_allowed = true,
-       .fixed = true},
+      memory_parameter(&postit::duration),
       {.member = &postit::tangent_influence,
        .name = "tangent_influence",
        .symbol = "lambda",
@@ -67,11 +61,7 @@ struct postit {
        .default_value = infinity,
        .minimum_excluded = true,
        .infinity_allowed = true},
-      {.member = &postit::friction,
-       .name = "friction",
-       .symbol = "mu",
-       .doc = "Coefficient of friction.",
-       .infinity_allowed = true},
+      friction_parameter(&postit::friction),
       {.member = &postit::rupture,
        .name = "rupture",
        .doc = "brittle: the breaking step gives no adhesive impulse; saturated: it gives what was left up to "
@@ -84,15 +74,7 @@ struct postit {
        .symbol = "R_Y,0",
        .unit = "N.s/m^2",
        .doc = "Adhesion per area at the start."},
-      {.member = &postit::buckets,
-       .name = "buckets",
-       .symbol = "B",
-       .doc = "Buckets of the window, which is of third order in their width memory/B.",
-       .default_value = 16.0,
-       .minimum = 1.0,
-       .maximum = 4096.0,
-       .whole = true,
-       .fixed = true}};
+      buckets_parameter(&postit::buckets)};
 
   struct state {
     double adhesion, ruptures, grace;
@@ -107,11 +89,7 @@ struct postit {
        .unit = "s",
        .doc = "Time that the bond has yet to hold for its rupture to count; 0: it counts.",
        .minimum = 0.0}};
-  static constexpr state_variable history_variable{.name = "window",
-                                                   .unit = "N.s",
-                                                   .doc = "Impulses of the last memory.",
-                                                   .kind = ILAW_STATE_HISTORY,
-                                                   .internal = true};
+  static constexpr state_variable history_variable = window_variable;
 
   std::uint32_t inputs() const {
     return reads_gap | reads_v_previous |
@@ -144,13 +122,13 @@ struct postit {
       step_bonded(node, earlier.sum);
     else
       step_unbonded(node);
-    heal(node, node.status == double{ILAW_BROKEN} ? vector{} : earlier.sum);
+    heal(node, node.status == status::broken ? vector{} : earlier.sum);
   }
 
   // A rupture clears the window; what it then holds is the impulse of this step.
   template <class Node>
   void record(const Node& node, history own) const {
-    if (node.status == double{ILAW_BROKEN}) sums().clear(own);
+    if (node.status == status::broken) sums().clear(own);
     sums().add(own, interval_of(node), node.impulse);
   }
 
@@ -170,7 +148,7 @@ struct postit {
   template <class Node>
   void step_unbonded(Node& node) const {
     touch(node, node.v_free, {});
-    if (node.status == double{ILAW_FREE}) node.state.grace = 0.0;
+    if (node.status == status::free) node.state.grace = 0.0;
   }
 
   template <class Node>
@@ -178,7 +156,7 @@ struct postit {
     const vector trial = stopping_impulse(node);
     if (criterion(earlier + trial, node.state.adhesion) <= at_the_limit) {
       node.impulse = trial;
-      node.status = ILAW_BONDED;
+      node.status = status::bonded;
       node.state.grace = still_to_hold(node.state.grace, node.velocity_step);
       return;
     }
@@ -187,7 +165,7 @@ struct postit {
     node.state.adhesion = 0.0;
     count_rupture(node.state, node.velocity_step);
     touch(node, node.v_free + node.delassus.times(held), held);
-    node.status = ILAW_BROKEN;
+    node.status = status::broken;
   }
 
   // Sliding under pressure bonds and breaks in every step. A rupture counts only if the node was free since
@@ -225,9 +203,9 @@ struct postit {
         efficiency_decrease < infinity ? exp(-node.state.ruptures / efficiency_decrease) : 1.0;
     const double limit = adhesion_limit < infinity ? adhesion_limit * node.area : infinity;
     const double gained = smaller(efficiency * positive_part(earlier.n + node.impulse.n), limit);
-    const bool forms = node.state.adhesion == 0.0 && gained > 0.0 && node.status != double{ILAW_BROKEN};
+    const bool forms = node.state.adhesion == 0.0 && gained > 0.0 && node.status != status::broken;
     node.state.adhesion = larger(node.state.adhesion, gained);
-    if (forms) node.status = ILAW_HEALED;
+    if (forms) node.status = status::healed;
   }
 };
 

@@ -32,7 +32,7 @@ struct template_law {
     const double compliance = 1.0 / (node.velocity_step * damping * node.area);
     const double impulse = positive_part(-node.v_free.n / (node.delassus.normal() + compliance));
     node.impulse.n = node.gap <= 0.0 ? impulse : 0.0;
-    node.status = node.impulse.n > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
+    node.status = node.impulse.n > 0.0 ? status::closed : status::free;
   }
 };
 

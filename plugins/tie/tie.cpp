@@ -36,22 +36,8 @@ struct tie {
        .doc = "Impulse per area, over the memory, that the bond can carry in pull and shear.",
        .default_value = infinity,
        .infinity_allowed = true},
-      {.member = &tie::duration,
-       .name = "memory",
-       .symbol = "tau_Y",
-       .unit = "s",
-       .doc = "Duration over which impulses are summed; 0: the step's own impulse alone.",
-       .infinity_allowed = true,
-       .fixed = true},
-      {.member = &tie::buckets,
-       .name = "buckets",
-       .symbol = "B",
-       .doc = "Buckets of the window, which is of third order in their width memory/B.",
-       .default_value = 16.0,
-       .minimum = 1.0,
-       .maximum = 4096.0,
-       .whole = true,
-       .fixed = true}};
+      memory_parameter(&tie::duration),
+      buckets_parameter(&tie::buckets)};
 
   struct state {
     double broken;
@@ -61,11 +47,7 @@ struct tie {
                                                         .minimum = 0.0,
                                                         .maximum = 1.0,
                                                         .whole = true}};
-  static constexpr state_variable history_variable{.name = "window",
-                                                   .unit = "N.s",
-                                                   .doc = "Impulses of the last memory.",
-                                                   .kind = ILAW_STATE_HISTORY,
-                                                   .internal = true};
+  static constexpr state_variable history_variable = window_variable;
 
   std::uint32_t inputs() const { return strength < infinity ? card.inputs : 0U; }
   std::int64_t history_size() const { return window::doubles(duration, buckets); }
@@ -88,19 +70,19 @@ struct tie {
     const double limit = strength < infinity ? strength * node.area : infinity;
     if (load(earlier.sum + trial) <= limit * at_the_limit) {
       node.impulse = trial;
-      node.status = ILAW_BONDED;
+      node.status = status::bonded;
       return;
     }
     touch(node);
     node.state.broken = 1.0;
-    node.status = ILAW_BROKEN;
+    node.status = status::broken;
   }
 
   // A broken bond needs no window any more.
   template <class Node>
   void record(const Node& node, history own) const {
-    if (node.status == double{ILAW_BONDED}) sums().add(own, interval_of(node), node.impulse);
-    if (node.status == double{ILAW_BROKEN}) sums().clear(own);
+    if (node.status == status::bonded) sums().add(own, interval_of(node), node.impulse);
+    if (node.status == status::broken) sums().clear(own);
   }
 
  private:
@@ -113,11 +95,11 @@ struct tie {
   static void touch(Node& node) {
     const contact_condition contact = contact_leaving_at(0.0, node.gap, node.v_free.n, node.v_previous.n);
     node.impulse.n = contact.slack <= 0.0 ? positive_part(-contact.excess / node.delassus.normal()) : 0.0;
-    node.status = node.impulse.n > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
+    node.status = node.impulse.n > 0.0 ? status::closed : status::free;
   }
 };
 
-struct tie::unbreakable {
+struct tie::unbreakable : tie {
   static constexpr bool forgets = true;
 
   template <class Node>
@@ -126,14 +108,14 @@ struct tie::unbreakable {
     touch(node);  // if the state says broken, by a strength that there was
     const bool holds = node.state.broken == 0.0;
     node.impulse = {holds ? trial.n : node.impulse.n, holds ? trial.t1 : 0.0, holds ? trial.t2 : 0.0};
-    node.status = holds ? double{ILAW_BONDED} : node.status;
+    node.status = holds ? status::bonded : node.status;
   }
 };
 
 template <class Run>
 void tie::in_form(Run run) const {
   if (strength == infinity && duration == 0.0)
-    run(unbreakable{});
+    run(unbreakable{*this});
   else
     run(*this);
 }

@@ -9,6 +9,7 @@
 
 #include <csignal>
 #include <cstring>
+#include <map>
 #include <random>
 #include <sstream>
 #include <thread>
@@ -291,6 +292,42 @@ TEST(Checkpoint, DamagedAnywhereIsRefused) {
   expect_refused("");
   expect_refused("what is this");
   expect_refused(good + "x");
+}
+
+// A checkpoint with one value of its content changed, under a checksum (FNV-1a) that fits.
+std::string resealed(const std::string& bytes, const std::string& pointer, const json& value) {
+  json content = json::from_cbor(json::from_cbor(bytes)["content"].get_binary());
+  content.at(json::json_pointer(pointer)) = value;
+  std::vector<std::uint8_t> packed = json::to_cbor(content);
+  std::uint64_t sum = 0xcbf29ce484222325;
+  for (const std::uint8_t byte : packed) sum = (sum ^ byte) * 0x100000001b3;
+  const std::vector<std::uint8_t> sealed =
+      json::to_cbor(json{{"checksum", sum}, {"content", json::binary(std::move(packed))}});
+  return {sealed.begin(), sealed.end()};
+}
+
+// A law that reads states in another way says so by its state_version, whatever its library's version.
+TEST(Checkpoint, OfAnotherLawOrStateVersionIsRefused) {
+  const auto folder = fresh_folder();
+  Scene scene = scene_of(shipped("postit_test3").dump());
+  Integrator integrator = integrator_of(scene);
+  write_checkpoint(scene, integrator, {1234, json::array()}, folder);
+  const std::string good = text_of(folder / "checkpoint.cbor");
+  const auto refusal_of = [&](const std::string& key, const json& value) -> std::string {
+    std::ofstream(folder / "checkpoint.cbor", std::ios::binary)
+        << resealed(good, "/identity/laws/0/" + key, value);
+    try {
+      read_checkpoint(scene, integrator, folder);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::uint32_t version = scene.interfaces[0]->info().state_version;
+  EXPECT_EQ(refusal_of("state_version", version), "");
+  for (const auto& [key, value] : std::map<std::string, json>{
+           {"state_version", version + 1}, {"state_size", 1}, {"version", "0.0.1"}, {"law", "tie"}})
+    EXPECT_NE(refusal_of(key, value).find("is of another laws"), std::string::npos) << key;
 }
 
 }  // namespace

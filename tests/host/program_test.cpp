@@ -119,6 +119,23 @@ TEST(Program, FailsWithCodeOneWhereTheMotionOverflows) {
       << outcome.output;
 }
 
+// A library that breaks its promise is named, with the node.
+TEST(Program, FailsWithCodeOneWhereALawGivesAnUnknownStatus) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << R"({"model": {"type": "points", "dimension": 1, "points": [
+      {"mass": 1, "position": [1]}, {"mass": 1, "position": [0]}]}, "time": {"dt": 0.5, "end": 1},
+    "interfaces": [{"name": "floor", "law": "zero", "library": ")" ILAW_ODD_STATUS
+                                          R"(", "nodes": [1], "skip": false,
+                    "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})";
+  const Outcome outcome =
+      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  EXPECT_EQ(outcome.code, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("interface 'floor' (law 'zero', library " ILAW_ODD_STATUS
+                                "): found status 42 at node 1, expected 0 to 7"),
+            std::string::npos)
+      << outcome.output;
+}
+
 TEST(Program, TellsWarningsAndRuns) {
   const auto folder = fresh_folder();
   nlohmann::json scene = nlohmann::json::parse(text_of(ball));
@@ -248,72 +265,6 @@ TEST(Program, DrawsNothingForAShortRun) {
   EXPECT_EQ(said_on_terminal(ball, folder).find('['), std::string::npos);
 }
 
-// ---- the summary ----------------------------------------------------------------------------------------
-
-nlohmann::json summary_of(const nlohmann::json& scene) {
-  const auto folder = fresh_folder();
-  std::ofstream(folder / "scene.json") << scene.dump();
-  const Outcome outcome =
-      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
-  EXPECT_EQ(outcome.code, 0) << outcome.output;
-  return nlohmann::json::parse(text_of(folder / "summary.json"));
-}
-
-nlohmann::json shipped(const char* name) { return nlohmann::json::parse(text_of(scene_files::named(name))); }
-
-// Every contact of every step is active or skipped, and has a status.
-TEST(Summary, CountsActiveAndSkippedContacts) {
-  nlohmann::json scene = shipped("block_impact.json");
-  const auto nodes = 9 * 9 * 9 + 9 * 9;
-  const nlohmann::json skipping = summary_of(scene);
-  for (auto& interface : scene["interfaces"]) interface["skip"] = false;
-  const nlohmann::json complete = summary_of(scene);
-  const auto steps = skipping["steps"].get<std::int64_t>();
-  for (const nlohmann::json& summary : {skipping, complete}) {
-    const nlohmann::json& count = summary["node_steps"];
-    EXPECT_EQ(count["active"].get<std::int64_t>() + count["skipped"].get<std::int64_t>(), nodes * steps);
-    std::int64_t sum = 0;
-    for (const auto& [status, times] : summary["status_counts"].items()) sum += times.get<std::int64_t>();
-    EXPECT_EQ(sum, nodes * steps);
-  }
-  EXPECT_EQ(complete["node_steps"]["skipped"], 0);
-  EXPECT_GT(skipping["node_steps"]["skipped"], nodes * steps / 2);
-  EXPECT_EQ(complete["status_counts"], skipping["status_counts"]);
-  EXPECT_EQ(complete["interfaces"][0]["nodes_stored"], 9 * 9 * 9);
-  EXPECT_LT(skipping["interfaces"][0]["nodes_stored"], 9 * 9 * 9);
-}
-
-TEST(Summary, TellsTheInterfacesShareAndMemory) {
-  const nlohmann::json summary = summary_of(shipped("postit_test3.json"));
-  const nlohmann::json& seconds = summary["seconds"];
-  const double share = summary["interface_share"];
-  EXPECT_GT(share, 0.0);
-  EXPECT_LT(share, 1.0);
-  EXPECT_NEAR(share,
-              seconds["interfaces"].get<double>() /
-                  (seconds["interfaces"].get<double>() + seconds["internal_forces"].get<double>()),
-              1e-12);
-  EXPECT_GE(seconds["total"].get<double>(),
-            seconds["interfaces"].get<double>() + seconds["internal_forces"].get<double>());
-  // The state, with a window of 80 buckets, and some vectors beside it.
-  const nlohmann::json& interface = summary["interfaces"][0];
-  EXPECT_GE(interface["state_size"], 80);
-  EXPECT_GE(interface["bytes_per_node"], 8 * interface["state_size"].get<int>());
-  EXPECT_LE(interface["bytes_per_node"], 8 * interface["state_size"].get<int>() + 300);
-}
-
-// Contacts that share nodes: how many sweeps, and what the last one still changed.
-TEST(Summary, TellsHowCoupledContactsConverged) {
-  const nlohmann::json coupled = summary_of(shipped("two_blocks.json"))["coupling"];
-  EXPECT_GT(coupled["sweeps_max"], 1);
-  EXPECT_GE(coupled["sweeps"], coupled["sweeps_max"]);
-  EXPECT_LE(coupled["residual_max"], 1e-14);
-  EXPECT_EQ(coupled["steps_unconverged"], 0);
-  const nlohmann::json single = summary_of(shipped("two_bars.json"))["coupling"];
-  EXPECT_EQ(single["sweeps"], 0);
-  EXPECT_EQ(single["residual_max"], 0.0);
-}
-
 TEST(Program, DrawsAHistory) {
   const auto folder = fresh_folder();
   ASSERT_EQ(run_program("run " + ball + " --out " + folder.string()).code, 0);
@@ -333,7 +284,13 @@ TEST(Program, ListsAndDescribesLaws) {
   EXPECT_EQ(postit["laws"][0]["id"], "postit");
   EXPECT_EQ(postit["laws"][0]["parameters"].size(), 8U);
   EXPECT_EQ(postit["laws"][0]["parameters"][0]["default"], "inf");
-  EXPECT_NE(run_program("describe postit").output.find("tangent_influence"), std::string::npos);
+  EXPECT_EQ(postit["laws"][0]["capabilities"], nlohmann::json({"adhere", "act_at_distance", "rest"}));
+  for (const auto& variable : postit["laws"][0]["state"])
+    EXPECT_EQ(variable["internal"], variable["name"] == "window") << variable;
+  const std::string text = run_program("describe postit").output;
+  for (const char* part :
+       {"tangent_influence", "\n  can: adhere, act_at_distance, rest\n", "history, internal"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
   const nlohmann::json coulomb =
       nlohmann::json::parse(run_program("describe coulomb --json").output)["laws"][0];
   for (const auto& parameter : coulomb["parameters"])

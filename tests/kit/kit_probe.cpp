@@ -45,7 +45,7 @@ struct kit_probe {
     const vector v = n.v_free + n.delassus.times(n.impulse);
     n.state.slip_1 += c > 0.0 ? n.position_step * v.t1 : 0.0;
     n.state.slip_2 += c > 0.0 ? n.position_step * v.t2 : 0.0;
-    n.status = c > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
+    n.status = c > 0.0 ? status::closed : status::free;
   }
   template <class Node>
   void record(const Node& n, history own) const {

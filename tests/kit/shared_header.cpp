@@ -22,7 +22,7 @@ struct shared_header {
   void step(Node& n) const {
     const double c = n.gap <= 0.0 ? shared_twice(viscosity) + 0.0 * shared_series{0.5}.sum(viscosity) : 0.0;
     n.impulse = (-c / (1.0 + c * n.delassus.normal())) * n.v_free;
-    n.status = c > 0.0 ? double{ILAW_CLOSED} : double{ILAW_FREE};
+    n.status = c > 0.0 ? ilaw::kit::status::closed : ilaw::kit::status::free;
   }
 };
 

@@ -26,15 +26,21 @@ struct Bit {
   const char* name;
 };
 constexpr Bit dimension_bits[] = {{ILAW_DIMENSION_1, "1"}, {ILAW_DIMENSION_2, "2"}, {ILAW_DIMENSION_3, "3"}};
-constexpr Bit form_bits[] = {
-    {ILAW_DELASSUS_SCALAR, "scalar"}, {ILAW_DELASSUS_DIAGONAL, "diagonal"}, {ILAW_DELASSUS_FULL, "full"}};
+constexpr Bit form_bits[] = {{ILAW_DELASSUS_SCALAR, "scalar"},
+                             {ILAW_DELASSUS_DIAGONAL, "diagonal"},
+                             {ILAW_DELASSUS_FULL, "full"},
+                             {ILAW_DELASSUS_TRANSVERSE, "transverse"}};
 constexpr Bit input_bits[] = {{ILAW_INPUT_GAP, "gap"},
                               {ILAW_INPUT_V_PREVIOUS, "v_previous"},
                               {ILAW_INPUT_AREA, "area"},
                               {ILAW_INPUT_NORMAL, "normal"},
                               {ILAW_INPUT_TANGENT, "tangent"}};
+constexpr Bit capability_bits[] = {{ILAW_CAN_ADHERE, "adhere"},
+                                   {ILAW_CAN_STORE_ENERGY, "store_energy"},
+                                   {ILAW_CAN_ACT_AT_DISTANCE, "act_at_distance"},
+                                   {ILAW_CAN_REST, "rest"}};
 constexpr Bit varying_bits[] = {{ILAW_MAY_BE_TABLE, "table"}, {ILAW_MAY_BE_PER_NODE, "per_node"}};
-constexpr const char* state_kinds[] = {"scalar", "vector", "history", "axis"};
+constexpr const char* state_kinds[] = {"scalar", "vector", "history", "axis", "tangential"};
 
 template <std::size_t N>
 json names_of(std::uint32_t mask, const Bit (&bits)[N]) {
@@ -72,6 +78,7 @@ json describe_law(const ilaw_law& law) {
               {"dimensions", names_of(law.dimensions, dimension_bits)},
               {"delassus_forms", names_of(law.delassus_forms, form_bits)},
               {"inputs", names_of(law.inputs, input_bits)},
+              {"capabilities", names_of(law.capabilities, capability_bits)},
               {"parameters", json::array()},
               {"state", json::array()}};
   for (std::uint32_t i = 0; i < law.parameter_count; ++i)
@@ -79,7 +86,9 @@ json describe_law(const ilaw_law& law) {
   for (std::uint32_t i = 0; i < law.state_variable_count; ++i) {
     const ilaw_state_variable& v = *law.state_variables[i];
     const char* kind = v.kind < std::size(state_kinds) ? state_kinds[v.kind] : "unknown";
-    out["state"].push_back({{"name", v.name}, {"unit", v.unit}, {"doc", v.doc}, {"kind", kind}});
+    const bool internal = (v.flags & ILAW_VARIABLE_INTERNAL) != 0;
+    out["state"].push_back(
+        {{"name", v.name}, {"unit", v.unit}, {"doc", v.doc}, {"kind", kind}, {"internal", internal}});
   }
   return out;
 }
@@ -123,13 +132,15 @@ void print_law(const json& law) {
               text_of(law["doc"]).c_str());
   std::printf("  dimensions: %s; H: %s; may read: %s\n", joined(law["dimensions"]).c_str(),
               joined(law["delassus_forms"]).c_str(), joined(law["inputs"]).c_str());
+  if (!law["capabilities"].empty()) std::printf("  can: %s\n", joined(law["capabilities"]).c_str());
   std::printf("  parameters:\n");
   std::vector<Row> rows;
   for (const json& p : law["parameters"]) rows.push_back(row_of_parameter(p));
   print_rows(rows, "    ");
   rows.clear();
   for (const json& v : law["state"])
-    rows.push_back({text_of(v["name"]), text_of(v["unit"]), text_of(v["kind"]), text_of(v["doc"])});
+    rows.push_back({text_of(v["name"]), text_of(v["unit"]),
+                    text_of(v["kind"]) + (v["internal"].get<bool>() ? ", internal" : ""), text_of(v["doc"])});
   if (!rows.empty()) std::printf("  state:\n");
   print_rows(rows, "    ");
   std::printf("  references:\n");

@@ -69,7 +69,7 @@ class ArgumentList {
 
 // Straight through the law: the loader, which checks every instance, has seen one.
 void try_create(const ilaw_law& law, const ilaw_setup& setup) {
-  char message[1024];
+  char message[1024] = "";
   ilaw_instance* made = nullptr;
   const std::int32_t code = law.create(&setup, &made, message, sizeof message);
   if (code != ILAW_OK) throw ilaw::error(code, message);

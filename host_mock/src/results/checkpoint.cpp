@@ -20,7 +20,8 @@ json identity_of(const Scene& scene) {
   for (const auto& interface : scene.interfaces)
     laws.push_back({{"law", interface->setup().law},
                     {"version", interface->library().plugin().version},
-                    {"state_size", interface->info().state_size}});
+                    {"state_size", interface->info().state_size},
+                    {"state_version", interface->info().state_version}});
   return {
       {"format", "ilaw checkpoint 1"}, {"program", ILAW_VERSION}, {"scene", scene.source}, {"laws", laws}};
 }

@@ -7,15 +7,16 @@
 namespace ilaw::host {
 namespace {
 
-// Named state variables: histories mean nothing outside their law.
+// Named state variables. Histories and what is internal mean nothing outside their law.
 template <class Visit>
 void for_each_state(const ilaw_instance_info& info, Visit visit) {
   int entry = 0;
   for (std::uint32_t i = 0; i < info.state_variable_count; ++i) {
     const ilaw_state_variable& variable = *info.state_variables[i];
     const auto count = static_cast<int>(variable.count);
-    if (variable.kind == ILAW_STATE_SCALAR) visit(std::string(variable.name), entry);
-    if (variable.kind == ILAW_STATE_VECTOR)
+    const bool is_shown = (variable.flags & ILAW_VARIABLE_INTERNAL) == 0;
+    if (is_shown && variable.kind == ILAW_STATE_SCALAR) visit(std::string(variable.name), entry);
+    if (is_shown && (variable.kind == ILAW_STATE_VECTOR || variable.kind == ILAW_STATE_TANGENTIAL))
       for (int k = 0; k < count; ++k) visit(variable.name + std::to_string(k), entry + k);
     entry += count;
   }

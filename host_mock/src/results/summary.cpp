@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 namespace ilaw::host {
 namespace {
 
@@ -39,6 +41,9 @@ json describe_energy(const EnergyReport& energy) {
           {"reaction_work", energy.reaction_work}};
 }
 
+// JSON has no infinity: scenes write it as text, too.
+json number_or_inf(double value) { return std::isinf(value) ? json("inf") : json(value); }
+
 json describe_statuses(const Tally& tally) {
   json statuses = json::object();
   for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k) statuses[status_names[k]] = tally.status_counts[k];
@@ -66,6 +71,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
       {"failure", record.failure},
       {"steps", integrator.steps()},
       {"dt", scene.dt},
+      {"stable_step", number_or_inf(tally.stable_step)},
       {"time", integrator.time()},
       {"nodes", scene.model->node_count()},
       {"energy", describe_energy(integrator.energy())},

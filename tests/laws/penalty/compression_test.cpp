@@ -154,7 +154,8 @@ TEST(Compression, TendsToNewtonsImpact) {
         node.state = {0.0, 0.0, 0.0, 0.0};
         node.gap = 2e-3 * uniform(random);
         node.v_previous = {previous, 0, 0};
-        const bool closed = node.gap + 0.5 * node.dt * previous <= 0.0;
+        const bool in_reach = node.gap <= 0.0 || node.gap + node.dt * v <= 0.0;
+        const bool closed = in_reach && node.gap + 0.5 * node.dt * previous <= 0.0;
         ASSERT_EQ(node.step({v, uniform(random), 0.0}), ILAW_OK);
         const double returned = (previous < 0.0 ? e : 1.0) * previous;
         const double rigid = closed ? std::max(-(v + returned) / node.h[0], 0.0) : 0.0;

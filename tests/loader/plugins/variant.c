@@ -102,6 +102,9 @@ static int32_t nothing(const ilaw_instance* instance, const ilaw_batch* batch, i
   (void)report;
   for (i = 0; batch->impulse.values && i < batch->node_count; ++i)
     batch->impulse.values[i * batch->impulse.node_stride] = 0.0;
+#ifdef VARIANT_ODD_STATUS
+  for (i = 0; batch->status && i < batch->node_count; ++i) batch->status[i * batch->status_stride] = 42;
+#endif
   return ILAW_OK;
 }
 
@@ -179,12 +182,17 @@ typedef struct newer_law {
 #else
 #define FORMS ILAW_DELASSUS_SCALAR
 #endif
+#ifdef VARIANT_ODD_STATUS
+#define OUTPUTS ILAW_OUTPUT_STATUS
+#else
+#define OUTPUTS 0
+#endif
 
 static const newer_law zero = {{LAW_SIZE,
                                 DIMENSIONS,
                                 FORMS,
                                 ILAW_INPUT_GAP,
-                                0,
+                                OUTPUTS,
                                 0,
                                 ID,
                                 TITLE,

@@ -10,15 +10,28 @@
 //   std::uint32_t inputs() const;                         what these parameters read (default: card.inputs)
 //   std::uint32_t capabilities() const;                   what these parameters can do (default: the card's)
 //   template <class Node> double stable_velocity_step(const Node&) const   if it limits the step: by how much
-//   at
-//                                                         this node, whatever its state; see ilaw_report
-//   template <class Run> void in_form(Run) const;         calls it with a struct whose step gives the same
-//                                                         bits without what these parameters turn off
+//                                                         at this node, whatever its state; see ilaw_report
+//   template <class Run> void in_form(Run) const;         a shorter step for these parameters, see below
 //   const char* conflict() const;                         why parameters do not go together, or null
 //   template <class Node> void initialise(Node&) const;   first state (default: zeros)
 //   static constexpr state_variable history_variable;     declares a history, of
 //   std::int64_t history_size() const;                    doubles, which step reads as node.history and
 //   template <class Node> void record(const Node&, history) const   writes once the step is accepted
+//
+// Forms. Where parameters turn parts of the step off, loops without those parts vectorise. A form is a struct
+// declared in the law and, once the law is complete, derived from it; its step gives the same bits as the
+// law's. in_form calls run once, with the form that the parameters ask for or with the law itself:
+//   struct plain;                                         in the law, as is the declaration of in_form
+//   struct law::plain : law {                             behind the law
+//     static constexpr bool forgets = true;               where the law has a history: this step needs none
+//     template <class Node> void step(Node&) const;
+//   };
+//   template <class Run> void law::in_form(Run run) const {
+//     if (friction == 0.0) run(plain{*this}); else run(*this);
+//   }
+// The kit asks for a form once per block of nodes that share their parameters. Where these vary from node to
+// node it takes the law's own step, which serves all of them: in a law that is nothing but forms by calling
+// in_form itself, as penalty does.
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -71,6 +84,23 @@ struct parameter {
   bool fixed = false;  // no table and no value per node: the layout of the state depends on it
   const char* const* choices = nullptr;
   std::uint32_t choice_count = 0;
+
+  // Copies that differ in one thing, for the parameters of common_parameters.hpp.
+  constexpr parameter with_doc(const char* text) const {
+    parameter copy = *this;
+    copy.doc = text;
+    return copy;
+  }
+  constexpr parameter with_default(double value) const {
+    parameter copy = *this;
+    copy.default_value = value;
+    return copy;
+  }
+  constexpr parameter as_required() const {
+    parameter copy = *this;
+    copy.required = true;
+    return copy;
+  }
 };
 
 struct state_variable {

@@ -62,7 +62,7 @@ fraction stopping_part(const Delassus& delassus, double normal, Vector q, double
   const fraction part = root_of_work(square, -(square + along), impact);
   const bool gains = along < impact;
   const bool far = part.under == infinity;  // v^- is so much larger than q that nothing is left
-  return {gains ? (far ? 0.0 : part.over) : 1.0, gains & !far ? part.under : 1.0};
+  return {gains ? (far ? 0.0 : part.over) : 1.0, (gains & !far) ? part.under : 1.0};
 }
 
 template <class Vector>
@@ -128,8 +128,8 @@ template <class Node, class Vector>
 void apply_isotropic_friction(Node& node, const contact_problem<Vector>& problem, double friction) {
   const auto result = solve_contact_friction(node.delassus, problem, friction);
   node.impulse = result.impulse;
-  const double closed_status = result.slips ? double{ILAW_SLIP} : double{ILAW_STICK};
-  node.status = result.impulse.n > 0.0 ? closed_status : double{ILAW_FREE};
+  const double closed_status = result.slips ? status::slip : status::stick;
+  node.status = result.impulse.n > 0.0 ? closed_status : status::free;
 }
 
 // The same by the local problem, which may be of any H.
@@ -138,9 +138,9 @@ void apply_local_coulomb(Node& node, double slack, const local_coulomb& problem)
   double r[3] = {};
   const contact_mode mode = slack <= 0.0 ? solve(problem, r) : contact_mode::free;
   node.impulse = {r[0], r[1], r[2]};
-  node.status = mode == contact_mode::slip    ? double{ILAW_SLIP}
-                : mode == contact_mode::stick ? double{ILAW_STICK}
-                                              : double{ILAW_FREE};
+  node.status = mode == contact_mode::slip    ? status::slip
+                : mode == contact_mode::stick ? status::stick
+                                              : status::free;
   node.refused = mode == contact_mode::none ? no_solution : not_refused;
 }
 
@@ -157,7 +157,7 @@ template <class Node>
 void take_off_positive_work(Node& node, vector q, vector rest) {
   vector& r = node.impulse;
   const vector slid{0.0, r.t1, r.t2}, h_slid = node.delassus.times(slid), h_r = node.delassus.times(r);
-  const double slip = node.status == double{ILAW_STICK} ? 0.0 : smaller(tangential_product(r, q + h_r), 0.0);
+  const double slip = node.status == status::stick ? 0.0 : smaller(tangential_product(r, q + h_r), 0.0);
   const double work = r.n * rest.n + tangential_product(r, rest) + slip;
   if (!(work > 0.0)) return;
   const double c2 = tangential_product(slid, h_slid), c0 = r.n * (rest.n - h_slid.n), c1 = work - c0 - c2;
@@ -169,7 +169,7 @@ void take_off_positive_work(Node& node, vector q, vector rest) {
   const double whole = dissipative_part(normal_product(r, a) + tangential_product(r, a),
                                         normal_product(r, h_all) + tangential_product(r, h_all));
   r = whole * r;
-  if (part * whole < sticking_part) node.status = r.n > 0.0 ? double{ILAW_SLIP} : double{ILAW_FREE};
+  if (part * whole < sticking_part) node.status = r.n > 0.0 ? status::slip : status::free;
 }
 
 // The impulse that stops the node, r = -H^-1 v_free, without positive work r.v^-/2: all of it unless the node
@@ -177,7 +177,7 @@ void take_off_positive_work(Node& node, vector q, vector rest) {
 template <class Node>
 vector stopping_impulse(Node node) {
   node.impulse = -node.delassus.solve(node.v_free);
-  node.status = ILAW_STICK;
+  node.status = status::stick;
   take_off_positive_work(node, node.v_free, node.v_previous);
   return node.impulse;
 }

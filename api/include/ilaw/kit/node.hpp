@@ -197,6 +197,14 @@ double refusal_of_anisotropy(const Delassus& delassus) {
   return delassus.anisotropy() > rounding_of(delassus) ? anisotropic_delassus : not_refused;
 }
 
+// The statuses of ilaw.h, as the doubles that vector code selects between.
+namespace status {
+
+inline constexpr double free = ILAW_FREE, closed = ILAW_CLOSED, stick = ILAW_STICK, slip = ILAW_SLIP,
+                        bonded = ILAW_BONDED, broken = ILAW_BROKEN, healed = ILAW_HEALED;
+
+}  // namespace status
+
 struct stateless {};
 
 // One node in one step. A step reads the first part and writes the second. Vector is projected_vector only
@@ -218,7 +226,7 @@ struct node {
   // dissipated.
   double normal_gain = 0.0, tangential_gain = 0.0;
   double rupture = 0.0;  // part of these gains that is not stored: dissipated by rupture
-  double status = ILAW_FREE;
+  double status = status::free;
   double refused = not_refused;
 };
 

@@ -123,11 +123,11 @@ struct range_reason {
     constexpr const char *head = "state variable '", *name = Law::state_variables[V].name,
                          *tail = "' has a value that the law cannot have written";
     constexpr auto size = [](const char* s) { return std::char_traits<char>::length(s); };
-    std::array<char, size(head) + size(name) + size(tail) + 1> text{};
+    std::array<char, size(head) + size(name) + size(tail) + 1> made{};
     std::size_t at = 0;
     for (const char* part : {head, name, tail})
-      for (; *part; ++part) text[at++] = *part;
-    return text;
+      for (; *part; ++part) made[at++] = *part;
+    return made;
   }
   static constexpr auto text = make();
 };

@@ -177,7 +177,7 @@ energy_split split_energy(const Node& n, Vector v) {
   const double along_tangents = -0.5 * tangential_product(n.impulse, mean) - n.tangential_gain;
   const double normal = positive_part(along_normal + smaller(along_tangents, 0.0));
   const double tangential = positive_part(along_tangents + smaller(along_normal, 0.0));
-  const bool broken = n.status == double{ILAW_BROKEN};
+  const bool broken = n.status == status::broken;
   return {broken ? 0.0 : tangential, broken ? 0.0 : normal, (broken ? normal + tangential : 0.0) + n.rupture,
           n.stored};
 }
@@ -223,8 +223,8 @@ inline constexpr bool remembers = has_history<Law> && !requires {
 template <class Law, class Node>
 bool rests(const Node& n, const state_t<Law>& before) {
   const bool still = (n.impulse.n == 0.0) & (n.impulse.t1 == 0.0) & (n.impulse.t2 == 0.0);
-  return still & is_out_of_reach(n) & (n.status == double{ILAW_FREE}) &
-         detail::same_bits<Law>(n.state, before);
+  const bool free = is_out_of_reach(n) & (n.status == status::free);
+  return still && free && detail::same_bits<Law>(n.state, before);
 }
 
 // Steps and writes node i; valid: what the caller knows of its parameters.
