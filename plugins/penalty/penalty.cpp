@@ -209,7 +209,7 @@ struct penalty {
     const bool by_force = is_stiff && !slides, holds = tangential_stiffness < infinity && friction > 0.0;
     const auto next = [&](double before, double after, double impulse) {
       const double end = by_force ? 0.0 - 2.0 * per_impulse * impulse - before : kept * after;
-      return holds ? end : 0.0;
+      return holds ? end + 0.0 : 0.0;  // never -0: a node at rest keeps its bits
     };
     const vector strained{0.0, next(spring.t1, moved.t1, r.t1), next(spring.t2, moved.t2, r.t2)};
     const double stored_normal = potential<Linear>(indentation);

@@ -59,7 +59,9 @@ double order_in(const Study& study, const char* norm) {
 // an Airy function, h^(2/3) wide, with a tail of ringing that falls off as x^(-3/4): the mean of its size is
 // h^(2/3) (h^(-2/3))^(1/4) = h^(1/2).
 TEST(Converge, TwoBarsAgainstTheExactSolution) {
-  const Study study = study_of(shipped("two_bars"), "--levels 5");
+  json scene = shipped("two_bars");
+  scene["interfaces"][0]["parameters"]["activation"] = "moreau";
+  const Study study = study_of(scene, "--levels 5");
   ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
   EXPECT_EQ(study.orders["reference"], "exact solution");
   EXPECT_EQ(study.orders["refined"], "mesh and time step");
@@ -80,6 +82,7 @@ TEST(Converge, TwoBarsAtTheCriticalStepAreOfFirstOrder) {
   json scene = shipped("two_bars");
   scene["time"]["cfl"] = 1.0;
   scene["model"]["bars"][0]["start"] = -1.0 - 0.05 / std::sqrt(2.0);
+  scene["interfaces"][0]["parameters"]["activation"] = "moreau";
   const Study study = study_of(scene, "--levels 6");
   ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
   for (const char* norm : {"u_L2", "u_max", "v_L1", "instant"}) {
@@ -125,7 +128,7 @@ json ball(double restitution) {
   scene["model"]["points"].erase(1);
   scene["interfaces"] =
       json::array({{{"law", "contact"},
-                    {"parameters", {{"restitution", restitution}}},
+                    {"parameters", {{"restitution", restitution}, {"activation", "moreau"}}},
                     {"nodes", "all"},
                     {"obstacle", {{"type", "plane"}, {"point", {0.0}}, {"normal", {1.0}}}}}});
   scene["output"] = {{"watch", {0}}};

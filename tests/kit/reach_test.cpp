@@ -120,7 +120,8 @@ TEST(OutOfReach, NodesThatWereFreeRest) {
         node.gap_offset = 0.0;
         node.gap = 1e-3 * uniform(random);
         node.set_step(1e-3);
-        for (std::size_t c = 0; c < 3; ++c) node.v_free[c] = uniform(random) + 0.5 * node.normal[c];
+        for (std::size_t c = 0; c < 3; ++c)
+          node.v_free[c] = node.v_previous[c] = uniform(random) + 0.5 * node.normal[c];
         node.rests();
         if (node.status != ILAW_FREE) continue;
         node.b.time += 0.1;

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf_value = std::numeric_limits<double>::infinity();
-constexpr const char* impossible = "the state is not one that the law can have written";
 constexpr const char* set_back = "the time lies before what the state remembers";
 
 // Three nodes side by side, their states between guards.
@@ -142,7 +141,8 @@ TEST(ImpossibleState, IsRefusedWithItsReason) {
     trio.of(1)[entry] = value;
     EXPECT_EQ(trio.evaluate(), ILAW_BAD_NODES) << law << " " << entry << " " << value;
     EXPECT_EQ(trio.report.bad_count, 1) << law << " " << entry << " " << value;
-    EXPECT_STREQ(trio.report.reason, impossible) << law << " " << entry << " " << value;
+    EXPECT_NE(std::string(trio.report.reason).find("have written"), std::string::npos)
+        << law << " " << entry << " " << value << ": " << trio.report.reason;
   }
 }
 
@@ -158,7 +158,7 @@ TEST(ImpossibleState, OfAnUnbreakableTieIsRefused) {
   Trio trio("tie", {});
   trio.of(1)[0] = 0.5;
   EXPECT_EQ(trio.evaluate(), ILAW_BAD_NODES);
-  EXPECT_STREQ(trio.report.reason, impossible);
+  EXPECT_STREQ(trio.report.reason, "state variable 'broken' has a value that the law cannot have written");
 }
 
 // The size of a state depends on the parameters alone, so that it survives a restart with another step.

@@ -253,7 +253,7 @@ TEST(Postit, ASeparationMakesTheNextRuptureCount) {
   Glued node({{{"efficiency_decrease", 10.0}, {"memory", 0.05}}, {}}, 1e-3);
   for (int k = 0; k < 7; ++k) {
     node.position = {};
-    node.v = {};
+    node.v = node.v_previous = {};
     EXPECT_EQ(node.push({-0.1, 0, 0}), ILAW_HEALED);
     EXPECT_EQ(node.push({0.5, 0, 0}), ILAW_BROKEN);
     for (int free = 0; free < 60; ++free) EXPECT_EQ(node.push({0, 0, 0}), ILAW_FREE);
