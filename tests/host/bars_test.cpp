@@ -242,7 +242,7 @@ std::string bar_between_walls(double cfl, int elements, double restitution, doub
     "interfaces": [{"name": "left", "law": "contact", "nodes": "bar.left", "parameters": {"activation": "moreau", "restitution": )" +
          number(restitution) + R"(},
                     "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}},
-                   {"name": "right", "law": "contact", "nodes": "bar.right", "parameters": {"restitution": 1.0},
+                   {"name": "right", "law": "contact", "nodes": "bar.right", "parameters": {"activation": "moreau", "restitution": 1.0},
                     "obstacle": {"type": "plane", "point": [2.0], "normal": [-1.0]}}]})";
 }
 
