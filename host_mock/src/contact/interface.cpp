@@ -178,12 +178,10 @@ void Interface::accept(double dt) {
   for (const std::int32_t contact_index : active_) {
     const bool in_reach = !(gap(contact_index) > dt * v_free(contact_index).norm());
     std::uint8_t& touched = contacts_.touched[at(contact_index)];
-    if (status(contact_index) != ILAW_FREE)
+    if (status(contact_index) != ILAW_FREE || (in_reach && !law_.rests()))
       touched = 1;
     else if (law_.rests())
       touched = 0;
-    else if (in_reach)
-      touched = 1;
     contacts_.accept_state(contact_index);
   }
 }
