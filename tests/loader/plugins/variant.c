@@ -10,7 +10,7 @@ struct ilaw_instance {
   int unused;
 };
 
-static int instances; /* that live */
+static int instances; /* that live; laws are created by many threads at once */
 
 static int32_t create(const ilaw_setup* setup, ilaw_instance** instance, char* message, size_t message_size) {
   (void)setup;
@@ -25,13 +25,13 @@ static int32_t create(const ilaw_setup* setup, ilaw_instance** instance, char* m
 #else
   *instance = malloc(sizeof **instance);
   if (!*instance) return ILAW_OUT_OF_MEMORY;
-  ++instances;
+  __atomic_add_fetch(&instances, 1, __ATOMIC_RELAXED);
   return ILAW_OK;
 #endif
 }
 
 static void destroy(ilaw_instance* instance) {
-  if (instance) --instances;
+  if (instance) __atomic_sub_fetch(&instances, 1, __ATOMIC_RELAXED);
   free(instance);
 }
 
