@@ -106,8 +106,8 @@ ilaw_library* open_checked(std::list<ilaw_library>& open, const std::string& pat
   std::list<ilaw_library> made;
   made.push_back(ilaw_library{path, status.device, status.inode, handle.get()});
   made.back().plugin = described(path, handle.get(), made.back().kept);
-  handle.release();
   open.splice(open.end(), made);
+  static_cast<void>(handle.release());  // the list closes it from here on
   return &open.back();
 }
 

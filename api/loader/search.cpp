@@ -90,7 +90,7 @@ std::string find_named(const std::string& name) {
   const std::string file = ends_in_so(name) ? name : name + ".so";
   const search_path path = folders_searched();
   for (const std::string& folder : path.folders)
-    if (const std::string found = canonical(folder + "/" + file); !found.empty()) return found;
+    if (std::string found = canonical(folder + "/" + file); !found.empty()) return found;
   std::string where = joined(path.folders);
   if (!path.left_out.empty())
     where += "; not searched, since every user may write there: " + joined(path.left_out);
