@@ -6,9 +6,13 @@
 
 #include "readable.hpp"
 #include "refusal.hpp"
-#include "sized.hpp"
 
+#include <ilaw/sized.hpp>
+
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -46,16 +50,15 @@ class checker {
   template <class Struct>
   Struct& copy(const Struct* given, const char* what) const {
     if (!given) refuse(std::string(what) + " is null");
-    std::uint32_t size = 0;
-    if (!readable(given, sizeof size)) refuse_unreadable(what);
-    std::memcpy(&size, given, sizeof size);
-    if (!plausible_size<Struct>(size))
+    if (!readable(given, sizeof(std::uint32_t))) refuse_unreadable(what);
+    const std::uint32_t size = sized::size_of(given);
+    if (!sized::is_plausible<Struct>(size))
       refuse(std::string(what) + " has struct_size " + std::to_string(size) + ", expected at least " +
-             std::to_string(first_size<Struct>) + " and at most " + std::to_string(largest_size));
+             std::to_string(sized::least<Struct>) + " and at most " + std::to_string(sized::most));
     if (!readable(given, size)) refuse_unreadable(what);
     const std::size_t room = std::max<std::size_t>(size, sizeof(Struct));
     auto* made = static_cast<Struct*>(kept_.room(room));
-    copy_sized(made, room, given, size);
+    sized::copy(made, room, given, size);
     made->struct_size = static_cast<std::uint32_t>(room);
     return *made;
   }

@@ -194,7 +194,7 @@ std::unique_ptr<ilaw_interface> create_interface(ilaw_library& library, const il
 }
 
 // A report whose struct_size cannot be true is given to no library.
-bool usable(ilaw_report* report) { return !report || ilaw::loading::cleared(report); }
+bool usable(ilaw_report* report) { return !report || ilaw::sized::cleared(report); }
 
 std::int32_t open_with(std::string (*find)(const std::string&), const char* text, ilaw_library** library,
                        char* message, std::size_t message_size) {
@@ -244,10 +244,10 @@ int32_t ilaw_interface_create(ilaw_library* library, const char* id, const ilaw_
     if (!library || !setup || !interface)
       throw refusal(ILAW_INVALID_ARGUMENT, "library, setup or interface is null");
     *interface = nullptr;
-    if (!ilaw::loading::plausible_size<ilaw_setup>(setup->struct_size))
+    if (!ilaw::sized::is_complete(setup))
       throw refusal(ILAW_INVALID_ARGUMENT, "setup has struct_size " + std::to_string(setup->struct_size) +
                                                ", expected at least " +
-                                               std::to_string(ilaw::loading::first_size<ilaw_setup>));
+                                               std::to_string(ilaw::sized::least<ilaw_setup>));
     auto made = create_interface(*library, chosen_law(*library, id), *setup);
     use(*library);
     *interface = made.release();
@@ -272,7 +272,7 @@ const ilaw_instance* ilaw_interface_instance(const ilaw_interface* interface) {
 }
 
 int32_t ilaw_interface_info(const ilaw_interface* interface, ilaw_instance_info* info) {
-  if (!interface || !info || !ilaw::loading::cleared(info)) return ILAW_INVALID_ARGUMENT;
+  if (!interface || !info || !ilaw::sized::cleared(info)) return ILAW_INVALID_ARGUMENT;
   const std::uint32_t room = info->struct_size;
   // Members that only the host and the library know come from the library itself.
   if (room > sizeof *info)

@@ -77,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     ilaw_setup setup{};
     setup.dimension = 3;
     ilaw_instance_info info{};
-    copy_sized(&info, sizeof info, memory.start, size);
+    ilaw::sized::copy(&info, sizeof info, memory.start, size);
     const std::string file = "fuzzed";
     check_instance_info({file, law, ILAW_ABI_MINOR}, setup, info, kept);
   } catch (const refusal&) {

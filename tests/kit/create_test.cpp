@@ -201,5 +201,16 @@ TEST(Create, TakesValuesPerNode) {
   EXPECT_EQ(nodes.r[4], 0.0);
 }
 
+// Authors give their laws extensions by a member; a law without has none, which null says.
+TEST(Extension, OfALawIsFoundByItsName) {
+  const ilaw::library probe(ILAW_KIT_PROBE), coulomb(plugin_file("coulomb"));
+  const auto extension = probe.law("kit_probe")->extension;
+  ASSERT_NE(extension, nullptr);
+  ASSERT_NE(extension("tests.answer/1"), nullptr);
+  EXPECT_EQ(*static_cast<const int*>(extension("tests.answer/1")), 42);
+  EXPECT_EQ(extension("tests.answer/2"), nullptr);
+  EXPECT_EQ(coulomb.law("coulomb")->extension, nullptr);
+}
+
 }  // namespace
 }  // namespace ilaw::testing

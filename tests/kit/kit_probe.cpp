@@ -2,6 +2,8 @@
 // frame.
 #include <ilaw/kit.hpp>
 
+#include <cstring>
+
 namespace {
 
 using namespace ilaw::kit;
@@ -29,6 +31,10 @@ struct kit_probe {
   static constexpr state_variable history_variable{
       .name = "last", .doc = "last two v_N", .kind = ILAW_STATE_HISTORY, .internal = true};
   std::int64_t history_size() const { return 2; }
+  static const void* extension(const char* name) {
+    return std::strcmp(name, "tests.answer/1") == 0 ? &answer : nullptr;
+  }
+  static constexpr int answer = 42;
 
   // r = -c (v_free + H r), solved for r, plus a pull along the remembered sum so that memory matters.
   template <class Node>

@@ -53,7 +53,7 @@ TEST(Sized, BatchesAreReadUpToTheirSizeAndFromThatOfVersionOneOn) {
       batch.known.struct_size = static_cast<std::uint32_t>(size);
       batch.known.impulse.values[1] = 7.0;
       EXPECT_EQ(call(law.instance(), &batch.known, &report), ILAW_INVALID_ARGUMENT) << size;
-      EXPECT_STREQ(report.reason, "struct_size of the batch is below that of version 1.0");
+      EXPECT_STREQ(report.reason, "struct_size of the batch is none of any version");
       EXPECT_EQ(batch.known.impulse.values[1], 7.0);
     }
 }
@@ -107,12 +107,39 @@ TEST(Sized, SetupsAndArgumentsAreReadUpToTheirSizeAndFromThatOfVersionOneOn) {
   law.destroy(instance);
   argument.known.struct_size = ILAW_ARGUMENT_SIZE_1_0 - 1;
   EXPECT_EQ(create(), ILAW_INVALID_ARGUMENT);
-  EXPECT_STREQ(message, "law 'coulomb': argument 0 is null, has a struct_size below 48 or no name");
+  EXPECT_STREQ(message,
+               "law 'coulomb': argument 0 is null, has no name or a struct_size not from 48 to 4096");
   argument.known.struct_size = sizeof argument;
   setup.known.struct_size = ILAW_SETUP_SIZE_1_0 - 1;
   EXPECT_EQ(create(), ILAW_INVALID_ARGUMENT);
-  EXPECT_STREQ(message, "law 'coulomb': setup is null or its struct_size is below 40");
+  EXPECT_STREQ(message, "law 'coulomb': setup is null or its struct_size not from 40 to 4096");
   EXPECT_EQ(instance, nullptr);
+}
+
+// A size that no version has was never set: what follows it cannot be trusted either.
+TEST(Sized, SizesThatNoVersionHasAreRefused) {
+  const SetupBuilder setup({{{"friction", 0.5}}, {}});
+  const ilaw::interface law = make_law("coulomb", setup);
+  ilaw_batch batch = batch_of_one();
+  ilaw_report report{};
+  ilaw_instance_info info{};
+  ilaw_setup other = setup.setup;
+  ilaw_instance* instance = nullptr;
+  for (const std::uint32_t size : {4097U, 0xFFFFFFFFU}) {
+    report.struct_size = sizeof report;
+    batch.struct_size = size;
+    EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report), ILAW_INVALID_ARGUMENT);
+    EXPECT_STREQ(report.reason, "struct_size of the batch is none of any version");
+    batch.struct_size = sizeof batch;
+    report = {};
+    report.struct_size = size;
+    EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report), ILAW_INVALID_ARGUMENT);
+    EXPECT_EQ(report.reason, nullptr);
+    info.struct_size = size;
+    EXPECT_EQ(law.law().info(law.instance(), &info), ILAW_INVALID_ARGUMENT);
+    other.struct_size = size;
+    EXPECT_EQ(law.law().create(&other, &instance, nullptr, 0), ILAW_INVALID_ARGUMENT);
+  }
 }
 
 }  // namespace

@@ -23,6 +23,15 @@ std::int32_t create_at(const ilaw_setup* setup, ilaw_instance** result, char* te
   return code;
 }
 
+// What the law has under names besides, by its static member extension(const char*); null: nothing.
+template <class Law>
+constexpr auto extension_of() -> const void* (*)(const char*) {
+  if constexpr (requires { Law::extension(""); })
+    return Law::extension;
+  else
+    return nullptr;
+}
+
 template <std::size_t Place, class Law>
 inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .dimensions = Law::card.dimensions,
@@ -45,7 +54,7 @@ inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .info = info<Law>,
                                   .initialise = initialise<Law>,
                                   .evaluate = evaluate<Law>,
-                                  .extension = nullptr};
+                                  .extension = extension_of<Law>()};
 
 // The description of a library with these laws.
 template <class... Laws>

@@ -86,12 +86,12 @@ const char* wrong_batch(const instance<Law>& made, const ilaw_batch& b) {
 inline std::int32_t refuse(ilaw_report* report, const char* reason,
                            std::int32_t code = ILAW_INVALID_ARGUMENT) {
   if (report)
-    write_sized(report, {.struct_size = 0,
-                         .reserved = 0,
-                         .bad_count = 0,
-                         .first_bad_node = -1,
-                         .reason = reason,
-                         .stable_velocity_step = infinity});
+    sized::write(report, {.struct_size = 0,
+                          .reserved = 0,
+                          .bad_count = 0,
+                          .first_bad_node = -1,
+                          .reason = reason,
+                          .stable_velocity_step = infinity});
   return code;
 }
 
@@ -308,22 +308,22 @@ template <class Law>
 
 inline std::int32_t give_report(ilaw_report* report, const tally& found) {
   if (report)
-    write_sized(report, {.struct_size = 0,
-                         .reserved = 0,
-                         .bad_count = found.bad_count,
-                         .first_bad_node = found.first_bad_node,
-                         .reason = found.reason,
-                         .stable_velocity_step = found.stable_velocity_step});
+    sized::write(report, {.struct_size = 0,
+                          .reserved = 0,
+                          .bad_count = found.bad_count,
+                          .first_bad_node = found.first_bad_node,
+                          .reason = found.reason,
+                          .stable_velocity_step = found.stable_velocity_step});
   return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
 
 // The beginning of evaluate and initialise: hands on the instance and what is known of the batch.
 template <class Law, class Run>
 std::int32_t with_batch(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report, Run run) {
-  if (report && !is_complete(report)) return ILAW_INVALID_ARGUMENT;
+  if (report && !sized::is_complete(report)) return ILAW_INVALID_ARGUMENT;
   if (!opaque || !given) return refuse(report, "instance or batch is null");
-  if (!is_complete(given)) return refuse(report, "struct_size of the batch is below that of version 1.0");
-  const ilaw_batch batch = read_sized(given);
+  if (!sized::is_complete(given)) return refuse(report, "struct_size of the batch is none of any version");
+  const ilaw_batch batch = sized::read(given);
   if (batch.flags != 0) return refuse(report, "flags of the batch are not known", ILAW_UNSUPPORTED);
   const float_environment own;
   return run(of<Law>(opaque), batch);

@@ -5,7 +5,7 @@
 #include <ilaw/kit/detail/dispatch.hpp>
 #include <ilaw/kit/detail/float_environment.hpp>
 #include <ilaw/kit/detail/parameters.hpp>
-#include <ilaw/kit/detail/sized.hpp>
+#include <ilaw/sized.hpp>
 
 #include <new>
 
@@ -158,10 +158,10 @@ class instance_builder {
     }
     for (std::uint32_t k = 0; k < setup_.argument_count; ++k) {
       const ilaw_argument* given = setup_.arguments[k];
-      const ilaw_argument a = is_complete(given) ? read_sized(given) : ilaw_argument{};
+      const ilaw_argument a = sized::is_complete(given) ? sized::read(given) : ilaw_argument{};
       if (!a.name) {
-        text_.add("law '%s': argument %u is null, has a struct_size below %u or no name", id, k,
-                  least_size<ilaw_argument>);
+        text_.add("law '%s': argument %u is null, has no name or a struct_size not from %u to %u", id, k,
+                  sized::least<ilaw_argument>, sized::most);
         return ILAW_INVALID_ARGUMENT;
       }
       if (const std::int32_t code = read_argument(a); code != ILAW_OK) return code;
@@ -345,15 +345,16 @@ std::int32_t create(const ilaw_setup* setup, ilaw_instance** result, char* text,
   message said(text, text_size);
   if (!result) return ILAW_INVALID_ARGUMENT;
   *result = nullptr;
-  if (!is_complete(setup)) {
-    said.add("law '%s': setup is null or its struct_size is below %u", Law::card.id, least_size<ilaw_setup>);
+  if (!sized::is_complete(setup)) {
+    said.add("law '%s': setup is null or its struct_size not from %u to %u", Law::card.id,
+             sized::least<ilaw_setup>, sized::most);
     return ILAW_INVALID_ARGUMENT;
   }
   const float_environment own;
   void* room = std::malloc(sizeof(instance<Law>));
   if (!room) return ILAW_OUT_OF_MEMORY;
   auto* made = new (room) instance<Law>{};
-  const std::int32_t code = instance_builder<Law>(*made, read_sized(setup), said).build();
+  const std::int32_t code = instance_builder<Law>(*made, sized::read(setup), said).build();
   if (code == ILAW_OK) {
     *result = reinterpret_cast<ilaw_instance*>(made);
   } else {
@@ -372,19 +373,19 @@ void destroy(ilaw_instance* opaque) {
 
 template <class Law>
 std::int32_t info(const ilaw_instance* opaque, ilaw_instance_info* out) {
-  if (!opaque || !is_complete(out)) return ILAW_INVALID_ARGUMENT;
+  if (!opaque || !sized::is_complete(out)) return ILAW_INVALID_ARGUMENT;
   const instance<Law>& made = of<Law>(opaque);
-  write_sized(out, {.struct_size = 0,
-                    .inputs = made.inputs(),
-                    .energy_inputs = made.energy_inputs(),
-                    .state_variable_count = made.variable_count,
-                    .state_size = made.state_size,
-                    .state_variables = made.variable_pointers,
-                    .per_node_parameters = made.per_node_names,
-                    .per_node_parameter_count = made.per_node_count,
-                    .capabilities = made.capabilities(),
-                    .state_version = Law::card.state_version,
-                    .reserved = 0});
+  sized::write(out, {.struct_size = 0,
+                     .inputs = made.inputs(),
+                     .energy_inputs = made.energy_inputs(),
+                     .state_variable_count = made.variable_count,
+                     .state_size = made.state_size,
+                     .state_variables = made.variable_pointers,
+                     .per_node_parameters = made.per_node_names,
+                     .per_node_parameter_count = made.per_node_count,
+                     .capabilities = made.capabilities(),
+                     .state_version = Law::card.state_version,
+                     .reserved = 0});
   return ILAW_OK;
 }
 

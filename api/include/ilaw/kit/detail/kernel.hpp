@@ -179,7 +179,7 @@ energy_split split_energy(const Node& n, Vector v) {
   const double tangential = positive_part(along_tangents + smaller(along_normal, 0.0));
   const bool broken = n.status == status::broken;
   return {broken ? 0.0 : tangential, broken ? 0.0 : normal, (broken ? normal + tangential : 0.0) + n.rupture,
-          n.stored};
+          defect(n.stored) == 0.0 ? n.stored : infinity};  // its terms overflow
 }
 
 // Number by number: a choice between structs is a branch, which does not vectorise.

@@ -187,7 +187,7 @@ enum {
 
 /* Components of the energy output, per node and step; ABI 1 has these four for ever. The work of the impulse
  * over the step is r.(v_previous + v)/2, exactly, in a central-difference host; the parts below are what
- * becomes of it. Dissipated parts are never negative. */
+ * becomes of it. Dissipated parts are never negative; a part that overflows is +infinity, none is NaN. */
 enum {
   ILAW_ENERGY_FRICTION = 0, /* dissipated by friction */
   ILAW_ENERGY_IMPACT = 1,   /* dissipated by impact */
@@ -345,7 +345,7 @@ typedef struct ilaw_report {
 
 /* ---- laws and libraries ------------------------------------------------------------------------- */
 
-/* One law. All function pointers are set, but extension, which may be null. */
+/* One law. All function pointers are set, but extension: null says that there are none. */
 typedef struct ilaw_law {
   uint32_t struct_size;
   uint32_t dimensions;           /* ILAW_DIMENSION_* mask */
@@ -407,7 +407,7 @@ typedef struct ilaw_plugin {
   const ilaw_law* const* laws;
   uint32_t law_count;
   uint32_t reserved;                          /* 0 */
-  const void* (*extension)(const char* name); /* [any-thread] as a law's, of the whole library; may be null */
+  const void* (*extension)(const char* name); /* [any-thread] as a law's, of the whole library; null: none */
 } ilaw_plugin;
 
 /* [any-thread] The exported function. Returns the same constant description at every call. */
