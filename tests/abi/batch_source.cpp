@@ -79,12 +79,14 @@ ilaw_argument argument(Draw& draw, const ilaw_parameter& p, std::array<double, 6
   return a;
 }
 
-// By its bits, since -ffast-math would have no number be infinite.
-bool is_finite(double value) {
+// By their bits, since -ffast-math would have no number be infinite or NaN.
+std::uint64_t bits_of(double value) {
   std::uint64_t bits;
   std::memcpy(&bits, &value, sizeof bits);
-  return (bits >> 52 & 0x7FF) != 0x7FF;
+  return bits;
 }
+bool is_finite(double value) { return (bits_of(value) >> 52 & 0x7FF) != 0x7FF; }
+bool is_nan(double value) { return (bits_of(value) & ~(std::uint64_t{1} << 63)) > 0x7FF0000000000000; }
 
 }  // namespace
 
@@ -245,11 +247,21 @@ void Runner::fill_step(int n) {
   if (offset_.values) fill(draw_, offset_, nodes_, 1, temper_, 0.0, 1e-3);
   fill_delassus();
   if (draw_.one_in(4)) fill_frames();
-  for (const std::int64_t node : nodes_)
-    for (std::size_t c = 0; c < drawn_.info().state_size; ++c) {
-      if (!in_place_ && !draw_.one_in(4)) state_in_.at(node, c) = state_out_.at(node, c);
-      if (temper_.odd != 0 && draw_.one_in(4 * temper_.odd)) state_in_.at(node, c) = any_double(draw_);
-    }
+  fill_state();
+}
+
+// What the law wrote, sometimes mixed with what it wrote before, sometimes with numbers that nobody wrote.
+void Runner::fill_state() {
+  const std::size_t size = drawn_.info().state_size;
+  if (size == 0) return;
+  for (const std::int64_t node : nodes_) {
+    const bool stale = draw_.one_in(4);
+    for (std::size_t c = 0; !in_place_ && c < size; ++c)
+      if (!stale || draw_.one_in(2)) state_in_.at(node, c) = state_out_.at(node, c);
+    if (temper_.odd == 0 || draw_.below(4 * temper_.odd) >= size) continue;
+    for (std::uint64_t k = draw_.below(3) + 1; k > 0; --k)
+      state_in_.at(node, draw_.below(size)) = any_double(draw_);
+  }
 }
 
 void Runner::call(Call function, Tally& tally) {
@@ -261,13 +273,11 @@ void Runner::call(Call function, Tally& tally) {
   if (after) after();
   if (evaluated) ++tally.batches;
   check(code, report, evaluated, tally);
-  tally.add(&code, sizeof code);
+  tally.add(static_cast<std::uint64_t>(code));
   if (code < 0) return;
   for (const std::int64_t node : nodes_) {
-    for (std::size_t c = 0; c < drawn_.info().state_size; ++c)
-      tally.add(&state_out_.at(node, c), sizeof(double));
-    for (std::size_t c = 0; evaluated && c < drawn_.dimension(); ++c)
-      tally.add(&impulse_.at(node, c), sizeof(double));
+    for (std::size_t c = 0; c < drawn_.info().state_size; ++c) tally.add(state_out_.at(node, c));
+    for (std::size_t c = 0; evaluated && c < drawn_.dimension(); ++c) tally.add(impulse_.at(node, c));
   }
 }
 
@@ -303,6 +313,7 @@ void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated,
     for (std::size_t c = 0; energy_.values && c < ILAW_ENERGY_STORED; ++c)
       if (!(energy_.at(node, c) >= 0.0))  // infinite where its terms are beyond the largest double
         refuse("a dissipated energy of " + std::to_string(energy_.at(node, c)));
+    if (energy_.values && is_nan(energy_.at(node, ILAW_ENERGY_STORED))) refuse("a stored energy of NaN");
   }
 }
 

@@ -33,7 +33,8 @@ class Draw {
     z = (z ^ z >> 27) * 0x94D049BB133111EBU;
     return z ^ z >> 31;
   }
-  std::uint64_t below(std::uint64_t n) { return bits() % n; }
+  // Without a division, for n below 2^32: Lemire (2019), Fast random integer generation in an interval.
+  std::uint64_t below(std::uint64_t n) { return (bits() >> 32) * n >> 32; }
   bool one_in(std::uint64_t n) { return below(n) == 0; }
   // Of 53 bits in [0, 1): exact, whatever the compiler is allowed.
   double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
@@ -129,14 +130,14 @@ class Drawn {
 // What a run of batches saw.
 struct Tally {
   std::uint64_t batches = 0, nodes = 0, bad = 0, refused = 0;
-  std::uint64_t digest = 0xCBF29CE484222325;  // of all outputs: FNV-1a, Fowler, Noll, Vo
+  std::uint64_t digest = 0xCBF29CE484222325;  // of all outputs: FNV-1a (Fowler, Noll, Vo), by words
   std::string wrong;                          // the first promise broken, empty where none
 
-  void add(const void* bytes, std::size_t size) {
-    for (std::size_t k = 0; k < size; ++k) {
-      digest ^= static_cast<const unsigned char*>(bytes)[k];
-      digest *= 0x100000001B3;
-    }
+  void add(std::uint64_t word) { digest = (digest ^ word ^ word >> 32) * 0x100000001B3; }
+  void add(double value) {
+    std::uint64_t word;
+    std::memcpy(&word, &value, sizeof word);
+    add(word);
   }
 };
 
@@ -172,6 +173,7 @@ class Runner {
   void fill_step(int n);
   void fill_frames();
   void fill_delassus();
+  void fill_state();
   void call(Call function, Tally& tally);
   void check(std::int32_t code, const ilaw_report& report, bool evaluated, Tally& tally);
   std::size_t form_width() const;
