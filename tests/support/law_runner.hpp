@@ -86,6 +86,21 @@ inline ilaw::interface make_law(const std::string& law, const SetupBuilder& buil
   return {ilaw::library(plugin_file(law)), law, builder.setup};
 }
 
+// Why a law refuses a setup, in its words; "not refused" where it does not.
+inline std::string refusal_of(const std::string& law, const SetupBuilder& builder,
+                              std::int32_t code = ILAW_INVALID_PARAMETER) {
+  try {
+    make_law(law, builder);
+  } catch (const ilaw::error& error) {
+    EXPECT_EQ(error.code(), code) << error.what();
+    return error.what();
+  }
+  return "not refused";
+}
+inline std::string refusal_of(const std::string& law, const Parameters& parameters) {
+  return refusal_of(law, SetupBuilder(parameters));
+}
+
 // One node stepped in time, with all inputs as plain members; scalar H unless h has more values.
 struct NodeRun {
   NodeRun(const std::string& law, const Parameters& parameters, double step = 1e-3,
