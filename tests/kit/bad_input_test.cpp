@@ -3,16 +3,13 @@
 #include "kit_probe.hpp"
 
 #include "support/law_cases.hpp"
+#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
 
 #include <functional>
-#include <limits>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 struct Bad {
   const char* name;

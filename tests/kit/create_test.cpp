@@ -1,13 +1,10 @@
 // What create refuses, and in which words: the parameter, its value, what is allowed.
 #include "support/law_runner.hpp"
+#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
-
-#include <limits>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 TEST(Create, NamesTheParameterItsValueAndWhatIsAllowed) {
   EXPECT_EQ(refusal_of("contact", {{{"restitution", 1.5}}, {}}),

@@ -1,14 +1,11 @@
 // The largest stable step that the report gives: infinity where a law needs none, else the limit of its
 // spring.
 #include "support/law_runner.hpp"
+#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
-
-#include <limits>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 Parameters springs(double stiffness, double damping) {
   return {{{"stiffness", stiffness}, {"damping", damping}}, {{"integration", "explicit"}}};

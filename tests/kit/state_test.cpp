@@ -1,16 +1,13 @@
 // A state comes back from the host, and is never trusted: what the law cannot have written is bad input.
 #include "kit_probe.hpp"
 
+#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
 
 #include <cstring>
-#include <limits>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 struct Foreign {
   const char* law;

@@ -1,16 +1,13 @@
 // A batch that no host can mean is refused as a whole, with the reason and with nothing written.
 #include "kit_probe.hpp"
 
+#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 struct Wrong {
   const char* reason;

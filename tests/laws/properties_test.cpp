@@ -11,7 +11,8 @@
 //   sees_past_motion       its energy belongs to a path, of which v^- is the end; false
 #include "laws/random_nodes.hpp"
 
-#include <limits>
+#include "support/numbers.hpp"
+
 #include <map>
 #include <set>
 #include <string>
@@ -20,9 +21,9 @@
 namespace ilaw::testing {
 namespace {
 
-constexpr double ulp = std::numeric_limits<double>::epsilon();
 constexpr std::size_t node_count = 1000, steps = 50;
-// In 2D and 3D together half a million random steps. Other units, axes and mirrors show in any of them, or in none.
+// In 2D and 3D together half a million random steps. Other units, axes and mirrors show in any of them, or in
+// none.
 constexpr std::size_t histories = 5, histories_compared = 1;
 
 struct Law {

@@ -1,14 +1,11 @@
 // Contact with friction through the ABI: closed forms, cone, complementarity, dissipation, limits.
 #include "support/law_runner.hpp"
+#include "support/numbers.hpp"
 
-#include <limits>
 #include <random>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
-constexpr double ulp = std::numeric_limits<double>::epsilon();
 
 double tangential(const Vector& a) { return std::hypot(a[1], a[2]); }
 

@@ -1,14 +1,10 @@
 // The law for diagonal and full H, elliptical cones and kinetic friction, through the ABI.
 #include "kit/local_coulomb/draw.hpp"
 #include "support/law_runner.hpp"
-
-#include <limits>
+#include "support/numbers.hpp"
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
-constexpr double ulp = std::numeric_limits<double>::epsilon();
 
 // Many closed contacts at once, each with its own full H.
 class Contacts {

@@ -1,14 +1,12 @@
 // Regularised friction, limits, and bad parameters of the penalty law.
 #include "support/law_runner.hpp"
+#include "support/numbers.hpp"
 
 #include <limits>
 #include <random>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
-constexpr double ulp = 2.3e-16;
 
 Parameters with(const std::string& integration, std::map<std::string, double> numbers) {
   return {std::move(numbers), {{"integration", integration}}};

@@ -1,10 +1,10 @@
 // template_law through the ABI: its equation, its motion in time, and its limits.
 #include "laws/random_nodes.hpp"
 
+#include "support/numbers.hpp"
+
 namespace ilaw::testing {
 namespace {
-
-constexpr double ulp = 0x1p-52;
 
 // r_N = h c A <-v_N> with the velocity after the step, for any form of H.
 TEST(template_law, KeepsItsEquation) {

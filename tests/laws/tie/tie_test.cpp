@@ -1,14 +1,11 @@
 // The tie through the ABI: a bilateral constraint for any H, and its rupture, against closed forms.
+#include "support/numbers.hpp"
 #include "support/rupture_instants.hpp"
 
-#include <limits>
 #include <random>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
-constexpr double ulp = 2.3e-16;
 
 // A unit point mass pushed by impulses from outside: v_free = v + impulse.
 struct Tied : NodeRun {
