@@ -9,7 +9,7 @@ module ilaw
   use, intrinsic :: iso_c_binding
   use ilaw_abi
   implicit none
-  private :: address, stride, blank_padded, argument_of, append
+  private :: address, stride, blank_padded, argument_of, append, opened
 
   ! The value of a parameter of a law.
   type, private :: value
@@ -102,6 +102,17 @@ module ilaw
     end function
   end interface
 
+  ! What the two functions of the loader that open a library have in common.
+  abstract interface
+    integer(c_int32_t) function ilaw_library_opener(name, library, message, message_size) bind(c)
+      import :: c_int32_t, c_ptr, c_char, c_size_t
+      character(kind=c_char), intent(in) :: name(*)
+      type(c_ptr), intent(out) :: library
+      character(kind=c_char), intent(out) :: message(*)
+      integer(c_size_t), value :: message_size
+    end function
+  end interface
+
 contains
 
   ! Opens a library by name or explicit path; null on failure. Trailing blanks of name do not count.
@@ -109,21 +120,8 @@ contains
     character(*), intent(in) :: name
     type(c_ptr), intent(out) :: library
     character(*), intent(out) :: message
-    interface
-      integer(c_int32_t) function ilaw_library_open(name_or_path, library, message, message_size) &
-        bind(c, name='ilaw_library_open')
-        import :: c_int32_t, c_ptr, c_char, c_size_t
-        character(kind=c_char), intent(in) :: name_or_path(*)
-        type(c_ptr), intent(out) :: library
-        character(kind=c_char), intent(out) :: message(*)
-        integer(c_size_t), value :: message_size
-      end function
-    end interface
-    character(len(message) + 1, c_char) :: line
-
-    line = c_null_char
-    code = ilaw_library_open(trim(name)//c_null_char, library, line, len(line, c_size_t))
-    message = blank_padded(line)
+    procedure(ilaw_library_opener), bind(c, name='ilaw_library_open') :: ilaw_library_open
+    code = opened(ilaw_library_open, name, library, message)
   end function
 
   ! The same by name alone, along the search path: for names that come from an input file.
@@ -131,20 +129,18 @@ contains
     character(*), intent(in) :: name
     type(c_ptr), intent(out) :: library
     character(*), intent(out) :: message
-    interface
-      integer(c_int32_t) function ilaw_library_open_named(name, library, message, message_size) &
-        bind(c, name='ilaw_library_open_named')
-        import :: c_int32_t, c_ptr, c_char, c_size_t
-        character(kind=c_char), intent(in) :: name(*)
-        type(c_ptr), intent(out) :: library
-        character(kind=c_char), intent(out) :: message(*)
-        integer(c_size_t), value :: message_size
-      end function
-    end interface
-    character(len(message) + 1, c_char) :: line
+    procedure(ilaw_library_opener), bind(c, name='ilaw_library_open_named') :: ilaw_library_open_named
+    code = opened(ilaw_library_open_named, name, library, message)
+  end function
 
+  integer(c_int32_t) function opened(open, name, library, message) result(code)
+    procedure(ilaw_library_opener) :: open
+    character(*), intent(in) :: name
+    type(c_ptr), intent(out) :: library
+    character(*), intent(out) :: message
+    character(len(message) + 1, c_char) :: line
     line = c_null_char
-    code = ilaw_library_open_named(trim(name)//c_null_char, library, line, len(line, c_size_t))
+    code = open(trim(name)//c_null_char, library, line, len(line, c_size_t))
     message = blank_padded(line)
   end function
 

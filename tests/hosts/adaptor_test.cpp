@@ -2,17 +2,14 @@
 // written for (central differences with velocities at half steps): the same half-step velocities, also at
 // variable steps.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-#include <ilaw/loader.hpp>
+#include "support/law_runner.hpp"
 
-#include <array>
-#include <cmath>
 #include <stdexcept>
-#include <vector>
 
+namespace ilaw::testing {
 namespace {
 
-using vector = std::array<double, 3>;  // normal, then tangential components
+using vector = Vector;
 
 constexpr double mass = 1.7, stiffness = 40.0;
 constexpr vector gravity{-10.0, 0.0, 0.0}, start{0.2, 0.0, 0.1}, start_velocity{-0.5, 2.0, -1.0};
@@ -21,20 +18,7 @@ constexpr int steps = 4000;
 double step_length(int n) { return 1e-3 * (1.0 + 0.4 * std::sin(n)); }
 
 ilaw::interface coulomb_with_restitution() {
-  ilaw_argument friction{}, restitution{};
-  friction.struct_size = restitution.struct_size = sizeof(ilaw_argument);
-  friction.name = "friction";
-  friction.number = 0.3;
-  restitution.name = "restitution";
-  restitution.number = 0.5;
-  const ilaw_argument* arguments[] = {&friction, &restitution};
-  ilaw_setup setup{};
-  setup.struct_size = sizeof setup;
-  setup.dimension = 3;
-  setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.arguments = arguments;
-  setup.argument_count = 2;
-  return {ilaw::library(ILAW_PLUGIN_FOLDER "/coulomb.so"), "", setup};
+  return make_law("coulomb", SetupBuilder({{{"friction", 0.3}, {"restitution", 0.5}}, {}}));
 }
 
 vector impulse_of(const ilaw::interface& interface, const vector& v_free, const vector& v_previous,
@@ -136,3 +120,4 @@ TEST(Adaptor, TheCaseBouncesSlidesAndComesToRest) {
 }
 
 }  // namespace
+}  // namespace ilaw::testing

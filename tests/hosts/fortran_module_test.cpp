@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <enumerators.hpp>
 
+#include <cstddef>
 #include <cstdlib>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -25,143 +27,156 @@ using layout = std::vector<std::int64_t>;
 
 // Size of a struct and the offsets of its members, in C.
 #define OFFSET(member) offsetof(T, member)
-layout c_layout(int structure) {
-  switch (structure) {
-    case 0: {
-      using T = ilaw_parameter;
-      return {sizeof(T),
-              OFFSET(struct_size),
-              OFFSET(kind),
-              OFFSET(name),
-              OFFSET(symbol),
-              OFFSET(unit),
-              OFFSET(doc),
-              OFFSET(minimum),
-              OFFSET(maximum),
-              OFFSET(default_value),
-              OFFSET(required),
-              OFFSET(minimum_excluded),
-              OFFSET(infinity_allowed),
-              OFFSET(may_be),
-              OFFSET(choices),
-              OFFSET(choice_count),
-              OFFSET(reserved)};
-    }
-    case 1: {
-      using T = ilaw_state_variable;
-      return {sizeof(T),   OFFSET(struct_size), OFFSET(kind),  OFFSET(name),    OFFSET(unit),
-              OFFSET(doc), OFFSET(count),       OFFSET(flags), OFFSET(reserved)};
-    }
-    case 2: {
-      using T = ilaw_argument;
-      return {sizeof(T),      OFFSET(struct_size), OFFSET(kind),   OFFSET(name),
-              OFFSET(number), OFFSET(text),        OFFSET(values), OFFSET(count)};
-    }
-    case 3: {
-      using T = ilaw_setup;
-      return {
-          sizeof(T),     OFFSET(struct_size), OFFSET(dimension),      OFFSET(delassus_form), OFFSET(frame),
-          OFFSET(flags), OFFSET(arguments),   OFFSET(argument_count), OFFSET(tangent_given)};
-    }
-    case 4: {
-      using T = ilaw_instance_info;
-      return {sizeof(T),
-              OFFSET(struct_size),
-              OFFSET(inputs),
-              OFFSET(energy_inputs),
-              OFFSET(state_variable_count),
-              OFFSET(state_size),
-              OFFSET(state_variables),
-              OFFSET(per_node_parameters),
-              OFFSET(per_node_parameter_count),
-              OFFSET(capabilities),
-              OFFSET(state_version),
-              OFFSET(reserved)};
-    }
-    case 5: {
-      using T = ilaw_input;
-      return {sizeof(T), OFFSET(values), OFFSET(node_stride), OFFSET(component_stride)};
-    }
-    case 6: {
-      using T = ilaw_output;
-      return {sizeof(T), OFFSET(values), OFFSET(node_stride), OFFSET(component_stride)};
-    }
-    case 7: {
-      using T = ilaw_batch;
-      return {sizeof(T),
-              OFFSET(struct_size),
-              OFFSET(index_base),
-              OFFSET(flags),
-              OFFSET(node_count),
-              OFFSET(index),
-              OFFSET(index64),
-              OFFSET(time),
-              OFFSET(velocity_step),
-              OFFSET(position_step),
-              OFFSET(v_free),
-              OFFSET(delassus),
-              OFFSET(gap),
-              OFFSET(gap_offset),
-              OFFSET(v_previous),
-              OFFSET(area),
-              OFFSET(normal),
-              OFFSET(tangent),
-              OFFSET(per_node_parameters),
-              OFFSET(state_in),
-              OFFSET(state_out),
-              OFFSET(impulse),
-              OFFSET(velocity),
-              OFFSET(energy),
-              OFFSET(status),
-              OFFSET(status_stride)};
-    }
-    case 8: {
-      using T = ilaw_report;
-      return {sizeof(T),
-              OFFSET(struct_size),
-              OFFSET(reserved),
-              OFFSET(bad_count),
-              OFFSET(first_bad_node),
-              OFFSET(reason),
-              OFFSET(stable_velocity_step)};
-    }
-    case 9: {
-      using T = ilaw_law;
-      return {sizeof(T),
-              OFFSET(struct_size),
-              OFFSET(dimensions),
-              OFFSET(delassus_forms),
-              OFFSET(inputs),
-              OFFSET(outputs),
-              OFFSET(capabilities),
-              OFFSET(id),
-              OFFSET(title),
-              OFFSET(doc),
-              OFFSET(references),
-              OFFSET(parameters),
-              OFFSET(state_variables),
-              OFFSET(reference_count),
-              OFFSET(parameter_count),
-              OFFSET(state_variable_count),
-              OFFSET(reserved),
-              OFFSET(create),
-              OFFSET(destroy),
-              OFFSET(info),
-              OFFSET(initialise),
-              OFFSET(evaluate),
-              OFFSET(extension)};
-    }
-    default: {
-      using T = ilaw_plugin;
-      return {sizeof(T),    OFFSET(struct_size), OFFSET(abi_major), OFFSET(abi_minor),
-              OFFSET(name), OFFSET(version),     OFFSET(vendor),    OFFSET(licence),
-              OFFSET(laws), OFFSET(law_count),   OFFSET(reserved),  OFFSET(extension)};
-    }
-  }
+
+layout parameter_layout() {
+  using T = ilaw_parameter;
+  return {sizeof(T),
+          OFFSET(struct_size),
+          OFFSET(kind),
+          OFFSET(name),
+          OFFSET(symbol),
+          OFFSET(unit),
+          OFFSET(doc),
+          OFFSET(minimum),
+          OFFSET(maximum),
+          OFFSET(default_value),
+          OFFSET(required),
+          OFFSET(minimum_excluded),
+          OFFSET(infinity_allowed),
+          OFFSET(may_be),
+          OFFSET(choices),
+          OFFSET(choice_count),
+          OFFSET(reserved)};
 }
+
+layout state_variable_layout() {
+  using T = ilaw_state_variable;
+  return {sizeof(T),   OFFSET(struct_size), OFFSET(kind),  OFFSET(name),    OFFSET(unit),
+          OFFSET(doc), OFFSET(count),       OFFSET(flags), OFFSET(reserved)};
+}
+
+layout argument_layout() {
+  using T = ilaw_argument;
+  return {sizeof(T),      OFFSET(struct_size), OFFSET(kind),   OFFSET(name),
+          OFFSET(number), OFFSET(text),        OFFSET(values), OFFSET(count)};
+}
+
+layout setup_layout() {
+  using T = ilaw_setup;
+  return {sizeof(T),     OFFSET(struct_size), OFFSET(dimension),      OFFSET(delassus_form), OFFSET(frame),
+          OFFSET(flags), OFFSET(arguments),   OFFSET(argument_count), OFFSET(tangent_given)};
+}
+
+layout info_layout() {
+  using T = ilaw_instance_info;
+  return {sizeof(T),
+          OFFSET(struct_size),
+          OFFSET(inputs),
+          OFFSET(energy_inputs),
+          OFFSET(state_variable_count),
+          OFFSET(state_size),
+          OFFSET(state_variables),
+          OFFSET(per_node_parameters),
+          OFFSET(per_node_parameter_count),
+          OFFSET(capabilities),
+          OFFSET(state_version),
+          OFFSET(reserved)};
+}
+
+layout input_layout() {
+  using T = ilaw_input;
+  return {sizeof(T), OFFSET(values), OFFSET(node_stride), OFFSET(component_stride)};
+}
+
+layout output_layout() {
+  using T = ilaw_output;
+  return {sizeof(T), OFFSET(values), OFFSET(node_stride), OFFSET(component_stride)};
+}
+
+layout batch_layout() {
+  using T = ilaw_batch;
+  return {sizeof(T),
+          OFFSET(struct_size),
+          OFFSET(index_base),
+          OFFSET(flags),
+          OFFSET(node_count),
+          OFFSET(index),
+          OFFSET(index64),
+          OFFSET(time),
+          OFFSET(velocity_step),
+          OFFSET(position_step),
+          OFFSET(v_free),
+          OFFSET(delassus),
+          OFFSET(gap),
+          OFFSET(gap_offset),
+          OFFSET(v_previous),
+          OFFSET(area),
+          OFFSET(normal),
+          OFFSET(tangent),
+          OFFSET(per_node_parameters),
+          OFFSET(state_in),
+          OFFSET(state_out),
+          OFFSET(impulse),
+          OFFSET(velocity),
+          OFFSET(energy),
+          OFFSET(status),
+          OFFSET(status_stride)};
+}
+
+layout report_layout() {
+  using T = ilaw_report;
+  return {sizeof(T),
+          OFFSET(struct_size),
+          OFFSET(reserved),
+          OFFSET(bad_count),
+          OFFSET(first_bad_node),
+          OFFSET(reason),
+          OFFSET(stable_velocity_step)};
+}
+
+layout law_layout() {
+  using T = ilaw_law;
+  return {sizeof(T),
+          OFFSET(struct_size),
+          OFFSET(dimensions),
+          OFFSET(delassus_forms),
+          OFFSET(inputs),
+          OFFSET(outputs),
+          OFFSET(capabilities),
+          OFFSET(id),
+          OFFSET(title),
+          OFFSET(doc),
+          OFFSET(references),
+          OFFSET(parameters),
+          OFFSET(state_variables),
+          OFFSET(reference_count),
+          OFFSET(parameter_count),
+          OFFSET(state_variable_count),
+          OFFSET(reserved),
+          OFFSET(create),
+          OFFSET(destroy),
+          OFFSET(info),
+          OFFSET(initialise),
+          OFFSET(evaluate),
+          OFFSET(extension)};
+}
+
+layout plugin_layout() {
+  using T = ilaw_plugin;
+  return {sizeof(T),    OFFSET(struct_size), OFFSET(abi_major), OFFSET(abi_minor),
+          OFFSET(name), OFFSET(version),     OFFSET(vendor),    OFFSET(licence),
+          OFFSET(laws), OFFSET(law_count),   OFFSET(reserved),  OFFSET(extension)};
+}
+
 #undef OFFSET
 
-constexpr int struct_count = 11;
+// In the order of the header.
+constexpr layout (*c_layouts[])() = {
+    parameter_layout, state_variable_layout, argument_layout, setup_layout, info_layout,  input_layout,
+    output_layout,    batch_layout,          report_layout,   law_layout,   plugin_layout};
+constexpr int struct_count = std::size(c_layouts);
+
+layout c_layout(int structure) { return c_layouts[structure](); }
 
 layout fortran_layout(int structure) {
   layout found(64);

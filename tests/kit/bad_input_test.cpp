@@ -1,16 +1,15 @@
 // Bad input at a node: nothing happens to it, everything happens to the others, and the report says so.
 #include "batch_runner.hpp"
+#include "kit_probe.hpp"
 
 #include "support/law_cases.hpp"
+#include "support/numbers.hpp"
+#include "support/small_batch.hpp"
 
 #include <functional>
-#include <limits>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 struct Bad {
   const char* name;
@@ -107,8 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Coulomb, BadInput,
                          name_of);
 
 TEST(BadInputAtMemory, LeavesStateAndHistoryUntouched) {
-  const SetupBuilder setup({{{"viscosity", 2.0}}, {}});
-  const ilaw::interface law(ilaw::library(ILAW_KIT_PROBE), "kit_probe", setup.setup);
+  const ilaw::interface law = make_probe();
   Nodes nodes(70);
   const Results good = run(law, nodes, {}, false, 1);
   nodes.v_free[3 * 66] = nan_value;
@@ -151,147 +149,13 @@ TEST(Extremes, AreSolvedWhereTheResultCanBeRepresented) {
     }
 }
 
-TEST(WrongBatch, IsRefusedWithNothingWritten) {
-  const SetupBuilder setup({{{"friction", 0.5}}, {}});
-  const ilaw::interface law = make_law("coulomb", setup);
-  double v = -1.0, h = 1.0, gap = 0.0, r[6] = {7.0, 7.0, 7.0, 7.0, 7.0, 7.0};
-  const auto good = [&] {
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = 1;
-    b.velocity_step = b.position_step = 1e-3;
-    b.v_free = b.v_previous = {&v, 0, 0};
-    b.delassus = {&h, 0, 0};
-    b.gap = {&gap, 0, 0};
-    b.impulse = {r, 0, 1};
-    return b;
-  };
-  struct Wrong {
-    const char* reason;
-    std::function<void(ilaw_batch&)> spoil;
-  };
-  const Wrong wrongs[] = {
-      {"v_free is null", [](ilaw_batch& b) { b.v_free.values = nullptr; }},
-      {"delassus is null", [](ilaw_batch& b) { b.delassus.values = nullptr; }},
-      {"gap is null", [](ilaw_batch& b) { b.gap.values = nullptr; }},
-      {"impulse is null", [](ilaw_batch& b) { b.impulse.values = nullptr; }},
-      {"v_previous is null", [](ilaw_batch& b) { b.v_previous.values = nullptr; }},
-      {"node_count is negative", [](ilaw_batch& b) { b.node_count = -1; }},
-      {"index_base is neither 0 nor 1", [](ilaw_batch& b) { b.index_base = 2; }},
-      {"a node of the index list lies below index_base",
-       [](ilaw_batch& b) {
-         static const std::int32_t index[] = {1, 0};
-         b.node_count = 2;
-         b.index = index;
-         b.index_base = 1;
-         b.impulse.node_stride = 3;
-       }},
-      {"a node of the index list lies below index_base",
-       [](ilaw_batch& b) {
-         static const std::int64_t index[] = {-1};
-         b.index64 = index;
-       }},
-      {"index and index64 are both given",
-       [](ilaw_batch& b) {
-         static const std::int32_t index[] = {0};
-         static const std::int64_t index64[] = {0};
-         b.index = index;
-         b.index64 = index64;
-       }},
-      {"impulse has a stride of 0", [](ilaw_batch& b) { b.node_count = 2; }},
-      {"impulse has a stride of 0", [](ilaw_batch& b) { b.impulse.component_stride = 0; }},
-      {"velocity has a stride of 0",
-       [](ilaw_batch& b) {
-         static double v_out[3];
-         b.node_count = 2;
-         b.impulse.node_stride = 3;
-         b.velocity = {v_out, 0, 1};
-       }},
-      {"status_stride is 0",
-       [](ilaw_batch& b) {
-         static std::uint8_t status[2];
-         b.node_count = 2;
-         b.impulse.node_stride = 3;
-         b.status = status;
-       }},
-      {"time is not finite", [](ilaw_batch& b) { b.time = nan_value; }},
-      {"velocity_step is not a finite number > 0", [](ilaw_batch& b) { b.velocity_step = 0.0; }},
-      {"position_step is not a finite number > 0", [](ilaw_batch& b) { b.position_step = inf_value; }}};
-  for (const Wrong& wrong : wrongs) {
-    ilaw_batch b = good();
-    wrong.spoil(b);
-    ilaw_report report{};
-    report.struct_size = sizeof report;
-    EXPECT_EQ(law.evaluate(b, &report), ILAW_INVALID_ARGUMENT);
-    EXPECT_STREQ(report.reason, wrong.reason);
-    EXPECT_EQ(r[0], 7.0);
-  }
-  EXPECT_EQ(law.evaluate(good()), ILAW_OK);
-  EXPECT_EQ(r[0], 1.0);
-}
-
-// A flag asks for something that a library which does not know it would not give.
-TEST(WrongBatch, FlagsThatAreNotKnownAreRefused) {
-  const SetupBuilder setup({{{"viscosity", 2.0}}, {}});
-  const ilaw::interface law(ilaw::library(ILAW_KIT_PROBE), "kit_probe", setup.setup);
-  ilaw_report report{};
-  report.struct_size = sizeof report;
-  for (const int bit : {0, 31, 63}) {
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.flags = std::uint64_t{1} << bit;
-    for (const auto call : {law.law().evaluate, law.law().initialise}) {
-      EXPECT_EQ(call(law.instance(), &b, &report), ILAW_UNSUPPORTED) << bit;
-      EXPECT_STREQ(report.reason, "flags of the batch are not known");
-    }
-  }
-}
-
-TEST(WrongBatch, InitialiseRefusesStatesOnTopOfEachOther) {
-  const SetupBuilder setup({{{"viscosity", 2.0}}, {}});
-  const ilaw::interface law(ilaw::library(ILAW_KIT_PROBE), "kit_probe", setup.setup);
-  std::vector<double> state(2 * law.info().state_size, 7.0);
-  ilaw_report report{};
-  report.struct_size = sizeof report;
-  for (const auto& [node_stride, component_stride] : {std::pair{0, 1}, {10, 0}}) {
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = 2;
-    b.state_out = {state.data(), node_stride, component_stride};
-    EXPECT_EQ(law.law().initialise(law.instance(), &b, &report), ILAW_INVALID_ARGUMENT);
-    EXPECT_STREQ(report.reason, "state_out has a stride of 0");
-    EXPECT_EQ(state[0], 7.0);
-  }
-}
-
-// initialise is the first to write a state: what stands where it would be read is nobody's.
-TEST(Initialise, ReadsNoState) {
-  const SetupBuilder setup({{{"viscosity", 2.0}}, {}}, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
-  const ilaw::interface law(ilaw::library(ILAW_KIT_PROBE), "kit_probe", setup.setup);
-  const std::size_t s = law.info().state_size;
-  const double normal[] = {0.36, 0.48, 0.8};
-  std::vector<double> expected(s), found(s, nan_value), rubbish(s, 0.6);
-  ilaw_batch b{};
-  b.struct_size = sizeof b;
-  b.node_count = 1;
-  b.normal = {normal, 0, 1};
-  b.state_out = {expected.data(), 0, 1};
-  ASSERT_EQ(law.initialise(b), ILAW_OK);
-  b.state_in = {rubbish.data(), 0, 1};
-  b.state_out = {found.data(), 0, 1};
-  ASSERT_EQ(law.initialise(b), ILAW_OK);
-  EXPECT_EQ(found, expected);
-}
-
 // A velocity before the step that only the energies need: without it the motion is the same, and its
 // dissipation is not known.
 TEST(EnergyOutput, DoesNotChangeTheMotionWhereThePreviousVelocityIsNone) {
   std::vector<LawCase> served = law_cases("bad_input");
-  served.push_back({"kit_probe", "kit_probe", {{{"viscosity", 2.0}}, {}}, {}});
+  served.push_back({"kit_probe", "kit_probe", probe_parameters, {}});
   for (const auto& [name, ignored, parameters, more] : served) {
-    const SetupBuilder setup(parameters);
-    const ilaw::interface law(ilaw::library(name == "kit_probe" ? ILAW_KIT_PROBE : plugin_file(name)), name,
-                              setup.setup);
+    const ilaw::interface law = make_tested_law(name, SetupBuilder(parameters));
     if (law.info().inputs & ILAW_INPUT_V_PREVIOUS) continue;
     Nodes nodes(130);
     for (std::size_t k = 0; k < nodes.v_previous.size(); k += 5) nodes.v_previous[k] = nan_value;
@@ -312,7 +176,7 @@ TEST(EnergyOutput, DoesNotChangeTheMotionWhereThePreviousVelocityIsNone) {
 TEST(Tangent, ThatIsNoneIsBadInput) {
   const SetupBuilder setup({{{"friction", 0.3}}, {}}, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, true);
   const ilaw::interface law = make_law("coulomb", setup);
-  const double normal[] = {0.0, 0.0, 1.0}, v[] = {1.0, 0.5, -1.0}, h = 1.0, gap = 0.0;
+  const double normal[] = {0.0, 0.0, 1.0};
   struct Given {
     Vector tangent;
     bool good;
@@ -321,21 +185,11 @@ TEST(Tangent, ThatIsNoneIsBadInput) {
        {Given{{0.6, 0.8, 0.0}, true}, Given{{0.6, 0.8, 1e-7}, true}, Given{{0.6, 0.8, 1e-3}, false},
         Given{{0.0, 0.0, 1.0}, false}, Given{{0.3, 0.4, 0.0}, false}, Given{{0.0, 0.0, 0.0}, false},
         Given{{nan_value, 0.8, 0.0}, false}, Given{{0.6, inf_value, 0.0}, false}}) {
-    double r[3];
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = 1;
-    b.velocity_step = b.position_step = 1e-3;
-    b.v_free = b.v_previous = {v, 0, 1};
-    b.delassus = {&h, 0, 1};
-    b.gap = {&gap, 0, 1};
-    b.normal = {normal, 0, 1};
-    b.tangent = {given.tangent.data(), 0, 1};
-    b.impulse = {r, 0, 1};
-    ilaw_report report{};
-    report.struct_size = sizeof report;
-    EXPECT_EQ(law.evaluate(b, &report), given.good ? ILAW_OK : ILAW_BAD_NODES) << given.tangent[2];
-    EXPECT_STREQ(report.reason,
+    SmallBatch node(1, {1.0, 0.5, -1.0});
+    node.b.normal = {normal, 0, 1};
+    node.b.tangent = {given.tangent.data(), 0, 1};
+    EXPECT_EQ(law.evaluate(node.b, &node.report), given.good ? ILAW_OK : ILAW_BAD_NODES) << given.tangent[2];
+    EXPECT_STREQ(node.report.reason,
                  given.good ? nullptr : "the tangent is not a unit vector orthogonal to the normal");
   }
 }
@@ -348,18 +202,10 @@ TEST(FullDelassus, IsAcceptedOrRefusedWhateverItsRotation) {
   const ilaw::interface diagonal = make_law("coulomb", diagonal_setup);
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
-  const double v[] = {-1.0, 0.5, 0.2}, gap = 0.0;
+  SmallBatch node(1, {-1.0, 0.5, 0.2});
   const auto code_of = [&](const ilaw::interface& served, const double* h) {
-    double r[3];
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = 1;
-    b.velocity_step = b.position_step = 1e-3;
-    b.v_free = b.v_previous = {v, 0, 1};
-    b.delassus = {h, 0, 1};
-    b.gap = {&gap, 0, 1};
-    b.impulse = {r, 0, 1};
-    return served.evaluate(b);
+    node.b.delassus = {h, 0, 1};
+    return served.evaluate(node.b);
   };
   for (const double scale : {1.0, 1e-200, 1e150})
     for (const auto& [smallest, good] :

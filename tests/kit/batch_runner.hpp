@@ -101,6 +101,7 @@ class Laid {
       if (!used[k] && values_[k] != guard) return false;
     return true;
   }
+  std::int64_t count() const { return n_; }
   ilaw_input in() const { return {values_.data(), node_, component_}; }
   ilaw_output out() { return {values_.data(), node_, component_}; }
 
@@ -113,72 +114,102 @@ class Laid {
   std::vector<double> values_;
 };
 
-// Initialises and runs some steps of a law over the nodes in a layout; v_free is halved at each step.
-inline Results run(const ilaw::interface& law, const Nodes& nodes, const Layout& layout, bool global = false,
-                   int steps = 3, std::int64_t first = 0, std::int64_t count = -1) {
-  const std::int64_t n = nodes.count, s = static_cast<std::int64_t>(law.info().state_size);
-  Laid v_free(n, nodes.d, layout), v_previous(n, nodes.d, layout), h(n, nodes.hc, layout), gap(n, 1, layout),
-      area(n, 1, layout), normal(n, nodes.d, layout), state(n, s, layout), next(n, s, layout),
-      r(n, nodes.d, layout), v(n, nodes.d, layout), energy(n, 4, layout);
-  v_previous.put(nodes.v_previous);
-  h.put(nodes.delassus);
-  gap.put(nodes.gap);
-  area.put(nodes.area);
-  normal.put(nodes.normal);
-  Results results;
-  results.status.assign(static_cast<std::size_t>(n), 99);
-  ilaw_batch b{};
-  b.struct_size = sizeof b;
-  b.node_count = layout.order.empty() ? n : static_cast<std::int64_t>(layout.order.size());
-  b.index = layout.order.empty() ? nullptr : layout.order.data();
-  std::vector<std::int32_t> part;
-  if (count >= 0) {  // a part of the batch only
-    for (std::int64_t i = first; i < first + count; ++i) part.push_back(static_cast<std::int32_t>(i));
-    b.index = part.data();
-    b.node_count = count;
+// The arrays of a batch over some nodes in a layout.
+class Arrays {
+ public:
+  Arrays(const Nodes& nodes, std::int64_t state_size, const Layout& layout, bool global)
+      : layout_(layout),
+        global_(global),
+        wide_(layout.order.begin(), layout.order.end()),
+        v_free_(nodes.count, nodes.d, layout),
+        v_previous_(nodes.count, nodes.d, layout),
+        h_(nodes.count, nodes.hc, layout),
+        gap_(nodes.count, 1, layout),
+        area_(nodes.count, 1, layout),
+        normal_(nodes.count, nodes.d, layout),
+        state(nodes.count, state_size, layout),
+        next(nodes.count, state_size, layout),
+        r(nodes.count, nodes.d, layout),
+        v(nodes.count, nodes.d, layout),
+        energy(nodes.count, 4, layout),
+        status(static_cast<std::size_t>(nodes.count), 99) {
+    v_previous_.put(nodes.v_previous);
+    h_.put(nodes.delassus);
+    gap_.put(nodes.gap);
+    area_.put(nodes.area);
+    normal_.put(nodes.normal);
   }
-  const std::vector<std::int64_t> wide(layout.order.begin(), layout.order.end());
-  if (layout.wide_index) {
-    b.index64 = wide.data();
-    b.index = nullptr;
+
+  // What initialise reads, and where it writes.
+  ilaw_batch first_batch() {
+    ilaw_batch b{};
+    b.struct_size = sizeof b;
+    b.node_count = v_free_.count();
+    if (!layout_.order.empty()) {
+      b.node_count = static_cast<std::int64_t>(layout_.order.size());
+      b.index = layout_.wide_index ? nullptr : layout_.order.data();
+      b.index64 = layout_.wide_index ? wide_.data() : nullptr;
+    }
+    b.index_base = layout_.index_base;
+    b.velocity_step = b.position_step = 1e-3;
+    b.delassus = h_.in();
+    b.gap = gap_.in();
+    b.area = area_.in();
+    b.v_previous = v_previous_.in();
+    if (global_) b.normal = normal_.in();
+    b.state_out = state.out();
+    return b;
   }
-  b.index_base = layout.index_base;
-  b.velocity_step = b.position_step = 1e-3;
-  b.delassus = h.in();
-  b.gap = gap.in();
-  b.area = area.in();
-  b.v_previous = v_previous.in();
-  if (global) b.normal = normal.in();
-  b.state_out = state.out();
-  const std::int32_t initialised = law.initialise(b);
-  EXPECT_TRUE(initialised == ILAW_OK || (!nodes.sound && initialised == ILAW_BAD_NODES));
-  std::vector<double> now = nodes.v_free;
-  for (int step = 1; step <= steps; ++step) {
-    v_free.put(now);
-    b.v_free = v_free.in();
-    b.time = step * 1e-3;
+
+  ilaw_batch batch(const std::vector<double>& v_free, double time) {
+    v_free_.put(v_free);
+    ilaw_batch b = first_batch();
+    b.v_free = v_free_.in();
+    b.time = time;
     b.state_in = state.in();
-    b.state_out = layout.separate_state ? next.out() : state.out();
+    b.state_out = layout_.separate_state ? next.out() : state.out();
     b.impulse = r.out();
-    if (layout.outputs) {
+    if (layout_.outputs) {
       b.velocity = v.out();
       b.energy = energy.out();
-      b.status = results.status.data();
+      b.status = status.data();
       b.status_stride = 1;
     }
-    results.report.struct_size = sizeof results.report;
-    results.code = law.evaluate(b, &results.report);
-    if (layout.separate_state) std::swap(state, next);
-    for (double& value : now) value *= 0.5;
+    return b;
   }
-  EXPECT_TRUE(r.guarded() && state.guarded() && v.guarded() && energy.guarded());
-  results.impulse = r.get();
-  results.state = state.get();
+
+ private:
+  const Layout& layout_;
+  bool global_;
+  std::vector<std::int64_t> wide_;
+  Laid v_free_, v_previous_, h_, gap_, area_, normal_;
+
+ public:
+  Laid state, next, r, v, energy;
+  std::vector<std::uint8_t> status;
+};
+
+// Initialises and runs some steps of a law over the nodes in a layout; v_free is halved at each step.
+inline Results run(const ilaw::interface& law, const Nodes& nodes, const Layout& layout, bool global = false,
+                   int steps = 3) {
+  Arrays arrays(nodes, static_cast<std::int64_t>(law.info().state_size), layout, global);
+  const std::int32_t initialised = law.initialise(arrays.first_batch());
+  EXPECT_TRUE(initialised == ILAW_OK || (!nodes.sound && initialised == ILAW_BAD_NODES));
+  Results results;
+  results.report.struct_size = sizeof results.report;
+  std::vector<double> v_free = nodes.v_free;
+  for (int step = 1; step <= steps; ++step) {
+    results.code = law.evaluate(arrays.batch(v_free, step * 1e-3), &results.report);
+    if (layout.separate_state) std::swap(arrays.state, arrays.next);
+    for (double& value : v_free) value *= 0.5;
+  }
+  EXPECT_TRUE(arrays.r.guarded() && arrays.state.guarded() && arrays.v.guarded() && arrays.energy.guarded());
+  results.impulse = arrays.r.get();
+  results.state = arrays.state.get();
   if (layout.outputs) {
-    results.velocity = v.get();
-    results.energy = energy.get();
-  } else {
-    results.status.clear();
+    results.velocity = arrays.v.get();
+    results.energy = arrays.energy.get();
+    results.status = arrays.status;
   }
   return results;
 }

@@ -1,5 +1,6 @@
 // The contract of evaluate: a node's result depends on its own inputs alone, bit for bit.
 #include "batch_runner.hpp"
+#include "kit_probe.hpp"
 
 #include "support/law_cases.hpp"
 
@@ -15,9 +16,7 @@ class Contract : public ::testing::TestWithParam<LawCase> {
  protected:
   ilaw::interface make(std::uint32_t frame, std::uint32_t form = ILAW_DELASSUS_SCALAR,
                        std::uint32_t d = 3) const {
-    const SetupBuilder setup(GetParam().parameters, d, form, frame);
-    const std::string law = GetParam().law;
-    return {ilaw::library(law == "kit_probe" ? ILAW_KIT_PROBE : plugin_file(law)), law, setup.setup};
+    return make_tested_law(GetParam().law, SetupBuilder(GetParam().parameters, d, form, frame));
   }
 };
 
@@ -86,7 +85,9 @@ TEST_P(Contract, PartsOfABatchGiveTheSameBitsAndLeaveTheRestAlone) {
   const ilaw::interface law = make(ILAW_FRAME_GLOBAL);
   const Nodes nodes(100);
   const Results whole = run(law, nodes, {}, true);
-  const Results part = run(law, nodes, {}, true, 3, 20, 37);
+  std::vector<std::int32_t> middle(37);
+  std::iota(middle.begin(), middle.end(), 20);
+  const Results part = run(law, nodes, {.order = middle}, true);
   for (std::size_t i = 0; i < 100; ++i)
     for (std::size_t c = 0; c < 3; ++c) {
       const bool inside = i >= 20 && i < 57;
@@ -130,8 +131,7 @@ TEST_P(Contract, ThreadsShareAnInstance) {
 const auto name_of = [](const ::testing::TestParamInfo<LawCase>& drawn) { return drawn.param.name; };
 INSTANTIATE_TEST_SUITE_P(Laws, Contract, ::testing::ValuesIn(law_cases("contract")), name_of);
 INSTANTIATE_TEST_SUITE_P(Kit, Contract,
-                         ::testing::Values(LawCase{"kit_probe", "kit_probe", {{{"viscosity", 2.0}}, {}}, {}}),
-                         name_of);
+                         ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}}), name_of);
 
 }  // namespace
 }  // namespace ilaw::testing

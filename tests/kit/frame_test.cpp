@@ -1,7 +1,9 @@
 // Vectors in the host's axes, with a normal per node, give what the local frame gives, turned.
 #include "batch_runner.hpp"
+#include "kit_probe.hpp"
 
 #include "support/law_cases.hpp"
+#include "support/small_batch.hpp"
 
 namespace ilaw::testing {
 namespace {
@@ -35,42 +37,30 @@ Matrix turn(std::size_t about, double angle) {
 // Evaluates one node of a law with memory, step by step, in axes that turn with q(step).
 class TurningNode {
  public:
-  TurningNode(const std::string& file, const std::string& law, const Parameters& parameters, bool tangent)
-      : law_(ilaw::library(file), law,
-             SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, tangent).setup),
-        state_(law_.info().state_size + 1) {}
+  TurningNode(const std::string& law, const Parameters& parameters, bool tangent)
+      : law_(make_tested_law(law,
+                             SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, tangent))),
+        node_(1, {}, law_.info().state_size) {}
 
   Vector step(const Matrix& q, const Vector& local_velocity) {
-    const Vector n = times(q, {1, 0, 0}), t = times(q, {0, 1, 0}), v = times(q, local_velocity);
-    Vector r{};
-    const double h = 1.0, gap = 0.0, area = 1.0;
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = 1;
-    b.velocity_step = b.position_step = 1e-3;
-    b.time = 1e-3 * ++steps_;
-    b.v_free = b.v_previous = {v.data(), 0, 1};
-    b.delassus = {&h, 0, 1};
-    b.gap = {&gap, 0, 1};
-    b.area = {&area, 0, 1};
-    b.normal = {n.data(), 0, 1};
-    b.tangent = {t.data(), 0, 1};
-    b.state_in = {state_.data(), 0, 1};
-    b.state_out = {state_.data(), 0, 1};
-    b.impulse = {r.data(), 0, 1};
+    const Vector n = times(q, {1, 0, 0}), t = times(q, {0, 1, 0});
+    node_.v = times(q, local_velocity);
+    node_.b.normal = {n.data(), 0, 1};
+    node_.b.tangent = {t.data(), 0, 1};
+    node_.b.time = 1e-3 * ++steps_;
     if (steps_ == 1) {
-      EXPECT_EQ(law_.initialise(b), ILAW_OK);
+      EXPECT_EQ(law_.initialise(node_.b), ILAW_OK);
     }
-    EXPECT_EQ(law_.evaluate(b), ILAW_OK);
+    EXPECT_EQ(law_.evaluate(node_.b), ILAW_OK);
     Matrix back{};
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j) back[i][j] = q[j][i];
-    return times(back, r);
+    return times(back, node_.r[0]);
   }
 
  private:
   ilaw::interface law_;
-  std::vector<double> state_;
+  SmallBatch node_;
   int steps_ = 0;
 };
 
@@ -80,9 +70,9 @@ constexpr Vector velocity_of(int step) { return {-1.0 + 0.1 * step, 0.3 - 0.05 *
 // rotation would be off by its angle.
 constexpr double rounding = 1.1e-13;
 
-void expect_frame_indifference(const std::string& file, const std::string& law, const Parameters& parameters,
-                               const Matrix& start, const Matrix& each_step, bool tangent) {
-  TurningNode still(file, law, parameters, tangent), turning(file, law, parameters, tangent);
+void expect_frame_indifference(const std::string& law, const Parameters& parameters, const Matrix& start,
+                               const Matrix& each_step, bool tangent) {
+  TurningNode still(law, parameters, tangent), turning(law, parameters, tangent);
   Matrix q = start;
   for (int step = 0; step < 50; ++step) {
     const Vector expected = still.step(start, velocity_of(step)), found = turning.step(q, velocity_of(step));
@@ -94,10 +84,9 @@ void expect_frame_indifference(const std::string& file, const std::string& law, 
 
 // Every kind of vector memory: named, and in a history.
 void expect_frame_indifference(const Matrix& start, const Matrix& each_step, bool tangent) {
-  expect_frame_indifference(ILAW_KIT_PROBE, "kit_probe", {{{"viscosity", 2.0}}, {}}, start, each_step,
-                            tangent);
+  expect_frame_indifference("kit_probe", probe_parameters, start, each_step, tangent);
   for (const LawCase& law : law_cases("frame"))
-    expect_frame_indifference(plugin_file(law.law), law.law, law.parameters, start, each_step, tangent);
+    expect_frame_indifference(law.law, law.parameters, start, each_step, tangent);
 }
 
 TEST(Frame, MemoryFollowsTheMaterialWithTangents) {
@@ -116,13 +105,11 @@ double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] 
 // What a law remembers is carried by the shortest rotation from one normal to the next, by any angle up to
 // the half turn, and by the half turn about the remembered tangent where the normal has become its opposite.
 TEST(Frame, MemoryFollowsTheNormalByAnyAngle) {
-  const ilaw::library library(ILAW_KIT_PROBE);
-  const SetupBuilder setup({{{"viscosity", 2.0}}, {}}, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
-  const ilaw::interface law(library, "kit_probe", setup.setup);
+  const ilaw::interface law = make_probe(ILAW_FRAME_GLOBAL);
   const std::size_t s = law.info().state_size;
   const Matrix start = product(turn(0, 0.4), turn(2, 1.1));
   const Vector n = times(start, {1, 0, 0}), across = times(start, {0, 1, 0}), along = times(start, {0, 0, 1});
-  const double pi = std::acos(-1.0), zero = 0.0, one = 1.0;
+  const double pi = std::acos(-1.0);
   std::vector<double> angles = {pi, pi - 1e-3, pi - 1e-5, pi - 2e-6, 1e-9, 0.0};
   for (int degrees = 1; degrees < 180; ++degrees) angles.push_back(degrees * pi / 180.0);
   for (const double angle : angles) {
@@ -130,26 +117,15 @@ TEST(Frame, MemoryFollowsTheNormalByAnyAngle) {
     Vector turned;
     for (std::size_t c = 0; c < 3; ++c)
       turned[c] = angle == pi ? -n[c] : std::cos(angle) * n[c] + std::sin(angle) * across[c];
-    std::vector<double> state(s), after(s);
-    Vector v{}, r{};
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = 1;
-    b.velocity_step = b.position_step = 1e-3;
-    b.v_free = {v.data(), 0, 1};
-    b.delassus = {&one, 0, 1};
-    b.gap = {&zero, 0, 1};
-    b.normal = {n.data(), 0, 1};
-    b.impulse = {r.data(), 0, 1};
-    b.state_out = {state.data(), 0, 1};
-    ASSERT_EQ(law.initialise(b), ILAW_OK);
-    // Frame of the start, as (normal, tangent) at the end of the state, and what it says about two axes.
-    const Vector t1{state[s - 3], state[s - 2], state[s - 1]};
-    b.normal = {turned.data(), 0, 1};
-    b.state_in = {state.data(), 0, 1};
-    b.state_out = {after.data(), 0, 1};
-    ASSERT_EQ(law.evaluate(b), ILAW_OK);
-    const Vector t2{after[s - 3], after[s - 2], after[s - 1]};
+    SmallBatch node(1, {}, s);
+    // The frame is at the end of the state, as (normal, tangent).
+    const auto tangent = [&] { return Vector{node.state[s - 3], node.state[s - 2], node.state[s - 1]}; };
+    node.b.normal = {n.data(), 0, 1};
+    ASSERT_EQ(law.initialise(node.b), ILAW_OK);
+    const Vector t1 = tangent();
+    node.b.normal = {turned.data(), 0, 1};
+    ASSERT_EQ(law.evaluate(node.b), ILAW_OK);
+    const Vector t2 = tangent();
     // Opposite normals: the tangent stays. Else the part along the axis stays, and that across it turns.
     Vector expected = t1;
     for (std::size_t c = 0; angle != pi && c < 3; ++c)

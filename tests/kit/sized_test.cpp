@@ -1,6 +1,7 @@
 // Structs of other minor versions: what is shorter than 1.0 is refused, what is longer is served, and nobody
 // reads or writes beyond the size that the other side names.
-#include <support/law_runner.hpp>
+#include "support/law_runner.hpp"
+#include "support/small_batch.hpp"
 
 #include <cstring>
 
@@ -23,54 +24,38 @@ struct Longer {
   unsigned char appended[40];
 };
 
-ilaw_batch batch_of_one() {
-  static const double v[] = {-1.0, 2.0, 0.0}, h = 1.0, gap = 0.0;
-  static double r[3];
-  ilaw_batch b{};
-  b.struct_size = sizeof b;
-  b.node_count = 1;
-  b.velocity_step = b.position_step = 1e-3;
-  b.v_free = b.v_previous = {v, 3, 1};
-  b.delassus = {&h, 1, 1};
-  b.gap = {&gap, 1, 1};
-  b.impulse = {r, 3, 1};
-  return b;
-}
-
-// Between two values of r an evaluate that did nothing leaves it alone.
 TEST(Sized, BatchesAreReadUpToTheirSizeAndFromThatOfVersionOneOn) {
   const SetupBuilder setup({{{"friction", 0.5}}, {}});
   const ilaw::interface law = make_law("coulomb", setup);
+  SmallBatch node(1, {-1.0, 2.0, 0.0});
   Longer<ilaw_batch> batch;
-  batch.known = batch_of_one();
+  batch.known = node.b;
   batch.known.struct_size = sizeof batch;
   EXPECT_EQ(law.evaluate(batch.known), ILAW_OK);
-  EXPECT_EQ(batch.known.impulse.values[1], -0.5);
-  ilaw_report report{};
-  report.struct_size = sizeof report;
+  EXPECT_EQ(node.r[0][1], -0.5);
   for (const std::size_t size : {std::size_t{0}, offsetof(ilaw_batch, velocity), ILAW_BATCH_SIZE_1_0 - 1})
     for (const auto call : {law.law().evaluate, law.law().initialise}) {
       batch.known.struct_size = static_cast<std::uint32_t>(size);
-      batch.known.impulse.values[1] = 7.0;
-      EXPECT_EQ(call(law.instance(), &batch.known, &report), ILAW_INVALID_ARGUMENT) << size;
-      EXPECT_STREQ(report.reason, "struct_size of the batch is none of any version");
-      EXPECT_EQ(batch.known.impulse.values[1], 7.0);
+      node.r[0][1] = 7.0;
+      EXPECT_EQ(call(law.instance(), &batch.known, &node.report), ILAW_INVALID_ARGUMENT) << size;
+      EXPECT_STREQ(node.report.reason, "struct_size of the batch is none of any version");
+      EXPECT_EQ(node.r[0][1], 7.0);
     }
 }
 
 TEST(Sized, ReportsAreWrittenUpToTheirSize) {
   const SetupBuilder setup({{{"friction", 0.5}}, {}});
   const ilaw::interface law = make_law("coulomb", setup);
-  const ilaw_batch batch = batch_of_one();
+  const SmallBatch node(1, {-1.0, 2.0, 0.0});
   Longer<ilaw_report> report;
   report.known.bad_count = 99;
-  EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report.known), ILAW_OK);
+  EXPECT_EQ(law.law().evaluate(law.instance(), &node.b, &report.known), ILAW_OK);
   EXPECT_EQ(report.known.bad_count, 0);
   EXPECT_EQ(report.known.struct_size, sizeof report);
   EXPECT_TRUE(report.is_untouched());
   report.known.struct_size = ILAW_REPORT_SIZE_1_0 - 8;
   report.known.bad_count = 99;
-  EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report.known), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(law.law().evaluate(law.instance(), &node.b, &report.known), ILAW_INVALID_ARGUMENT);
   EXPECT_EQ(report.known.bad_count, 99);
 }
 

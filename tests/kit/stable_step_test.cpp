@@ -1,13 +1,11 @@
 // The largest stable step that the report gives: infinity where a law needs none, else the limit of its
 // spring.
 #include "support/law_runner.hpp"
-
-#include <limits>
+#include "support/numbers.hpp"
+#include "support/small_batch.hpp"
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 Parameters springs(double stiffness, double damping) {
   return {{{"stiffness", stiffness}, {"damping", damping}}, {{"integration", "explicit"}}};
@@ -56,29 +54,20 @@ TEST(StableStep, IsTheSmallestOfTheBatchAndOfAllSprings) {
   parameters.numbers["friction"] = 0.3;
   parameters.numbers["tangential_stiffness"] = 4000.0;
   const ilaw::interface law = make_law("penalty", SetupBuilder(parameters));
-  const double v[3] = {}, gap[] = {1.0, -1.0, 0.0}, nan = std::nan("");
-  double r[9], h[] = {0.5, 2.0, 1.0};
-  std::vector<double> state(3 * law.info().state_size);
-  ilaw_report report{};
-  report.struct_size = sizeof report;
-  ilaw_batch b{};
-  b.struct_size = sizeof b;
-  b.node_count = 3;
-  b.velocity_step = b.position_step = 1e-3;
-  b.v_free = b.v_previous = {v, 0, 1};
-  b.delassus = {h, 1, 1};
-  b.gap = {gap, 1, 1};
-  b.state_in = {state.data(), static_cast<std::int64_t>(law.info().state_size), 1};
-  b.state_out = {state.data(), static_cast<std::int64_t>(law.info().state_size), 1};
-  b.impulse = {r, 3, 1};
-  ASSERT_EQ(law.evaluate(b, &report), ILAW_OK);
-  EXPECT_DOUBLE_EQ(report.stable_velocity_step, 2.0 / std::sqrt(4000.0 * 2.0));
-  h[1] = nan;  // bad nodes do not count
-  ASSERT_EQ(law.evaluate(b, &report), ILAW_BAD_NODES);
-  EXPECT_DOUBLE_EQ(report.stable_velocity_step, 2.0 / std::sqrt(4000.0));
-  b.velocity_step = -1.0;
-  ASSERT_EQ(law.evaluate(b, &report), ILAW_INVALID_ARGUMENT);
-  EXPECT_EQ(report.stable_velocity_step, inf_value);
+  const double gap[] = {1.0, -1.0, 0.0};
+  double h[] = {0.5, 2.0, 1.0};
+  SmallBatch nodes(3, {}, law.info().state_size);
+  nodes.b.delassus = {h, 1, 1};
+  nodes.b.gap = {gap, 1, 1};
+  const double& stable_step = nodes.report.stable_velocity_step;
+  ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_OK);
+  EXPECT_DOUBLE_EQ(stable_step, 2.0 / std::sqrt(4000.0 * 2.0));
+  h[1] = std::nan("");  // bad nodes do not count
+  ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_BAD_NODES);
+  EXPECT_DOUBLE_EQ(stable_step, 2.0 / std::sqrt(4000.0));
+  nodes.b.velocity_step = -1.0;
+  ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(stable_step, inf_value);
 }
 
 TEST(StableStep, IsInfiniteForLawsThatNeedNone) {

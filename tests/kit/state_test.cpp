@@ -1,13 +1,13 @@
 // A state comes back from the host, and is never trusted: what the law cannot have written is bad input.
-#include "batch_runner.hpp"
+#include "kit_probe.hpp"
 
-#include <limits>
+#include "support/numbers.hpp"
+#include "support/small_batch.hpp"
+
+#include <cstring>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 struct Foreign {
   const char* law;
@@ -23,7 +23,7 @@ const std::vector<Foreign> foreign = {
     {"tie", {}, "broken", {0.5, -1.0, 2.0, nan_value}},
     {"cohesive", {{{"strength", 1.0}, {"toughness", 1.0}}, {}}, "damage", {-0.1, 1.1, nan_value}},
     {"cohesive", {{{"strength", 1.0}, {"toughness", 1.0}}, {}}, "opening", {inf_value, nan_value}},
-    {"kit_probe", {{{"viscosity", 1.0}}, {}}, "count", {-1.0, 2.5, 1e9, nan_value}}};
+    {"kit_probe", probe_parameters, "count", {-1.0, 2.5, 1e9, nan_value}}};
 
 std::size_t offset_of(const ilaw_instance_info& info, const std::string& name) {
   std::size_t at = 0;
@@ -32,48 +32,22 @@ std::size_t offset_of(const ilaw_instance_info& info, const std::string& name) {
   return at;
 }
 
-ilaw::interface made(const std::string& law, const SetupBuilder& setup) {
-  return {ilaw::library(law == "kit_probe" ? ILAW_KIT_PROBE : plugin_file(law)), law, setup.setup};
-}
-
 // Three nodes that touch, with states of their own.
-struct Three {
-  explicit Three(const ilaw::interface& given) : law(given), size(given.info().state_size) {
-    state.assign(3 * size, 0.0);
-    b.struct_size = sizeof b;
-    b.node_count = 3;
-    b.velocity_step = b.position_step = 1e-3;
-    b.v_free = b.v_previous = {v, 3, 1};
+struct Three : SmallBatch {
+  explicit Three(const ilaw::interface& law)
+      : SmallBatch(3, {-1.0, 0.5, 0.0}, law.info().state_size), size(law.info().state_size) {
     b.normal = {normal, 0, 1};
-    b.delassus = {&one, 0, 1};
-    b.gap = {&zero, 0, 1};
-    b.area = {&one, 0, 1};
-    b.state_in = {state.data(), static_cast<std::int64_t>(size), 1};
-    b.state_out = {state.data(), static_cast<std::int64_t>(size), 1};
-    b.impulse = {r, 3, 1};
-    b.status = status;
-    b.status_stride = 1;
-    report.struct_size = sizeof report;
     EXPECT_EQ(law.initialise(b), ILAW_OK);
   }
-  Three(const Three&) = delete;
 
-  const ilaw::interface& law;
-  std::size_t size;
-  const double v[9] = {-1.0, 0.5, 0.0, -1.0, 0.5, 0.0, -1.0, 0.5, 0.0}, one = 1.0, zero = 0.0;
+  std::size_t size;  // of a state
   const double normal[3] = {0.6, 0.0, 0.8};
-  double r[9] = {};
-  std::uint8_t status[3] = {};
-  std::vector<double> state;
-  ilaw_batch b{};
-  ilaw_report report{};
 };
 
 TEST(ForeignState, IsBadInputAtItsNodeWithTheNameOfTheVariable) {
   for (const Foreign& f : foreign)
     for (const double value : f.values) {
-      const SetupBuilder setup(f.parameters);
-      const ilaw::interface law = made(f.law, setup);
+      const ilaw::interface law = make_tested_law(f.law, SetupBuilder(f.parameters));
       Three nodes(law);
       const std::size_t at = nodes.size + offset_of(law.info(), f.variable);
       nodes.state[at] = value;
@@ -95,8 +69,7 @@ TEST(ForeignState, IsBadInputAtItsNodeWithTheNameOfTheVariable) {
 
 // The frame that the kit carries in the state is a frame, or none.
 TEST(ForeignState, FrameThatIsNoneIsBadInput) {
-  const SetupBuilder setup({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
-  const ilaw::interface law = made("kit_probe", setup);
+  const ilaw::interface law = make_probe(ILAW_FRAME_GLOBAL);
   struct Spoilt {
     const char* variable;
     std::size_t component;
@@ -116,8 +89,7 @@ TEST(ForeignState, FrameThatIsNoneIsBadInput) {
 
 // Bookkeeping is marked, so that pictures and tables can leave it out.
 TEST(StateVariables, SayWhichAreInternal) {
-  const SetupBuilder setup({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
-  const ilaw::interface law = made("kit_probe", setup);
+  const ilaw::interface law = make_probe(ILAW_FRAME_GLOBAL);
   const ilaw_instance_info info = law.info();
   const std::map<std::string, std::uint32_t> expected = {{"count", 0},
                                                          {"sum", 0},
@@ -134,8 +106,7 @@ TEST(StateVariables, SayWhichAreInternal) {
 // A tangential vector takes d-1 doubles of the state, a vector d.
 TEST(StateVariables, HaveTheSizeOfTheirKind) {
   for (const std::uint32_t d : {1U, 2U, 3U}) {
-    const SetupBuilder setup({{{"viscosity", 1.0}}, {}}, d);
-    const ilaw::interface law = made("kit_probe", setup);
+    const ilaw::interface law = make_tested_law("kit_probe", SetupBuilder(probe_parameters, d));
     EXPECT_EQ(law.info().state_size, 1 + d + (d - 1) + 2) << d;
     for (std::uint32_t k = 0; k < law.info().state_variable_count; ++k) {
       if (law.info().state_variables[k]->kind == ILAW_STATE_TANGENTIAL) {

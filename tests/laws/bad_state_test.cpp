@@ -1,18 +1,16 @@
 // A state that the law cannot have written, and a clock that was set back: refused at their node with the
 // reason, nothing touched but that node's results. For the laws with a window.
 #include "support/law_runner.hpp"
+#include "support/numbers.hpp"
 
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <ostream>
 
 namespace ilaw::testing {
 namespace {
 
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 constexpr const char* set_back = "the time lies before what the state remembers";
 
 // Three nodes side by side, their states between guards.

@@ -1,5 +1,5 @@
-// random_nodes.hpp - many interface nodes at random, stepped through the ABI as they are, in other units, or
-// in other axes.
+// random_nodes.hpp - many interface nodes at random, stepped through the ABI as they are, in other units, in
+// other axes, or in a mirror.
 #pragma once
 
 #include "support/law_cases.hpp"
@@ -179,18 +179,23 @@ class RandomNodes {
   }
 };
 
+// The axes in which a law is given its nodes: their own, the host's, or their own with the first tangent
+// reversed.
+enum class Axes { local, host, mirrored };
+
 // An instance that evaluates RandomNodes, with states of its own.
 class Runner {
  public:
-  Runner(const std::string& law, const Parameters& parameters, const RandomNodes& nodes, bool global = false,
-         const Units& units = {})
+  Runner(const std::string& law, const Parameters& parameters, const RandomNodes& nodes,
+         Axes axes = Axes::local, const Units& units = {})
       : nodes_(nodes),
         units_(units),
-        global_(global),
-        form_(global && nodes.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL}
-                                                             : nodes.form),
+        global_(axes == Axes::host),
+        mirrored_(axes == Axes::mirrored),
+        form_(global_ && nodes.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL}
+                                                              : nodes.form),
         interface_(make_law(law, SetupBuilder(in_units(law, parameters, units), nodes.dimension, form_,
-                                              global ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL, global))),
+                                              global_ ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL, global_))),
         size_(interface_.info().state_size),
         r(nodes.count),
         v(nodes.count),
@@ -236,7 +241,7 @@ class Runner {
   // An impulse or velocity in the local axes and the units of RandomNodes.
   Vector local(std::size_t i, const Vector& a, double unit) const {
     const Vector turned = global_ ? times(nodes_.axes[i], a) : a;
-    return {turned[0] / unit, turned[1] / unit, turned[2] / unit};
+    return {turned[0] / unit, (mirrored_ ? -turned[1] : turned[1]) / unit, turned[2] / unit};
   }
 
  private:
@@ -260,6 +265,7 @@ class Runner {
   }
   Vector outward(std::size_t i, Vector a) const {
     if (global_) a = times(transposed(nodes_.axes[i]), a);
+    if (mirrored_) a[1] = -a[1];
     for (double& component : a) component *= units_.velocity();
     return a;
   }
@@ -273,6 +279,8 @@ class Runner {
       half = transposed(half);
       for (std::size_t k = 0; k < 3; ++k) m[k] = times(to_host, half[k]);
     }
+    if (mirrored_)
+      for (const std::size_t k : {0, 2}) m[1][k] = m[k][1] = -m[k][1];
     if (nodes_.dimension == 1)
       h_[i] = {m[0][0]};
     else
@@ -309,7 +317,7 @@ class Runner {
 
   const RandomNodes& nodes_;
   Units units_;
-  bool global_;
+  bool global_, mirrored_;
   std::uint32_t form_;
   ilaw::interface interface_;
   std::size_t size_;

@@ -3,7 +3,8 @@
 // r.(v^- + v)/2, exactly; a law that never does any cannot make such a body diverge.
 #include "random_nodes.hpp"
 
-#include <limits>
+#include "support/numbers.hpp"
+
 #include <optional>
 #include <ostream>
 #include <tuple>
@@ -11,8 +12,6 @@
 namespace ilaw::testing {
 namespace {
 
-constexpr double inf_value = std::numeric_limits<double>::infinity();
-constexpr double ulp = std::numeric_limits<double>::epsilon();
 constexpr std::size_t draws = 100000;  // of each case: over all forms of H, dimensions and pairs of steps
 
 struct Case {

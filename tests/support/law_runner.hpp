@@ -86,6 +86,21 @@ inline ilaw::interface make_law(const std::string& law, const SetupBuilder& buil
   return {ilaw::library(plugin_file(law)), law, builder.setup};
 }
 
+// Why a law refuses a setup, in its words; "not refused" where it does not.
+inline std::string refusal_of(const std::string& law, const SetupBuilder& builder,
+                              std::int32_t code = ILAW_INVALID_PARAMETER) {
+  try {
+    make_law(law, builder);
+  } catch (const ilaw::error& error) {
+    EXPECT_EQ(error.code(), code) << error.what();
+    return error.what();
+  }
+  return "not refused";
+}
+inline std::string refusal_of(const std::string& law, const Parameters& parameters) {
+  return refusal_of(law, SetupBuilder(parameters));
+}
+
 // One node stepped in time, with all inputs as plain members; scalar H unless h has more values.
 struct NodeRun {
   NodeRun(const std::string& law, const Parameters& parameters, double step = 1e-3,
@@ -157,5 +172,18 @@ struct NodeRun {
   ilaw_report report{};
   std::vector<double> state;
 };
+
+// Whether another law with the inputs of the node gives the same bits.
+inline ::testing::AssertionResult step_alike(NodeRun& node, NodeRun& other, const Vector& v_free) {
+  other.gap = node.gap;
+  other.h = node.h;
+  for (NodeRun* each : {&node, &other})
+    if (each->step(v_free) != ILAW_OK) return ::testing::AssertionFailure() << each->report.reason;
+  if (node.r == other.r && node.status == other.status) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure()
+         << ::testing::PrintToString(node.r) << ", status " << int{node.status} << ", not "
+         << ::testing::PrintToString(other.r) << ", status " << int{other.status} << ", for v_free "
+         << ::testing::PrintToString(v_free) << ", gap " << node.gap;
+}
 
 }  // namespace ilaw::testing

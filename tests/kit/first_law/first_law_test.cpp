@@ -1,15 +1,13 @@
 // docs/first_law.md: what the page shows builds and works, from its own text.
-#include <ilaw/loader.hpp>
-
-#include <gtest/gtest.h>
+#include "support/law_runner.hpp"
+#include "support/small_batch.hpp"
 
 #include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
+namespace ilaw::testing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,34 +37,18 @@ std::string build(const fs::path& folder, const std::string& ilaw_dir) {
 
 // r = -h c A/(1 + h c A H) v_free where the gap is closed.
 void expect_works(const std::string& file) {
-  const ilaw::library library(file);
-  ilaw_argument viscosity{};
-  viscosity.struct_size = sizeof viscosity;
-  viscosity.name = "viscosity";
-  viscosity.number = 40.0;
-  const ilaw_argument* arguments[] = {&viscosity};
-  ilaw_setup setup{};
-  setup.struct_size = sizeof setup;
-  setup.dimension = 3;
-  setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.arguments = arguments;
-  setup.argument_count = 1;
-  const ilaw::interface law(library, "viscous", setup);
-  const double v[] = {-1.0, 2.0, -3.0, -1.0, 2.0, -3.0}, h = 0.5, gap[] = {-0.1, 0.1}, area = 2.0;
-  double r[6];
-  ilaw_batch batch{};
-  batch.struct_size = sizeof batch;
-  batch.node_count = 2;
-  batch.velocity_step = batch.position_step = 0.01;
-  batch.v_free = {v, 3, 1};
-  batch.delassus = {&h, 0, 1};
-  batch.gap = {gap, 1, 1};
-  batch.area = {&area, 0, 1};
-  batch.impulse = {r, 3, 1};
-  ASSERT_EQ(law.evaluate(batch), ILAW_OK);
-  for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(r[c], -0.8 / 1.4 * v[c], 1e-15);
-    EXPECT_EQ(r[3 + c], 0.0);
+  const SetupBuilder setup({{{"viscosity", 40.0}}, {}});
+  const ilaw::interface law(ilaw::library(file), "viscous", setup.setup);
+  const double gap[] = {-0.1, 0.1};
+  SmallBatch nodes(2, {-1.0, 2.0, -3.0});
+  nodes.h[0] = 0.5;
+  nodes.area = 2.0;
+  nodes.b.gap = {gap, 1, 1};
+  nodes.b.velocity_step = nodes.b.position_step = 0.01;
+  ASSERT_EQ(law.evaluate(nodes.b), ILAW_OK);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(nodes.r[0][c], -0.8 / 1.4 * nodes.v[c], 1e-15);
+    EXPECT_EQ(nodes.r[1][c], 0.0);
   }
 }
 
@@ -89,3 +71,4 @@ TEST(FirstLaw, BuildsAgainstAnInstalledTree) {
 }
 
 }  // namespace
+}  // namespace ilaw::testing

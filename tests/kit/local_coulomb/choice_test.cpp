@@ -77,7 +77,7 @@ local_coulomb stiff_and_soft(Draw& draw) {
   return {{1.0, s1 + w1 * w1, s2 + w2 * w2, w1, w2, w1 * w2}, {-n, c1 - w1 * n, c2 - w2 * n}, {mu, mu}};
 }
 
-TEST(LocalProblemChoice, IsTheSlidingSolutionOfLeastEnergy) {
+TEST(LocalCoulombChoice, IsTheSlidingSolutionOfLeastEnergy) {
   Draw draw(21);
   int several = 0;
   for (int k = 0; k < 10000; ++k) {
@@ -99,7 +99,7 @@ TEST(LocalProblemChoice, IsTheSlidingSolutionOfLeastEnergy) {
 }
 
 // Sticking where it is in the cone, although it may also slide: v = 0 has no energy at all.
-TEST(LocalProblemChoice, SticksWhereItCan) {
+TEST(LocalCoulombChoice, SticksWhereItCan) {
   Draw draw(22);
   int both = 0;
   for (int k = 0; k < 10000; ++k) {
@@ -114,7 +114,7 @@ TEST(LocalProblemChoice, SticksWhereItCan) {
 }
 
 // Along a path of q on which sliding has one solution, the impulse moves in proportion to q.
-TEST(LocalProblemChoice, FollowsQContinuouslyWhereTheSolutionIsAlone) {
+TEST(LocalCoulombChoice, FollowsQContinuouslyWhereTheSolutionIsAlone) {
   Draw draw(23);
   for (int path = 0; path < 50; ++path) {
     local_coulomb p = draw.pressed_coupled(0.5);

@@ -53,7 +53,7 @@ long double violation(const local_coulomb& p, const Solved& s) {
   return worst / (s.natural * ulp);
 }
 
-TEST(LocalProblem, HoldsItsConditionsForAnyFullH) {
+TEST(LocalCoulomb, HoldsItsConditionsForAnyFullH) {
   Draw draw(1);
   long double worst = 0.0L;
   int slips = 0, sticks = 0;
@@ -71,7 +71,7 @@ TEST(LocalProblem, HoldsItsConditionsForAnyFullH) {
 }
 
 // Where the impulse cancels most of what it does, what is left is the rounding of the impulse itself.
-TEST(LocalProblem, IsRoundedOnceWhereHAmplifies) {
+TEST(LocalCoulomb, IsRoundedOnceWhereHAmplifies) {
   Draw draw(10);
   long double worst = 0.0L;
   int amplified = 0;
@@ -88,7 +88,7 @@ TEST(LocalProblem, IsRoundedOnceWhereHAmplifies) {
   RecordProperty("worst_ulp", std::to_string(worst));
 }
 
-TEST(LocalProblem, HoldsThemForIllConditionedHEllipsesAndAllScales) {
+TEST(LocalCoulomb, HoldsThemForIllConditionedHEllipsesAndAllScales) {
   Draw draw(2);
   long double worst = 0.0L;
   for (int k = 0; k < 500000; ++k) {
@@ -108,7 +108,7 @@ TEST(LocalProblem, HoldsThemForIllConditionedHEllipsesAndAllScales) {
 }
 
 // Siconos's test data FrictionContact3D_1c: reaction and slip speed as published there.
-TEST(LocalProblem, FindsThePublishedReaction) {
+TEST(LocalCoulomb, FindsThePublishedReaction) {
   local_coulomb p{{15.0, 14.0, 16.0, -1.0, -2.0, 1.0}, {-1.0, 2.0, 3.0}, {0.1, 0.1}};
   const Solved s = solved(p);
   EXPECT_EQ(s.mode, contact_mode::slip);
@@ -125,7 +125,7 @@ TEST(LocalProblem, FindsThePublishedReaction) {
 
 // Two dimensions, one coupling: slip against sign(c) gives r_N (1 - mu s w) = n with n = -q_N/h_N, w =
 // h_NT/h_N and c = q_T + w h_N n, s = sign(c): r_N = n/(1 - mu s w), r_T = -mu s r_N.
-TEST(LocalProblem, IsTheEnumerationInTwoDimensions) {
+TEST(LocalCoulomb, IsTheEnumerationInTwoDimensions) {
   Draw draw(3);
   int slips = 0;
   for (int k = 0; k < 100000; ++k) {
@@ -150,7 +150,7 @@ TEST(LocalProblem, IsTheEnumerationInTwoDimensions) {
 }
 
 // H = diag(h_N, h_T, h_T): the sticking impulse, scaled back to the cone (De Saxce and Feng 1991).
-TEST(LocalProblem, IsTheClosedFormWithoutCouplingAndAnisotropy) {
+TEST(LocalCoulomb, IsTheClosedFormWithoutCouplingAndAnisotropy) {
   Draw draw(4);
   for (int k = 0; k < 100000; ++k) {
     const double nn = draw.decade(-3.0, 3.0), tt = draw.decade(-3.0, 3.0), mu = draw.decade(-4.0, 2.0);
@@ -165,7 +165,7 @@ TEST(LocalProblem, IsTheClosedFormWithoutCouplingAndAnisotropy) {
   }
 }
 
-TEST(LocalProblem, WithoutFrictionIsTheNormalRowAlone) {
+TEST(LocalCoulomb, WithoutFrictionIsTheNormalRowAlone) {
   Draw draw(5);
   for (int k = 0; k < 10000; ++k) {
     local_coulomb p = draw.pressed_coupled(0.1);
@@ -177,7 +177,7 @@ TEST(LocalProblem, WithoutFrictionIsTheNormalRowAlone) {
   }
 }
 
-TEST(LocalProblem, IsFreeWhereTheNormalVelocityOpens) {
+TEST(LocalCoulomb, IsFreeWhereTheNormalVelocityOpens) {
   Draw draw(6);
   for (int k = 0; k < 10000; ++k) {
     local_coulomb p = draw.pressed_coupled(0.1);
@@ -193,7 +193,7 @@ TEST(LocalProblem, IsFreeWhereTheNormalVelocityOpens) {
 
 // Infinite friction holds all of v at zero where that presses, else there is no solution: a contact that
 // would have to pull to keep its tangents still.
-TEST(LocalProblem, InfiniteFrictionSticksOrHasNoSolution) {
+TEST(LocalCoulomb, InfiniteFrictionSticksOrHasNoSolution) {
   Draw draw(7);
   int none = 0, held = 0;
   for (int k = 0; k < 100000; ++k) {
@@ -222,7 +222,7 @@ TEST(LocalProblem, InfiniteFrictionSticksOrHasNoSolution) {
 }
 
 // One axis held, one of finite friction, and one of no friction: limits of the ellipse.
-TEST(LocalProblem, ExtremeEllipsesAreTheirLimits) {
+TEST(LocalCoulomb, ExtremeEllipsesAreTheirLimits) {
   Draw draw(8);
   int compared = 0;
   for (int k = 0; k < 20000; ++k) {
@@ -244,7 +244,7 @@ TEST(LocalProblem, ExtremeEllipsesAreTheirLimits) {
 }
 
 // Units change by powers of two: the same bits. Axes exchanged or mirrored: the same to rounding.
-TEST(LocalProblem, IsTheSameInOtherUnitsAndAxes) {
+TEST(LocalCoulomb, IsTheSameInOtherUnitsAndAxes) {
   Draw draw(9);
   for (int k = 0; k < 100000; ++k) {
     local_coulomb p = draw.pressed_coupled(0.3);

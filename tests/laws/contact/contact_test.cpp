@@ -1,12 +1,11 @@
 // Contact through the ABI: Moreau's and the predictive condition.
 #include "support/law_runner.hpp"
+#include "support/numbers.hpp"
 
 #include <random>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double ulp = 2.3e-16;
 
 // A node that was leaving is not stopped: that would put energy in. It turns round at most at its speed.
 TEST(Contact, KeepsMoreausComplementarity) {

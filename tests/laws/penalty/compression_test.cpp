@@ -1,14 +1,12 @@
 // The normal equation of the implicit penalty, through the ABI, against its defining equation in long double.
 #include "compression.hpp"
 #include "support/law_runner.hpp"
+#include "support/numbers.hpp"
 
-#include <limits>
 #include <random>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 Parameters implicit(std::map<std::string, double> numbers) {
   return {std::move(numbers), {{"integration", "implicit"}}};

@@ -1,14 +1,12 @@
 // What the penalty's springs take and give back, step by step, on random draws: any state, any velocity
 // before (any external force, then), any H, two steps that have nothing to do with each other.
 #include "support/law_runner.hpp"
+#include "support/numbers.hpp"
 
-#include <limits>
 #include <random>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 // Parameters of one draw and what the page says is stored.
 struct Springs {

@@ -1,13 +1,11 @@
 // The implicit penalty keeps the limit of the central-difference scheme, whatever its stiffness.
 #include "support/law_runner.hpp"
+#include "support/numbers.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 // A chain of unit masses and springs, fixed at its far end, whose first node meets a penalised stop at
 // `stop`. The largest frequency is below 2, so that the central-difference limit is h = 1; a single mass on a

@@ -1,10 +1,10 @@
 // template_law through the ABI: its equation, its motion in time, and its limits.
 #include "laws/random_nodes.hpp"
 
+#include "support/numbers.hpp"
+
 namespace ilaw::testing {
 namespace {
-
-constexpr double ulp = 0x1p-52;
 
 // r_N = h c A <-v_N> with the velocity after the step, for any form of H.
 TEST(template_law, KeepsItsEquation) {
@@ -72,7 +72,7 @@ TEST(template_law, NeverPullsAndNeedsAClosedGapAndAnArea) {
 TEST(template_law, IsIndifferentToTheFrame) {
   RandomNodes nodes(1000, 3, ILAW_DELASSUS_FULL, Inertia::any, 2);
   const Parameters parameters{{{"damping", 500.0}}, {}};
-  Runner local("template_law", parameters, nodes), turned("template_law", parameters, nodes, true);
+  Runner local("template_law", parameters, nodes), turned("template_law", parameters, nodes, Axes::host);
   nodes.draw();
   ASSERT_EQ(local.evaluate(), ILAW_OK) << local.report.reason;
   ASSERT_EQ(turned.evaluate(), ILAW_OK) << turned.report.reason;

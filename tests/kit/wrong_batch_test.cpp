@@ -1,0 +1,112 @@
+// A batch that no host can mean is refused as a whole, with the reason and with nothing written.
+#include "kit_probe.hpp"
+
+#include "support/numbers.hpp"
+#include "support/small_batch.hpp"
+
+#include <algorithm>
+
+namespace ilaw::testing {
+namespace {
+
+struct Wrong {
+  const char* reason;
+  void (*spoil)(ilaw_batch&);  // of two nodes
+};
+
+void list_node_below_base(ilaw_batch& b) {
+  static const std::int32_t index[] = {1, 0};
+  b.index = index;
+  b.index_base = 1;
+}
+void list_negative_node(ilaw_batch& b) {
+  static const std::int64_t index[] = {0, -1};
+  b.index64 = index;
+}
+void list_in_both_widths(ilaw_batch& b) {
+  static const std::int32_t index[] = {0, 1};
+  static const std::int64_t index64[] = {0, 1};
+  b.index = index;
+  b.index64 = index64;
+}
+void write_velocities_on_top(ilaw_batch& b) {
+  static double velocity[3];
+  b.velocity = {velocity, 0, 1};
+}
+
+const Wrong wrongs[] = {
+    {"v_free is null", [](ilaw_batch& b) { b.v_free.values = nullptr; }},
+    {"delassus is null", [](ilaw_batch& b) { b.delassus.values = nullptr; }},
+    {"gap is null", [](ilaw_batch& b) { b.gap.values = nullptr; }},
+    {"impulse is null", [](ilaw_batch& b) { b.impulse.values = nullptr; }},
+    {"v_previous is null", [](ilaw_batch& b) { b.v_previous.values = nullptr; }},
+    {"node_count is negative", [](ilaw_batch& b) { b.node_count = -1; }},
+    {"index_base is neither 0 nor 1", [](ilaw_batch& b) { b.index_base = 2; }},
+    {"a node of the index list lies below index_base", list_node_below_base},
+    {"a node of the index list lies below index_base", list_negative_node},
+    {"index and index64 are both given", list_in_both_widths},
+    {"impulse has a stride of 0", [](ilaw_batch& b) { b.impulse.node_stride = 0; }},
+    {"impulse has a stride of 0", [](ilaw_batch& b) { b.impulse.component_stride = 0; }},
+    {"velocity has a stride of 0", write_velocities_on_top},
+    {"status_stride is 0", [](ilaw_batch& b) { b.status_stride = 0; }},
+    {"time is not finite", [](ilaw_batch& b) { b.time = nan_value; }},
+    {"velocity_step is not a finite number > 0", [](ilaw_batch& b) { b.velocity_step = 0.0; }},
+    {"position_step is not a finite number > 0", [](ilaw_batch& b) { b.position_step = inf_value; }}};
+
+TEST(WrongBatch, IsRefusedWithNothingWritten) {
+  const ilaw::interface law = make_law("coulomb", SetupBuilder({{{"friction", 0.5}}, {}}));
+  SmallBatch nodes(2, {-1.0, -1.0, -1.0});
+  const Vector untouched{7.0, 7.0, 7.0};
+  std::fill(nodes.r.begin(), nodes.r.end(), untouched);
+  for (const Wrong& wrong : wrongs) {
+    ilaw_batch b = nodes.b;
+    wrong.spoil(b);
+    EXPECT_EQ(law.evaluate(b, &nodes.report), ILAW_INVALID_ARGUMENT);
+    EXPECT_STREQ(nodes.report.reason, wrong.reason);
+    for (const Vector& r : nodes.r) EXPECT_EQ(r, untouched) << wrong.reason;
+  }
+  EXPECT_EQ(law.evaluate(nodes.b), ILAW_OK);
+  EXPECT_EQ(nodes.r[0][0], 1.0);
+}
+
+// A flag asks for something that a library which does not know it would not give.
+TEST(WrongBatch, FlagsThatAreNotKnownAreRefused) {
+  const ilaw::interface law = make_probe();
+  SmallBatch node(1, {}, law.info().state_size);
+  for (const int bit : {0, 31, 63}) {
+    node.b.flags = std::uint64_t{1} << bit;
+    for (const auto call : {law.law().evaluate, law.law().initialise}) {
+      EXPECT_EQ(call(law.instance(), &node.b, &node.report), ILAW_UNSUPPORTED) << bit;
+      EXPECT_STREQ(node.report.reason, "flags of the batch are not known");
+    }
+  }
+}
+
+TEST(WrongBatch, InitialiseRefusesStatesOnTopOfEachOther) {
+  const ilaw::interface law = make_probe();
+  SmallBatch nodes(2, {}, law.info().state_size);
+  std::fill(nodes.state.begin(), nodes.state.end(), 7.0);
+  for (const auto& [node_stride, component_stride] : {std::pair{0, 1}, {10, 0}}) {
+    nodes.b.state_out = {nodes.state.data(), node_stride, component_stride};
+    EXPECT_EQ(law.law().initialise(law.instance(), &nodes.b, &nodes.report), ILAW_INVALID_ARGUMENT);
+    EXPECT_STREQ(nodes.report.reason, "state_out has a stride of 0");
+    EXPECT_EQ(nodes.state[0], 7.0);
+  }
+}
+
+// initialise is the first to write a state: what stands where it would be read is nobody's.
+TEST(Initialise, ReadsNoState) {
+  const ilaw::interface law = make_probe(ILAW_FRAME_GLOBAL);
+  const double normal[] = {0.36, 0.48, 0.8};
+  SmallBatch node(1, {}, law.info().state_size);
+  node.b.normal = {normal, 0, 1};
+  ASSERT_EQ(law.initialise(node.b), ILAW_OK);
+  const std::vector<double> expected = node.state, rubbish(node.state.size(), 0.6);
+  std::fill(node.state.begin(), node.state.end(), nan_value);
+  node.b.state_in = {rubbish.data(), 0, 1};
+  ASSERT_EQ(law.initialise(node.b), ILAW_OK);
+  EXPECT_EQ(node.state, expected);
+}
+
+}  // namespace
+}  // namespace ilaw::testing
