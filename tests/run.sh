@@ -3,7 +3,8 @@
 #
 #   tests/run.sh                 everything
 #   tests/run.sh -R postit       builds and runs only programs with a test of this name (a regular expression, as
-#                                ctest -R reads it), told from the programs' names and the tests in their sources
+#                                ctest -R reads it), told from the programs' names and the tests in their sources;
+#                                everything where no name fits, as with parameters that programs make up
 #   tests/run.sh --help          this text
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -13,14 +14,25 @@ if [ "${1:-}" = --help ]; then
   exit
 fi
 
-# Test names of sources, "Suite.Name"; for tests with parameters with each of these behind.
+# Test names of sources as ctest has them, "Suite.Name", or "Prefix/Suite.Name/parameter" for each of the prefixes and
+# of the parameters whose names are known before the build.
 names_in() {
-  local parameters=()
-  if grep -q 'law_cases(' "$@"; then parameters+=($(ls plugins)); fi
-  if grep -q 'scene_files::all()' "$@"; then parameters+=($(basename -s .json host_mock/scenes/*.json plugins/*/*.json)); fi
-  cat "$@" | tr '\n' ' ' | grep -oE '\bTEST(_F|_P)?\([A-Za-z0-9_]+, *[A-Za-z0-9_]+\)' |
-    sed -E 's/^TEST(_F|_P)?\((\w+), *(\w+)\)/\2.\3/' |
-    while read -r name; do printf '%s\n' "$name" "${parameters[@]/#/$name/}"; done
+  local text prefixes parameters=('')
+  text=$(cat "$@" | tr '\n' ' ')
+  prefixes=$(grep -oE 'INSTANTIATE_TEST_SUITE_P\( *\w+, *\w+' <<<"$text" | sed -E 's/.*\( *(\w+), *(\w+)$/\2 \1/') || true
+  if grep -q 'law_cases(' <<<"$text"; then
+    parameters=($(ls plugins) $(grep -ohE '"name": "\w+"' tests/laws/*/cases.json | cut -d'"' -f4 | sort -u))
+  elif grep -q 'scene_files::all()' <<<"$text"; then
+    parameters=($(basename -s .json host_mock/scenes/*.json plugins/*/*.json))
+  fi
+  grep -oE '\bTEST(_F|_P)?\([A-Za-z0-9_]+, *[A-Za-z0-9_]+\)' <<<"$text" |
+    sed -E 's/^(TEST(_F|_P)?)\((\w+), *(\w+)\)/\1 \3 \4/' |
+    while read -r kind suite name; do
+      if [ "$kind" != TEST_P ]; then echo "$suite.$name"; continue; fi
+      while read -r of prefix; do
+        [ "$of" != "$suite" ] || printf '%s\n' "${parameters[@]/#/$prefix/$suite.$name/}"
+      done <<<"$prefixes"
+    done
 }
 
 # Targets that hold a test which the expression $1 matches.
@@ -45,9 +57,12 @@ cmake --preset release -DILAW_TESTS=ON -DILAW_WERROR="${ILAW_WERROR:-OFF}" >/dev
 targets=()
 if [ -n "$expression" ]; then
   mapfile -t targets < <(targets_of "$expression" | tr ' ' '\n' | sort -u)
-  [ ${#targets[@]} -gt 0 ] || { echo "no test is called $expression" >&2; exit 1; }
-  echo "builds only: ${targets[*]}"
-  targets=(--target "${targets[@]}")
+  if [ ${#targets[@]} -gt 0 ]; then
+    echo "builds only: ${targets[*]}"
+    targets=(--target "${targets[@]}")
+  else
+    echo "no test is known to be called $expression before the build: builds all"
+  fi
 fi
 cmake --build --preset release "${targets[@]}" -- --quiet
-exec ctest --test-dir build/release --output-on-failure -j "$(nproc)" "$@"
+exec ctest --test-dir build/release --no-tests=error --output-on-failure -j "$(nproc)" "$@"

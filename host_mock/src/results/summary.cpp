@@ -45,9 +45,9 @@ json describe_energy(const EnergyReport& energy) {
 json number_or_inf(double value) { return std::isinf(value) ? json("inf") : json(value); }
 
 json describe_statuses(const Tally& tally) {
-  json statuses = json::object();
-  for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k) statuses[status_names[k]] = tally.status_counts[k];
-  return statuses;
+  json counts = json::object();
+  for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k) counts[status_names[k]] = tally.status_counts[k];
+  return counts;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <ilaw/loader.h>
 
 #include <stdio.h>
+#include <stdlib.h>
 
 int main(int argc, char** argv) {
   static char text[65536];
@@ -13,5 +14,6 @@ int main(int argc, char** argv) {
   }
   ilaw_search_path(text, sizeof text);
   puts(text);
-  return 0;
+  fflush(stdout);
+  _Exit(0); /* a leak check at exit cannot look into a set-uid process, and would say so */
 }
