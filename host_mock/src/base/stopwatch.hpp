@@ -8,15 +8,20 @@ namespace ilaw::host {
 
 class Stopwatch {
  public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
+  // weight: how often the time counts; 0: it is not taken, which costs more than a small scope.
+  Stopwatch(double& seconds, int weight) : seconds_(seconds), weight_(weight) {
+    if (weight_ > 0) start_ = std::chrono::steady_clock::now();
+  }
   ~Stopwatch() {
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    if (weight_ > 0)
+      seconds_ += weight_ * std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
  private:
   double& seconds_;
+  int weight_;
   std::chrono::steady_clock::time_point start_;
 };
 

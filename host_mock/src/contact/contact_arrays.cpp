@@ -7,57 +7,70 @@
 
 namespace ilaw::host {
 
-ContactArrays::ContactArrays(int dimension, const ilaw_instance_info& info, std::size_t node_count)
-    : dimension_(dimension),
-      state_size_(info.state_size),
-      contact_index_(node_count, -1),
-      parameters_(info.per_node_parameter_count) {}
-
-void ContactArrays::add(int node, double node_area, const std::vector<double>& node_parameters) {
-  contact_index_[static_cast<std::size_t>(node)] = static_cast<int>(count());
-  node_index.push_back(node);
-  point.emplace_back();
-  for (std::vector<double>* vectors : {&v_free, &v_previous, &normal, &impulse, &previous_impulse})
-    vectors->resize(count() * static_cast<std::size_t>(dimension_));
-  delassus.push_back(0.0);
-  gap.push_back(0.0);
-  area.push_back(node_area);
-  energy.resize(count() * ILAW_ENERGY_COUNT);
-  state.resize(count() * state_size_);
-  status.push_back(ILAW_FREE);
-  touched.push_back(0);
-  parameter_inputs_.clear();
-  for (std::size_t p = 0; p < parameters_.size(); ++p) {
-    parameters_[p].push_back(node_parameters[p]);
-    parameter_inputs_.push_back({parameters_[p].data(), 1, 1});
-  }
-}
-
-void ContactArrays::accept_state(int contact) {
-  if (keeps_state_in_)
-    std::copy_n(&next_state_[first_state(contact)], state_size_, &state[first_state(contact)]);
-}
-
-ilaw_batch ContactArrays::start_batch() {
+ilaw_batch empty_batch(const InterfaceSetup& setup, double time, double dt) {
   ilaw_batch batch{};
   batch.struct_size = sizeof batch;
-  batch.area = {area.data(), 1, 1};
-  batch.normal = {normal.data(), dimension_, 1};
-  batch.per_node_parameters = parameter_inputs_.data();
-  batch.state_out = {state.data(), static_cast<std::int64_t>(state_size_), 1};
+  batch.time = time;
+  batch.velocity_step = dt;
+  batch.position_step = dt;
+  if (setup.tangent.size() > 0) batch.tangent = {setup.tangent.data(), 0, 1};
   return batch;
 }
 
-ilaw_batch ContactArrays::step_batch() {
+ContactArrays::ContactArrays(int dimension, const ilaw_instance_info& info, std::size_t node_count,
+                             bool partnered)
+    : parameters(info.per_node_parameter_count),
+      dimension_(dimension),
+      state_size_(info.state_size),
+      reads_area_((info.inputs & ILAW_INPUT_AREA) != 0),
+      partnered_(partnered),
+      contact_index_(node_count, -1) {}
+
+void ContactArrays::add(const Entry& entry) {
+  contact_index_[static_cast<std::size_t>(entry.node_index)] = static_cast<int>(count());
+  node_index.push_back(entry.node_index);
+  impulse.resize(count() * static_cast<std::size_t>(dimension_));
+  delassus.push_back(entry.delassus);
+  state.insert(state.end(), entry.state.begin(), entry.state.end());
+  if (reads_area_) area.push_back(entry.area);
+  for (std::size_t p = 0; p < parameters.size(); ++p) parameters[p].push_back(entry.parameters[p]);
+  status.push_back(ILAW_FREE);
+  marks_.push_back(entry.must_be_asked ? asked | changed : 0);
+  if (partnered_) point.emplace_back();
+  if (is_repeated_) make_room();
+}
+
+void ContactArrays::evaluate_repeatedly() {
+  is_repeated_ = true;
+  make_room();
+}
+
+void ContactArrays::make_room() {
+  for (std::vector<double>* vectors : {&v_free, &v_previous, &normal, &previous_impulse})
+    vectors->resize(count() * static_cast<std::size_t>(dimension_));
+  gap.resize(count());
+  energy.resize(count() * ILAW_ENERGY_COUNT);
+  next_state_.resize(state.size());
+}
+
+void ContactArrays::accept_state(int contact) {
+  std::copy_n(&next_state_[first_state(contact)], state_size_, &state[first_state(contact)]);
+}
+
+ilaw_batch ContactArrays::repeated_batch(const InterfaceSetup& setup, double time, double dt) {
   const auto size = static_cast<std::int64_t>(state_size_);
-  if (keeps_state_in_) next_state_.resize(state.size());
-  ilaw_batch batch = start_batch();
+  ilaw_batch batch = empty_batch(setup, time, dt);
+  batch.area = {area.data(), 1, 1};
+  batch.normal = {normal.data(), dimension_, 1};
+  parameter_inputs_.clear();
+  for (const std::vector<double>& values : parameters) parameter_inputs_.push_back({values.data(), 1, 1});
+  batch.per_node_parameters = parameter_inputs_.data();
   batch.v_free = {v_free.data(), dimension_, 1};
   batch.v_previous = {v_previous.data(), dimension_, 1};
   batch.delassus = {delassus.data(), 1, 1};
   batch.gap = {gap.data(), 1, 1};
   batch.state_in = {state.data(), size, 1};
-  batch.state_out = {keeps_state_in_ ? next_state_.data() : state.data(), size, 1};
+  batch.state_out = {next_state_.data(), size, 1};
   batch.impulse = {impulse.data(), dimension_, 1};
   batch.energy = {energy.data(), ILAW_ENERGY_COUNT, 1};
   batch.status = status.data();
@@ -66,15 +79,27 @@ ilaw_batch ContactArrays::step_batch() {
 }
 
 std::size_t ContactArrays::bytes_per_contact() const {
-  return sizeof(ContactPoint) + sizeof(int) + 2 +
-         sizeof(double) * (5 * static_cast<std::size_t>(dimension_) + 3 + ILAW_ENERGY_COUNT +
-                           parameters_.size() + state_size_ * (keeps_state_in_ ? 2 : 1));
+  const auto d = static_cast<std::size_t>(dimension_);
+  const std::size_t stored = d + 1 + state_size_ + (reads_area_ ? 1 : 0) + parameters.size();
+  const std::size_t repeated = 4 * d + 1 + ILAW_ENERGY_COUNT + state_size_;
+  return sizeof(int) + 2 + (partnered_ ? sizeof(ContactPoint) : 0) +
+         sizeof(double) * (stored + (is_repeated_ ? repeated : 0));
 }
 
 void ContactArrays::save(std::ostream& out) const {
-  write_sized(out, node_index);
-  write_sized(out, touched);
-  write_sized(out, state);
+  std::vector<int> nodes;
+  std::vector<std::uint8_t> marks;
+  std::vector<double> states;
+  for (std::size_t k = 0; k < count(); ++k) {
+    if (!(marks_[k] & changed)) continue;
+    nodes.push_back(node_index[k]);
+    marks.push_back(marks_[k]);
+    const auto first = state.begin() + static_cast<std::ptrdiff_t>(k * state_size_);
+    states.insert(states.end(), first, first + static_cast<std::ptrdiff_t>(state_size_));
+  }
+  write_sized(out, nodes);
+  write_sized(out, marks);
+  write_sized(out, states);
 }
 
 std::vector<int> ContactArrays::load_nodes(std::istream& in, std::size_t most) {
@@ -85,9 +110,9 @@ std::vector<int> ContactArrays::load_nodes(std::istream& in, std::size_t most) {
 }
 
 void ContactArrays::load_state(std::istream& in) {
-  touched = read_sized<std::uint8_t>(in, count());
+  marks_ = read_sized<std::uint8_t>(in, count());
   state = read_sized<double>(in, count() * state_size_);
-  if (touched.size() != count() || state.size() != count() * state_size_) refuse_damaged();
+  if (marks_.size() != count() || state.size() != count() * state_size_) refuse_damaged();
 }
 
 }  // namespace ilaw::host

@@ -1,12 +1,13 @@
-// contact_arrays.hpp - the arrays that a law reads and writes, one entry per contact.
+// contact_arrays.hpp - what is stored of each contact, and the arrays that a law reads and writes where
+// contacts share nodes.
 //
 // A node of the interface has its index in the interface's list of nodes (node_index) and, from
 // when it is first needed, its index in these arrays (contact_index). Nodes that were never near
-// have no entry.
+// have no entry, and an array that the interface has no use for is empty.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "contact/counterpart.hpp"
+#include "contact/interface_setup.hpp"
 
 #include <ilaw/ilaw.h>
 
@@ -16,16 +17,27 @@
 
 namespace ilaw::host {
 
+// A batch with times and what is the same for all contacts alone.
+ilaw_batch empty_batch(const InterfaceSetup& setup, double time, double dt);
+
 class ContactArrays {
  public:
-  ContactArrays(int dimension, const ilaw_instance_info& info, std::size_t node_count);
+  // partnered: the counterpart has partners.
+  ContactArrays(int dimension, const ilaw_instance_info& info, std::size_t node_count, bool partnered);
+
+  // What a new contact starts with.
+  struct Entry {
+    int node_index;
+    double delassus, area;
+    std::vector<double> parameters;  // of the law per node, in its order
+    std::vector<double> state;
+    bool must_be_asked;
+  };
 
   std::size_t count() const { return node_index.size(); }
   // Of the node at node_index; -1: none yet.
   int index_of(std::size_t node) const { return contact_index_[node]; }
-  // Appends the contact of a node, with its values of the law's parameters per node; its state is
-  // zero.
-  void add(int node, double node_area, const std::vector<double>& node_parameters);
+  void add(const Entry& entry);
 
   // The d components of a vector, for one contact.
   auto vector(std::vector<double>& values, int contact) const {
@@ -36,16 +48,29 @@ class ContactArrays {
   }
   std::size_t first_state(int contact) const { return static_cast<std::size_t>(contact) * state_size_; }
 
-  // State in and out are arrays of their own: a step may evaluate a contact more than once.
-  void keep_state_in() { keeps_state_in_ = true; }
+  // Whether it must be evaluated out of reach, too: it is neither fresh nor at rest.
+  bool must_be_asked(std::size_t contact) const { return (marks_[contact] & asked) != 0; }
+  // After a step: acts, where its status was not ILAW_FREE; rests, where the law promises ILAW_CAN_REST.
+  void mark_touched(std::size_t contact, bool acts, bool in_reach, bool rests) {
+    std::uint8_t& mark = marks_[contact];
+    if (acts || in_reach) mark |= changed;
+    if (acts || (in_reach && !rests))
+      mark |= asked;
+    else if (rests)
+      mark &= static_cast<std::uint8_t>(~asked);
+  }
+
+  // Where contacts share nodes a step evaluates each more than once: the arrays below "repeated" are
+  // there, and states in and out are arrays of their own.
+  void evaluate_repeatedly();
+  bool is_repeated() const { return is_repeated_; }
   // The state after the step becomes that before the next.
   void accept_state(int contact);
-
-  // The arrays that initialise takes; with those that evaluate takes.
-  ilaw_batch start_batch();
-  ilaw_batch step_batch();
+  // The arrays that evaluate takes, where contacts share nodes.
+  ilaw_batch repeated_batch(const InterfaceSetup& setup, double time, double dt);
 
   std::size_t bytes_per_contact() const;
+  // Contacts whose state may differ from what it started as.
   void save(std::ostream& out) const;
   // What save wrote, into the entries that were added for the same nodes in the same order.
   static std::vector<int> load_nodes(std::istream& in, std::size_t most);
@@ -53,23 +78,28 @@ class ContactArrays {
 
   // By contact_index; vectors have dimension components each, energy ILAW_ENERGY_COUNT.
   std::vector<int> node_index;
-  std::vector<ContactPoint> point;
-  std::vector<double> v_free, v_previous, normal, impulse, previous_impulse;
-  std::vector<double> delassus, gap, area, energy, state;
+  std::vector<ContactPoint> point;  // where the counterpart has partners
+  std::vector<double> impulse, delassus, state;
+  std::vector<double> area;                     // where the law reads it
+  std::vector<std::vector<double>> parameters;  // that are given per node, as the law lists them
   std::vector<std::uint8_t> status;
-  std::vector<std::uint8_t> touched;  // neither fresh nor at rest: must be evaluated out of reach, too
+  // repeated
+  std::vector<double> v_free, v_previous, normal, previous_impulse, gap, energy;
 
  private:
+  enum Mark : std::uint8_t { asked = 1, changed = 2 };  // changed: the state may not be the first one any more
+
   std::size_t first_component(int contact) const {
     return static_cast<std::size_t>(contact) * static_cast<std::size_t>(dimension_);
   }
+  void make_room();
 
   int dimension_;
   std::size_t state_size_;
-  bool keeps_state_in_ = false;
+  bool reads_area_, partnered_, is_repeated_ = false;
   std::vector<int> contact_index_;  // by node_index
+  std::vector<std::uint8_t> marks_;
   std::vector<double> next_state_;
-  std::vector<std::vector<double>> parameters_;  // per node, as the law lists them
   std::vector<ilaw_input> parameter_inputs_;
 };
 

@@ -7,6 +7,8 @@
 #include "model/obstacle.hpp"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -22,6 +24,19 @@ struct ContactPoint {
   int partner_count = 0;
   std::array<int, most_partners> partners{};
   std::array<double, most_partners> weights{};
+
+  // Calls visit(node, weight) for the contact's own node and its partners.
+  template <class Visit>
+  void for_each_node(int node, Visit visit) const {
+    visit(node, 1.0);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(partner_count); ++i) visit(partners[i], -weights[i]);
+  }
+  double delassus(const Model& model, int node) const;
+};
+
+// Gaps of some contacts, and normals, of as many components each as the model has dimensions.
+struct Located {
+  double *gaps, *normals;
 };
 
 class Counterpart {
@@ -30,6 +45,9 @@ class Counterpart {
 
   // Of the node at node_index in the interface's list.
   virtual ContactPoint contact_point(int node_index, const Dofs& u, double time) const = 0;
+  // The same of count nodes at once, where the counterpart is rigid.
+  virtual void locate(const std::int32_t* node_indices, std::ptrdiff_t count, const Dofs& u, double time,
+                      Located found) const;
   // A bound from below on the gap, cheap, that relative motion by a distance lowers by no more than
   // the distance.
   virtual double gap_bound(int node_index, const Dofs& u, double time) const = 0;
@@ -52,6 +70,8 @@ class RigidCounterpart : public Counterpart {
  public:
   RigidCounterpart(const Model& model, std::vector<int> nodes, std::unique_ptr<const Obstacle> obstacle);
   ContactPoint contact_point(int node_index, const Dofs& u, double time) const override;
+  void locate(const std::int32_t* node_indices, std::ptrdiff_t count, const Dofs& u, double time,
+              Located found) const override;
   double gap_bound(int node_index, const Dofs& u, double time) const override;
   Vector velocity(double from, double to) const override { return obstacle_->velocity(from, to); }
   const std::vector<int>& partners() const override { return none_; }

@@ -2,6 +2,7 @@
 #include "contact/interface.hpp"
 
 #include "base/bytes.hpp"
+#include "base/parallel.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -13,26 +14,21 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       model_(model),
       dimension_(model.dimension()),
       law_(setup_.library, setup_.law, setup_.arguments, setup_.tangent, dimension_),
-      contacts_(dimension_, law_.info(), setup_.nodes.size()),
+      contacts_(dimension_, law_.info(), setup_.nodes.size(), !setup_.counterpart->partners().empty()),
       obstacle_velocity_(Vector::Zero(dimension_)),
       obstacle_velocity_before_(obstacle_velocity_) {}
 
-ilaw_batch Interface::timed(ilaw_batch batch, double time, double dt) const {
-  batch.time = time;
-  batch.velocity_step = dt;
-  batch.position_step = dt;
-  if (setup_.tangent.size() > 0) batch.tangent = {setup_.tangent.data(), 0, 1};
-  return batch;
-}
-
-void Interface::check(const Answer& answer) const {
-  if (answer.code == ILAW_OK) return;
-  const ilaw_report& report = answer.report;
-  std::string text = "interface '" + setup_.name + "' (law '" + setup_.law + "'): ";
-  if (report.first_bad_node >= 0)
-    text += std::to_string(report.bad_count) + " node(s) refused, first node " +
-            std::to_string(node_of(static_cast<int>(report.first_bad_node))) + ": ";
-  throw ilaw::error(answer.code, text + (report.reason ? report.reason : "no reason given"));
+void Interface::check(const Refusal& refusal) const {
+  if (refusal.code == ILAW_OK) return;
+  const std::string whose = "interface '" + setup_.name + "' (law '" + setup_.law + "'";
+  const std::string node = refusal.contact >= 0 ? std::to_string(node_of(refusal.contact)) : "";
+  if (refusal.status >= ILAW_STATUS_COUNT)
+    throw ilaw::error(refusal.code, whose + ", library " + library().path() + "): found status " +
+                                        std::to_string(refusal.status) + " at node " + node +
+                                        ", expected 0 to " + std::to_string(ILAW_STATUS_COUNT - 1));
+  std::string text = whose + "): ";
+  if (!node.empty()) text += std::to_string(refusal.bad_count) + " node(s) refused, first node " + node + ": ";
+  throw ilaw::error(refusal.code, text + (refusal.reason ? refusal.reason : "no reason given"));
 }
 
 // ---- contacts -------------------------------------------------------------------------------------------
@@ -40,25 +36,47 @@ void Interface::check(const Answer& answer) const {
 int Interface::contact_index_of(int node_index, const Dofs& u) {
   const std::size_t k = at(node_index);
   if (const int found = contacts_.index_of(k); found >= 0) return found;
+  contacts_.add({node_index, 1.0 / model_.mass()[setup_.nodes[k] * dimension_], setup_.areas[k],
+                 parameters_of(node_index), first_state(node_index, u), law_.acts_at_distance()});
+  return contacts_.index_of(k);
+}
+
+std::vector<double> Interface::parameters_of(int node_index) const {
   std::vector<double> parameters;
   for (std::size_t p = 0; p < info().per_node_parameter_count; ++p)
-    parameters.push_back(setup_.arguments.per_node.at(info().per_node_parameters[p])[k]);
-  contacts_.add(node_index, setup_.areas[k], parameters);
-  contacts_.touched.back() = law_.acts_at_distance();
-  contacts_.delassus.back() = 1.0 / model_.mass()[setup_.nodes[k] * dimension_];
-  const int made = contacts_.index_of(k);
-  initialise(made, u);
-  return made;
+    parameters.push_back(setup_.arguments.per_node.at(info().per_node_parameters[p])[at(node_index)]);
+  return parameters;
 }
 
 // The state that the law starts with at time 0, whenever the contact is made. Its axes are those of
 // the first time that it is active: where the normal turns, a law whose state has axes is active
 // from the first step (may_skip).
-void Interface::initialise(int contact_index, const Dofs& u) {
-  contacts_.vector(contacts_.normal, contact_index) =
-      setup_.counterpart->contact_point(contacts_.node_index[at(contact_index)], u, 0.0).normal;
-  if (info().state_size > 0)
-    check(law_.initialise(timed(contacts_.start_batch(), 0.0, 1.0), ContactList{contact_index}));
+std::vector<double> Interface::first_state(int node_index, const Dofs& u) const {
+  std::vector<double> state(info().state_size);
+  if (state.empty()) return state;
+  const std::vector<double> parameters = parameters_of(node_index);
+  std::vector<ilaw_input> inputs;
+  for (const double& value : parameters) inputs.push_back({&value, 1, 1});
+  const Vector normal = setup_.counterpart->contact_point(node_index, u, 0.0).normal;
+  ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
+  batch.node_count = 1;
+  batch.area = {&setup_.areas[at(node_index)], 1, 1};
+  batch.normal = {normal.data(), dimension_, 1};
+  batch.per_node_parameters = inputs.data();
+  batch.state_out = {state.data(), static_cast<std::int64_t>(state.size()), 1};
+  const Answer answer = law_.initialise(batch);
+  if (answer.code == ILAW_OK) return state;
+  throw ilaw::error(answer.code, "interface '" + setup_.name + "' (law '" + setup_.law +
+                                     "'): 1 node(s) refused, first node " +
+                                     std::to_string(setup_.nodes[at(node_index)]) + ": " +
+                                     (answer.report.reason ? answer.report.reason : "no reason given"));
+}
+
+std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
+  const int contact_index = contacts_.index_of(at(node_index));
+  if (contact_index < 0) return first_state(node_index, u);
+  const auto first = contacts_.state.begin() + static_cast<std::ptrdiff_t>(contacts_.first_state(contact_index));
+  return {first, first + static_cast<std::ptrdiff_t>(info().state_size)};
 }
 
 bool Interface::may_skip() const {
@@ -71,11 +89,12 @@ bool Interface::may_skip() const {
 void Interface::refresh_near(const StepView& step) {
   near_.clear();
   setup_.counterpart->refresh(step.u);
+  const bool skips = may_skip();
   for (std::size_t k = 0; k < setup_.nodes.size(); ++k) {
     const int node_index = static_cast<int>(k), contact_index = contacts_.index_of(k);
-    const bool touched =
-        contact_index >= 0 ? contacts_.touched[at(contact_index)] != 0 : law_.acts_at_distance();
-    if (touched || !may_skip() ||
+    const bool asked =
+        contact_index >= 0 ? contacts_.must_be_asked(at(contact_index)) : law_.acts_at_distance();
+    if (asked || !skips ||
         proximity_.may_touch(setup_.counterpart->gap_bound(node_index, step.u, step.time) -
                              setup_.gap_offset))
       near_.push_back(contact_index_of(node_index, step.u));
@@ -84,7 +103,7 @@ void Interface::refresh_near(const StepView& step) {
 
 // ---- a step ---------------------------------------------------------------------------------------------
 
-void Interface::open_step(const StepView& step) {
+void Interface::choose_active(const StepView& step) {
   active_.clear();
   const Counterpart& counterpart = *setup_.counterpart;
   obstacle_velocity_before_ = counterpart.velocity(step.time - step.dt, step.time);
@@ -100,95 +119,125 @@ void Interface::open_step(const StepView& step) {
   }
   if (due) refresh_near(step);
   active_ = near_;
-  for (const std::int32_t contact_index : active_) locate(contact_index, step);
 }
 
-void Interface::locate(int contact_index, const StepView& step) {
-  const std::size_t k = at(contact_index);
-  const ContactPoint& point = contacts_.point[k] =
-      setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);
-  contacts_.gap[k] = point.gap - setup_.gap_offset;
-  contacts_.vector(contacts_.normal, contact_index) = point.normal;
-  contacts_.vector(contacts_.impulse, contact_index).setZero();
-  if (point.partner_count == 0) return;
-  const auto mass = [this](int node) { return model_.mass()[static_cast<Eigen::Index>(node) * dimension_]; };
-  contacts_.delassus[k] = 1.0 / mass(node_of(contact_index));
-  for (std::size_t i = 0; i < at(point.partner_count); ++i)
-    contacts_.delassus[k] += point.weights[i] * point.weights[i] / mass(point.partners[i]);
+void Interface::solve(const StepView& step, Dofs& v) {
+  choose_active(step);
+  sums_ = {};
+  const auto count = static_cast<std::ptrdiff_t>(active_.size());
+  const BlockStep blocks{setup_, model_, law_, contacts_, step, obstacle_velocity_, obstacle_velocity_before_, v};
+  outcomes_.resize(static_cast<std::size_t>(chunks_of(count, contact_chunk)));
+  for_each_chunk(count, contact_chunk, [&](std::ptrdiff_t c, std::ptrdiff_t first, std::ptrdiff_t end) {
+    outcomes_[static_cast<std::size_t>(c)] = solve_chunk(blocks, active_.data() + first, end - first);
+  });
+  Refusal refusal;
+  for (const ChunkOutcome& outcome : outcomes_) {
+    refusal.add(outcome.refusal);
+    sums_.add(outcome.sums);
+  }
+  check(refusal);
+}
+
+// ---- a step where contacts share nodes ------------------------------------------------------------------
+
+void Interface::open_step(const StepView& step) {
+  choose_active(step);
+  sums_ = {};
+  for (const std::int32_t contact_index : active_) {
+    const std::size_t k = at(contact_index);
+    const ContactPoint point = setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);
+    contacts_.gap[k] = point.gap - setup_.gap_offset;
+    contacts_.vector(contacts_.normal, contact_index) = point.normal;
+    contacts_.vector(contacts_.impulse, contact_index).setZero();
+    if (point.partner_count == 0) continue;
+    contacts_.delassus[k] = point.delassus(model_, node_of(contact_index));
+    contacts_.point[k] = point;
+  }
 }
 
 bool Interface::is_idle(int contact_index) const {
   const std::size_t k = at(contact_index);
-  return !contacts_.touched[k] && contacts_.gap[k] > closing_;
+  return !contacts_.must_be_asked(k) && contacts_.gap[k] > closing_;
 }
 
 void Interface::gather(const ContactList& contacts, const Dofs& v, const StepView& step) {
-#pragma omp parallel for schedule(static) if (contacts.size() > 2 * std::size_t{Law::chunk})
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const std::int32_t contact_index = contacts[i];
-    contacts_.vector(contacts_.v_free, contact_index) =
-        relative(contact_index, v) - obstacle_velocity_ - delassus(contact_index) * impulse(contact_index);
-    contacts_.vector(contacts_.v_previous, contact_index) =
-        relative(contact_index, step.v_before) - obstacle_velocity_before_;
-    contacts_.vector(contacts_.previous_impulse, contact_index) = impulse(contact_index);
-  }
+  for_each_chunk(static_cast<std::ptrdiff_t>(contacts.size()), contact_chunk,
+                 [&](std::ptrdiff_t, std::ptrdiff_t first, std::ptrdiff_t end) {
+                   for (std::ptrdiff_t i = first; i < end; ++i) {
+                     const std::int32_t k = contacts[static_cast<std::size_t>(i)];
+                     contacts_.vector(contacts_.v_free, k) =
+                         relative(k, v) - obstacle_velocity_ - delassus(k) * impulse(k);
+                     contacts_.vector(contacts_.v_previous, k) =
+                         relative(k, step.v_before) - obstacle_velocity_before_;
+                     contacts_.vector(contacts_.previous_impulse, k) = impulse(k);
+                   }
+                 });
 }
 
 void Interface::evaluate(const ContactList& contacts, const StepView& step) {
-  const Answer answer = law_.evaluate(timed(contacts_.step_batch(), step.time, step.dt), contacts);
-  check(answer);
-  check_status(contacts);
-  stable_step_ = std::min(stable_step_, answer.report.stable_velocity_step);
-}
-
-// ABI 1 has eight statuses for ever: any other number is a broken library's.
-void Interface::check_status(const ContactList& contacts) const {
-  for (const std::int32_t contact_index : contacts)
-    if (const int found = status(contact_index); found >= ILAW_STATUS_COUNT)
-      throw ilaw::error(ILAW_BAD_LIBRARY, "interface '" + setup_.name + "' (law '" + setup_.law +
-                                              "', library " + library().path() + "): found status " +
-                                              std::to_string(found) + " at node " +
-                                              std::to_string(node_of(contact_index)) + ", expected 0 to " +
-                                              std::to_string(ILAW_STATUS_COUNT - 1));
+  const ilaw_batch batch = contacts_.repeated_batch(setup_, step.time, step.dt);
+  const auto count = static_cast<std::ptrdiff_t>(contacts.size());
+  outcomes_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), {});
+  for_each_chunk(count, contact_chunk, [&](std::ptrdiff_t c, std::ptrdiff_t first, std::ptrdiff_t end) {
+    ilaw_batch part = batch;
+    part.index = contacts.data() + first;
+    part.node_count = end - first;
+    ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
+    const Answer answer = law_.evaluate(part);
+    outcome.refusal.add_listed(answer);
+    outcome.sums.add_stable_step(answer.report.stable_velocity_step);
+  });
+  Refusal refusal;
+  for (const ChunkOutcome& outcome : outcomes_) {
+    refusal.add(outcome.refusal);
+    sums_.add_stable_step(outcome.sums.stable_step);
+  }
+  check(refusal);
 }
 
 double Interface::apply(const ContactList& contacts, Dofs& v) {
-  double speed = 0.0;
   const Eigen::Index d = dimension_;
-#pragma omp parallel for schedule(static) \
-    reduction(max                         \
-              : speed) if (contacts.size() > 2 * std::size_t{Law::chunk})
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const std::int32_t contact_index = contacts[i];
-    const Vector added = impulse(contact_index) - contacts_.vector(contacts_.previous_impulse, contact_index);
-    if (added.isZero(0.0)) continue;  // idle contacts must not even write nodes they share
-    const auto move = [&](int node, double weight) {
-      v.segment(node * d, d) += (weight / model_.mass()[node * d]) * added;
-      speed = std::max(speed, v.segment(node * d, d).norm());
-    };
-    move(node_of(contact_index), 1.0);
-    const ContactPoint& point = contacts_.point[at(contact_index)];
-    for (std::size_t p = 0; p < at(point.partner_count); ++p) move(point.partners[p], -point.weights[p]);
-  }
-  return speed;
-}
-
-void Interface::accept(double dt) {
-  if (info().state_size == 0) return;
-  for (const std::int32_t contact_index : active_) {
-    const bool in_reach = !(gap(contact_index) > dt * v_free(contact_index).norm());
-    std::uint8_t& touched = contacts_.touched[at(contact_index)];
-    if (status(contact_index) != ILAW_FREE || (in_reach && !law_.rests()))
-      touched = 1;
-    else if (law_.rests())
-      touched = 0;
-    contacts_.accept_state(contact_index);
-  }
+  const auto count = static_cast<std::ptrdiff_t>(contacts.size());
+  speeds_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), 0.0);
+  for_each_chunk(count, contact_chunk, [&](std::ptrdiff_t c, std::ptrdiff_t first, std::ptrdiff_t end) {
+    double& speed = speeds_[static_cast<std::size_t>(c)];
+    for (std::ptrdiff_t i = first; i < end; ++i) {
+      const std::int32_t k = contacts[static_cast<std::size_t>(i)];
+      const Vector added = impulse(k) - contacts_.vector(contacts_.previous_impulse, k);
+      if (added.isZero(0.0)) continue;  // idle contacts must not even write nodes they share
+      point(k).for_each_node(node_of(k), [&](int node, double weight) {
+        v.segment(node * d, d) += (weight / model_.mass()[node * d]) * added;
+        speed = std::max(speed, v.segment(node * d, d).norm());
+      });
+    }
+  });
+  return speeds_.empty() ? 0.0 : *std::max_element(speeds_.begin(), speeds_.end());
 }
 
 void Interface::change_impulse(int contact_index, const Vector& change) {
   contacts_.vector(contacts_.previous_impulse, contact_index) = impulse(contact_index);
   contacts_.vector(contacts_.impulse, contact_index) += change;
+}
+
+void Interface::accept(const StepView& step, const Dofs& v) {
+  Refusal unknown;
+  const Vector drift = obstacle_velocity_ + obstacle_velocity_before_;
+  for (const std::int32_t contact_index : active_) {
+    const std::size_t k = at(contact_index);
+    unknown.add_unknown(&contacts_.status[k], &contact_index, 1);
+    check(unknown);
+    const Vector sum = relative(contact_index, step.v_before) + relative(contact_index, v);
+    sums_.work += 0.5 * impulse(contact_index).dot(sum);
+    sums_.relative_work += 0.5 * impulse(contact_index).dot(sum - drift);
+    sums_.penetration = std::max(sums_.penetration, -gap(contact_index));
+    ++sums_.statuses[contacts_.status[k]];
+    sums_.add_energy(&contacts_.energy[k * ILAW_ENERGY_COUNT]);
+    if (info().state_size == 0) continue;
+    const double approach = step.dt * normal(contact_index).dot(v_free(contact_index));
+    const bool in_reach = !(gap(contact_index) > 0.0 && gap(contact_index) + approach > 0.0);
+    contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach, law_.rests());
+    contacts_.accept_state(contact_index);
+  }
 }
 
 // ---- the last step --------------------------------------------------------------------------------------
@@ -197,9 +246,14 @@ bool Interface::is_active(int contact_index) const {
   return std::find(active_.begin(), active_.end(), contact_index) != active_.end();
 }
 
+const ContactPoint& Interface::point(int contact_index) const {
+  static const ContactPoint alone;
+  return contacts_.point.empty() ? alone : contacts_.point[at(contact_index)];
+}
+
 Vector Interface::relative(int contact_index, const Dofs& v) const {
-  const ContactPoint& point = contacts_.point[at(contact_index)];
   const Eigen::Index d = dimension_;
+  const ContactPoint& point = this->point(contact_index);
   Vector relative = v.segment(node_of(contact_index) * d, d);
   for (std::size_t i = 0; i < at(point.partner_count); ++i)
     relative -= point.weights[i] * v.segment(point.partners[i] * d, d);
@@ -207,11 +261,10 @@ Vector Interface::relative(int contact_index, const Dofs& v) const {
 }
 
 void Interface::add_impulse(int contact_index, Dofs& impulse) const {
-  const ContactPoint& point = contacts_.point[at(contact_index)];
   const Eigen::Index d = dimension_;
-  impulse.segment(node_of(contact_index) * d, d) += this->impulse(contact_index);
-  for (std::size_t i = 0; i < at(point.partner_count); ++i)
-    impulse.segment(point.partners[i] * d, d) -= point.weights[i] * this->impulse(contact_index);
+  point(contact_index).for_each_node(node_of(contact_index), [&](int node, double weight) {
+    impulse.segment(node * d, d) += weight * this->impulse(contact_index);
+  });
 }
 
 void Interface::load(std::istream& in, const Dofs& u) {

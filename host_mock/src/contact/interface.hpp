@@ -1,12 +1,15 @@
 // interface.hpp - one interface of a scene: the contacts between some nodes and their counterpart,
-// and the law that acts there. It brings together the law (law.hpp), its arrays
-// (contact_arrays.hpp), what the nodes touch (counterpart.hpp), and which of them are near
-// (proximity_filter.hpp).
+// and the law that acts there. It brings together the law (law.hpp), what is stored of contacts
+// (contact_arrays.hpp), what the nodes touch (counterpart.hpp), which of them are near
+// (proximity_filter.hpp), and the step of contacts that share no nodes (block_step.hpp).
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "contact/block_step.hpp"
 #include "contact/contact_arrays.hpp"
+#include "contact/contact_sums.hpp"
 #include "contact/counterpart.hpp"
+#include "contact/interface_setup.hpp"
 #include "contact/law.hpp"
 #include "contact/proximity_filter.hpp"
 
@@ -17,29 +20,6 @@
 #include <vector>
 
 namespace ilaw::host {
-
-struct InterfaceSetup {
-  std::string name, law, library;  // library: name or path
-  Arguments arguments;
-  std::vector<int> nodes;
-  std::vector<double> areas;  // tributary, per node
-  std::unique_ptr<Counterpart> counterpart;
-  double birth = 0.0, death = std::numeric_limits<double>::infinity();  // while birth <= t < death
-  Vector tangent;                 // first tangent of all nodes; empty: none given
-  double gap_offset = 0.0;        // taken off every gap: thickness, radius
-  bool keeps_all_active = false;  // also contacts that cannot be reached: same results, more work
-};
-
-// A step from the interface's side. Speeds bound those of all nodes.
-struct StepView {
-  const Dofs& u;         // at time
-  const Dofs& v_before;  // at the half step before time
-  double time, dt;
-  double speed_before;  // at the half step before time
-  double speed_after;   // of v_free, and of what other contacts may make of it
-};
-
-using ContactList = std::vector<std::int32_t>;  // by contact_index
 
 class Interface {
  public:
@@ -53,11 +33,20 @@ class Interface {
   const ilaw_instance_info& info() const { return law_.info(); }
   const std::vector<int>& nodes() const { return setup_.nodes; }
 
-  // ---- a step, in the order of the calls ----
+  // ---- a step where no two contacts share a node ----
+  // Chooses the active contacts, finds gaps, normals and delassus, asks the law for impulse, state,
+  // energies and status, and takes v from v_free to v_free + r/m. Throws ilaw::error on bad nodes.
+  void solve(const StepView& step, Dofs& v);
+
+  // ---- a step where contacts share nodes, in the order of the calls ----
+  // Each contact is evaluated more than once.
+  void evaluate_repeatedly() { contacts_.evaluate_repeatedly(); }
   // Chooses the active contacts, by contact_index, and finds their gaps, normals, partners and
   // delassus.
   void open_step(const StepView& step);
-  const ContactList& active() const { return active_; }
+  // Whether a contact cannot act in this step, like those that are not active
+  // (proximity_filter.hpp).
+  bool is_idle(int contact_index) const;
   // What the listed contacts see of the velocities v, without their own impulses: v_free.
   void gather(const ContactList& contacts, const Dofs& v, const StepView& step);
   // The law: impulse, state, energies and status. Throws ilaw::error on bad nodes.
@@ -65,49 +54,43 @@ class Interface {
   // Adds to v what the impulses have changed by since gather. Returns the largest speed of a node
   // it moved.
   double apply(const ContactList& contacts, Dofs& v);
-  // The step is done: its state becomes the state before the next.
-  void accept(double dt);
-
-  // The largest step at which the law was stable at all contacts evaluated so far; infinity: it needs none.
-  double stable_step() const { return stable_step_; }
-
-  // Where contacts may share nodes, they are evaluated more than once per step.
-  void evaluate_repeatedly() { contacts_.keep_state_in(); }
-  // Whether a contact cannot act in this step, like those that are not active
-  // (proximity_filter.hpp).
-  bool is_idle(int contact_index) const;
   // Adds to the impulse of a contact, for apply to pass on; change has a component per dimension.
   void change_impulse(int contact_index, const Vector& change);
+  // The step is done: its state becomes the state before the next.
+  void accept(const StepView& step, const Dofs& v);
 
-  // ---- the last step, by contact_index ----
-  const ContactPoint& point(int contact_index) const { return contacts_.point[at(contact_index)]; }
+  // ---- the last step ----
+  const ContactList& active() const { return active_; }
+  const ContactSums& sums() const { return sums_; }
+  // By contact_index.
+  bool is_active(int contact_index) const;
   auto impulse(int contact_index) const { return contacts_.vector(contacts_.impulse, contact_index); }
-  auto normal(int contact_index) const { return contacts_.vector(contacts_.normal, contact_index); }
-  auto v_free(int contact_index) const { return contacts_.vector(contacts_.v_free, contact_index); }
-  double delassus(int contact_index) const { return contacts_.delassus[at(contact_index)]; }
-  double gap(int contact_index) const { return contacts_.gap[at(contact_index)]; }
   int status(int contact_index) const { return contacts_.status[at(contact_index)]; }
-  double energy(int contact_index, int part) const {
-    return contacts_.energy[at(contact_index) * ILAW_ENERGY_COUNT + at(part)];
-  }
+  int node_of(int contact_index) const { return setup_.nodes[at(contacts_.node_index[at(contact_index)])]; }
+  double delassus(int contact_index) const { return contacts_.delassus[at(contact_index)]; }
+  // Without partners where the counterpart is rigid.
+  const ContactPoint& point(int contact_index) const;
   // Accepted state; entry: double of the node's state.
   double state(int contact_index, int entry) const {
     return contacts_.state[contacts_.first_state(contact_index) + at(entry)];
   }
-  int node_of(int contact_index) const { return setup_.nodes[at(contacts_.node_index[at(contact_index)])]; }
-  bool is_active(int contact_index) const;
-  // Relative velocity of a contact in a velocity field, without the obstacle's own.
-  Vector relative(int contact_index, const Dofs& v) const;
   // Adds the contact's impulse to those per degree of freedom.
   void add_impulse(int contact_index, Dofs& impulse) const;
+  // Only where contacts share nodes.
+  auto normal(int contact_index) const { return contacts_.vector(contacts_.normal, contact_index); }
+  auto v_free(int contact_index) const { return contacts_.vector(contacts_.v_free, contact_index); }
+  double gap(int contact_index) const { return contacts_.gap[at(contact_index)]; }
+  // Relative velocity of a contact in a velocity field, without the obstacle's own.
+  Vector relative(int contact_index, const Dofs& v) const;
   const Vector& obstacle_velocity() const { return obstacle_velocity_; }
-  const Vector& obstacle_velocity_before() const { return obstacle_velocity_before_; }
 
   // ---- for outputs, by node_index, whether active or not ----
   double gap_at(int node_index, const Dofs& u, double time) const {
     return setup_.counterpart->contact_point(node_index, u, time).gap - setup_.gap_offset;
   }
   int contact_index_of(int node_index, const Dofs& u);  // makes a contact where there is none
+  // The accepted state, without making a contact.
+  std::vector<double> state_at(int node_index, const Dofs& u) const;
   std::size_t bytes_per_contact() const { return contacts_.bytes_per_contact(); }
   std::size_t contact_count() const { return contacts_.count(); }
 
@@ -118,12 +101,11 @@ class Interface {
  private:
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
   bool may_skip() const;
+  void choose_active(const StepView& step);
   void refresh_near(const StepView& step);
-  void locate(int contact_index, const StepView& step);
-  void initialise(int contact_index, const Dofs& u);
-  ilaw_batch timed(ilaw_batch batch, double time, double dt) const;
-  void check(const Answer& answer) const;
-  void check_status(const ContactList& contacts) const;
+  std::vector<double> parameters_of(int node_index) const;
+  std::vector<double> first_state(int node_index, const Dofs& u) const;
+  void check(const Refusal& refusal) const;
 
   InterfaceSetup setup_;
   const Model& model_;
@@ -131,10 +113,12 @@ class Interface {
   Law law_;
   ContactArrays contacts_;
   ProximityFilter proximity_;
-  double stable_step_ = std::numeric_limits<double>::infinity();
   double closing_ = 0.0;  // how far a gap may close in the coming step
   ContactList near_, active_;
   Vector obstacle_velocity_, obstacle_velocity_before_;
+  std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
+  std::vector<double> speeds_;
+  ContactSums sums_;
 };
 
 using Interfaces = std::vector<std::unique_ptr<Interface>>;

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/law.hpp"
 
-#include <algorithm>
-#include <cstddef>
-#include <limits>
-
 namespace ilaw::host {
 
 Law::Law(const std::string& library, const std::string& law, const Arguments& arguments,
@@ -20,37 +16,18 @@ bool Law::carries_axes() const {
   return false;
 }
 
-Answer Law::initialise(ilaw_batch batch, const std::vector<std::int32_t>& contacts) const {
-  batch.index = contacts.data();
-  batch.node_count = static_cast<std::int64_t>(contacts.size());
+Answer Law::initialise(const ilaw_batch& batch) const {
   Answer answer{ILAW_OK, {}};
   answer.report.struct_size = sizeof(ilaw_report);
   answer.code = interface_.initialise(batch, &answer.report);
   return answer;
 }
 
-Answer Law::evaluate(const ilaw_batch& batch, const std::vector<std::int32_t>& contacts) const {
-  const auto count = static_cast<std::ptrdiff_t>(contacts.size());
-  const std::ptrdiff_t chunks = (count + chunk - 1) / chunk;
-  std::vector<Answer> answers(static_cast<std::size_t>(chunks), Answer{ILAW_OK, {}});
-#pragma omp parallel for schedule(static) if (chunks > 1)
-  for (std::ptrdiff_t c = 0; c < chunks; ++c) {
-    Answer& answer = answers[static_cast<std::size_t>(c)];
-    ilaw_batch part = batch;
-    part.index = contacts.data() + c * chunk;
-    part.node_count = std::min(std::ptrdiff_t{chunk}, count - c * chunk);
-    answer.report.struct_size = sizeof(ilaw_report);
-    answer.code = interface_.evaluate(part, &answer.report);
-  }
-  Answer all{ILAW_OK, {}};
-  all.report.stable_velocity_step = std::numeric_limits<double>::infinity();
-  for (const Answer& answer : answers) {
-    if (answer.code != ILAW_OK) return answer;
-    // 0: a library that does not say
-    if (const double stable = answer.report.stable_velocity_step; stable > 0.0)
-      all.report.stable_velocity_step = std::min(all.report.stable_velocity_step, stable);
-  }
-  return all;
+Answer Law::evaluate(const ilaw_batch& batch) const {
+  Answer answer{ILAW_OK, {}};
+  answer.report.struct_size = sizeof(ilaw_report);
+  answer.code = interface_.evaluate(batch, &answer.report);
+  return answer;
 }
 
 }  // namespace ilaw::host

@@ -4,21 +4,14 @@
 #pragma once
 
 #include "contact/law_arguments.hpp"
+#include "contact/refusal.hpp"
 
 #include <ilaw/loader.hpp>
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 namespace ilaw::host {
-
-// What a law answered: ILAW_OK and the stable step of all, or the code and the report of the first
-// part of the batch that it refused.
-struct Answer {
-  std::int32_t code;
-  ilaw_report report;
-};
 
 class Law {
  public:
@@ -34,13 +27,8 @@ class Law {
   // Whether the state holds axes, which turn with the normal from step to step.
   bool carries_axes() const;
 
-  // Both work on the listed entries of the batch's arrays; evaluate shares a long list among
-  // threads.
-  Answer initialise(ilaw_batch batch, const std::vector<std::int32_t>& contacts) const;
-  Answer evaluate(const ilaw_batch& batch, const std::vector<std::int32_t>& contacts) const;
-
-  // Contacts of one call where threads share a batch.
-  static constexpr int chunk = 2048;
+  Answer initialise(const ilaw_batch& batch) const;
+  Answer evaluate(const ilaw_batch& batch) const;
 
  private:
   ilaw::library library_;

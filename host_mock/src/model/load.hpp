@@ -29,6 +29,8 @@ class Load {
   // The same for the half step that a run starts with, from V_0 to V_{1/2}.
   virtual void start(double /*dt*/, const Dofs& /*v_start*/, Dofs& /*v*/) const {}
   virtual bool corrects() const { return false; }
+  // Whether it is the same force at all times, and nothing else.
+  virtual bool is_steady() const { return false; }
   // Nodes whose motion is prescribed.
   virtual const std::vector<int>& prescribed_nodes() const;
 };
@@ -39,6 +41,7 @@ class Gravity : public Load {
  public:
   Gravity(const Model& model, std::vector<int> nodes, Vector acceleration);
   void add_force(double time, Dofs& force) const override;
+  bool is_steady() const override { return true; }
 
  private:
   const Model& model_;

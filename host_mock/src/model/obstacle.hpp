@@ -34,6 +34,11 @@ struct RigidSurface {
   Vector normal;  // unit, from obstacle to body
 };
 
+// A plane, moved by a displacement.
+struct FlatSurface {
+  Vector displacement, point, normal;
+};
+
 class Obstacle {
  public:
   explicit Obstacle(Motion motion) : motion_(std::move(motion)) {}
@@ -46,6 +51,11 @@ class Obstacle {
   Vector velocity(double from, double to) const { return motion_.velocity(from, to); }
   // Whether the normal is the same everywhere.
   virtual bool is_flat() const { return false; }
+  // Where it is flat.
+  virtual std::optional<FlatSurface> flat_at(double /*time*/) const { return {}; }
+
+ protected:
+  const Motion& motion() const { return motion_; }
 
  private:
   // The obstacle where it is at time 0.
@@ -58,6 +68,9 @@ class Plane : public Obstacle {
  public:
   Plane(Vector point, const Vector& normal, Motion motion);
   bool is_flat() const override { return true; }
+  std::optional<FlatSurface> flat_at(double time) const override {
+    return FlatSurface{motion().displacement(time), point_, normal_};
+  }
 
  private:
   RigidSurface shape_at(const Vector& x) const override;

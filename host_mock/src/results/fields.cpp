@@ -92,7 +92,7 @@ std::vector<StateArray> add_states(vtkUnstructuredGrid& grid, const ilaw_instanc
   return states;
 }
 
-void add_interface(vtkUnstructuredGrid& grid, Interface& interface, const std::string& prefix, int node_count,
+void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const std::string& prefix, int node_count,
                    const Integrator& integrator) {
   vtkDoubleArray* gap =
       add_array(grid, prefix + "gap", node_count, 1, std::numeric_limits<double>::quiet_NaN());
@@ -107,10 +107,10 @@ void add_interface(vtkUnstructuredGrid& grid, Interface& interface, const std::s
     gap->SetValue(node, interface.gap_at(node_index, integrator.displacement(), integrator.time()));
     status->SetValue(node, ILAW_FREE);
     if (states.empty()) continue;
-    const int contact_index = interface.contact_index_of(node_index, integrator.displacement());
+    const std::vector<double> values = interface.state_at(node_index, integrator.displacement());
     for (const StateArray& state : states)
       for (int c = 0; c < state.count; ++c)
-        state.array->SetComponent(node, c, interface.state(contact_index, state.entry + c));
+        state.array->SetComponent(node, c, values[static_cast<std::size_t>(state.entry + c)]);
   }
   for (const std::int32_t contact_index : interface.active())
     status->SetValue(interface.node_of(contact_index), interface.status(contact_index));

@@ -2,6 +2,7 @@
 #include "results/summary.hpp"
 
 #include "base/files.hpp"
+#include "scene/packed_points.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -62,9 +63,10 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
   for (const auto& interface : scene.interfaces) interfaces.push_back(describe_interface(*interface));
   std::vector<std::string> warnings = scene.warnings;
   warnings.insert(warnings.end(), record.warnings.begin(), record.warnings.end());
+  const json source = with_packed_points_as(scene.source, {{"count", scene.model->node_count()}});
   const json summary = {
       {"program", {{"name", "ilaw"}, {"version", ILAW_VERSION}, {"abi", {ILAW_ABI_MAJOR, ILAW_ABI_MINOR}}}},
-      {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", scene.source}}},
+      {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", source}}},
       {"interfaces", interfaces},
       {"resumed_at_step", record.resumed_at},
       {"interrupted", record.interrupted},

@@ -6,6 +6,7 @@
 #include "model/points.hpp"
 #include "model/rotating_spring.hpp"
 #include "scene/json_text.hpp"
+#include "scene/packed_points.hpp"
 #include "scene/values.hpp"
 
 #include <array>
@@ -20,6 +21,11 @@ using nlohmann::json;
 
 std::unique_ptr<Model> read_points(const json& model) {
   const int d = model["dimension"].get<int>();
+  if (are_packed(model["points"])) {
+    std::vector<PointMass> points = unpacked(model["points"]);
+    check_components(static_cast<int>(points.front().position.size()), d, at("/model/points", 0) + "/position");
+    return std::make_unique<Points>(d, points);
+  }
   std::vector<PointMass> points;
   for (std::size_t k = 0; k < model["points"].size(); ++k) {
     const json& point = model["points"][k];

@@ -11,11 +11,11 @@
 #include "scene/warnings.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <set>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -55,13 +55,16 @@ std::string read_file(const std::filesystem::path& file) {
   if (status.type() == std::filesystem::file_type::not_found)
     throw SceneError("no such file, expected a scene");
   if (std::filesystem::is_directory(status)) throw SceneError("found a folder, expected a scene");
-  std::ifstream stream(file);
-  std::ostringstream text;
-  if (stream.peek() == std::ifstream::traits_type::eof() && stream.is_open())
-    throw SceneError("the file is empty, expected a scene");
-  if (!stream || !(text << stream.rdbuf()))
+  std::ifstream stream(file, std::ios::binary);
+  std::string text;
+  if (const auto size = std::filesystem::file_size(file, error); !error) text.reserve(size);
+  std::array<char, 1 << 16> part{};
+  while (stream.read(part.data(), part.size()) || stream.gcount() > 0)
+    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  if (!stream.is_open() || stream.bad())
     throw SceneError(std::string("the file cannot be read: ") + std::strerror(errno));
-  return text.str();
+  if (text.empty()) throw SceneError("the file is empty, expected a scene");
+  return text;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "scene/validation.hpp"
 
 #include "scene/json_text.hpp"
+#include "scene/packed_points.hpp"
 
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <vector>
 
 namespace ilaw::host {
@@ -154,54 +154,11 @@ void validate(const json& value, const json& part, const std::string& base) {
   explain_error(value, part, base, *deepest);
 }
 
-// Looks for keys that come twice, which JSON leaves undefined. A reader of its own: nlohmann's
-// parser with a callback goes through all of an array after each of its objects.
-class DuplicateKeys : public nlohmann::json_sax<json> {
- public:
-  bool start_object(std::size_t /*size*/) override {
-    seen_.emplace_back();
-    return true;
-  }
-  bool end_object() override {
-    seen_.pop_back();
-    return true;
-  }
-  bool key(string_t& key) override {
-    if (!seen_.back().insert(key).second)
-      throw SceneError("", "key '" + key + "' appears twice in one object, expected once");
-    return true;
-  }
-  bool null() override { return true; }
-  bool boolean(bool /*value*/) override { return true; }
-  bool number_integer(number_integer_t /*value*/) override { return true; }
-  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
-  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
-  bool string(string_t& /*value*/) override { return true; }
-  bool binary(binary_t& /*value*/) override { return true; }
-  bool start_array(std::size_t /*size*/) override { return true; }
-  bool end_array() override { return true; }
-  bool parse_error(std::size_t /*at*/, const std::string& /*token*/,
-                   const json::exception& /*error*/) override {
-    return false;  // left to parse
-  }
-
- private:
-  std::vector<std::set<std::string>> seen_;
-};
-
 }  // namespace
 
-json parse_scene(const std::string& text) {
-  try {
-    DuplicateKeys duplicates;
-    json::sax_parse(text, &duplicates);
-    return json::parse(text);
-  } catch (const json::exception& error) {
-    throw SceneError(std::string("not valid JSON: ") + error.what());
-  }
-}
-
-void validate_scene(const json& scene) {
+void validate_scene(const json& source) {
+  // Packed points were checked as they were read: one that is right stands in for them.
+  const json scene = with_packed_points_as(source, {{{"mass", 1.0}, {"position", {0.0}}}});
   validate(scene, schema(), "");
   // Parts that come in types have a schema per type.
   const auto validate_typed = [](const json& value, const std::string& kind, const std::string& pointer) {

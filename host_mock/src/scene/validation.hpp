@@ -17,6 +17,6 @@ extern const char* const scene_schema_text;
 nlohmann::json parse_scene(const std::string& text);
 
 // Checks against the schema; throws SceneError for the most deeply nested mistake.
-void validate_scene(const nlohmann::json& scene);
+void validate_scene(const nlohmann::json& source);
 
 }  // namespace ilaw::host

@@ -12,6 +12,9 @@
 
 namespace ilaw::host {
 
+// Throws where a vector has other than the model's dimension.
+void check_components(int count, int dimension, const std::string& pointer);
+
 // A vector of the model's dimension.
 Vector read_vector(const nlohmann::json& value, int dimension, const std::string& pointer);
 // Of a key that may be left out.

@@ -25,32 +25,21 @@ void Accounts::add_solution(const CoupledContacts::Outcome& outcome) {
 void Accounts::add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step) {
   if (step.external_impulse) energy_.add_external(*step.external_impulse, step.v_before, step.v);
   if (!model.is_linear()) energy_.add_internal(step.internal_impulse, step.v_before, step.v);
-  for (const auto& interface : interfaces) add_interface(*interface, step);
   double stored = 0.0;
-  for (const auto& interface : interfaces)
-    for (const std::int32_t contact_index : interface->active())
-      stored += interface->energy(contact_index, ILAW_ENERGY_STORED);
+  for (const auto& interface : interfaces) {
+    add_interface(*interface);
+    stored += interface->sums().energy[ILAW_ENERGY_STORED];
+  }
   energy_.set_stored(stored);
 }
 
-void Accounts::add_interface(const Interface& interface, const StepRecord& step) {
-  const Vector drift = interface.obstacle_velocity() + interface.obstacle_velocity_before();
-  double work = 0.0, relative_work = 0.0;
-  for (const std::int32_t contact_index : interface.active()) {
-    tally_.penetration_max = std::max(tally_.penetration_max, -interface.gap(contact_index));
-    ++tally_.status_counts[static_cast<std::size_t>(interface.status(contact_index))];
-    // Also where there is no impulse: a penalty that lets go may still have stored something.
-    for (int part = 0; part < ILAW_ENERGY_STORED; ++part)
-      energy_.add_dissipation(part, interface.energy(contact_index, part));
-    if (interface.status(contact_index) == ILAW_FREE && interface.impulse(contact_index).isZero(0.0))
-      continue;
-    const Vector sum =
-        interface.relative(contact_index, step.v_before) + interface.relative(contact_index, step.v);
-    work += 0.5 * interface.impulse(contact_index).dot(sum);
-    relative_work += 0.5 * interface.impulse(contact_index).dot(sum - drift);
-  }
-  energy_.add_interface(work, relative_work);
-  tally_.stable_step = std::min(tally_.stable_step, interface.stable_step());
+void Accounts::add_interface(const Interface& interface) {
+  const ContactSums& sums = interface.sums();
+  energy_.add_interface(sums.work, sums.relative_work);
+  energy_.add_dissipation(sums.energy, sums.least_dissipation);
+  tally_.penetration_max = std::max(tally_.penetration_max, sums.penetration);
+  tally_.stable_step = std::min(tally_.stable_step, sums.stable_step);
+  for (std::size_t k = 0; k < sums.statuses.size(); ++k) tally_.status_counts[k] += sums.statuses[k];
   const auto active = static_cast<std::int64_t>(interface.active().size());
   const auto skipped = static_cast<std::int64_t>(interface.nodes().size()) - active;
   tally_.active += active;

@@ -51,7 +51,7 @@ class Accounts {
   void load(std::istream& in);
 
  private:
-  void add_interface(const Interface& interface, const StepRecord& step);
+  void add_interface(const Interface& interface);
 
   EnergyBalance energy_;
   Tally tally_;

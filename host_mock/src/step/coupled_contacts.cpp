@@ -3,17 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace ilaw::host {
 
-bool share_nodes(const Interfaces& interfaces) {
-  std::set<int> seen;
+bool share_nodes(const Model& model, const Interfaces& interfaces) {
+  std::vector<bool> seen(static_cast<std::size_t>(model.node_count()));
   for (const auto& interface : interfaces) {
     if (interface->setup().counterpart->shares_partners()) return true;
     for (const std::vector<int>* nodes : {&interface->nodes(), &interface->setup().counterpart->partners()})
       for (const int node : *nodes)
-        if (!seen.insert(node).second) return true;
+        if (std::vector<bool>::reference mark = seen[static_cast<std::size_t>(node)]; mark)
+          return true;
+        else
+          mark = true;
   }
   return false;
 }
@@ -38,6 +40,7 @@ CoupledContacts::Outcome CoupledContacts::solve(StepView step, Dofs& v) {
     bounded = !(fastest > step.speed_after);
     step.speed_after = 2.0 * fastest;
   }
+  for (const auto& interface : interfaces_) interface->accept(step, v);
   return outcome;
 }
 

@@ -12,7 +12,7 @@
 namespace ilaw::host {
 
 // Whether an impulse of one contact may change the velocity of another.
-bool share_nodes(const Interfaces& interfaces);
+bool share_nodes(const Model& model, const Interfaces& interfaces);
 
 class CoupledContacts {
  public:

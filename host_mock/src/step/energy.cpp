@@ -2,9 +2,11 @@
 #include "step/energy.hpp"
 
 #include "base/bytes.hpp"
+#include "step/dof_loops.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace ilaw::host {
 namespace {
@@ -17,10 +19,13 @@ long double kinetic_energy(const Model& model, const Dofs& v) {
 }
 
 long double work(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after) {
-  long double twice = 0;
-  for (Eigen::Index i = 0; i < impulse.size(); ++i)
-    twice += static_cast<long double>(impulse[i]) * (static_cast<long double>(v_before[i]) + v_after[i]);
-  return twice / 2;
+  const auto twice = [&](Eigen::Index first, Eigen::Index end) {
+    long double sum = 0;
+    for (Eigen::Index i = first; i < end; ++i)
+      sum += static_cast<long double>(impulse[i]) * (static_cast<long double>(v_before[i]) + v_after[i]);
+    return sum;
+  };
+  return over_parts(impulse.size(), twice, std::plus<>()) / 2;
 }
 
 // 1/2 U_n^T K U_{n+1} of a linear model.
@@ -58,9 +63,9 @@ void EnergyBalance::add_interface(double work, double relative_work) {
   note_size(sums_.interface_work);
 }
 
-void EnergyBalance::add_dissipation(int part, double energy) {
-  by_law_[static_cast<std::size_t>(part)] += energy;
-  sums_.least_dissipation = std::min(sums_.least_dissipation, energy);
+void EnergyBalance::add_dissipation(const std::array<double, ILAW_ENERGY_COUNT>& energy, double least) {
+  for (std::size_t part = 0; part < ILAW_ENERGY_STORED; ++part) by_law_[part] += energy[part];
+  sums_.least_dissipation = std::min(sums_.least_dissipation, least);
 }
 
 EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs& u_next,

@@ -38,7 +38,8 @@ class EnergyBalance {
   // Work of an interface on the bodies: in all, and relative to moving obstacles, to compare with
   // what the laws dissipated.
   void add_interface(double work, double relative_work);
-  void add_dissipation(int part, double energy);
+  // What the laws of an interface dissipated in a step, and the least of a node.
+  void add_dissipation(const std::array<double, ILAW_ENERGY_COUNT>& energy, double least);
   void set_stored(double energy) { by_law_[ILAW_ENERGY_STORED] = energy; }
 
   EnergyReport report(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) const;

@@ -5,7 +5,6 @@
 #include "base/stopwatch.hpp"
 #include "step/dof_loops.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -13,30 +12,46 @@ namespace ilaw::host {
 
 void Integrator::step() {
   const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
-  v_before_ = v_;
-  for_each_dof(u_.size(), [&](Eigen::Index i) { u_[i] += dt_ * v_[i]; });  // u = u + h v
+  const int weight = watch_weight();
+  double speed_free = 0.0;
+  move();  // u = u + h v
   {
-    const Stopwatch watch(seconds_.internal_forces);
-    sum_forces(times);  // f = f_ext - f_int(u), without any contact force
-    kick(times);        // v_free = v + (h/m) f
+    const Stopwatch watch(seconds_.internal_forces, weight);
+    sum_forces(times);         // f = f_ext - f_int(u), without any contact force
+    speed_free = kick(times);  // v_free = v + (h/m) f
   }
-  check_motion(times.after);  // before the laws see it, too: they must not be blamed
+  check_motion(speed_free, times.after);  // before the laws see it, too: they must not be blamed
   {
-    const Stopwatch watch(seconds_.interfaces);
-    add_reactions(times.after);  // r = law(v_free, 1/m, gap, state), v = v_free + r/m
+    const Stopwatch watch(seconds_.interfaces, weight);
+    add_reactions(times.after, speed_free);  // r = law(v_free, 1/m, gap, state), v = v_free + r/m
   }
-  check_motion(times.after);
+  speed_before_ = largest_speed(v_, model_.dimension());
+  check_motion(speed_before_, times.after);
   ++steps_;
   accounts_.add_step(model_, interfaces_,
                      {loads_.empty() ? nullptr : &external_impulse_, internal_impulse_, v_before_, v_});
 }
 
-// As impulses: shocks have no force.
+void Integrator::move() {
+  for_each_part(u_.size(), [&](Eigen::Index first, Eigen::Index end) {
+    for (Eigen::Index i = first; i < end; ++i) {
+      v_before_[i] = v_[i];
+      u_[i] += dt_ * v_[i];
+    }
+  });
+}
+
+// As impulses: shocks have no force. What no load changes is summed once.
 void Integrator::sum_forces(StepTimes step) {
-  if (!loads_.empty()) {
-    external_impulse_.setZero();
+  if (!loads_are_steady_) {
+    const auto each = [&](auto change) {
+      for_each_part(external_impulse_.size(), [&](Eigen::Index first, Eigen::Index end) {
+        for (Eigen::Index i = first; i < end; ++i) change(external_impulse_[i]);
+      });
+    };
+    each([](double& impulse) { impulse = 0.0; });
     for (const auto& load : loads_) load->add_force(step.after, external_impulse_);
-    external_impulse_ *= dt_;
+    each([h = dt_](double& impulse) { impulse *= h; });
     for (const auto& load : loads_) load->add_impulse(step, external_impulse_);
   }
   if (model_.has_internal_forces()) {
@@ -45,13 +60,24 @@ void Integrator::sum_forces(StepTimes step) {
   }
 }
 
-void Integrator::kick(StepTimes step) {
-  for_each_dof(v_.size(), [&](Eigen::Index i) {
-    internal_impulse_[i] *= dt_;
-    v_[i] += (external_impulse_[i] + internal_impulse_[i]) * inverse_mass_[i];
-  });
-  if (std::any_of(loads_.begin(), loads_.end(), [](const auto& load) { return load->corrects(); }))
-    correct(step);
+// Returns the largest speed.
+double Integrator::kick(StepTimes step) {
+  const bool pushed = !loads_.empty(), deformed = model_.has_internal_forces();
+  const Eigen::Index d = model_.dimension();
+  const double speed = std::sqrt(largest_of_parts(v_.size(), [&](Eigen::Index first, Eigen::Index end) {
+    for (Eigen::Index i = first; deformed && i < end; ++i) internal_impulse_[i] *= dt_;
+    if (pushed && deformed)
+      for (Eigen::Index i = first; i < end; ++i)
+        v_[i] += (external_impulse_[i] + internal_impulse_[i]) * inverse_mass_[i];
+    else if (pushed || deformed) {
+      const Dofs& impulse = pushed ? external_impulse_ : internal_impulse_;
+      for (Eigen::Index i = first; i < end; ++i) v_[i] += impulse[i] * inverse_mass_[i];
+    }
+    return largest_square(v_, d, first, end);
+  }));
+  if (!loads_correct_) return speed;
+  correct(step);
+  return largest_speed(v_, d);
 }
 
 // What a load takes off or adds, times the mass, is its impulse.
@@ -61,26 +87,20 @@ void Integrator::correct(StepTimes step) {
   external_impulse_ += model_.mass().cwiseProduct(v_ - uncorrected);
 }
 
-// Each law is evaluated once, for all its contacts together. Where contacts share nodes it is
-// evaluated until all laws agree on the velocities.
-void Integrator::add_reactions(double time) {
-  const Eigen::Index d = model_.dimension();
-  const StepView step{u_, v_before_, time, dt_, largest_speed(v_before_, d), largest_speed(v_, d)};
-  if (coupled_) {
+// Where no two contacts share a node, each law is evaluated once: for blocks of contacts the interface
+// finds gaps, normals and 1/m, passes v_free and v_before relative to the obstacle, takes impulses,
+// states and energies, and adds r/m. Where some do, laws are evaluated until all agree.
+void Integrator::add_reactions(double time, double speed_free) {
+  const StepView step{u_, v_before_, time, dt_, speed_before_, speed_free};
+  if (coupled_)
     accounts_.add_solution(coupled_->solve(step, v_));
-  } else {
-    for (const auto& interface : interfaces_) {
-      interface->open_step(step);                        // gap, normal, delassus
-      interface->gather(interface->active(), v_, step);  // v_free, v_previous: relative to the obstacle
-      interface->evaluate(interface->active(), step);    // the law: impulse, state, energies, status
-      interface->apply(interface->active(), v_);         // v = v_free + r/m
-    }
-  }
-  for (const auto& interface : interfaces_) interface->accept(dt_);  // its state is that before the next step
+  else
+    for (const auto& interface : interfaces_) interface->solve(step, v_);
 }
 
-void Integrator::check_motion(double time) const {
-  if (v_.allFinite()) return;
+// An infinite speed may also be the square of a large one.
+void Integrator::check_motion(double speed, double time) const {
+  if (std::isfinite(speed) || v_.allFinite()) return;
   Eigen::Index dof = 0;
   while (std::isfinite(v_[dof])) ++dof;
   throw std::runtime_error("the motion diverged: velocity " + std::to_string(v_[dof]) + " at node " +

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "contact/block_step.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+constexpr std::ptrdiff_t block_size = 192;  // below 256: add_up counts in bytes
+
+// Whether values count up by one.
+bool follow_each_other(const std::int32_t* values, std::ptrdiff_t count) {
+  std::int32_t difference = 0;
+  for (std::ptrdiff_t i = 0; i < count; ++i)
+    difference |= values[i] - values[0] - static_cast<std::int32_t>(i);
+  return difference == 0;
+}
+
+// One block after the other, in D dimensions; Partnered: against other nodes.
+template <int D, bool Partnered>
+class Blocks {
+ public:
+  explicit Blocks(const BlockStep& step) : step_(step), at_(step.contacts) {
+    for (int c = 0; c < D; ++c) {
+      obstacle_[c] = step.obstacle_velocity[c];
+      obstacle_before_[c] = step.obstacle_velocity_before[c];
+    }
+  }
+
+  void solve(const std::int32_t* contacts, std::ptrdiff_t count, ChunkOutcome& outcome) {
+    contacts_ = contacts;
+    count_ = count;
+    find_nodes();
+    locate();
+    const ilaw_batch batch = make_batch();
+    if (!evaluate(batch, outcome)) return;
+    mark_touched(batch);
+    apply();
+    add_up(outcome.sums);
+    if (!in_row_) scatter(batch);
+  }
+
+ private:
+  using Column = std::array<double, block_size>;
+  using Vectors = std::array<double, D * block_size>;
+  using Components = std::array<double, D>;
+
+  std::size_t contact(std::ptrdiff_t i) const { return static_cast<std::size_t>(contacts_[i]); }
+  Eigen::Index first_dof(std::ptrdiff_t i) const { return Eigen::Index{D} * node_[static_cast<std::size_t>(i)]; }
+
+  void find_nodes() {
+    for (std::ptrdiff_t i = 0; i < count_; ++i) node_index_[i] = at_.node_index[contact(i)];
+    for (std::ptrdiff_t i = 0; i < count_; ++i)
+      node_[i] = step_.setup.nodes[static_cast<std::size_t>(node_index_[i])];
+    in_row_ = follow_each_other(contacts_, count_) && follow_each_other(node_.data(), count_);
+  }
+
+  void locate() {
+    if constexpr (Partnered)
+      locate_partners();
+    else
+      step_.setup.counterpart->locate(node_index_.data(), count_, step_.step.u, step_.step.time,
+                                      {gap_.data(), normal_.data()});
+    for (std::ptrdiff_t i = 0; i < count_; ++i) gap_[i] -= step_.setup.gap_offset;
+  }
+
+  void locate_partners() {
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      ContactPoint& point = at_.point[contact(i)];
+      point = step_.setup.counterpart->contact_point(node_index_[i], step_.step.u, step_.step.time);
+      gap_[i] = point.gap;
+      for (int c = 0; c < D; ++c) normal_[D * i + c] = point.normal[c];
+      at_.delassus[contact(i)] = point.delassus(step_.model, node_[i]);
+    }
+  }
+
+  // ---- what the law reads and writes ----
+
+  // A component of a velocity, relative to the partners but not to the obstacle.
+  double component(const double* v, std::ptrdiff_t i, int c) const {
+    double value = v[first_dof(i) + c];
+    if constexpr (Partnered) {
+      const ContactPoint& point = at_.point[contact(i)];
+      for (std::size_t p = 0; p < static_cast<std::size_t>(point.partner_count); ++p)
+        value -= point.weights[p] * v[Eigen::Index{D} * point.partners[p] + c];
+    }
+    return value;
+  }
+
+  const double* relative(const Dofs& v, const Components& obstacle, Vectors& room) const {
+    if (!Partnered && in_row_ && obstacle == Components{}) return &v[first_dof(0)];
+    for (std::ptrdiff_t i = 0; i < count_; ++i)
+      for (int c = 0; c < D; ++c) room[D * i + c] = component(v.data(), i, c) - obstacle[c];
+    return room.data();
+  }
+
+  // An array of all contacts from the block's first on, or what was gathered of it; null where it is empty.
+  double* column(std::vector<double>& all, std::size_t width, double* room) const {
+    if (all.empty()) return nullptr;
+    if (in_row_) return &all[contact(0) * width];
+    for (std::ptrdiff_t i = 0; i < count_; ++i)
+      std::copy_n(&all[contact(i) * width], width, room + static_cast<std::size_t>(i) * width);
+    return room;
+  }
+
+  ilaw_batch make_batch() {
+    const ilaw_instance_info& info = step_.law.info();
+    const auto size = static_cast<std::int64_t>(info.state_size);
+    if (!in_row_) state_.resize(info.state_size * block_size);
+    double* const state = column(at_.state, info.state_size, state_.data());
+    delassus_ = column(at_.delassus, 1, delassus_room_.data());
+    impulse_ = in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
+    status_ = in_row_ ? &at_.status[contact(0)] : status_room_.data();
+    ilaw_batch batch = empty_batch(step_.setup, step_.step.time, step_.step.dt);
+    batch.node_count = count_;
+    batch.v_free = {relative(step_.v, obstacle_, v_free_), D, 1};
+    if ((info.inputs | info.energy_inputs) & ILAW_INPUT_V_PREVIOUS)
+      batch.v_previous = {relative(step_.step.v_before, obstacle_before_, v_previous_), D, 1};
+    batch.delassus = {delassus_, 1, 0};
+    batch.gap = {gap_.data(), 1, 0};
+    batch.normal = {normal_.data(), D, 1};
+    batch.area = {column(at_.area, 1, area_room_.data()), 1, 0};
+    batch.state_in = {state, size, 1};
+    batch.state_out = {state, size, 1};
+    batch.impulse = {impulse_, D, 1};
+    batch.energy = {energy_.data(), ILAW_ENERGY_COUNT, 1};
+    batch.status = status_;
+    batch.status_stride = 1;
+    add_parameters(batch);
+    return batch;
+  }
+
+  void add_parameters(ilaw_batch& batch) {
+    const std::size_t count = at_.parameters.size();
+    if (!in_row_) parameter_room_.resize(count * block_size);
+    parameters_.resize(count);
+    for (std::size_t p = 0; p < count; ++p)
+      parameters_[p] = {column(at_.parameters[p], 1, parameter_room_.data() + p * block_size), 1, 0};
+    batch.per_node_parameters = parameters_.data();
+  }
+
+  // ---- the law, and what follows from it ----
+
+  bool evaluate(const ilaw_batch& batch, ChunkOutcome& outcome) {
+    const Answer answer = step_.law.evaluate(batch);
+    outcome.refusal.add(answer, contacts_);
+    outcome.sums.add_stable_step(answer.report.stable_velocity_step);
+    outcome.refusal.add_unknown(status_, contacts_, answer.code == ILAW_OK ? count_ : 0);
+    return outcome.refusal.code == ILAW_OK;
+  }
+
+  // Out of reach as ilaw.h says it: there a law that promises so keeps its state.
+  void mark_touched(const ilaw_batch& batch) {
+    if (at_.state.empty()) return;
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      double normal_velocity = 0.0;
+      for (int c = 0; c < D; ++c) normal_velocity += normal_[D * i + c] * batch.v_free.values[D * i + c];
+      const bool in_reach = !(gap_[i] > 0.0 && gap_[i] + step_.step.dt * normal_velocity > 0.0);
+      at_.mark_touched(contact(i), status_[i] != ILAW_FREE, in_reach, step_.law.rests());
+    }
+  }
+
+  void apply() {
+    double* const v = step_.v.data();
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      const double* const r = impulse_ + D * i;
+      bool acts = false;
+      for (int c = 0; c < D; ++c) acts = acts || r[c] != 0.0;
+      if (!acts) continue;
+      if constexpr (Partnered)
+        at_.point[contact(i)].for_each_node(node_[i], [&](int node, double weight) {
+          const double scale = weight / step_.model.mass()[Eigen::Index{D} * node];
+          for (int c = 0; c < D; ++c) v[Eigen::Index{D} * node + c] += scale * r[c];
+        });
+      else
+        for (int c = 0; c < D; ++c) v[first_dof(i) + c] += delassus_[i] * r[c];
+    }
+  }
+
+  // The work over the step is r . (v_before + v)/2.
+  void add_up(ContactSums& sums) const {
+    const double *const v = step_.v.data(), *const before = step_.step.v_before.data();
+    double work = sums.work, relative_work = sums.relative_work, penetration = sums.penetration;
+    std::uint64_t statuses = 0;  // a byte each
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      double product = 0.0, relative_product = 0.0;
+      for (int c = 0; c < D; ++c) {
+        const double r = impulse_[D * i + c], sum = component(before, i, c) + component(v, i, c);
+        product += r * sum;
+        relative_product += r * (sum - (obstacle_[c] + obstacle_before_[c]));
+      }
+      work += 0.5 * product;
+      relative_work += 0.5 * relative_product;
+      penetration = -gap_[i] > penetration ? -gap_[i] : penetration;
+      statuses += std::uint64_t{1} << (8 * status_[i]);
+    }
+    sums.work = work;
+    sums.relative_work = relative_work;
+    sums.penetration = penetration;
+    for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k) sums.statuses[k] += (statuses >> (8 * k)) & 0xff;
+    for (std::ptrdiff_t i = 0; i < count_; ++i) sums.add_energy(&energy_[ILAW_ENERGY_COUNT * i]);
+  }
+
+  void scatter(const ilaw_batch& batch) {
+    const std::size_t size = step_.law.info().state_size;
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      std::copy_n(impulse_ + D * i, D, &at_.impulse[contact(i) * D]);
+      at_.status[contact(i)] = status_[i];
+    }
+    for (std::ptrdiff_t i = 0; size > 0 && i < count_; ++i)
+      std::copy_n(batch.state_out.values + static_cast<std::size_t>(i) * size, size,
+                  &at_.state[contact(i) * size]);
+  }
+
+  const BlockStep& step_;
+  ContactArrays& at_;
+  const std::int32_t* contacts_ = nullptr;
+  std::ptrdiff_t count_ = 0;
+  bool in_row_ = false;
+  Components obstacle_, obstacle_before_;
+  // What this block works on: in the host's arrays or the rooms below.
+  double *delassus_ = nullptr, *impulse_ = nullptr;
+  std::uint8_t* status_ = nullptr;
+  std::array<std::int32_t, block_size> node_index_, node_;
+  Column gap_, delassus_room_, area_room_;
+  Vectors v_free_, v_previous_, normal_, impulse_room_;
+  std::array<double, ILAW_ENERGY_COUNT * block_size> energy_;
+  std::array<std::uint8_t, block_size> status_room_;
+  std::vector<double> state_, parameter_room_;
+  std::vector<ilaw_input> parameters_;
+};
+
+template <int D, bool Partnered>
+ChunkOutcome solve_blocks(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count) {
+  ChunkOutcome outcome;
+  Blocks<D, Partnered> blocks(step);
+  for (std::ptrdiff_t first = 0; first < count; first += block_size)
+    blocks.solve(contacts + first, std::min(block_size, count - first), outcome);
+  return outcome;
+}
+
+template <int D>
+ChunkOutcome solve_in(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count) {
+  return step.contacts.point.empty() ? solve_blocks<D, false>(step, contacts, count)
+                                     : solve_blocks<D, true>(step, contacts, count);
+}
+
+}  // namespace
+
+ChunkOutcome solve_chunk(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count) {
+  const int d = step.model.dimension();
+  if (d == 1) return solve_in<1>(step, contacts, count);
+  return d == 2 ? solve_in<2>(step, contacts, count) : solve_in<3>(step, contacts, count);
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,39 @@
+// block_step.hpp - the step of contacts of which no two share a node, from gaps to new velocities, in
+// blocks that stay in the cache. Where the contacts of a block and their nodes follow each other,
+// the law reads and writes the host's own arrays; else the block gathers what the law asks for.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/contact_arrays.hpp"
+#include "contact/contact_sums.hpp"
+#include "contact/interface_setup.hpp"
+#include "contact/law.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace ilaw::host {
+
+// A step of an interface, the same for all its blocks.
+struct BlockStep {
+  const InterfaceSetup& setup;
+  const Model& model;
+  const Law& law;
+  ContactArrays& contacts;
+  const StepView& step;
+  const Vector &obstacle_velocity, &obstacle_velocity_before;
+  Dofs& v;  // v_free, then what the impulses make of it
+};
+
+// What became of the contacts of a chunk.
+struct ChunkOutcome {
+  ContactSums sums;
+  Refusal refusal;
+};
+
+// Contacts that a thread takes at a time.
+constexpr std::ptrdiff_t contact_chunk = 2048;
+
+ChunkOutcome solve_chunk(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count);
+
+}  // namespace ilaw::host

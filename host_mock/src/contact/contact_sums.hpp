@@ -1,0 +1,45 @@
+// contact_sums.hpp - what happened at the contacts of an interface in a step, added up.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/ilaw.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace ilaw::host {
+
+struct ContactSums {
+  double work = 0.0;           // of the impulses on the bodies
+  double relative_work = 0.0;  // relative to a moving obstacle
+  double penetration = 0.0;    // the largest
+  double least_dissipation = 0.0;
+  std::array<double, ILAW_ENERGY_COUNT> energy{};
+  std::array<std::int64_t, ILAW_STATUS_COUNT> statuses{};
+  double stable_step = std::numeric_limits<double>::infinity();
+
+  void add(const ContactSums& other) {
+    work += other.work;
+    relative_work += other.relative_work;
+    penetration = std::max(penetration, other.penetration);
+    least_dissipation = std::min(least_dissipation, other.least_dissipation);
+    for (std::size_t k = 0; k < energy.size(); ++k) energy[k] += other.energy[k];
+    for (std::size_t k = 0; k < statuses.size(); ++k) statuses[k] += other.statuses[k];
+    add_stable_step(other.stable_step);
+  }
+  // As a law reported it; 0: its library does not say.
+  void add_stable_step(double step) {
+    if (step > 0.0) stable_step = std::min(stable_step, step);
+  }
+  // Energies that a law gave for a contact. Dissipated parts are never negative.
+  void add_energy(const double* parts) {
+    for (std::size_t k = 0; k < energy.size(); ++k) energy[k] += parts[k];
+    for (std::size_t k = 0; k < ILAW_ENERGY_STORED; ++k)
+      least_dissipation = parts[k] < least_dissipation ? parts[k] : least_dissipation;
+  }
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,39 @@
+// interface_setup.hpp - what an interface is made of, and a step from its side.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/counterpart.hpp"
+#include "contact/law_arguments.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+struct InterfaceSetup {
+  std::string name, law, library;  // library: name or path
+  Arguments arguments;
+  std::vector<int> nodes;
+  std::vector<double> areas;  // tributary, per node
+  std::unique_ptr<Counterpart> counterpart;
+  double birth = 0.0, death = std::numeric_limits<double>::infinity();  // while birth <= t < death
+  Vector tangent;                 // first tangent of all nodes; empty: none given
+  double gap_offset = 0.0;        // taken off every gap: thickness, radius
+  bool keeps_all_active = false;  // also contacts that cannot be reached: same results, more work
+};
+
+// A step from the interface's side. Speeds bound those of all nodes.
+struct StepView {
+  const Dofs& u;         // at time
+  const Dofs& v_before;  // at the half step before time
+  double time, dt;
+  double speed_before;  // at the half step before time
+  double speed_after;   // of v_free, and of what other contacts may make of it
+};
+
+using ContactList = std::vector<std::int32_t>;  // by contact_index
+
+}  // namespace ilaw::host

@@ -1,0 +1,265 @@
+// What the host takes per node and step beside the law alone, in the same run.
+//
+//   ilaw_bench_host [--law NAME] [--points N...] [--threads N...] [--repetitions K] [--out FILE.csv]
+//   ilaw_bench_host --read N
+//
+// Points under gravity on a plane, or over it: all in flight and far, half of them touching, all touching.
+// The law alone evaluates the same contacts, interleaved and without a list: "law" the impulse alone, "law+"
+// with status and energies, as the host asks. "step" is a step of the host, "interface" what it takes longer
+// than that of a host without interface. Each repetition times all of these in turn; medians are printed, of
+// the processor's time with one thread, which others on the machine disturb little, else of the clock on the wall.
+//
+// --read writes a scene of N points, reads it as `ilaw run` does, and says how long that took and the largest
+// memory that the process has held.
+#include "base/csv.hpp"
+#include "scene/scene.hpp"
+#include "step/integrator.hpp"
+
+#include "model/points.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace ilaw::host;
+// Seconds of the wall clock; of this thread's processor time where there is but one.
+double now() {
+  timespec time{};
+  clock_gettime(omp_get_max_threads() == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Subject {
+  const char* law;
+  Arguments arguments;
+};
+
+enum class Situation { flight, half, all };
+constexpr const char* name_of[] = {"flight", "half", "all"};
+constexpr double dt = 1e-3;
+const Vector acceleration = (Vector(3) << 1.0, 0.0, -10.0).finished();
+
+bool touches(Situation situation, std::size_t k) {
+  return situation == Situation::all || (situation == Situation::half && (k * 2654435761U >> 7) % 2 == 0);
+}
+
+Points points_of(Situation situation, std::size_t count) {
+  std::vector<PointMass> points(count, {1.0, 1.0, Vector::Zero(3), Vector::Zero(3), Vector()});
+  for (std::size_t k = 0; k < count; ++k) {
+    points[k].position[0] = static_cast<double>(k);
+    points[k].position[2] = touches(situation, k) ? 0.0 : 1e3;
+  }
+  return {3, points};
+}
+
+// The host, with one interface or none.
+class HostCase {
+ public:
+  HostCase(const Subject* subject, Situation situation, std::size_t count)
+      : count_(count), model_(points_of(situation, count)) {
+    const NodeSet& all = model_.sets().at("all");
+    loads_.push_back(std::make_unique<Gravity>(model_, all.nodes, acceleration));
+    if (subject) add_interface(*subject, all);
+    integrator_ = std::make_unique<Integrator>(model_, loads_, interfaces_, dt);
+  }
+
+  // Nanoseconds per node and step.
+  double run(long steps) {
+    const double start = now();
+    for (long k = 0; k < steps; ++k) integrator_->step();
+    return 1e9 * (now() - start) / (static_cast<double>(steps) * static_cast<double>(count_));
+  }
+
+ private:
+  void add_interface(const Subject& subject, const NodeSet& all) {
+    InterfaceSetup setup;
+    setup.name = setup.law = setup.library = subject.law;
+    setup.arguments = subject.arguments;
+    setup.nodes = all.nodes;
+    setup.areas = all.areas;
+    setup.counterpart = std::make_unique<RigidCounterpart>(
+        model_, all.nodes,
+        std::make_unique<Plane>(Vector::Zero(3), Vector::Unit(3, 2), Motion(Vector::Zero(3).eval())));
+    interfaces_.push_back(std::make_unique<Interface>(std::move(setup), model_));
+  }
+
+  std::size_t count_;
+  Points model_;
+  Loads loads_;
+  Interfaces interfaces_;
+  std::unique_ptr<Integrator> integrator_;
+};
+
+// The law by itself, on the arrays of the nodes that touch.
+class LawCase {
+ public:
+  LawCase(const Subject& subject, Situation situation, std::size_t count)
+      : library_(ilaw::library::named(subject.law)),
+        law_(create_law(subject.law, subject.arguments, Vector(), library_, 3)),
+        all_(count) {
+    std::size_t touching = 0;
+    for (std::size_t k = 0; k < count; ++k) touching += touches(situation, k) ? 1 : 0;
+    const auto size = static_cast<std::int64_t>(law_.info().state_size);
+    for (std::vector<double>* vectors : {&v_free_, &v_previous_, &normal_, &impulse_})
+      vectors->resize(3 * touching);
+    for (std::size_t k = 0; k < touching; ++k) {
+      normal_[3 * k + 2] = 1.0;
+      for (std::size_t c = 0; c < 3; ++c)
+        v_free_[3 * k + c] = dt * acceleration[static_cast<Eigen::Index>(c)];
+    }
+    gap_.resize(touching);
+    delassus_.assign(touching, 1.0);
+    energy_.resize(touching * ILAW_ENERGY_COUNT);
+    status_.resize(touching);
+    state_.resize(touching * law_.info().state_size);
+    batch_.struct_size = sizeof batch_;
+    batch_.node_count = static_cast<std::int64_t>(touching);
+    batch_.velocity_step = batch_.position_step = dt;
+    batch_.v_free = {v_free_.data(), 3, 1};
+    batch_.v_previous = {v_previous_.data(), 3, 1};
+    batch_.normal = {normal_.data(), 3, 1};
+    batch_.delassus = {delassus_.data(), 1, 1};
+    batch_.gap = {gap_.data(), 1, 1};
+    batch_.area = {delassus_.data(), 1, 1};
+    batch_.impulse = {impulse_.data(), 3, 1};
+    batch_.state_in = {state_.data(), size, 1};
+    batch_.state_out = {state_.data(), size, 1};
+    batch_.status_stride = 1;
+    if (law_.initialise(batch_) != ILAW_OK) throw std::runtime_error("initialise refused");
+  }
+
+  double run(long steps, bool outputs) {
+    batch_.energy = outputs ? ilaw_output{energy_.data(), ILAW_ENERGY_COUNT, 1} : ilaw_output{};
+    batch_.status = outputs ? status_.data() : nullptr;
+    const double start = now();
+    for (long k = 0; k < steps && batch_.node_count > 0; ++k) {
+      batch_.time += dt;
+      if (law_.evaluate(batch_) != ILAW_OK) throw std::runtime_error("evaluate refused");
+    }
+    return 1e9 * (now() - start) / (static_cast<double>(steps) * static_cast<double>(all_));
+  }
+
+ private:
+  ilaw::library library_;
+  ilaw::interface law_;
+  std::size_t all_;
+  std::vector<double> v_free_, v_previous_, normal_, impulse_, gap_, delassus_, energy_, state_;
+  std::vector<std::uint8_t> status_;
+  ilaw_batch batch_{};
+};
+
+struct Options {
+  std::vector<std::size_t> points{1, 10, 100, 1000, 100000, 1000000};
+  std::vector<int> threads{1};
+  int repetitions = 7;
+  std::string law, out;
+  std::size_t read = 0;
+};
+
+void measure(const Subject& subject, Situation situation, std::size_t count, int threads,
+             const Options& options, std::ostream* csv) {
+  omp_set_num_threads(threads);
+  HostCase host(&subject, situation, count), alone(nullptr, situation, count);
+  LawCase law(subject, situation, count);
+  const long steps = std::max(3L, 200000L / static_cast<long>(count));
+  host.run(20);
+  alone.run(20);
+  law.run(3, true);
+  std::vector<double> interface, whole, bare, full;
+  for (int k = 0; k < options.repetitions; ++k) {
+    whole.push_back(host.run(steps));
+    interface.push_back(whole.back() - alone.run(steps));
+    bare.push_back(law.run(steps, false));
+    full.push_back(law.run(steps, true));
+  }
+  const double law_time = median(full);
+  std::printf("%8zu %-8s %-6s %d thread%s  law %7.2f  law+ %7.2f  interface %8.2f  step %8.2f ns",
+              count, subject.law, name_of[static_cast<int>(situation)], threads, threads > 1 ? "s" : " ",
+              median(bare), law_time, median(interface), median(whole));
+  std::printf(law_time > 1e-2 ? "  interface/law+ %6.2f\n" : "\n", median(interface) / law_time);
+  std::fflush(stdout);
+  if (!csv) return;
+  CsvWriter row(*csv, 8);
+  row << std::to_string(count) << subject.law << name_of[static_cast<int>(situation)] << threads
+      << median(bare) << law_time << median(interface) << median(whole);
+  row.end_row();
+}
+
+int measure_all(const Options& options) {
+  std::unique_ptr<std::ofstream> csv;
+  if (!options.out.empty()) csv = std::make_unique<std::ofstream>(options.out);
+  if (csv) *csv << "points,law,situation,threads,law_ns,law_with_outputs_ns,interface_ns,step_ns\n";
+  const auto with = [](std::map<std::string, double> numbers) {
+    Arguments arguments;
+    arguments.numbers = std::move(numbers);
+    return arguments;
+  };
+  const std::vector<Subject> subjects{{"contact", {}},
+                                      {"coulomb", with({{"friction", 0.3}})},
+                                      {"postit", with({{"friction", 0.3}, {"memory", 0.01}, {"buckets", 4.0}})}};
+  for (const std::size_t count : options.points)
+    for (const Subject& subject : subjects)
+      for (const Situation situation : {Situation::flight, Situation::half, Situation::all})
+        for (const int threads : options.threads)
+          if (options.law.empty() || options.law == subject.law)
+            measure(subject, situation, count, threads, options, csv.get());
+  return 0;
+}
+
+int measure_reading(std::size_t count) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "ilaw_bench_host.json";
+  {
+    std::ofstream text(file);
+    text << R"({"model": {"type": "points", "dimension": 3, "points": [)";
+    for (std::size_t k = 0; k < count; ++k)
+      text << (k > 0 ? ",\n" : "\n") << R"({"mass": 1.5, "position": [)" << 0.1 * static_cast<double>(k)
+           << R"(, 0.25, 0.0], "velocity": [0.125, 0.5, -1.0]})";
+    text << R"(]}, "time": {"dt": 1e-3, "end": 1e-2}, "interfaces": [{"law": "contact", "nodes": "all",
+      "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})";
+  }
+  const double start = now();
+  const Scene scene = read_scene(file);
+  const double seconds = now() - start;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf("%zu points, %.0f MB of text: read in %.2f s, at most %.0f MB held\n", count,
+              1e-6 * static_cast<double>(std::filesystem::file_size(file)), seconds,
+              1e-3 * static_cast<double>(usage.ru_maxrss));
+  std::filesystem::remove(file);
+  return scene.model->node_count() == static_cast<int>(count) ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Time per node and step of the host, beside the law alone");
+  app.add_option("--law", options.law, "This law alone");
+  app.add_option("--points", options.points, "Points in a scene")->expected(1, 8)->capture_default_str();
+  app.add_option("--threads", options.threads, "Threads")->expected(1, 4)->capture_default_str();
+  app.add_option("--repetitions", options.repetitions, "Medians are over so many")->capture_default_str();
+  app.add_option("--out", options.out, "CSV file to write as well");
+  app.add_option("--read", options.read, "Read a scene of so many points instead");
+  CLI11_PARSE(app, argc, argv);
+  return options.read > 0 ? measure_reading(options.read) : measure_all(options);
+}
