@@ -194,7 +194,7 @@ TEST(Tangent, ThatIsNoneIsBadInput) {
   }
 }
 
-// Definite or not is no matter of axes: H = Q diag(1, 0.7, x) Q^T for any rotation Q.
+// Whether H is definite does not depend on the axes: H = Q diag(1, 0.7, x) Q^T for any rotation Q.
 TEST(FullDelassus, IsAcceptedOrRefusedWhateverItsRotation) {
   const SetupBuilder setup({{{"friction", 0.3}}, {}}, 3, ILAW_DELASSUS_FULL);
   const ilaw::interface law = make_law("coulomb", setup);

@@ -108,7 +108,7 @@ TEST(Create, JudgesConflictsAtAllTimesOfTables) {
   EXPECT_NO_THROW(make_law("cohesive", SetupBuilder(bond)));
 }
 
-// The slots of a memory are laid out when the law is made.
+// How many buckets a window has is settled when the law is created.
 TEST(Create, RefusesAMemoryThatVaries) {
   Parameters per_node;
   per_node.per_node = {"memory"};

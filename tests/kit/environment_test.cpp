@@ -16,7 +16,7 @@ namespace {
 // With what divides by zero, overflows and makes NaN on the way.
 const std::vector<LawCase> laws = law_cases("environment");
 
-// Nodes at rest, tiny, huge and none, besides those drawn.
+// Velocities and gaps that are zero, tiny, huge or NaN, besides those drawn.
 Nodes hostile_nodes(std::int64_t count, int components) {
   Nodes nodes(count, 3, components);
   const double odd[] = {0.0, -0.0, 5e-324, -1e-310, -3e-308, -1e300, 1e300, std::nan(""), -INFINITY};

@@ -55,8 +55,8 @@ void turn(Node& node, std::mt19937_64& random) {
   for (std::size_t c = 0; c < 3; ++c) node.normal[c] = n[c] / length;
 }
 
-// Draws a decimal gap and step, and a velocity that hardly closes it. Where others stand is the tangential
-// part.
+// Draws a decimal gap and step, and a velocity that only just closes it. The tangential part must not
+// matter.
 void draw_borderline(Node& node, bool global, std::mt19937_64& random) {
   const double step = 1e-4 * static_cast<double>(1 + random() % 99);
   node.gap_offset = random() % 2 ? 0.0 : 0.003;

@@ -67,7 +67,7 @@ TEST(ForeignState, IsBadInputAtItsNodeWithTheNameOfTheVariable) {
     }
 }
 
-// The frame that the kit carries in the state is a frame, or none.
+// The kit carries a frame in the state: one that is not orthonormal is bad input.
 TEST(ForeignState, FrameThatIsNoneIsBadInput) {
   const ilaw::interface law = make_probe(ILAW_FRAME_GLOBAL);
   struct Spoilt {

@@ -1,4 +1,4 @@
-// A batch that no host can mean is refused as a whole, with the reason and with nothing written.
+// A batch that makes no sense is refused as a whole, with the reason and with nothing written.
 #include "kit_probe.hpp"
 
 #include "support/numbers.hpp"
@@ -94,7 +94,7 @@ TEST(WrongBatch, InitialiseRefusesStatesOnTopOfEachOther) {
   }
 }
 
-// initialise is the first to write a state: what stands where it would be read is nobody's.
+// initialise writes the first state, and must not read what lies there before.
 TEST(Initialise, ReadsNoState) {
   const ilaw::interface law = make_probe(ILAW_FRAME_GLOBAL);
   const double normal[] = {0.36, 0.48, 0.8};

@@ -259,8 +259,8 @@ TEST(Postit, ASeparationMakesTheNextRuptureCount) {
   }
 }
 
-// Off and out of reach the state is left bit for bit, whatever the time: a host need not ask. Its window and
-// its later bits are those of a node that was asked in every step.
+// Free and out of reach, the state is left bit for bit, whatever the time: a host may skip the node. Its
+// window and its later bits are those of a node that was evaluated in every step.
 TEST(Postit, AFreeNodeOutOfReachKeepsItsState) {
   const Parameters parameters{{{"efficiency_decrease", 10.0}, {"memory", 0.05}, {"friction", 0.3}}, {}};
   Glued asked(parameters, 1e-3), skipped(parameters, 1e-3);
