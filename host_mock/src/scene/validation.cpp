@@ -154,21 +154,25 @@ void validate(const json& value, const json& part, const std::string& base) {
   explain_error(value, part, base, *deepest);
 }
 
-// Looks for keys that come twice, which JSON leaves undefined. A reader of its own: nlohmann's
-// parser with a callback goes through all of an array after each of its objects.
-class DuplicateKeys : public nlohmann::json_sax<json> {
+// Looks for keys that come twice, which JSON leaves undefined, and for values within values deeper than
+// a scene ever is, which what goes through them by recursion could not stand. A reader of its own:
+// nlohmann's parser with a callback goes through all of an array after each of its objects.
+class Structure : public nlohmann::json_sax<json> {
  public:
   bool start_object(std::size_t /*size*/) override {
+    enter();
     seen_.emplace_back();
     return true;
   }
   bool end_object() override {
     seen_.pop_back();
+    --depth_;
     return true;
   }
   bool key(string_t& key) override {
     if (!seen_.back().insert(key).second)
       throw SceneError("", "key '" + key + "' appears twice in one object, expected once");
+    if (seen_.size() == 1) part_ = "/" + key;
     return true;
   }
   bool null() override { return true; }
@@ -178,23 +182,38 @@ class DuplicateKeys : public nlohmann::json_sax<json> {
   bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
   bool string(string_t& /*value*/) override { return true; }
   bool binary(binary_t& /*value*/) override { return true; }
-  bool start_array(std::size_t /*size*/) override { return true; }
-  bool end_array() override { return true; }
+  bool start_array(std::size_t /*size*/) override {
+    enter();
+    return true;
+  }
+  bool end_array() override {
+    --depth_;
+    return true;
+  }
   bool parse_error(std::size_t /*at*/, const std::string& /*token*/,
                    const json::exception& /*error*/) override {
     return false;  // left to parse
   }
 
  private:
+  void enter() {
+    constexpr int deepest = 64;
+    if (++depth_ > deepest)
+      throw SceneError(
+          part_, "values are nested more than " + std::to_string(deepest) + " deep, expected at most that");
+  }
+
   std::vector<std::set<std::string>> seen_;
+  std::string part_;  // of the scene, that is read
+  int depth_ = 0;
 };
 
 }  // namespace
 
 json parse_scene(const std::string& text) {
   try {
-    DuplicateKeys duplicates;
-    json::sax_parse(text, &duplicates);
+    Structure structure;
+    json::sax_parse(text, &structure);
     return json::parse(text);
   } catch (const json::exception& error) {
     throw SceneError(std::string("not valid JSON: ") + error.what());
