@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -185,6 +186,40 @@ TEST(Pages, ContributingNamesEveryBuildMode) {
     EXPECT_NE(page.find("| `" + (*found)[1].str() + "` |"), std::string::npos)
         << "the build modes of docs/contributing.md leave out " << (*found)[1];
   EXPECT_GT(modes, 4);
+}
+
+// All tests: of GoogleTest by suite and name, of ctest by their names up to a variable.
+std::set<std::string> names_of_tests() {
+  static const std::regex in_source("TEST(?:_P|_F)?\\((\\w+),\\s*(\\w+)\\)"),
+      in_build_file("add_test\\(NAME ([\\w.]*\\w)");
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "tests")) {
+    const bool is_source = entry.path().extension() == ".cpp";
+    if (!is_source && entry.path().filename() != "CMakeLists.txt") continue;
+    std::ostringstream stream;
+    stream << std::ifstream(entry.path()).rdbuf();
+    const std::string text = stream.str();
+    for (std::sregex_iterator found(text.begin(), text.end(), is_source ? in_source : in_build_file), end;
+         found != end; ++found)
+      names.insert(is_source ? (*found)[1].str() + '.' + (*found)[2].str() : (*found)[1].str());
+  }
+  return names;
+}
+
+// The last column of the table of promises names tests, and nothing else.
+TEST(Pages, TestsThatHoldThePromisesExist) {
+  static const std::regex name("`([^`]+)`");
+  const std::set<std::string> tests = names_of_tests();
+  bool in_table = false;
+  int named = 0;
+  for (const Line& line : prose(root / "docs/abi.md")) {
+    if (begins(line.text, "## ")) in_table = line.text == "## Which test holds which promise";
+    if (!in_table || !begins(line.text, "| ")) continue;
+    const std::string column = line.text.substr(line.text.rfind(" | "));
+    for (std::sregex_iterator found(column.begin(), column.end(), name), end; found != end; ++found, ++named)
+      EXPECT_TRUE(tests.count((*found)[1])) << "line " << line.number << ": no test " << (*found)[1];
+  }
+  EXPECT_GT(named, 60);
 }
 
 // What the two tests at the top rest on.

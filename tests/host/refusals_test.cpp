@@ -72,6 +72,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/loads/0/nodes", "[7]", "/loads/0/nodes/0: found node 7, expected 0 to 1"},
         Mistake{"/interfaces/0/nodes", "[0, 2]", "/interfaces/0/nodes/1: found node 2, expected 0 to 1"},
         Mistake{"/interfaces/0/nodes", "[-1]", "/interfaces/0/nodes/0: found -1, expected integer >= 0"},
+        Mistake{"/interfaces/0/nodes", "[2147483648]",
+                "/interfaces/0/nodes/0: found node 2147483648, expected 0 to 1"},
+        Mistake{"/loads/0/nodes", "[4294967296]", "/loads/0/nodes/0: found node 4294967296, expected 0 to 1"},
+        Mistake{"/loads/0/nodes", "[18446744073709551615]", "/loads/0/nodes/0: found "},
         Mistake{"/loads/0/nodes", "[0, 0.5]", "/loads/0/nodes/1: found 0.5, expected integer >= 0"},
         Mistake{"/loads/0/nodes", "{\"near\": [\"x\", 0]}",
                 "/loads/0/nodes/near/0: found \"x\", expected number"},
@@ -107,6 +111,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/interfaces/0/obstacle/normal", "[0, 0]",
                 "/interfaces/0/obstacle/normal: found a vector of length 0, expected a direction"},
         Mistake{"/output/watch", "[2]", "/output/watch/0: found node 2, expected 0 to 1"},
+        Mistake{"/output/watch", "[4294967296]", "/output/watch/0: found node 4294967296, expected 0 to 1"},
+        Mistake{"/output/every", "18446744073709551615",
+                "/output/every: found 18446744073709551615, expected integer >= 1"},
         Mistake{"/output/every", "0", "/output/every: found 0, expected integer >= 1"},
         Mistake{"/output/every", "1.5", "/output/every: found 1.5, expected integer >= 1"}));
 
@@ -120,6 +127,31 @@ TEST(Scene, ThatIsNoJsonIsRefused) {
   EXPECT_NE(refusal_of("{").find("not valid JSON"), std::string::npos);
   EXPECT_NE(refusal_of(R"({"time": {"dt": 1e999}})").find("not valid JSON"), std::string::npos);
   EXPECT_NE(refusal_of(R"({"time": {}, "time": {}})").find("key 'time' appears twice"), std::string::npos);
+}
+
+// Far beyond what a reader that goes into values by recursion could stand.
+TEST(Scene, NestedTooDeepIsRefusedWhereItIs) {
+  const std::string refusal = "values are nested more than 64 deep, expected at most that";
+  for (const int depth : {65, 100000}) {
+    const auto n = static_cast<std::size_t>(depth);
+    const std::string arrays = std::string(n, '[') + std::string(n, ']');
+    EXPECT_EQ(refusal_of(arrays), "/: " + refusal);
+    EXPECT_EQ(refusal_of(R"({"time": {"dt": 1e-3}, "interfaces": )" + arrays + "}"),
+              "/interfaces: " + refusal);
+    std::string objects = "1";
+    for (int k = 0; k < 65; ++k) objects = "{\"a\": " + objects + "}";
+    EXPECT_EQ(refusal_of(R"({"model": )" + objects + "}"), "/model: " + refusal);
+  }
+}
+
+TEST(Scene, WithMoreNodesThanNumbersIsRefused) {
+  json scene = json::parse(R"({"model": {"type": "bars", "bars": []}, "time": {"cfl": 0.9, "end": 1.0},
+                               "interfaces": []})");
+  for (int k = 0; k < 22; ++k)
+    scene["model"]["bars"].push_back(
+        {{"length", 1.0}, {"elements", 100000000}, {"young", 1.0}, {"density", 1.0}});
+  EXPECT_EQ(refusal_of(scene.dump()),
+            "/model/bars/4/elements: found 100000000, which makes 500000005.0 nodes, expected at most 5e8");
 }
 
 // The bounds of a range are all told, also those that do not belong to it.

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <istream>
 #include <ostream>
@@ -14,16 +15,21 @@ namespace ilaw::host {
 
 [[noreturn]] inline void refuse_damaged() { throw std::runtime_error("the checkpoint is damaged"); }
 
+// Whether all bytes of a value mean something, so that equal values are equal bytes.
+template <class T>
+inline constexpr bool has_no_padding =
+    std::has_unique_object_representations_v<T> || std::is_same_v<T, float> || std::is_same_v<T, double>;
+
 // An array whose length both sides know.
 template <class T>
 void write_array(std::ostream& out, const T* values, std::size_t count) {
-  static_assert(std::is_trivially_copyable_v<T>);
+  static_assert(has_no_padding<T>);
   out.write(reinterpret_cast<const char*>(values), static_cast<std::streamsize>(count * sizeof(T)));
 }
 
 template <class T>
 void read_array(std::istream& in, T* values, std::size_t count) {
-  static_assert(std::is_trivially_copyable_v<T>);
+  static_assert(has_no_padding<T>);
   in.read(reinterpret_cast<char*>(values), static_cast<std::streamsize>(count * sizeof(T)));
   if (!in) refuse_damaged();
 }
@@ -36,6 +42,23 @@ void write_value(std::ostream& out, const T& value) {
 template <class T>
 void read_value(std::istream& in, T& value) {
   read_array(in, &value, 1);
+}
+
+// As a sum of doubles: three hold any long double, and have no padding.
+inline void write_value(std::ostream& out, long double value) {
+  for (int k = 0; k < 3; ++k) {
+    const auto part = static_cast<double>(value);
+    write_value<double>(out, part);
+    value = std::isfinite(part) ? value - part : 0.0L;
+  }
+}
+inline void read_value(std::istream& in, long double& value) {
+  value = 0.0L;
+  for (int k = 0; k < 3; ++k) {
+    double part = 0.0;
+    read_value<double>(in, part);
+    value += part;
+  }
 }
 
 // An array with its length before it.

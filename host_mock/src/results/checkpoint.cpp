@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -45,10 +46,12 @@ json content_of(std::istream& file) {
 }
 
 void check_identity(const json& found, const json& expected) {
-  for (const char* part : {"format", "program", "laws", "scene"})
+  for (const auto& [part, other] :
+       {std::pair{"format", "of another format"}, std::pair{"program", "of another version of the program"},
+        std::pair{"laws", "of other laws, or of other versions of them"},
+        std::pair{"scene", "of another scene"}})
     if (found.value(part, json()) != expected[part])
-      throw std::runtime_error("is of another " + std::string(part) +
-                               ", expected the very run that is to be resumed");
+      throw std::runtime_error("is " + std::string(other) + ", expected the very run that is to be resumed");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // A scene's text to JSON. A reader of its own, because JSON leaves undefined what a key that comes twice
-// means, and because of the points of large scenes (packed_points.hpp).
+// means, because of values nested deeper than what goes through them by recursion could stand, and because of
+// the points of large scenes (packed_points.hpp).
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/packed_points.hpp"
 #include "scene/validation.hpp"
@@ -40,6 +41,7 @@ class Reader : public nlohmann::json_sax<json> {
       throw SceneError("", "key '" + key + "' appears twice in one object, expected once");
     slot_ = &object[key];
     key_ = key;
+    if (open_.size() == 1) part_ = "/" + key;
     return true;
   }
   bool end_object() override { return packer_ ? packed(packer_->end_point()) : close(); }
@@ -83,6 +85,10 @@ class Reader : public nlohmann::json_sax<json> {
     return &(*slot_ = std::move(value));
   }
   bool open(json value) {
+    constexpr std::size_t deepest = 64;
+    if (open_.size() == deepest)
+      throw SceneError(
+          part_, "values are nested more than " + std::to_string(deepest) + " deep, expected at most that");
     const bool is_model = open_.size() == 1 && open_.back()->is_object() && key_ == "model";
     open_.push_back(place(std::move(value)));
     if (is_model) model_ = open_.back();
@@ -96,7 +102,7 @@ class Reader : public nlohmann::json_sax<json> {
   json root_;
   std::vector<json*> open_;  // objects and arrays, from the outermost on
   json *slot_ = nullptr, *model_ = nullptr;
-  std::string key_;
+  std::string key_, part_;  // part_: of the scene, that is read
   bool packs_, cannot_pack_ = false, is_in_vector_ = false;
   std::optional<PointPacker> packer_;
 };

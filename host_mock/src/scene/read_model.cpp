@@ -62,14 +62,24 @@ class BodyNames {
   std::set<std::string> seen_;
 };
 
+// Nodes of all bodies read so far: three degrees of freedom each must fit a 32-bit number.
+void check_nodes(double nodes, const json& body, const std::string& pointer) {
+  if (nodes > 5e8)
+    throw mistake(pointer + "/elements",
+                  body["elements"].dump() + ", which makes " + json(nodes).dump() + " nodes", "at most 5e8");
+}
+
 std::unique_ptr<Model> read_bars(const json& model) {
   std::vector<BarSetup> bars;
   BodyNames names("bar");
+  double nodes = 0.0;
   for (std::size_t k = 0; k < model["bars"].size(); ++k) {
     const json& bar = model["bars"][k];
-    bars.push_back({names.next(bar, at("/model/bars", k)), bar.value("start", 0.0),
-                    bar["length"].get<double>(), bar["elements"].get<int>(), bar["young"].get<double>(),
-                    bar["density"].get<double>(), bar.value("section", 1.0), bar.value("velocity", 0.0)});
+    const std::string pointer = at("/model/bars", k);
+    check_nodes(nodes += bar["elements"].get<double>() + 1.0, bar, pointer);
+    bars.push_back({names.next(bar, pointer), bar.value("start", 0.0), bar["length"].get<double>(),
+                    bar["elements"].get<int>(), bar["young"].get<double>(), bar["density"].get<double>(),
+                    bar.value("section", 1.0), bar.value("velocity", 0.0)});
   }
   return std::make_unique<Bars>(bars);
 }
@@ -89,11 +99,7 @@ std::unique_ptr<Model> read_blocks(const json& model) {
     const std::string pointer = at("/model/blocks", k);
     const auto elements = block["elements"].get<std::array<int, 3>>();
     nodes += (elements[0] + 1.0) * (elements[1] + 1.0) * (elements[2] + 1.0);
-    constexpr double most_nodes = 5e8;  // 3 degrees of freedom each must fit a 32-bit number
-    if (nodes > most_nodes)
-      throw mistake(pointer + "/elements",
-                    block["elements"].dump() + ", which makes " + json(nodes).dump() + " nodes",
-                    "at most 5e8");
+    check_nodes(nodes, block, pointer);
     blocks.push_back({names.next(block, pointer), read_vector_or_zero(block, "corner", 3, pointer),
                       read_vector(block["size"], 3, pointer + "/size"),
                       read_vector_or_zero(block, "velocity", 3, pointer), elements,

@@ -30,12 +30,7 @@ void read_output(const json& output, Scene& scene) {
   scene.output.fields = output.value("fields", std::int64_t{0});
   const json watch = output.value("watch", json::array());
   for (std::size_t k = 0; k < watch.size(); ++k) {
-    const std::string pointer = at("/output/watch", k);
-    if (watch[k].is_number() && watch[k].get<int>() >= scene.model->node_count())
-      throw mistake(pointer, "node " + watch[k].dump(),
-                    "0 to " + std::to_string(scene.model->node_count() - 1));
-    const json nodes = watch[k].is_number() ? json::array({watch[k]}) : watch[k];
-    for (const int node : select_nodes(nodes, *scene.model, pointer).nodes)
+    for (const int node : select_nodes(watch[k], *scene.model, at("/output/watch", k)).nodes)
       if (std::find(scene.output.watch.begin(), scene.output.watch.end(), node) == scene.output.watch.end())
         scene.output.watch.push_back(node);
   }

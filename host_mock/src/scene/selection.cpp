@@ -36,14 +36,18 @@ NodeSet part_of(const NodeSet& set, const std::vector<std::size_t>& indices) {
   return part;
 }
 
+// A number of any size, which an int need not hold.
+int node_of(const json& number, const Model& model, const std::string& pointer) {
+  if (number.get<double>() < model.node_count()) return number.get<int>();
+  throw mistake(pointer, "node " + number.dump(), "0 to " + std::to_string(model.node_count() - 1));
+}
+
 NodeSet listed(const json& numbers, const Model& model, const std::string& pointer) {
   std::vector<std::size_t> indices;
   std::set<int> seen;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     const std::string where = at(pointer, k);
-    const int node = numbers[k].get<int>();
-    if (node >= model.node_count())
-      throw mistake(where, "node " + std::to_string(node), "0 to " + std::to_string(model.node_count() - 1));
+    const int node = node_of(numbers[k], model, where);
     if (!seen.insert(node).second)
       throw mistake(where, "node " + std::to_string(node) + " twice", "each node once");
     indices.push_back(static_cast<std::size_t>(node));
@@ -81,6 +85,8 @@ NodeSet inside(const json& selection, const Model& model, const std::string& poi
 
 NodeSet select_nodes(const json& nodes, const Model& model, const std::string& pointer) {
   if (nodes.is_string()) return find_set(nodes.get<std::string>(), model, false, pointer);
+  if (nodes.is_number())
+    return part_of(model.sets().at("all"), {static_cast<std::size_t>(node_of(nodes, model, pointer))});
   if (nodes.is_array()) return listed(nodes, model, pointer);
   if (nodes.contains("near"))
     return nearest(read_vector(nodes["near"], model.dimension(), pointer + "/near"), model);

@@ -112,13 +112,17 @@ Vector angular_momentum(const Model& model, const Dofs& u, const Dofs& v) {
 }
 
 void EnergyBalance::save(std::ostream& out) const {
-  write_value(out, sums_);
-  write_value(out, by_law_);
+  for (Sum Sums::*sum : all_sums) write_value(out, sums_.*sum);
+  write_value(out, sums_.least_dissipation);
+  write_value(out, sums_.largest);
+  for (const Sum& sum : by_law_) write_value(out, sum);
 }
 
 void EnergyBalance::load(std::istream& in) {
-  read_value(in, sums_);
-  read_value(in, by_law_);
+  for (Sum Sums::*sum : all_sums) read_value(in, sums_.*sum);
+  read_value(in, sums_.least_dissipation);
+  read_value(in, sums_.largest);
+  for (Sum& sum : by_law_) read_value(in, sum);
 }
 
 }  // namespace ilaw::host

@@ -55,6 +55,8 @@ class EnergyBalance {
     double least_dissipation = 0.0;
     double largest = 0.0;  // of the energies and works so far
   };
+  static constexpr std::array all_sums{&Sums::initial, &Sums::external_work, &Sums::internal_work,
+                                       &Sums::interface_work, &Sums::relative_work};
   void note_size(Sum energy);
 
   Sums sums_;
