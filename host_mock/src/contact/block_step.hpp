@@ -31,7 +31,7 @@ struct ChunkOutcome {
   Refusal refusal;
 };
 
-// Contacts that a thread takes at a time.
+// Nodes of an interface whose contacts a thread takes at a time.
 constexpr std::ptrdiff_t contact_chunk = 2048;
 
 ChunkOutcome solve_chunk(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count);

@@ -87,7 +87,10 @@ class ContactArrays {
   std::vector<double> v_free, v_previous, normal, previous_impulse, gap, energy;
 
  private:
-  enum Mark : std::uint8_t { asked = 1, changed = 2 };  // changed: the state may not be the first one any more
+  enum Mark : std::uint8_t {
+    asked = 1,
+    changed = 2
+  };  // changed: the state may not be the first one any more
 
   std::size_t first_component(int contact) const {
     return static_cast<std::size_t>(contact) * static_cast<std::size_t>(dimension_);
