@@ -14,7 +14,8 @@ namespace {
 
 using nlohmann::json;
 
-// Points that fall on a plane, each at its own time; large enough to be packed as text and to take several chunks.
+// Points that fall on a plane, each at its own time: enough for packed text and several chunks.
+// chunks.
 json falling_points(std::size_t count) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
