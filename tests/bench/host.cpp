@@ -3,12 +3,12 @@
 //   ilaw_bench_host [--law NAME] [--points N...] [--threads N...] [--repetitions K] [--out FILE.csv]
 //   ilaw_bench_host --read N
 //
-// Points under gravity on a plane, or over it: all in flight and far, half of them touching, all touching.
-// The law alone evaluates the same contacts, interleaved and without a list: "law" the impulse alone, "law+"
-// with status and energies, as the host asks. "step" is a step of the host, "interface" what it takes longer
-// than that of a host without interface. Each repetition times all of these in turn; medians are printed, of
-// the processor's time with one thread, which others on the machine disturb little, else of the clock on the
-// wall.
+// Points under gravity on a plane, or over it: all in flight and far, half of them touching, all
+// touching. The law alone evaluates the same contacts, interleaved and without a list: "law" the
+// impulse alone, "law+" with status and energies, as the host asks. "step" is a step of the host,
+// "interface" what it takes longer than that of a host without interface. Each repetition times all
+// of these in turn; medians are printed, of the processor's time with one thread, which others on
+// the machine disturb little, else of the clock on the wall.
 //
 // --read writes a scene of N points, reads it as `ilaw run` does, and says how long that took and the largest
 // memory that the process has held.

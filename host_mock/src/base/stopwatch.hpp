@@ -1,5 +1,5 @@
-// stopwatch.hpp - adds the wall-clock time of a scope to a sum. The system's clock takes as long as a
-// step of a small scene, so that x86 processors count ticks instead.
+// stopwatch.hpp - adds the wall-clock time of a scope to a sum. The system's clock takes as long as
+// a step of a small scene, so that x86 processors count ticks instead.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -98,7 +98,8 @@ class Blocks {
     return room.data();
   }
 
-  // An array of all contacts from the block's first on, or what was gathered of it; null where it is empty.
+  // An array of all contacts from the block's first on, or what was gathered of it; null where it
+  // is empty.
   double* column(std::vector<double>& all, std::size_t width, double* room) const {
     if (all.empty()) return nullptr;
     if (in_row_) return &all[contact(0) * width];

@@ -1,5 +1,5 @@
-// A scene's text to JSON. A reader of its own, because JSON leaves undefined what a key that comes twice
-// means, and because of the points of large scenes (packed_points.hpp).
+// A scene's text to JSON. A reader of its own, because JSON leaves undefined what a key that comes
+// twice means, and because of the points of large scenes (packed_points.hpp).
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/packed_points.hpp"
 #include "scene/validation.hpp"

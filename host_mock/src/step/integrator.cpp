@@ -85,9 +85,9 @@ void Integrator::correct(StepTimes step) {
   external_impulse_ += model_.mass().cwiseProduct(v_ - uncorrected);
 }
 
-// Where no two contacts share a node, each law is evaluated once: for blocks of contacts the interface
-// finds gaps, normals and 1/m, passes v_free and v_before relative to the obstacle, takes impulses,
-// states and energies, and adds r/m. Where some do, laws are evaluated until all agree.
+// Where no two contacts share a node, each law is evaluated once: for blocks of contacts the
+// interface finds gaps, normals and 1/m, passes v_free and v_before relative to the obstacle, takes
+// impulses, states and energies, and adds r/m. Where some do, laws are evaluated until all agree.
 void Integrator::add_reactions(double time, double speed_free) {
   const StepView step{u_, v_before_, time, dt_, speed_before_, speed_free};
   if (coupled_)
