@@ -3,11 +3,12 @@
 //   ilaw_bench_host [--law NAME] [--points N...] [--threads N...] [--repetitions K] [--out FILE.csv]
 //   ilaw_bench_host --read N
 //
-// Points under gravity on a plane, or over it: all in flight and far, half of them touching, all touching.
-// The law alone evaluates the same contacts, interleaved and without a list: "law" the impulse alone, "law+"
-// with status and energies, as the host asks. "step" is a step of the host, "interface" what it takes longer
-// than that of a host without interface. Each repetition times all of these in turn; medians are printed, of
-// the processor's time with one thread, which others on the machine disturb little, else of the clock on the wall.
+// Points under gravity on a plane, or over it: all in flight and far, half of them touching, all
+// touching. The law alone evaluates the same contacts, interleaved and without a list: "law" the
+// impulse alone, "law+" with status and energies, as the host asks. "step" is a step of the host,
+// "interface" what it takes longer than that of a host without interface. Each repetition times all
+// of these in turn; medians are printed, of the processor's time with one thread, which others on
+// the machine disturb little, else of the clock on the wall.
 //
 // --read writes a scene of N points, reads it as `ilaw run` does, and says how long that took and the largest
 // memory that the process has held.
@@ -193,8 +194,8 @@ void measure(const Subject& subject, Situation situation, std::size_t count, int
     full.push_back(law.run(steps, true));
   }
   const double law_time = median(full);
-  std::printf("%8zu %-8s %-6s %d thread%s  law %7.2f  law+ %7.2f  interface %8.2f  step %8.2f ns",
-              count, subject.law, name_of[static_cast<int>(situation)], threads, threads > 1 ? "s" : " ",
+  std::printf("%8zu %-8s %-6s %d thread%s  law %7.2f  law+ %7.2f  interface %8.2f  step %8.2f ns", count,
+              subject.law, name_of[static_cast<int>(situation)], threads, threads > 1 ? "s" : " ",
               median(bare), law_time, median(interface), median(whole));
   std::printf(law_time > 1e-2 ? "  interface/law+ %6.2f\n" : "\n", median(interface) / law_time);
   std::fflush(stdout);
@@ -214,9 +215,10 @@ int measure_all(const Options& options) {
     arguments.numbers = std::move(numbers);
     return arguments;
   };
-  const std::vector<Subject> subjects{{"contact", {}},
-                                      {"coulomb", with({{"friction", 0.3}})},
-                                      {"postit", with({{"friction", 0.3}, {"memory", 0.01}, {"buckets", 4.0}})}};
+  const std::vector<Subject> subjects{
+      {"contact", {}},
+      {"coulomb", with({{"friction", 0.3}})},
+      {"postit", with({{"friction", 0.3}, {"memory", 0.01}, {"buckets", 4.0}})}};
   for (const std::size_t count : options.points)
     for (const Subject& subject : subjects)
       for (const Situation situation : {Situation::flight, Situation::half, Situation::all})

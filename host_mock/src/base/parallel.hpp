@@ -1,5 +1,5 @@
-// parallel.hpp - loops over many items in chunks, which threads share. What a chunk is does not depend
-// on the number of threads, so that sums by chunks do not either.
+// parallel.hpp - loops over many items in chunks, which threads share. What a chunk is does not
+// depend on the number of threads, so that sums by chunks do not either.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,9 +14,9 @@ constexpr std::ptrdiff_t chunks_of(std::ptrdiff_t count, std::ptrdiff_t chunk) {
   return (count + chunk - 1) / chunk;
 }
 
-// Calls f(c, first, end) for the items of each chunk c. f must not throw. A single chunk, and all of
-// them where there is one thread, are a plain loop: a parallel region costs 300 ns, and one whose
-// `if` is false as well.
+// Calls f(c, first, end) for the items of each chunk c. f must not throw. A single chunk, and all
+// of them where there is one thread, are a plain loop: a parallel region costs 300 ns, and one
+// whose `if` is false as well.
 template <class F>
 void for_each_chunk(std::ptrdiff_t count, std::ptrdiff_t chunk, F f) {
   const std::ptrdiff_t chunks = chunks_of(count, chunk);

@@ -48,7 +48,9 @@ class Blocks {
   using Components = std::array<double, D>;
 
   std::size_t contact(std::ptrdiff_t i) const { return static_cast<std::size_t>(contacts_[i]); }
-  Eigen::Index first_dof(std::ptrdiff_t i) const { return Eigen::Index{D} * node_[static_cast<std::size_t>(i)]; }
+  Eigen::Index first_dof(std::ptrdiff_t i) const {
+    return Eigen::Index{D} * node_[static_cast<std::size_t>(i)];
+  }
 
   void find_nodes() {
     for (std::ptrdiff_t i = 0; i < count_; ++i) node_index_[i] = at_.node_index[contact(i)];
@@ -96,7 +98,8 @@ class Blocks {
     return room.data();
   }
 
-  // An array of all contacts from the block's first on, or what was gathered of it; null where it is empty.
+  // An array of all contacts from the block's first on, or what was gathered of it; null where it
+  // is empty.
   double* column(std::vector<double>& all, std::size_t width, double* room) const {
     if (all.empty()) return nullptr;
     if (in_row_) return &all[contact(0) * width];

@@ -1,6 +1,7 @@
-// block_step.hpp - the step of contacts of which no two share a node, from gaps to new velocities, in
-// blocks that stay in the cache. Where the contacts of a block and their nodes follow each other,
-// the law reads and writes the host's own arrays; else the block gathers what the law asks for.
+// block_step.hpp - the step of contacts of which no two share a node, from gaps to new velocities,
+// in blocks that stay in the cache. Where the contacts of a block and their nodes follow each
+// other, the law reads and writes the host's own arrays; else the block gathers what the law asks
+// for.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -31,7 +32,7 @@ struct ChunkOutcome {
   Refusal refusal;
 };
 
-// Contacts that a thread takes at a time.
+// Nodes of an interface whose contacts a thread takes at a time.
 constexpr std::ptrdiff_t contact_chunk = 2048;
 
 ChunkOutcome solve_chunk(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count);

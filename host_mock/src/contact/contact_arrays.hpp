@@ -1,5 +1,5 @@
-// contact_arrays.hpp - what is stored of each contact, and the arrays that a law reads and writes where
-// contacts share nodes.
+// contact_arrays.hpp - what is stored of each contact, and the arrays that a law reads and writes
+// where contacts share nodes.
 //
 // A node of the interface has its index in the interface's list of nodes (node_index) and, from
 // when it is first needed, its index in these arrays (contact_index). Nodes that were never near
@@ -50,7 +50,8 @@ class ContactArrays {
 
   // Whether it must be evaluated out of reach, too: it is neither fresh nor at rest.
   bool must_be_asked(std::size_t contact) const { return (marks_[contact] & asked) != 0; }
-  // After a step: acts, where its status was not ILAW_FREE; rests, where the law promises ILAW_CAN_REST.
+  // After a step: acts, where its status was not ILAW_FREE; rests, where the law promises
+  // ILAW_CAN_REST.
   void mark_touched(std::size_t contact, bool acts, bool in_reach, bool rests) {
     std::uint8_t& mark = marks_[contact];
     if (acts || in_reach) mark |= changed;
@@ -60,8 +61,8 @@ class ContactArrays {
       mark &= static_cast<std::uint8_t>(~asked);
   }
 
-  // Where contacts share nodes a step evaluates each more than once: the arrays below "repeated" are
-  // there, and states in and out are arrays of their own.
+  // Where contacts share nodes a step evaluates each more than once: the arrays below "repeated"
+  // are there, and states in and out are arrays of their own.
   void evaluate_repeatedly();
   bool is_repeated() const { return is_repeated_; }
   // The state after the step becomes that before the next.
@@ -87,7 +88,10 @@ class ContactArrays {
   std::vector<double> v_free, v_previous, normal, previous_impulse, gap, energy;
 
  private:
-  enum Mark : std::uint8_t { asked = 1, changed = 2 };  // changed: the state may not be the first one any more
+  enum Mark : std::uint8_t {
+    asked = 1,
+    changed = 2
+  };  // changed: the state may not be the first one any more
 
   std::size_t first_component(int contact) const {
     return static_cast<std::size_t>(contact) * static_cast<std::size_t>(dimension_);

@@ -27,7 +27,8 @@ void Interface::check(const Refusal& refusal) const {
                                         std::to_string(refusal.status) + " at node " + node +
                                         ", expected 0 to " + std::to_string(ILAW_STATUS_COUNT - 1));
   std::string text = whose + "): ";
-  if (!node.empty()) text += std::to_string(refusal.bad_count) + " node(s) refused, first node " + node + ": ";
+  if (!node.empty())
+    text += std::to_string(refusal.bad_count) + " node(s) refused, first node " + node + ": ";
   throw ilaw::error(refusal.code, text + (refusal.reason ? refusal.reason : "no reason given"));
 }
 
@@ -75,7 +76,8 @@ std::vector<double> Interface::first_state(int node_index, const Dofs& u) const 
 std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
   const int contact_index = contacts_.index_of(at(node_index));
   if (contact_index < 0) return first_state(node_index, u);
-  const auto first = contacts_.state.begin() + static_cast<std::ptrdiff_t>(contacts_.first_state(contact_index));
+  const auto first =
+      contacts_.state.begin() + static_cast<std::ptrdiff_t>(contacts_.first_state(contact_index));
   return {first, first + static_cast<std::ptrdiff_t>(info().state_size)};
 }
 
@@ -85,12 +87,14 @@ bool Interface::may_skip() const {
 }
 
 // Touched contacts stay near: only fresh ones, and those at rest, are known to do nothing at a
-// distance.
+// distance. Chunks are cut by the nodes, so that sums do not depend on which of them are near.
 void Interface::refresh_near(const StepView& step) {
   near_.clear();
+  chunk_starts_.clear();
   setup_.counterpart->refresh(step.u);
   const bool skips = may_skip();
   for (std::size_t k = 0; k < setup_.nodes.size(); ++k) {
+    if (k % contact_chunk == 0) chunk_starts_.push_back(static_cast<std::ptrdiff_t>(near_.size()));
     const int node_index = static_cast<int>(k), contact_index = contacts_.index_of(k);
     const bool asked =
         contact_index >= 0 ? contacts_.must_be_asked(at(contact_index)) : law_.acts_at_distance();
@@ -99,6 +103,7 @@ void Interface::refresh_near(const StepView& step) {
                              setup_.gap_offset))
       near_.push_back(contact_index_of(node_index, step.u));
   }
+  chunk_starts_.push_back(static_cast<std::ptrdiff_t>(near_.size()));
 }
 
 // ---- a step ---------------------------------------------------------------------------------------------
@@ -124,11 +129,14 @@ void Interface::choose_active(const StepView& step) {
 void Interface::solve(const StepView& step, Dofs& v) {
   choose_active(step);
   sums_ = {};
-  const auto count = static_cast<std::ptrdiff_t>(active_.size());
-  const BlockStep blocks{setup_, model_, law_, contacts_, step, obstacle_velocity_, obstacle_velocity_before_, v};
-  outcomes_.resize(static_cast<std::size_t>(chunks_of(count, contact_chunk)));
-  for_each_chunk(count, contact_chunk, [&](std::ptrdiff_t c, std::ptrdiff_t first, std::ptrdiff_t end) {
-    outcomes_[static_cast<std::size_t>(c)] = solve_chunk(blocks, active_.data() + first, end - first);
+  if (active_.empty()) return;
+  const BlockStep blocks{setup_, model_, law_, contacts_, step, obstacle_velocity_, obstacle_velocity_before_,
+                         v};
+  outcomes_.resize(chunk_starts_.size() - 1);
+  for_each_chunk(static_cast<std::ptrdiff_t>(outcomes_.size()), 1, [&](std::ptrdiff_t c, auto, auto) {
+    const std::ptrdiff_t* const range = &chunk_starts_[static_cast<std::size_t>(c)];
+    outcomes_[static_cast<std::size_t>(c)] =
+        solve_chunk(blocks, active_.data() + range[0], range[1] - range[0]);
   });
   Refusal refusal;
   for (const ChunkOutcome& outcome : outcomes_) {

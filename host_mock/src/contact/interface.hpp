@@ -115,6 +115,7 @@ class Interface {
   ProximityFilter proximity_;
   double closing_ = 0.0;  // how far a gap may close in the coming step
   ContactList near_, active_;
+  std::vector<std::ptrdiff_t> chunk_starts_;  // in near_, and its end
   Vector obstacle_velocity_, obstacle_velocity_before_;
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   std::vector<double> speeds_;

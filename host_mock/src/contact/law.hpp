@@ -22,7 +22,8 @@ class Law {
   const ilaw::library& library() const { return library_; }
   const ilaw_instance_info& info() const { return info_; }
   bool acts_at_distance() const { return (info_.capabilities & ILAW_CAN_ACT_AT_DISTANCE) != 0; }
-  // Whether a contact whose last status was ILAW_FREE does nothing out of reach (ilaw.h, ILAW_CAN_REST).
+  // Whether a contact whose last status was ILAW_FREE does nothing out of reach (ilaw.h,
+  // ILAW_CAN_REST).
   bool rests() const { return (info_.capabilities & ILAW_CAN_REST) != 0; }
   // Whether the state holds axes, which turn with the normal from step to step.
   bool carries_axes() const;

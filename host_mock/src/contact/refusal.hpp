@@ -20,8 +20,8 @@ struct Answer {
 struct Refusal {
   std::int32_t code = ILAW_OK;
   std::int64_t bad_count = 0;
-  std::int32_t contact = -1;    // the first that is to blame; -1: none in particular
-  int status = 0;               // that ABI 1 does not know, where the library is to blame
+  std::int32_t contact = -1;  // the first that is to blame; -1: none in particular
+  int status = 0;             // that ABI 1 does not know, where the library is to blame
   const char* reason = nullptr;
 
   // contacts: those of the batch, in its order.

@@ -56,7 +56,7 @@ json describe_statuses(const Tally& tally) {
 void write_summary(const Scene& scene, const Integrator& integrator, const RunRecord& record,
                    const std::filesystem::path& folder) {
   const Tally& tally = integrator.tally();
-  const PhaseSeconds& seconds = integrator.seconds();
+  const PhaseSeconds seconds = integrator.seconds();
   const double stepping = seconds.internal_forces + seconds.interfaces;
   const double interface_share = stepping > 0.0 ? seconds.interfaces / stepping : 0.0;
   json interfaces = json::array();

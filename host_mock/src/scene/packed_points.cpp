@@ -22,7 +22,9 @@ bool PointPacker::key(const std::string& name) {
   return in_point_ && field_ < field_count && sizes_[field_] == 0;
 }
 
-bool PointPacker::start_vector() { return field_ != field_count && field_ >= position && !std::exchange(in_vector_, true); }
+bool PointPacker::start_vector() {
+  return field_ != field_count && field_ >= position && !std::exchange(in_vector_, true);
+}
 
 bool PointPacker::number(double value) {
   if (field_ == field_count || in_vector_ != (field_ >= position) || sizes_[field_] == 3) return false;

@@ -1,5 +1,5 @@
-// packed_points.hpp - the points of a large scene as numbers in a row. As JSON objects a million of them
-// take 600 MB and seconds to check; packed, they stand in the scene as one binary value.
+// packed_points.hpp - the points of a large scene as numbers in a row. As JSON objects a million of
+// them take 600 MB and seconds to check; packed, they stand in the scene as one binary value.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,9 +13,10 @@
 
 namespace ilaw::host {
 
-// Takes what a parser finds inside the array "points" of a model. Every function returns whether it is
-// what the schema allows, in the form that most scenes have: the same number of components throughout,
-// and no springs. Where it is not, the scene is read in the plain way, which also says what is wrong.
+// Takes what a parser finds inside the array "points" of a model. Every function returns whether it
+// is what the schema allows, in the form that most scenes have: the same number of components
+// throughout, and no springs. Where it is not, the scene is read in the plain way, which also says
+// what is wrong.
 class PointPacker {
  public:
   bool start_point();

@@ -23,7 +23,8 @@ std::unique_ptr<Model> read_points(const json& model) {
   const int d = model["dimension"].get<int>();
   if (are_packed(model["points"])) {
     std::vector<PointMass> points = unpacked(model["points"]);
-    check_components(static_cast<int>(points.front().position.size()), d, at("/model/points", 0) + "/position");
+    check_components(static_cast<int>(points.front().position.size()), d,
+                     at("/model/points", 0) + "/position");
     return std::make_unique<Points>(d, points);
   }
   std::vector<PointMass> points;

@@ -19,7 +19,8 @@ constexpr std::ptrdiff_t dof_chunk = 6 * 4096;
 // Calls f(first, end) for parts of the degrees of freedom. f touches those in [first, end) alone.
 template <class F>
 void for_each_part(Eigen::Index count, F f) {
-  for_each_chunk(count, dof_chunk, [&](std::ptrdiff_t, std::ptrdiff_t first, std::ptrdiff_t end) { f(first, end); });
+  for_each_chunk(count, dof_chunk,
+                 [&](std::ptrdiff_t, std::ptrdiff_t first, std::ptrdiff_t end) { f(first, end); });
 }
 
 // What f returns for each part, put together by join.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/integrator.hpp"
 
-#include "base/stopwatch.hpp"
 #include "step/dof_loops.hpp"
 
 #include <cmath>
@@ -12,17 +11,16 @@ namespace ilaw::host {
 
 void Integrator::step() {
   const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
-  const int weight = watch_weight();
   double speed_free = 0.0;
   move();  // u = u + h v
   {
-    const Stopwatch watch(seconds_.internal_forces, weight);
+    const Stopwatch watch(force_ticks_);
     sum_forces(times);         // f = f_ext - f_int(u), without any contact force
     speed_free = kick(times);  // v_free = v + (h/m) f
   }
   check_motion(speed_free, times.after);  // before the laws see it, too: they must not be blamed
   {
-    const Stopwatch watch(seconds_.interfaces, weight);
+    const Stopwatch watch(interface_ticks_);
     add_reactions(times.after, speed_free);  // r = law(v_free, 1/m, gap, state), v = v_free + r/m
   }
   speed_before_ = largest_speed(v_, model_.dimension());
@@ -87,9 +85,9 @@ void Integrator::correct(StepTimes step) {
   external_impulse_ += model_.mass().cwiseProduct(v_ - uncorrected);
 }
 
-// Where no two contacts share a node, each law is evaluated once: for blocks of contacts the interface
-// finds gaps, normals and 1/m, passes v_free and v_before relative to the obstacle, takes impulses,
-// states and energies, and adds r/m. Where some do, laws are evaluated until all agree.
+// Where no two contacts share a node, each law is evaluated once: for blocks of contacts the
+// interface finds gaps, normals and 1/m, passes v_free and v_before relative to the obstacle, takes
+// impulses, states and energies, and adds r/m. Where some do, laws are evaluated until all agree.
 void Integrator::add_reactions(double time, double speed_free) {
   const StepView step{u_, v_before_, time, dt_, speed_before_, speed_free};
   if (coupled_)

@@ -5,6 +5,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/stopwatch.hpp"
 #include "contact/interface.hpp"
 #include "model/load.hpp"
 #include "step/accounts.hpp"
@@ -17,8 +18,7 @@
 
 namespace ilaw::host {
 
-// Wall-clock seconds spent in each phase; of small models estimated from every 16th step after the first
-// 64, since looking at the clock takes as long as their step.
+// Wall-clock seconds spent in each phase.
 struct PhaseSeconds {
   double internal_forces = 0.0, interfaces = 0.0;
 };
@@ -40,7 +40,10 @@ class Integrator {
   EnergyReport energy() const { return accounts_.energy().report(model_, u_, u_ + dt_ * v_, v_); }
   // At the half step after time(); components as in energy.hpp.
   Vector angular_momentum() const { return host::angular_momentum(model_, u_, v_); }
-  const PhaseSeconds& seconds() const { return seconds_; }
+  PhaseSeconds seconds() const {
+    const double tick = tick_length_.seconds();
+    return {tick * static_cast<double>(force_ticks_), tick * static_cast<double>(interface_ticks_)};
+  }
   const Tally& tally() const { return accounts_.tally(); }
   // What a reader of the results must know.
   std::vector<std::string> warnings() const { return accounts_.warnings(steps_, dt_, energy()); }
@@ -50,11 +53,6 @@ class Integrator {
   void load(std::istream& in);
 
  private:
-  int watch_weight() const {
-    constexpr int rare = 16;
-    if (steps_ < 4 * rare || model_.node_count() > 1000) return 1;
-    return steps_ % rare == 0 ? rare : 0;
-  }
   void move();
   void sum_forces(StepTimes step);
   double kick(StepTimes step);
@@ -73,7 +71,8 @@ class Integrator {
   Dofs u_, v_, v_before_, external_impulse_, internal_impulse_;
   Dofs inverse_mass_;
   Accounts accounts_;
-  PhaseSeconds seconds_;
+  TickLength tick_length_;
+  std::int64_t force_ticks_ = 0, interface_ticks_ = 0;
 };
 
 }  // namespace ilaw::host

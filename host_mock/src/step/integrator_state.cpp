@@ -14,8 +14,10 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       loads_(loads),
       interfaces_(interfaces),
       dt_(dt),
-      loads_are_steady_(std::all_of(loads.begin(), loads.end(), [](const auto& load) { return load->is_steady(); })),
-      loads_correct_(std::any_of(loads.begin(), loads.end(), [](const auto& load) { return load->corrects(); })),
+      loads_are_steady_(
+          std::all_of(loads.begin(), loads.end(), [](const auto& load) { return load->is_steady(); })),
+      loads_correct_(
+          std::any_of(loads.begin(), loads.end(), [](const auto& load) { return load->corrects(); })),
       u_(Dofs::Zero(model.mass().size())),
       v_(model.initial_velocity()),
       v_before_(v_),
