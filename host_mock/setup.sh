@@ -4,7 +4,9 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev gnuplot-nox libvtk9-dev)
-for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsiconos-numerics-dev qemu-user)
+for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsiconos-numerics-dev qemu-user
+           dpkg-dev pkgconf python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv
+           python3-matplotlib)
 case ${1:-} in
   tests) packages+=("${for_tests[@]}") ;;
   ci) packages+=("${for_tests[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache) ;;

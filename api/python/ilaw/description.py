@@ -1,0 +1,190 @@
+"""What a library and its laws say of themselves."""
+from __future__ import annotations
+
+import builtins
+import ctypes
+import os
+from dataclasses import dataclass, field
+
+from . import _abi
+from ._loader import loader
+from .errors import NotFound, raise_for
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a law. `default` is None where the parameter must be given."""
+
+    name: str
+    symbol: str
+    unit: str
+    doc: str
+    kind: _abi.ParameterKind
+    default: float | str | None
+    minimum: float
+    maximum: float
+    minimum_excluded: bool
+    infinity_allowed: bool
+    may_be: _abi.MayBe
+    choices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class StateVariable:
+    """A part of a node's state: `count` numbers from place `start` on."""
+
+    name: str
+    unit: str
+    doc: str
+    kind: int
+    start: int
+    count: int
+    internal: bool
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law as its library describes it. State variables are those of dimension 3 and default parameters."""
+
+    id: str
+    title: str
+    doc: str
+    dimensions: tuple[int, ...]
+    delassus: tuple[str, ...]
+    inputs: _abi.Input
+    outputs: _abi.Output
+    capabilities: _abi.Capability
+    references: tuple[str, ...]
+    parameters: dict[str, Parameter] = field(repr=False)
+    state_variables: tuple[StateVariable, ...] = field(repr=False)
+
+
+@dataclass(frozen=True)
+class Plugin:
+    """A library of laws."""
+
+    name: str
+    version: str
+    vendor: str
+    licence: str
+    path: str
+    abi: tuple[int, int]
+    laws: dict[str, Law] = field(repr=False)
+
+
+class Library:
+    """An open library; closed with the object (interfaces made from it keep it loaded)."""
+
+    def __init__(self, name_or_path: str | os.PathLike[str]) -> None:
+        handle = ctypes.c_void_p()
+        message = ctypes.create_string_buffer(1024)
+        code = loader().ilaw_library_open(os.fsencode(name_or_path), ctypes.byref(handle), message, len(message))
+        raise_for(code, message.value.decode(errors="replace"))
+        self.handle = handle
+
+    def __del__(self) -> None:
+        if getattr(self, "handle", None):
+            loader().ilaw_library_close(self.handle)
+
+    def plugin(self) -> Plugin:
+        """The library's description."""
+        read = loader().ilaw_library_plugin(self.handle).contents
+        laws = [_law(read.laws[i].contents) for i in range(read.law_count)]
+        return Plugin(
+            name=read.name.decode(),
+            version=read.version.decode(),
+            vendor=read.vendor.decode(),
+            licence=read.licence.decode(),
+            path=os.fsdecode(loader().ilaw_library_path(self.handle)),
+            abi=(read.abi_major, read.abi_minor),
+            laws={law.id: law for law in laws},
+        )
+
+
+def _parameter(read: _abi.parameter) -> Parameter:
+    choices = tuple(read.choices[i].decode() for i in range(read.choice_count))
+    default: float | str | None = None
+    if not read.required:
+        default = choices[int(read.default_value)] if choices else read.default_value
+    return Parameter(
+        name=read.name.decode(),
+        symbol=read.symbol.decode(),
+        unit=read.unit.decode(),
+        doc=read.doc.decode(),
+        kind=_abi.ParameterKind(read.kind),
+        default=default,
+        minimum=read.minimum,
+        maximum=read.maximum,
+        minimum_excluded=bool(read.minimum_excluded),
+        infinity_allowed=bool(read.infinity_allowed),
+        may_be=_abi.MayBe(read.may_be),
+        choices=choices,
+    )
+
+
+def state_variables(read: ctypes._Pointer, count: int) -> tuple[StateVariable, ...]:
+    """The variables of a law or an instance, with their places in the state."""
+    made, start = [], 0
+    for i in range(count):
+        variable = read[i].contents
+        made.append(
+            StateVariable(
+                name=variable.name.decode(),
+                unit=variable.unit.decode(),
+                doc=variable.doc.decode(),
+                kind=variable.kind,
+                start=start,
+                count=variable.count,
+                internal=bool(variable.flags & _abi.VariableFlag.INTERNAL),
+            )
+        )
+        start += variable.count
+    return tuple(made)
+
+
+def _law(read: _abi.law) -> Law:
+    parameters = [_parameter(read.parameters[i].contents) for i in range(read.parameter_count)]
+    return Law(
+        id=read.id.decode(),
+        title=read.title.decode(),
+        doc=read.doc.decode(),
+        dimensions=tuple(d for d in (1, 2, 3) if read.dimensions & 1 << d),
+        delassus=tuple(form.name.lower() for form in _abi.Delassus if read.delassus_forms & form),
+        inputs=_abi.Input(read.inputs),
+        outputs=_abi.Output(read.outputs),
+        capabilities=_abi.Capability(read.capabilities),
+        references=tuple(read.references[i].decode() for i in range(read.reference_count)),
+        parameters={parameter.name: parameter for parameter in parameters},
+        state_variables=state_variables(read.state_variables, read.state_variable_count),
+    )
+
+
+def search_path() -> list[str]:
+    """The folders in which a library's name is looked up, in order."""
+    size = loader().ilaw_search_path(None, 0)
+    buffer = ctypes.create_string_buffer(size)
+    loader().ilaw_search_path(buffer, size)
+    return [folder for folder in os.fsdecode(buffer.value).split(":") if folder]
+
+
+def list() -> list[str]:  # noqa: A001 - `ilaw.list()` is what users look for
+    """Paths of the libraries on the search path. None of them is opened."""
+    found: builtins.list[str] = []
+
+    @_abi.SIGNATURES["ilaw_search"][1][0]
+    def visit(path: bytes, _context: int | None) -> int:
+        found.append(os.fsdecode(path))
+        return 0
+
+    raise_for(loader().ilaw_search(visit, None), "out of memory")
+    return found
+
+
+def describe(name_or_path: str | os.PathLike[str], law: str | None = None) -> Law:
+    """The description of a law: of the library's only one, or of the one called `law`."""
+    plugin = Library(name_or_path).plugin()
+    if law is None and len(plugin.laws) == 1:
+        return next(iter(plugin.laws.values()))
+    if law not in plugin.laws:
+        raise NotFound(f"{plugin.path}: no law {law!r}, expected one of: {', '.join(plugin.laws)}")
+    return plugin.laws[law]

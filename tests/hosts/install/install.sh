@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# An ilaw as users get it, by `cmake --install`, from the archive and from the Debian packages: an outside project
+# builds a law and hosts against it, and they run.
+# Usage: install.sh BUILD SOURCE C_COMPILER CXX_COMPILER install|archive|packages
+set -euo pipefail
+build=$1 source=$2 cc=$3 cxx=$4 way=$5
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+case $way in
+  install)
+    cmake --install "$build" --prefix "$work/ilaw" >/dev/null
+    prefix=$work/ilaw ;;
+  archive)
+    cpack --config "$build/CPackConfig.cmake" -G TGZ -B "$work/made" >cpack.log 2>&1 || { cat cpack.log; exit 1; }
+    mkdir ilaw && tar -xzf made/*.tar.gz -C ilaw --strip-components=1
+    prefix=$work/ilaw ;;
+  packages)
+    cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/made" >cpack.log 2>&1 || { cat cpack.log; exit 1; }
+    for package in made/*.deb; do dpkg-deb -x "$package" root; done
+    dpkg-deb --field made/ilaw_*.deb Depends | grep -q libstdc++6
+    dpkg-deb --field made/libilaw-dev_*.deb Depends | grep -q '^ilaw (= '
+    prefix=$work/root/usr ;;
+esac
+
+echo "== files"
+for file in bin/ilaw lib/ilaw/contact.so include/ilaw/ilaw.h include/ilaw/kit/detail/evaluate.hpp lib/libilaw_loader.a \
+            lib/libilaw_loader.so lib/libilaw_loader.so.1 lib/cmake/ilaw/ilawConfig.cmake lib/pkgconfig/ilaw.pc \
+            share/ilaw/fortran/ilaw.f90 share/ilaw/python/pyproject.toml share/man/man1/ilaw.1 \
+            share/bash-completion/completions/ilaw; do
+  [ -e "$prefix/$file" ] || { echo "missing: $file"; exit 1; }
+done
+[ ! -e "$prefix/lib/ilaw/template_law.so" ]
+
+echo "== the program, from where it lies"
+"$prefix/bin/ilaw" list | grep -q "^coulomb .*$prefix/lib/ilaw/coulomb.so"
+"$prefix/bin/ilaw" run "$source/plugins/coulomb/sliding_block.json" --out results
+
+echo "== a project with CMake: a law, and hosts with the static and the shared loader"
+cp "$source/plugins/template_law/template_law.cpp" "$source/tests/hosts/blocks.c" "$source/tests/hosts/blocks.cpp" .
+cat >CMakeLists.txt <<'EOF'
+cmake_minimum_required(VERSION 3.22)
+project(outside LANGUAGES C CXX)
+set(CMAKE_C_STANDARD 99)
+find_package(ilaw 1.0 REQUIRED)
+ilaw_add_plugin(template_law template_law.cpp)
+add_executable(blocks_static blocks.c)
+target_link_libraries(blocks_static PRIVATE ilaw::loader)
+add_executable(blocks_shared blocks.c)
+target_link_libraries(blocks_shared PRIVATE ilaw::loader_shared)
+EOF
+{ cmake -S . -B out -DCMAKE_BUILD_TYPE=Debug -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" \
+    -DCMAKE_CXX_COMPILER="$cxx" && cmake --build out; } >build.log 2>&1 || { cat build.log; exit 1; }
+ILAW_PATH="$work/out/lib/ilaw" "$prefix/bin/ilaw" describe template_law >/dev/null
+export ILAW_PATH=$prefix/lib/ilaw
+out/blocks_static coulomb >wanted
+out/blocks_shared coulomb | cmp - wanted
+
+echo "== by hand, with pkg-config"
+export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+flags=($(pkg-config --cflags --libs ilaw))
+"$cc" -std=c99 blocks.c "${flags[@]}" -o by_hand
+LD_LIBRARY_PATH=$prefix/lib ./by_hand coulomb | cmp - wanted
+[ "$(pkg-config --modversion ilaw)" = "$(sed -n 's/^project(ilaw VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")" ]
+
+echo "== completion"
+(
+  PATH=$prefix/bin:$PATH
+  source "$prefix/share/bash-completion/completions/ilaw"
+  complete_line() { COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _ilaw; echo "${COMPREPLY[*]}"; }
+  [ "$(complete_line ilaw desc)" = describe ]
+  [ "$(complete_line ilaw describe coul)" = coulomb ]
+  [ "$(complete_line ilaw run --res)" = --resume ]
+)
