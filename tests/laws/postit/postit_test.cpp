@@ -1,14 +1,11 @@
 // The Post-it law through the ABI, against histories derived by hand.
 #include "support/rupture_instants.hpp"
 
-#include <limits>
 #include <random>
 #include <vector>
 
 namespace ilaw::testing {
 namespace {
-
-constexpr double inf_value = std::numeric_limits<double>::infinity();
 
 // A unit point mass on the plane, with a pull F(t) and shocks: v_free = v + h F + shocks.
 struct Glued : NodeRun {
