@@ -22,7 +22,7 @@ namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 constexpr std::size_t node_count = 500, steps = 50;
-// In 2D and 3D together a quarter of a million random steps. Other units and axes show in any of them, or in none.
+// In 2D and 3D together a quarter of a million random steps. Other units and axes show in any, or in none.
 constexpr std::size_t histories = 5, histories_compared = 2;
 
 struct Law {
