@@ -20,8 +20,9 @@ std::string read(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Pages and sources indent differently.
-std::string without_indentation(const std::string& text) {
+// Pages and sources indent differently; in Python that would be another program.
+std::string without_indentation(const std::string& text, const std::string& language) {
+  if (language == "python") return '\n' + text;
   return std::regex_replace(text, std::regex("(^|\n)[ ]+"), "$1");
 }
 
@@ -41,13 +42,15 @@ TEST(HostsPage, QuotesCodeThatIsBuiltAndRun) {
   const std::map<std::string, std::string> sources{
       {"c", read(ILAW_EXAMPLES "/blocks.c")},
       {"cpp", read(ILAW_EXAMPLES "/blocks.cpp") + read(ILAW_EXAMPLES "/adaptor_test.cpp")},
-      {"fortran", read(ILAW_EXAMPLES "/blocks.f90")}};
+      {"fortran", read(ILAW_EXAMPLES "/blocks.f90")},
+      {"python", read(ILAW_EXAMPLES "/python/blocks.py")}};
   std::set<std::string> languages;
   for (const code_block& block : code_blocks(read(ILAW_DOCS "/hosts.md"))) {
     ASSERT_TRUE(sources.contains(block.language)) << block.text;
     languages.insert(block.language);
     const std::string& source = sources.at(block.language);
-    EXPECT_NE(without_indentation(source).find(without_indentation(block.text)), std::string::npos)
+    const auto stripped = [&block](const std::string& t) { return without_indentation(t, block.language); };
+    EXPECT_NE(stripped(source).find(stripped(block.text)), std::string::npos)
         << "not in the hosts in " << block.language << ":\n"
         << block.text;
   }
@@ -63,7 +66,8 @@ TEST(HostsPage, QuotesEveryMandatoryCall) {
       {"cpp", {"ilaw::library(", "interface.info(", "interface.initialise(", "interface.evaluate("}},
       {"fortran",
        {"ilaw_open(", "ilaw_create(", "ilaw_interface_info(", "ilaw_interface_initialise(",
-        "ilaw_interface_evaluate(", "ilaw_interface_destroy("}}};
+        "ilaw_interface_evaluate(", "ilaw_interface_destroy("}},
+      {"python", {"ilaw.Interface(", "law.batch(", ".initialise(", ".evaluate("}}};
   std::map<std::string, std::string> quoted;
   for (const code_block& block : code_blocks(read(ILAW_DOCS "/hosts.md")))
     quoted[block.language] += block.text;

@@ -1,5 +1,6 @@
-// The example hosts in C99, C++ and Fortran 2008: their results against closed forms, and bit for bit against
-// each other. Their problem: blocks on springs on a floor, friction 0.3, gravity 10, h = 1e-3, three seconds.
+// The example hosts in C99, C++, Fortran 2008 and Python: their results against closed forms, and bit for bit
+// against each other. Their problem: blocks on springs on a floor, friction 0.3, gravity 10, h = 1e-3, three
+// seconds.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <ilaw/ilaw.h>
@@ -197,6 +198,9 @@ INSTANTIATE_TEST_SUITE_P(C, Host, testing::Values(ILAW_blocks_c));
 INSTANTIATE_TEST_SUITE_P(Cpp, Host, testing::Values(ILAW_blocks_cpp));
 #ifdef ILAW_blocks_fortran
 INSTANTIATE_TEST_SUITE_P(Fortran, Host, testing::Values(ILAW_blocks_fortran));
+#endif
+#ifdef ILAW_blocks_python
+INSTANTIATE_TEST_SUITE_P(Python, Host, testing::Values(ILAW_blocks_python));
 #endif
 
 }  // namespace

@@ -20,6 +20,8 @@ v = np.array([[0.72, 0.96, 0], [-1.6, 1.2, 0], [1.8, 2.4, 0], [0, 0, 0], [0, 0, 
 v_previous = np.zeros_like(v)
 inverse_mass = 1.0 / mass
 friction_work = np.zeros(len(mass))
+if len(sys.argv) != 2:
+    sys.exit("usage: blocks.py LIBRARY")
 
 
 def forces():
