@@ -11,11 +11,11 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       loads_(loads),
       interfaces_(interfaces),
       dt_(dt),
-      u_(Dofs::Zero(model.mass().size())),
+      u_(model.initial_displacement()),
       v_(model.initial_velocity()),
       v_before_(v_),
-      external_impulse_(u_),
-      internal_impulse_(u_),
+      external_impulse_(Dofs::Zero(u_.size())),
+      internal_impulse_(external_impulse_),
       inverse_mass_(model.mass().cwiseInverse()) {
   if (share_nodes(interfaces_)) coupled_.emplace(model_, interfaces_);
   Dofs force = Dofs::Zero(u_.size());
