@@ -28,6 +28,10 @@ const std::vector<Case> cases = {
     {"postit", R"("law": "postit")"},
     {"postit_that_wears", R"("law": "postit", "parameters": {"efficiency_decrease": 5.0})"},
     {"postit_without_adhesion", R"("law": "postit", "parameters": {"adhesion_limit": 0.0})"},
+    {"postit_saturated",
+     R"("law": "postit", "parameters": {"rupture": "saturated", "efficiency_decrease": 5.0})"},
+    {"postit_bonded", R"("law": "postit", "parameters": {"initial_adhesion": 0.01})", 0.0, 1.0},
+    {"tie", R"("law": "tie")", 0.0, 1.0},
     {"tie_broken", R"("law": "tie", "parameters": {"strength": 1e-9})"},
     {"cohesive_broken", R"("law": "cohesive", "parameters": {"strength": 1.0, "toughness": 0.0})"},
     {"cohesive", R"("law": "cohesive", "parameters": {"strength": 0.05, "toughness": 1e-4})", 0.0, 1.0},
@@ -54,7 +58,7 @@ std::string scene_text(const Case& drawn, double cfl, int elements) {
 
 class CriticalStep : public ::testing::TestWithParam<Case> {};
 
-// The number of steps may be set, for a run of a million.
+// The number of steps may be set, for a run of a million, which tells what it found.
 TEST_P(CriticalStep, InterfacesPutNoEnergyIn) {
   const char* given = std::getenv("ILAW_TEST_STEPS");
   const int steps = given ? std::atoi(given) : 20000;
@@ -68,6 +72,9 @@ TEST_P(CriticalStep, InterfacesPutNoEnergyIn) {
       integrator.step();
       most = std::max(most, integrator.energy().interface_work / initial);
     }
+    if (given)
+      std::printf("%s, cfl %g, %lld steps: %.1e\n", GetParam().name, cfl,
+                  static_cast<long long>(integrator.steps()), most);
     EXPECT_LE(most, 1e-10) << "of the energy put in at cfl " << cfl << " within " << integrator.steps()
                            << " steps";
     EXPECT_LE(integrator.energy().reaction_work, 1e-10 * initial) << "cfl " << cfl;

@@ -216,6 +216,21 @@ TEST(Warnings, TellOfAStepThatMayBeUnstable) {
   EXPECT_EQ(warnings[0].find("/time/dt: found 0.001, which may be unstable"), 0U) << warnings[0];
 }
 
+TEST(Warnings, TellOfElementsThatLock) {
+  json scene = json::parse(text_of(scene_files::named("block_impact.json")));
+  json& block = scene["model"]["blocks"][0];
+  block["material"]["poisson"] = 0.499;
+  const std::vector<std::string> warnings = scene_of(scene.dump()).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].find("/model/blocks/0/material/poisson: found 0.499, at which full elements"), 0U)
+      << warnings[0];
+  block["element"] = "mean_dilatation";
+  EXPECT_TRUE(scene_of(scene.dump()).warnings.empty());
+  block["element"] = "reduced";
+  EXPECT_EQ(refusal_of(scene.dump()),
+            "/model/blocks/0/element: found \"reduced\", expected one of \"full\", \"mean_dilatation\"");
+}
+
 TEST(Warnings, AreNotForTheShippedScenes) {
   for (const std::filesystem::path& file : scene_files::all()) {
     const std::vector<std::string> warnings = scene_of(text_of(file)).warnings;

@@ -4,6 +4,10 @@
 
 #include "model/model.hpp"
 
+#include <array>
+#include <string>
+#include <vector>
+
 namespace ilaw::host {
 
 struct BarSetup {
@@ -11,6 +15,7 @@ struct BarSetup {
   double start, length;  // from start to start + length
   int elements;
   double young, density, section, velocity;
+  std::array<double, 2> displacement;  // of its ends at the start, linear between them
 };
 
 // Sets of bar "b": "b", "b.left", "b.right".

@@ -116,14 +116,35 @@ Nodes nodes_of(const std::vector<BlockSetup>& blocks) {
   return nodes;
 }
 
+using Gradients = Eigen::Matrix<double, 3, 8>;
+using StrainMatrix = Eigen::Matrix<double, 6, 24>;
+
 // Strain-displacement matrix of linear elasticity, engineering shear strains.
-Eigen::Matrix<double, 6, 24> strain_matrix(const Eigen::Matrix<double, 3, 8>& gradients) {
-  Eigen::Matrix<double, 6, 24> b = Eigen::Matrix<double, 6, 24>::Zero();
+StrainMatrix strain_matrix(const Gradients& gradients) {
+  StrainMatrix b = StrainMatrix::Zero();
   for (int a = 0; a < 8; ++a) {
     const double x = gradients(0, a), y = gradients(1, a), z = gradients(2, a);
     b.block<6, 3>(0, 3 * a) << x, 0, 0, 0, y, 0, 0, 0, z, y, x, 0, 0, z, y, z, 0, x;
   }
   return b;
+}
+
+// Of all integration points; with mean dilatation each point's is replaced by the mean (B-bar, Hughes
+// 1980).
+std::array<StrainMatrix, 8> strain_matrices(const std::array<Gradients, 8>& gradients, Element element) {
+  using Row = Eigen::Matrix<double, 1, 24>;
+  std::array<StrainMatrix, 8> matrices;
+  Row mean = Row::Zero();
+  for (std::size_t g = 0; g < 8; ++g) {
+    matrices[g] = strain_matrix(gradients[g]);
+    mean += 0.125 * matrices[g].topRows<3>().colwise().sum();
+  }
+  if (element == Element::mean_dilatation)
+    for (StrainMatrix& b : matrices) {
+      const Row missing = (mean - b.topRows<3>().colwise().sum()) / 3.0;
+      b.topRows<3>().rowwise() += missing;
+    }
+  return matrices;
 }
 
 Eigen::Matrix<double, 6, 6> elasticity(const Material& material) {
@@ -135,9 +156,8 @@ Eigen::Matrix<double, 6, 6> elasticity(const Material& material) {
 }
 
 // Gradients of the shape functions of a box at Gauss point (gx, gy, gz), each 0 or 1.
-Eigen::Matrix<double, 3, 8> gradients_at(const Eigen::Vector3d& element_size,
-                                         const std::array<int, 3>& gauss) {
-  Eigen::Matrix<double, 3, 8> gradients;
+Gradients gradients_at(const Eigen::Vector3d& element_size, const std::array<int, 3>& gauss) {
+  Gradients gradients;
   const auto shape = [&](int corner, int axis) {  // of one direction, at the Gauss point
     const auto k = static_cast<std::size_t>(axis);
     const double at = 0.5 + (gauss[k] == 0 ? -0.5 : 0.5) / std::sqrt(3.0);
@@ -166,8 +186,34 @@ Blocks::ElementVector Blocks::Block::gather(const Dofs& u, int element_first) co
   return local;
 }
 
+Blocks::Deformation Blocks::Block::deformation(const ElementVector& u) const {
+  const Eigen::Map<const Eigen::Matrix<double, 3, 8>> displacement(u.data());
+  Deformation found{};
+  double volume = 0.0;
+  for (std::size_t g = 0; g < 8; ++g) {
+    found.gradients[g] = Eigen::Matrix3d::Identity() + displacement * gradients[g].transpose();
+    found.volumes[g] = found.gradients[g].determinant();
+    volume += 0.125 * found.volumes[g];
+  }
+  found.solid = {material.shear_modulus(), material.lame(), volume};
+  for (std::size_t g = 0; g < 8; ++g) found.scales[g] = found.solid.scale(found.volumes[g]);
+  return found;
+}
+
+Blocks::ElementVector Blocks::Block::mean_dilatation_force(const ElementVector& u) const {
+  const Deformation at = deformation(u);
+  double mean_distortion = 0.0;
+  for (std::size_t g = 0; g < 8; ++g) mean_distortion += 0.125 * at.distortion(g);
+  const double pressure = at.solid.pressure(mean_distortion);
+  Eigen::Matrix<double, 3, 8> force = Eigen::Matrix<double, 3, 8>::Zero();
+  for (std::size_t g = 0; g < 8; ++g)
+    force += weight * at.solid.stress(pressure, at.gradients[g], at.volumes[g], at.scales[g]) * gradients[g];
+  return Eigen::Map<const ElementVector>(force.data());
+}
+
 Blocks::ElementVector Blocks::Block::internal_force(const ElementVector& u) const {
   if (material.law == MaterialLaw::linear) return stiffness * u;
+  if (element == Element::mean_dilatation) return mean_dilatation_force(u);
   const Eigen::Map<const Eigen::Matrix<double, 3, 8>> displacement(u.data());
   Eigen::Matrix<double, 3, 8> force = Eigen::Matrix<double, 3, 8>::Zero();
   for (const Gradients& gradient : gradients) {
@@ -179,8 +225,13 @@ Blocks::ElementVector Blocks::Block::internal_force(const ElementVector& u) cons
 
 double Blocks::Block::energy(const ElementVector& u) const {
   if (material.law == MaterialLaw::linear) return 0.5 * u.dot(stiffness * u);
-  const Eigen::Map<const Eigen::Matrix<double, 3, 8>> displacement(u.data());
   double sum = 0.0;
+  if (element == Element::mean_dilatation) {
+    const Deformation at = deformation(u);
+    for (std::size_t g = 0; g < 8; ++g) sum += weight * at.solid.energy(at.distortion(g));
+    return sum;
+  }
+  const Eigen::Map<const Eigen::Matrix<double, 3, 8>> displacement(u.data());
   for (const Gradients& gradient : gradients)
     sum += weight * neo_hookean_energy(material.shear_modulus(), material.lame(),
                                        Eigen::Matrix3d::Identity() + displacement * gradient.transpose());
@@ -208,12 +259,11 @@ Blocks::Block Blocks::make_block(const BlockSetup& setup, int first) {
   const Eigen::Vector3d element_size(setup.size[0] / setup.elements[0], setup.size[1] / setup.elements[1],
                                      setup.size[2] / setup.elements[2]);
   block.weight = element_size.prod() / 8.0;
+  block.element = setup.element;
   block.stiffness.setZero();
-  for (std::size_t g = 0; g < 8; ++g) {
-    block.gradients[g] = gradients_at(element_size, corner_of[g]);
-    const Eigen::Matrix<double, 6, 24> b = strain_matrix(block.gradients[g]);
+  for (std::size_t g = 0; g < 8; ++g) block.gradients[g] = gradients_at(element_size, corner_of[g]);
+  for (const StrainMatrix& b : strain_matrices(block.gradients, setup.element))
     block.stiffness += block.weight * b.transpose() * elasticity(setup.material) * b;
-  }
   block.stiffness = 0.5 * (block.stiffness + block.stiffness.transpose()).eval();  // to the last bit
   const Grid grid{setup.elements, 0};
   for (std::size_t a = 0; a < 8; ++a)

@@ -2,9 +2,10 @@
 // large displacements.
 //
 // Full 2x2x2 integration: it has no zero-energy modes, so no hourglass stiffness to choose, whose
-// value would show in every convergence table. All elements of a box are alike, so shape gradients
-// are computed once; a linear box keeps one 24x24 stiffness for all its elements. Matrix-free
-// otherwise.
+// value would show in every convergence table. It locks as Poisson's ratio goes to 1/2; with the
+// element's mean dilatation in place of that of each integration point it does not. All elements of
+// a box are alike, so shape gradients are computed once; a linear box keeps one 24x24 stiffness for
+// all its elements. Matrix-free otherwise.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,11 +14,16 @@
 
 namespace ilaw::host {
 
+// Which dilatation an integration point feels: its own, or the mean of its element (Nagtegaal, Parks
+// and Rice 1974; Hughes 1980; Simo, Taylor and Pister 1985).
+enum class Element { full, mean_dilatation };
+
 struct BlockSetup {
   std::string name;
   Eigen::Vector3d corner, size, velocity;
   std::array<int, 3> elements;
   Material material;
+  Element element;
 };
 
 // Sets of block "b": "b", and its faces "b.x_min", "b.x_max", ... "b.z_max" with their areas and
@@ -33,7 +39,7 @@ class Blocks : public Model {
   void add_internal_forces(const Dofs& u, Dofs& force) const override;
   double potential(const Dofs& u) const override;
   // From the largest eigenvalue of one element, which bounds that of the whole (Irons and Treharne
-  // 1971).
+  // 1971). Mean dilatation makes it no smaller: it lowers the energy of every motion (Jensen).
   double critical_step() const override { return critical_step_; }
   bool critical_step_is_exact() const override { return false; }
 
@@ -42,11 +48,21 @@ class Blocks : public Model {
   using ElementMatrix = Eigen::Matrix<double, 24, 24>;
   using Gradients = Eigen::Matrix<double, 3, 8>;  // of the shape functions at an integration point
 
+  // Of an element with mean dilatation: F at the integration points, det F, and s of material.hpp.
+  struct Deformation {
+    std::array<Eigen::Matrix3d, 8> gradients;
+    std::array<double, 8> volumes, scales;
+    MeanDilatation solid;
+
+    double distortion(std::size_t g) const { return scales[g] * gradients[g].squaredNorm(); }
+  };
+
   struct Block {
     int first;                    // node
     std::array<int, 3> elements;  // along x, y, z
     int layer_axis;               // the longest, for threads
     Material material;
+    Element element;
     std::array<Gradients, 8> gradients;
     double weight;  // volume of an integration point
     ElementMatrix stiffness;
@@ -58,6 +74,8 @@ class Blocks : public Model {
     ElementVector gather(const Dofs& u, int element_first) const;
     ElementVector internal_force(const ElementVector& u) const;
     double energy(const ElementVector& u) const;
+    ElementVector mean_dilatation_force(const ElementVector& u) const;
+    Deformation deformation(const ElementVector& u) const;
     // Calls visit(first node) for the elements of a layer.
     template <class Visit>
     void for_each_element(int layer, Visit visit) const;

@@ -33,4 +33,27 @@ inline Eigen::Matrix3d neo_hookean_stress(double mu, double lambda, const Eigen:
   return mu * F + (lambda * std::log(F.determinant()) - mu) * turned_inverse;
 }
 
+// The same solid with F replaced by (V/J)^(1/3) F, whose determinant is V, the mean of J = det F over
+// an element (Simo, Taylor and Pister 1985; Moran, Ortiz and Shih 1990). With s = (V/J)^(2/3),
+//   W = mu/2 (s F:F - 3) - mu ln V + lambda/2 (ln V)^2.
+struct MeanDilatation {
+  double mu, lambda, volume;  // volume: V
+
+  // s of a point; J <= 0 gives NaN.
+  double scale(double J) const { return std::pow(volume / J, 2.0 / 3.0); }
+  // distortion: s F:F.
+  double energy(double distortion) const {
+    const double log_volume = std::log(volume);
+    return 0.5 * mu * (distortion - 3.0) - mu * log_volume + 0.5 * lambda * log_volume * log_volume;
+  }
+  // Cauchy's mean stress, the derivative of the mean of W by V.
+  double pressure(double mean_distortion) const {
+    return (mu * (mean_distortion / 3.0 - 1.0) + lambda * std::log(volume)) / volume;
+  }
+  // Derivative of the mean of W by F of a point, times the number of points.
+  Eigen::Matrix3d stress(double pressure, const Eigen::Matrix3d& F, double J, double s) const {
+    return mu * s * F + (pressure * J - mu * s * F.squaredNorm() / 3.0) * F.inverse().transpose();
+  }
+};
+
 }  // namespace ilaw::host

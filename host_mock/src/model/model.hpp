@@ -30,6 +30,7 @@ struct Nodes {
   int dimension = 0;
   Dofs mass, position, velocity;  // mass lumped, per degree of freedom, > 0; position of the undeformed body
   std::map<std::string, NodeSet> sets;
+  Dofs displacement = Dofs();  // at the start; empty: none
 };
 
 // Cells of a model with a mesh, for pictures.
@@ -40,7 +41,9 @@ struct Mesh {
 
 class Model {
  public:
-  explicit Model(Nodes nodes) : nodes_(std::move(nodes)) {}
+  explicit Model(Nodes nodes) : nodes_(std::move(nodes)) {
+    if (nodes_.displacement.size() == 0) nodes_.displacement = Dofs::Zero(nodes_.mass.size());
+  }
   virtual ~Model() = default;
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
@@ -50,6 +53,7 @@ class Model {
   const Dofs& mass() const { return nodes_.mass; }
   const Dofs& position() const { return nodes_.position; }
   const Dofs& initial_velocity() const { return nodes_.velocity; }
+  const Dofs& initial_displacement() const { return nodes_.displacement; }
   // Named sets; "all" is always there.
   const std::map<std::string, NodeSet>& sets() const { return nodes_.sets; }
   const Mesh& mesh() const { return mesh_; }

@@ -70,6 +70,17 @@ void check_nodes(double nodes, const json& body, const std::string& pointer) {
                   body["elements"].dump() + ", which makes " + json(nodes).dump() + " nodes", "at most 5e8");
 }
 
+// Of the ends of a bar, which must stay where they are to each other.
+std::array<double, 2> read_end_displacements(const json& bar, const std::string& pointer) {
+  if (!bar.contains("initial_displacement")) return {0.0, 0.0};
+  const json& found = bar["initial_displacement"];
+  const auto ends = found.get<std::array<double, 2>>();
+  if (!(bar["length"].get<double>() + ends[1] - ends[0] > 0.0))
+    throw mistake(pointer + "/initial_displacement", found.dump(),
+                  "displacements that leave the bar a length");
+  return ends;
+}
+
 std::unique_ptr<Model> read_bars(const json& model) {
   std::vector<BarSetup> bars;
   BodyNames names("bar");
@@ -80,7 +91,8 @@ std::unique_ptr<Model> read_bars(const json& model) {
     check_nodes(nodes += bar["elements"].get<double>() + 1.0, bar, pointer);
     bars.push_back({names.next(bar, pointer), bar.value("start", 0.0), bar["length"].get<double>(),
                     bar["elements"].get<int>(), bar["young"].get<double>(), bar["density"].get<double>(),
-                    bar.value("section", 1.0), bar.value("velocity", 0.0)});
+                    bar.value("section", 1.0), bar.value("velocity", 0.0),
+                    read_end_displacements(bar, pointer)});
   }
   return std::make_unique<Bars>(bars);
 }
@@ -104,7 +116,8 @@ std::unique_ptr<Model> read_blocks(const json& model) {
     blocks.push_back({names.next(block, pointer), read_vector_or_zero(block, "corner", 3, pointer),
                       read_vector(block["size"], 3, pointer + "/size"),
                       read_vector_or_zero(block, "velocity", 3, pointer), elements,
-                      read_material(block["material"])});
+                      read_material(block["material"]),
+                      block.value("element", "full") == "full" ? Element::full : Element::mean_dilatation});
   }
   return std::make_unique<Blocks>(blocks);
 }

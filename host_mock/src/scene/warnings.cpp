@@ -29,7 +29,7 @@ void warn_of_times(Scene& scene) {
 }
 
 void warn_of_start(Scene& scene) {
-  const Dofs start = Dofs::Zero(scene.model->mass().size());
+  const Dofs& start = scene.model->initial_displacement();
   const double rounding = 1e-12 * scene.model->position().cwiseAbs().maxCoeff();
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
@@ -48,6 +48,18 @@ void warn_of_start(Scene& scene) {
       scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(count) +
                                " node(s) start inside the obstacle, node " +
                                std::to_string(interface.nodes()[deepest]) + " by " + json(-least).dump());
+  }
+}
+
+void warn_of_locking(Scene& scene) {
+  constexpr double much = 0.49;
+  const json blocks = scene.source["model"].value("blocks", json::array());
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const json& poisson = blocks[k]["material"]["poisson"];
+    if (poisson.get<double>() > much && blocks[k].value("element", "full") == "full")
+      scene.warnings.push_back(at("/model/blocks", k) + "/material/poisson: found " + poisson.dump() +
+                               ", at which full elements can hardly bend; \"element\": "
+                               "\"mean_dilatation\" can");
   }
 }
 

@@ -10,5 +10,7 @@ namespace ilaw::host {
 void warn_of_times(Scene& scene);
 // Nodes that start inside a rigid obstacle: most laws throw them out of it.
 void warn_of_start(Scene& scene);
+// Blocks that can hardly bend: full elements close to incompressibility.
+void warn_of_locking(Scene& scene);
 
 }  // namespace ilaw::host

@@ -18,7 +18,7 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
           std::all_of(loads.begin(), loads.end(), [](const auto& load) { return load->is_steady(); })),
       loads_correct_(
           std::any_of(loads.begin(), loads.end(), [](const auto& load) { return load->corrects(); })),
-      u_(Dofs::Zero(model.mass().size())),
+      u_(model.initial_displacement()),
       v_(model.initial_velocity()),
       v_before_(v_),
       external_impulse_(Dofs::Zero(loads.empty() ? 0 : u_.size())),

@@ -2,9 +2,12 @@
 #include "study/exact.hpp"
 
 #include "base/scene_error.hpp"
+#include "study/exact_postit.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 namespace ilaw::host {
 namespace {
@@ -164,6 +167,138 @@ ExactNode glued_bar(const Scene& scene) {
   return node;
 }
 
+// A bar dropped on a plane, which it leaves as a whole after 2L/c: undeformed before the first impact,
+// compressed by twice its weight after it, and undeformed again after the second if the flight between
+// took a whole number of its vibrations, which then bring its end back (docs/scenes.md).
+ExactNode bouncing_bar(const Scene& scene) {
+  const json loads = scene.source.value("loads", json::array());
+  const json& interface = scene.source["interfaces"][0];
+  const std::string wanted = "one bar at rest, undeformed and under gravity, above a plane";
+  require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 1, wanted);
+  require(loads.size() == 1 && loads[0]["type"] == "gravity" && !loads[0].contains("nodes"), wanted);
+  require(interface.contains("obstacle") && scene.model->initial_displacement().isZero(0.0), wanted);
+  const Bar bar = bar_of(scene, 0);
+  const double g = -loads[0]["acceleration"][0].get<double>(),
+               height = bar.start - interface["obstacle"]["point"][0].get<double>();
+  require(g > 0.0 && height > 0.0 && bar.velocity == 0.0, wanted);
+  const double fall = std::sqrt(2.0 * height / g), stay = 2.0 * bar.length / bar.wave_speed(),
+               vibrations = 2.0 * fall / stay;
+  require(std::abs(vibrations - std::round(vibrations)) <= 1e-9 * vibrations && vibrations > 1.5,
+          "a flight of 2 sqrt(2 h/g) that is a multiple of the vibration's period 2L/c, by 2 at least");
+
+  // Position above the plane and velocity, s after a start upwards at the speed of the fall.
+  const auto thrown = [=](double s) { return std::pair{g * s * (fall - 0.5 * s), g * (fall - s)}; };
+  const auto motion = [=](double time) {
+    double s = std::fmod(time, 4.0 * fall + 2.0 * stay);
+    if (s < fall) return thrown(s + fall);
+    if ((s -= fall) < stay) return std::pair{0.0, 0.0};
+    if ((s -= stay) < 2.0 * fall) {
+      const double r = std::fmod(s, stay);  // of the vibration
+      const auto [position, velocity] = thrown(s);
+      return std::pair{position - g * r * (stay - r), velocity - g * (stay - 2.0 * r)};
+    }
+    if ((s -= 2.0 * fall) < stay) return std::pair{0.0, 0.0};
+    return thrown(s - stay);
+  };
+  ExactNode node;
+  node.displacement = [=](double time) { return motion(time).first - height; };
+  node.velocity = [=](double time) { return motion(time).second; };
+  node.instants.first_impulse = fall;
+  return node;
+}
+
+// A rod stretched by a over its length, let go, its far end held: it falls at c a/L, rests on the plane
+// while the waves cross, and is thrown back to where it was, each for L/c.
+ExactNode held_rod(const Scene& scene) {
+  const json loads = scene.source.value("loads", json::array());
+  const json& interface = scene.source["interfaces"][0];
+  const std::string wanted =
+      "one bar at rest, stretched away from a plane at its left end, its right end held, no other load";
+  require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 1, wanted);
+  require(loads.size() == 1 && loads[0]["type"] == "motion" &&
+              scene.loads[0]->prescribed_nodes().size() == 1 && !loads[0].contains("velocity") &&
+              !loads[0].contains("path"),
+          wanted);
+  const Bar bar = bar_of(scene, 0);
+  const Dofs& start = scene.model->initial_displacement();
+  const Eigen::Index right = start.size() - 1;
+  const double a = start[0];
+  require(scene.loads[0]->prescribed_nodes()[0] == right && start[right] == 0.0 && a > 0.0, wanted);
+  require(interface.contains("obstacle") && bar.velocity == 0.0 &&
+              interface["obstacle"]["point"][0].get<double>() == bar.start,
+          wanted);
+  const double third = bar.length / bar.wave_speed(), speed = a / third;
+  ExactNode node;
+  node.displacement = [=](double time) {
+    return speed * std::max(std::abs(std::fmod(time, 3.0 * third) - 1.5 * third) - 0.5 * third, 0.0);
+  };
+  node.velocity = [=](double time) {
+    const double s = std::fmod(time, 3.0 * third);
+    return s < third ? -speed : s < 2.0 * third ? 0.0 : speed;
+  };
+  node.instants.first_impulse = third;
+  return node;
+}
+
+// The sum of the forces on a point: linear between the knots of all of them.
+std::vector<PostitPoint::Knot> pull_of(const Scene& scene, const json& loads) {
+  std::set<double> times{0.0};
+  for (const json& load : loads)
+    if (load["type"] == "force")
+      for (const json& row : load["history"]) times.insert(row[0].get<double>());
+  std::vector<PostitPoint::Knot> knots;
+  for (const double time : times) {
+    Dofs force = Dofs::Zero(1);
+    for (const auto& load : scene.loads) load->add_force(time, force);
+    knots.push_back({time, force[0]});
+  }
+  return knots;
+}
+
+// A point that rests on a plane, with shocks of any sign and forces that pull.
+ExactNode postit_point(const Scene& scene) {
+  const json& model = scene.source["model"];
+  const json& interface = scene.source["interfaces"][0];
+  const json loads = scene.source.value("loads", json::array());
+  const std::string wanted =
+      "one point at rest in 1D on a plane, with law 'postit', brittle rupture, shocks, and forces that pull";
+  require(model["type"] == "points" && model["points"].size() == 1 && model["dimension"] == 1, wanted);
+  const json& body = model["points"][0];
+  require(!body.contains("stiffness") && scene.model->initial_velocity()[0] == 0.0, wanted);
+  require(scene.source["interfaces"].size() == 1 && interface["law"] == "postit" &&
+              interface.contains("obstacle") && interface["obstacle"]["type"] == "plane" &&
+              interface["obstacle"]["point"] == body["position"] &&
+              interface["obstacle"]["normal"][0].get<double>() > 0.0,
+          wanted);
+  const json parameters = interface.value("parameters", json::object());
+  const auto value = [&](const char* name, double otherwise) {
+    const json given = parameters.value(name, json(otherwise));
+    require(given.is_number() || given == "inf", std::string("a number for '") + name + "'");
+    return given.is_number() ? given.get<double>() : INFINITY;
+  };
+  require(parameters.value("rupture", "brittle") == "brittle", wanted);
+  const double area = body.value("area", 1.0);
+  PostitPoint point{scene.model->mass()[0],
+                    pull_of(scene, loads),
+                    {},
+                    value("initial_adhesion", 0.0) * area,
+                    0.0,
+                    value("efficiency_decrease", INFINITY),
+                    value("memory", 0.0),
+                    scene.dt * static_cast<double>(scene.steps + 1)};
+  const double limit = value("adhesion_limit", INFINITY);
+  point.adhesion_limit = limit < INFINITY ? limit * area : limit;
+  for (const json& load : loads) {
+    require(load["type"] == "force" || load["type"] == "shock", wanted);
+    if (load["type"] == "shock")
+      point.shocks.push_back({load["time"].get<double>(), load["impulse"][0].get<double>()});
+  }
+  for (const PostitPoint::Knot& knot : point.knots) require(knot.force >= 0.0, wanted);
+  std::stable_sort(point.shocks.begin(), point.shocks.end(),
+                   [](const auto& a, const auto& b) { return a.time < b.time; });
+  return postit_motion(point);
+}
+
 }  // namespace
 
 std::vector<ExactNode> exact_solution(const Scene& scene) {
@@ -171,8 +306,11 @@ std::vector<ExactNode> exact_solution(const Scene& scene) {
   const std::string type = scene.source["exact"]["type"].get<std::string>();
   if (type == "two_bars") return two_bars(scene);
   require(scene.output.watch.size() == 1, "one watched node, the one in contact");
-  if (type == "bouncing_ball") return {bouncing_ball(scene)};
-  return {type == "bar_on_wall" ? bar_on_wall(scene) : glued_bar(scene)};
+  using Solution = ExactNode (*)(const Scene&);
+  static const std::map<std::string, Solution> solutions{
+      {"bouncing_ball", bouncing_ball}, {"bar_on_wall", bar_on_wall}, {"bouncing_bar", bouncing_bar},
+      {"held_rod", held_rod},           {"glued_bar", glued_bar},     {"postit_point", postit_point}};
+  return {solutions.at(type)(scene)};
 }
 
 }  // namespace ilaw::host
