@@ -254,8 +254,8 @@ TEST(Study, OfSeveralScenesHasAFolderForEach) {
   const std::string scenes =
       (std::filesystem::path(ILAW_SOURCE) / "docs/results/scenes/bouncing_ball_e1.json").string() + " " +
       scene_files::named("postit_test2.json").string();
-  const Outcome outcome =
-      run_program("study " + scenes + " --levels 2 --repetitions 1 --out " + folder.string());
+  const Outcome outcome = run_program(
+      "study " + scenes + " --law '{\"name\": \"own\"}' --levels 2 --repetitions 1 --out " + folder.string());
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   for (const char* name : {"bouncing_ball_e1", "postit_test2"})
     EXPECT_TRUE(std::filesystem::exists(folder / name / "study.csv")) << name;
