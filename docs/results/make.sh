@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Measures everything that docs/results/README.md shows: builds in Release, runs the cases, writes tables/*.csv and
-# img/*.png, and puts the tables into the page. About six minutes on two quiet cores, after the build.
-# Usage: docs/results/make.sh [BUILD_FOLDER]
+# Measures everything that docs/results shows: builds in Release, runs the cases, writes tables/*.csv and img/*.png, and
+# puts the tables into the pages. About ten minutes on two quiet cores, after the build. With names of parts (orders,
+# study, long, share) it measures these alone.
+# Usage: docs/results/make.sh [BUILD_FOLDER] [PART...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 build=${1:-build/release}
+parts=${*:2}
 here=docs/results
 work=$build/results
 mkdir -p "$work" "$here/tables" "$here/img"
@@ -12,7 +14,7 @@ mkdir -p "$work" "$here/tables" "$here/img"
 bash host_mock/setup.sh results
 echo "build: $build"
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DILAW_TESTS=ON >/dev/null
-cmake --build "$build" --target ilaw ilaw_bench_penalty contact coulomb penalty postit -- --quiet
+cmake --build "$build" --target ilaw contact coulomb penalty postit tie -- --quiet
 export ILAW_PATH=$PWD/$build/lib/ilaw
 ilaw=$build/bin/ilaw
 
@@ -31,9 +33,12 @@ variant() {
 # value FILE FILTER: of a JSON file, empty where it is null.
 value() { jq --raw-output "$2 | if . == null then \"\" else . end" "$1"; }
 
+# wanted PART: whether it is to be measured.
+wanted() { [ -z "$parts" ] || [[ " $parts " == *" $1 "* ]]; }
+
 # ---- convergence
 orders=$here/tables/orders.csv
-echo "case,reference,levels,largest h,smallest h,u_L2 at smallest h,order u_L2,order u_max,order v_L1,order instant" >"$orders"
+scenes=host_mock/scenes
 measure_order() {
   local name=$1 scene=$2 out=$work/$1
   echo "converge: $name"
@@ -49,20 +54,77 @@ measure_order() {
     END { print name "," found "," largest "," smallest "," error "," orders }' "$out/converge.csv" >>"$orders"
 }
 
-scenes=host_mock/scenes
-for test in postit_test1 postit_test2; do measure_order $test $scenes/$test.json; done
-measure_order postit_test3 plugins/postit/postit_test3.json
-for ball in bouncing_ball_e08 bouncing_ball_e1; do measure_order $ball $here/scenes/$ball.json; done
-for bar in bar_on_wall two_bars glued_bar; do
-  measure_order $bar $scenes/$bar.json
-  measure_order ${bar}_cfl1 "$(variant ${bar}_cfl1 $scenes/$bar.json 's/"cfl": 0.9/"cfl": 1.0/' \
-    's/"title": "\(.*\)"/"title": "\1, at the critical step"/')"
-done
-measure_order postit_3d $scenes/postit_3d.json --threads "$(nproc)"
+measure_orders() {
+  echo "case,reference,levels,largest h,smallest h,u_L2 at smallest h,order u_L2,order u_max,order v_L1,order instant" >"$orders"
+  for test in postit_test1 postit_test2; do measure_order $test $scenes/$test.json; done
+  measure_order postit_test3 plugins/postit/postit_test3.json
+  for ball in bouncing_ball_e08 bouncing_ball_e1; do measure_order $ball $here/scenes/$ball.json; done
+  for bar in bar_on_wall two_bars glued_bar; do
+    measure_order $bar $scenes/$bar.json
+    measure_order ${bar}_cfl1 "$(variant ${bar}_cfl1 $scenes/$bar.json 's/"cfl": 0.9/"cfl": 1.0/' \
+      's/"title": "\(.*\)"/"title": "\1, at the critical step"/')"
+  done
+  measure_order postit_3d $scenes/postit_3d.json --threads "$(nproc)"
+}
+if wanted orders; then measure_orders; fi
+
+# ---- laws side by side
+# What errors of displacement cost each law: steps, and in brackets steps and time over the first law's.
+study_table() {
+  jq --raw-output '.laws[] | [.name, .largest_stable_step / .largest_step_tried] | @tsv' "$1/study.json" | awk -F'\t' -v needed="$1/study_needed.csv" '
+    function short(x) { return x == "" ? "-" : sprintf("%.2g", x) }
+    BEGIN { head = "law,largest stable step / tried"
+            while ((getline line < needed) > 0) {
+              split(line, c, ",")
+              if (c[2] != "u_L2") continue
+              if (!first) first = c[1]
+              if (!(c[3] in known)) { known[c[3]] = 1; errors[++count] = c[3]; head = head "," c[3] }
+              cell[c[1], c[3]] = c[4] == "" ? "-" : c[4] (c[6] == "" || !first || first == c[1] ? "" : " (" short(c[6]) "; " short(c[7]) ")") }
+            print head }
+    { row = $1 "," short($2)
+      for (k = 1; k <= count; ++k) row = row "," cell[$1, errors[k]]
+      print row }'
+}
+
+# Steps of the best explicit and of the best implicit penalty over those of contact (the first law), per kind of error.
+penalty_rows() {
+  awk -F, -v name="$1" '
+    NR == 1 || $2 == "u_max" || $2 == "instant" { next }
+    !($2 in has) { has[$2] = 1; norms[++count] = $2 }
+    !($3 in known) { known[$3] = 1; errors[++many] = $3 }
+    !first { first = $1 }
+    $1 == first { contact[$2, $3] = $4 }
+    { kind = $1 ~ /^explicit/ ? "explicit" : $1 ~ /^implicit/ ? "implicit" : "" }
+    kind && $4 != "" && (!((kind, $2, $3) in best) || $4 < best[kind, $2, $3]) { best[kind, $2, $3] = $4 }
+    END { split("explicit implicit", kinds, " ")
+          for (n = 1; n <= count; ++n) for (k = 1; k <= 2; ++k) {
+            row = name "," norms[n] "," kinds[k]
+            for (e = 1; e <= many; ++e) {
+              c = contact[norms[n], errors[e]]; p = best[kinds[k], norms[n], errors[e]]
+              row = row "," (c == "" ? (p == "" ? "-" : "only " p) : p == "" ? "never" : sprintf("%.2g", p / c)) }
+            print row } }' "$2/study_needed.csv"
+}
+
+penalties=$here/tables/study_penalty.csv
+measure_study() {
+  local name=$1 scene=$2 out=$work/study_$1
+  echo "study: $name"
+  "$ilaw" study "$scene" --out "$out" "${@:3}" >"$work/study_$name.txt" 2>&1
+  study_table "$out" >"$here/tables/study_$name.csv"
+  cp "$out/study.png" "$here/img/study_$name.png"
+  if grep --quiet '^explicit' "$out/study.csv"; then penalty_rows "$name" "$out" >>"$penalties"; fi
+}
+
+measure_studies() {
+  echo "scene,error of,penalty,1e-1,3e-2,1e-2,3e-3,1e-3,3e-4,1e-4" >"$penalties"
+  measure_study bouncing_ball $here/scenes/bouncing_ball_e08.json
+  for scene in oblique_impact bar_on_wall block_impact glued_bar; do measure_study $scene $scenes/$scene.json; done
+  measure_study postit_3d $scenes/postit_3d.json
+}
+if wanted study; then measure_studies; fi
 
 # ---- a million steps
 long=$here/tables/million_steps.csv
-echo "case,steps,run time / contact's,largest balance error,kinetic + potential last tenth / first - 1,drift of angular momentum,energy from the interface" >"$long"
 run_long() {
   local name=$1 scene=$2 out=$work/$1
   echo "run: $name"
@@ -85,51 +147,56 @@ run_long() {
           drift = momentum0 ? sprintf("%.1e,%.1e", last / first - 1, turned) : ","
           printf "%s,%d,%.2f,%.1e,%s,%.1e\n", name, steps, seconds / contact, error, drift, given / energy0 }' "$out/history.csv" >>"$long"
 }
-run_long bar_between_walls $here/scenes/bar_between_walls.json
 spring=$here/scenes/rotating_spring.json
-run_long rotating_spring $spring
-for stiffness in 1e4 1e5 1e6; do
-  for integration in explicit implicit; do
-    name=rotating_spring_penalty_${integration}_$stiffness
-    # Contact again, beside it: machines drift.
-    "$ilaw" run $spring --out "$work/beside" >/dev/null 2>&1
-    run_long $name "$(variant $name $spring 's/"law": "contact"/"law": "penalty"/' \
-      's/"restitution": 1.0, "activation": "moreau"/"stiffness": '$stiffness', "integration": "'$integration'"/')" "$(value "$work/beside/summary.json" .seconds.total)"
+measure_long() {
+  echo "case,steps,run time / contact's,largest balance error,kinetic + potential last tenth / first - 1,drift of angular momentum,energy from the interface" >"$long"
+  run_long bar_between_walls $here/scenes/bar_between_walls.json
+  run_long rotating_spring $spring
+  for stiffness in 1e4 1e5 1e6; do
+    for integration in explicit implicit; do
+      name=rotating_spring_penalty_${integration}_$stiffness
+      # Contact again, beside it: machines drift.
+      "$ilaw" run $spring --out "$work/beside" >/dev/null 2>&1
+      run_long $name "$(variant $name $spring 's/"law": "contact"/"law": "penalty"/' \
+        's/"restitution": 1.0, "activation": "moreau"/"stiffness": '$stiffness', "integration": "'$integration'"/')" "$(value "$work/beside/summary.json" .seconds.total)"
+    done
   done
-done
-
-# ---- penalty beside contact
-echo "penalty beside contact"
-"$build/bin/ilaw_bench_penalty" --bar $scenes/bar_on_wall.json --spring $spring --out "$here/tables" 2>/dev/null
-gnuplot -e "tables='$here/tables'; img='$here/img'; spring='$work'" $here/penalty.gnuplot
+}
+if wanted long; then measure_long; fi
 
 # ---- share of the interface phase
 share=$here/tables/interface_share.csv
-echo "run,hexahedra-steps,interface nodes,share,bytes per interface node" >"$share"
-for repetition in 1 2 3 4 5; do
-  "$ilaw" run $here/scenes/block_share.json --out "$work/block_share" >/dev/null 2>&1
-  summary=$work/block_share/summary.json
-  echo "$repetition,$((8000 * $(value "$summary" .steps))),$(value "$summary" '.interfaces[0].nodes'),$(
-    value "$summary" .interface_share),$(value "$summary" '.interfaces[0].bytes_per_node')" >>"$share"
-done
+measure_share() {
+  echo "run,hexahedra-steps,interface nodes,share,bytes per interface node" >"$share"
+  for repetition in 1 2 3 4 5; do
+    "$ilaw" run $here/scenes/block_share.json --out "$work/block_share" >/dev/null 2>&1
+    summary=$work/block_share/summary.json
+    echo "$repetition,$((8000 * $(value "$summary" .steps))),$(value "$summary" '.interfaces[0].nodes'),$(
+      value "$summary" .interface_share),$(value "$summary" '.interfaces[0].bytes_per_node')" >>"$share"
+  done
+}
+if wanted share; then measure_share; fi
 
-# ---- the tables into the page: <!-- table: NAME --> ... <!-- end -->, numbers in three digits, - where there is none
-awk -v tables="$here/tables" '
-  function shown(x) { return x ~ /^[-+]?[0-9.]+(e[-+]?[0-9]+)?$/ ? sprintf("%.3g", x) : x }
-  function row(line, n, cell, k, text) {
-    n = split(line, cell, ",")
-    for (k = 1; k <= n; ++k) text = text "| " (cell[k] == "" ? "-" : shown(cell[k])) " "
-    return text "|"
-  }
-  /^<!-- end -->/ { skip = 0 }
-  !skip { print }
-  /^<!-- table: / {
-    file = tables "/" $3 ".csv"; first = 1; skip = 1
-    while ((getline line < file) > 0) {
-      print row(line)
-      if (first) { gsub(/[^,]+/, "---", line); gsub(/,/, " | ", line); print "| " line " |"; first = 0 }
+# ---- the tables into the pages: <!-- table: NAME --> ... <!-- end -->, numbers in three digits, - where there is none
+put_tables() {
+  awk -v tables="$here/tables" '
+    function shown(x) { return x ~ /^[-+]?[0-9.]+(e[-+]?[0-9]+)?$/ ? sprintf("%.3g", x) : x }
+    function row(line, n, cell, k, text) {
+      n = split(line, cell, ",")
+      for (k = 1; k <= n; ++k) text = text "| " (cell[k] == "" ? "-" : shown(cell[k])) " "
+      return text "|"
     }
-    close(file)
-  }' $here/README.md >"$work/README.md"
-cp "$work/README.md" $here/README.md
-echo "done: $here/README.md"
+    /^<!-- end -->/ { skip = 0 }
+    !skip { print }
+    /^<!-- table: / {
+      file = tables "/" $3 ".csv"; first = 1; skip = 1
+      while ((getline line < file) > 0) {
+        print row(line)
+        if (first) { gsub(/[^,]+/, "---", line); gsub(/,/, " | ", line); print "| " line " |"; first = 0 }
+      }
+      close(file)
+    }' "$1" >"$work/page.md"
+  cp "$work/page.md" "$1"
+}
+for page in $here/README.md $here/study.md; do put_tables "$page"; done
+echo "done: $here"

@@ -108,7 +108,7 @@ TEST(Converge, GluedBarAtTheCriticalStepHasNoOrderInTheInstant) {
   for (const double error : study.table.at("v_L1")) EXPECT_NEAR(error, 1.0, 1e-6);
   EXPECT_NEAR(order_in(study, "u_L2"), 1.0, 0.05);
   const std::string last = study.outcome.output.substr(study.outcome.output.rfind("order"));
-  EXPECT_EQ(last.substr(last.size() - 12), "          -\n") << last;
+  EXPECT_NE(last.find("          -"), std::string::npos) << last;
   EXPECT_EQ(last.find("-0.00"), std::string::npos) << last;
 }
 
@@ -223,6 +223,8 @@ Peel peel_at(int level) {
     }
     peel.trace.displacement.push_back(u);
     peel.trace.velocity.push_back(v);
+    peel.trace.impulse.emplace_back(0);
+    peel.trace.work.push_back(0.0);
   }
   return peel;
 }

@@ -28,8 +28,11 @@ Trace trace_of(const ExactNode& node, double dt, int steps) {
   for (int k = 1; k <= steps; ++k) {
     trace.displacement.push_back(Dofs::Constant(1, node.displacement(k * dt)));
     trace.velocity.push_back(Dofs::Constant(1, node.velocity((k + 0.5) * dt)));
+    trace.impulse.push_back(Dofs::Constant(1, trace.velocity.back()[0] - node.velocity(0.0)));
+    trace.work.push_back(0.0);
   }
   trace.instants = {node.instants};
+  trace.energy = 1.0;
   return trace;
 }
 

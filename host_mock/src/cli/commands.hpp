@@ -18,6 +18,7 @@ using Action = std::function<int()>;
 void add_run(CLI::App& app, Action& chosen);
 void add_plot(CLI::App& app, Action& chosen);
 void add_converge(CLI::App& app, Action& chosen);
+void add_study(CLI::App& app, Action& chosen);
 void add_list(CLI::App& app, Action& chosen);
 void add_describe(CLI::App& app, Action& chosen);
 

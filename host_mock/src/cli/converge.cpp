@@ -30,10 +30,11 @@ struct Options {
 };
 
 Sweep sweep_of(const json& source, const Options& options) {
-  const json given = source.value("converge", json::object());
-  const std::string refine = options.refine.value_or(given.value("refine", "time"));
-  return {options.levels.value_or(given.value("levels", 5)),
-          options.factor.value_or(given.value("factor", 2.0)), given.value("first", 1.0), refine == "mesh"};
+  Sweep sweep = read_sweep(source.value("converge", json::object()));
+  sweep.levels = options.levels.value_or(sweep.levels);
+  sweep.factor = options.factor.value_or(sweep.factor);
+  if (options.refine) sweep.with_mesh = *options.refine == "mesh";
+  return sweep;
 }
 
 // A number in ten columns, "-" where there is none.
@@ -44,15 +45,16 @@ void print(const char* format, double value) {
 }
 
 void print_table(const ErrorTable& table) {
-  std::printf("%12s %10s %10s %10s %10s %10s\n", "dt", "seconds", ErrorTable::norms[0], ErrorTable::norms[1],
-              ErrorTable::norms[2], ErrorTable::norms[3]);
+  std::printf("%12s %10s", "dt", "seconds");
+  for (const char* norm : norm_names) std::printf(" %10s", norm);
+  std::printf("\n");
   for (std::size_t k = 0; k < table.errors.size(); ++k) {
     std::printf("%12.4g %10.2g", table.runs[k].dt, table.runs[k].seconds);
-    for (std::size_t n = 0; n < ErrorTable::norms.size(); ++n) print("%.2e", table.error(k, n));
+    for (std::size_t n = 0; n < norm_names.size(); ++n) print("%.2e", table.errors[k][n]);
     std::printf("\n");
   }
   std::printf("%23s", "order");
-  for (std::size_t n = 0; n < ErrorTable::norms.size(); ++n) print("%.2f", table.order(n));
+  for (std::size_t n = 0; n < norm_names.size(); ++n) print("%.2f", table.order(n));
   std::printf("\n");
 }
 

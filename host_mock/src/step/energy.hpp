@@ -44,6 +44,9 @@ class EnergyBalance {
 
   EnergyReport report(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) const;
 
+  // So far; without what a report costs beside it.
+  double interface_work() const { return static_cast<double>(sums_.interface_work); }
+
   void save(std::ostream& out) const;
   void load(std::istream& in);
 

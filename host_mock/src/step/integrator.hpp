@@ -38,6 +38,7 @@ class Integrator {
   // Impulse of the interfaces in the last step, per degree of freedom.
   Dofs interface_impulse() const;
   EnergyReport energy() const { return accounts_.energy().report(model_, u_, u_ + dt_ * v_, v_); }
+  double interface_work() const { return accounts_.energy().interface_work(); }
   // At the half step after time(); components as in energy.hpp.
   Vector angular_momentum() const { return host::angular_momentum(model_, u_, v_); }
   PhaseSeconds seconds() const {

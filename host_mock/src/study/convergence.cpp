@@ -3,87 +3,36 @@
 
 #include "scene/json_text.hpp"
 
-#include <cmath>
 #include <cstdio>
-#include <string>
 
 namespace ilaw::host {
 namespace {
 
 using nlohmann::json;
 
-// Multiplies element counts; says whether the model had any.
-bool refine_mesh(json& model, double by) {
-  const auto scaled = [by](int count) { return static_cast<int>(std::lround(count * by)); };
-  bool refined = false;
-  for (const char* bodies : {"bars", "blocks"}) {
-    if (!model.contains(bodies)) continue;
-    for (json& body : model[bodies]) {
-      json& elements = body["elements"];
-      if (elements.is_number())
-        elements = scaled(elements.get<int>());
-      else
-        for (json& along : elements) along = scaled(along.get<int>());
-      refined = true;
-    }
-  }
-  return refined;
-}
-
-// Nodes are numbered anew on every mesh, so that the same number is another point.
-[[noreturn]] void refuse_number(const std::string& pointer, const json& found) {
-  throw mistake(pointer, found.dump(), "a set, a box or near: on a refined mesh a number is another node");
-}
-
-void refuse_node_numbers(const json& part, const std::string& pointer) {
-  if (!part.is_structured()) return;
-  for (const auto& [key, value] : part.items()) {
-    const std::string inner = pointer + "/" + key;
-    if (key == "per_node") refuse_number(inner, value);
-    if ((key == "nodes" || key == "watch") && value.is_array())
-      for (std::size_t i = 0; i < value.size(); ++i)
-        if (value[i].is_number()) refuse_number(at(inner, i), value[i]);
-    refuse_node_numbers(value, inner);
-  }
-}
-
 // The scene of a level.
 Scene scene_at(const json& source, const Sweep& sweep, int level, const std::filesystem::path& file) {
-  json refined = source;
-  const double by = std::pow(sweep.factor, level) / sweep.first;
-  json& time = refined["time"];
-  if (sweep.with_mesh && !refine_mesh(refined["model"], by))
-    throw mistake("/converge/refine", "\"mesh\"", "\"time\": the model has no mesh");
-  // With cfl the time step follows the mesh.
-  const bool follows = sweep.with_mesh && time.contains("cfl");
-  const char* key = time.contains("dt") ? "dt" : "cfl";
-  if (!follows) time[key] = time[key].get<double>() / by;
-  Scene scene = read_scene(refined, file);
+  Scene scene = read_scene(refined(source, sweep, sweep.refinement(level)), file);
   if (scene.output.watch.empty()) throw mistake("/output/watch", "no node", "those to compare");
   return scene;
 }
 
 }  // namespace
 
-double ErrorTable::error(std::size_t run, std::size_t norm) const {
-  const Errors& one = errors[run];
-  return std::array{one.u_L2, one.u_max, one.v_L1, one.instant}[norm];
-}
-
 double ErrorTable::order(std::size_t norm) const {
   std::vector<double> steps, values;
   for (std::size_t k = 0; k < errors.size(); ++k) {
     steps.push_back(runs[k].dt);
-    values.push_back(error(k, norm));
+    values.push_back(errors[k][norm]);
   }
   // Errors are relative but those of instants.
-  const bool is_instant = norm + 1 == norms.size();
-  return order_of(steps, values, is_instant ? runs[0].dt * static_cast<double>(runs[0].steps) : 1.0);
+  return order_of(steps, values,
+                  norm == norm_instant ? runs[0].dt * static_cast<double>(runs[0].steps) : 1.0);
 }
 
 void check_sweep(const json& source, const Sweep& sweep, const std::filesystem::path& file) {
+  check_mesh(source, sweep, "/converge");
   exact_solution(scene_at(source, sweep, 0, file));
-  if (sweep.with_mesh) refuse_node_numbers(source, "");
 }
 
 ErrorTable run_levels(const json& source, const Sweep& sweep, const std::filesystem::path& file) {

@@ -20,11 +20,11 @@ void write_table(const ErrorTable& table, const std::filesystem::path& folder) {
   csv << "dt"
       << "steps"
       << "seconds";
-  for (const char* norm : ErrorTable::norms) csv << norm;
+  for (const char* norm : norm_names) csv << norm;
   csv.end_row();
   for (std::size_t k = 0; k < table.errors.size(); ++k) {
     csv << table.runs[k].dt << table.runs[k].steps << table.runs[k].seconds;
-    for (std::size_t n = 0; n < ErrorTable::norms.size(); ++n) csv.add_if_finite(table.error(k, n));
+    for (std::size_t n = 0; n < norm_names.size(); ++n) csv.add_if_finite(table.errors[k][n]);
     csv.end_row();
   }
   file.commit();
@@ -33,8 +33,8 @@ void write_table(const ErrorTable& table, const std::filesystem::path& folder) {
 void write_orders(const ErrorTable& table, const Sweep& sweep, const std::string& title,
                   const std::filesystem::path& folder) {
   json orders;
-  for (std::size_t n = 0; n < ErrorTable::norms.size(); ++n)
-    orders[ErrorTable::norms[n]] = table.order(n);  // NaN is written as null
+  for (std::size_t n = 0; n < norm_names.size(); ++n)
+    orders[norm_names[n]] = table.order(n);  // NaN is written as null
   AtomicFile file(folder / "converge.json");
   file.stream() << json{{"title", title},
                         {"reference", table.exact ? "exact solution" : "finest run"},
@@ -58,10 +58,9 @@ void write_panel(const ErrorTable& table, const std::string& csv, const Abscissa
   script << "set xlabel '" << over.label << "'\nset key bottom " << over.key_corner << " noenhanced\nplot ";
   for (std::size_t n = 0; n < 3; ++n)
     script << (n ? ", " : "") << csv << " using ($" << over.column << '/' << over.unit << "):" << n + 4
-           << " with linespoints linewidth 1.5 pointtype " << n + 5 << " title '" << ErrorTable::norms[n]
-           << "'";
+           << " with linespoints linewidth 1.5 pointtype " << n + 5 << " title '" << norm_names[n] << "'";
   if (over.column == 1) {
-    const double h = table.runs[0].dt, top = table.error(0, 0);
+    const double h = table.runs[0].dt, top = table.errors[0][norm_u_L2];
     script << ", " << top / h << "*x with lines dashtype 2 linecolor rgb '#808080' title 'order 1'";
   }
   script << "\n";

@@ -2,8 +2,8 @@
 #include "study/errors.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 namespace ilaw::host {
 namespace {
@@ -48,14 +48,16 @@ Dofs watched_part(const Dofs& all, const Scene& scene) {
   return part;
 }
 
-// The reference at step k of a trace.
+// The reference at step k of a trace: displacement, and what belongs to the half step after it.
 struct Sample {
-  Dofs displacement, velocity;
+  Dofs displacement, velocity, impulse;  // impulse: empty where it is not known
+  double work = ContactInstants::none;
 };
 
 // Linear between entries, constant beyond the ends. In the step of a jump velocities are between
 // both sides.
-Dofs between(const std::vector<Dofs>& entries, double at) {
+template <class Entry>
+Entry between(const std::vector<Entry>& entries, double at) {
   at = std::clamp(at, 0.0, static_cast<double>(entries.size() - 1));
   const auto before = static_cast<std::size_t>(at);
   const std::size_t after = std::min(before + 1, entries.size() - 1);
@@ -63,9 +65,21 @@ Dofs between(const std::vector<Dofs>& entries, double at) {
   return (1.0 - part) * entries[before] + part * entries[after];
 }
 
+// Mean size of errors over that of what they are errors of.
+struct MeanError {
+  double error = 0.0, size = 0.0;
+  void add(const Dofs& found, const Dofs& wanted) {
+    error += found.size() == wanted.size() ? (found - wanted).cwiseAbs().sum() : ContactInstants::none;
+    size += wanted.cwiseAbs().sum();
+  }
+  double relative() const { return error / size; }
+};
+
 template <class Reference>
-Errors errors_with(const Trace& trace, const std::vector<ContactInstants>& instants, Reference reference) {
-  double error_square = 0.0, square = 0.0, error_max = 0.0, largest = 0.0, v_error = 0.0, v_sum = 0.0;
+Errors errors_with(const Trace& trace, const std::vector<ContactInstants>& instants, double energy,
+                   Reference reference) {
+  double error_square = 0.0, square = 0.0, error_max = 0.0, largest = 0.0, work_error = 0.0;
+  MeanError velocity, impulse;
   for (std::size_t k = 0; k < trace.displacement.size(); ++k) {
     const Sample wanted = reference((static_cast<double>(k) + 1.0) * trace.dt);
     const Dofs u_error = trace.displacement[k] - wanted.displacement;
@@ -73,21 +87,41 @@ Errors errors_with(const Trace& trace, const std::vector<ContactInstants>& insta
     square += wanted.displacement.squaredNorm();
     error_max = std::max(error_max, u_error.cwiseAbs().maxCoeff());
     largest = std::max(largest, wanted.displacement.cwiseAbs().maxCoeff());
-    v_error += (trace.velocity[k] - wanted.velocity).cwiseAbs().sum();
-    v_sum += wanted.velocity.cwiseAbs().sum();
+    velocity.add(trace.velocity[k], wanted.velocity);
+    impulse.add(trace.impulse[k], wanted.impulse);
+    work_error += std::abs(trace.work[k] - wanted.work);
   }
   double instant = ContactInstants::none;
   for (std::size_t w = 0; w < instants.size(); ++w)
     for (const auto moment :
          {&ContactInstants::first_impulse, &ContactInstants::last_impulse, &ContactInstants::last_rupture})
       instant = std::fmax(instant, std::abs(trace.instants[w].*moment - instants[w].*moment));
-  return {std::sqrt(error_square / square), error_max / largest, v_error / v_sum, instant};
+  return {std::sqrt(error_square / square),
+          error_max / largest,
+          velocity.relative(),
+          instant,
+          impulse.relative(),
+          work_error / static_cast<double>(trace.work.size()) / energy};
+}
+
+// Impulse of an interface on its nodes, all together.
+void add_impulses(const Interfaces& interfaces, Dofs& sums) {
+  const Eigen::Index d = sums.size() / static_cast<Eigen::Index>(std::max<std::size_t>(interfaces.size(), 1));
+  for (std::size_t i = 0; i < interfaces.size(); ++i)
+    for (const std::int32_t contact_index : interfaces[i]->active())
+      sums.segment(static_cast<Eigen::Index>(i) * d, d) += interfaces[i]->impulse(contact_index);
+}
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 }  // namespace
 
 Trace trace_of(Scene& scene) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = processor_seconds();
   Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
   const std::vector<WatchedContact> contacts = watched_contacts(scene, integrator.displacement());
   Trace trace;
@@ -95,35 +129,57 @@ Trace trace_of(Scene& scene) {
   trace.steps = scene.steps;
   trace.dimension = scene.model->dimension();
   trace.instants.resize(scene.output.watch.size());
+  Dofs impulse = Dofs::Zero(static_cast<Eigen::Index>(scene.interfaces.size()) * trace.dimension);
   while (integrator.steps() < scene.steps) {
     integrator.step();
     trace.displacement.push_back(watched_part(integrator.displacement(), scene));
     trace.velocity.push_back(watched_part(integrator.velocity(), scene));
+    add_impulses(scene.interfaces, impulse);
+    trace.impulse.push_back(impulse);
+    trace.work.push_back(integrator.interface_work());
     note_instants(contacts, integrator.time(), trace);
   }
-  trace.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  trace.seconds = processor_seconds() - start;
+  trace.energy = integrator.energy().scale;
+  trace.penetration = integrator.tally().penetration_max;
   return trace;
 }
 
+double seconds_of(Scene& scene) {
+  Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
+  const double start = processor_seconds();
+  while (integrator.steps() < scene.steps) integrator.step();
+  return processor_seconds() - start;
+}
+
 Errors errors_against(const std::vector<ExactNode>& exact, const Trace& trace) {
+  const auto stride = static_cast<std::size_t>(trace.dimension);
   std::vector<ContactInstants> instants;
-  instants.reserve(exact.size());
-  for (const ExactNode& node : exact) instants.push_back(node.instants);
-  return errors_with(trace, instants, [&](double time) {
-    Sample sample{Dofs(static_cast<Eigen::Index>(exact.size())),
-                  Dofs(static_cast<Eigen::Index>(exact.size()))};
-    for (std::size_t w = 0; w < exact.size(); ++w) {
-      sample.displacement[static_cast<Eigen::Index>(w)] = exact[w].displacement(time);
-      sample.velocity[static_cast<Eigen::Index>(w)] = exact[w].velocity(time + 0.5 * trace.dt);
-    }
-    return sample;
+  for (std::size_t w = 0; w < exact.size(); w += stride) instants.push_back(exact[w].instants);
+  std::vector<const ExactNode*> given;  // those whose impulse is known
+  for (const ExactNode& node : exact)
+    if (node.impulse) given.push_back(&node);
+  const auto sampled = [](std::size_t size, auto&& value) {
+    Dofs values(static_cast<Eigen::Index>(size));
+    for (std::size_t k = 0; k < size; ++k) values[static_cast<Eigen::Index>(k)] = value(k);
+    return values;
+  };
+  const ExactNode* working = given.empty() ? nullptr : given.front();
+  return errors_with(trace, instants, working ? working->energy : ContactInstants::none, [&](double time) {
+    const double after = time + 0.5 * trace.dt;
+    return Sample{sampled(exact.size(), [&](std::size_t k) { return exact[k].displacement(time); }),
+                  sampled(exact.size(), [&](std::size_t k) { return exact[k].velocity(after); }),
+                  sampled(given.size(), [&](std::size_t k) { return given[k]->impulse(after); }),
+                  working && working->work ? working->work(after) : ContactInstants::none};
   });
 }
 
 Errors errors_against(const Trace& reference, const Trace& trace) {
-  return errors_with(trace, reference.instants, [&](double time) {
+  return errors_with(trace, reference.instants, reference.energy, [&](double time) {
+    const double half = (time + 0.5 * trace.dt) / reference.dt - 1.5;
     return Sample{between(reference.displacement, time / reference.dt - 1.0),
-                  between(reference.velocity, (time + 0.5 * trace.dt) / reference.dt - 1.5)};
+                  between(reference.velocity, half), between(reference.impulse, half),
+                  between(reference.work, half)};
   });
 }
 

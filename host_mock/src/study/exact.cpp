@@ -55,7 +55,7 @@ ExactNode bouncing_ball(const Scene& scene) {
       model["points"][0]["position"][0].get<double>() - interface["obstacle"]["point"][0].get<double>();
   require(g > 0.0 && height > 0.0, wanted);
   const double e = interface.value("parameters", json::object()).value("restitution", 0.0);
-  const double fall = std::sqrt(2.0 * height / g);
+  const double fall = std::sqrt(2.0 * height / g), mass = model["points"][0]["mass"].get<double>();
 
   // Start and speed of the flight that is under way.
   const auto flight = [=](double time) {
@@ -80,13 +80,98 @@ ExactNode bouncing_ball(const Scene& scene) {
     return speed - g * (time - start);
   };
   node.instants.first_impulse = fall;
+  // The momentum that gravity alone does not explain; what is missing of the speed of the first fall.
+  node.impulse = [=, velocity = node.velocity](double time) { return mass * (velocity(time) + g * time); };
+  node.work = [=](double time) {
+    if (time < fall) return 0.0;
+    const double speed = flight(time).second;
+    return 0.5 * mass * (speed * speed - g * fall * g * fall);
+  };
+  node.energy = mass * g * height;
   return node;
+}
+
+// Thrown along a plane from above it, under gravity: bounces as above, of which every one takes
+// mu (1 + e) times the speed of arrival from the sliding, as long as there is any (Moreau 1988); then
+// mu g.
+struct ThrownPoint {
+  struct Motion {
+    double x, y, vx, vy;  // from where it started; along the plane and across it
+  };
+
+  double mass, gravity, height, speed, e, mu;
+
+  double fall() const { return std::sqrt(2.0 * height / gravity); }
+  double energy() const { return mass * (gravity * height + 0.5 * speed * speed); }
+  Motion at(double time) const {
+    const double g = gravity, rest = fall() * (1.0 + e) / (1.0 - e);
+    if (time < fall()) return {speed * time, -0.5 * g * time * time, speed, -g * time};
+    double since = fall(), x = speed * fall(), vx = speed, arrives = g * fall();
+    for (double part = 1.0; part > 1e-18; part *= e) {
+      vx = std::max(vx - mu * (1.0 + e) * arrives, 0.0);
+      arrives *= e;
+      const double flight = std::min(2.0 * arrives / g, rest - since);
+      if (time < since + flight) {
+        const double t = time - since;
+        return {x + vx * t, -height + t * (arrives - 0.5 * g * t), vx, arrives - g * t};
+      }
+      since += flight;
+      x += vx * flight;
+    }
+    const double t = std::min(time - rest, vx / (mu * g));
+    return {x + t * (vx - 0.5 * mu * g * t), -height, vx - mu * g * t, 0.0};
+  }
+};
+
+ThrownPoint thrown_point_of(const Scene& scene) {
+  const json& model = scene.source["model"];
+  const json& interface = scene.source["interfaces"][0];
+  const json parameters = interface.value("parameters", json::object());
+  const json loads = scene.source.value("loads", json::array());
+  const std::string wanted =
+      "one point in 2D that is thrown along a plane with normal [0, 1], under gravity, with law 'coulomb', "
+      "friction and a restitution below 1";
+  require(model["type"] == "points" && model["dimension"] == 2 && model["points"].size() == 1 &&
+              interface["law"] == "coulomb" && interface.contains("obstacle") && loads.size() == 1 &&
+              loads[0]["type"] == "gravity" && parameters.value("friction", 0.0) > 0.0,
+          wanted);
+  const json& point = model["points"][0];
+  const json& obstacle = interface["obstacle"];
+  const json velocity = point.value("velocity", json{0.0, 0.0});
+  require(obstacle["type"] == "plane" && obstacle["normal"][0] == 0.0 && velocity[1] == 0.0, wanted);
+  const ThrownPoint thrown{point["mass"].get<double>(),
+                           -loads[0]["acceleration"][1].get<double>(),
+                           point["position"][1].get<double>() - obstacle["point"][1].get<double>(),
+                           velocity[0].get<double>(),
+                           parameters.value("restitution", 0.0),
+                           parameters["friction"].get<double>()};
+  require(thrown.gravity > 0.0 && thrown.height > 0.0 && thrown.e < 1.0 && thrown.speed > 0.0, wanted);
+  return thrown;
+}
+
+std::vector<ExactNode> oblique_impact(const Scene& scene) {
+  const ThrownPoint thrown = thrown_point_of(scene);
+  ExactNode along, across;
+  along.displacement = [=](double time) { return thrown.at(time).x; };
+  along.velocity = [=](double time) { return thrown.at(time).vx; };
+  along.impulse = [=](double time) { return thrown.mass * (thrown.at(time).vx - thrown.speed); };
+  along.energy = thrown.energy();
+  along.work = [=](double time) {
+    const auto [x, y, vx, vy] = thrown.at(time);
+    return thrown.mass * (0.5 * (vx * vx + vy * vy) + thrown.gravity * (thrown.height + y)) - thrown.energy();
+  };
+  along.instants.first_impulse = thrown.fall();
+  across.displacement = [=](double time) { return thrown.at(time).y; };
+  across.velocity = [=](double time) { return thrown.at(time).vy; };
+  across.impulse = [=](double time) { return thrown.mass * (thrown.at(time).vy + thrown.gravity * time); };
+  return {along, across};
 }
 
 struct Bar {
   double start, length, young, density, section, velocity;
   double wave_speed() const { return std::sqrt(young / density); }
   double impedance() const { return section * std::sqrt(young * density); }
+  double mass() const { return density * section * length; }
 };
 
 Bar bar_of(const Scene& scene, std::size_t k) {
@@ -109,6 +194,10 @@ ExactNode bar_on_wall(const Scene& scene) {
   ExactNode node = piecewise({meets, leaves}, {bar.velocity, 0.0, -bar.velocity});
   node.instants.first_impulse = meets;
   node.instants.last_impulse = leaves;
+  const double force = -bar.impedance() * bar.velocity;
+  node.impulse = [=](double time) { return force * (std::clamp(time, meets, leaves) - meets); };
+  node.work = [](double /*time*/) { return 0.0; };
+  node.energy = 0.5 * bar.mass() * bar.velocity * bar.velocity;
   return node;
 }
 
@@ -138,7 +227,12 @@ std::vector<ExactNode> two_bars(const Scene& scene) {
     exact.instants.first_impulse = meets;
     return exact;
   };
-  return {node(b.velocity), node(a.velocity)};
+  std::vector<ExactNode> nodes{node(b.velocity), node(a.velocity)};
+  const double force = b.impedance() * (together - b.velocity);
+  nodes[0].impulse = [=](double time) { return force * (std::clamp(time, meets, first_back) - meets); };
+  nodes[0].work = [](double /*time*/) { return 0.0; };
+  nodes[0].energy = 0.5 * (a.mass() * a.velocity * a.velocity + b.mass() * b.velocity * b.velocity);
+  return nodes;
 }
 
 // The glue feels 2F from L/c on; it breaks R_Y/(2F) later if its window is longer, and the end then
@@ -164,6 +258,9 @@ ExactNode glued_bar(const Scene& scene) {
           "a window longer than R_Y/(2F), and an end before the next reflection at 3L/c");
   ExactNode node = piecewise({breaks}, {0.0, 2.0 * force / bar.impedance()});
   node.instants.last_rupture = breaks;
+  node.impulse = [=](double time) { return -2.0 * force * (std::clamp(time, arrives, breaks) - arrives); };
+  node.work = [](double /*time*/) { return 0.0; };
+  node.energy = 2.0 * force * force * bar.length / (bar.young * bar.section);  // the load's work up to 2L/c
   return node;
 }
 
@@ -305,6 +402,10 @@ std::vector<ExactNode> exact_solution(const Scene& scene) {
   if (!scene.source.contains("exact")) return {};
   const std::string type = scene.source["exact"]["type"].get<std::string>();
   if (type == "two_bars") return two_bars(scene);
+  if (type == "oblique_impact") {
+    require(scene.output.watch.size() == 1, "one watched node, the one in contact");
+    return oblique_impact(scene);
+  }
   require(scene.output.watch.size() == 1, "one watched node, the one in contact");
   using Solution = ExactNode (*)(const Scene&);
   static const std::map<std::string, Solution> solutions{

@@ -18,13 +18,19 @@ struct ContactInstants {
   double first_impulse = none, last_impulse = none, last_rupture = none;
 };
 
-// Of one watched node (1D): displacement and velocity in time.
+// Of one degree of freedom of a watched node: displacement and velocity in time.
 struct ExactNode {
   std::function<double(double)> displacement, velocity;
   ContactInstants instants;
+  // What the interface has given so far, where it is the node of an interface: its impulse, and the
+  // work that it did, which of a vector the first component tells with the largest energy of the
+  // motion. Empty where that is not known.
+  std::function<double(double)> impulse{}, work{};
+  double energy = 0.0;
 };
 
-// One per watched node, in the order of the scene; empty where the scene names no exact solution.
+// One per component of every watched node, in the order of the scene; empty where the scene names no
+// exact solution.
 // Throws SceneError where the scene is not one that the named solution covers.
 std::vector<ExactNode> exact_solution(const Scene& scene);
 

@@ -1,0 +1,163 @@
+// `ilaw study`: laws side by side in a scene, run time against error.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands.hpp"
+
+#include "base/exit_code.hpp"
+#include "base/files.hpp"
+#include "base/scene_error.hpp"
+#include "scene/scene.hpp"
+#include "study/work_precision.hpp"
+#include "study/work_precision_files.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+struct Options {
+  std::vector<std::filesystem::path> scenes;
+  std::filesystem::path folder;
+  std::vector<std::string> laws;
+  // What a scene says under "study", unless given here.
+  std::optional<int> levels, repetitions;
+  std::optional<double> factor;
+  std::optional<std::string> refine;  // "time" or "mesh"
+  int threads = 1;
+};
+
+StudySetup setup_of(json& source, const Options& options) {
+  StudySetup setup = read_study(source, options.laws);
+  setup.sweep.levels = options.levels.value_or(setup.sweep.levels);
+  setup.sweep.factor = options.factor.value_or(setup.sweep.factor);
+  setup.repetitions = options.repetitions.value_or(setup.repetitions);
+  if (options.refine) setup.sweep.with_mesh = *options.refine == "mesh";
+  return setup;
+}
+
+// "-" where there is no number.
+std::string text(const char* format, double value) {
+  std::array<char, 32> buffer{"-"};
+  if (std::isfinite(value)) std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
+}
+
+void print_runs(const Study& study) {
+  std::vector<Row> rows{{"law", "largest stable step", "steps", "seconds", "penetration"}};
+  for (const char* norm : norm_names) rows[0].emplace_back(norm);
+  for (const LawRuns& law : study.laws)
+    for (const MeasuredRun& run : law.runs) {
+      const bool is_first = &run == &law.runs.front();
+      rows.push_back({is_first ? law.name : "",
+                      is_first ? (law.stable == law.tried ? ">= " : "") + text("%.3g", law.stable) : "",
+                      std::to_string(run.steps), text("%.2g", run.seconds), text("%.1e", run.penetration)});
+      for (std::size_t n = 0; n < norm_names.size(); ++n) rows.back().push_back(text("%.2e", run.errors[n]));
+      if (!run.failure.empty()) rows.back().push_back(run.failure);
+    }
+  print_rows(rows, "");
+}
+
+// What u_L2 costs: steps, and over those of the first law steps and run time.
+void print_costs(const Study& study) {
+  std::printf("\nsteps for an error u_L2 (over the first law's steps, run time over the first law's)\n");
+  std::vector<Row> rows{{"law"}};
+  for (const double error : wanted_errors) rows[0].push_back(text("%.0e", error));
+  for (const LawRuns& law : study.laws) {
+    rows.push_back({law.name});
+    for (const double error : wanted_errors) {
+      const Cost first = cost_of(study.laws[0].runs, norm_u_L2, error),
+                 cost = cost_of(law.runs, norm_u_L2, error);
+      std::string cell = text("%.0f", cost.steps);
+      if (std::isfinite(cost.steps / first.steps))
+        cell += " (" + text("%.2g", cost.steps / first.steps) + ", " +
+                text("%.2g", cost.seconds / first.seconds) + ")";
+      rows.back().push_back(cell);
+    }
+  }
+  print_rows(rows, "");
+}
+
+int study_scene(const std::filesystem::path& file, const std::filesystem::path& folder,
+                const Options& options) {
+  Study study;
+  std::string title;
+  try {
+    json source = read_scene_source(file);
+    const StudySetup setup = setup_of(source, options);
+    title = source.value("title", file.stem().string());
+    check_study(source, setup, file);  // before anything is written
+    if (!make_folder(folder)) return exit_bad_input;
+    study = run_study(source, setup, file);
+    write_study(study, title, folder);
+  } catch (const SceneError& error) {
+    std::fprintf(stderr, "ilaw: %s: %s\n", file.c_str(), error.what());
+    return exit_bad_input;
+  }
+  std::printf("%s, against the %s\n", title.c_str(),
+              study.exact ? "exact solution" : "finest run of the first law");
+  print_runs(study);
+  print_costs(study);
+  return draw_study(study, title, folder) ? exit_done : exit_failed;
+}
+
+int study(const Options& options) {
+  set_threads(options.threads);
+  const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
+  if (options.scenes.size() == 1) return study_scene(options.scenes[0], folder, options);
+  // A folder for each.
+  std::set<std::string> names;
+  for (const std::filesystem::path& scene : options.scenes)
+    if (!names.insert(scene.stem()).second) {
+      std::fprintf(stderr, "ilaw: found two scenes called '%s', expected a different name for each\n",
+                   scene.stem().c_str());
+      return exit_bad_input;
+    }
+  if (!make_folder(folder)) return exit_bad_input;
+  for (const std::filesystem::path& scene : options.scenes)
+    if (const int code = study_scene(scene, folder / scene.stem(), options); code != exit_done) return code;
+  return exit_done;
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, Action& chosen) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("study", "Compare laws in a scene: what error they reach with how many steps");
+  command->add_option("scenes", options->scenes, "Scene files (JSON)")->required();
+  command
+      ->add_option(
+          "--out", options->folder,
+          "Folder for study.csv, study_needed.csv, study.json, .png and .svg; of several scenes each "
+          "gets one in it")
+      ->required();
+  command
+      ->add_option(
+          "--law", options->laws,
+          "Instead of the laws that the scene lists: NAME, NAME:{parameters}, or an entry of the list "
+          "in JSON; to be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--levels", options->levels, "Runs per law")->check(CLI::Range(1, 30));
+  command->add_option("--factor", options->factor, "Refinement from run to run")
+      ->check(CLI::Range(1.01, 10.0));
+  command->add_option("--refine", options->refine, "time, or mesh (with the time step)")
+      ->check(CLI::IsMember({"time", "mesh"}));
+  command->add_option("--repetitions", options->repetitions, "Of every run, for the median of the times")
+      ->check(CLI::Range(1, 1000));
+  add_threads(*command, options->threads);
+  command->footer(
+      "Example: ilaw study host_mock/scenes/bar_on_wall.json --out results\n"
+      "         ilaw study scene.json --out results --law contact --law 'penalty:{\"stiffness\": 1e6}'");
+  command->callback([options, &chosen] { chosen = [options] { return study(*options); }; });
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "study/work_precision_files.hpp"
+
+#include "base/csv.hpp"
+#include "base/files.hpp"
+#include "results/gnuplot.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <ostream>
+#include <utility>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+void write_runs(const Study& study, const std::filesystem::path& folder) {
+  AtomicFile file(folder / "study.csv");
+  CsvWriter csv(file.stream(), 6);
+  for (const char* column : {"law", "dt", "steps", "seconds", "penetration"}) csv << column;
+  for (const char* norm : norm_names) csv << norm;
+  csv.end_row();
+  for (const LawRuns& law : study.laws)
+    for (const MeasuredRun& run : law.runs) {
+      csv << law.name << run.dt << run.steps;
+      csv.add_if_finite(run.seconds);
+      csv.add_if_finite(run.penetration);
+      for (std::size_t n = 0; n < norm_names.size(); ++n) csv.add_if_finite(run.errors[n]);
+      csv.end_row();
+    }
+  file.commit();
+}
+
+void write_costs(const Study& study, const std::filesystem::path& folder) {
+  AtomicFile file(folder / "study_needed.csv");
+  CsvWriter csv(file.stream(), 6);
+  for (const char* column :
+       {"law", "norm", "error", "steps", "seconds", "steps / first law's", "seconds / first law's"})
+    csv << column;
+  csv.end_row();
+  for (std::size_t n = 0; n < norm_names.size(); ++n)
+    for (const double error : wanted_errors) {
+      const Cost first = cost_of(study.laws[0].runs, static_cast<Norm>(n), error);
+      for (const LawRuns& law : study.laws) {
+        const Cost cost = cost_of(law.runs, static_cast<Norm>(n), error);
+        csv << law.name << norm_names[n] << error;
+        for (const double value :
+             {std::round(cost.steps), cost.seconds, cost.steps / first.steps, cost.seconds / first.seconds})
+          csv.add_if_finite(value);
+        csv.end_row();
+      }
+    }
+  file.commit();
+}
+
+void write_laws(const Study& study, const std::string& title, const std::filesystem::path& folder) {
+  json laws = json::array();
+  for (const LawRuns& law : study.laws) {
+    json failures = json::array();
+    for (const MeasuredRun& run : law.runs)
+      if (!run.failure.empty()) failures.push_back({{"dt", run.dt}, {"failure", run.failure}});
+    laws.push_back({{"name", law.name},
+                    {"entry", law.entry},
+                    {"largest_step_tried", law.tried},
+                    {"largest_stable_step", law.stable},
+                    {"failures", failures}});
+  }
+  AtomicFile file(folder / "study.json");
+  file.stream() << json{{"title", title},
+                        {"reference", study.exact ? "exact solution" : "finest run of the first law"},
+                        {"laws", laws}}
+                       .dump(2)
+                << '\n';
+  file.commit();
+}
+
+// An error over a column of study.csv, both counted from 1.
+struct Panel {
+  Norm norm;
+  const char* title;
+  std::size_t column;
+  double unit;
+  const char* label;
+};
+
+constexpr std::size_t steps_column = 3, seconds_column = 4, first_norm_column = 6;
+
+// The first seven: colours that colour-blind readers tell apart (Okabe and Ito 2008).
+constexpr const char* palette[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00",
+                                   "#56B4E9", "#000000", "#999999", "#8B5A2B", "#7A5FD0"};
+
+void write_panel(const Study& study, const std::string& csv, const Panel& panel, bool has_key,
+                 std::ostream& script) {
+  script
+      << "set xlabel " << in_quotes(panel.label) << "\nset title " << in_quotes(panel.title)
+      << " noenhanced\n"
+      << (has_key
+              ? "set key at screen 0.77,0.9 left top vertical maxcols 1 noenhanced samplen 2 Left reverse\n"
+              : "unset key\n");
+  for (std::size_t k = 0; k < study.laws.size(); ++k)
+    script << (k == 0 ? "plot " : ", ") << csv << " using (strcol(1) eq " << in_quotes(study.laws[k].name)
+           << " ? $" << panel.column << '/' << panel.unit << " : NaN):" << first_norm_column + panel.norm
+           << " with linespoints linewidth " << (k == 0 ? 3.0 : 1.5) << " pointsize 0.8 pointtype "
+           << (k == 0 ? 7 : 3 + k) << " linecolor rgb " << in_quotes(palette[k % std::size(palette)])
+           << " title " << in_quotes(study.laws[k].name);
+  script << "\n";
+}
+
+void write_study_script(const Study& study, const std::string& title, const std::filesystem::path& folder,
+                        std::ostream& script) {
+  // Run times of machines differ: over that of the first law's finest run.
+  const double unit = study.laws[0].runs.back().seconds;
+  const char *steps = "steps", *time = "run time / that of the first law's finest run";
+  const Panel panels[] = {
+      {norm_u_L2, "error of displacements (u_L2)", steps_column, 1.0, steps},
+      {norm_u_L2, "error of displacements (u_L2)", seconds_column, std::isfinite(unit) ? unit : 1.0, time},
+      {norm_impulse, "error of the impulse history", steps_column, 1.0, steps},
+      {norm_energy, "error of the interfaces' work", steps_column, 1.0, steps}};
+  const std::string csv = in_quotes((folder / "study.csv").string());
+  for (const auto& [terminal, kind] : {std::pair{"pngcairo", "png"}, std::pair{"svg", "svg"}}) {
+    script << "reset\nset datafile separator comma\nset datafile missing ''\nset terminal " << terminal
+           << " size 1200,840 font 'sans,11' background rgb 'white'\nset output "
+           << in_quotes((folder / ("study." + std::string(kind))).string())
+           << "\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\n"
+              "set ylabel 'relative error'\nset multiplot title "
+           << in_quotes(title) << " font ',14' noenhanced\n";
+    for (std::size_t k = 0; k < std::size(panels); ++k) {
+      script << "set origin " << (k % 2 ? 0.38 : 0.0) << ',' << (k < 2 ? 0.47 : 0.0)
+             << "\nset size 0.38,0.48\n";
+      write_panel(study, csv, panels[k], k == 1, script);
+    }
+    script << "unset multiplot\nunset output\n";
+  }
+}
+
+}  // namespace
+
+void write_study(const Study& study, const std::string& title, const std::filesystem::path& folder) {
+  write_runs(study, folder);
+  write_costs(study, folder);
+  write_laws(study, title, folder);
+}
+
+bool draw_study(const Study& study, const std::string& title, const std::filesystem::path& folder) {
+  const std::filesystem::path script = folder / "study.gnuplot";
+  std::ofstream stream(script);
+  write_study_script(study, title, folder, stream);
+  stream.close();
+  return run_gnuplot(script);
+}
+
+}  // namespace ilaw::host

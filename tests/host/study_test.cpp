@@ -1,0 +1,297 @@
+// `ilaw study`: the largest stable step, what an error costs, and the program on scenes with known answers.
+#include "host_runner.hpp"
+#include "program_runner.hpp"
+#include "study/stable_step.hpp"
+#include "study/study_laws.hpp"
+#include "study/work_precision.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+json plane(const std::vector<double>& normal) {
+  return {{"type", "plane"}, {"point", std::vector<double>(normal.size(), 0.0)}, {"normal", normal}};
+}
+
+// A mass that a force presses on the floor, little by little: its spring stays closed.
+Scene pressed_mass(double mass, double stiffness, double dt) {
+  return scene_of(json{
+      {"model", {{"type", "points"}, {"dimension", 1}, {"points", {{{"mass", mass}, {"position", {0.0}}}}}}},
+      {"time", {{"dt", dt}, {"end", 3.0}}},
+      {"loads",
+       {{{"type", "force"}, {"nodes", {0}}, {"direction", {-1.0}}, {"history", {{0.0, 0.0}, {0.2, 10.0}}}}}},
+      {"interfaces",
+       {{{"law", "penalty"},
+         {"parameters", {{"stiffness", stiffness}}},
+         {"nodes", {0}},
+         {"obstacle", plane({1.0})}}}}}
+                      .dump());
+}
+
+// A mass on a spring that stays closed is stable up to h = 2/omega, omega^2 = k/m.
+TEST(StableStep, OfAMassOnAnExplicitSpringIsThatOfTheOscillator) {
+  struct {
+    double mass, stiffness, tried;
+  } cases[] = {{1.0, 1e4, 0.05}, {2.7, 3.1e4, 0.31}, {0.13, 777.0, 0.0271}};
+  for (const auto& one : cases) {
+    const double found = largest_stable_step(
+        [&](double part) { return pressed_mass(one.mass, one.stiffness, part * one.tried); });
+    EXPECT_NEAR(found * one.tried / (2.0 / std::sqrt(one.stiffness / one.mass)), 1.0, 0.02)
+        << "m " << one.mass << ", k " << one.stiffness;
+  }
+}
+
+TEST(StableStep, IsAllThatIsTriedWhereThatIsStable) {
+  EXPECT_EQ(largest_stable_step([](double part) { return pressed_mass(1.0, 1e4, part * 0.019); }), 1.0);
+}
+
+// Runs with an error of c h^p: below an error from (c/error)^(1/p) steps on.
+std::vector<MeasuredRun> runs_of_order(double order, int count) {
+  std::vector<MeasuredRun> runs;
+  for (int k = 0; k < count; ++k) {
+    MeasuredRun run;
+    run.steps = 10 << k;
+    run.dt = 1.0 / static_cast<double>(run.steps);
+    run.seconds = 1e-6 * static_cast<double>(run.steps);
+    run.errors.u_L2 = 3.0 * std::pow(run.dt, order);
+    run.errors.instant = run.errors.u_L2;
+    runs.push_back(run);
+  }
+  return runs;
+}
+
+TEST(Cost, LiesOnTheLineBetweenRuns) {
+  for (const double order : {0.5, 1.0, 2.0}) {
+    const std::vector<MeasuredRun> runs = runs_of_order(order, 16);
+    for (const double steps : {13.0, 177.0, 9999.0}) {
+      const Cost cost = cost_of(runs, norm_u_L2, 3.0 * std::pow(steps, -order));
+      EXPECT_NEAR(cost.steps / steps, 1.0, 1e-12) << order << ", " << steps;
+      EXPECT_NEAR(cost.seconds, 1e-6 * cost.steps, 1e-12 * cost.steps);
+    }
+  }
+}
+
+TEST(Cost, IsThatOfTheFirstRunWhereItIsGoodEnoughAndNoneWhereNoneIs) {
+  const std::vector<MeasuredRun> runs = runs_of_order(1.0, 6);
+  EXPECT_EQ(cost_of(runs, norm_u_L2, 0.31).steps, 10.0);
+  EXPECT_TRUE(std::isnan(cost_of(runs, norm_u_L2, 1e-3).steps));
+  EXPECT_TRUE(std::isnan(cost_of(runs, norm_u_L2, 1e-3).seconds));
+}
+
+// An error that is small by chance, or that is there again with smaller steps, does not count.
+TEST(Cost, CountsFromTheRunAfterWhichErrorsStayBelow) {
+  std::vector<MeasuredRun> runs = runs_of_order(1.0, 8);
+  runs[1].errors.u_L2 = 1e-9;
+  EXPECT_NEAR(cost_of(runs, norm_u_L2, 0.02).steps, 150.0, 1e-9);
+  runs[6].errors.u_L2 = ContactInstants::none;  // a run that failed
+  EXPECT_EQ(cost_of(runs, norm_u_L2, 0.02).steps, 1280.0);
+  runs[7].errors.u_L2 = 0.5;
+  EXPECT_TRUE(std::isnan(cost_of(runs, norm_u_L2, 0.02).steps));
+}
+
+json ball() {
+  return read_scene_source(std::filesystem::path(ILAW_SOURCE) / "docs/results/scenes/bouncing_ball_e08.json");
+}
+
+TEST(StudyLaws, ScaledParametersAreInUnitsOfTheNodeAndTheStep) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  json scene = ball();
+  scene["model"]["points"][0]["mass"] = 2.0;
+  const json entry{
+      {"law", "penalty"},
+      {"scaled", true},
+      {"parameters",
+       {{"stiffness", 3.0}, {"tangential_stiffness", 5.0}, {"damping", 7.0}, {"friction", 0.25}}}};
+  const json found = with_law(scene, entry, 0.01, "scene.json")["interfaces"][0]["parameters"];
+  EXPECT_DOUBLE_EQ(found["stiffness"], 3.0 * 2.0 / 1e-4);
+  EXPECT_DOUBLE_EQ(found["tangential_stiffness"], 5.0 * 2.0 / 1e-4);
+  EXPECT_DOUBLE_EQ(found["damping"], 7.0 * 2.0 / 1e-2);
+  EXPECT_EQ(found["friction"], 0.25);
+  // The end node of a bar: half an element, m/h^2 = (rho S l/2) (c/l)^2 = E S/(2 l), on every mesh.
+  json bar = read_scene_source(scene_files::named("bar_on_wall.json"));
+  for (const int elements : {10, 35}) {
+    bar["model"]["bars"][0]["elements"] = elements;
+    const json of_bar = with_law(bar, entry, 0.01, "scene.json")["interfaces"][0]["parameters"];
+    EXPECT_NEAR(of_bar["stiffness"].get<double>(), 3.0 * 900.0 * elements / (2.0 * 10.0), 1e-6);
+  }
+}
+
+TEST(StudyLaws, WithoutANameChangeTheScenesOwn) {
+  const json scene = ball();
+  const json own = with_law(scene, {{"parameters", {{"activation", "predictive"}}}}, 0.01, "scene.json");
+  EXPECT_EQ(own["interfaces"][0]["law"], "contact");
+  EXPECT_EQ(own["interfaces"][0]["parameters"], (json{{"restitution", 0.8}, {"activation", "predictive"}}));
+  const json other =
+      with_law(scene, {{"law", "penalty"}, {"parameters", {{"stiffness", 1.0}}}}, 0.01, "scene.json");
+  EXPECT_EQ(other["interfaces"][0]["parameters"], json({{"stiffness", 1.0}}));
+}
+
+struct Result {
+  Outcome outcome;
+  std::filesystem::path folder;
+};
+
+Result study_of(const json& scene, const std::string& options) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << scene.dump();
+  const Outcome outcome = run_program("study " + (folder / "scene.json").string() + " --out " +
+                                      (folder / "results").string() + " --repetitions 1 " + options);
+  return {outcome, folder / "results"};
+}
+
+// The rows of a table, by column.
+std::vector<std::map<std::string, std::string>> rows_of(const std::filesystem::path& file) {
+  std::istringstream table(text_of(file));
+  std::string header, line, name, cell;
+  std::getline(table, header);
+  std::vector<std::map<std::string, std::string>> rows;
+  while (std::getline(table, line)) {
+    std::istringstream names(header), cells(line);
+    rows.emplace_back();
+    while (std::getline(names, name, ',')) {
+      cell.clear();
+      std::getline(cells, cell, ',');
+      rows.back()[name] = cell;
+    }
+  }
+  return rows;
+}
+
+// Positions of contact are of first order, whatever the activation: a tenth of an error costs ten times
+// the steps, within what the phase of impacts scatters. An explicit spring has an error of its own.
+TEST(Study, OfTheBallTellsOrderAndCost) {
+  json scene = ball();
+  scene["study"] = {{"first", 3.0}, {"factor", 1.7}, {"levels", 10}};
+  const Result study =
+      study_of(scene,
+               "--law '{\"name\": \"contact\"}' "
+               "--law 'contact:{\"restitution\": 0.8, \"activation\": \"predictive\"}' "
+               "--law '{\"name\": \"spring\", \"law\": \"penalty\", \"parameters\": {\"stiffness\": 1e4}}'");
+  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+  std::map<std::string, std::vector<double>> steps, errors;
+  for (auto& row : rows_of(study.folder / "study.csv")) {
+    steps[row["law"]].push_back(std::stod(row["dt"]));
+    errors[row["law"]].push_back(std::stod(row["u_L2"]));
+    for (const char* norm : norm_names) EXPECT_FALSE(row[norm].empty()) << norm << " of " << row["law"];
+    EXPECT_NEAR(std::stod(row["dt"]) * std::stod(row["steps"]), 5.0, std::stod(row["dt"]));
+  }
+  ASSERT_EQ(steps.size(), 3U);
+  for (const char* law : {"contact", "contact activation predictive restitution 0.8"}) {
+    EXPECT_NEAR(order(steps[law], errors[law]), 1.0, 0.25) << law;
+    EXPECT_NEAR(steps[law].front(), 0.0309, 1e-9) << law;
+  }
+  // Stable below 2/omega = 0.02 at most, and run at 0.9 of that at most.
+  EXPECT_LE(steps["spring"].front(), 0.018);
+  // Elastic, where the ball loses: never right.
+  EXPECT_GT(errors["spring"].back(), 0.1);
+
+  std::map<std::string, double> cost;
+  std::set<std::string> columns;
+  for (auto& row : rows_of(study.folder / "study_needed.csv")) {
+    for (const auto& [column, ignored] : row) columns.insert(column);
+    if (row["norm"] != "u_L2") continue;
+    if (row["law"] == "contact" && !row["steps"].empty()) cost[row["error"]] = std::stod(row["steps"]);
+    if (row["law"] == "contact" && row["error"] == "0.01") {
+      EXPECT_EQ(row["steps / first law's"], "1");
+      EXPECT_EQ(row["seconds / first law's"], "1");
+    }
+    if (row["law"] == "spring") {
+      EXPECT_EQ(row["steps"], "") << row["error"];
+    }
+  }
+  EXPECT_EQ(columns, (std::set<std::string>{"law", "norm", "error", "steps", "seconds", "steps / first law's",
+                                            "seconds / first law's"}));
+  EXPECT_GT(cost["0.001"] / cost["0.01"], 4.0);
+  EXPECT_LT(cost["0.001"] / cost["0.01"], 25.0);
+
+  const json laws = json::parse(text_of(study.folder / "study.json"));
+  EXPECT_EQ(laws["reference"], "exact solution");
+  EXPECT_EQ(laws["laws"][0]["largest_stable_step"], laws["laws"][0]["largest_step_tried"]);
+  EXPECT_LE(laws["laws"][2]["largest_stable_step"].get<double>(), 0.02 * 1.01);
+  EXPECT_EQ(text_of(study.folder / "study.png").substr(1, 3), "PNG");
+  EXPECT_NE(text_of(study.folder / "study.svg").find("<svg"), std::string::npos);
+}
+
+// Impulse and work so far, and positions, of both components, against the closed form.
+TEST(Study, OfTheObliqueImpactIsOfFirstOrderInAllNorms) {
+  const Result study = study_of(read_scene_source(scene_files::named("oblique_impact.json")),
+                                "--law coulomb:'{\"restitution\": 0.5, \"friction\": 0.3}' --levels 10");
+  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+  std::map<std::string, std::vector<double>> table;
+  for (auto& row : rows_of(study.folder / "study.csv"))
+    for (const char* column : {"dt", "u_L2", "v_L1", "impulse", "energy"})
+      table[column].push_back(std::stod(row[column]));
+  for (const char* norm : {"u_L2", "v_L1", "impulse", "energy"}) {
+    EXPECT_NEAR(order(table["dt"], table[norm]), 1.05, 0.35) << norm;
+    EXPECT_LT(table[norm].back(), 5e-3) << norm;
+  }
+}
+
+// Without exact solution and without a list: the usual laws, against the first one's finest run.
+TEST(Study, TakesTheUsualLawsWhereTheSceneListsNone) {
+  json scene = ball();
+  scene.erase("study");
+  scene.erase("exact");
+  const Result study = study_of(scene, "--levels 3");
+  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+  const json found = json::parse(text_of(study.folder / "study.json"));
+  EXPECT_EQ(found["reference"], "finest run of the first law");
+  ASSERT_EQ(found["laws"].size(), 7U);
+  EXPECT_EQ(found["laws"][0]["name"], "contact predictive");
+  EXPECT_EQ(found["laws"][2]["name"], "explicit 0.1");
+  EXPECT_NE(study.outcome.output.find("implicit 100.0"), std::string::npos) << study.outcome.output;
+}
+
+TEST(Study, OfSeveralScenesHasAFolderForEach) {
+  const auto folder = fresh_folder();
+  const std::string scenes =
+      (std::filesystem::path(ILAW_SOURCE) / "docs/results/scenes/bouncing_ball_e1.json").string() + " " +
+      scene_files::named("postit_test2.json").string();
+  const Outcome outcome = run_program(
+      "study " + scenes + " --law '{\"name\": \"own\"}' --levels 2 --repetitions 1 --out " + folder.string());
+  ASSERT_EQ(outcome.code, 0) << outcome.output;
+  for (const char* name : {"bouncing_ball_e1", "postit_test2"})
+    EXPECT_TRUE(std::filesystem::exists(folder / name / "study.csv")) << name;
+}
+
+TEST(Study, RefusesWhatItCannotCompare) {
+  const auto refusal = [](const json& scene, const std::string& options, const std::string& said) {
+    const Result study = study_of(scene, options);
+    EXPECT_EQ(study.outcome.code, 2) << study.outcome.output;
+    EXPECT_FALSE(std::filesystem::exists(study.folder));
+    EXPECT_NE(study.outcome.output.find(said), std::string::npos) << study.outcome.output;
+  };
+  const json good = ball();
+  json scene = good;
+  scene["study"]["lvels"] = 3;
+  refusal(scene, "", "/study/lvels: unknown key, expected one of");
+  scene = good;
+  scene["study"]["laws"][2]["stiffness"] = 3;
+  refusal(scene, "", "/study/laws/2/stiffness: unknown key");
+  scene = good;
+  scene["study"]["laws"][1] = scene["study"]["laws"][0];
+  refusal(scene, "", "/study/laws/1: found 'contact predictive' twice");
+  scene = good;
+  scene["output"].erase("watch");
+  refusal(scene, "", "/output/watch: found no node");
+  refusal(good, "--refine mesh", "/study/refine: found \"mesh\"");
+  refusal(good, "--law glue", "with law 'glue': /interfaces/0/law");
+  refusal(good, "--law 'contact:{\"restitution\": 2}'",
+          "with law 'contact restitution 2': /interfaces/0/parameters/restitution");
+  refusal(good, "--law 'contact:{\"restitution\"}'", "not valid JSON");
+  refusal(good, "--law 'contact:3'", "/study/laws/0/parameters: found 3, expected object");
+  refusal(good, "--law '{\"scaled\": 1}'", "/study/laws/0/scaled: found 1, expected boolean");
+  refusal(good, "--law Contact", "/study/laws/0/law: found \"Contact\"");
+  for (const char* options : {"--levels 0", "--factor 1", "--refine space", "--repetitions 0"})
+    refusal(good, options, "--");
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
