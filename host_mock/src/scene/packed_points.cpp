@@ -40,8 +40,9 @@ bool PointPacker::end_vector() {
 bool PointPacker::end_point() {
   in_point_ = false;
   const auto append = [this](const double* values, std::size_t count) {
-    const auto* const first = reinterpret_cast<const std::uint8_t*>(values);
-    bytes_.insert(bytes_.end(), first, first + count * sizeof(double));
+    const std::size_t end = bytes_.size(), more = count * sizeof(double);
+    bytes_.resize(end + more);
+    std::memcpy(bytes_.data() + end, values, more);
   };
   if (bytes_.empty()) {
     width_ = sizes_[position];
