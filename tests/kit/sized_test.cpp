@@ -105,7 +105,8 @@ TEST(Sized, SetupsAndArgumentsAreReadUpToTheirSizeAndFromThatOfVersionOneOn) {
 TEST(Sized, SizesThatNoVersionHasAreRefused) {
   const SetupBuilder setup({{{"friction", 0.5}}, {}});
   const ilaw::interface law = make_law("coulomb", setup);
-  ilaw_batch batch = batch_of_one();
+  const SmallBatch node(1, {-1.0, 2.0, 0.0});
+  ilaw_batch batch = node.b;
   ilaw_report report{};
   ilaw_instance_info info{};
   ilaw_setup other = setup.setup;
