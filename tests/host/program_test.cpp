@@ -93,7 +93,7 @@ TEST(Program, NamesWhatItDoesNotKnow) {
     return output.substr(0, output.find('\n'));
   };
   EXPECT_EQ(first_line("rnu"),
-            "ilaw: found 'rnu', expected one of run, plot, converge, list, describe, --help, --version");
+            "ilaw: found 'rnu', expected one of run, plot, converge, study, list, describe, --help, --version");
   EXPECT_EQ(first_line("run " + ball + " --outt here"),
             "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads");
   EXPECT_EQ(first_line("run " + ball), "ilaw: --out is required");

@@ -5,6 +5,7 @@
 #include "base/files.hpp"
 #include "results/gnuplot.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -91,6 +92,15 @@ constexpr std::size_t steps_column = 3, seconds_column = 4, first_norm_column = 
 constexpr const char* palette[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00",
                                    "#56B4E9", "#000000", "#999999", "#8B5A2B", "#7A5FD0"};
 
+// Logarithmic axes show what is larger than zero; an exact solution may tell no impulse or work.
+bool has_points(const Study& study, Norm norm) {
+  return std::any_of(study.laws.begin(), study.laws.end(), [&](const LawRuns& law) {
+    return std::any_of(law.runs.begin(), law.runs.end(), [&](const MeasuredRun& run) {
+      return std::isfinite(run.errors[norm]) && run.errors[norm] > 0.0;
+    });
+  });
+}
+
 void write_panel(const Study& study, const std::string& csv, const Panel& panel, bool has_key,
                  std::ostream& script) {
   script
@@ -127,6 +137,7 @@ void write_study_script(const Study& study, const std::string& title, const std:
               "set ylabel 'relative error'\nset multiplot title "
            << in_quotes(title) << " font ',14' noenhanced\n";
     for (std::size_t k = 0; k < std::size(panels); ++k) {
+      if (!has_points(study, panels[k].norm)) continue;
       script << "set origin " << (k % 2 ? 0.38 : 0.0) << ',' << (k < 2 ? 0.47 : 0.0)
              << "\nset size 0.38,0.48\n";
       write_panel(study, csv, panels[k], k == 1, script);
