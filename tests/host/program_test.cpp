@@ -92,8 +92,9 @@ TEST(Program, NamesWhatItDoesNotKnow) {
     const std::string output = run_program(arguments).output;
     return output.substr(0, output.find('\n'));
   };
-  EXPECT_EQ(first_line("rnu"),
-            "ilaw: found 'rnu', expected one of run, plot, converge, study, list, describe, --help, --version");
+  EXPECT_EQ(
+      first_line("rnu"),
+      "ilaw: found 'rnu', expected one of run, plot, converge, study, list, describe, --help, --version");
   EXPECT_EQ(first_line("run " + ball + " --outt here"),
             "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads");
   EXPECT_EQ(first_line("run " + ball), "ilaw: --out is required");

@@ -22,8 +22,8 @@ namespace ilaw::testing {
 namespace {
 
 constexpr std::size_t node_count = 500, steps = 50;
-// In 2D and 3D together a quarter of a million random steps. Other units, axes and mirrors show in any of them,
-// or in none.
+// In 2D and 3D together a quarter of a million random steps. Other units, axes and mirrors show in any of
+// them, or in none.
 constexpr std::size_t histories = 5, histories_compared = 1;
 
 struct Law {

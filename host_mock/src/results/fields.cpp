@@ -92,8 +92,8 @@ std::vector<StateArray> add_states(vtkUnstructuredGrid& grid, const ilaw_instanc
   return states;
 }
 
-void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const std::string& prefix, int node_count,
-                   const Integrator& integrator) {
+void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const std::string& prefix,
+                   int node_count, const Integrator& integrator) {
   vtkDoubleArray* gap =
       add_array(grid, prefix + "gap", node_count, 1, std::numeric_limits<double>::quiet_NaN());
   vtkNew<vtkIntArray> status;
