@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Mistake{"/interface", "[]",
                 "/interface: unknown key, expected one of: converge, doc, exact, interfaces, loads, model, "
-                "output, time, "
+                "output, study, time, "
                 "title (did you mean "
                 "'interfaces'?)"},
         Mistake{"/model/type", "\"bar\"", "/model/type: found \"bar\", expected one of \"points\""},
