@@ -260,20 +260,20 @@ TEST(Window, NeedNotBeToldOfStepsWithoutImpulse) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (const double ratio : ratios) {
-    Window asked(1.0, 8, -2.0), skipped(1.0, 8, -2.0);
+    Window told(1.0, 8, -2.0), skipped(1.0, 8, -2.0);
     const double h = 1.0 / ratio;
     bool acts = true;
     for (int k = 0; k < 5000; ++k) {
       if (random() % 20 == 0) acts = !acts;
       const vector impulse = acts ? vector{uniform(random), uniform(random), 0} : vector{};
-      const std::vector<double> before = asked.history;
-      const vector sum = asked.step(h, impulse);
+      const std::vector<double> before = told.history;
+      const vector sum = told.step(h, impulse);
       if (!acts) {
-        ASSERT_EQ(asked.history, before) << ratio << " " << k;
+        ASSERT_EQ(told.history, before) << ratio << " " << k;
         continue;
       }
-      ASSERT_EQ(sum.n, skipped.step_to(asked.end, h, impulse).n) << ratio << " " << k;
-      ASSERT_EQ(asked.history, skipped.history) << ratio << " " << k;
+      ASSERT_EQ(sum.n, skipped.step_to(told.end, h, impulse).n) << ratio << " " << k;
+      ASSERT_EQ(told.history, skipped.history) << ratio << " " << k;
     }
   }
 }

@@ -31,7 +31,7 @@ class ContactArrays {
     double delassus, area;
     std::vector<double> parameters;  // of the law per node, in its order
     std::vector<double> state;
-    bool must_be_asked;
+    bool must_be_evaluated;
   };
 
   std::size_t count() const { return node_index.size(); }
@@ -49,16 +49,16 @@ class ContactArrays {
   std::size_t first_state(int contact) const { return static_cast<std::size_t>(contact) * state_size_; }
 
   // Whether it must be evaluated out of reach, too: it is neither fresh nor at rest.
-  bool must_be_asked(std::size_t contact) const { return (marks_[contact] & asked) != 0; }
+  bool must_be_evaluated(std::size_t contact) const { return (marks_[contact] & awake) != 0; }
   // After a step: acts, where its status was not ILAW_FREE; rests, where the law promises
   // ILAW_CAN_REST.
   void mark_touched(std::size_t contact, bool acts, bool in_reach, bool rests) {
     std::uint8_t& mark = marks_[contact];
     if (acts || in_reach) mark |= changed;
     if (acts || (in_reach && !rests))
-      mark |= asked;
+      mark |= awake;
     else if (rests)
-      mark &= static_cast<std::uint8_t>(~asked);
+      mark &= static_cast<std::uint8_t>(~awake);
   }
 
   // Where contacts share nodes a step evaluates each more than once: the arrays below "repeated"
@@ -89,7 +89,7 @@ class ContactArrays {
 
  private:
   enum Mark : std::uint8_t {
-    asked = 1,
+    awake = 1,
     changed = 2
   };  // changed: the state may not be the first one any more
 

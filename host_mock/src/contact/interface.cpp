@@ -96,9 +96,9 @@ void Interface::refresh_near(const StepView& step) {
   for (std::size_t k = 0; k < setup_.nodes.size(); ++k) {
     if (k % contact_chunk == 0) chunk_starts_.push_back(static_cast<std::ptrdiff_t>(near_.size()));
     const int node_index = static_cast<int>(k), contact_index = contacts_.index_of(k);
-    const bool asked =
-        contact_index >= 0 ? contacts_.must_be_asked(at(contact_index)) : law_.acts_at_distance();
-    if (asked || !skips ||
+    const bool awake =
+        contact_index >= 0 ? contacts_.must_be_evaluated(at(contact_index)) : law_.acts_at_distance();
+    if (awake || !skips ||
         proximity_.may_touch(setup_.counterpart->gap_bound(node_index, step.u, step.time) -
                              setup_.gap_offset))
       near_.push_back(contact_index_of(node_index, step.u));
@@ -165,7 +165,7 @@ void Interface::open_step(const StepView& step) {
 
 bool Interface::is_idle(int contact_index) const {
   const std::size_t k = at(contact_index);
-  return !contacts_.must_be_asked(k) && contacts_.gap[k] > closing_;
+  return !contacts_.must_be_evaluated(k) && contacts_.gap[k] > closing_;
 }
 
 void Interface::gather(const ContactList& contacts, const Dofs& v, const StepView& step) {

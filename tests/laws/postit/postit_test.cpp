@@ -263,29 +263,29 @@ TEST(Postit, ASeparationMakesTheNextRuptureCount) {
 // window and its later bits are those of a node that was evaluated in every step.
 TEST(Postit, AFreeNodeOutOfReachKeepsItsState) {
   const Parameters parameters{{{"efficiency_decrease", 10.0}, {"memory", 0.05}, {"friction", 0.3}}, {}};
-  Glued asked(parameters, 1e-3), skipped(parameters, 1e-3);
-  for (Glued* node : {&asked, &skipped}) {
+  Glued evaluated(parameters, 1e-3), skipped(parameters, 1e-3);
+  for (Glued* node : {&evaluated, &skipped}) {
     node->push({-0.1, 0.02, 0});
     for (int k = 0; k < 20; ++k) node->push({-1e-3, 1e-3, 0});
     EXPECT_EQ(node->push({0.5, 0.1, 0}), ILAW_BROKEN);
     EXPECT_EQ(node->push({0, 0, 0}), ILAW_FREE);
     EXPECT_GT(node->gap, 0.0);
   }
-  const std::vector<double> before = asked.state;
+  const std::vector<double> before = evaluated.state;
   for (int k = 0; k < 200; ++k) {
-    EXPECT_EQ(asked.push({-1e-4, 0, 0}), ILAW_FREE);
-    ASSERT_EQ(asked.state, before) << k;
+    EXPECT_EQ(evaluated.push({-1e-4, 0, 0}), ILAW_FREE);
+    ASSERT_EQ(evaluated.state, before) << k;
   }
-  skipped.steps = asked.steps;
-  for (Glued* node : {&asked, &skipped}) {
+  skipped.steps = evaluated.steps;
+  for (Glued* node : {&evaluated, &skipped}) {
     node->position = {};
     node->v = {};
   }
   for (int k = 0; k < 100; ++k) {
     const Vector push{k % 9 == 0 ? 0.4 : -0.1, 0.01 * k, 0};
-    ASSERT_EQ(asked.push(push), skipped.push(push)) << k;
-    ASSERT_EQ(asked.r, skipped.r) << k;
-    ASSERT_EQ(asked.state, skipped.state) << k;
+    ASSERT_EQ(evaluated.push(push), skipped.push(push)) << k;
+    ASSERT_EQ(evaluated.r, skipped.r) << k;
+    ASSERT_EQ(evaluated.state, skipped.state) << k;
   }
 }
 
