@@ -41,7 +41,7 @@ struct Conditions {
 // Column by column, of all nodes at once that are three apart and so share no element.
 Eigen::SparseMatrix<double> stiffness_of(const Blocks& block, const Grid& grid) {
   std::vector<Eigen::Triplet<double>> entries;
-  const auto [nx, ny, nz] = grid.elements;
+  const int nx = grid.elements[0], ny = grid.elements[1], nz = grid.elements[2];
   const auto near = [](int from, int all, int offset) { return from + offset >= 0 && from + offset <= all; };
   for (int shift = 0; shift < 27; ++shift)
     for (int axis = 0; axis < 3; ++axis) {
@@ -106,7 +106,7 @@ void hold_thickness(const Grid& grid, Conditions& given) {
 
 // Forces of a traction t(z) on the end x_max, by Gauss's two points per element: exact for cubics.
 void pull_end(const Grid& grid, int axis, double (*traction)(double), Conditions& given) {
-  const auto [nx, ny, nz] = grid.elements;
+  const int nx = grid.elements[0], ny = grid.elements[1], nz = grid.elements[2];
   const double dz = grid.size[2] / nz, dy = grid.size[1] / ny;
   for (int z = 0; z < nz; ++z)
     for (int y = 0; y < ny; ++y)
