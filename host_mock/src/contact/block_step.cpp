@@ -202,7 +202,8 @@ class Blocks {
     sums.work = work;
     sums.relative_work = relative_work;
     sums.penetration = penetration;
-    for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k) sums.statuses[k] += (statuses >> (8 * k)) & 0xff;
+    for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k)
+      sums.statuses[k] += static_cast<std::int64_t>((statuses >> (8 * k)) & 0xff);
     for (std::ptrdiff_t i = 0; i < count_; ++i) sums.add_energy(&energy_[ILAW_ENERGY_COUNT * i]);
   }
 

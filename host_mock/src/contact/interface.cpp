@@ -57,6 +57,7 @@ std::vector<double> Interface::first_state(int node_index, const Dofs& u) const 
   if (state.empty()) return state;
   const std::vector<double> parameters = parameters_of(node_index);
   std::vector<ilaw_input> inputs;
+  inputs.reserve(parameters.size());
   for (const double& value : parameters) inputs.push_back({&value, 1, 1});
   const Vector normal = setup_.counterpart->contact_point(node_index, u, 0.0).normal;
   ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
