@@ -110,7 +110,8 @@ void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const 
     const std::vector<double> values = interface.state_at(node_index, integrator.displacement());
     for (const StateArray& state : states)
       for (int c = 0; c < state.count; ++c)
-        state.array->SetComponent(node, c, values[static_cast<std::size_t>(state.entry + c)]);
+        state.array->SetComponent(
+            node, c, values[static_cast<std::size_t>(state.entry) + static_cast<std::size_t>(c)]);
   }
   for (const std::int32_t contact_index : interface.active())
     status->SetValue(interface.node_of(contact_index), interface.status(contact_index));
