@@ -84,7 +84,7 @@ struct ThrownPoint {
     const double g = gravity, rest = fall() * (1.0 + e) / (1.0 - e);
     if (time < fall()) return {speed * time, -0.5 * g * time * time, speed, -g * time};
     double since = fall(), x = speed * fall(), vx = speed, arrives = g * fall();
-    for (double part = 1.0; part > 1e-18; part *= e) {
+    while (arrives > 1e-18 * g * fall()) {
       vx = std::max(vx - mu * (1.0 + e) * arrives, 0.0);
       arrives *= e;
       const double flight = std::min(2.0 * arrives / g, rest - since);
