@@ -121,15 +121,27 @@ TEST(Program, FailsWithCodeOneWhereTheMotionOverflows) {
 }
 
 // A library that breaks its promise is named, with the node.
-TEST(Program, FailsWithCodeOneWhereALawGivesAnUnknownStatus) {
+// Two points at a plane, of which a library sees the second.
+Outcome run_with(const std::string& library) {
   const auto folder = fresh_folder();
   std::ofstream(folder / "scene.json") << R"({"model": {"type": "points", "dimension": 1, "points": [
       {"mass": 1, "position": [1]}, {"mass": 1, "position": [0]}]}, "time": {"dt": 0.5, "end": 1},
-    "interfaces": [{"name": "floor", "law": "zero", "library": ")" ILAW_ODD_STATUS
-                                          R"(", "nodes": [1], "skip": false,
+    "interfaces": [{"name": "floor", "law": "zero", "library": ")"
+                                       << library << R"(", "nodes": [1], "skip": false,
                     "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})";
-  const Outcome outcome =
-      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  return run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+}
+
+// The report names a node that is none: it must not lead anywhere.
+TEST(Program, FailsWithCodeOneWhereALawMakesUpABadNode) {
+  const Outcome outcome = run_with(ILAW_ODD_NODE);
+  EXPECT_EQ(outcome.code, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("interface 'floor' (law 'zero'): a node that is none"), std::string::npos)
+      << outcome.output;
+}
+
+TEST(Program, FailsWithCodeOneWhereALawGivesAnUnknownStatus) {
+  const Outcome outcome = run_with(ILAW_ODD_STATUS);
   EXPECT_EQ(outcome.code, 1) << outcome.output;
   EXPECT_NE(outcome.output.find("interface 'floor' (law 'zero', library " ILAW_ODD_STATUS
                                 "): found status 42 at node 1, expected 0 to 7"),

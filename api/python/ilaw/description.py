@@ -89,7 +89,7 @@ class Library:
     def plugin(self) -> Plugin:
         """The library's description."""
         read = loader().ilaw_library_plugin(self.handle).contents
-        laws = [_law(read.laws[i].contents) for i in range(read.law_count)]
+        laws = [law_of(read.laws[i].contents) for i in range(read.law_count)]
         return Plugin(
             name=read.name.decode(),
             version=read.version.decode(),
@@ -142,7 +142,7 @@ def state_variables(read: ctypes._Pointer, count: int) -> tuple[StateVariable, .
     return tuple(made)
 
 
-def _law(read: _abi.law) -> Law:
+def law_of(read: _abi.law) -> Law:
     parameters = [_parameter(read.parameters[i].contents) for i in range(read.parameter_count)]
     return Law(
         id=read.id.decode(),

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from . import _abi, arrays
 from ._loader import loader
-from .description import Law, Library, StateVariable, _law, state_variables
+from .description import Law, Library, StateVariable, law_of, state_variables
 from .errors import BadNodes, InvalidArgument, raise_for
 
 # A number, a text (of a choice), pairs (time, value) for a table, an array of shape (nodes,) for one per node.
@@ -127,7 +127,7 @@ class Interface:
         )
         raise_for(code, message.value.decode(errors="replace"))
         self.handle = handle
-        self.law: Law = _law(loader().ilaw_interface_law(handle).contents)
+        self.law: Law = law_of(loader().ilaw_interface_law(handle).contents)
         info = _abi.sized(_abi.instance_info)
         raise_for(loader().ilaw_interface_info(handle, ctypes.byref(info)), f"{self.law.id}: refuses its own instance")
         self.inputs = _abi.Input(info.inputs)
@@ -221,7 +221,7 @@ class Batch:
         self._outputs: dict[str, NDArray[np.float64]] = {}
         self.impulse = self._write("impulse", impulse, d)
         self.state = self._write("state", state, interface.state_size)
-        self._batch.state_in = _abi.input(*(getattr(self._batch.state_out, name) for name, _ in _abi.input._fields_))
+        self._batch.state_in = arrays.read("state", self.state, self.node_count, interface.state_size)
         self.velocity = None if velocity is False else self._write("velocity", velocity, d)
         self.energy = None if energy is False else self._write("energy", energy, _abi.ENERGY_COUNT)
         self.status = np.zeros(self.node_count, np.uint8)

@@ -5,6 +5,8 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace ilaw::host {
@@ -16,6 +18,27 @@ void add_threads(CLI::App& command, int& threads) {
 }
 
 void set_threads(int threads) { omp_set_num_threads(threads); }
+
+Sweep SweepOptions::over(Sweep said) const {
+  said.levels = levels.value_or(said.levels);
+  said.factor = factor.value_or(said.factor);
+  if (refine) said.with_mesh = *refine == "mesh";
+  return said;
+}
+
+void add_sweep(CLI::App& command, SweepOptions& options, const std::string& levels,
+               const CLI::Range& allowed) {
+  command.add_option("--levels", options.levels, levels)->check(allowed);
+  command.add_option("--factor", options.factor, "Refinement from run to run")->check(CLI::Range(1.01, 10.0));
+  command.add_option("--refine", options.refine, "time, or mesh (with the time step)")
+      ->check(CLI::IsMember({"time", "mesh"}));
+}
+
+std::string text_of(const char* format, double value) {
+  std::array<char, 32> buffer{"-"};
+  if (std::isfinite(value)) std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
+}
 
 void print_rows(const std::vector<Row>& rows, const char* indent) {
   std::vector<std::size_t> widths;

@@ -3,10 +3,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "study/sweep.hpp"
+
 #include <CLI/CLI.hpp>
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +28,21 @@ void add_describe(CLI::App& app, Action& chosen);
 // The option --threads, for commands that run scenes.
 void add_threads(CLI::App& command, int& threads);
 void set_threads(int threads);
+
+// What a scene says of a sweep, unless given on the command line.
+struct SweepOptions {
+  std::optional<int> levels;
+  std::optional<double> factor;
+  std::optional<std::string> refine;  // "time" or "mesh"
+
+  Sweep over(Sweep said) const;
+};
+// The options --levels, --factor and --refine.
+void add_sweep(CLI::App& command, SweepOptions& options, const std::string& levels,
+               const CLI::Range& allowed);
+
+// "-" where there is no number.
+std::string text_of(const char* format, double value);
 
 // Columns as wide as their longest entry; the last one is free.
 using Row = std::vector<std::string>;

@@ -8,12 +8,9 @@
 #include "study/convergence.hpp"
 #include "study/convergence_files.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <string_view>
 
 namespace ilaw::host {
 namespace {
@@ -22,26 +19,14 @@ using nlohmann::json;
 
 struct Options {
   std::filesystem::path scene, folder;
-  // What the scene says under "converge", unless given here.
-  std::optional<int> levels;
-  std::optional<double> factor;
-  std::optional<std::string> refine;  // "time" or "mesh"
+  SweepOptions sweep;
   int threads = 1;
 };
 
-Sweep sweep_of(const json& source, const Options& options) {
-  Sweep sweep = read_sweep(source.value("converge", json::object()));
-  sweep.levels = options.levels.value_or(sweep.levels);
-  sweep.factor = options.factor.value_or(sweep.factor);
-  if (options.refine) sweep.with_mesh = *options.refine == "mesh";
-  return sweep;
-}
-
-// A number in ten columns, "-" where there is none.
+// A number in ten columns.
 void print(const char* format, double value) {
-  char text[32] = "-";
-  if (std::isfinite(value)) std::snprintf(text, sizeof text, format, value);
-  std::printf(" %10s", std::string_view(text) == "-0.00" ? "0.00" : text);
+  const std::string text = text_of(format, value);
+  std::printf(" %10s", text == "-0.00" ? "0.00" : text.c_str());
 }
 
 void print_table(const ErrorTable& table) {
@@ -65,7 +50,7 @@ int converge(const Options& options) {
   const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
   try {
     const json source = read_scene_source(options.scene);
-    const Sweep sweep = sweep_of(source, options);
+    const Sweep sweep = options.sweep.over(read_sweep(source.value("converge", json::object())));
     title = source.value("title", options.scene.stem().string());
     check_sweep(source, sweep, options.scene);  // before anything is written
     if (!make_folder(folder)) return exit_bad_input;
@@ -87,12 +72,7 @@ void add_converge(CLI::App& app, Action& chosen) {
       "converge", "Run a scene with ever smaller steps (and meshes) and measure its errors and their order");
   command->add_option("scene", options->scene, "Scene file (JSON)")->required();
   command->add_option("--out", options->folder, "Folder for converge.csv, .json, .png and .svg")->required();
-  command->add_option("--levels", options->levels, "Runs, the scene's own among them")
-      ->check(CLI::Range(2, 12));
-  command->add_option("--factor", options->factor, "Refinement from run to run")
-      ->check(CLI::Range(1.01, 10.0));
-  command->add_option("--refine", options->refine, "time, or mesh (with the time step)")
-      ->check(CLI::IsMember({"time", "mesh"}));
+  add_sweep(*command, options->sweep, "Runs, the scene's own among them", CLI::Range(2, 12));
   add_threads(*command, options->threads);
   command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out results");
   command->callback([options, &chosen] { chosen = [options] { return converge(*options); }; });

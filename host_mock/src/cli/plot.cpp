@@ -69,15 +69,10 @@ int plot(const std::filesystem::path& results) {
   const Columns columns = read_columns(history);
   if (columns.names.size() < 2) return refuse(history, "no column besides time");
 
-  const std::filesystem::path script = folder / "history.gnuplot";
-  std::ofstream stream(script);
-  write_picture(stream, folder, columns, read_caption(folder));
-  stream.close();
-  if (!stream) {
-    std::fprintf(stderr, "ilaw: %s: cannot be written\n", script.c_str());
+  const Caption caption = read_caption(folder);
+  if (!draw_by_gnuplot(folder / "history.gnuplot",
+                       [&](std::ostream& script) { write_picture(script, folder, columns, caption); }))
     return exit_failed;
-  }
-  if (!run_gnuplot(script)) return exit_failed;
   std::printf("%s\n%s\n", (results / "history.png").c_str(), (results / "history.svg").c_str());
   return exit_done;
 }

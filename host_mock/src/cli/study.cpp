@@ -9,7 +9,6 @@
 #include "study/work_precision.hpp"
 #include "study/work_precision_files.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -27,27 +26,16 @@ struct Options {
   std::vector<std::filesystem::path> scenes;
   std::filesystem::path folder;
   std::vector<std::string> laws;
-  // What a scene says under "study", unless given here.
-  std::optional<int> levels, repetitions;
-  std::optional<double> factor;
-  std::optional<std::string> refine;  // "time" or "mesh"
+  SweepOptions sweep;
+  std::optional<int> repetitions;  // what a scene says under "study", unless given
   int threads = 1;
 };
 
 StudySetup setup_of(json& source, const Options& options) {
   StudySetup setup = read_study(source, options.laws);
-  setup.sweep.levels = options.levels.value_or(setup.sweep.levels);
-  setup.sweep.factor = options.factor.value_or(setup.sweep.factor);
+  setup.sweep = options.sweep.over(setup.sweep);
   setup.repetitions = options.repetitions.value_or(setup.repetitions);
-  if (options.refine) setup.sweep.with_mesh = *options.refine == "mesh";
   return setup;
-}
-
-// "-" where there is no number.
-std::string text(const char* format, double value) {
-  std::array<char, 32> buffer{"-"};
-  if (std::isfinite(value)) std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
 }
 
 void print_runs(const Study& study) {
@@ -57,9 +45,11 @@ void print_runs(const Study& study) {
     for (const MeasuredRun& run : law.runs) {
       const bool is_first = &run == &law.runs.front();
       rows.push_back({is_first ? law.name : "",
-                      is_first ? (law.stable == law.tried ? ">= " : "") + text("%.3g", law.stable) : "",
-                      std::to_string(run.steps), text("%.2g", run.seconds), text("%.1e", run.penetration)});
-      for (std::size_t n = 0; n < norm_names.size(); ++n) rows.back().push_back(text("%.2e", run.errors[n]));
+                      is_first ? (law.stable == law.tried ? ">= " : "") + text_of("%.3g", law.stable) : "",
+                      std::to_string(run.steps), text_of("%.2g", run.seconds),
+                      text_of("%.1e", run.penetration)});
+      for (std::size_t n = 0; n < norm_names.size(); ++n)
+        rows.back().push_back(text_of("%.2e", run.errors[n]));
       if (!run.failure.empty()) rows.back().push_back(run.failure);
     }
   print_rows(rows, "");
@@ -69,16 +59,16 @@ void print_runs(const Study& study) {
 void print_costs(const Study& study) {
   std::printf("\nsteps for an error u_L2 (over the first law's steps, run time over the first law's)\n");
   std::vector<Row> rows{{"law"}};
-  for (const double error : wanted_errors) rows[0].push_back(text("%.0e", error));
+  for (const double error : wanted_errors) rows[0].push_back(text_of("%.0e", error));
   for (const LawRuns& law : study.laws) {
     rows.push_back({law.name});
     for (const double error : wanted_errors) {
       const Cost first = cost_of(study.laws[0].runs, norm_u_L2, error),
                  cost = cost_of(law.runs, norm_u_L2, error);
-      std::string cell = text("%.0f", cost.steps);
+      std::string cell = text_of("%.0f", cost.steps);
       if (std::isfinite(cost.steps / first.steps))
-        cell += " (" + text("%.2g", cost.steps / first.steps) + ", " +
-                text("%.2g", cost.seconds / first.seconds) + ")";
+        cell += " (" + text_of("%.2g", cost.steps / first.steps) + ", " +
+                text_of("%.2g", cost.seconds / first.seconds) + ")";
       rows.back().push_back(cell);
     }
   }
@@ -146,11 +136,7 @@ void add_study(CLI::App& app, Action& chosen) {
           "in JSON; to be repeated")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("--levels", options->levels, "Runs per law")->check(CLI::Range(1, 30));
-  command->add_option("--factor", options->factor, "Refinement from run to run")
-      ->check(CLI::Range(1.01, 10.0));
-  command->add_option("--refine", options->refine, "time, or mesh (with the time step)")
-      ->check(CLI::IsMember({"time", "mesh"}));
+  add_sweep(*command, options->sweep, "Runs per law", CLI::Range(1, 30));
   command->add_option("--repetitions", options->repetitions, "Of every run, for the median of the times")
       ->check(CLI::Range(1, 1000));
   add_threads(*command, options->threads);

@@ -148,19 +148,17 @@ class Blocks {
 
   bool evaluate(const ilaw_batch& batch, ChunkOutcome& outcome) {
     const Answer answer = step_.law.evaluate(batch);
-    outcome.refusal.add(answer, contacts_);
+    outcome.refusal.add(answer, static_cast<std::size_t>(count_), contacts_);
     outcome.sums.add_stable_step(answer.report.stable_velocity_step);
     outcome.refusal.add_unknown(status_, contacts_, answer.code == ILAW_OK ? count_ : 0);
     return outcome.refusal.code == ILAW_OK;
   }
 
-  // Out of reach as ilaw.h says it: there a law that promises so keeps its state.
   void mark_touched(const ilaw_batch& batch) {
     if (at_.state.empty()) return;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      double normal_velocity = 0.0;
-      for (int c = 0; c < D; ++c) normal_velocity += normal_[D * i + c] * batch.v_free.values[D * i + c];
-      const bool in_reach = !(gap_[i] > 0.0 && gap_[i] + step_.step.dt * normal_velocity > 0.0);
+      const bool in_reach =
+          is_in_reach(gap_[i], &normal_[D * i], batch.v_free.values + D * i, D, step_.step.dt);
       at_.mark_touched(contact(i), status_[i] != ILAW_FREE, in_reach, step_.law.rests());
     }
   }

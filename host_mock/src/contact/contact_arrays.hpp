@@ -20,6 +20,14 @@ namespace ilaw::host {
 // A batch with times and what is the same for all contacts alone.
 ilaw_batch empty_batch(const InterfaceSetup& setup, double time, double dt);
 
+// Not out of reach as ilaw.h says it, in its order of operations: law, promise and host agree to the
+// last bit.
+inline bool is_in_reach(double gap, const double* normal, const double* v_free, int dimension, double dt) {
+  double normal_velocity = 0.0;
+  for (int c = 0; c < dimension; ++c) normal_velocity += normal[c] * v_free[c];
+  return !(gap > 0.0 && gap + dt * normal_velocity > 0.0);
+}
+
 class ContactArrays {
  public:
   // partnered: the counterpart has partners.

@@ -19,9 +19,13 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       obstacle_velocity_before_(obstacle_velocity_) {}
 
 void Interface::check(const Refusal& refusal) const {
+  if (refusal.code != ILAW_OK)
+    check(refusal, refusal.contact >= 0 ? std::to_string(node_of(refusal.contact)) : "");
+}
+
+void Interface::check(const Refusal& refusal, const std::string& node) const {
   if (refusal.code == ILAW_OK) return;
   const std::string whose = "interface '" + setup_.name + "' (law '" + setup_.law + "'";
-  const std::string node = refusal.contact >= 0 ? std::to_string(node_of(refusal.contact)) : "";
   if (refusal.status >= ILAW_STATUS_COUNT)
     throw ilaw::error(refusal.code, whose + ", library " + library().path() + "): found status " +
                                         std::to_string(refusal.status) + " at node " + node +
@@ -67,11 +71,8 @@ std::vector<double> Interface::first_state(int node_index, const Dofs& u) const 
   batch.per_node_parameters = inputs.data();
   batch.state_out = {state.data(), static_cast<std::int64_t>(state.size()), 1};
   const Answer answer = law_.initialise(batch);
-  if (answer.code == ILAW_OK) return state;
-  throw ilaw::error(answer.code, "interface '" + setup_.name + "' (law '" + setup_.law +
-                                     "'): 1 node(s) refused, first node " +
-                                     std::to_string(setup_.nodes[at(node_index)]) + ": " +
-                                     (answer.report.reason ? answer.report.reason : "no reason given"));
+  check({answer.code, 1, -1, 0, answer.report.reason}, std::to_string(setup_.nodes[at(node_index)]));
+  return state;
 }
 
 std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
@@ -193,7 +194,7 @@ void Interface::evaluate(const ContactList& contacts, const StepView& step) {
     part.node_count = end - first;
     ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
     const Answer answer = law_.evaluate(part);
-    outcome.refusal.add_listed(answer);
+    outcome.refusal.add(answer, contacts_.count());
     outcome.sums.add_stable_step(answer.report.stable_velocity_step);
   });
   Refusal refusal;
@@ -242,8 +243,8 @@ void Interface::accept(const StepView& step, const Dofs& v) {
     ++sums_.statuses[contacts_.status[k]];
     sums_.add_energy(&contacts_.energy[k * ILAW_ENERGY_COUNT]);
     if (info().state_size == 0) continue;
-    const double approach = step.dt * normal(contact_index).dot(v_free(contact_index));
-    const bool in_reach = !(gap(contact_index) > 0.0 && gap(contact_index) + approach > 0.0);
+    const bool in_reach = is_in_reach(gap(contact_index), normal(contact_index).data(),
+                                      v_free(contact_index).data(), dimension_, step.dt);
     contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach, law_.rests());
     contacts_.accept_state(contact_index);
   }

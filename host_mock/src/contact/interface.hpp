@@ -105,7 +105,9 @@ class Interface {
   void refresh_near(const StepView& step);
   std::vector<double> parameters_of(int node_index) const;
   std::vector<double> first_state(int node_index, const Dofs& u) const;
+  // Throws what a law refused; node: the first, empty where it is none in particular.
   void check(const Refusal& refusal) const;
+  void check(const Refusal& refusal, const std::string& node) const;
 
   InterfaceSetup setup_;
   const Model& model_;

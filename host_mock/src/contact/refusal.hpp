@@ -24,18 +24,16 @@ struct Refusal {
   int status = 0;             // that ABI 1 does not know, where the library is to blame
   const char* reason = nullptr;
 
-  // contacts: those of the batch, in its order.
-  void add(const Answer& answer, const std::int32_t* contacts) {
+  // count: entries of the batch's arrays. contacts: to which they belong, null where entry k is
+  // contact k. A node that a library makes up is none.
+  void add(const Answer& answer, std::size_t count, const std::int32_t* contacts = nullptr) {
     if (answer.code == ILAW_OK) return;
     const ilaw_report& report = answer.report;
-    add({answer.code, report.bad_count, report.first_bad_node < 0 ? -1 : contacts[report.first_bad_node], 0,
-         report.reason});
-  }
-  // Of a batch with an index list of contacts.
-  void add_listed(const Answer& answer) {
-    if (answer.code == ILAW_OK) return;
-    const ilaw_report& report = answer.report;
-    add({answer.code, report.bad_count, static_cast<std::int32_t>(report.first_bad_node), 0, report.reason});
+    const auto entry = static_cast<std::size_t>(report.first_bad_node);
+    std::int32_t first = -1;
+    if (report.first_bad_node >= 0 && entry < count)
+      first = contacts ? contacts[entry] : static_cast<std::int32_t>(entry);
+    add({answer.code, report.bad_count, first, 0, report.reason});
   }
   // ABI 1 has eight statuses for ever: any other number is a broken library's.
   void add_unknown(const std::uint8_t* statuses, const std::int32_t* contacts, std::ptrdiff_t count) {

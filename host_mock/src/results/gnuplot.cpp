@@ -8,7 +8,9 @@
 
 #include <cctype>
 #include <cstdio>
+#include <fstream>
 #include <string>
+#include <utility>
 
 extern char** environ;
 
@@ -30,6 +32,16 @@ int exit_status_of_gnuplot(std::string file) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+bool run(const std::filesystem::path& script) {
+  const int status = exit_status_of_gnuplot(script.string());
+  if (status == 0) return true;
+  if (status < 0 || status == 127)
+    std::fprintf(stderr, "ilaw: gnuplot cannot be started; it is in the package gnuplot-nox\n");
+  else
+    std::fprintf(stderr, "ilaw: gnuplot failed; run it on %s to see why\n", script.c_str());
+  return false;
+}
+
 }  // namespace
 
 std::string in_quotes(std::string_view text) {
@@ -41,14 +53,30 @@ std::string in_quotes(std::string_view text) {
   return out + "'";
 }
 
-bool run_gnuplot(const std::filesystem::path& script) {
-  const int status = exit_status_of_gnuplot(script.string());
-  if (status == 0) return true;
-  if (status < 0 || status == 127)
-    std::fprintf(stderr, "ilaw: gnuplot cannot be started; it is in the package gnuplot-nox\n");
-  else
-    std::fprintf(stderr, "ilaw: gnuplot failed; run it on %s to see why\n", script.c_str());
+bool draw_by_gnuplot(const std::filesystem::path& script, const std::function<void(std::ostream&)>& write) {
+  std::ofstream stream(script);
+  write(stream);
+  stream.close();
+  if (stream) return run(script);
+  std::fprintf(stderr, "ilaw: %s: cannot be written\n", script.c_str());
   return false;
+}
+
+bool draw_log_sheet(const std::filesystem::path& folder, const std::string& name, const LogSheet& sheet,
+                    const std::function<void(std::ostream&)>& panels) {
+  return draw_by_gnuplot(folder / (name + ".gnuplot"), [&](std::ostream& script) {
+    for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
+      script << "reset\nset datafile separator comma\nset datafile missing ''\nset terminal " << terminal
+             << " size " << sheet.size << " font 'sans,11' background rgb 'white'\nset output "
+             << in_quotes((folder / (name + kind)).string())
+             << "\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\n"
+                "set ylabel 'relative error'\nset multiplot "
+             << sheet.layout << " title " << in_quotes(sheet.title) << ' ' << sheet.title_font
+             << " noenhanced\n";
+      panels(script);
+      script << "unset multiplot\nunset output\n";
+    }
+  });
 }
 
 }  // namespace ilaw::host

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <ostream>
 #include <string>
 #include <string_view>
 
@@ -11,8 +13,18 @@ namespace ilaw::host {
 // In single quotes, where gnuplot substitutes nothing.
 std::string in_quotes(std::string_view text);
 
-// Without a shell, and without gnuplot's warnings (an axis of a constant, say). Says on stderr why
-// it failed.
-bool run_gnuplot(const std::filesystem::path& script);
+// Runs the script that write gives, and keeps it under its name. Without a shell, and without
+// gnuplot's warnings (an axis of a constant, say). Says on stderr why it failed.
+bool draw_by_gnuplot(const std::filesystem::path& script, const std::function<void(std::ostream&)>& write);
+
+// A sheet of panels over logarithmic axes.
+struct LogSheet {
+  const char *size, *layout, *title_font;  // as gnuplot reads them
+  std::string title;
+};
+
+// folder/name.png and .svg, by the script folder/name.gnuplot. The folder is absolute.
+bool draw_log_sheet(const std::filesystem::path& folder, const std::string& name, const LogSheet& sheet,
+                    const std::function<void(std::ostream&)>& panels);
 
 }  // namespace ilaw::host

@@ -5,9 +5,7 @@
 #include "base/files.hpp"
 #include "results/gnuplot.hpp"
 
-#include <fstream>
 #include <ostream>
-#include <utility>
 
 namespace ilaw::host {
 namespace {
@@ -66,25 +64,6 @@ void write_panel(const ErrorTable& table, const std::string& csv, const Abscissa
   script << "\n";
 }
 
-// Errors over the time step, and over the run time.
-void write_convergence_script(const ErrorTable& table, const std::string& title,
-                              const std::filesystem::path& folder, std::ostream& script) {
-  for (const auto& [terminal, kind] : {std::pair{"pngcairo", "png"}, std::pair{"svg", "svg"}}) {
-    script << "reset\nset datafile separator comma\nset terminal " << terminal
-           << " size 1000,460 font 'sans,11' background rgb 'white'\nset output "
-           << in_quotes((folder / ("converge." + std::string(kind))).string())
-           << "\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\nset "
-              "ylabel 'relative error'\nset multiplot layout 1,2 title "
-           << in_quotes(title) << " noenhanced\n";
-    // Run times of machines differ: over that of the finest run that is compared.
-    const double finest = table.runs[table.errors.size() - 1].seconds;
-    const std::string csv = in_quotes((folder / "converge.csv").string());
-    write_panel(table, csv, {1, 1.0, "time step", "right"}, script);
-    write_panel(table, csv, {3, finest, "run time / that of the finest run", "left"}, script);
-    script << "unset multiplot\nunset output\n";
-  }
-}
-
 }  // namespace
 
 void write_convergence(const ErrorTable& table, const Sweep& sweep, const std::string& title,
@@ -95,11 +74,13 @@ void write_convergence(const ErrorTable& table, const Sweep& sweep, const std::s
 
 bool draw_convergence(const ErrorTable& table, const std::string& title,
                       const std::filesystem::path& folder) {
-  const std::filesystem::path script = folder / "converge.gnuplot";
-  std::ofstream stream(script);
-  write_convergence_script(table, title, folder, stream);
-  stream.close();
-  return run_gnuplot(script);
+  // Run times of machines differ: over that of the finest run that is compared.
+  const double finest = table.runs[table.errors.size() - 1].seconds;
+  const std::string csv = in_quotes((folder / "converge.csv").string());
+  return draw_log_sheet(folder, "converge", {"1000,460", "layout 1,2", "", title}, [&](std::ostream& script) {
+    write_panel(table, csv, {1, 1.0, "time step", "right"}, script);
+    write_panel(table, csv, {3, finest, "run time / that of the finest run", "left"}, script);
+  });
 }
 
 }  // namespace ilaw::host

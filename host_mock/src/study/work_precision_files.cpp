@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <ostream>
 #include <utility>
@@ -118,34 +117,6 @@ void write_panel(const Study& study, const std::string& csv, const Panel& panel,
   script << "\n";
 }
 
-void write_study_script(const Study& study, const std::string& title, const std::filesystem::path& folder,
-                        std::ostream& script) {
-  // Run times of machines differ: over that of the first law's finest run.
-  const double unit = study.laws[0].runs.back().seconds;
-  const char *steps = "steps", *time = "run time / that of the first law's finest run";
-  const Panel panels[] = {
-      {norm_u_L2, "error of displacements (u_L2)", steps_column, 1.0, steps},
-      {norm_u_L2, "error of displacements (u_L2)", seconds_column, std::isfinite(unit) ? unit : 1.0, time},
-      {norm_impulse, "error of the impulse history", steps_column, 1.0, steps},
-      {norm_energy, "error of the interfaces' work", steps_column, 1.0, steps}};
-  const std::string csv = in_quotes((folder / "study.csv").string());
-  for (const auto& [terminal, kind] : {std::pair{"pngcairo", "png"}, std::pair{"svg", "svg"}}) {
-    script << "reset\nset datafile separator comma\nset datafile missing ''\nset terminal " << terminal
-           << " size 1200,840 font 'sans,11' background rgb 'white'\nset output "
-           << in_quotes((folder / ("study." + std::string(kind))).string())
-           << "\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\n"
-              "set ylabel 'relative error'\nset multiplot title "
-           << in_quotes(title) << " font ',14' noenhanced\n";
-    for (std::size_t k = 0; k < std::size(panels); ++k) {
-      if (!has_points(study, panels[k].norm)) continue;
-      script << "set origin " << (k % 2 ? 0.38 : 0.0) << ',' << (k < 2 ? 0.47 : 0.0)
-             << "\nset size 0.38,0.48\n";
-      write_panel(study, csv, panels[k], k == 1, script);
-    }
-    script << "unset multiplot\nunset output\n";
-  }
-}
-
 }  // namespace
 
 void write_study(const Study& study, const std::string& title, const std::filesystem::path& folder) {
@@ -155,11 +126,23 @@ void write_study(const Study& study, const std::string& title, const std::filesy
 }
 
 bool draw_study(const Study& study, const std::string& title, const std::filesystem::path& folder) {
-  const std::filesystem::path script = folder / "study.gnuplot";
-  std::ofstream stream(script);
-  write_study_script(study, title, folder, stream);
-  stream.close();
-  return run_gnuplot(script);
+  // Run times of machines differ: over that of the first law's finest run.
+  const double unit = study.laws[0].runs.back().seconds;
+  const char *steps = "steps", *time = "run time / that of the first law's finest run";
+  const Panel panels[] = {
+      {norm_u_L2, "error of displacements (u_L2)", steps_column, 1.0, steps},
+      {norm_u_L2, "error of displacements (u_L2)", seconds_column, std::isfinite(unit) ? unit : 1.0, time},
+      {norm_impulse, "error of the impulse history", steps_column, 1.0, steps},
+      {norm_energy, "error of the interfaces' work", steps_column, 1.0, steps}};
+  const std::string csv = in_quotes((folder / "study.csv").string());
+  return draw_log_sheet(folder, "study", {"1200,840", "", "font ',14'", title}, [&](std::ostream& script) {
+    for (std::size_t k = 0; k < std::size(panels); ++k) {
+      if (!has_points(study, panels[k].norm)) continue;
+      script << "set origin " << (k % 2 ? 0.38 : 0.0) << ',' << (k < 2 ? 0.47 : 0.0)
+             << "\nset size 0.38,0.48\n";
+      write_panel(study, csv, panels[k], k == 1, script);
+    }
+  });
 }
 
 }  // namespace ilaw::host

@@ -34,10 +34,12 @@ def friction_by_hand(v, m, mu):
     return r
 
 
+def on_a_plane(v, m, **changed):
+    return {"v_free": v, "v_previous": v, "delassus": 1 / m, "gap": 0.0, "normal": UP, **changed}
+
+
 def evaluated(v, m, law=None, **given):
-    batch = (law or coulomb()).batch(
-        **{"v_free": v, "v_previous": v, "delassus": 1 / m, "gap": 0.0, "normal": UP, **given}
-    )
+    batch = (law or coulomb()).batch(**on_a_plane(v, m, **given))
     batch.initialise()
     report = batch.evaluate(time=0.1)
     assert report.bad_count == 0 and report.stable_velocity_step == np.inf
@@ -187,8 +189,7 @@ def test_bad_nodes_are_named_and_the_others_evaluated():
 
 
 def given(**changed):
-    v, m = pressed()
-    return {"v_free": v, "v_previous": v, "delassus": 1 / m, "gap": 0.0, "normal": UP, **changed}
+    return on_a_plane(*pressed(), **changed)
 
 
 @pytest.mark.parametrize(
@@ -280,7 +281,7 @@ def test_libraries_describe_themselves():
 def test_threads_evaluate_batches_of_one_interface():
     law = coulomb()
     v, m = pressed(1000)
-    batches = [law.batch(**given(v_free=v, v_previous=v, delassus=1 / m)) for _ in range(4)]
+    batches = [law.batch(**on_a_plane(v, m)) for _ in range(4)]
     threads = [threading.Thread(target=lambda b=b: [b.evaluate(time=t * 1e-3) for t in range(50)]) for b in batches]
     for thread in threads:
         thread.start()

@@ -105,6 +105,14 @@ static int32_t nothing(const ilaw_instance* instance, const ilaw_batch* batch, i
 #ifdef VARIANT_ODD_STATUS
   for (i = 0; batch->status && i < batch->node_count; ++i) batch->status[i * batch->status_stride] = 42;
 #endif
+#ifdef VARIANT_ODD_NODE
+  if (report) {
+    report->bad_count = 1;
+    report->first_bad_node = INT64_C(1) << 40;
+    report->reason = "a node that is none";
+  }
+  return ILAW_BAD_NODES;
+#endif
   return ILAW_OK;
 }
 
