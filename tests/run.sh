@@ -53,7 +53,7 @@ done
 
 bash host_mock/setup.sh tests
 echo "build: build/release"
-cmake --preset release -DILAW_TESTS=ON -DILAW_WERROR="${ILAW_WERROR:-OFF}" >/dev/null
+cmake --preset release -DILAW_TESTS=ON -DILAW_WERROR="${ILAW_WERROR:-OFF}" -DILAW_UNITY="${ILAW_UNITY:-OFF}" >/dev/null
 targets=()
 if [ -n "$expression" ]; then
   mapfile -t targets < <(targets_of "$expression" | tr ' ' '\n' | sort -u)

@@ -1,23 +1,39 @@
 #!/usr/bin/env bash
-# Fuzzes what reads files, descriptions and scenes of strangers, for some seconds each (default 30), from the kept corpus.
-# What is found lands in build/fuzz/found. Usage: tests/fuzz/run.sh [SECONDS]
+# Fuzzes what reads files, descriptions and scenes of strangers, all at once, for some seconds (default 30), from the
+# kept corpus. What is found lands in build/fuzz/found. Usage: tests/fuzz/run.sh [SECONDS]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 seconds=${1:-30}
-cmake --preset fuzz >/dev/null
-cmake --build --preset fuzz --target elf_fuzz description_fuzz scene_fuzz -- --quiet
-mkdir -p build/fuzz/found
-for subject in elf description scene; do
-  echo "fuzz: $subject, $seconds s"
+subjects=(elf description scene)
+
+# One subject, from what is kept and what earlier runs here found; its end is its log's.
+fuzz() {
+  local subject=$1 words=()
   mkdir -p "build/fuzz/corpus/$subject"
-  log=build/fuzz/$subject.log
-  words=()
   if [[ -f tests/fuzz/$subject.dict ]]; then words=(-dict="tests/fuzz/$subject.dict"); fi
-  if ! "build/fuzz/bin/${subject}_fuzz" -max_total_time="$seconds" -max_len=65536 -timeout=10 -rss_limit_mb=2048 \
-      "${words[@]}" -artifact_prefix=build/fuzz/found/ "build/fuzz/corpus/$subject" "tests/fuzz/corpus/$subject" >"$log" 2>&1; then
-    tail -n 40 "$log" >&2
-    exit 1
-  fi
-  grep -E '^(Done|DONE|#[0-9]+.*DONE)' "$log" | tail -n 1
+  "build/fuzz/bin/${subject}_fuzz" -max_total_time="$seconds" -max_len=65536 -timeout=10 -rss_limit_mb=2048 \
+    "${words[@]}" -artifact_prefix=build/fuzz/found/ "build/fuzz/corpus/$subject" "tests/fuzz/corpus/$subject" \
+    >"build/fuzz/$subject.log" 2>&1
+}
+
+cmake --preset fuzz >/dev/null
+cmake --build --preset fuzz --target "${subjects[@]/%/_fuzz}" -- --quiet
+mkdir -p build/fuzz/found
+echo "fuzz: ${subjects[*]}, $seconds s"
+declare -A runs
+for subject in "${subjects[@]}"; do
+  fuzz "$subject" &
+  runs[$subject]=$!
 done
+failed=0
+for subject in "${subjects[@]}"; do
+  if wait "${runs[$subject]}"; then
+    echo "$subject: $(grep -E '^(Done|DONE|#[0-9]+.*DONE)' "build/fuzz/$subject.log" | tail -n 1)"
+  else
+    echo "$subject:" >&2
+    tail -n 40 "build/fuzz/$subject.log" >&2
+    failed=1
+  fi
+done
+exit "$failed"

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <numeric>
-#include <thread>
 
 namespace ilaw::testing {
 namespace {
@@ -118,20 +117,10 @@ TEST_P(Contract, InstructionSetsGiveTheSameBits) {
     }
 }
 
-TEST_P(Contract, ThreadsShareAnInstance) {
-  const ilaw::interface law = make(ILAW_FRAME_LOCAL);
-  const Results reference = run(law, Nodes(300), {});
-  std::vector<Results> results(4);
-  std::vector<std::thread> threads;
-  for (Results& mine : results) threads.emplace_back([&law, &mine] { mine = run(law, Nodes(300), {}); });
-  for (std::thread& thread : threads) thread.join();
-  for (const Results& mine : results) EXPECT_TRUE(mine == reference);
-}
-
-const auto name_of = [](const ::testing::TestParamInfo<LawCase>& drawn) { return drawn.param.name; };
-INSTANTIATE_TEST_SUITE_P(Laws, Contract, ::testing::ValuesIn(law_cases("contract")), name_of);
+INSTANTIATE_TEST_SUITE_P(Laws, Contract, ::testing::ValuesIn(law_cases("contract")), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Kit, Contract,
-                         ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}}), name_of);
+                         ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}}),
+                         name_of_case);
 
 }  // namespace
 }  // namespace ilaw::testing

@@ -14,7 +14,6 @@ namespace ilaw::testing {
 namespace {
 
 // With what divides by zero, overflows and makes NaN on the way.
-const std::vector<LawCase> laws = law_cases("environment");
 
 // Velocities and gaps that are zero, tiny, huge or NaN, besides those drawn.
 Nodes hostile_nodes(std::int64_t count, int components) {
@@ -69,7 +68,7 @@ bool same(const Outcome& a, const Outcome& b) {
 }
 
 void for_all_laws(const std::function<void(const ilaw::interface&, const Nodes&)>& check) {
-  for (const LawCase& served : laws) {
+  for (const LawCase& served : law_cases("environment")) {
     SCOPED_TRACE(served.law);
     const std::uint32_t form = form_of(served);
     const SetupBuilder setup(served.parameters, 3, form);

@@ -100,8 +100,6 @@ TEST(Frame, MemoryFollowsTheNormalWithoutTangents) {
   expect_frame_indifference(turn(0, 0.7), turn(1, 0.15), false);
 }
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 // What a law remembers is carried by the shortest rotation from one normal to the next, by any angle up to
 // the half turn, and by the half turn about the remembered tangent where the normal has become its opposite.
 TEST(Frame, MemoryFollowsTheNormalByAnyAngle) {

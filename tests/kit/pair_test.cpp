@@ -11,7 +11,6 @@ struct Axes {
   Vector n, t1, t2;
 };
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vector sum(double a, const Vector& x, double b, const Vector& y) {
   return {a * x[0] + b * y[0], a * x[1] + b * y[1], a * x[2] + b * y[2]};
 }

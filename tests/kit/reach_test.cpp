@@ -8,8 +8,6 @@
 namespace ilaw::testing {
 namespace {
 
-const std::vector<LawCase> laws = law_cases("reach");
-
 // One node in the host's axes, without tangents: the frame goes along in the state.
 class Node : public SmallBatch {
  public:
@@ -71,7 +69,7 @@ void draw_borderline(Node& node, bool global, std::mt19937_64& random) {
 
 TEST(OutOfReach, FreshNodesAreLeftAloneToTheLastBit) {
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
-    for (const LawCase& served : laws) {
+    for (const LawCase& served : law_cases("reach")) {
       Node node(served, frame);
       if (node.law.info().capabilities & ILAW_CAN_ACT_AT_DISTANCE) continue;
       const bool global = frame == ILAW_FRAME_GLOBAL;
@@ -93,7 +91,7 @@ TEST(OutOfReach, FreshNodesAreLeftAloneToTheLastBit) {
 // After any history: what was free last stays so, with its state, for as long as it is out of reach.
 TEST(OutOfReach, NodesThatWereFreeRest) {
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
-    for (const LawCase& served : laws) {
+    for (const LawCase& served : law_cases("reach")) {
       Node node(served, frame);
       if (!(node.law.info().capabilities & ILAW_CAN_REST)) continue;
       const bool global = frame == ILAW_FRAME_GLOBAL;

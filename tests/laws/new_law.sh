@@ -17,7 +17,7 @@ if grep -r template_law plugins/my_law tests/laws/my_law; then
 fi
 
 quietly() { "$@" >log 2>&1 || { cat log >&2; exit 1; }; }
-quietly "$cmake" -S . -B build -G Ninja -DILAW_TESTS=ON -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER="$compiler"
+quietly "$cmake" -S . -B build -G Ninja -DILAW_TESTS=ON -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_CXX_COMPILER="$compiler"
 quietly "$cmake" --build build --target my_law my_law_test
 
 export ILAW_PATH=$tree/build/lib/ilaw ILAW_TEST_TREE=$tree ILAW_TEST_PLUGINS=$tree/build/lib/ilaw

@@ -11,7 +11,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 #include <utility>
 
 namespace {
@@ -279,20 +278,6 @@ TEST(Lifetime, LibraryStaysLoadedWhileAnInterfaceLives) {
     EXPECT_STREQ(law.law().id, "zero");
   }
   EXPECT_FALSE(loaded(file));
-}
-
-TEST(Lifetime, ThreadsMayOpenAndClose) {
-  const std::string file = variant("good");
-  std::vector<std::thread> threads;
-  for (int t = 0; t < 4; ++t)
-    threads.emplace_back([&file] {
-      for (int k = 0; k < 50; ++k) {
-        const ilaw::library library(file);
-        const ilaw::interface law(library, "zero", setup_1d());
-        EXPECT_STREQ(law.law().id, "zero");
-      }
-    });
-  for (std::thread& thread : threads) thread.join();
 }
 
 }  // namespace

@@ -53,6 +53,8 @@ struct LawCase {
   friend std::ostream& operator<<(std::ostream& out, const LawCase& shown) { return out << shown.name; }
 };
 
+inline std::string name_of_case(const ::testing::TestParamInfo<LawCase>& drawn) { return drawn.param.name; }
+
 inline LawCase law_case(const std::string& law, const json& entry) {
   const std::string suffix = entry.value("name", "");
   return {law, suffix.empty() ? law : law + "_" + suffix,

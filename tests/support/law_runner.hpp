@@ -21,6 +21,8 @@ namespace ilaw::testing {
 
 using Vector = std::array<double, 3>;
 
+inline double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
 // Of this build, or of the build of a copy of the tree that is tested (see law_cases.hpp).
 inline std::string plugin_file(const std::string& law) {
   if (const char* folder = std::getenv("ILAW_TEST_PLUGINS")) {

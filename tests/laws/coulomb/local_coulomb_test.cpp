@@ -46,8 +46,6 @@ class Contacts {
   ilaw_report report{};
 };
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 void fill(Contacts& contacts, Draw& draw) {
   for (std::size_t i = 0; i < contacts.q.size(); ++i) {
     kit::local_coulomb p{};
