@@ -70,5 +70,21 @@ TEST(FirstLaw, BuildsAgainstAnInstalledTree) {
   fs::remove_all(folder);
 }
 
+TEST(FirstLaw, InPlainCGivesTheSame) {
+  expect_works(ILAW_VISCOUS_C);
+  const auto refusal = [](const SetupBuilder& setup) {
+    try {
+      const ilaw::interface law(ilaw::library(ILAW_VISCOUS_C), "viscous", setup.setup);
+    } catch (const ilaw::error& error) {
+      return std::string(error.what());
+    }
+    return std::string("not refused");
+  };
+  EXPECT_NE(refusal(SetupBuilder({})).find("viscosity must be given"), std::string::npos);
+  EXPECT_NE(refusal(SetupBuilder({{{"viscosity", -1.0}}, {}})).find("in [0, 1e300]"), std::string::npos);
+  EXPECT_NE(refusal(SetupBuilder({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_FULL)).find("scalar H"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace ilaw::testing
