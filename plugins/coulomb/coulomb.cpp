@@ -8,7 +8,7 @@ using namespace ilaw::kit;
 // A slip below this part of the free one is the rounding of a contact that stuck.
 constexpr double at_rest = 0x1p-26;
 
-struct coulomb {
+struct coulomb : friction_in_packs {
   double friction;
   double kinetic_friction;
   double decay;
@@ -71,31 +71,45 @@ struct coulomb {
   bool falls() const { return kinetic_friction < friction || kinetic_friction < second(); }
   bool tells_tangents_apart() const { return friction_2 != infinity && friction_2 != friction; }
 
-  // One coefficient at all speeds, which keeps the loop of the common case free of all that follows.
+  // One coefficient at all speeds, or one that falls, which keeps their loops free of all that follows.
   struct plain;
+  struct falling;
   template <class Run>
   void in_form(Run run) const;
 
+  // Nodes whose tangents have no name cannot tell them apart: for them one coefficient is all.
   template <class Node>
-  void step(Node& node) const {
-    const double speed = node.v_previous.tangential_length();
-    const bool slipped = speed > at_rest * node.v_free.tangential_length();
-    const double left = slipped ? exp(-decay * speed) : 1.0;  // of the fall
-    apply_contact_friction(node, problem(node), fallen(friction, left), fallen(second(), left));
+  void step(Node& node) const requires(!has_tangents<Node>) {
+    apply_isotropic_friction(node, contact(node), fallen(friction, left(node)));
+  }
+  template <class Node>
+  bool asks(Node& node, friction_problem<double>& open) const requires has_tangents<Node> {
+    const double part = left(node);
+    return ask_friction(node, contact(node), fallen(friction, part), fallen(second(), part), open);
   }
 
  private:
   double second() const { return friction_2 == infinity ? friction : friction_2; }
 
+  // What the slip speed leaves of the fall.
+  template <class Node>
+  double left(const Node& node) const {
+    const double speed = node.v_previous.tangential_length();
+    const bool slipped = speed > at_rest * node.v_free.tangential_length();
+    const double way = slipped ? decay * speed : 0.0;
+    return exp(-way);
+  }
+
   // Each coefficient falls to the kinetic one where that is smaller; an infinite one falls only as a whole.
-  double fallen(double coefficient, double left) const {
+  double fallen(double coefficient, double part) const {
     const double kinetic = smaller(kinetic_friction, coefficient);
-    if (left == 0.0) return kinetic;
-    return kinetic < coefficient && left < 1.0 ? kinetic + (coefficient - kinetic) * left : coefficient;
+    const bool falls_partly = (kinetic < coefficient) & (part < 1.0);
+    const double partly = falls_partly ? kinetic + (coefficient - kinetic) * part : coefficient;
+    return part == 0.0 ? kinetic : partly;
   }
 
   template <class Node>
-  auto problem(const Node& node) const {
+  auto contact(const Node& node) const {
     return contact_problem_of(contact_at(node, restitution, activation), node.v_free, node.v_previous,
                               tangential_restitution);
   }
@@ -103,15 +117,33 @@ struct coulomb {
 
 struct coulomb::plain : coulomb {
   template <class Node>
-  void step(Node& node) const {
-    apply_contact_friction(node, problem(node), friction);
+  void step(Node& node) const requires has_scalar_delassus<Node> {
+    apply_isotropic_friction(node, contact(node), friction);
+  }
+  template <class Node>
+  bool asks(Node& node, friction_problem<double>& open) const requires(!has_scalar_delassus<Node>) {
+    return ask_friction(node, contact(node), friction, friction, open);
+  }
+};
+
+struct coulomb::falling : coulomb {
+  template <class Node>
+  void step(Node& node) const requires has_scalar_delassus<Node> {
+    apply_isotropic_friction(node, contact(node), fallen(friction, left(node)));
+  }
+  template <class Node>
+  bool asks(Node& node, friction_problem<double>& open) const requires(!has_scalar_delassus<Node>) {
+    const double fallen_to = fallen(friction, left(node));
+    return ask_friction(node, contact(node), fallen_to, fallen_to, open);
   }
 };
 
 template <class Run>
 void coulomb::in_form(Run run) const {
-  if (falls() || tells_tangents_apart())
+  if (tells_tangents_apart())
     run(*this);
+  else if (falls())
+    run(falling{*this});
   else
     run(plain{*this});
 }

@@ -254,7 +254,8 @@ struct penalty {
   template <bool Linear, class Node>
   penalty_law::compression::solution rub_any(Node& node, bool acts, penalty_law::compression& normal,
                                              vector q, double softness) const {
-    local_coulomb problem = problem_of(node.delassus);
+    local_coulomb problem{};
+    fill(problem, node.delassus);
     const double coupling_1 = problem.h[3], coupling_2 = problem.h[4], nn = problem.h[0];
     for (double& entry : problem.h) entry *= 0.5;
     problem.h[1] += softness;

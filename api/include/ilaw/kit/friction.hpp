@@ -36,15 +36,17 @@ contact_problem<Vector> contact_problem_of(contact_condition condition, Vector v
 }
 
 // A number in [0, 1], not yet divided.
+template <class V>
 struct fraction {
-  double over = 1.0, under = 1.0;
+  V over, under;
 };
 
 // The largest s in [0, 1] with c2 s^2 + c1 s + c0 <= 0, where c0 <= 0 <= c2 and that does not hold at 1;
 // without cancellation.
-inline fraction root_of_work(double c2, double c1, double c0) {
-  const double root = square_root(c1 * c1 - 4.0 * c2 * c0);
-  return {c1 <= 0.0 ? root - c1 : -2.0 * c0, c1 <= 0.0 ? 2.0 * c2 : root + c1};
+template <class V>
+fraction<V> root_of_work(V c2, V c1, V c0) {
+  const V root = square_root(c1 * c1 - 4.0 * c2 * c0);
+  return {select(c1 <= 0.0, root - c1, -2.0 * c0), select(c1 <= 0.0, 2.0 * c2, root + c1)};
 }
 
 // A part that rounding cannot tell from 1: the contact sticks.
@@ -55,11 +57,11 @@ inline constexpr double sticking_part = 1.0 - 0x1p-46;
 // only where the motion turned round within the step, as it does on a stiff spring, and the impact takes less
 // than it costs to stop that from behind.
 template <class Delassus, class Vector>
-fraction stopping_part(const Delassus& delassus, double normal, Vector q, double speed, Vector rest) {
+fraction<double> stopping_part(const Delassus& delassus, double normal, Vector q, double speed, Vector rest) {
   const double down = power_scale_of(speed).down;  // without overflow or underflow on the way
   const double along = tangential_product(down * q, down * rest), square = (down * speed) * (down * speed);
   const double impact = delassus.tangential() * (down * normal) * (down * rest.n);
-  const fraction part = root_of_work(square, -(square + along), impact);
+  const fraction<double> part = root_of_work(square, -(square + along), impact);
   const bool gains = along < impact;
   const bool far = part.under == infinity;  // v^- is so much larger than q that nothing is left
   return {gains ? (far ? 0.0 : part.over) : 1.0, (gains & !far) ? part.under : 1.0};
@@ -73,8 +75,8 @@ struct friction_result {
 
 // The tangential impulse along q_T: the part of -q_T/h_T that may act, scaled back to the cone.
 template <class Delassus, class Vector>
-friction_result<Vector> rub(const Delassus& delassus, double normal, Vector q, double speed, fraction part,
-                            double friction) {
+friction_result<Vector> rub(const Delassus& delassus, double normal, Vector q, double speed,
+                            fraction<double> part, double friction) {
   const double limit = friction_limit(friction, normal), under = delassus.tangential() * part.under;
   const bool slips = speed * part.over > limit * under;
   const double factor = (slips ? limit : part.over) / (slips ? speed : under);
@@ -105,24 +107,6 @@ friction_result<Vector> solve_contact_friction(const Delassus& delassus,
   return rub(delassus, normal, q, speed, stopping_part(delassus, normal, q, speed, rest), friction);
 }
 
-// The entries of H in the order of local_coulomb, and whether the closed form above holds: without coupling,
-// and with one tangential entry or one tangential velocity.
-inline local_coulomb problem_of(const scalar_delassus& h) {
-  return {.h = {h.h, h.h, h.h}, .q = {}, .mu = {}};
-}
-inline local_coulomb problem_of(const diagonal_delassus& h) {
-  return {.h = {h.n, h.t1, h.t2}, .q = {}, .mu = {}};
-}
-inline local_coulomb problem_of(const full_delassus& h) {
-  return {.h = {h.nn, h.t11, h.t22, h.n1, h.n2, h.t12}, .q = {}, .mu = {}};
-}
-template <class Vector>
-bool has_closed_form(const scalar_delassus&, Vector) {
-  return true;
-}
-inline bool has_closed_form(const diagonal_delassus& h, vector q) { return h.t1 == h.t2 || q.t2 == 0.0; }
-inline bool has_closed_form(const full_delassus& h, vector) { return h.anisotropy() == 0.0; }
-
 // Gives the node its impulse and status, by the closed form.
 template <class Node, class Vector>
 void apply_isotropic_friction(Node& node, const contact_problem<Vector>& problem, double friction) {
@@ -132,7 +116,181 @@ void apply_isotropic_friction(Node& node, const contact_problem<Vector>& problem
   node.status = result.impulse.n > 0.0 ? closed_status : status::free;
 }
 
-// The same by the local problem, which may be of any H.
+// The entries of H in the order of local_problem.
+inline void fill(local_coulomb& p, const scalar_delassus& h) {
+  p.h[0] = p.h[1] = p.h[2] = h.h;
+  p.h[3] = p.h[4] = p.h[5] = 0.0;
+}
+inline void fill(local_coulomb& p, const diagonal_delassus& h) {
+  p.h[0] = h.n;
+  p.h[1] = h.t1;
+  p.h[2] = h.t2;
+  p.h[3] = p.h[4] = p.h[5] = 0.0;
+}
+inline void fill(local_coulomb& p, const full_delassus& h) {
+  p.h[0] = h.nn;
+  p.h[1] = h.t11;
+  p.h[2] = h.t22;
+  p.h[3] = h.n1;
+  p.h[4] = h.n2;
+  p.h[5] = h.t12;
+}
+
+// A pressed contact with any H and coefficients along the tangents, as contact_problem has it, and its
+// answer: for one node or a pack of them.
+template <class V>
+struct friction_problem {
+  local_problem<V> contact;
+  V rest[3];
+};
+template <class V>
+struct friction_answer {
+  V r[3], status, refused;
+};
+
+// Number by number: loops in which structs are copied do not vectorise.
+template <class Delassus>
+void fill(friction_problem<double>& p, const Delassus& delassus, const contact_problem<vector>& contact,
+          double friction_1, double friction_2) {
+  fill(p.contact, delassus);
+  p.contact.q[0] = contact.q.n;
+  p.contact.q[1] = contact.q.t1;
+  p.contact.q[2] = contact.q.t2;
+  p.contact.mu[0] = friction_1;
+  p.contact.mu[1] = friction_2;
+  p.rest[0] = contact.rest.n;
+  p.rest[1] = contact.rest.t1;
+  p.rest[2] = contact.rest.t2;
+}
+
+// The largest part s <= 1 of an impulse r whose work s r.(a + s H r)/2 is not positive.
+template <class V>
+V dissipative_part(V r_a, V r_Hr) {
+  return select(r_a + r_Hr > 0.0, positive_part(-r_a / r_Hr), 1.0);
+}
+
+// Takes the positive work off a solution for any H, whose work is r.(rest + u)/2 with u_N = 0, r_T.u_T <= 0.
+// With the part s of r_T alone it is that of c2 s^2 + c1 s + c0; the largest part without positive work is
+// that of the closed form where H does not couple. Where it does, c0 > 0 may be left, and the whole impulse
+// is scaled. Neither leaves the cone.
+template <class V>
+void take_off_positive_work(const friction_problem<V>& p, friction_answer<V>& a) {
+  const V *h = p.contact.h, *q = p.contact.q, *rest = p.rest;
+  V* r = a.r;
+  const V slid_n = h[3] * r[1] + h[4] * r[2], slid_1 = h[1] * r[1] + h[5] * r[2],
+          slid_2 = h[5] * r[1] + h[2] * r[2];
+  const V along = r[1] * (q[1] + (h[3] * r[0] + slid_1)) + r[2] * (q[2] + (h[4] * r[0] + slid_2));
+  const V slip = select(a.status == status::stick, 0.0, smaller(along, 0.0));
+  const V work = r[0] * rest[0] + (r[1] * rest[1] + r[2] * rest[2]) + slip;
+  const auto gains = work > 0.0;
+  if (!any(gains)) return;
+  const V c2 = r[1] * slid_1 + r[2] * slid_2, c0 = r[0] * (rest[0] - slid_n), c1 = work - c0 - c2;
+  const fraction<V> root = root_of_work(c2, c1, smaller(c0, 0.0));
+  const V part = select(gains & (root.over < root.under), root.over / root.under, 1.0);
+  r[1] = r[1] * part;
+  r[2] = r[2] * part;
+  const V r_a = r[0] * (q[0] + rest[0]) + (r[1] * (q[1] + rest[1]) + r[2] * (q[2] + rest[2]));
+  const V r_n = r[0] * (h[0] * r[0] + h[3] * r[1] + h[4] * r[2]);
+  const V r_1 = r[1] * (h[3] * r[0] + h[1] * r[1] + h[5] * r[2]);
+  const V r_2 = r[2] * (h[4] * r[0] + h[5] * r[1] + h[2] * r[2]);
+  const V whole = select(gains, dissipative_part(r_a, r_n + (r_1 + r_2)), 1.0);
+  for (int k = 0; k < 3; ++k) r[k] = r[k] * whole;
+  const V moves = select(r[0] > 0.0, V(status::slip), V(status::free));
+  a.status = select(part * whole < sticking_part, moves, a.status);
+}
+
+// Without coupling, and with one tangential entry or one tangential velocity, the closed form above holds.
+template <class V>
+mask_of<V> has_closed_form(const local_problem<V>& p) {
+  return (p.h[3] == 0.0) & (p.h[4] == 0.0) & (p.h[5] == 0.0) & ((p.h[1] == p.h[2]) | (p.q[2] == 0.0)) &
+         (p.mu[0] == p.mu[1]);
+}
+
+// Solves what is regular; says which are left to solve_friction_alone.
+template <class V>
+mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
+  const local::regular_answer<V> found = solve_regular(p.contact);
+  for (int k = 0; k < 3; ++k) a.r[k] = found.r[k];
+  a.status = select(found.sticks, V(status::stick), V(status::slip));
+  a.refused = not_refused;
+  take_off_positive_work(p, a);
+  return (!found.found) | has_closed_form(p.contact);
+}
+
+[[gnu::noinline]] inline void solve_friction_alone(const friction_problem<double>& p,
+                                                   friction_answer<double>& a) {
+  const double *h = p.contact.h, *q = p.contact.q;
+  if (has_closed_form(p.contact)) {
+    const contact_problem<vector> contact{0.0, {q[0], q[1], q[2]}, {p.rest[0], p.rest[1], p.rest[2]}};
+    const auto result = solve_contact_friction(diagonal_delassus{h[0], h[1], h[1]}, contact, p.contact.mu[0]);
+    const double moves = result.slips ? status::slip : status::stick;
+    a = {{result.impulse.n, result.impulse.t1, result.impulse.t2},
+         result.impulse.n > 0.0 ? moves : status::free,
+         not_refused};
+    return;
+  }
+  a = {};
+  const contact_mode mode = solve_pressed(p.contact, a.r);
+  a.status = mode == contact_mode::slip ? status::slip : status::stick;
+  if (mode == contact_mode::none) a.status = status::free;
+  a.refused = mode == contact_mode::none ? no_solution : not_refused;
+  take_off_positive_work(p, a);
+}
+
+// What of it is asked at a node: nothing where the contact is open, or where the closed form is at hand.
+template <class Node, class Vector>
+bool ask_friction(Node& node, const contact_problem<Vector>& contact, double friction_1, double friction_2,
+                  friction_problem<double>& problem) {
+  fill(problem, node.delassus, contact, friction_1, friction_2);
+  const bool is_pressed = (contact.slack <= 0.0) & (contact.q.n < 0.0);
+  if constexpr (has_scalar_delassus<Node>) {
+    apply_isotropic_friction(node, contact, friction_1);
+    return is_pressed & (friction_1 != friction_2);
+  }
+  node.impulse = {};
+  node.status = status::free;
+  return is_pressed;
+}
+
+template <class Node>
+void give_friction(Node& node, const friction_answer<double>& a) {
+  node.impulse = {a.r[0], a.r[1], a.r[2]};
+  node.status = a.status;
+  node.refused = a.refused;
+}
+
+// What makes a law whose only problem is friction one in pack form: it has but to ask.
+struct friction_in_packs {
+  template <class V>
+  using problem = friction_problem<V>;
+  template <class V>
+  using answer = friction_answer<V>;
+
+  template <class V>
+  mask_of<V> solve(const friction_problem<V>& p, friction_answer<V>& a) const {
+    return solve_friction(p, a);
+  }
+  void solve_alone(const friction_problem<double>& p, friction_answer<double>& a) const {
+    solve_friction_alone(p, a);
+  }
+  template <class Node>
+  void answered(Node& node, const friction_answer<double>& a) const {
+    give_friction(node, a);
+  }
+};
+
+// The same for a node on its own.
+template <class Node>
+void apply_any_friction(Node& node, const contact_problem<vector>& contact, double friction_1,
+                        double friction_2) {
+  friction_problem<double> problem;
+  if (!ask_friction(node, contact, friction_1, friction_2, problem)) return;
+  friction_answer<double> answer;
+  if (solve_friction(problem, answer)) solve_friction_alone(problem, answer);
+  give_friction(node, answer);
+}
+
+// The local problem at a node, whose work is its caller's to see to.
 template <class Node>
 void apply_local_coulomb(Node& node, double slack, const local_coulomb& problem) {
   double r[3] = {};
@@ -144,76 +302,25 @@ void apply_local_coulomb(Node& node, double slack, const local_coulomb& problem)
   node.refused = mode == contact_mode::none ? no_solution : not_refused;
 }
 
-// The largest part s <= 1 of an impulse r whose work s r.(a + s H r)/2 is not positive.
-inline double dissipative_part(double r_a, double r_Hr) {
-  return r_a + r_Hr > 0.0 ? positive_part(-r_a / r_Hr) : 1.0;
-}
-
-// Takes the positive work off a solution for any H, whose work is r.(rest + u)/2 with u_N = 0, r_T.u_T <= 0.
-// With the part s of r_T alone it is that of c2 s^2 + c1 s + c0; the largest part without positive work is
-// that of the closed form where H does not couple. Where it does, c0 > 0 may be left, and the whole impulse
-// is scaled. Neither leaves the cone.
-template <class Node>
-void take_off_positive_work(Node& node, vector q, vector rest) {
-  vector& r = node.impulse;
-  const vector slid{0.0, r.t1, r.t2}, h_slid = node.delassus.times(slid), h_r = node.delassus.times(r);
-  const double slip = node.status == status::stick ? 0.0 : smaller(tangential_product(r, q + h_r), 0.0);
-  const double work = r.n * rest.n + tangential_product(r, rest) + slip;
-  if (!(work > 0.0)) return;
-  const double c2 = tangential_product(slid, h_slid), c0 = r.n * (rest.n - h_slid.n), c1 = work - c0 - c2;
-  const fraction root = root_of_work(c2, c1, smaller(c0, 0.0));
-  const double part = root.over < root.under ? root.over / root.under : 1.0;
-  r.t1 *= part;
-  r.t2 *= part;
-  const vector a = q + rest, h_all = node.delassus.times(r);
-  const double whole = dissipative_part(normal_product(r, a) + tangential_product(r, a),
-                                        normal_product(r, h_all) + tangential_product(r, h_all));
-  r = whole * r;
-  if (part * whole < sticking_part) node.status = r.n > 0.0 ? status::slip : status::free;
-}
-
 // The impulse that stops the node, r = -H^-1 v_free, without positive work r.v^-/2: all of it unless the node
 // was moving before, and turned round within the step.
 template <class Node>
-vector stopping_impulse(Node node) {
-  node.impulse = -node.delassus.solve(node.v_free);
-  node.status = status::stick;
-  take_off_positive_work(node, node.v_free, node.v_previous);
-  return node.impulse;
-}
-
-// For an ellipse of coefficients along the tangents.
-template <class Node>
-void apply_any_friction(Node& node, const contact_problem<vector>& contact, double friction_1,
-                        double friction_2) {
-  local_coulomb problem = problem_of(node.delassus);
-  problem.q[0] = contact.q.n;
-  problem.q[1] = contact.q.t1;
-  problem.q[2] = contact.q.t2;
-  problem.mu[0] = friction_1;
-  problem.mu[1] = friction_2;
-  apply_local_coulomb(node, contact.slack, problem);
-  take_off_positive_work(node, contact.q, contact.rest);
+vector stopping_impulse(const Node& node) {
+  const vector r = -node.delassus.solve(node.v_free);
+  friction_answer<double> answer{{r.n, r.t1, r.t2}, status::stick, not_refused};
+  friction_problem<double> problem;
+  fill(problem, node.delassus, {0.0, node.v_free, node.v_previous}, 0.0, 0.0);
+  take_off_positive_work(problem, answer);
+  return {answer.r[0], answer.r[1], answer.r[2]};
 }
 
 // Contact with friction, by the closed form where it holds.
 template <class Node, class Vector>
 void apply_contact_friction(Node& node, const contact_problem<Vector>& contact, double friction) {
-  if constexpr (std::is_same_v<decltype(node.delassus), scalar_delassus>)
-    apply_isotropic_friction(node, contact, friction);
-  else if (has_closed_form(node.delassus, contact.q))
+  if constexpr (has_scalar_delassus<Node>)
     apply_isotropic_friction(node, contact, friction);
   else
     apply_any_friction(node, contact, friction, friction);
-}
-
-// With two coefficients; a vector without tangents knows only the first.
-template <class Node, class Vector>
-void apply_contact_friction(Node& node, const contact_problem<Vector>& contact, double friction_1,
-                            double friction_2) {
-  if constexpr (std::is_same_v<Vector, vector>)
-    if (friction_1 != friction_2) return apply_any_friction(node, contact, friction_1, friction_2);
-  apply_contact_friction(node, contact, friction_1);
 }
 
 // Contact and friction where the gap is closed and nothing rebounds: what is left of a bond.

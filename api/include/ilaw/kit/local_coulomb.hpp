@@ -8,18 +8,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/math.hpp>
+#include <ilaw/kit/regular_coulomb.hpp>
 
 #include <bit>
 #include <cstdint>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// h: H00 H11 H22 H01 H02 H12 [1/kg], component 0 normal; q [m/s]; mu: coefficient of each tangential axis, >=
-// 0, infinity allowed (no slip along this axis while the contact is pressed).
-struct local_coulomb {
-  double h[6], q[3], mu[2];
-};
+using local_coulomb = local_problem<double>;
 
 // none: the contact is pressed, an axis of infinite friction would have to hold it by a pull (r = 0 then).
 enum class contact_mode { free, stick, slip, none };
@@ -302,12 +298,9 @@ inline contact_mode solve_axes(const contact& a, double mu1, double mu2, double*
 
 }  // namespace local
 
-// Solves the problem; r = 0 where the contact is free, or where no solution exists. Every problem with finite
-// coefficients has one.
-[[gnu::noinline]] inline contact_mode solve(const local_coulomb& problem, double* r) {
+// Any problem with q_N < 0. Not inlined: it is rarely needed.
+[[gnu::noinline]] inline contact_mode solve_pressed(const local_coulomb& problem, double* r) {
   const double *h = problem.h, *q = problem.q;
-  r[0] = r[1] = r[2] = 0.0;
-  if (q[0] >= 0.0) return contact_mode::free;
   const power_scale mass = power_scale_of(larger(h[0], larger(h[1], h[2])));
   const power_scale speed = power_scale_of(larger(absolute(q[0]), larger(absolute(q[1]), absolute(q[2]))));
   const double a = mass.down, b = speed.down;
@@ -316,6 +309,17 @@ inline contact_mode solve_axes(const contact& a, double mu1, double mu2, double*
   const contact_mode mode = local::solve_axes(scaled, problem.mu[0], problem.mu[1], r);
   for (int k = 0; k < 3; ++k) r[k] = mode == contact_mode::none ? 0.0 : r[k] * (0.5 * mass.down * speed.up);
   return mode;
+}
+
+// Solves the problem; r = 0 where the contact is free, or where no solution exists. Every problem with finite
+// coefficients has one.
+inline contact_mode solve(const local_coulomb& problem, double* r) {
+  r[0] = r[1] = r[2] = 0.0;
+  if (problem.q[0] >= 0.0) return contact_mode::free;
+  const local::regular_answer<double> answer = solve_regular(problem);
+  if (!answer.found) return solve_pressed(problem, r);
+  for (int k = 0; k < 3; ++k) r[k] = answer.r[k];
+  return answer.sticks ? contact_mode::stick : contact_mode::slip;
 }
 
 }  // namespace ilaw::kit

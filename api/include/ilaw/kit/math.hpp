@@ -80,10 +80,13 @@ inline double exp(double x) {
   p = p * s + 1.0 / 6.0;
   p = p * s + 0.5;
   p = p * (s * s) + s;  // the small terms first, so that 1 is added last
-  const auto exponent = static_cast<std::int64_t>(k);
-  const std::int64_t half = exponent / 2;
-  const double first = std::bit_cast<double>((half + 1023) << 52);
-  const double second = std::bit_cast<double>((exponent - half + 1023) << 52);
+  // 2^j from the bits of j + 1023 behind a 1 that is shifted out: no conversion, which few processors have in
+  // vectors.
+  const auto power_of_two = [](double j) {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(j + (0x1p52 + 1023.0)) << 52);
+  };
+  const double half = (k * 0.5 + to_integer) - to_integer;
+  const double first = power_of_two(half), second = power_of_two(k - half);
   const double result = (1.0 + p) * first * second;
   return x == x ? result : x;
 }

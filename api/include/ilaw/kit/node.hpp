@@ -6,6 +6,8 @@
 #include <ilaw/ilaw.h>
 #include <ilaw/kit/math.hpp>
 
+#include <type_traits>
+
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // A vector in the local frame: normal, first and second tangential component.
@@ -229,5 +231,11 @@ struct node {
   double status = status::free;
   double refused = not_refused;
 };
+
+// Kinds of nodes that laws tell apart when they are compiled.
+template <class Node>
+inline constexpr bool has_scalar_delassus = std::is_same_v<decltype(Node::delassus), scalar_delassus>;
+template <class Node>
+inline constexpr bool has_tangents = std::is_same_v<decltype(Node::v_free), vector>;
 
 }  // namespace ilaw::kit

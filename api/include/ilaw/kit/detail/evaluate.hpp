@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ilaw/kit/detail/batch_walk.hpp>
+#include <ilaw/kit/detail/run_block.hpp>
 
 #include <string>
 
@@ -162,7 +163,8 @@ const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool
   if (!framed) return "the state holds no frame: it is not one that the law can have written";
   if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
   if (const char* wrong = out_of_range<Law>(n.state)) return wrong;
-  const double refused = step_node<Law, Delassus, Frame, Layout, Scope>(law, b, i).result.refused;
+  const double refused =
+      step_node<Law, Delassus, Frame, Layout, Scope>(stepping_alone(law), b, i).result.refused;
   if (refused == anisotropic_delassus)
     return "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal";
   if (refused == no_solution) return "the law's equations have no solution for this H";
@@ -239,7 +241,7 @@ struct evaluate_walk {
     for (int i = 0; i < walk.nodes().count; ++i) {
       Law own = law;
       const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
-      run_node<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i, !wrong);
+      run_node<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i, stepping_alone(own), !wrong);
     }
   }
 

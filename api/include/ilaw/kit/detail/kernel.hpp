@@ -154,11 +154,11 @@ double input_defect(const Node& n) {
 }
 
 // Steps one node, and says whether its input was good and its result can be represented.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
-stepped<Law, Delassus, Frame> step_node(const Form& law, const node_block<Law>& b, int i) {
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Step>
+stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int i) {
   auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
   const double before = input_defect<Law, Scope>(n);
-  law.step(n);
+  step(n);
   // In the host's axes a component may be as large as the whole vector: it must be a number there, too.
   const double after = defect(4.0 * n.impulse) + detail::state_defect<Law>(n.state);
   return {n, before + after + n.refused == 0.0};
@@ -228,9 +228,9 @@ bool rests(const Node& n, const state_t<Law>& before) {
 }
 
 // Steps and writes node i; valid: what the caller knows of its parameters.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
-void run_node(const Form& law, const node_block<Law>& b, int i, bool valid = true) {
-  auto [n, accepted] = step_node<Law, Delassus, Frame, Layout, Scope>(law, b, i);
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form, class Step>
+void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool valid = true) {
+  auto [n, accepted] = step_node<Law, Delassus, Frame, Layout, Scope>(step, b, i);
   accepted = accepted & valid;
   Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
   if constexpr (Scope == scope::outputs) store_outputs<Law, Frame, Layout>(b, i, n, accepted);
@@ -252,20 +252,6 @@ void in_its_form(const Law& law, Run run) {
     law.in_form(run);
   else
     run(law);
-}
-
-// Runs a block with the same parameters at all nodes. Not inlined: GCC vectorises this loop only where it
-// stands alone. Form: the law, or the form of it that it chose for its parameters.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
-[[gnu::noinline, gnu::flatten]] void run_block(const Form& law, const node_block<Law>& b) {
-  const Form l = law;  // copies, so that no store can alias a parameter or a time step
-  if constexpr (remembers<Law, Form>) {
-    for (int i = 0; i < b.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, b, i);
-  } else {
-    const node_block<Law> own = b;
-#pragma omp simd
-    for (int i = 0; i < own.count; ++i) run_node<Law, Delassus, Frame, Layout, Scope>(l, own, i);
-  }
 }
 
 }  // namespace ilaw::kit

@@ -1,0 +1,219 @@
+// run_block.hpp - a block of nodes with the same parameters: in one loop, or, for laws in pack form, in two
+// phases. Phase one asks every node whether a problem is left that has no closed form; those are gathered
+// into full packs and solved, and one more loop gives the answers to their nodes. So nodes without a problem
+// cost what they cost in any other law, and no lane waits for a node that has nothing to do.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/kernel.hpp>
+#include <ilaw/kit/pack.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+template <class Form>
+using problem_of_form = typename Form::template problem<double>;
+template <class Form>
+using answer_of_form = typename Form::template answer<double>;
+
+// Whether a form of a law is in pack form for nodes of this kind.
+template <class Form, class Node>
+concept asks_first = requires(const Form& law, Node& node, problem_of_form<Form>& problem) {
+  law.asks(node, problem);
+};
+
+// One node from end to end, with the same bits as in a pack.
+template <class Form, class Node>
+void step_alone(const Form& law, Node& node) {
+  if constexpr (asks_first<Form, Node>) {
+    problem_of_form<Form> problem{};
+    if (!law.asks(node, problem)) return;
+    answer_of_form<Form> answer{};
+    if (law.solve(problem, answer)) law.solve_alone(problem, answer);
+    law.answered(node, answer);
+  } else {
+    law.step(node);
+  }
+}
+template <class Form>
+auto stepping_alone(const Form& law) {
+  return [&law](auto& node) { step_alone(law, node); };
+}
+
+// Step: what is done at node i.
+template <class Law, class Form, class Step>
+void over_nodes(const node_block<Law>& b, Step step) {
+  if constexpr (remembers<Law, Form>) {
+    for (int i = 0; i < b.count; ++i) step(b, i);
+  } else {
+    const node_block<Law> own = b;
+#pragma omp simd
+    for (int i = 0; i < own.count; ++i) step(own, i);
+  }
+}
+
+namespace detail {
+
+template <class Struct>
+inline constexpr int doubles_in = static_cast<int>(sizeof(Struct) / sizeof(double));
+
+// The problems of a block, and their answers, as columns; open: 1 where there is one, else 0.
+template <class Form>
+struct asked_block {
+  static constexpr int problems = doubles_in<problem_of_form<Form>>,
+                       answers = doubles_in<answer_of_form<Form>>;
+  column open, problem[problems], answer[answers];
+  int nodes[block_size];  // those with a problem
+};
+
+template <class Struct, std::size_t... K>
+void to_columns(const Struct& values, column* columns, int i, std::index_sequence<K...>) {
+  const auto doubles = std::bit_cast<std::array<double, sizeof...(K)>>(values);
+  ((columns[K].values[i] = doubles[K]), ...);
+}
+template <class Struct, std::size_t... K>
+Struct from_columns(const column* columns, int i, std::index_sequence<K...>) {
+  return std::bit_cast<Struct>(std::array<double, sizeof...(K)>{columns[K].values[i]...});
+}
+template <class Struct>
+inline constexpr auto places = std::make_index_sequence<static_cast<std::size_t>(doubles_in<Struct>)>{};
+
+inline void choose(double& a, double b, bool second) { a = second ? b : a; }
+inline void choose(vector& a, vector b, bool second) {
+  choose(a.n, b.n, second);
+  choose(a.t1, b.t1, second);
+  choose(a.t2, b.t2, second);
+}
+inline void choose(projected_vector& a, projected_vector b, bool second) {
+  choose(a.n, b.n, second);
+  choose(a.x, b.x, second);
+  choose(a.y, b.y, second);
+  choose(a.z, b.z, second);
+}
+
+// What a step writes, number by number: a choice between structs is a branch, which does not vectorise.
+template <class Law, class Node>
+void choose(Node& a, const Node& b, bool second) {
+  choose(a.impulse, b.impulse, second);
+  choose(a.stored, b.stored, second);
+  choose(a.normal_gain, b.normal_gain, second);
+  choose(a.tangential_gain, b.tangential_gain, second);
+  choose(a.rupture, b.rupture, second);
+  choose(a.status, b.status, second);
+  choose(a.refused, b.refused, second);
+  if constexpr (has_state<Law>) {
+    auto x = std::bit_cast<std::array<double, state_doubles<Law>>>(a.state);
+    const auto y = std::bit_cast<std::array<double, state_doubles<Law>>>(b.state);
+    for (std::size_t k = 0; k < x.size(); ++k) choose(x[k], y[k], second);
+    a.state = std::bit_cast<state_t<Law>>(x);
+  }
+}
+
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+void ask_node(const Form& law, const node_block<Law>& b, asked_block<Form>& asked, int i) {
+  auto node = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
+  problem_of_form<Form> problem{};
+  const bool open = law.asks(node, problem);
+  asked.open.values[i] = open ? 1.0 : 0.0;
+  to_columns(problem, asked.problem, i, places<problem_of_form<Form>>);
+}
+
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+[[gnu::noinline, gnu::flatten]] void ask_block(const Form& law, const node_block<Law>& b,
+                                               asked_block<Form>& asked) {
+  const Form l = law;
+  const node_block<Law> own = b;
+  // A struct declared in this loop itself would be an array of 64 in memory.
+#pragma omp simd
+  for (int i = 0; i < own.count; ++i) ask_node<Law, Delassus, Frame, Layout, Scope>(l, own, asked, i);
+}
+
+// Solves the problems of a block in packs. The last pack is filled up with its first problem.
+template <class Form>
+[[gnu::noinline]] void solve_asked(const Form& law, asked_block<Form>& asked, int count) {
+  using problem_type = typename Form::template problem<pack>;
+  using answer_type = typename Form::template answer<pack>;
+  using answer_packs = std::array<pack, asked_block<Form>::answers>;
+  for (column& c : asked.problem)  // entry j moves to the front from where it was or further back
+    for (int j = 0; j < count; ++j) c.values[j] = c.values[asked.nodes[j]];
+  for (column& c : asked.answer) c = zeros;
+  for (int first = 0; first < count; first += pack_size) {
+    const int lanes = count - first < pack_size ? count - first : pack_size;
+    std::array<pack, asked_block<Form>::problems> problem;
+    for (std::size_t k = 0; k < problem.size(); ++k) {
+      double* values = asked.problem[k].values + first;
+      for (int j = lanes; j < pack_size; ++j) values[j] = values[0];
+      problem[k] = pack::load(values);
+    }
+    answer_type answer{};
+    const mask left = law.solve(std::bit_cast<problem_type>(problem), answer);
+    const auto packs = std::bit_cast<answer_packs>(answer);
+    for (std::size_t k = 0; k < packs.size(); ++k) {
+      double values[pack_size];
+      packs[k].store(values);
+      for (int j = 0; j < lanes; ++j) asked.answer[k].values[asked.nodes[first + j]] = values[j];
+    }
+    for (int j = 0; any(left) && j < lanes; ++j) {
+      if (!left[j]) continue;
+      answer_of_form<Form> alone{};
+      law.solve_alone(
+          from_columns<problem_of_form<Form>>(asked.problem, first + j, places<problem_of_form<Form>>),
+          alone);
+      to_columns(alone, asked.answer, asked.nodes[first + j], places<answer_of_form<Form>>);
+    }
+  }
+}
+
+// A node whose problem, if it had one, is solved.
+template <class Law, class Form, class Node>
+void step_answered(const Form& law, const asked_block<Form>& asked, int i, Node& node) {
+  problem_of_form<Form> problem{};
+  law.asks(node, problem);
+  Node solved = node;
+  law.answered(solved, from_columns<answer_of_form<Form>>(asked.answer, i, places<answer_of_form<Form>>));
+  choose<Law>(node, solved, asked.open.values[i] != 0.0);
+}
+
+}  // namespace detail
+
+// GCC vectorises these loops only where each stands alone. Copies, so that no store can alias a parameter or
+// a time step.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+[[gnu::noinline, gnu::flatten]] void step_block(const Form& law, const node_block<Law>& b) {
+  const Form l = law;
+  const auto run = [&l](const node_block<Law>& own, int i) {
+    run_node<Law, Delassus, Frame, Layout, Scope>(l, own, i, stepping_alone(l));
+  };
+  over_nodes<Law, Form>(b, run);
+}
+
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+[[gnu::noinline, gnu::flatten]] void finish_block(const Form& law, const node_block<Law>& b,
+                                                  const detail::asked_block<Form>& asked) {
+  const Form l = law;
+  const auto run = [&l, &asked](const node_block<Law>& own, int i) {
+    run_node<Law, Delassus, Frame, Layout, Scope>(
+        l, own, i, [&l, &asked, i](auto& node) { detail::step_answered<Law>(l, asked, i, node); });
+  };
+  over_nodes<Law, Form>(b, run);
+}
+
+// Form: the law, or the form of it that it chose for its parameters.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+void run_block(const Form& law, const node_block<Law>& b) {
+  if constexpr (asks_first<Form, node_in<Law, Delassus, Frame>>) {
+    constexpr scope reads = Scope == scope::impulse ? scope::impulse : scope::with_previous;
+    detail::asked_block<Form> asked;
+    detail::ask_block<Law, Delassus, Frame, Layout, reads>(law, b, asked);
+    int count = 0;
+    for (int i = 0; i < b.count; ++i) {
+      asked.nodes[count] = i;
+      count += asked.open.values[i] != 0.0 ? 1 : 0;
+    }
+    detail::solve_asked(law, asked, count);
+    finish_block<Law, Delassus, Frame, Layout, Scope>(law, b, asked);
+  } else {
+    step_block<Law, Delassus, Frame, Layout, Scope>(law, b);
+  }
+}
+
+}  // namespace ilaw::kit

@@ -1,0 +1,166 @@
+// regular_coulomb.hpp - the local Coulomb problem where it is well behaved, for a double or a pack of them:
+// weak coupling (one solution), fair condition, no extreme coefficient. Its answer is checked in the rows of
+// the problem itself; what fails is left to the solver of local_coulomb.hpp, which is exact for any problem.
+// The equations are derived in docs/theory/local_coulomb.md.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/pack.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+// h: H00 H11 H22 H01 H02 H12 [1/kg], component 0 normal; q [m/s]; mu: coefficient of each tangential axis, >=
+// 0, infinity allowed (no slip along this axis while the contact is pressed).
+template <class V>
+struct local_problem {
+  V h[6], q[3], mu[2];
+};
+
+namespace local {
+
+// A symmetric matrix with two rows, and the products with its adjugate, so that a solve is one division.
+template <class V>
+struct symmetric_2x2 {
+  V a11, a22, a12;
+
+  symmetric_2x2 shifted(V alpha) const { return {a11 + alpha, a22 + alpha, a12}; }
+  V determinant() const { return a11 * a22 - a12 * a12; }
+  V trace() const { return a11 + a22; }
+  V adjugate_1(V x, V y) const { return a22 * x - a12 * y; }
+  V adjugate_2(V x, V y) const { return a11 * y - a12 * x; }
+  V row_1(V x, V y) const { return a11 * x + a12 * y; }
+  V row_2(V x, V y) const { return a12 * x + a22 * y; }
+};
+
+template <class V>
+struct regular_answer {
+  V r[3];
+  mask_of<V> sticks, found;
+};
+
+// The contact with its normal row condensed, on a circular cone |rho| <= m r_N with r_i = d_i rho_i: sliding
+// is (S + alpha I) rho = -c with need(alpha) = |rho|/m + w.rho = n, and sticking its limit alpha = 0.
+template <class V>
+class regular_contact {
+ public:
+  using Mask = mask_of<V>;
+
+  explicit regular_contact(const local_problem<V>& p)
+      : p_(p), m_(larger(p.mu[0], p.mu[1])), per_m_(1.0 / m_) {
+    d1_ = select(p.mu[0] == m_, 1.0, p.mu[0] * per_m_);
+    d2_ = select(p.mu[1] == m_, 1.0, p.mu[1] * per_m_);
+    const V per_nn = 1.0 / p.h[0], a1 = d1_ * p.h[3], a2 = d2_ * p.h[4];
+    w1_ = a1 * per_nn;
+    w2_ = a2 * per_nn;
+    n_ = -p.q[0] * per_nn;
+    s_ = {d1_ * d1_ * p.h[1] - w1_ * a1, d2_ * d2_ * p.h[2] - w2_ * a2, d1_ * d2_ * p.h[5] - w1_ * a2};
+    c1_ = d1_ * (p.q[1] + p.h[3] * n_);
+    c2_ = d2_ * (p.q[2] + p.h[4] * n_);
+  }
+
+  regular_answer<V> solve() const {
+    const V det = s_.determinant();
+    const trial start = at(0.0);
+    const Mask sticks = start.need <= n_ * det;
+    // By Cauchy and Schwarz need falls with alpha: one root.
+    const V coupling = w1_ * s_.adjugate_1(w1_, w2_) + w2_ * s_.adjugate_2(w1_, w2_);
+    const Mask is_weak = m_ * m_ * coupling * s_.trace() < det;
+    const Mask is_fair = det > least_determinant * (s_.a11 * s_.a22);
+    const Mask regular = (sticks | is_weak) & is_fair & has_usual_scales();
+    Mask active = regular & !sticks;
+    const V alpha = multiplier(start, active);
+    return checked(alpha, sticks, regular & !active);
+  }
+
+ private:
+  static constexpr double least_determinant = 0x1p-20;
+  static constexpr int most_steps = 12;
+
+  // Whether no product on the way overflows or underflows.
+  Mask has_usual_scales() const {
+    constexpr double scale = 0x1p128, coefficient = 0x1p32;
+    const V *h = p_.h, *mu = p_.mu, speed = largest(p_.q);
+    const V least = smaller(smaller(h[0], h[1]), h[2]), most = larger(larger(h[0], h[1]), h[2]);
+    return (least > 1.0 / scale) & (most < scale) & (speed > 1.0 / scale) & (speed < scale) &
+           (smaller(mu[0], mu[1]) > 1.0 / coefficient) & (m_ < coefficient);
+  }
+  static V largest(const V* a) { return larger(larger(absolute(a[0]), absolute(a[1])), absolute(a[2])); }
+
+  // rho = -(n1, n2)/det and need, all without their division by det.
+  struct trial {
+    symmetric_2x2<V> s;
+    V det, n1, n2, length, need;
+  };
+  trial at(V alpha) const {
+    const symmetric_2x2<V> s = s_.shifted(alpha);
+    const V n1 = s.adjugate_1(c1_, c2_), n2 = s.adjugate_2(c1_, c2_);
+    const V length = square_root(n1 * n1 + n2 * n2);
+    return {s, s.determinant(), n1, n2, length, length * per_m_ - (w1_ * n1 + w2_ * n2)};
+  }
+
+  // Newton's method on 1/need = 1/n from alpha = 0. Lanes that are done keep their alpha, so that none sees
+  // its neighbours; those that are active at the end have none.
+  V multiplier(trial x, Mask& active) const {
+    constexpr double close = 0x1p-20;  // the step that follows squares it
+    V alpha = 0.0;
+    for (int k = 0; k < most_steps && any(active); ++k) {
+      const V target = n_ * x.det, excess = x.need - target;
+      const V y1 = x.s.adjugate_1(x.n1, x.n2), y2 = x.s.adjugate_2(x.n1, x.n2);
+      const V slope = (x.n1 * per_m_ - x.length * w1_) * y1 + (x.n2 * per_m_ - x.length * w2_) * y2;
+      const V next = alpha + x.need * excess * x.length / (n_ * slope);
+      alpha = select(active, next, alpha);
+      active = active & !(absolute(excess) <= close * target);
+      x = at(alpha);
+    }
+    return alpha;
+  }
+
+  // One Newton step on rows and cone, from the residual of rho; then the answer, and whether it holds.
+  regular_answer<V> checked(V alpha, Mask sticks, Mask regular) const {
+    const symmetric_2x2<V> s = s_.shifted(alpha);
+    const V inverse = 1.0 / s.determinant();
+    const V x = -s.adjugate_1(c1_, c2_) * inverse, y = -s.adjugate_2(c1_, c2_) * inverse;
+    const V ex = c1_ + s.row_1(x, y), ey = c2_ + s.row_2(x, y);
+    const V fixed_x = -s.adjugate_1(ex, ey) * inverse, fixed_y = -s.adjugate_2(ex, ey) * inverse;
+    const V moving_x = -s.adjugate_1(x, y) * inverse, moving_y = -s.adjugate_2(x, y) * inverse;
+    const V length = square_root(x * x + y * y);
+    const V kx = x * per_m_ + length * w1_, ky = y * per_m_ + length * w2_;
+    const V excess = (length * per_m_ + (w1_ * x + w2_ * y)) - n_;
+    const V change = select(
+        sticks, 0.0, -(excess * length + (kx * fixed_x + ky * fixed_y)) / (kx * moving_x + ky * moving_y));
+    const V u = x + (fixed_x + moving_x * change), v = y + (fixed_y + moving_y * change);
+    const V cone = square_root(u * u + v * v) * per_m_;
+    const V held = n_ - (w1_ * u + w2_ * v);
+    regular_answer<V> answer{{select(sticks, larger(held, cone), cone), d1_ * u, d2_ * v}, sticks, regular};
+    answer.found = regular & holds(answer, u, v, alpha + change);
+    return answer;
+  }
+
+  // Whether the rows hold to some ulp of |q| + |H||r|. An impulse that cancels most of what it does is left
+  // to the other solver, which rounds it once.
+  Mask holds(const regular_answer<V>& a, V u, V v, V alpha) const {
+    constexpr double rounding = 3.0 * 0x1p-52, amplified = 16.0;
+    const V *h = p_.h, *q = p_.q, *r = a.r;
+    const V vn = q[0] + (h[0] * r[0] + h[3] * r[1] + h[4] * r[2]);
+    const V v1 = q[1] + (h[3] * r[0] + h[1] * r[1] + h[5] * r[2]);
+    const V v2 = q[2] + (h[4] * r[0] + h[5] * r[1] + h[2] * r[2]);
+    const V e1 = select(a.sticks, v1, d1_ * v1 + alpha * u), e2 = select(a.sticks, v2, d2_ * v2 + alpha * v);
+    const V speed = largest(q), given = larger(larger(h[0], h[1]), h[2]) * largest(r);
+    const V worst = larger(larger(absolute(vn), absolute(e1)), absolute(e2));
+    return (worst <= rounding * (speed + given)) & (given <= amplified * speed) & (alpha >= 0.0);
+  }
+
+  local_problem<V> p_;
+  V m_, per_m_, d1_, d2_, w1_, w2_, n_, c1_, c2_;
+  symmetric_2x2<V> s_;
+};
+
+}  // namespace local
+
+// Solves the problems with q_N < 0 that are regular; found says which.
+template <class V>
+local::regular_answer<V> solve_regular(const local_problem<V>& problem) {
+  return local::regular_contact<V>(problem).solve();
+}
+
+}  // namespace ilaw::kit
