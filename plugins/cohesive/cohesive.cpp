@@ -1,6 +1,5 @@
 // Cohesive zones: a bond that softens, with contact, friction and bounded damage rate. See cohesive.md.
-#include "softening.hpp"
-#include "zone.hpp"
+#include "bond.hpp"
 
 #include <ilaw/kit.hpp>
 
@@ -9,32 +8,17 @@ namespace {
 using namespace cohesive_law;
 
 constexpr const char* shape_choices[] = {"bilinear", "exponential", "camacho_ortiz"};
-constexpr double exponential = 1.0, camacho_ortiz = 2.0;
 
-// A rigid bond that breaks leaves at least this part of the free motion.
-constexpr double almost_nothing = 0x1p-100;
-
-struct cohesive {
-  double shape;
-  double strength;
-  double toughness;
-  double strength_2;
-  double toughness_2;
-  double mixing_exponent;
-  double stiffness;
-  double friction;
-  double delay_time;
-  double delay_exponent;
-
+struct cohesive : bond {
   static constexpr law_card card{
       .id = "cohesive",
       .title = "Cohesive zone with contact, friction and delayed damage",
       .doc =
           "Bond that holds up to its strength, then softens until its toughness is spent; unloads to the "
-          "origin; contact and friction take over as it breaks. Solved with H for any initial stiffness, "
-          "also infinite, without a limit on the time step. H isotropic in the tangent plane.",
+          "origin; contact and friction take over as it breaks. Solved with any H for any initial stiffness, "
+          "also infinite, without a limit on the time step.",
       .inputs = reads_gap | reads_v_previous | reads_area,
-      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY | ILAW_CAN_ACT_AT_DISTANCE};
+      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST};
 
   static constexpr const char* references[] = {
       "G. T. Camacho, M. Ortiz, 1996, Computational modelling of impact damage in brittle materials",
@@ -90,7 +74,8 @@ struct cohesive {
        .default_value = infinity,
        .minimum_excluded = true,
        .infinity_allowed = true},
-      friction_parameter(&cohesive::friction).with_doc("Coefficient of friction of what is broken."),
+      friction_parameter<cohesive>(&cohesive::friction)
+          .with_doc("Coefficient of friction of what is broken."),
       {.member = &cohesive::delay_time,
        .name = "delay_time",
        .symbol = "tau_c",
@@ -128,6 +113,9 @@ struct cohesive {
   const char* conflict() const {
     if ((strength == infinity) != (shear_strength() == infinity))
       return "parameters 'strength' and 'strength_2' must both be infinite, or both finite";
+    if (shape == camacho_ortiz && strength == infinity)
+      return "shape \"camacho_ortiz\" weighs shear by the ratio of its strengths: parameter 'strength' must be "
+             "finite (a bond that never breaks: \"bilinear\" with 'strength' inf)";
     if (shape == camacho_ortiz && stiffness < infinity)
       return "shape \"camacho_ortiz\" is rigid: parameter 'stiffness' must be inf";
     if (shape == camacho_ortiz && shear_toughness() != toughness)
@@ -147,159 +135,105 @@ struct cohesive {
 
   template <class Node>
   void initialise(Node& node) const {
-    const bool bonds = strength > 0.0 && toughness > 0.0;
-    node.state.damage = bonds ? 0.0 : 1.0;
+    node.state.damage = bonds() ? 0.0 : 1.0;
   }
 
   template <class Node>
   void step(Node& node) const {
-    node.refused = refusal_of_anisotropy(node.delassus);
-    if (node.state.damage < 1.0 && node.area > 0.0)
-      step_bond(node);
-    else
+    if (!(node.state.damage < 1.0 && node.area > 0.0))
       touch(node);
+    else if (!bonds())
+      break_at_once(node);
+    else if (!(stiffness == infinity && node.state.damage == 0.0 && stands_still(node)))
+      step_bond(node);
   }
 
  private:
-  bool stores_more(double peak, double energy) const {
-    return peak < infinity && energy > 0.0 && 0.5 * peak * peak * flexibility() > energy;
-  }
-  double flexibility() const { return stiffness < infinity ? 1.0 / stiffness : 0.0; }
-  double shear_strength() const { return strength_2 > 0.0 ? strength_2 : strength; }
-  double shear_toughness() const { return toughness_2 > 0.0 ? toughness_2 : toughness; }
-  double weight() const { return shape == camacho_ortiz ? shear_strength() / strength : 1.0; }
-
-  // Share of shear: part of the squared opening that is tangential.
-  static double shear_share(vector w, double size) {
-    const double part = size > 0.0 ? w.tangential_length() / size : 0.0;
-    return smaller(part * part, 1.0);
-  }
-
-  bool mixes() const {
-    return shape != camacho_ortiz && (shear_strength() != strength || shear_toughness() != toughness);
-  }
-  softening softening_at(double shear) const {
-    const double part = shear > 0.0 ? power(shear, mixing_exponent) : 0.0;
-    const double energy = toughness + part * (shear_toughness() - toughness);
-    const double s1 = strength, s2 = shear_strength();
-    const double peak = part > 0.0 ? square_root(s1 * s1 + part * (s2 * s2 - s1 * s1)) : s1;
-    const double full = softening::fullness(shape == exponential);
-    const double width = positive_part(energy / peak - 0.5 * peak * flexibility()) / full;
-    return {peak, peak * flexibility(), width, shape == exponential};
-  }
-
-  softening softening_along(vector w, double size) const {
-    return softening_at(mixes() ? shear_share(w, size) : 0.0);
-  }
-
-  // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
-  double softness_scale() const { return softening_at(0.0).width / strength; }
-  secant secant_of(double damage) const {
-    return {1.0 - damage, flexibility() + (strength < infinity ? damage * softness_scale() : 0.0)};
-  }
-  double damage_of(double opening, double traction) const {
-    return (opening - flexibility() * traction) / (opening + softness_scale() * traction);
-  }
-
-  double energy_of(secant s, double size) const {
-    return s.soft > 0.0 ? 0.5 * s.stiff / s.soft * size * size : 0.0;
-  }
-
+  // A rigid bond up to its strength: the same as a tie. Its traction is compared with the weight of the work
+  // that it does.
   template <class Node>
-  zone zone_of(const Node& node) const {
-    const auto& s = node.state;
-    const double normal = node.delassus.normal(), tangential = node.delassus.tangential(), w = weight();
-    return {.position = s.position,
-            .opening = s.opening,
-            .v_free = node.v_free,
-            .normal_delassus = normal,
-            .tangential_delassus = tangential,
-            .position_step = node.position_step,
-            .weight = w,
-            .friction = s.damage > 0.0 ? friction * s.damage : 0.0,
-            .compliance_scale = 0.25 * node.position_step * node.velocity_step * node.area * normal,
-            .drive = 0.5 * node.v_free + (1.0 / node.position_step) * (s.position + s.opening),
-            .ratio = w * w * tangential / normal};
+  bool stands_still(Node& node) const {
+    const vector r = -node.delassus.solve(node.v_free);
+    if (strength < infinity) {
+      const double capacity = node.velocity_step * node.area, w = weight();
+      const vector effective{positive_part(-r.n), r.t1 / w, r.t2 / w};
+      const double size = length(effective.n, effective.t1, effective.t2);
+      const bool surely = size <= capacity * smaller(strength, shear_strength());
+      if (!surely && !(size <= capacity * softening_along(effective, size).strength)) return false;
+    }
+    node.impulse = r;
+    node.status = status::bonded;
+    return true;
   }
-
-  struct outcome {
-    share parts;
-    double damage;
-  };
 
   template <class Node>
   void step_bond(Node& node) const {
-    const zone z = zone_of(node);
-    const bool is_delayed = delay_time > 0.0 && strength < infinity;
-    const double damage = node.state.damage;
-    settle(node, z, is_delayed ? delayed(damage, node.position_step, z) : at_once(damage, z));
+    if constexpr (!std::is_same_v<decltype(node.delassus), scalar_delassus>)
+      if (is_anisotropic(node.delassus)) {
+        auto own = with_full_delassus(node);
+        solve_coupled(own);
+        take_over(node, own);
+        return;
+      }
+    solve_bond<isotropic_modes>(node);
   }
 
-  // Without delay: elastic where that stays below the softening.
-  outcome at_once(double damage, const zone& z) const {
-    const secant now = secant_of(damage);
-    const share stiffest = z.of(now);
-    if (strength == infinity || holds(z, now, stiffest)) return {stiffest, damage};
-    return softened(damage, now, {stiffest.taken, larger(stiffest.left, almost_nothing)}, z);
-  }
-
-  // Else the mean traction on the way from w^- to w^+. Like `delayed` too long to be compiled for each form
-  // of node.
-  [[gnu::noinline]] outcome softened(double damage_before, secant now, share stiffest, const zone& z) const {
-    const double from = z.size(z.opening);
-    const share found = balance(stiffest, [&](share trial) {
-      const motion m = z.at(trial);
-      const double traction = softening_along(m.opening, m.size).mean_traction_on_path(now, from, m.size);
-      return trial.stiffness() * (m.size + from) - 2.0 * z.compliance_scale * traction;
-    });
-    const motion m = z.at(found);
-    const softening s = softening_along(m.opening, m.size);
-    const double damage = m.size > s.onset ? damage_of(m.size, s.traction(m.size)) : 0.0;
-    return {found, larger(damage_before, damage)};
-  }
-
-  bool holds(const zone& z, secant now, share elastic) const {
-    if (now.soft > 0.0) {
-      const motion m = z.at(elastic);
-      return now.stiff * m.size <= now.soft * softening_along(m.opening, m.size).traction(m.size);
-    }
-    // A rigid bond does not move: its traction is what counts, with the weight of the work it does.
-    const vector t = z.rigid_traction();
-    const vector effective{positive_part(t.n), t.t1 / z.weight, t.t2 / z.weight};
-    const double size = length(effective.n, effective.t1, effective.t2);
-    return size <= softening_along(effective, size).strength;
-  }
-
-  // With delay: the stiffness is the mean of those before and after.
-  [[gnu::noinline]] outcome delayed(double damage, double position_step, const zone& z) const {
-    const secant before = secant_of(damage);
-    const double stiffness_before = before.stiff / before.soft;
-    const share found = balance(z.of(before), [&](share trial) {
-      const secant after = secant_of(delayed_damage(damage, position_step, z.at(trial)));
-      const double mean = 0.5 * (stiffness_before + after.stiff / after.soft);
-      return trial.stiffness() - z.compliance_scale * mean;
-    });
-    return {found, delayed_damage(damage, position_step, z.at(found))};
-  }
-
-  // Exact for the constant target f that the opening at the end of the step sets (Allix and Deu 1997):
-  // d = f - ln(1 + (exp(a z) - 1) exp(-a h/tau_c))/a, z = f - d before the step.
-  double delayed_damage(double damage, double position_step, const motion& m) const {
-    const softening s = softening_along(m.opening, m.size);
-    const double progress = s.progress(m.size);
-    const double target = progress < 1.0 && progress > 0.0 ? damage_of(m.size, s.traction(m.size)) : progress;
-    const double distance = target - damage;
-    if (!(distance > 0.0)) return damage;
-    const double a = delay_exponent, decline = a * position_step / delay_time;
-    const double ahead = a * distance - decline;
-    const double left = ahead < 40.0 ? log((1.0 - exp(-decline)) + exp(ahead)) : ahead;
-    return larger(damage, smaller(target - left / a, 1.0));
-  }
+  // Once for all forms of node: too long to be compiled for each.
+  using coupled_node = ilaw::kit::node<full_delassus, state>;
+  [[gnu::noinline]] void solve_coupled(coupled_node& node) const { solve_bond<coupled_modes>(node); }
 
   template <class Node>
-  void settle(Node& node, const zone& z, const outcome& found) const {
+  static coupled_node with_full_delassus(const Node& node) {
+    const local_coulomb same = problem_of(node.delassus);
+    return {.time = node.time,
+            .velocity_step = node.velocity_step,
+            .position_step = node.position_step,
+            .v_free = node.v_free,
+            .v_previous = node.v_previous,
+            .delassus = full_delassus::from(same.h),
+            .gap = node.gap,
+            .area = node.area,
+            .history = node.history,
+            .impulse = {},
+            .state = node.state};
+  }
+  template <class Node>
+  static void take_over(Node& node, const coupled_node& solved) {
+    node.impulse = solved.impulse;
+    node.state = solved.state;
+    node.stored = solved.stored;
+    node.normal_gain = solved.normal_gain;
+    node.tangential_gain = solved.tangential_gain;
+    node.rupture = solved.rupture;
+    node.status = solved.status;
+    node.refused = solved.refused;
+  }
+
+  template <class Modes, class Node>
+  void solve_bond(Node& node) const {
+    const auto& s = node.state;
+    const double w = weight();
+    const zone<Modes> z{
+        .position = s.position,
+        .opening = s.opening,
+        .v_previous = node.v_previous,
+        .position_step = node.position_step,
+        .weight = w,
+        .friction = s.damage > 0.0 ? friction * s.damage : 0.0,
+        .compliance_scale =
+            0.25 * node.position_step * node.velocity_step * node.area * node.delassus.normal(),
+        .drive = 0.5 * node.v_free + (1.0 / node.position_step) * (s.position + s.opening),
+        .ground = ground_below(s.position.n, node.v_free.n, node.v_previous.n, node.position_step),
+        .modes = Modes(node.delassus, w)};
+    const bool is_delayed = delay_time > 0.0 && strength < infinity;
+    settle(node, z, is_delayed ? delayed(s.damage, node.position_step, z) : at_once(s.damage, z));
+  }
+
+  template <class Modes, class Node>
+  void settle(Node& node, const zone<Modes>& z, const outcome& found) const {
     auto& s = node.state;
     const motion m = z.at(found.parts);
+    node.refused = found.refused != not_refused ? found.refused : m.refused;
     node.impulse = z.impulse(found.parts, m);
     // The bond's part of the work, which contact and friction have no share in.
     const double stiff = found.parts.left > 0.0 ? found.parts.stiffness() / z.compliance_scale : 0.0;
@@ -314,15 +248,19 @@ struct cohesive {
     s = {found.damage, z.next_position(m), m.opening};
   }
 
-  // No bond: contact and friction, by the gap.
+  // No bond: contact and friction, by the gap. What the bond remembers stays as it was when it broke.
   template <class Node>
   void touch(Node& node) const {
     const contact_condition contact = contact_at(node, 0.0, predictive);
     apply_contact_friction(node, contact_problem_of(contact, node.v_free, node.v_previous), friction);
-    const vector next =
-        node.state.position + node.position_step * (node.v_free + node.delassus.times(node.impulse));
-    node.state.opening = 0.5 * (node.state.position + next);
-    node.state.position = next;
+  }
+
+  // Where the strength, given as a table, has come to nothing.
+  template <class Node>
+  void break_at_once(Node& node) const {
+    touch(node);
+    node.state.damage = 1.0;
+    node.status = status::broken;
   }
 };
 

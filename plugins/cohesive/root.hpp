@@ -47,5 +47,51 @@ double sign_change(double low, double high, Function f) {
   return absolute(fa) < absolute(fb) ? a : b;
 }
 
+// Whether f, positive at both ends of [low, high] and with one minimum between them, is anywhere not: golden
+// section (Kiefer 1953), to 1e-6 of the interval.
+template <class Function>
+bool dips(double low, double high, Function f) {
+  constexpr double golden = 0.6180339887498949;
+  double a = high - golden * (high - low), b = low + golden * (high - low), fa = f(a), fb = f(b);
+  for (int k = 0; k < 28 && fa > 0.0 && fb > 0.0; ++k)
+    if (fa < fb) {
+      high = b;
+      b = a;
+      fb = fa;
+      a = high - golden * (high - low);
+      fa = f(a);
+    } else {
+      low = a;
+      a = b;
+      fa = fb;
+      b = low + golden * (high - low);
+      fb = f(b);
+    }
+  return !(fa > 0.0 && fb > 0.0);
+}
+
+// Whether f, positive at 0 and negative at 1, changes sign more than once. Two changes between samples show
+// as an extremum towards zero. More samples near 0: that is the scale of stiff directions.
+template <class Function>
+bool changes_sign_again(Function f) {
+  constexpr int samples = 32;
+  double x[3] = {}, y[3] = {infinity, infinity, infinity};  // the last three samples
+  int changes = 0;
+  for (int k = 1; k <= samples; ++k) {
+    const double part = static_cast<double>(k) / samples;
+    x[0] = x[1];
+    x[1] = x[2];
+    x[2] = part * part * part;
+    y[0] = y[1];
+    y[1] = y[2];
+    y[2] = f(x[2]);
+    const double sign = y[1] > 0.0 ? 1.0 : -1.0;
+    if (!(sign * y[2] > 0.0) && ++changes > 1) return true;
+    const bool turns = sign * y[0] >= sign * y[1] && sign * y[1] <= sign * y[2];
+    if (turns && dips(x[0], x[2], [&](double p) { return sign * f(p); })) return true;
+  }
+  return false;
+}
+
 }  // namespace ILAW_KIT_LEVEL
 }  // namespace cohesive_law

@@ -38,6 +38,11 @@ struct softening {
     return exponential ? (1.0 / decay) - decay_end / (1.0 - decay_end) : 0.5;
   }
 
+  // -T' where the traction falls fastest, at the onset.
+  double steepest() const {
+    return exponential ? strength * decay / ((1.0 - decay_end) * width) : strength / width;
+  }
+
   // Not limited to 1, which it passes at the end of the curve.
   double progress(double opening) const {
     const double beyond = positive_part(opening - onset);

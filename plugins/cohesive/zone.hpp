@@ -1,11 +1,12 @@
 // zone.hpp - the problem of one bonded node in one step. See cohesive.md for its derivation.
 //
 // The bond sees openings at half steps, the means of two positions: w^- before the impulse, w^+ after it. Its
-// impulse is r = -h A k (w^+ + w^-)/2. The unknown is the mean secant stiffness k, by way of the parts of the
-// free motion that the bond takes and leaves, c k/(1 + c k) and 1/(1 + c k), c = h_pos h_vel A h_N/4.
+// impulse is r = -h A k W (w^+ + w^-)/2. The unknown is the mean secant stiffness k, by way of the parts of
+// the free motion that the bond takes and leaves, c k/(1 + c k) and 1/(1 + c k), c = h_pos h_vel A h_N/4.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "modes.hpp"
 #include "root.hpp"
 #include "softening.hpp"
 
@@ -13,13 +14,6 @@ namespace cohesive_law {
 inline namespace ILAW_KIT_LEVEL {
 
 using namespace ilaw::kit;
-
-// Parts of the free motion; their sum is 1. Both are kept, since either may be tiny.
-struct share {
-  double taken, left;  // rigid: 1 and 0, broken: 0 and 1
-
-  double stiffness() const { return taken / left; }  // c k
-};
 
 // The share at which an excess of the bond's stiffness over what its law gives changes from <= 0, for all
 // left, to >= 0, for the stiffest.
@@ -37,20 +31,31 @@ share balance(share stiffest, Excess excess) {
 
 // What a share makes of the node.
 struct motion {
-  vector opening;   // w^+
-  double size;      // its effective length
-  vector friction;  // impulse; normal part: of the contact
+  vector opening;     // w^+
+  double size = 0.0;  // its effective length
+  vector contact;     // impulse of contact and friction
+  double refused = not_refused;
 };
 
+// What contact and friction see of a bonded node.
+template <class Delassus>
+struct pressed_node {
+  Delassus delassus;
+  vector impulse;
+  double status, refused;
+};
+
+template <class Modes>
 struct zone {
   vector position, opening;  // relative position at the time of the impulse; w^-
-  vector v_free;
-  double normal_delassus, tangential_delassus, position_step;
+  vector v_previous;
+  double position_step;
   double weight;            // of tangential openings in the effective one
   double friction;          // coefficient, already reduced to the broken part
   double compliance_scale;  // c
   vector drive;             // of w^+ + w^- without bond and contact, as a velocity
-  double ratio;             // of tangential to normal compliance
+  double ground;            // contact keeps the next position above it
+  Modes modes;
 
   // Opening along which work is done in each direction, as one number.
   double size(vector w) const { return length(w.n, weight * w.t1, weight * w.t2); }
@@ -59,24 +64,10 @@ struct zone {
     const double sum = k.soft + compliance_scale * k.stiff;
     return {compliance_scale * k.stiff / sum, k.soft / sum};
   }
-  // The same bond as the tangential motion feels it.
-  share tangential(share s) const {
-    const double sum = s.left + ratio * s.taken;
-    return {ratio * s.taken / sum, s.left / sum};
-  }
-
-  // Mean traction that stops the motion: what a rigid bond bears.
-  vector rigid_traction() const {
-    const double scale = 0.5 * position_step / compliance_scale;
-    const double tangential_scale = scale * normal_delassus / tangential_delassus;
-    return {scale * drive.n, tangential_scale * drive.t1, tangential_scale * drive.t2};
-  }
 
   motion at(share s) const {
-    const double left = tangential(s).left;
-    const vector d = position_step * drive;
-    motion m{{s.left * d.n - opening.n, left * d.t1 - opening.t1, left * d.t2 - opening.t2}, 0.0, {}};
-    if (next_position(m).n < 0.0) close(s, left, m);
+    motion m{.opening = position_step * modes.left(s, drive) - opening, .contact = {}};
+    if (next_position(m).n < ground) close(s, m);
     m.size = size(m.opening);
     return m;
   }
@@ -84,42 +75,39 @@ struct zone {
   vector next_position(const motion& m) const { return 2.0 * m.opening - position; }
 
   // Impulse of bond, contact and friction together.
-  vector impulse(share s, const motion& m) const {
-    const share t = tangential(s);
-    const double normal =
-        m.friction.n > 0.0 ? -arrival() / normal_delassus : -2.0 * s.taken * drive.n / normal_delassus;
-    return {normal, t.left * m.friction.t1 - 2.0 * t.taken * drive.t1 / tangential_delassus,
-            t.left * m.friction.t2 - 2.0 * t.taken * drive.t2 / tangential_delassus};
-  }
+  vector impulse(share s, const motion& m) const { return modes.impulse(s, drive, m.contact); }
 
  private:
-  // Velocity to be taken off where contact closes at the end of the step.
-  double arrival() const { return v_free.n + position.n / position_step; }
-
-  // Contact keeps the position from being negative; it is then pressed by what it takes from the bond as
-  // well, and what is broken of the bond rubs.
-  void close(share s, double left, motion& m) const {
-    m.opening.n = 0.5 * position.n;
-    const double sum = m.opening.n + opening.n;
-    const double pull = sum > 0.0 ? 2.0 * s.stiffness() * sum / position_step : 0.0;
-    m.friction.n = positive_part((pull - arrival()) / normal_delassus);
-    const double limit = friction_limit(friction, m.friction.n);
-    if (limit > 0.0) rub(limit, left * tangential_delassus, m);
-  }
-
-  void rub(double limit, double compliance, motion& m) const {
-    const double rate = 2.0 / position_step;
-    const double u1 = rate * (m.opening.t1 - position.t1), u2 = rate * (m.opening.t2 - position.t2);
-    const double speed = length(u1, u2);
-    const bool slips = speed > limit * compliance;
-    const double factor = (slips ? limit : 1.0) / (slips ? speed : compliance);
-    m.friction.t1 = -factor * u1;
-    m.friction.t2 = -factor * u2;
-    const double reach = 0.5 * position_step * compliance;
-    m.opening.t1 = slips ? m.opening.t1 + reach * m.friction.t1 : position.t1;
-    m.opening.t2 = slips ? m.opening.t2 + reach * m.friction.t2 : position.t2;
+  // Contact is pressed by what it takes from the bond as well, and what is broken of the bond rubs. Like
+  // every contact it does no positive work.
+  void close(share s, motion& m) const {
+    const double target = (ground - position.n) / position_step;
+    vector q = (2.0 / position_step) * (m.opening - position);
+    q.n -= target;
+    const vector rest{smaller(v_previous.n + target, 0.0), v_previous.t1, v_previous.t2};
+    pressed_node<decltype(modes.delassus(s))> node{modes.delassus(s), {}, status::free, not_refused};
+    apply_contact_friction(node, contact_problem<vector>{0.0, q, rest}, friction);
+    // Where friction couples with the normal and would do work, that may leave no push at all.
+    const double left = q.n + node.delassus.times(node.impulse).n;
+    if (left < -0x1p-30 * absolute(q.n)) node.impulse = {-q.n / node.delassus.normal(), 0.0, 0.0};
+    m.contact = node.impulse;
+    m.refused = node.refused;
+    m.opening = m.opening + (0.5 * position_step) * node.delassus.times(node.impulse);
+    if (!Modes::along_axes || node.impulse.n == 0.0) return;
+    m.opening.n = 0.5 * (position.n + ground);
+    if (node.status != status::stick || friction == 0.0) return;
+    m.opening.t1 = position.t1;
+    m.opening.t2 = position.t2;
   }
 };
+
+// The lowest next position: where the bond was made, or as deep as the node is. A node that was leaving turns
+// round at most at the speed with which it left (see contact_leaving_at), which matters where steps differ.
+inline double ground_below(double position, double v_free, double v_previous, double position_step) {
+  const double rounding = 0x1p-32 * (absolute(v_free) + absolute(v_previous));
+  const double lowest = smaller(position, 0.0), returned = position - position_step * v_previous;
+  return position_step * (v_previous - rounding) > position - lowest ? returned : lowest;
+}
 
 }  // namespace ILAW_KIT_LEVEL
 }  // namespace cohesive_law

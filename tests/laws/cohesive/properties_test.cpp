@@ -4,47 +4,13 @@
 namespace ilaw::testing {
 namespace {
 
-class Draw {
- public:
-  explicit Draw(unsigned seed) : random_(seed) {}
-  double between(double low, double high) { return low + (high - low) * uniform_(random_); }
-  double power_of_ten(double low, double high) { return std::pow(10.0, between(low, high)); }
-  Vector vector(double scale) {
-    return {scale * between(-1.0, 1.0), scale * between(-1.0, 1.0), scale * between(-1.0, 1.0)};
-  }
-
-  // Any bond: of any shape, rigid or not, with its mixed mode, friction and delay.
-  Parameters bond() {
-    const bool is_delayed = between(0.0, 1.0) < 0.2;
-    const char* shapes[] = {"bilinear", "exponential", "camacho_ortiz"};
-    const std::string shape = shapes[static_cast<int>(between(0.0, is_delayed ? 2.0 : 3.0))];
-    const double strength = between(0.5, 2.0), strength_2 = between(0.5, 4.0), toughness = between(0.5, 2.0);
-    Parameters p{{{"strength", strength}, {"strength_2", strength_2}, {"toughness", toughness}},
-                 {{"shape", shape}}};
-    p.numbers["friction"] = between(0.0, 1.0) < 0.3 ? 0.0 : between(0.0, 1.5);
-    if (shape != "camacho_ortiz") {
-      p.numbers["toughness_2"] = between(0.5, 4.0);
-      p.numbers["mixing_exponent"] = between(0.3, 3.0);
-      if (is_delayed || between(0.0, 1.0) < 0.7) p.numbers["stiffness"] = power_of_ten(1.5, 9.0);
-    }
-    if (is_delayed)
-      p.numbers.insert(
-          {{"delay_time", power_of_ten(-2.0, 1.0)}, {"delay_exponent", power_of_ten(-1.0, 2.0)}});
-    return p;
-  }
-
- private:
-  std::mt19937_64 random_;
-  std::uniform_real_distribution<double> uniform_{0.0, 1.0};
-};
-
 // A mass pushed at random, for any bond and step. In each step damage grows within [0, 1], the parts
 // dissipated are not negative, the opening is not negative, and the work is what was stored and dissipated,
 // except where a contact's reaction meets a node moving away.
 TEST(CohesiveProperties, HoldForAnyMotion) {
   Draw draw(11);
-  int broken = 0, rubbed = 0, partly = 0;
-  for (int bond = 0; bond < 4000; ++bond) {
+  int broken = 0, rubbed = 0, partly = 0, several = 0;
+  for (int bond = 0; bond < 1000; ++bond) {
     Hung node(draw.bond(), draw.power_of_ten(-3.0, 0.0));
     node.area = draw.between(0.1, 2.0);
     const double force = draw.power_of_ten(-0.5, 1.0);
@@ -55,6 +21,8 @@ TEST(CohesiveProperties, HoldForAnyMotion) {
       const Vector v = node.v;
       const Vector random = draw.vector(force);
       node.push({bias[0] + random[0], bias[1] + random[1], bias[2] + random[2]});
+      several += node.several;
+      if (node.several) break;
       ASSERT_GE(node.named("damage"), damage);
       ASSERT_LE(node.named("damage"), 1.0);
       for (const double part : node.energy) ASSERT_GE(part, 0.0);
@@ -76,9 +44,10 @@ TEST(CohesiveProperties, HoldForAnyMotion) {
       partly += damage > 0.0 && damage < 1.0;
     }
   }
-  EXPECT_GT(broken, 1000);
-  EXPECT_GT(rubbed, 10000);
-  EXPECT_GT(partly, 100000);
+  EXPECT_LT(several, 250);
+  EXPECT_GT(broken, 250);
+  EXPECT_GT(rubbed, 2500);
+  EXPECT_GT(partly, 25000);
 }
 
 // Pressed and sheared, the tangential impulse is that of the bond, -h A k w with w the mean slip of the two
@@ -96,6 +65,7 @@ TEST(CohesiveProperties, FrictionGrowsAsTheBondBreaks) {
     const double angle = draw.between(0.0, 6.28), slip1 = reach * std::cos(angle),
                  slip2 = reach * std::sin(angle);
     node.state = {damage, 0.0, slip1, slip2, 0.0, slip1, slip2};
+    node.v_previous = {};
     const Vector v = draw.vector(1.0);
     ASSERT_EQ(node.step({-std::abs(v[0]), 0.3 * v[1], 0.3 * v[2]}), ILAW_OK);
     ASSERT_EQ(node.named("damage"), damage);
@@ -134,6 +104,7 @@ TEST(CohesiveProperties, LimitsAreTieAndCoulomb) {
     for (NodeRun* each : {&tie, &tough, &weak, &broken, &contact}) {
       each->h[0] = delassus;
       each->gap = gap;
+      each->v_previous = {};
       ASSERT_EQ(each->step(v), ILAW_OK);
     }
     for (std::size_t c = 0; c < 3; ++c) {
@@ -190,9 +161,10 @@ TEST(CohesiveProperties, RememberedSlipTurnsWithTheNormal) {
   const ilaw::interface global =
       make_law("cohesive", SetupBuilder(p, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL));
   std::vector<double> state(global.info().state_size);
-  Vector normal{1, 0, 0}, free{}, impulse{};
+  Vector normal{1, 0, 0}, free{}, previous{}, impulse{};
   ilaw_batch b = local.batch();
   b.normal = {normal.data(), 0, 1};
+  b.v_previous = {previous.data(), 0, 1};
   b.v_free = {free.data(), 0, 1};
   b.state_out = {state.data(), 0, 1};
   ASSERT_EQ(global.initialise(b), ILAW_OK);
@@ -204,6 +176,8 @@ TEST(CohesiveProperties, RememberedSlipTurnsWithTheNormal) {
     const Vector v = draw.vector(0.5);
     normal = {c, s, 0.0};
     free = {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
+    const Vector u = local.v_previous;
+    previous = {c * u[0] - s * u[1], s * u[0] + c * u[1], u[2]};
     ASSERT_EQ(local.step(v), ILAW_OK);
     ASSERT_EQ(global.evaluate(b), ILAW_OK);
     // The local tangents turn with the normal about the third axis.
@@ -216,7 +190,7 @@ TEST(CohesiveProperties, RememberedSlipTurnsWithTheNormal) {
 
 // H = diag(h_N, h_T, h_T) with another h_T: the node moves by v_free + H r and the traction is on the bond's
 // curve.
-TEST(CohesiveProperties, OtherTangentialInertiaIsSolvedAndAnisotropyRefused) {
+TEST(CohesiveProperties, OtherTangentialInertiaIsSolved) {
   const double step = 0.1;
   NodeRun node("cohesive", {{{"strength", 1.0}, {"toughness", 2.0}, {"stiffness", 40.0}}, {}}, step,
                ILAW_DELASSUS_DIAGONAL);
@@ -230,11 +204,6 @@ TEST(CohesiveProperties, OtherTangentialInertiaIsSolvedAndAnisotropyRefused) {
   ASSERT_EQ(node.step({3.0, 9.0, -4.0}), ILAW_OK);
   EXPECT_GT(node.named("damage"), 0.1);
   EXPECT_LT(node.named("damage"), 0.9);
-  node.h = {1.0, 3.5, 3.0};
-  EXPECT_EQ(node.step({1.0, 1.0, 1.0}), ILAW_BAD_NODES);
-  EXPECT_STREQ(
-      node.report.reason,
-      "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal");
 }
 
 // An impulse divides by the velocity step, an opening grows with the position step.
@@ -287,6 +256,10 @@ TEST(CohesiveProperties, BadParametersAreRefusedByName) {
       bond({{"stiffness", 10.0}}, "camacho_ortiz"),
       "law 'cohesive': shape \"camacho_ortiz\" is rigid: parameter 'stiffness' must be inf; found stiffness = "
       "10");
+  EXPECT_EQ(bond({{"strength", inf_value}}, "camacho_ortiz"),
+            "law 'cohesive': shape \"camacho_ortiz\" weighs shear by the ratio of its strengths: parameter "
+            "'strength' must be finite (a bond that never breaks: \"bilinear\" with 'strength' inf); found "
+            "strength = inf");
   EXPECT_EQ(
       bond({{"toughness_2", 4.0}}, "camacho_ortiz"),
       "law 'cohesive': shape \"camacho_ortiz\" has one toughness: parameter 'toughness_2' must be the same as "

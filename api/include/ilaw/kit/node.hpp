@@ -159,7 +159,7 @@ struct full_delassus {
 
 // Why a law refuses a node; the text goes into the report. A double, like the status, to stay in vector code.
 inline constexpr double not_refused = 0.0;
-inline constexpr double anisotropic_delassus = 1.0;  // the law has no closed form for this H
+inline constexpr double several_solutions = 1.0;     // the law's equations have more than one
 inline constexpr double no_solution = 2.0;           // the law's equations have none for this input
 inline constexpr double impossible_state = 3.0;      // the law cannot have written this state
 inline constexpr double time_before_history = 4.0;   // the clock was set back
@@ -193,10 +193,10 @@ bool is_out_of_reach(const Node& node) {
   return (node.gap > 0.0) & (next_gap(node) > 0.0);
 }
 
-// Refuses an H for which closed forms for diag(h_N, h_T, h_T) do not hold.
+// Whether closed forms for H = diag(h_N, h_T, h_T) do not hold.
 template <class Delassus>
-double refusal_of_anisotropy(const Delassus& delassus) {
-  return delassus.anisotropy() > rounding_of(delassus) ? anisotropic_delassus : not_refused;
+bool is_anisotropic(const Delassus& delassus) {
+  return delassus.anisotropy() > rounding_of(delassus);
 }
 
 // The statuses of ilaw.h, as the doubles that vector code selects between.

@@ -165,8 +165,8 @@ const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool
   if (const char* wrong = out_of_range<Law>(n.state)) return wrong;
   const double refused =
       step_node<Law, Delassus, Frame, Layout, Scope>(stepping_alone(law), b, i).result.refused;
-  if (refused == anisotropic_delassus)
-    return "the law needs an H that is isotropic in the tangent plane and does not couple it to the normal";
+  if (refused == several_solutions)
+    return "the law's equations have several solutions for this H and step: a smaller step is needed";
   if (refused == no_solution) return "the law's equations have no solution for this H";
   if (refused == impossible_state) return "the state is not one that the law can have written";
   if (refused == time_before_history) return "the time lies before what the state remembers";

@@ -1,0 +1,164 @@
+// bond.hpp - what a cohesive bond is made of, and the stiffness that it has in one step.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "softening.hpp"
+#include "zone.hpp"
+
+namespace cohesive_law {
+inline namespace ILAW_KIT_LEVEL {
+
+// Values of the parameter "shape"; bilinear is 0.
+inline constexpr double exponential = 1.0, camacho_ortiz = 2.0;
+
+// A rigid bond that breaks leaves at least this part of the free motion.
+inline constexpr double almost_nothing = 0x1p-100;
+
+// The parameters of the law, and all that asks for nothing but them and the zone.
+struct bond {
+  double shape;
+  double strength;
+  double toughness;
+  double strength_2;
+  double toughness_2;
+  double mixing_exponent;
+  double stiffness;
+  double friction;
+  double delay_time;
+  double delay_exponent;
+
+  bool bonds() const { return strength > 0.0 && toughness > 0.0; }
+  bool stores_more(double peak, double energy) const {
+    return peak < infinity && energy > 0.0 && 0.5 * peak * peak * flexibility() > energy;
+  }
+  double flexibility() const { return stiffness < infinity ? 1.0 / stiffness : 0.0; }
+  double shear_strength() const { return strength_2 > 0.0 ? strength_2 : strength; }
+  double shear_toughness() const { return toughness_2 > 0.0 ? toughness_2 : toughness; }
+  double weight() const { return shape == camacho_ortiz ? shear_strength() / strength : 1.0; }
+
+  // Share of shear: part of the squared opening that is tangential.
+  static double shear_share(vector w, double size) {
+    const double part = size > 0.0 ? w.tangential_length() / size : 0.0;
+    return smaller(part * part, 1.0);
+  }
+
+  bool mixes() const {
+    return shape != camacho_ortiz && (shear_strength() != strength || shear_toughness() != toughness);
+  }
+  softening softening_at(double shear) const {
+    const double part = shear > 0.0 ? power(shear, mixing_exponent) : 0.0;
+    const double energy = toughness + part * (shear_toughness() - toughness);
+    const double s1 = strength, s2 = shear_strength();
+    const double peak = part > 0.0 ? square_root(s1 * s1 + part * (s2 * s2 - s1 * s1)) : s1;
+    const double full = softening::fullness(shape == exponential);
+    const double width = positive_part(energy / peak - 0.5 * peak * flexibility()) / full;
+    return {peak, peak * flexibility(), width, shape == exponential};
+  }
+
+  softening softening_along(vector w, double size) const {
+    return softening_at(mixes() ? shear_share(w, size) : 0.0);
+  }
+
+  // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
+  double softness_scale() const { return softening_at(0.0).width / strength; }
+  secant secant_of(double damage) const {
+    return {1.0 - damage, flexibility() + (strength < infinity ? damage * softness_scale() : 0.0)};
+  }
+  double damage_of(double opening, double traction) const {
+    return (opening - flexibility() * traction) / (opening + softness_scale() * traction);
+  }
+
+  double energy_of(secant s, double size) const {
+    return s.soft > 0.0 ? 0.5 * s.stiff / s.soft * size * size : 0.0;
+  }
+
+  struct outcome {
+    share parts;
+    double damage;
+    double refused = not_refused;
+  };
+
+  // Without delay: elastic where that stays below the softening.
+  template <class Zone>
+  outcome at_once(double damage, const Zone& z) const {
+    const secant now = secant_of(damage);
+    const share stiffest = z.of(now);
+    if (strength == infinity || holds(z, now, stiffest)) return {stiffest, damage};
+    return softened(damage, now, {stiffest.taken, larger(stiffest.left, almost_nothing)}, z);
+  }
+
+  template <class Zone>
+  bool holds(const Zone& z, secant now, share elastic) const {
+    if (!(now.soft > 0.0)) return false;  // see stands_still
+    const motion m = z.at(elastic);
+    const double pull = now.stiff * m.size;
+    return (now.stiff == 1.0 && pull <= now.soft * smaller(strength, shear_strength())) ||
+           pull <= now.soft * softening_along(m.opening, m.size).traction(m.size);
+  }
+
+  // Else the mean traction on the way from w^- to w^+. Like `delayed` too long to be compiled for each form
+  // of node.
+  template <class Zone>
+  [[gnu::noinline]] outcome softened(double damage_before, secant now, share stiffest, const Zone& z) const {
+    const double from = z.size(z.opening);
+    const auto excess = [&](share trial) {
+      const motion m = z.at(trial);
+      const double traction = softening_along(m.opening, m.size).mean_traction_on_path(now, from, m.size);
+      return trial.stiffness() * (m.size + from) - 2.0 * z.compliance_scale * traction;
+    };
+    const share found = balance(stiffest, excess);
+    const motion m = z.at(found);
+    const softening s = softening_along(m.opening, m.size);
+    const double damage = m.size > s.onset ? damage_of(m.size, s.traction(m.size)) : 0.0;
+    return {found, larger(damage_before, damage), ambiguity(z, stiffest, excess)};
+  }
+
+  // With delay: the stiffness is the mean of those before and after.
+  template <class Zone>
+  [[gnu::noinline]] outcome delayed(double damage, double position_step, const Zone& z) const {
+    const secant before = secant_of(damage);
+    const double stiffness_before = before.stiff / before.soft;
+    const auto excess = [&](share trial) {
+      const secant after = secant_of(delayed_damage(damage, position_step, z.at(trial)));
+      const double mean = 0.5 * (stiffness_before + after.stiff / after.soft);
+      return trial.stiffness() - z.compliance_scale * mean;
+    };
+    const share stiffest = z.of(before);
+    if (delayed_damage(damage, position_step, z.at(stiffest)) == damage) return {stiffest, damage};
+    const share found = balance(stiffest, excess);
+    return {found, delayed_damage(damage, position_step, z.at(found)), ambiguity(z, stiffest, excess)};
+  }
+
+  // There is one solution where the softening is not steeper than the node gives way, c tr(H W) |T'| <= 1.
+  // Beyond, the sign changes of the excess are counted as the node is left ever more of its free motion.
+  // Several are a snap-back, and nothing says how much of it this step is to do.
+  template <class Zone, class Excess>
+  double ambiguity(const Zone& z, share stiffest, Excess excess) const {
+    const double slope = larger(softening_at(0.0).steepest(), softening_at(1.0).steepest());
+    if (!(z.compliance_scale * z.modes.trace_ratio() * slope > 1.0)) return not_refused;
+    // By what is left in the direction that gives way most: the others have had most of theirs by then.
+    const double ratio = z.modes.largest_ratio(), first = stiffest.times(ratio).left;
+    const auto at = [&](double part) {
+      const double left = first + part * (1.0 - first);
+      return excess(share{1.0 - left, left}.times(1.0 / ratio));
+    };
+    return changes_sign_again(at) ? several_solutions : not_refused;
+  }
+
+  // Exact for the constant target f that the opening at the end of the step sets (Allix and Deu 1997):
+  // d = f - ln(1 + (exp(a z) - 1) exp(-a h/tau_c))/a, z = f - d before the step.
+  double delayed_damage(double damage, double position_step, const motion& m) const {
+    const softening s = softening_along(m.opening, m.size);
+    const double progress = s.progress(m.size);
+    const double target = progress < 1.0 && progress > 0.0 ? damage_of(m.size, s.traction(m.size)) : progress;
+    const double distance = target - damage;
+    if (!(distance > 0.0)) return damage;
+    const double a = delay_exponent, decline = a * position_step / delay_time;
+    const double ahead = a * distance - decline;
+    const double left = ahead < 40.0 ? log((1.0 - exp(-decline)) + exp(ahead)) : ahead;
+    return larger(damage, smaller(target - left / a, 1.0));
+  }
+};
+
+}  // namespace ILAW_KIT_LEVEL
+}  // namespace cohesive_law

@@ -1,0 +1,190 @@
+// any_inertia.hpp - bonds that have been opened, on nodes of any inertia, and the curves of cohesive.md.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bond.hpp"
+
+#include <algorithm>
+
+namespace ilaw::testing {
+
+using Matrix = std::array<Vector, 3>;
+
+inline Vector times(const Matrix& m, const Vector& a) {
+  Vector product{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) product[i] += m[i][j] * a[j];
+  return product;
+}
+inline double norm(const Vector& a) { return std::hypot(a[0], a[1], a[2]); }
+inline double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// Q diag Q^T with a condition of up to 10^decades, then scaled by axis; and what that makes of the condition.
+struct Inertia {
+  Matrix h{};
+  double condition;
+
+  Inertia(Draw& draw, double decades) {
+    Matrix q{};
+    for (Vector& axis : q) axis = draw.vector(1.0);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (int pass = 0; pass < 2; ++pass) {
+        for (std::size_t j = 0; j < i; ++j) {
+          const double along = dot(q[i], q[j]);
+          for (std::size_t c = 0; c < 3; ++c) q[i][c] -= along * q[j][c];
+        }
+        const double size = norm(q[i]);
+        for (double& component : q[i]) component /= size;
+      }
+    const double part = draw.between(0.0, 0.7);
+    const Vector value{1.0, draw.power_of_ten(-part * decades, 0.0), draw.power_of_ten(-part * decades, 0.0)};
+    const double across = draw.power_of_ten(-0.15 * decades, 0.15 * decades);
+    const Vector scale{1.0, across, across};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t k = 0; k < 3; ++k) h[i][j] += scale[i] * scale[j] * value[k] * q[k][i] * q[k][j];
+    condition = std::pow(10.0, decades);
+  }
+  std::array<double, 6> entries() const { return {h[0][0], h[1][1], h[2][2], h[0][1], h[0][2], h[1][2]}; }
+};
+
+// The curves of the page, written anew.
+struct Curve {
+  explicit Curve(const Parameters& p) {
+    const auto number = [&p](const char* name, double otherwise) {
+      const auto found = p.numbers.find(name);
+      return found == p.numbers.end() ? otherwise : found->second;
+    };
+    shape = p.texts.at("shape");
+    s1 = number("strength", 0.0);
+    s2 = number("strength_2", s1);
+    g1 = number("toughness", 0.0);
+    g2 = number("toughness_2", g1);
+    eta = number("mixing_exponent", 1.0);
+    flexibility = 1.0 / number("stiffness", inf_value);
+    friction = number("friction", 0.0);
+    delay = number("delay_time", 0.0);
+    a = number("delay_exponent", 1.0);
+    weight = shape == "camacho_ortiz" ? s2 / s1 : 1.0;
+  }
+
+  struct Mode {
+    double strength, onset, width;
+  };
+  Mode mode(double shear) const {
+    const double part = shape == "camacho_ortiz" || shear == 0.0 ? 0.0 : std::pow(shear, eta);
+    const double strength = std::sqrt(s1 * s1 + part * (s2 * s2 - s1 * s1)), onset = strength * flexibility;
+    const double full = shape == "exponential" ? 0.125 - std::exp(-8.0) / -std::expm1(-8.0) : 0.5;
+    return {strength, onset, ((g1 + part * (g2 - g1)) / strength - 0.5 * onset) / full};
+  }
+  double traction(const Mode& m, double y) const {
+    const double p = std::clamp((y - m.onset) / m.width, 0.0, 1.0);
+    return m.strength *
+           (shape == "exponential" ? (std::exp(-8.0 * p) - std::exp(-8.0)) / -std::expm1(-8.0) : 1.0 - p);
+  }
+  double secant(double damage) const {
+    const Mode m = mode(0.0);
+    return (1.0 - damage) / (flexibility + damage * m.width / m.strength);
+  }
+  double damage_of(double y, double traction) const {
+    const Mode m = mode(0.0);
+    return (y - flexibility * traction) / (y + m.width / m.strength * traction);
+  }
+  double size(const Vector& w) const { return std::hypot(w[0], weight * w[1], weight * w[2]); }
+  double shear(const Vector& w) const {
+    const double t = std::hypot(w[1], w[2]), all = norm(w);
+    return all > 0.0 ? std::min(1.0, t * t / (all * all)) : 0.0;
+  }
+
+  // Mean of min(k y, T(y)) between two openings: Gauss's rule between the kinks.
+  double mean(const Mode& m, double k, double from, double to) const {
+    if (to <= from) return 0.5 * k * (from + to);  // back along the secant
+    const auto pull = [&](double y) { return std::min(k * y, traction(m, y)); };
+    if (to - from < 1e-9 * to) return pull(0.5 * (from + to));
+    double low = 0.0, high = m.onset + m.width;  // where the secant meets the curve
+    for (int n = 0; n < 64; ++n)
+      (k * 0.5 * (low + high) < traction(m, 0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+    std::vector<double> ends{from};
+    for (const double kink : {high, m.onset + m.width})
+      if (kink > ends.back() && kink < to) ends.push_back(kink);
+    ends.push_back(to);
+    constexpr double points[] = {0.0, 0.5384693101056831, 0.9061798459386640},
+                     weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+    double sum = 0.0;
+    for (std::size_t part = 0; part + 1 < ends.size(); ++part) {
+      constexpr int pieces = 64;
+      const double h = 0.5 * (ends[part + 1] - ends[part]) / pieces;
+      for (int n = 0; n < pieces; ++n) {
+        const double middle = ends[part] + (2 * n + 1) * h;
+        sum += h * weights[0] * pull(middle);
+        for (int q = 1; q < 3; ++q)
+          sum += h * weights[q] * (pull(middle - h * points[q]) + pull(middle + h * points[q]));
+      }
+    }
+    return sum / (to - from);
+  }
+
+  // Allix and Deu's damage after a step.
+  double delayed(double damage, double step, const Vector& w) const {
+    const Mode m = mode(shear(w));
+    const double y = size(w), p = (y - m.onset) / m.width;
+    const double target = p <= 0.0 ? 0.0 : p < 1.0 ? damage_of(y, traction(m, y)) : p;
+    if (target <= damage) return damage;
+    const double grown =
+        target - std::log1p(std::expm1(a * (target - damage)) * std::exp(-a * step / delay)) / a;
+    return std::clamp(std::isfinite(grown) ? grown : damage + step / delay, damage, 1.0);
+  }
+
+  // Mean stiffness of the step that leads from one opening to another.
+  double stiffness(double damage, double step, const Vector& before, const Vector& after) const {
+    if (delay > 0.0) return 0.5 * (secant(damage) + secant(delayed(damage, step, after)));
+    const double from = size(before), to = size(after);
+    return 2.0 * mean(mode(shear(after)), secant(damage), from, to) / (from + to);
+  }
+
+  std::string shape;
+  double s1, s2, g1, g2, eta, flexibility, friction, delay, a, weight;
+};
+
+// A bond that has been opened before, and an inertia.
+struct Problem {
+  Problem(Draw& draw, const Curve& of, double decades)
+      : inertia(draw, decades), curve(of), step(draw.power_of_ten(-3.0, -1.0)) {
+    const double last = draw.between(0.0, 1.0) < 0.3 ? draw.between(0.7, 1.4) * step : step;
+    velocity_step = 0.5 * (last + step);
+    damage = draw.between(0.05, 0.95);
+    const Curve::Mode m = curve.mode(0.0);
+    // Where the secant meets the curve of mode I: what the bond has been opened to at least once.
+    double low = 0.0, high = m.onset + m.width;
+    for (int n = 0; n < 100; ++n)
+      (curve.secant(damage) * 0.5 * (low + high) < curve.traction(m, 0.5 * (low + high)) ? low : high) =
+          0.5 * (low + high);
+    const double reach = 0.6 * low * std::min(curve.s2 / curve.s1, 1.0) / std::max(curve.weight, 1.0);
+    opening = draw.vector(reach);
+    opening[0] = std::abs(opening[0]);
+    if (draw.between(0.0, 1.0) < 0.3) opening[0] = 0.0;
+    position = opening;
+    const Vector moved = draw.vector(0.1 * reach);
+    for (std::size_t c = opening[0] > 0.0 ? 0 : 1; c < 3; ++c) position[c] += moved[c];
+    position[0] = std::clamp(position[0], 0.0, 2.0 * opening[0]);  // so that the one before was not negative
+    for (std::size_t c = 0; c < 3; ++c) v_previous[c] = 2.0 * (position[c] - opening[c]) / last;
+    const Vector kick = draw.vector(draw.power_of_ten(-1.0, 0.5) * reach / step);
+    for (std::size_t c = 0; c < 3; ++c) v_free[c] = v_previous[c] + kick[c];
+  }
+
+  std::int32_t solve(NodeRun& node) const {
+    node.h = inertia.entries();
+    node.state = {damage, position[0], position[1], position[2], opening[0], opening[1], opening[2]};
+    node.v_previous = v_previous;
+    node.dt = velocity_step;
+    node.position_dt = step;
+    return node.step(v_free);
+  }
+
+  Inertia inertia;
+  Curve curve;
+  double step, velocity_step, damage;
+  Vector opening, position, v_previous, v_free;
+};
+
+}  // namespace ilaw::testing

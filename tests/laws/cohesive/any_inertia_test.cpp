@@ -1,0 +1,182 @@
+// Cohesive zones with any H: the equations at the returned impulse, by quadrature and in another order than
+// the law's, energies and invariances.
+#include "any_inertia.hpp"
+
+#include <optional>
+
+namespace ilaw::testing {
+namespace {
+
+// What is wrong with a solution; contact: whether it was pressed.
+std::optional<std::string> judge(const Problem& p, const NodeRun& node, bool& pressed) {
+  const Matrix& h = p.inertia.h;
+  const Vector h_r = times(h, node.r);
+  Vector after{}, sum{}, v{}, bond{}, contact{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    v[c] = p.v_free[c] + h_r[c];
+    after[c] = p.position[c] + 0.5 * p.step * v[c];
+    sum[c] = after[c] + p.opening[c];
+  }
+  const double k = p.curve.stiffness(p.damage, p.step, p.opening, after);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double weight = c == 0 ? 1.0 : p.curve.weight * p.curve.weight;
+    bond[c] = -0.5 * p.velocity_step * k * weight * sum[c];
+    contact[c] = node.r[c] - bond[c];
+  }
+  // r is right to the condition; the opening, which it moves by h H r/2, as well; and so the traction.
+  const double smallest = 1.0 / p.inertia.condition * (h[0][0] + h[1][1] + h[2][2]);
+  const double size = norm(p.v_free) + norm(h_r) + (norm(p.position) + norm(p.opening)) / p.step;
+  const double impulse = 64 * ulp * (size / smallest + 0.5 * p.step * k * p.step * size);
+  const double speed = 64 * ulp * p.inertia.condition * size;
+  const auto say = [&](const char* what, double found, double allowed) {
+    return std::string(what) + ": " + std::to_string(found / allowed) + " of what is allowed";
+  };
+  pressed = node.r[0] - bond[0] > impulse;
+  const double next = 2.0 * after[0] - p.position[0];  // or as far as the node was leaving
+  const double ground = std::min(0.0, p.position[0] - p.step * p.v_previous[0]);
+  if (!pressed) {
+    if (next < ground - p.step * speed) return say("goes in", ground - next, p.step * speed);
+    if (norm(contact) > 4.0 * impulse) return say("not the bond's impulse", norm(contact), impulse);
+    return std::nullopt;
+  }
+  const double limit = p.curve.friction * p.damage * contact[0], slip = std::hypot(v[1], v[2]);
+  if (std::hypot(contact[1], contact[2]) > limit + impulse)
+    return say("beyond the cone", std::hypot(contact[1], contact[2]) - limit, impulse);
+  double work = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) work += contact[c] * (p.v_previous[c] + v[c]);
+  const double rounding =
+      impulse * (slip + speed) + speed * (limit + contact[0]) + impulse * norm(p.v_previous);
+  if (work > rounding) return say("contact puts energy in", work, rounding);
+  if (work > -rounding) return std::nullopt;  // all of what does no positive work
+  if (std::abs(next - ground) > p.step * speed && std::abs(next) > p.step * speed)
+    return say("pressed and not closed", next, p.step * speed);
+  if (std::hypot(contact[1], contact[2]) <= impulse) return std::nullopt;  // no friction does none either
+  const double along = contact[1] * v[1] + contact[2] * v[2];
+  if (std::abs(along + limit * slip) > rounding)
+    return say("not most dissipation", along + limit * slip, rounding);
+  return std::nullopt;
+}
+
+// The work of the impulse is what was dissipated and stored.
+void keep_energy(const Problem& p, const NodeRun& node, int k) {
+  const double y = p.curve.size(p.opening), stored = 0.5 * p.curve.secant(p.damage) * y * y;
+  const Vector h_r = times(p.inertia.h, node.r);
+  double balance = node.energy[ILAW_ENERGY_STORED] - stored, scale = stored + node.energy[ILAW_ENERGY_STORED];
+  for (std::size_t c = 0; c < 3; ++c) {
+    balance += node.energy[c] + 0.5 * node.r[c] * (p.v_previous[c] + node.v[c]);
+    scale += norm(node.r) * (std::abs(p.v_previous[c]) + std::abs(p.v_free[c]) + norm(h_r));
+  }
+  ASSERT_LE(std::abs(balance), 64 * ulp * p.inertia.condition * scale) << "problem " << k;
+}
+
+// All shapes and delay, H of a condition of up to a million, turned and scaled: the traction is that of the
+// page's curve to rounding, the node stays outside, and what is left is contact and friction.
+TEST(CohesiveAnyInertia, SolvesTheEquationsOfThePage) {
+  Draw draw(21);
+  int several = 0, pressed = 0, softened = 0, broken = 0;
+  std::optional<Curve> curve;
+  std::optional<NodeRun> bond;
+  const char* given = std::getenv("ILAW_TEST_STEPS");  // for a run of a million
+  const int problems = given ? std::atoi(given) : 6000;
+  for (int k = 0; k < problems; ++k) {
+    if (k % 30 == 0) {
+      const Parameters parameters = draw.bond();
+      curve.emplace(parameters);
+      bond.emplace("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
+    }
+    const Problem p(draw, *curve, draw.between(0.0, 6.0));
+    NodeRun& node = *bond;
+    const std::int32_t code = p.solve(node);
+    if (code == ILAW_BAD_NODES) {
+      ASSERT_STREQ(node.report.reason, several_solutions) << "problem " << k;
+      ++several;
+      continue;
+    }
+    ASSERT_EQ(code, ILAW_OK);
+    bool is_pressed = false;
+    const std::optional<std::string> wrong = judge(p, node, is_pressed);
+    ASSERT_FALSE(wrong) << "problem " << k << ", shape " << p.curve.shape << ", delay " << p.curve.delay
+                        << ", condition " << p.inertia.condition << ": " << *wrong;
+    ASSERT_GE(node.energy[ILAW_ENERGY_RUPTURE], 0.0);
+    if (p.velocity_step == p.step) keep_energy(p, node, k);
+    pressed += is_pressed;
+    softened += node.named("damage") > p.damage;
+    broken += node.status == ILAW_BROKEN;
+  }
+  EXPECT_GT(pressed, problems / 20);
+  EXPECT_GT(softened, problems / 20);
+  EXPECT_GT(broken, problems / 200);
+  EXPECT_LT(several, problems / 50);
+}
+
+// A mass with any inverse on its bond, pushed at random: whatever way it goes, a bond of one toughness has
+// dissipated that when it is broken, in steps of any length.
+TEST(CohesiveAnyInertia, TakesTheToughness) {
+  Draw draw(22);
+  int broken = 0;
+  for (int bond = 0; bond < 150 && !HasFailure(); ++bond) {
+    Parameters p = draw.bond();
+    for (const char* name : {"toughness_2", "strength_2", "delay_time", "delay_exponent", "friction"})
+      p.numbers.erase(name);
+    const Inertia inertia(draw, 3.0);
+    const double step = std::array{0.2, 0.037, 0.0113}[static_cast<std::size_t>(bond % 3)];
+    NodeRun node("cohesive", p, step, ILAW_DELASSUS_FULL);
+    node.h = inertia.entries();
+    Vector bias = draw.vector(6.0);
+    bias[0] = 6.0;
+    double taken = 0.0;
+    for (int k = 0; k < 2000 && node.named("damage") < 1.0; ++k) {
+      Vector force = draw.vector(6.0), free = node.v;
+      for (std::size_t c = 0; c < 3; ++c) force[c] += bias[c] * (1.0 + step * k);
+      const Vector kick = times(inertia.h, force);
+      for (std::size_t c = 0; c < 3; ++c) free[c] += step * kick[c];
+      if (node.step(free) != ILAW_OK) break;  // several solutions
+      taken += node.energy[ILAW_ENERGY_RUPTURE];
+    }
+    // Pressed as it breaks: what the impact takes is in it too.
+    if (node.named("damage") < 1.0 || node.named("opening") < 1e-9) continue;
+    ++broken;
+    EXPECT_NEAR(taken, p.numbers["toughness"], 1e-9) << "bond " << bond << ", step " << step;
+  }
+  EXPECT_GT(broken, 30);
+}
+
+// An axis turned over and back gives the mirror image; an H that couples by next to nothing gives what one
+// that does not couple gives.
+TEST(CohesiveAnyInertia, IsMirroredAndJoinsTheIsotropicForm) {
+  Draw draw(23);
+  std::optional<Curve> curve;
+  std::optional<NodeRun> bond, other;
+  for (int k = 0; k < 2000 && !HasFailure(); ++k) {
+    if (k % 50 == 0) {
+      const Parameters parameters = draw.bond();
+      curve.emplace(parameters);
+      bond.emplace("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
+      other.emplace("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
+    }
+    const Problem p(draw, *curve, 3.0);
+    NodeRun &node = *bond, &image = *other;
+    Problem mirrored = p;
+    for (Vector* each : {&mirrored.opening, &mirrored.position, &mirrored.v_previous, &mirrored.v_free})
+      (*each)[2] = -(*each)[2];
+    for (std::size_t c = 0; c < 2; ++c) mirrored.inertia.h[c][2] = mirrored.inertia.h[2][c] *= -1.0;
+    if (p.solve(node) != ILAW_OK) continue;
+    ASSERT_EQ(mirrored.solve(image), ILAW_OK);
+    const double allowed = 1e-9 * (norm(node.r) + norm(p.v_free));
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(node.r[c], (c == 2 ? -1.0 : 1.0) * image.r[c], allowed) << "problem " << k;
+
+    Problem plain = p, coupled = p;
+    plain.inertia.h = {Vector{1.0, 0.0, 0.0}, {0.0, 0.6, 0.0}, {0.0, 0.0, 0.6}};
+    coupled.inertia.h = plain.inertia.h;
+    coupled.inertia.h[0][1] = coupled.inertia.h[1][0] = 1e-12;
+    coupled.inertia.h[1][2] = coupled.inertia.h[2][1] = -1e-12;
+    const bool solved = plain.solve(node) == ILAW_OK;
+    ASSERT_EQ(coupled.solve(image) == ILAW_OK, solved) << "problem " << k;
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(node.r[c], image.r[c], 1e-7 * (norm(node.r) + norm(p.v_free))) << "problem " << k;
+  }
+}
+
+}  // namespace
+}  // namespace ilaw::testing
