@@ -40,7 +40,7 @@ std::vector<code_block> code_blocks(const std::string& page) {
 
 TEST(HostsPage, QuotesCodeThatIsBuiltAndRun) {
   const std::map<std::string, std::string> sources{
-      {"c", read(ILAW_EXAMPLES "/blocks.c")},
+      {"c", read(ILAW_EXAMPLES "/blocks.c") + read(ILAW_EXAMPLES "/grains.c")},
       {"cpp", read(ILAW_EXAMPLES "/blocks.cpp") + read(ILAW_EXAMPLES "/adaptor_test.cpp")},
       {"fortran", read(ILAW_EXAMPLES "/blocks.f90")},
       {"python", read(ILAW_EXAMPLES "/python/blocks.py")}};

@@ -26,7 +26,8 @@ esac
 
 echo "== files"
 for file in bin/ilaw lib/ilaw/contact.so include/ilaw/ilaw.h include/ilaw/kit/detail/evaluate.hpp lib/libilaw_loader.a \
-            lib/libilaw_loader.so lib/libilaw_loader.so.1 lib/cmake/ilaw/ilawConfig.cmake lib/pkgconfig/ilaw.pc \
+            lib/libilaw_loader.so lib/libilaw_loader.so.1 \
+            lib/libilaw_coupled.a lib/libilaw_coupled.so lib/libilaw_coupled.so.1 include/ilaw/coupled.h lib/cmake/ilaw/ilawConfig.cmake lib/pkgconfig/ilaw.pc \
             share/ilaw/fortran/ilaw.f90 share/ilaw/python/pyproject.toml share/man/man1/ilaw.1 \
             share/bash-completion/completions/ilaw; do
   [ -e "$prefix/$file" ] || { echo "missing: $file"; exit 1; }

@@ -1,0 +1,63 @@
+// bodies.hpp - velocities of the bodies, and what impulses at an arm do to them.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "vector.hpp"
+
+#include <ilaw/coupled.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace ilaw::coupled {
+
+struct Motion {
+  Vector velocity{}, spin{};
+};
+inline Motion operator+(const Motion& a, const Motion& b) {
+  return {a.velocity + b.velocity, a.spin + b.spin};
+}
+inline Motion operator-(const Motion& a, const Motion& b) {
+  return {a.velocity - b.velocity, a.spin - b.spin};
+}
+inline Motion operator*(double s, const Motion& a) { return {s * a.velocity, s * a.spin}; }
+
+// Component c of entry i; of an absent array, zero.
+inline double value(const ilaw_input& array, std::int64_t i, std::int64_t c = 0) {
+  return array.values ? array.values[i * array.node_stride + c * array.component_stride] : 0.0;
+}
+Vector vector(const ilaw_input& array, std::int64_t i, std::uint32_t dimension);
+void store(const ilaw_output& array, std::int64_t i, std::uint32_t dimension, const Vector& values);
+
+class Bodies {
+ public:
+  void read(const ilaw_bodies& given);
+
+  std::int64_t count() const { return given_.count; }
+  std::uint32_t dimension() const { return given_.dimension; }
+  bool rotate() const { return given_.inverse_inertia.values != nullptr; }
+  bool have_previous() const { return given_.v_previous.values != nullptr; }
+
+  const std::vector<Motion>& free() const { return free_; }
+  Motion previous(std::int64_t body) const;
+
+  // What a unit impulse at the arm changes of the velocity there: one body's part of H.
+  Symmetric delassus(std::int64_t body, const Vector& arm) const;
+
+  // Sums over contacts: per body how many are active, the impulse and its moment.
+  std::int64_t components() const { return rotate() ? 7 : 4; }
+  // Change of a body's velocities by the sums.
+  Motion change(const std::vector<double>& sums, std::int64_t body) const;
+  // Of this rank's own bodies: impulses of the one, times the difference of velocities that the other makes.
+  double product(const std::vector<double>& sums, const std::vector<Motion>& difference) const;
+
+  void write(const std::vector<Motion>& velocities, const std::vector<double>& sums) const;
+
+ private:
+  Symmetric inverse_inertia(std::int64_t body) const;
+
+  ilaw_bodies given_{};
+  std::vector<Motion> free_;
+};
+
+}  // namespace ilaw::coupled

@@ -1,0 +1,33 @@
+// The functions of coupled.h: structs of any version in, no exception out.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sizes.hpp"
+#include "solver.hpp"
+
+#include <new>
+
+struct ilaw_coupled {
+  ilaw::coupled::Solver solver;
+};
+
+ilaw_coupled* ilaw_coupled_create(void) { return new (std::nothrow) ilaw_coupled; }
+
+void ilaw_coupled_destroy(ilaw_coupled* solver) { delete solver; }
+
+int32_t ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies* bodies,
+                           const ilaw_contacts* const* groups, int64_t group_count,
+                           const ilaw_coupled_options* options, ilaw_coupled_report* report) {
+  using namespace ilaw;
+  if (!solver || (report && !sized::cleared(report)) || (options && !sized::is_complete(options)))
+    return ILAW_INVALID_ARGUMENT;
+  const ilaw_coupled_options asked = options ? sized::read(options) : ilaw_coupled_options{};
+  if (asked.exchange && !sized::is_complete(asked.exchange)) return ILAW_INVALID_ARGUMENT;
+  ilaw_coupled_report said{};
+  int32_t code = ILAW_OUT_OF_MEMORY;
+  try {
+    code = solver->solver.solve(bodies, groups, group_count, asked, said);
+  } catch (const std::bad_alloc&) {
+    said.reason = "out of memory";
+  }
+  if (report) sized::write(report, said);
+  return code;
+}

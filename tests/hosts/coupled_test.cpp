@@ -1,0 +1,412 @@
+// Contacts that share bodies (ilaw/coupled.h) against what is known without them: weight, momentum, energy,
+// and the same contacts in another order or on two ranks.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <ilaw/coupled.hpp>
+#include <ilaw/loader.hpp>
+
+#include <algorithm>
+#include <barrier>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace {
+
+constexpr double h = 1e-3, g = 10.0, radius = 0.5;
+
+ilaw::interface create(const std::string& name, std::uint32_t form,
+                       const std::vector<std::pair<const char*, double>>& numbers = {}) {
+  std::vector<ilaw_argument> arguments(numbers.size());
+  std::vector<const ilaw_argument*> pointers;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    arguments[i].struct_size = sizeof arguments[i];
+    arguments[i].name = numbers[i].first;
+    arguments[i].number = numbers[i].second;
+    pointers.push_back(&arguments[i]);
+  }
+  ilaw_setup setup{};
+  setup.struct_size = sizeof setup;
+  setup.dimension = 3;
+  setup.delassus_form = form;
+  setup.frame = ILAW_FRAME_GLOBAL;
+  setup.arguments = pointers.data();
+  setup.argument_count = static_cast<std::uint32_t>(pointers.size());
+  return {ilaw::library(ILAW_PLUGIN_FOLDER "/" + name + ".so"), "", setup};
+}
+
+// Equal spheres with rotation, and contacts between them and with walls, all of one law.
+struct Scene {
+  explicit Scene(ilaw::interface law_of_all, std::size_t count)
+      : law(std::move(law_of_all)), v(3 * count), w(3 * count), v_before(3 * count), w_before(3 * count) {}
+
+  void add(std::int32_t a, std::int32_t b, double distance, const std::vector<double>& n) {
+    body.push_back(a);
+    counterpart.push_back(b);
+    gap.push_back(distance);
+    for (const double component : n) {
+      normal.push_back(component);
+      arm.push_back(-radius * component);
+      other_arm.push_back(radius * component);
+    }
+    impulse.resize(3 * body.size());
+    energy.resize(4 * body.size());
+  }
+
+  void initialise() {
+    state.resize(law.info().state_size * body.size());
+    ASSERT_EQ(law.initialise(batch()), ILAW_OK);
+  }
+
+  ilaw_batch batch() {
+    const auto size = static_cast<std::int64_t>(law.info().state_size);
+    ilaw_batch b{};
+    b.struct_size = sizeof b;
+    b.node_count = static_cast<std::int64_t>(body.size());
+    b.velocity_step = b.position_step = h;
+    b.time = time;
+    b.gap = {gap.data(), 1, 0};
+    b.normal = {normal.data(), 3, 1};
+    b.area = {&area, 0, 0};
+    b.state_in = {state.data(), size, 1};
+    b.state_out = {state.data(), size, 1};
+    b.impulse = {impulse.data(), 3, 1};
+    b.energy = {energy.data(), 4, 1};
+    return b;
+  }
+
+  ilaw_bodies bodies() {
+    ilaw_bodies b{};
+    b.struct_size = sizeof b;
+    b.dimension = 3;
+    b.count = b.owned_count = static_cast<std::int64_t>(v.size() / 3);
+    b.inverse_mass = {&inverse_mass, 0, 0};
+    b.inverse_inertia = {&inverse_inertia, 0, 0};
+    b.v_free = {v.data(), 3, 1};
+    b.spin_free = {w.data(), 3, 1};
+    b.v_previous = {v_before.data(), 3, 1};
+    b.spin_previous = {w_before.data(), 3, 1};
+    b.velocity = {v.data(), 3, 1};
+    b.spin = {w.data(), 3, 1};
+    return b;
+  }
+
+  ilaw_contacts contacts(const ilaw_batch& of) {
+    ilaw_contacts c{};
+    c.struct_size = sizeof c;
+    c.delassus_form = ILAW_DELASSUS_FULL;
+    c.law = &law.law();
+    c.instance = law.instance();
+    c.batch = &of;
+    c.body = body.data();
+    c.counterpart = counterpart.data();
+    c.arm = {arm.data(), 3, 1};
+    c.counterpart_arm = {other_arm.data(), 3, 1};
+    return c;
+  }
+
+  // One step at fixed positions, with gravity.
+  ilaw_coupled_report step(double gravity, double tolerance, std::uint32_t most_sweeps = 5000) {
+    v_before = v;
+    w_before = w;
+    time += h;
+    for (std::size_t i = 2; i < v.size(); i += 3) v[i] -= h * gravity;
+    const ilaw_batch b = batch();
+    const ilaw_contacts c = contacts(b);
+    const ilaw_contacts* groups[] = {&c};
+    ilaw_coupled_options options{};
+    options.tolerance = tolerance;
+    options.most_sweeps = most_sweeps;
+    return solver.solve(bodies(), groups, options);
+  }
+
+  double kinetic() const {
+    double twice = 0.0;
+    for (const double x : v) twice += x * x / inverse_mass;
+    for (const double x : w) twice += x * x / inverse_inertia;
+    return 0.5 * twice;
+  }
+  // Of the velocities between bodies, at contacts of two.
+  double largest_slip() const {
+    double largest = 0.0;
+    for (std::size_t k = 0; k < body.size(); ++k)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto at = [&](std::int32_t i, const std::vector<double>& from_centre) {
+          const std::size_t j = 3 * static_cast<std::size_t>(i), next = (c + 1) % 3, last = (c + 2) % 3;
+          return v[j + c] + w[j + next] * from_centre[3 * k + last] - w[j + last] * from_centre[3 * k + next];
+        };
+        largest = std::max(largest, std::fabs(at(body[k], arm) - at(counterpart[k], other_arm)));
+      }
+    return largest;
+  }
+  double largest_velocity() const {
+    double largest = 0.0;
+    for (const double x : v) largest = std::max(largest, std::fabs(x));
+    return largest;
+  }
+
+  ilaw::interface law;
+  ilaw::coupled solver;
+  std::vector<double> v, w, v_before, w_before;
+  std::vector<std::int32_t> body, counterpart;
+  std::vector<double> gap, normal, arm, other_arm, impulse, state, energy;
+  double inverse_mass = 0.5, inverse_inertia = 2.5 * inverse_mass / (radius * radius), area = 1.0, time = 0.0;
+};
+
+ilaw::interface friction(double mu) { return create("coulomb", ILAW_DELASSUS_FULL, {{"friction", mu}}); }
+ilaw::interface tie() { return create("tie", ILAW_DELASSUS_FULL); }
+
+// 27 spheres in a cube, one against the next along the axes; `law` between them.
+Scene cube(ilaw::interface law, unsigned seed) {
+  Scene scene(std::move(law), 27);
+  for (int i = 0; i < 27; ++i) {
+    const int at[3] = {i % 3, i / 3 % 3, i / 9};
+    const int stride[3] = {1, 3, 9};
+    for (int c = 0; c < 3; ++c) {
+      std::vector<double> n(3);
+      n[static_cast<std::size_t>(c)] = 1.0;
+      if (at[c] > 0) scene.add(i, i - stride[c], 0.0, n);
+    }
+  }
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (double& x : scene.v) x = uniform(random);
+  for (double& x : scene.w) x = uniform(random);
+  scene.initialise();
+  return scene;
+}
+
+TEST(Coupled, StackAtRestStaysAtRest) {
+  Scene scene(friction(0.3), 100);
+  for (int i = 0; i < 100; ++i) scene.add(i, i - 1, 0.0, {0, 0, 1});
+  scene.initialise();
+  for (int n = 0; n < 20; ++n) {
+    const ilaw_coupled_report report = scene.step(g, 1e-16);
+    ASSERT_LE(scene.largest_velocity(), 1e-12 * g * h)
+        << "step " << n << ", sweeps " << report.sweeps << ", residual " << report.residual;
+    for (std::size_t i = 0; i < 100; ++i)
+      ASSERT_NEAR(scene.impulse[3 * i + 2], (100.0 - static_cast<double>(i)) * g * h / scene.inverse_mass,
+                  1e-12)
+          << "step " << n << ": the weight above contact " << i;
+  }
+}
+
+TEST(Coupled, TiedGrainsBecomeOneBody) {
+  Scene scene = cube(tie(), 3);
+  const double before = scene.kinetic();
+  std::vector<double> momentum(3);
+  for (std::size_t i = 0; i < scene.v.size(); ++i) momentum[i % 3] += scene.v[i];
+  double kinetic = before;
+  for (int n = 0; n < 10; ++n) {
+    const ilaw_coupled_report report = scene.step(0.0, 1e-13);
+    EXPECT_LE(report.residual, 1e-13) << report.sweeps;
+    EXPECT_LE(scene.kinetic(), kinetic * (1.0 + 1e-11)) << "step " << n;
+    kinetic = scene.kinetic();
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    double after = 0.0;
+    for (std::size_t i = c; i < scene.v.size(); i += 3) after += scene.v[i];
+    EXPECT_NEAR(after, momentum[c], 1e-12) << "momentum along " << c;
+  }
+  EXPECT_LE(scene.largest_slip(), 1e-12);
+  EXPECT_GT(kinetic, 0.01 * before) << "what they have as one mechanism stays";
+}
+
+TEST(Coupled, WorkIsTheChangeOfKineticEnergy) {
+  for (const std::uint32_t sweeps : {1U, 4U, 2000U}) {
+    Scene scene = cube(friction(0.4), 5);
+    const double before = scene.kinetic();
+    const ilaw_coupled_report report = scene.step(0.0, 1e-13, sweeps);
+    EXPECT_NEAR(report.work, scene.kinetic() - before, 1e-13 * before) << sweeps;
+    const double parts = report.energy[ILAW_ENERGY_FRICTION] + report.energy[ILAW_ENERGY_IMPACT];
+    if (sweeps > 100) {
+      EXPECT_LE(report.residual, 1e-13) << report.sweeps;
+      EXPECT_NEAR(-report.work, parts, 1e-11 * before);
+    }
+  }
+}
+
+std::vector<double> velocities_after(Scene& scene, double tolerance) {
+  for (int n = 0; n < 3; ++n) scene.step(g, tolerance);
+  std::vector<double> all = scene.v;
+  all.insert(all.end(), scene.w.begin(), scene.w.end());
+  return all;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::fabs(a[i] - b[i]));
+  return largest;
+}
+
+TEST(Coupled, OrderOfContactsDoesNotMatter) {
+  for (const auto& law : {+[] { return friction(0.4); }, +tie}) {
+    Scene forward = cube(law(), 7);
+    Scene shuffled = cube(law(), 7);
+    std::vector<std::size_t> order(shuffled.body.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::shuffle(order.begin(), order.end(), std::mt19937(1));
+    const Scene from = cube(law(), 7);
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      shuffled.body[k] = from.body[order[k]];
+      shuffled.counterpart[k] = from.counterpart[order[k]];
+      for (std::size_t c = 0; c < 3; ++c) {
+        shuffled.normal[3 * k + c] = from.normal[3 * order[k] + c];
+        shuffled.arm[3 * k + c] = from.arm[3 * order[k] + c];
+        shuffled.other_arm[3 * k + c] = from.other_arm[3 * order[k] + c];
+      }
+    }
+    // Few sweeps: not because both have converged.
+    EXPECT_LE(largest_difference(velocities_after(forward, 1e-2), velocities_after(shuffled, 1e-2)), 1e-13)
+        << law().law().id;
+  }
+}
+
+// Two ranks as two threads: bodies 0 to 26 with those of the other as copies behind, each contact on one
+// rank.
+struct Ranks {
+  std::barrier<> meet{2};
+  std::vector<double> posted[2];
+};
+
+struct Rank {
+  Ranks* all;
+  int number;
+  std::vector<std::int32_t> local_of;  // of a body's number
+
+  std::vector<double> other(const double* values, std::int64_t count) {
+    all->posted[number].assign(values, values + count);
+    all->meet.arrive_and_wait();
+    std::vector<double> read = all->posted[1 - number];
+    all->meet.arrive_and_wait();
+    return read;
+  }
+};
+
+ilaw_exchange exchange_of(Rank& rank) {
+  ilaw_exchange exchange{};
+  exchange.struct_size = sizeof exchange;
+  exchange.context = &rank;
+  // Both number all bodies, so that what the other posts has the same bodies; rank 0 is added first on both.
+  exchange.sum_bodies = [](void* context, double* values, std::int64_t components) {
+    Rank& self = *static_cast<Rank*>(context);
+    std::vector<double> global(self.local_of.size() * static_cast<std::size_t>(components));
+    const auto width = static_cast<std::size_t>(components);
+    for (std::size_t i = 0; i < self.local_of.size(); ++i)
+      for (std::size_t c = 0; c < width; ++c)
+        global[i * width + c] = values[static_cast<std::size_t>(self.local_of[i]) * width + c];
+    const std::vector<double> other = self.other(global.data(), static_cast<std::int64_t>(global.size()));
+    for (std::size_t i = 0; i < self.local_of.size(); ++i)
+      for (std::size_t c = 0; c < width; ++c)
+        values[static_cast<std::size_t>(self.local_of[i]) * width + c] =
+            global[i * width + c] + other[i * width + c];
+  };
+  exchange.largest = [](void* context, double* values, std::int64_t count) {
+    const std::vector<double> other = static_cast<Rank*>(context)->other(values, count);
+    for (std::size_t i = 0; i < other.size(); ++i) values[i] = std::max(values[i], other[i]);
+  };
+  exchange.sum = [](void* context, double* values, std::int64_t count) {
+    const std::vector<double> other = static_cast<Rank*>(context)->other(values, count);
+    for (std::size_t i = 0; i < other.size(); ++i) values[i] += other[i];
+  };
+  return exchange;
+}
+
+// The rank's share of a scene: its own bodies first, the contacts whose body it owns.
+void run_rank(Ranks& ranks, int number, const Scene& whole, std::vector<double>& velocities,
+              ilaw_coupled_report& report) {
+  const std::int32_t count = static_cast<std::int32_t>(whole.v.size() / 3), half = 11;
+  Rank rank{&ranks, number, {}};
+  const std::int32_t owned = number == 0 ? half : count - half;
+  for (std::int32_t i = 0; i < count; ++i)
+    rank.local_of.push_back(number == 0 ? i : i < half ? owned + i : i - half);
+  Scene part(friction(0.4), static_cast<std::size_t>(count));
+  for (std::int32_t i = 0; i < count; ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto to = static_cast<std::size_t>(3 * rank.local_of[static_cast<std::size_t>(i)]) + c;
+      part.v[to] = part.v_before[to] = whole.v[static_cast<std::size_t>(3 * i) + c];
+      part.w[to] = part.w_before[to] = whole.w[static_cast<std::size_t>(3 * i) + c];
+    }
+  for (std::size_t k = 0; k < whole.body.size(); ++k)
+    if ((whole.body[k] < half) == (number == 0))
+      part.add(rank.local_of[static_cast<std::size_t>(whole.body[k])],
+               rank.local_of[static_cast<std::size_t>(whole.counterpart[k])], 0.0,
+               {whole.normal[3 * k], whole.normal[3 * k + 1], whole.normal[3 * k + 2]});
+  part.initialise();
+  const ilaw_exchange exchange = exchange_of(rank);
+  ilaw_coupled_options options{};
+  options.tolerance = 1e-3;
+  options.exchange = &exchange;
+  const ilaw_batch batch = part.batch();
+  const ilaw_contacts contacts = part.contacts(batch);
+  const ilaw_contacts* groups[] = {&contacts};
+  ilaw_bodies bodies = part.bodies();
+  bodies.owned_count = owned;
+  report = part.solver.solve(bodies, groups, options);
+  velocities.resize(whole.v.size());
+  for (std::size_t i = 0; i < rank.local_of.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      velocities[3 * i + c] = part.v[3 * static_cast<std::size_t>(rank.local_of[i]) + c];
+}
+
+TEST(Coupled, RanksDoNotMatterButByRounding) {
+  Scene whole = cube(friction(0.4), 11);
+  const Scene start = cube(friction(0.4), 11);
+  const ilaw_coupled_report alone = whole.step(0.0, 1e-3);
+  Ranks ranks;
+  std::vector<double> found[2];
+  ilaw_coupled_report reports[2];
+  std::thread second(run_rank, std::ref(ranks), 1, std::cref(start), std::ref(found[1]),
+                     std::ref(reports[1]));
+  run_rank(ranks, 0, start, found[0], reports[0]);
+  second.join();
+  EXPECT_EQ(found[0], found[1]) << "copies differ from what their owners have";
+  EXPECT_LE(largest_difference(found[0], whole.v), 1e-13);
+  EXPECT_EQ(reports[0].sweeps, alone.sweeps);
+  EXPECT_EQ(reports[1].sweeps, alone.sweeps);
+}
+
+TEST(Coupled, RefusesWhatItCannotSolve) {
+  Scene scene = cube(friction(0.0), 1);
+  const std::vector<double> before = scene.v;
+  scene.counterpart[4] = 27;
+  try {
+    scene.step(0.0, 1e-6);
+    FAIL() << "a body that is not there";
+  } catch (const ilaw::error& error) {
+    EXPECT_STREQ(error.what(), "a contact names a body that is not there");
+  }
+  EXPECT_EQ(scene.v, before);
+  scene.counterpart[4] = scene.body[4];
+  EXPECT_THROW(scene.step(0.0, 1e-6), ilaw::error);
+}
+
+TEST(Coupled, NamesContactsWithBadInputAndSolvesTheOthers) {
+  Scene scene = cube(friction(0.0), 1);
+  scene.gap[5] = std::nan("");
+  const ilaw_coupled_report report = scene.step(0.0, 1e-10);
+  EXPECT_EQ(report.bad_count, 1);
+  EXPECT_EQ(report.bad_group, 0);
+  EXPECT_EQ(report.bad_contact, 5);
+  EXPECT_LE(report.residual, 1e-10);
+  EXPECT_EQ(scene.impulse[15], 0.0);
+}
+
+// tests/hosts/grains.c, a host in C: a thousand grains fall into a box. With 100000 grains, in the release
+// build: grains_c coulomb 100000 600 30
+TEST(Coupled, PileSettlesWithoutSinkingIntoItself) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  FILE* pipe = popen(ILAW_grains_c " coulomb 1000 250 15", "r");
+  double overlap = 1.0, kinetic = 1.0, residual = 1.0;
+  ASSERT_EQ(std::fscanf(pipe, "overlap %lf kinetic %lf residual %lf", &overlap, &kinetic, &residual), 3);
+  pclose(pipe);
+  EXPECT_LE(overlap, 0.01) << "of a diameter";
+  EXPECT_LE(kinetic, 0.01) << "of the energy of the fall";
+}
+
+}  // namespace
