@@ -3,7 +3,8 @@
 # there. Usage: host_mock/setup.sh [tests|ci|results], for host_mock/demo.sh without.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev gnuplot-nox libvtk9-dev)
+packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libtinyxml2-dev gnuplot-nox
+          libvtk9-dev)
 for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsiconos-numerics-dev qemu-user
            dpkg-dev pkgconf python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv
            python3-matplotlib)

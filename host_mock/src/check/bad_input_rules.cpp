@@ -1,0 +1,224 @@
+// Rules: bad input at a node is contained there.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace ilaw::check {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+const double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t spoilt = 5;
+
+struct Bad {
+  const char* name;
+  std::vector<double> Inputs::*array;
+  double value;
+  std::uint32_t input;  // the law must read it; 0: all do
+  bool every_component;
+};
+
+const Bad bad_inputs[] = {{"v_free NaN", &Inputs::v_free, nan, 0, false},
+                          {"v_free infinite", &Inputs::v_free, -infinity, 0, false},
+                          {"delassus 0", &Inputs::delassus, 0.0, 0, true},
+                          {"delassus negative", &Inputs::delassus, -1.0, 0, true},
+                          {"delassus NaN", &Inputs::delassus, nan, 0, false},
+                          {"delassus infinite", &Inputs::delassus, infinity, 0, false},
+                          {"gap NaN", &Inputs::gap, nan, ILAW_INPUT_GAP, false},
+                          {"gap infinite", &Inputs::gap, -infinity, ILAW_INPUT_GAP, false},
+                          {"gap_offset NaN", &Inputs::gap_offset, nan, ILAW_INPUT_GAP, false},
+                          {"v_previous NaN", &Inputs::v_previous, nan, ILAW_INPUT_V_PREVIOUS, false},
+                          {"area NaN", &Inputs::area, nan, ILAW_INPUT_AREA, false},
+                          {"area negative", &Inputs::area, -1.0, ILAW_INPUT_AREA, false},
+                          {"normal NaN", &Inputs::normal, nan, ILAW_INPUT_NORMAL, false},
+                          {"normal 0", &Inputs::normal, 0.0, ILAW_INPUT_NORMAL, true},
+                          {"normal no unit vector", &Inputs::normal, 3.0, ILAW_INPUT_NORMAL, true},
+                          {"tangent NaN", &Inputs::tangent, nan, ILAW_INPUT_TANGENT, false},
+                          {"tangent 0", &Inputs::tangent, 0.0, ILAW_INPUT_TANGENT, true}};
+
+void spoil(Inputs& in, const Bad& bad) {
+  std::vector<double>& values = in.*bad.array;
+  const std::size_t width = values.size() / in.count;
+  for (std::size_t c = 0; c < (bad.every_component ? width : 1); ++c) values[spoilt * width + c] = bad.value;
+}
+
+// Two steps, the second with something spoilt; calls look with the results without and with it.
+struct Spoilt {
+  const Trial& trial;
+  const Inputs& in;
+  const std::vector<double>& state;  // before the step
+  const Results &good, &bad;
+  std::string name;
+};
+
+template <class Look>
+void for_bad_inputs(const Subject& subject, Look look) {
+  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+    for (const bool in_place : {false, true}) {
+      const Script script = draw_script(trial, draw, {11, 2}, true);
+      Heap heap;
+      Arrays arrays(trial, script[0], {.in_place = in_place}, heap);
+      arrays.initialise(script[0]);
+      arrays.evaluate(script[0]);
+      const std::vector<double> state = arrays.state();
+      const Results good = arrays.evaluate(script[1]);
+      if (good.code != ILAW_OK) continue;
+      for (const Bad& bad : bad_inputs) {
+        if ((script[1].*bad.array).empty() || (bad.input && !trial.reads(bad.input))) continue;
+        Inputs in = script[1];
+        spoil(in, bad);
+        arrays.set_state(state);
+        const Results found = arrays.evaluate(in);
+        look(Spoilt{trial, in, state, good, found, bad.name});
+      }
+    }
+    return true;
+  });
+}
+
+void reported(const Subject& subject) {
+  for_bad_inputs(subject, [](const Spoilt& s) {
+    const ilaw_report& said = s.bad.report;
+    if (s.bad.code != ILAW_BAD_NODES || said.bad_count != 1 || said.first_bad_node != spoilt || !said.reason)
+      fail(s.trial, s.in, spoilt,
+           s.name + ": code " + std::to_string(s.bad.code) + ", bad_count " + std::to_string(said.bad_count) +
+               ", first_bad_node " + std::to_string(said.first_bad_node) + (said.reason ? "" : ", no reason"),
+           "ILAW_BAD_NODES (1), 1, node 5 and a reason");
+  });
+}
+
+// The node number is that of the arrays, without index_base.
+void reported_in_lists(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {6, 1}, true);
+    Inputs in = script[0];
+    Heap heap;
+    Arrays arrays(trial, in, {.list = List::of_32_bits, .index_base = 1}, heap);
+    arrays.initialise(in);
+    arrays.evaluate(in);
+    in.v_free[2 * in.dimension] = in.v_free[4 * in.dimension] = nan;
+    arrays.initialise(script[0]);
+    const Results found = arrays.evaluate(in);
+    // Listed in reverse: node 2 of the script stands third, at place 3.
+    if (found.report.bad_count != 2 || found.report.first_bad_node != 3)
+      fail(trial, in, 2,
+           "bad_count " + std::to_string(found.report.bad_count) + ", first_bad_node " +
+               std::to_string(found.report.first_bad_node),
+           "2 and 3: index[2] - index_base");
+    return true;
+  });
+}
+
+bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+void at_the_node(const Subject& subject) {
+  for_bad_inputs(subject, [](const Spoilt& s) {
+    const std::size_t d = s.in.dimension, size = s.trial.info.state_size;
+    const auto say = [&](const std::string& seen, const std::string& allowed) {
+      fail(s.trial, s.in, spoilt, s.name + ": " + seen, allowed);
+    };
+    for (std::size_t c = 0; c < d; ++c)
+      if (s.bad.impulse[spoilt * d + c] != 0.0) say("impulse " + text_of(s.bad.impulse[spoilt * d + c]), "0");
+    for (std::size_t c = 0; c < size; ++c)
+      if (!same_bits(s.bad.state[spoilt * size + c], s.state[spoilt * size + c]))
+        say("state_out " + text_of(s.bad.state[spoilt * size + c]),
+            "state_in, " + text_of(s.state[spoilt * size + c]));
+    if (!s.bad.status.empty() && s.bad.status[spoilt] != ILAW_BAD_INPUT)
+      say("status " + std::to_string(s.bad.status[spoilt]), "ILAW_BAD_INPUT (7)");
+    for (std::size_t c = 0; !s.bad.energy.empty() && c < ILAW_ENERGY_COUNT; ++c)
+      if (s.bad.energy[spoilt * ILAW_ENERGY_COUNT + c] != 0.0) say("an energy other than 0", "0");
+    for (std::size_t c = 0; !s.bad.velocity.empty() && c < d; ++c) {
+      const double v = s.bad.velocity[spoilt * d + c], expected = s.in.v_free[spoilt * d + c];
+      if (!(v == expected || (std::isnan(v) && std::isnan(expected))))
+        say("velocity " + text_of(v), "v_free");
+    }
+  });
+}
+
+void elsewhere(const Subject& subject) {
+  for_bad_inputs(subject, [](const Spoilt& s) {
+    Results bad = s.bad, good = s.good;
+    const auto forget = [](Results& results) {
+      for (std::vector<double>* values :
+           {&results.impulse, &results.state, &results.velocity, &results.energy}) {
+        const std::size_t width = values->size() / results.nodes;
+        for (std::size_t c = 0; c < width; ++c) (*values)[spoilt * width + c] = 0.0;
+      }
+      if (!results.status.empty()) results.status[spoilt] = 0;
+      results.code = ILAW_OK;
+    };
+    forget(bad);
+    forget(good);
+    if (const auto differs = difference(good, bad))
+      fail(s.trial, s.in, differs->node, s.name + " at node 5: " + differs->text, "as without it");
+  });
+}
+
+// A full H with a negative eigenvalue and a positive diagonal.
+void indefinite(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (trial.setup.form != ILAW_DELASSUS_FULL || trial.setup.dimension == 1) return false;
+        Inputs in = draw_script(trial, draw, {11, 1}, true)[0];
+        Heap heap;
+        Arrays arrays(trial, in, {}, heap);
+        arrays.initialise(in);
+        if (arrays.evaluate(in).code != ILAW_OK) return false;
+        in.delassus[spoilt * in.form_width + in.dimension] = 5.0;
+        arrays.initialise(in);
+        const Results found = arrays.evaluate(in);
+        if (found.code != ILAW_BAD_NODES || found.report.first_bad_node != spoilt)
+          fail(trial, in, spoilt, "code " + std::to_string(found.code), "ILAW_BAD_NODES (1) at node 5");
+        return true;
+      },
+      "the law serves no full H");
+}
+
+// Numbers as large and small as there are: finite impulses, or bad input.
+void extremes(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    Script script = draw_script(trial, draw, {24, 2});
+    for (Inputs& in : script)
+      for (std::size_t i = 0; i < in.count; ++i) {
+        const double size = std::pow(10.0, draw.within(-320.0, 308.0));
+        for (std::size_t c = 0; c < in.dimension; ++c) in.v_free[i * in.dimension + c] *= size;
+        if (i % 3 == 0) in.gap[i] *= std::pow(10.0, draw.within(-300.0, 300.0));
+        const double scale = std::pow(10.0, draw.within(-200.0, 200.0));
+        for (std::size_t c = 0; i % 2 == 0 && c < in.form_width; ++c)
+          in.delassus[i * in.form_width + c] *= scale;
+      }
+    const std::vector<Results> results = run(trial, script);
+    for (std::size_t k = 0; k < script.size(); ++k)
+      for (std::size_t at = 0; at < results[k].impulse.size(); ++at)
+        if (!std::isfinite(results[k].impulse[at]))
+          fail(trial, script[k], at / script[k].dimension, "impulse " + text_of(results[k].impulse[at]),
+               "finite, or bad input with 0");
+    return true;
+  });
+}
+
+}  // namespace
+
+std::vector<Rule> bad_input_rules() {
+  constexpr const char* source = "ilaw.h, ilaw_law.evaluate";
+  return {{"bad-input-report", "Bad input is reported: the code, how many nodes, the first and why.",
+           "ilaw.h, ilaw_report", Needs::motion, reported},
+          {"bad-input-list", "The first bad node is named by its number, without index_base.",
+           "ilaw.h, ilaw_report.first_bad_node", Needs::motion, reported_in_lists},
+          {"bad-input-node",
+           "A node with bad input gets r = 0, state_out = state_in, status ILAW_BAD_INPUT, energy "
+           "0 and velocity = v_free.",
+           source, Needs::motion, at_the_node},
+          {"bad-input-others", "Bad input at a node changes no bit of the others.", source, Needs::motion,
+           elsewhere},
+          {"bad-input-definite", "An H that is not positive definite is bad input.",
+           "ilaw.h, ilaw_batch.delassus", Needs::motion, indefinite},
+          {"impulse-finite", "An impulse is finite, whatever comes in.", "abi.md, Errors", Needs::motion,
+           extremes}};
+}
+
+}  // namespace ilaw::check

@@ -1,0 +1,248 @@
+// Rules: what evaluate and initialise return, and which calls they refuse.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+
+#include "check/sandbox.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace ilaw::check {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Plain motions and gaps, also large and tiny ones.
+void returns(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    for (const bool isotropic : {true, false}) {
+      const Script script = draw_script(trial, draw, {}, isotropic);
+      for (const Results& found : run(trial, script))
+        if (found.code != ILAW_OK && found.code != ILAW_BAD_NODES)
+          fail(trial, script[0], 0,
+               "evaluate returned " + std::to_string(found.code) + ": " +
+                   (found.report.reason ? found.report.reason : "no reason"),
+               "ILAW_OK");
+    }
+    return true;
+  });
+}
+
+void served(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {}, true);
+    const std::vector<Results> results = run(trial, script);
+    for (std::size_t k = 0; k < script.size(); ++k)
+      if (results[k].code != ILAW_OK)
+        fail(trial, script[k],
+             static_cast<std::size_t>(std::max<std::int64_t>(0, results[k].report.first_bad_node)),
+             "evaluate returned " + std::to_string(results[k].code) + ": " +
+                 (results[k].report.reason ? results[k].report.reason : "no reason"),
+             "ILAW_OK");
+    return true;
+  });
+}
+
+struct Wrong {
+  const char* what;
+  void (*spoil)(ilaw_batch& batch);
+  bool for_initialise;
+};
+
+std::int32_t list_below[] = {1, 0};
+std::int64_t list_negative[] = {0, -1};
+std::int32_t list_good[] = {0, 1};
+std::int64_t list_good_64[] = {0, 1};
+
+const Wrong wrong_calls[] = {
+    {"v_free null", [](ilaw_batch& b) { b.v_free.values = nullptr; }, false},
+    {"delassus null", [](ilaw_batch& b) { b.delassus.values = nullptr; }, false},
+    {"impulse null", [](ilaw_batch& b) { b.impulse.values = nullptr; }, false},
+    {"node_count -1", [](ilaw_batch& b) { b.node_count = -1; }, true},
+    {"velocity_step 0", [](ilaw_batch& b) { b.velocity_step = 0.0; }, false},
+    {"velocity_step NaN", [](ilaw_batch& b) { b.velocity_step = std::nan(""); }, false},
+    {"position_step -1", [](ilaw_batch& b) { b.position_step = -1.0; }, false},
+    {"position_step inf", [](ilaw_batch& b) { b.position_step = infinity; }, false},
+    {"time NaN", [](ilaw_batch& b) { b.time = std::nan(""); }, true},
+    {"index_base 2", [](ilaw_batch& b) { b.index_base = 2; }, true},
+    {"a node below index_base",
+     [](ilaw_batch& b) {
+       b.index = list_below;
+       b.index_base = 1;
+     },
+     true},
+    {"a negative node", [](ilaw_batch& b) { b.index64 = list_negative; }, true},
+    {"index and index64",
+     [](ilaw_batch& b) {
+       b.index = list_good;
+       b.index64 = list_good_64;
+     },
+     true},
+    {"an impulse with node_stride 0", [](ilaw_batch& b) { b.impulse.node_stride = 0; }, false}};
+
+// Calls that must return a code and write nothing.
+void expect_refused(const Trial& trial, Arrays& arrays, const Inputs& in, const Results& before,
+                    const Wrong& wrong, std::int32_t code) {
+  for (const bool initial : {false, true}) {
+    if (initial && !wrong.for_initialise) continue;
+    ilaw_batch batch = arrays.batch();
+    wrong.spoil(batch);
+    const std::vector<double> state = arrays.state();
+    ilaw_report report{};
+    report.struct_size = sizeof report;
+    set_setting(trial.text() + "; " + wrong.what);
+    const std::int32_t found =
+        initial ? trial.instance.initialise(batch, &report) : trial.instance.evaluate(batch, &report);
+    const std::string call =
+        std::string(initial ? "initialise" : "evaluate") + ", given " + wrong.what + ", ";
+    if (found != code)
+      fail(trial, in, 0, call + "returned " + std::to_string(found), "code " + std::to_string(code));
+    if (arrays.state() != state || arrays.impulses() != before.impulse)
+      fail(trial, in, 0, call + "wrote results", "nothing written");
+    if (!report.reason) fail(trial, in, 0, call + "gave no reason", "a reason in the report");
+  }
+}
+
+template <class Look>
+void with_two_nodes(const Subject& subject, Look look) {
+  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {2, 1}, true);
+    Heap heap;
+    Arrays arrays(trial, script[0], {}, heap);
+    arrays.initialise(script[0]);
+    const Results before = arrays.evaluate(script[0]);
+    look(trial, arrays, script[0], before);
+    return true;
+  });
+}
+
+void calls_refused(const Subject& subject) {
+  with_two_nodes(subject, [](const Trial& trial, Arrays& arrays, const Inputs& in, const Results& before) {
+    for (const Wrong& wrong : wrong_calls)
+      expect_refused(trial, arrays, in, before, wrong, ILAW_INVALID_ARGUMENT);
+    struct Needed {
+      std::uint32_t input;
+      Wrong wrong;
+    };
+    const Needed needed[] = {
+        {ILAW_INPUT_GAP, {"gap null", [](ilaw_batch& b) { b.gap.values = nullptr; }, false}},
+        {ILAW_INPUT_V_PREVIOUS,
+         {"v_previous null", [](ilaw_batch& b) { b.v_previous.values = nullptr; }, false}},
+        {ILAW_INPUT_AREA, {"area null", [](ilaw_batch& b) { b.area.values = nullptr; }, false}},
+        {ILAW_INPUT_NORMAL, {"normal null", [](ilaw_batch& b) { b.normal.values = nullptr; }, false}},
+        {ILAW_INPUT_TANGENT, {"tangent null", [](ilaw_batch& b) { b.tangent.values = nullptr; }, false}}};
+    for (const Needed& one : needed)
+      if (trial.reads(one.input)) expect_refused(trial, arrays, in, before, one.wrong, ILAW_INVALID_ARGUMENT);
+    if (trial.info.state_size > 0)
+      expect_refused(trial, arrays, in, before,
+                     {"state_in null", [](ilaw_batch& b) { b.state_in.values = nullptr; }, false},
+                     ILAW_INVALID_ARGUMENT);
+  });
+}
+
+void batch_flags(const Subject& subject) {
+  with_two_nodes(subject, [](const Trial& trial, Arrays& arrays, const Inputs& in, const Results& before) {
+    for (const Wrong& wrong :
+         {Wrong{"bit 0 of flags", [](ilaw_batch& b) { b.flags = 1; }, true},
+          Wrong{"bit 63 of flags", [](ilaw_batch& b) { b.flags = std::uint64_t{1} << 63; }, true}})
+      expect_refused(trial, arrays, in, before, wrong, ILAW_UNSUPPORTED);
+  });
+}
+
+void empty_batch(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw&) {
+    ilaw_batch batch{};
+    batch.struct_size = sizeof batch;
+    batch.velocity_step = batch.position_step = 1e-3;
+    ilaw_report report{};
+    report.struct_size = sizeof report;
+    for (const std::int32_t code :
+         {trial.instance.initialise(batch, &report), trial.instance.evaluate(batch, &report)})
+      if (code != ILAW_OK)
+        throw Finding{"a batch of no nodes returned " + std::to_string(code), "ILAW_OK", trial.text(), {}};
+    return true;
+  });
+}
+
+void report_null(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {3, 1});
+    Heap heap;
+    Arrays arrays(trial, script[0], {}, heap);
+    arrays.initialise(script[0]);
+    arrays.evaluate(script[0]);
+    set_setting(trial.text() + "; report null");
+    const std::int32_t initial = trial.instance.initialise(arrays.batch(), nullptr);
+    const std::int32_t code = trial.instance.evaluate(arrays.batch(), nullptr);
+    if (initial < 0 || code < 0)
+      fail(trial, script[0], 0, "without a report evaluate returned " + std::to_string(code), "as with one");
+    return true;
+  });
+}
+
+void report_clean(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {5, 2}, true);
+    for (const Results& found : run(trial, script)) {
+      if (found.code != ILAW_OK) continue;
+      const ilaw_report& said = found.report;
+      if (said.bad_count != 0 || said.first_bad_node != -1 || said.reason)
+        fail(trial, script[0], 0,
+             "bad_count " + std::to_string(said.bad_count) + ", first_bad_node " +
+                 std::to_string(said.first_bad_node) + (said.reason ? ", a reason" : "") + " beside ILAW_OK",
+             "0, -1 and no reason");
+      if (!(said.stable_velocity_step >= 0.0))
+        fail(trial, script[0], 0, "stable_velocity_step " + text_of(said.stable_velocity_step),
+             "a number above 0, infinity, or 0 where the law does not say");
+    }
+    return true;
+  });
+}
+
+// The largest stable step of a batch is the smallest of its nodes.
+void stable_step(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        const Script script = draw_script(trial, draw, {5, 1}, true);
+        const double all = run(trial, script)[0].report.stable_velocity_step;
+        if (all == 0.0) return false;
+        double least = infinity;
+        for (std::size_t i = 0; i < script[0].count; ++i) {
+          Layout one;
+          one.nodes = {i};
+          least = std::fmin(least, run(trial, script, one)[0].report.stable_velocity_step);
+        }
+        if (all != least)
+          fail(trial, script[0], 0, "stable_velocity_step " + text_of(all),
+               "the smallest of its nodes, " + text_of(least));
+        return true;
+      },
+      "the law does not say its stable step");
+}
+
+}  // namespace
+
+std::vector<Rule> call_rules() {
+  return {{returns_id, "Every function returns: none crashes, hangs, throws, exits or raises a signal.",
+           "ilaw.h, Conventions", Needs::instance, returns},
+          {"good-input-served", "A node whose inputs are sound, with an isotropic H, is evaluated.",
+           "ilaw.h, ilaw_law.evaluate", Needs::motion, served},
+          {"call-refused",
+           "A call that is wrong as a whole returns ILAW_INVALID_ARGUMENT, a reason, and writes nothing.",
+           "ilaw.h, ILAW_INVALID_ARGUMENT", Needs::motion, calls_refused},
+          {"batch-flags",
+           "A bit of the batch's flags that the law does not know is refused, and nothing written.",
+           "ilaw.h, ilaw_batch.flags", Needs::motion, batch_flags},
+          {"empty-batch", "A batch of no nodes is done, whatever its arrays.",
+           "ilaw.h, ilaw_batch.node_count", Needs::motion, empty_batch},
+          {"report-null", "The report may be null.", "ilaw.h, ilaw_law.evaluate", Needs::motion, report_null},
+          {"report-clean", "Where nothing is wrong the report says so: 0 bad nodes, the first -1, no reason.",
+           "ilaw.h, ilaw_report", Needs::motion, report_clean},
+          {"stable-step", "The stable step of a batch is the smallest of its nodes.",
+           "ilaw.h, ilaw_report.stable_velocity_step", Needs::motion, stable_step}};
+}
+
+}  // namespace ilaw::check

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/check.hpp"
+
+#include "check/rule.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+namespace ilaw::check {
+namespace {
+
+using nlohmann::json;
+
+// What a child process hands back: numbers as text, which keeps all of them.
+std::string written(const Finding& finding) {
+  json arrays = json::array();
+  for (const NamedArray& array : finding.arrays) {
+    json values = json::array();
+    for (const double value : array.values) values.push_back(text_of(value));
+    arrays.push_back({array.name, values});
+  }
+  return json{
+      {"seen", finding.seen}, {"allowed", finding.allowed}, {"setting", finding.setting}, {"arrays", arrays}}
+      .dump(-1, ' ', true, json::error_handler_t::replace);
+}
+
+Finding read_finding(const json& text) {
+  Finding finding{text.at("seen"), text.at("allowed"), text.at("setting"), {}};
+  for (const json& array : text.at("arrays")) {
+    NamedArray read{array.at(0), {}};
+    for (const json& value : array.at(1))
+      read.values.push_back(std::strtod(value.get<std::string>().c_str(), nullptr));
+    finding.arrays.push_back(read);
+  }
+  return finding;
+}
+
+// In the child. Empty where the rule holds.
+std::string judged(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed) {
+  try {
+    calling("the loader");
+    const ilaw::library library(file);
+    rule.judge({library, *library.law(law), seed});
+    return "";
+  } catch (const Finding& finding) {
+    return written(finding);
+  } catch (const NotJudged& reason) {
+    return json{{"why", reason.why}}.dump();
+  } catch (const ilaw::error& error) {
+    return written({error.what(), "a library that opens again", {}, {}});
+  }
+}
+
+Outcome outcome_of(const std::string& law, const Rule& rule, const Ending& ending) {
+  Outcome outcome{law, rule.id, Verdict::passed, {}, {}};
+  if (!ending.returned) {
+    outcome.verdict = Verdict::broken;
+    const std::string call = ending.call.empty() ? "the library" : ending.call;
+    outcome.finding = {call + " " + ending.how, "that it returns", ending.setting, {}};
+  } else if (!ending.result.empty()) {
+    const json text = json::parse(ending.result);
+    outcome.verdict = text.contains("why") ? Verdict::not_judged : Verdict::broken;
+    if (text.contains("why"))
+      outcome.why = text.at("why");
+    else
+      outcome.finding = read_finding(text);
+    if (outcome.verdict == Verdict::broken && outcome.finding.setting.empty())
+      outcome.finding.setting = ending.setting;
+  }
+  if (outcome.verdict == Verdict::broken && !ending.printed.empty())
+    outcome.finding.seen += "; printed: " + ending.printed;
+  return outcome;
+}
+
+Outcome judge_apart(const std::string& file, const std::string& law, const Rule& rule,
+                    const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Ending ending = run_apart(options.limits, [&] { return judged(file, law, rule, options.seed); });
+  Outcome outcome = outcome_of(law, rule, ending);
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return outcome;
+}
+
+bool wanted(const Rule& rule, const Options& options) {
+  return options.only.empty() ||
+         std::find(options.only.begin(), options.only.end(), rule.id) != options.only.end();
+}
+
+const Rule& rule_of(const char* id) {
+  return *std::find_if(rules().begin(), rules().end(),
+                       [id](const Rule& rule) { return std::strcmp(rule.id, id) == 0; });
+}
+
+// A law's rules, those first that others need.
+class LawCheck {
+ public:
+  LawCheck(std::string file, std::string law, const Options& options, std::vector<Outcome>& outcomes)
+      : file_(std::move(file)), law_(std::move(law)), options_(options), outcomes_(outcomes) {}
+
+  void run() {
+    holds(creates_id, creates_);
+    if (creates_) holds(returns_id, returns_);
+    for (const Rule& rule : rules()) {
+      if (!wanted(rule, options_) || is_basic(rule)) continue;
+      const char* lacking = rule.needs >= Needs::instance && !creates_ ? creates_id
+                            : rule.needs == Needs::motion && !returns_ ? returns_id
+                                                                       : nullptr;
+      outcomes_.push_back(
+          lacking ? Outcome{law_, rule.id, Verdict::not_judged, {}, std::string("needs ") + lacking}
+                  : judge_apart(file_, law_, rule, options_));
+    }
+  }
+
+ private:
+  static bool is_basic(const Rule& rule) {
+    return rule.id == std::string(opens_id) || rule.id == std::string(creates_id) ||
+           rule.id == std::string(returns_id);
+  }
+  // Kept in the outcomes where it was asked for, or is why others are not judged.
+  void holds(const char* id, bool& found) {
+    const Outcome outcome = judge_apart(file_, law_, rule_of(id), options_);
+    found = outcome.verdict != Verdict::broken;
+    if (wanted(rule_of(id), options_) || !found) outcomes_.push_back(outcome);
+  }
+
+  std::string file_, law_;
+  const Options& options_;
+  std::vector<Outcome>& outcomes_;
+  bool creates_ = false, returns_ = false;
+};
+
+// The library's path and its laws, as a child process found them.
+struct Opened {
+  std::string path;
+  std::vector<std::string> laws;
+};
+
+std::string describe(const std::string& name_or_path) {
+  try {
+    calling("the loader");
+    const ilaw::library library(name_or_path);
+    json laws = json::array();
+    for (std::uint32_t k = 0; k < library.plugin().law_count; ++k)
+      laws.push_back(library.plugin().laws[k]->id);
+    return json{{"path", library.path()}, {"laws", laws}}.dump();
+  } catch (const ilaw::error& error) {
+    if (error.code() == ILAW_NOT_FOUND) return json{{"missing", error.what()}}.dump();
+    return written({error.what(), "a library that the loader opens", {}, {}});
+  }
+}
+
+Opened open(const std::string& name_or_path, const Options& options, std::vector<Outcome>& outcomes) {
+  const Rule& rule = rule_of(opens_id);
+  const Ending ending = run_apart(options.limits, [&] { return describe(name_or_path); });
+  const json text = ending.returned ? json::parse(ending.result) : json::object();
+  if (text.contains("missing")) throw UsageError(text.at("missing").get<std::string>());
+  if (!text.contains("laws")) {
+    outcomes.push_back(outcome_of("", rule, ending));
+    return {};
+  }
+  if (wanted(rule, options)) outcomes.push_back({"", rule.id, Verdict::passed, {}, {}});
+  return {text.at("path"), text.at("laws")};
+}
+
+void check_usage(const Options& options) {
+  for (const std::string& id : options.only)
+    if (std::none_of(rules().begin(), rules().end(), [&](const Rule& rule) { return id == rule.id; }))
+      throw UsageError("found rule '" + id + "', expected one that `ilaw check --rules` lists");
+}
+
+}  // namespace
+
+std::vector<Outcome> check(const std::string& name_or_path, const Options& options) {
+  check_usage(options);
+  std::vector<Outcome> outcomes;
+  const Opened opened = open(name_or_path, options, outcomes);
+  if (!options.law.empty() && !opened.path.empty() &&
+      std::find(opened.laws.begin(), opened.laws.end(), options.law) == opened.laws.end())
+    throw UsageError("found law '" + options.law + "', expected one of " + opened.path);
+  for (const std::string& law : opened.laws)
+    if (options.law.empty() || options.law == law) LawCheck(opened.path, law, options, outcomes).run();
+  return outcomes;
+}
+
+}  // namespace ilaw::check

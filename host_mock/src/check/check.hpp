@@ -1,0 +1,40 @@
+// check.hpp - all rules over all laws of a library, each in a process of its own.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "check/finding.hpp"
+#include "check/sandbox.hpp"
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace ilaw::check {
+
+struct Options {
+  std::string law;                // empty: all of the library
+  std::vector<std::string> only;  // ids of rules; empty: all
+  std::uint64_t seed = 1;
+  Limits limits;  // of a rule and a law
+};
+
+enum class Verdict { passed, broken, not_judged };
+
+struct Outcome {
+  std::string law, rule;  // law empty: of the library
+  Verdict verdict;
+  Finding finding;  // where it is broken
+  std::string why;  // where it is not judged
+  double seconds = 0.0;
+};
+
+// The library is not there, or has no such law; there is no such rule.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+std::vector<Outcome> check(const std::string& name_or_path, const Options& options);
+
+}  // namespace ilaw::check

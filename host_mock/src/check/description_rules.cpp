@@ -1,0 +1,249 @@
+// Rules: what a library and its instances say of themselves.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+#include "check/sandbox.hpp"
+#include "check/units.hpp"
+
+#include <dlfcn.h>
+
+#include <malloc.h>
+#include <algorithm>
+#include <cstring>
+
+namespace ilaw::check {
+namespace {
+
+void opens(const Subject&) {}  // nobody would come here else
+
+std::string all_of(const ilaw_law& law) {
+  std::string text = std::string(law.id) + "|" + law.title + "|" + law.doc;
+  for (const std::uint32_t number :
+       {law.dimensions, law.delassus_forms, law.inputs, law.outputs, law.capabilities, law.reference_count,
+        law.parameter_count, law.state_variable_count})
+    text += "|" + std::to_string(number);
+  for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
+    const ilaw_parameter& p = *law.parameters[k];
+    text += std::string("|") + p.name + "|" + p.symbol + "|" + p.unit + "|" + p.doc;
+    for (const double number : {p.minimum, p.maximum, p.default_value}) text += "|" + text_of(number);
+    for (const std::uint32_t number :
+         {p.kind, p.required, p.minimum_excluded, p.infinity_allowed, p.may_be, p.choice_count})
+      text += "|" + std::to_string(number);
+    for (std::uint32_t c = 0; c < p.choice_count; ++c) text += std::string("|") + p.choices[c];
+  }
+  return text;
+}
+
+const ilaw_plugin* entry_of(const Subject& subject) {
+  void* handle = dlopen(subject.library.path().c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
+  void* symbol = handle ? dlsym(handle, ILAW_ENTRY_NAME) : nullptr;
+  if (!symbol) throw NotJudged{"the entry is not found again"};
+  ilaw_entry_function entry = nullptr;
+  std::memcpy(&entry, &symbol, sizeof entry);
+  calling(ILAW_ENTRY_NAME);
+  const ilaw_plugin* plugin = entry();
+  dlclose(handle);
+  return plugin;
+}
+
+const ilaw_law& law_of(const ilaw_plugin& plugin, const Subject& subject) {
+  for (std::uint32_t k = 0; k < plugin.law_count; ++k)
+    if (std::strcmp(plugin.laws[k]->id, subject.law.id) == 0) return *plugin.laws[k];
+  throw Finding{
+      "the entry describes no law '" + std::string(subject.law.id) + "' any more", "the same laws", {}, {}};
+}
+
+void description_constant(const Subject& subject) {
+  const ilaw_plugin* const first = entry_of(subject);
+  const std::string before = all_of(law_of(*first, subject));
+  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+    run(trial, draw_script(trial, draw));
+    return true;
+  });
+  const ilaw_plugin* const second = entry_of(subject);
+  if (first != second) throw Finding{"the entry returned another pointer", "the same pointer", {}, {}};
+  const std::string after = all_of(law_of(*second, subject));
+  if (before != after)
+    throw Finding{"the description was " + before + " and became " + after, "the same description", {}, {}};
+}
+
+void parameter_units(const Subject& subject) {
+  std::vector<std::string> symbols;
+  for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k)
+    symbols.emplace_back(subject.law.parameters[k]->symbol);
+  for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k) {
+    const ilaw_parameter& p = *subject.law.parameters[k];
+    if (p.kind != ILAW_PARAMETER_CHOICE && !parse_unit(p.unit, symbols))
+      throw Finding{"parameter '" + std::string(p.name) + "' has the unit \"" + p.unit + "\"",
+                    "factors kg, m, s, N, J, Pa, Hz, W, K, rad, 1, with . and /, powers m^2 or m^p of a "
+                    "parameter's symbol",
+                    {},
+                    {}};
+  }
+}
+
+std::string bits(std::uint32_t mask) { return std::to_string(mask); }
+
+void info_within_description(const Subject& subject) {
+  for_trials(subject, [&](const Trial& trial, Draw&) {
+    const ilaw_instance_info& info = trial.info;
+    const std::uint32_t frame = ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT;
+    if (const std::uint32_t more =
+            (info.inputs | info.energy_inputs) & ~(trial.law.inputs | frame | ILAW_INPUT_V_PREVIOUS))
+      throw Finding{"the instance reads inputs " + bits(more),
+                    "inputs of the law, " + bits(trial.law.inputs),
+                    trial.text(),
+                    {}};
+    if (info.inputs & ~(trial.law.inputs | frame))
+      throw Finding{"the instance reads inputs " + bits(info.inputs),
+                    "inputs of the law, " + bits(trial.law.inputs),
+                    trial.text(),
+                    {}};
+    // A frame in the state follows the normal wherever the node is.
+    const std::uint32_t may = trial.law.capabilities | ILAW_CAN_ACT_AT_DISTANCE;
+    if (const std::uint32_t more = info.capabilities & ~may)
+      throw Finding{"the instance has capabilities " + bits(more),
+                    "capabilities of the law, " + bits(trial.law.capabilities),
+                    trial.text(),
+                    {}};
+    return true;
+  });
+}
+
+void info_frame(const Subject& subject) {
+  for_trials(subject, [&](const Trial& trial, Draw&) {
+    const bool normal = trial.reads(ILAW_INPUT_NORMAL), tangent = trial.reads(ILAW_INPUT_TANGENT);
+    if (normal != trial.setup.global())
+      throw Finding{
+          normal ? "ILAW_INPUT_NORMAL in the local frame" : "no ILAW_INPUT_NORMAL in the global frame",
+          "ILAW_INPUT_NORMAL always, and only, in the global frame",
+          trial.text(),
+          {}};
+    if (tangent && !trial.setup.tangent_given)
+      throw Finding{
+          "ILAW_INPUT_TANGENT without tangents", "create refuses where it needs tangents", trial.text(), {}};
+    return true;
+  });
+}
+
+std::string all_of(const ilaw_instance_info& info) {
+  std::string text;
+  for (const std::uint64_t number :
+       {std::uint64_t{info.inputs}, std::uint64_t{info.energy_inputs}, info.state_size,
+        std::uint64_t{info.capabilities}, std::uint64_t{info.state_version}})
+    text += std::to_string(number) + " ";
+  for (std::uint32_t k = 0; k < info.state_variable_count; ++k)
+    text += std::string(info.state_variables[k]->name) + ":" +
+            std::to_string(info.state_variables[k]->count) + " ";
+  for (std::uint32_t k = 0; k < info.per_node_parameter_count; ++k)
+    text += std::string(info.per_node_parameters[k]) + " ";
+  return text;
+}
+
+void info_same(const Subject& subject) {
+  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+    const std::string first = all_of(trial.info);
+    run(trial, draw_script(trial, draw));
+    const Trial other(trial.law, trial.setup, trial.values);
+    for (const std::string& again : {all_of(trial.instance.info()), all_of(other.info)})
+      if (again != first)
+        throw Finding{"info says " + again, "what it said first, " + first, trial.text(), {}};
+    return true;
+  });
+}
+
+// Variables that this dimension and these parameters leave without doubles may be missing.
+void state_described(const Subject& subject) {
+  for_trials(subject, [&](const Trial& trial, Draw&) {
+    for (std::uint32_t k = 0; k < trial.info.state_variable_count; ++k) {
+      const ilaw_state_variable& v = *trial.info.state_variables[k];
+      const auto* const end = trial.law.state_variables + trial.law.state_variable_count;
+      const bool found = std::any_of(trial.law.state_variables, end, [&](const ilaw_state_variable* known) {
+        return std::strcmp(known->name, v.name) == 0 && known->kind == v.kind;
+      });
+      const bool carries_axes = trial.setup.global() && v.kind == ILAW_STATE_AXIS;
+      if (!found && !carries_axes)
+        throw Finding{"the instance has a state variable '" + std::string(v.name) + "' of kind " +
+                          std::to_string(v.kind),
+                      "those of the law's description; axes besides in the global frame",
+                      trial.text(),
+                      {}};
+    }
+    return true;
+  });
+}
+
+void extension_unknown(const Subject& subject) {
+  const auto ask = [](const void* (*extension)(const char*), const char* of) {
+    if (!extension) return;
+    calling("extension");
+    if (extension("nobody.nothing/1"))
+      throw Finding{
+          std::string("extension of the ") + of + " gave something for \"nobody.nothing/1\"", "null", {}, {}};
+  };
+  ask(subject.law.extension, "law");
+  ask(subject.library.plugin().extension, "library");
+}
+
+void setups_served(const Subject& subject) {
+  std::string refused;
+  for (const Setup& setup : setups_of(subject.law)) {
+    Draw draw(subject.seed);
+    if (draw_values(subject.law, setup, draw)) continue;
+    // A law may need tangents.
+    if (setup.global() && !setup.tangent_given && setup.dimension == 3) continue;
+    throw Finding{"create refused 200 sets of parameters within their described ranges",
+                  "parameters that are accepted in each dimension, form of H and frame",
+                  text_of(setup),
+                  {}};
+  }
+}
+
+void instances_end(const Subject& subject) {
+  calling("destroy");
+  subject.law.destroy(nullptr);
+#if !defined(__SANITIZE_ADDRESS__)
+  const Trial trial = any_trial(subject);
+  const auto make = [&] { static_cast<void>(create(trial.law, trial.setup, trial.values)); };
+  make();
+  const std::size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
+  constexpr int count = 100;
+  for (int k = 0; k < count; ++k) make();
+  const std::size_t after = mallinfo2().uordblks + mallinfo2().hblkhd;
+  if (after >= before + count)
+    throw Finding{std::to_string(after - before) + " bytes were kept after " + std::to_string(count) +
+                      " instances were made and destroyed",
+                  "none",
+                  trial.text(),
+                  {}};
+#endif
+}
+
+}  // namespace
+
+std::vector<Rule> description_rules() {
+  return {
+      {opens_id, "The loader opens the library: it is a law library with a sound description.",
+       "abi.md, The loader", Needs::nothing, opens},
+      {creates_id,
+       "Some parameters within the described ranges are accepted in every dimension, form of H and frame "
+       "that the law serves.",
+       "ilaw.h, ilaw_law, create", Needs::library, setups_served},
+      {"description-constant", "The entry returns the same constant description at every call.",
+       "ilaw.h, ilaw_entry_function", Needs::motion, description_constant},
+      {"parameter-units", "Units of parameters are SI units, or 1.", "ilaw.h, ilaw_parameter.unit",
+       Needs::library, parameter_units},
+      {"extension-unknown", "An extension that nobody knows is null.", "ilaw.h, ilaw_law.extension",
+       Needs::library, extension_unknown},
+      {"info-within", "An instance reads and can do no more than its law's description says.",
+       "ilaw.h, ilaw_law.inputs", Needs::instance, info_within_description},
+      {"info-frame", "Normals are read always, and only, in the global frame; tangents where they are given.",
+       "ilaw.h, ILAW_INPUT_NORMAL", Needs::instance, info_frame},
+      {"info-same", "Two instances of the same setup say the same of themselves, at every call.",
+       "abi.md, State", Needs::motion, info_same},
+      {"state-described", "State variables of an instance are those of the law's description.",
+       "ilaw.h, ilaw_law.state_variables", Needs::instance, state_described},
+      {"instances-end", "destroy takes null, and leaves nothing of an instance behind.",
+       "ilaw.h, ilaw_law.destroy", Needs::instance, instances_end}};
+}
+
+}  // namespace ilaw::check

@@ -1,0 +1,111 @@
+// Rules: a node that flies freely onto its interface, along a path, gains no energy there.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace ilaw::check {
+namespace {
+
+constexpr double ulp = std::numeric_limits<double>::epsilon();
+constexpr std::size_t nodes = 24, flights = 3, steps = 12;
+
+struct Step {
+  const Inputs& in;
+  const Results& found;
+  std::size_t node;
+  double work, stored;  // of the impulse; more than before
+  double size;          // of what cancels in them
+};
+
+double stored_of(const Results& found, std::size_t i) {
+  return found.energy.empty() ? 0.0 : found.energy[i * ILAW_ENERGY_COUNT + ILAW_ENERGY_STORED];
+}
+
+Step step_of(const Inputs& in, const Results& found, std::size_t i, double stored_before) {
+  const Vector r = found.vector(found.impulse, i, in.dimension), v = in.vector(in.v_free, i),
+               gained = times(in.h(i), r);
+  // v^- = v_free and v = v_free + H r: the work r.(v^- + v)/2.
+  const double work = dot(r, v) + 0.5 * dot(r, gained), now = stored_of(found, i);
+  const double size = length(r) * (length(v) + length(gained)) + std::abs(now) + std::abs(stored_before);
+  return {in, found, i, work, now - stored_before, size};
+}
+
+// Without force: v_free is the velocity after the last step, and the gap follows it. Laws that limit the step
+// are the scheme's to bound.
+template <class Look>
+void fly(const Subject& subject, Look look) {
+  for_trials(
+      subject,
+      [&](const Trial& trial, Draw& draw) {
+        if (!trial.writes(ILAW_OUTPUT_ENERGY) && trial.can(ILAW_CAN_STORE_ENERGY)) return false;
+        const double dt = 0x1p-10;
+        for (std::size_t flight = 0; flight < flights; ++flight) {
+          Inputs in = draw_script(trial, draw, {nodes, 1}, true)[0];
+          in.velocity_step = in.position_step = dt;
+          for (std::size_t i = 0; i < nodes; ++i) in.gap[i] = in.gap_offset[i] + draw.within(0.0, 3.0) * dt;
+          Heap heap;
+          Arrays arrays(trial, in, {}, heap);
+          arrays.initialise(in);
+          std::vector<double> stored(nodes);
+          for (std::size_t k = 0; k < steps; ++k) {
+            in.v_previous = in.v_free;
+            const Results found = arrays.evaluate(in);
+            if (found.code != ILAW_OK) break;
+            if (std::isfinite(found.report.stable_velocity_step) && found.report.stable_velocity_step > 0.0)
+              return false;
+            for (std::size_t i = 0; i < nodes; ++i) {
+              look(trial, step_of(in, found, i, stored[i]));
+              stored[i] = stored_of(found, i);
+              const Vector r = found.vector(found.impulse, i, in.dimension), gained = times(in.h(i), r);
+              Vector v = in.vector(in.v_free, i);
+              for (std::size_t c = 0; c < in.dimension; ++c) v[c] += gained[c];
+              in.set_vector(in.v_free, i, v);
+              in.gap[i] += dt * dot(in.normal_at(i), v);
+            }
+            in.time += dt;
+          }
+        }
+        return true;
+      },
+      "the law limits the step, or its stored energy is not known");
+}
+
+void not_made(const Subject& subject) {
+  fly(subject, [](const Trial& trial, const Step& step) {
+    if (step.work + step.stored > 256.0 * ulp * step.size)
+      fail(trial, step.in, step.node,
+           "the impulse did the work " + text_of(step.work) + ", and " + text_of(step.stored) +
+               " more is stored: energy was made",
+           "their sum at most " + text_of(256.0 * ulp * step.size));
+  });
+}
+
+void balanced(const Subject& subject) {
+  fly(subject, [](const Trial& trial, const Step& step) {
+    if (step.found.energy.empty()) return;
+    double dissipated = 0.0;
+    for (int c = 0; c < ILAW_ENERGY_STORED; ++c)
+      dissipated += step.found.energy[step.node * ILAW_ENERGY_COUNT + static_cast<std::size_t>(c)];
+    const double rest = step.work + step.stored + dissipated;
+    if (!(std::abs(rest) <= 256.0 * ulp * (step.size + dissipated)))
+      fail(trial, step.in, step.node,
+           "work " + text_of(step.work) + ", dissipated " + text_of(dissipated) + ", stored " +
+               text_of(step.stored) + ": a rest of " + text_of(rest),
+           "a rest of at most " + text_of(256.0 * ulp * (step.size + dissipated)));
+  });
+}
+
+}  // namespace
+
+std::vector<Rule> energy_rules() {
+  return {{"energy-made",
+           "A node without force gains no energy: the work of the impulse and what is stored more is "
+           "not positive.",
+           "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, not_made},
+          {"energy-balance", "The parts of the energy are what becomes of the work of the impulse.",
+           "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, balanced}};
+}
+
+}  // namespace ilaw::check

@@ -1,0 +1,188 @@
+// Rules: a result at a node does not depend on how the batch is laid out, nor on the other nodes in it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+
+#include <algorithm>
+
+namespace ilaw::check {
+namespace {
+
+// The script in this layout gives the bits of the plain one.
+void in_layout(const Subject& subject, const Layout& layout, const char* how) {
+  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw);
+    expect_same(trial, script, run(trial, script), run(trial, script, layout), how);
+    return true;
+  });
+}
+
+void by_component(const Subject& subject) {
+  in_layout(subject, {.order = Order::by_component}, "component by component");
+}
+void spread(const Subject& subject) {
+  in_layout(subject, {.order = Order::spread}, "with strides of 2 and more");
+}
+void list_32(const Subject& subject) {
+  for (const std::int32_t base : {0, 1})
+    in_layout(subject, {.list = List::of_32_bits, .index_base = base, .spare = 4}, "by a list of 32 bits");
+}
+void list_64(const Subject& subject) {
+  for (const std::int32_t base : {0, 1})
+    in_layout(subject, {.list = List::of_64_bits, .index_base = base, .spare = 4}, "by a list of 64 bits");
+}
+void in_place(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (trial.info.state_size == 0) return false;
+        const Script script = draw_script(trial, draw);
+        expect_same(trial, script, run(trial, script), run(trial, script, {.in_place = true}),
+                    "with state_out as state_in");
+        return true;
+      },
+      "the law has no state");
+}
+
+// The results of some nodes alone, as they are among all.
+void expect_part(const Trial& trial, const Script& script, const std::vector<Results>& all,
+                 const std::vector<std::size_t>& nodes, const char* how) {
+  Layout layout;
+  layout.nodes = nodes;
+  const std::vector<Results> part = run(trial, script, layout);
+  const std::size_t d = script[0].dimension, s = trial.info.state_size;
+  for (std::size_t k = 0; k < script.size(); ++k)
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
+      const auto same = [&](const std::vector<double>& a, const std::vector<double>& b, std::size_t width) {
+        return a.empty() || std::equal(a.begin() + static_cast<std::ptrdiff_t>(nodes[j] * width),
+                                       a.begin() + static_cast<std::ptrdiff_t>((nodes[j] + 1) * width),
+                                       b.begin() + static_cast<std::ptrdiff_t>(j * width));
+      };
+      const bool equal = same(all[k].impulse, part[k].impulse, d) && same(all[k].state, part[k].state, s) &&
+                         same(all[k].velocity, part[k].velocity, d) &&
+                         same(all[k].energy, part[k].energy, ILAW_ENERGY_COUNT) &&
+                         (all[k].status.empty() || all[k].status[nodes[j]] == part[k].status[j]);
+      if (!equal)
+        fail(trial, script[k], nodes[j],
+             std::string(how) + ", step " + std::to_string(k) + ": node " + std::to_string(nodes[j]) +
+                 " got the impulse " + text_of(part[k].vector(part[k].impulse, j, d), d) + ", among all " +
+                 text_of(all[k].vector(all[k].impulse, nodes[j], d), d),
+             "the same bits");
+    }
+}
+
+void order(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw);
+    std::vector<std::size_t> nodes;
+    for (std::size_t i = script[0].count; i-- > 0;) nodes.push_back(i);
+    expect_part(trial, script, run(trial, script), nodes, "in reverse order");
+    std::swap(nodes[1], nodes[7]);
+    expect_part(trial, script, run(trial, script), nodes, "in another order");
+    return true;
+  });
+}
+
+void parts(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {13, 3});
+    const std::vector<Results> all = run(trial, script);
+    for (std::size_t i = 0; i < 4; ++i) expect_part(trial, script, all, {3 * i}, "alone");
+    expect_part(trial, script, all, {1, 2, 4, 5, 7, 8, 10}, "in a part of the batch");
+    return true;
+  });
+}
+
+// Many nodes take other loops than few.
+void large_batch(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {300, 1});
+    const std::vector<Results> all = run(trial, script);
+    for (const std::size_t i : {std::size_t{0}, std::size_t{65}, std::size_t{150}, std::size_t{299}})
+      expect_part(trial, script, all, {i}, "alone");
+    return true;
+  });
+}
+
+void outputs(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw);
+    const std::vector<Results> all = run(trial, script);
+    for (const std::uint32_t asked : {0U, std::uint32_t{ILAW_OUTPUT_VELOCITY},
+                                      std::uint32_t{ILAW_OUTPUT_STATUS}, std::uint32_t{ILAW_OUTPUT_ENERGY}})
+      expect_same(trial, script, all, run(trial, script, {.outputs = asked}),
+                  asked == 0 ? "without optional outputs" : "with fewer optional outputs", asked);
+    return true;
+  });
+}
+
+// One value for all nodes, by a stride of 0.
+void shared_value(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    Script script = draw_script(trial, draw, {5, 1});
+    Inputs& in = script[0];
+    const auto repeat = [&](std::vector<double>& values, std::size_t width) {
+      for (std::size_t k = width; k < values.size(); ++k) values[k] = values[k - width];
+    };
+    repeat(in.delassus, in.form_width);
+    repeat(in.area, 1);
+    repeat(in.normal, in.dimension);
+    repeat(in.tangent, in.dimension);
+    Heap heap;
+    Arrays arrays(trial, in, {}, heap);
+    arrays.initialise(in);
+    const Results expected = arrays.evaluate(in);
+    for (ilaw_input* one :
+         {&arrays.batch().delassus, &arrays.batch().area, &arrays.batch().normal, &arrays.batch().tangent})
+      one->node_stride = 0;
+    arrays.initialise(in);
+    if (const auto differs = difference(expected, arrays.evaluate(in)))
+      fail(trial, in, differs->node, "with node_stride 0 for H, area and axes: " + differs->text,
+           "the same bits");
+    return true;
+  });
+}
+
+void gap_offset(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (!trial.reads(ILAW_INPUT_GAP)) return false;
+        Script script = draw_script(trial, draw), without = script;
+        for (std::size_t k = 0; k < script.size(); ++k) {
+          for (std::size_t i = 0; i < script[k].count; ++i) without[k].gap[i] = script[k].slack(i);
+          without[k].gap_offset.clear();
+        }
+        expect_same(trial, script, run(trial, without), run(trial, script),
+                    "with gap_offset instead of its difference");
+        return true;
+      },
+      "the law reads no gap");
+}
+
+}  // namespace
+
+std::vector<Rule> independence_rules() {
+  constexpr const char* alone = "ilaw.h, ilaw_law.evaluate";
+  return {{"layout-components", "Arrays component by component give the same bits.", "ilaw.h, ilaw_input",
+           Needs::motion, by_component},
+          {"layout-strides", "Arrays with any strides give the same bits.", "ilaw.h, ilaw_input",
+           Needs::motion, spread},
+          {"layout-shared", "A node stride of 0 gives all nodes the same value.", "ilaw.h, ilaw_input",
+           Needs::motion, shared_value},
+          {"index-32", "A list of nodes in 32 bits gives the same bits, from base 0 and 1.",
+           "ilaw.h, ilaw_batch.index", Needs::motion, list_32},
+          {"index-64", "A list of nodes in 64 bits gives the same bits, from base 0 and 1.",
+           "ilaw.h, ilaw_batch.index64", Needs::motion, list_64},
+          {"state-in-place", "state_out may be the array of state_in.", "ilaw.h, ilaw_batch.state_out",
+           Needs::motion, in_place},
+          {"batch-order", "The order of the nodes changes no bit.", alone, Needs::motion, order},
+          {"batch-parts", "A node gets the same bits alone as among others.", alone, Needs::motion, parts},
+          {"batch-large", "A node gets the same bits among hundreds as alone.", alone, Needs::motion,
+           large_batch},
+          {"outputs-asked", "Which outputs are asked for changes no bit of the others.", alone, Needs::motion,
+           outputs},
+          {"gap-offset", "gap_offset is subtracted from the gap.", "ilaw.h, ilaw_batch.gap_offset",
+           Needs::motion, gap_offset}};
+}
+
+}  // namespace ilaw::check

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/inputs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ilaw::check {
+namespace {
+
+// Places of the entries of a full H: its diagonal, then 01, 02, 12.
+constexpr std::array<std::array<std::size_t, 2>, 3> off_diagonal{{{0, 1}, {0, 2}, {1, 2}}};
+
+std::size_t couplings(std::size_t d) { return d * (d - 1) / 2; }
+
+Matrix outer(const Vector& n, double normal, double tangential) {
+  Matrix m{};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < 3; ++b)
+      m[a][b] = (normal - tangential) * n[a] * n[b] + (a == b ? tangential : 0.0);
+  return m;
+}
+
+void set_full(Inputs& in, std::size_t node, const Matrix& m) {
+  const std::size_t d = in.dimension;
+  double* values = &in.delassus[node * in.form_width];
+  for (std::size_t c = 0; c < d; ++c) values[c] = m[c][c];
+  for (std::size_t k = 0; k < couplings(d); ++k) values[d + k] = m[off_diagonal[k][0]][off_diagonal[k][1]];
+}
+
+// Q^T m Q for the rows of Q as axes.
+Matrix from_axes(const Matrix& m, const Matrix& axes) {
+  Matrix out{};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < 3; ++b)
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) out[a][b] += axes[i][a] * m[i][j] * axes[j][b];
+  return out;
+}
+
+Matrix transposed(const Matrix& m) {
+  return {Vector{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
+}
+
+Vector unit(const Vector& a) {
+  const double size = length(a);
+  return {a[0] / size, a[1] / size, a[2] / size};
+}
+
+// Positive definite: a diagonal with couplings smaller than its least entry over two.
+void draw_delassus(Inputs& in, std::size_t node, bool isotropic, Draw& draw) {
+  double* values = &in.delassus[node * in.form_width];
+  const std::size_t d = in.form == ILAW_DELASSUS_SCALAR ? 1 : in.dimension;
+  const double one = draw.within(0.5, 2.0);
+  if (in.form == ILAW_DELASSUS_TRANSVERSE) {
+    values[0] = one;
+    values[1] = isotropic ? one : draw.within(0.5, 2.0);
+    return;
+  }
+  for (std::size_t c = 0; c < d; ++c) values[c] = isotropic ? one : draw.within(0.5, 2.0);
+  for (std::size_t c = d; c < in.form_width; ++c) values[c] = isotropic ? 0.0 : draw.within(-0.2, 0.2);
+}
+
+double draw_gap(double step, Draw& draw) {
+  if (draw.one_in(10)) return 0.0;
+  return draw.one_in(8) ? draw.within(5.0, 2000.0) * step : draw.within(-2.0, 2.0) * step;
+}
+
+Inputs empty_inputs(const Trial& trial, std::size_t count) {
+  Inputs in;
+  in.count = count;
+  in.dimension = trial.setup.dimension;
+  in.form = trial.setup.form;
+  in.form_width = trial.setup.form_width();
+  const std::size_t vectors = count * in.dimension;
+  for (std::vector<double>* values : {&in.v_free, &in.v_previous}) values->resize(vectors);
+  in.delassus.resize(count * in.form_width);
+  for (std::vector<double>* values : {&in.gap, &in.gap_offset, &in.area}) values->resize(count);
+  if (trial.setup.global()) in.normal.resize(vectors);
+  if (trial.setup.tangent_given) in.tangent.resize(vectors);
+  in.per_node.assign(trial.info.per_node_parameter_count, std::vector<double>(count));
+  return in;
+}
+
+// What belongs to the nodes and stays.
+void draw_fixed(Inputs& in, const Trial& trial, Draw& draw) {
+  const bool has_offset = draw.one_in(2);
+  for (std::size_t i = 0; i < in.count; ++i) {
+    in.area[i] = draw.within(0.5, 2.0);
+    in.gap_offset[i] = has_offset ? draw.within(-1e-2, 1e-2) : 0.0;
+    const Matrix axes = draw_axes(in.dimension, draw);
+    if (!in.normal.empty()) in.set_vector(in.normal, i, axes[0]);
+    if (!in.tangent.empty()) in.set_vector(in.tangent, i, axes[1]);
+  }
+  for (std::uint32_t k = 0; k < trial.info.per_node_parameter_count; ++k)
+    for (double& value : in.per_node[k])
+      value = number_of(trial.law, trial.values, trial.info.per_node_parameters[k]);
+}
+
+void draw_motion(Inputs& in, bool isotropic, bool without_force, Draw& draw) {
+  for (std::size_t i = 0; i < in.count; ++i) {
+    const Vector n = in.normal_at(i);
+    Vector v{}, before{};
+    for (std::size_t c = 0; c < in.dimension; ++c) {
+      v[c] = draw.within(-1.0, 1.0) - 0.2 * n[c];
+      before[c] = without_force ? v[c] : draw.within(-1.0, 1.0);
+    }
+    in.set_vector(in.v_free, i, v);
+    in.set_vector(in.v_previous, i, before);
+    in.gap[i] = in.gap_offset[i] + draw_gap(in.position_step, draw);
+    draw_delassus(in, i, isotropic, draw);
+  }
+}
+
+}  // namespace
+
+Vector times(const Matrix& m, const Vector& a) { return {dot(m[0], a), dot(m[1], a), dot(m[2], a)}; }
+double length(const Vector& a) { return std::sqrt(dot(a, a)); }
+
+Vector Inputs::vector(const std::vector<double>& of, std::size_t node) const {
+  Vector a{};
+  for (std::size_t c = 0; c < dimension; ++c) a[c] = of[node * dimension + c];
+  return a;
+}
+void Inputs::set_vector(std::vector<double>& of, std::size_t node, const Vector& value) const {
+  for (std::size_t c = 0; c < dimension; ++c) of[node * dimension + c] = value[c];
+}
+
+Vector Inputs::normal_at(std::size_t node) const {
+  return normal.empty() ? Vector{1.0, 0.0, 0.0} : vector(normal, node);
+}
+
+Matrix Inputs::h(std::size_t node) const {
+  const double* values = &delassus[node * form_width];
+  if (form == ILAW_DELASSUS_TRANSVERSE) return outer(normal_at(node), values[0], values[1]);
+  Matrix m{};
+  for (std::size_t c = 0; c < 3; ++c)
+    m[c][c] = form == ILAW_DELASSUS_SCALAR ? values[0] : c < dimension ? values[c] : 1.0;
+  if (form == ILAW_DELASSUS_FULL)
+    for (std::size_t k = 0; k < couplings(dimension); ++k) {
+      const auto [a, b] = off_diagonal[k];
+      m[a][b] = m[b][a] = values[dimension + k];
+    }
+  return m;
+}
+
+double Inputs::slack(std::size_t node) const {
+  return gap_offset.empty() ? gap[node] : gap[node] - gap_offset[node];
+}
+
+bool Inputs::is_out_of_reach(std::size_t node) const {
+  const double g = slack(node);
+  const Vector v = vector(v_free, node), n = normal_at(node);
+  const double along = normal.empty() ? v[0] : (n[0] * v[0] + n[1] * v[1]) + n[2] * v[2];
+  return g > 0.0 && g + position_step * along > 0.0;
+}
+
+std::vector<NamedArray> Inputs::arrays_of(std::size_t node) const {
+  std::vector<NamedArray> arrays{
+      {"time, velocity_step, position_step", {time, velocity_step, position_step}}};
+  const auto add = [&](const char* name, const std::vector<double>& values, std::size_t width) {
+    if (values.size() < (node + 1) * width) return;
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(node * width);
+    arrays.push_back({name, {first, first + static_cast<std::ptrdiff_t>(width)}});
+  };
+  add("v_free", v_free, dimension);
+  add("delassus", delassus, form_width);
+  add("gap", gap, 1);
+  add("gap_offset", gap_offset, 1);
+  add("v_previous", v_previous, dimension);
+  add("area", area, 1);
+  add("normal", normal, dimension);
+  add("tangent", tangent, dimension);
+  for (const std::vector<double>& values : per_node) add("per_node_parameters", values, 1);
+  return arrays;
+}
+
+Matrix draw_axes(std::size_t dimension, Draw& draw) {
+  if (dimension == 1)
+    return {Vector{draw.one_in(2) ? 1.0 : -1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  if (dimension == 2) {
+    const double angle = draw.within(-3.1, 3.1), c = std::cos(angle), s = std::sin(angle);
+    return {Vector{c, s, 0.0}, {-s, c, 0.0}, {0.0, 0.0, 1.0}};
+  }
+  const auto one = [&] { return draw.within(-1.0, 1.0); };
+  const Vector n = unit({one() + 1e-3, one(), one()});
+  Vector t = std::abs(n[0]) < 0.7 ? Vector{1.0, one(), one()} : Vector{one(), 1.0, one()};
+  for (int pass = 0; pass < 2; ++pass) {  // the second takes off what the first left by rounding
+    const double along = dot(n, t);
+    for (std::size_t c = 0; c < 3; ++c) t[c] -= along * n[c];
+    t = unit(t);
+  }
+  return {n, t, Vector{n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]}};
+}
+
+Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size, bool isotropic) {
+  Script script;
+  Inputs in = empty_inputs(trial, size.nodes);
+  draw_fixed(in, trial, draw);
+  const bool same_steps = draw.one_in(2), without_force = draw.one_in(2), alike = isotropic || draw.one_in(2);
+  for (std::size_t k = 0; k < size.steps; ++k) {
+    in.velocity_step = 0x1p-10 * (same_steps ? 1.0 : draw.within(0.5, 1.5));
+    in.position_step = 0x1p-10 * (same_steps ? 1.0 : draw.within(0.5, 1.5));
+    in.time += in.velocity_step;
+    draw_motion(in, alike, without_force, draw);
+    script.push_back(in);
+  }
+  return script;
+}
+
+Inputs turned(Inputs local, const std::vector<Matrix>& axes) {
+  Inputs out = local;
+  if (local.form == ILAW_DELASSUS_DIAGONAL) {
+    out.form = ILAW_DELASSUS_FULL;
+    out.form_width = local.dimension * (local.dimension + 1) / 2;
+    out.delassus.assign(local.count * out.form_width, 0.0);
+  }
+  out.normal.resize(local.count * local.dimension);
+  out.tangent.resize(local.count * local.dimension);
+  for (std::size_t i = 0; i < local.count; ++i) {
+    const Matrix to_host = transposed(axes[i]);
+    out.set_vector(out.v_free, i, times(to_host, local.vector(local.v_free, i)));
+    out.set_vector(out.v_previous, i, times(to_host, local.vector(local.v_previous, i)));
+    out.set_vector(out.normal, i, axes[i][0]);
+    out.set_vector(out.tangent, i, axes[i][1]);
+    if (out.form == ILAW_DELASSUS_FULL) set_full(out, i, from_axes(local.h(i), axes[i]));
+  }
+  return out;
+}
+
+Inputs turned_as_a_whole(Inputs given, const Matrix& rotation) {
+  Inputs out = given;
+  for (std::size_t i = 0; i < given.count; ++i) {
+    for (std::vector<double> Inputs::*of :
+         {&Inputs::v_free, &Inputs::v_previous, &Inputs::normal, &Inputs::tangent})
+      if (!(given.*of).empty()) out.set_vector(out.*of, i, times(rotation, given.vector(given.*of, i)));
+    if (given.form == ILAW_DELASSUS_FULL) set_full(out, i, from_axes(given.h(i), transposed(rotation)));
+  }
+  return out;
+}
+
+}  // namespace ilaw::check

@@ -1,0 +1,57 @@
+// inputs.hpp - what a batch is given at one step, node by node, and steps one after another; the same in
+// other units, axes and mirrors.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "check/trial.hpp"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace ilaw::check {
+
+using Vector = std::array<double, 3>;
+using Matrix = std::array<Vector, 3>;  // rows
+
+inline double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vector times(const Matrix& m, const Vector& a);
+double length(const Vector& a);
+
+// Of each node in turn: d components of a vector, as many of H as its form has, one of the others.
+struct Inputs {
+  std::size_t count = 0, dimension = 3, form_width = 1;
+  std::uint32_t form = ILAW_DELASSUS_SCALAR;
+  double time = 0.0, velocity_step = 0.0, position_step = 0.0;
+  std::vector<double> v_free, delassus, gap, gap_offset, v_previous, area, normal, tangent;
+  std::vector<std::vector<double>> per_node;
+
+  Vector vector(const std::vector<double>& of, std::size_t node) const;
+  void set_vector(std::vector<double>& of, std::size_t node, const Vector& value) const;
+  Matrix h(std::size_t node) const;  // in the axes of the vectors
+  Vector normal_at(std::size_t node) const;
+  // g of "out of reach", and whether the node is (ilaw.h).
+  double slack(std::size_t node) const;
+  bool is_out_of_reach(std::size_t node) const;
+  std::vector<NamedArray> arrays_of(std::size_t node) const;
+};
+
+using Script = std::vector<Inputs>;
+
+struct ScriptSize {
+  std::size_t nodes = 13, steps = 5;
+};
+// Random nodes with motions and gaps of one size, most of them near contact. H is a multiple of the identity
+// where "isotropic" says so, or the law can be given no other.
+Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size = {}, bool isotropic = false);
+
+// Axes of a node: rows are normal and tangents, right-handed.
+Matrix draw_axes(std::size_t dimension, Draw& draw);
+
+// From local axes to axes of which each node has its own, with normals and tangents; the form of H becomes
+// full where it was diagonal.
+Inputs turned(Inputs local, const std::vector<Matrix>& axes);
+// All vectors and H turned by one matrix whose rows are orthonormal.
+Inputs turned_as_a_whole(Inputs given, const Matrix& rotation);
+
+}  // namespace ilaw::check

@@ -1,0 +1,139 @@
+// Rules: which memory evaluate and initialise read and write.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+
+#include <cmath>
+
+namespace ilaw::check {
+namespace {
+
+using Flush = GuardedPages::Flush;
+
+// A fault ends the process, and is the finding of the rule.
+void between_guards(const Subject& subject, const GuardedPages::Guarded& guarded) {
+  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {13, 2});
+    for (const Flush flush : {Flush::with_the_end, Flush::with_the_beginning})
+      for (const Layout& layout : {Layout{}, Layout{.order = Order::spread, .list = List::of_32_bits}}) {
+        GuardedPages pages(flush, guarded);
+        run(trial, script, layout, pages);
+      }
+    return true;
+  });
+}
+
+void reads(const Subject& subject) {
+  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {13, 2});
+    for (const Flush flush : {Flush::with_the_end, Flush::with_the_beginning})
+      for (const Layout& layout : {Layout{}, Layout{.order = Order::spread, .list = List::of_32_bits},
+                                   Layout{.order = Order::by_component, .list = List::of_64_bits}}) {
+        GuardedPages pages(flush, {.inputs = true, .outputs = false, .unneeded = false});
+        run(trial, script, layout, pages);
+      }
+    return true;
+  });
+}
+
+void writes(const Subject& subject) {
+  between_guards(subject, {.inputs = false, .outputs = true, .unneeded = false});
+}
+
+void unneeded(const Subject& subject) {
+  between_guards(subject, {.inputs = false, .outputs = false, .unneeded = true});
+}
+
+void beside(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {13, 2});
+    for (const List list : {List::none, List::of_32_bits, List::of_64_bits}) {
+      const Layout layout{.order = Order::spread, .list = list, .spare = list == List::none ? 0U : 6U};
+      Heap heap;
+      Arrays arrays(trial, script[0], layout, heap);
+      arrays.initialise(script[0]);
+      for (const Inputs& in : script) {
+        arrays.evaluate(in);
+        if (const char* name = arrays.written_beside())
+          fail(trial, in, 0, std::string("the array ") + name + " was written where no node of the batch is",
+               "outputs of the nodes of the batch");
+      }
+    }
+    return true;
+  });
+}
+
+// Outputs that begin as one number or another end the same.
+void all_written(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const Script script = draw_script(trial, draw, {13, 3});
+    for (const Results& found : run(trial, script)) {
+      const auto unwritten = [](const std::vector<double>& values) {
+        for (const double value : values)
+          if (value == 123456.75) return true;
+        return false;
+      };
+      const char* array = unwritten(found.impulse)    ? "impulse"
+                          : unwritten(found.state)    ? "state_out"
+                          : unwritten(found.velocity) ? "velocity"
+                          : unwritten(found.energy)   ? "energy"
+                                                      : nullptr;
+      for (const std::uint8_t status : found.status)
+        if (status == 99) array = "status";
+      if (array)
+        fail(trial, script[0], 0, std::string("the array ") + array + " was not written at all nodes",
+             "every component of every node of the batch");
+    }
+    return true;
+  });
+}
+
+// initialise reads no state and no motion, so that the rest of the batch may be zero.
+void initialise_reads(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (trial.info.state_size == 0) return false;
+        const Script script = draw_script(trial, draw, {6, 1});
+        Heap heap;
+        Arrays arrays(trial, script[0], {}, heap);
+        if (arrays.initialise(script[0]) < 0) return false;
+        const std::vector<double> expected = arrays.state();
+        ilaw_batch& batch = arrays.batch();
+        for (ilaw_input* one : {&batch.v_free, &batch.delassus, &batch.gap, &batch.gap_offset,
+                                &batch.v_previous, &batch.state_in})
+          *one = {};
+        for (ilaw_output* one : {&batch.impulse, &batch.velocity, &batch.energy}) *one = {};
+        batch.status = nullptr;
+        batch.velocity_step = batch.position_step = 0.0;
+        arrays.set_state(std::vector<double>(expected.size(), std::nan("")));
+        const std::int32_t code = trial.instance.initialise(batch, nullptr);
+        const std::vector<double> found = arrays.state();
+        for (std::size_t k = 0; k < found.size(); ++k)
+          if (code < 0 || !(found[k] == expected[k]))
+            fail(trial, script[0], k / trial.info.state_size,
+                 "with the rest of the batch zero initialise returned " + std::to_string(code) +
+                     " and wrote state " + text_of(found[k]) + ", else " + text_of(expected[k]),
+                 "the same first state");
+        return true;
+      },
+      "the law has no state");
+}
+
+}  // namespace
+
+std::vector<Rule> memory_rules() {
+  return {{"memory-reads", "No input is read outside the nodes of the batch, and none is written.",
+           "ilaw.h, ilaw_batch", Needs::motion, reads},
+          {"memory-writes", "No output is written, or read, outside the nodes of the batch.",
+           "ilaw.h, ilaw_batch", Needs::motion, writes},
+          {"memory-unneeded", "An array that the instance does not ask for is not read.",
+           "ilaw.h, ilaw_instance_info.inputs", Needs::motion, unneeded},
+          {"memory-beside", "Nothing is written between strides, nor at nodes that are on no list.",
+           "ilaw.h, ilaw_batch.index", Needs::motion, beside},
+          {"outputs-written", "Every output that is asked for is written at every node.", "abi.md, Outputs",
+           Needs::motion, all_written},
+          {"initialise-reads", "initialise reads times, areas, axes and parameters per node alone.",
+           "ilaw.h, ilaw_law.initialise", Needs::motion, initialise_reads}};
+}
+
+}  // namespace ilaw::check

@@ -1,0 +1,105 @@
+// Rules: what evaluate may not do beside computing.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+#include "check/sandbox.hpp"
+#include "check/watch.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+namespace ilaw::check {
+namespace {
+
+// A forbidden call ends the process, and is the finding of the rule.
+void watch(const Subject& subject, Forbidden kind) {
+  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+    Script script = draw_script(trial, draw);
+    script[2].v_free[0] = std::nan("");  // bad input too
+    Heap heap;
+    Arrays arrays(trial, script[0], {}, heap);
+    arrays.initialise(script[0]);
+    for (const Inputs& in : script) {
+      const CallWatch armed(subject.library.path(), kind);
+      arrays.evaluate(in);
+    }
+    return true;
+  });
+}
+
+void allocates(const Subject& subject) { watch(subject, Forbidden::allocation); }
+void locks(const Subject& subject) { watch(subject, Forbidden::lock); }
+void input_output(const Subject& subject) { watch(subject, Forbidden::input_output); }
+void clock(const Subject& subject) { watch(subject, Forbidden::clock); }
+void ending(const Subject& subject) { watch(subject, Forbidden::ending); }
+
+void system_calls(const Subject& subject) {
+  struct Prepared {
+    Prepared(const Trial& given, Draw& draw)
+        : trial(given.law, given.setup, given.values),
+          in(draw_script(given, draw, {5, 1})[0]),
+          arrays(trial, in, {}, heap) {
+      arrays.initialise(in);
+      arrays.load(in);
+    }
+    Trial trial;
+    std::string setting = trial.text();
+    Inputs in;
+    Heap heap;
+    Arrays arrays;
+  };
+  std::vector<std::unique_ptr<Prepared>> all;
+  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+    all.push_back(std::make_unique<Prepared>(trial, draw));
+    return true;
+  });
+  // The filter is for good, so it is set in a process of its own.
+  const Ending ending = run_apart(Limits{}, [&all] {
+    if (!forbid_system_calls()) return std::string("no filter");
+    for (const auto& one : all) {
+      ilaw_report report{};
+      report.struct_size = sizeof report;
+      set_setting(one->setting);
+      one->trial.instance.evaluate(one->arrays.batch(), &report);
+    }
+    return std::string();
+  });
+  if (!ending.returned) throw Finding{"evaluate " + ending.how, "none", ending.setting, {}};
+  if (!ending.result.empty()) throw NotJudged{"this system filters no system calls"};
+}
+
+// Also where create refuses, and where input is bad.
+void prints(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    Script script = draw_script(trial, draw);
+    script[1].v_free[0] = std::nan("");
+    run(trial, script);
+    create(trial.law, trial.setup, with(trial.values, {"nobody_has_this", ILAW_VALUE_NUMBER, 1.0}));
+    return true;
+  });
+  std::fflush(nullptr);
+  struct stat written {};
+  if (fstat(STDOUT_FILENO, &written) == 0 && written.st_size > 0)
+    throw Finding{
+        std::to_string(written.st_size) + " bytes were written to stdout and stderr", "nothing", {}, {}};
+}
+
+}  // namespace
+
+std::vector<Rule> quiet_rules() {
+  constexpr const char* source = "ilaw.h, ilaw_law.evaluate";
+  return {{"evaluate-allocates", "evaluate does not allocate.", source, Needs::motion, allocates},
+          {"evaluate-locks", "evaluate takes no lock and starts no thread.", source, Needs::motion, locks},
+          {"evaluate-io", "evaluate does no input or output, and reads no environment.", source,
+           Needs::motion, input_output},
+          {"evaluate-clock", "evaluate reads no clock and no random numbers.", source, Needs::motion, clock},
+          {"evaluate-ends", "evaluate neither ends the process nor handles signals.", "ilaw.h, Conventions",
+           Needs::motion, ending},
+          {"evaluate-system", "evaluate makes no system call.", source, Needs::motion, system_calls},
+          {"prints-nothing", "No function prints.", "ilaw.h, Conventions", Needs::motion, prints}};
+}
+
+}  // namespace ilaw::check

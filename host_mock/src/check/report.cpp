@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/report.hpp"
+
+#include "check/rule.hpp"
+
+#include <tinyxml2.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ilaw::check {
+namespace {
+
+using nlohmann::ordered_json;
+
+const Rule& rule_of(const Outcome& outcome) {
+  return *std::find_if(rules().begin(), rules().end(),
+                       [&](const Rule& rule) { return outcome.rule == rule.id; });
+}
+
+std::string repeat(const Checked& checked, const Outcome& outcome) {
+  return "ilaw check " + checked.file + (outcome.law.empty() ? "" : " --law " + outcome.law) + " --only " +
+         outcome.rule + " --seed " + std::to_string(checked.seed);
+}
+
+std::string text_of_values(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + text_of(value);
+  return text;
+}
+
+std::string text_of_finding(const Checked& checked, const Outcome& outcome, const std::string& indent) {
+  const Finding& finding = outcome.finding;
+  std::string text =
+      indent + "seen:    " + finding.seen + "\n" + indent + "allowed: " + finding.allowed + "\n";
+  if (!finding.setting.empty()) text += indent + "with:    " + finding.setting + "\n";
+  for (const NamedArray& array : finding.arrays)
+    text += indent + "         " + array.name + " = " + text_of_values(array.values) + "\n";
+  return text + indent + "repeat:  " + repeat(checked, outcome) + "\n";
+}
+
+std::size_t count(const Checked& checked, Verdict verdict) {
+  return static_cast<std::size_t>(
+      std::count_if(checked.outcomes.begin(), checked.outcomes.end(),
+                    [verdict](const Outcome& outcome) { return outcome.verdict == verdict; }));
+}
+
+ordered_json number_or_text(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : value > 0.0 ? "inf" : "-inf";
+}
+
+}  // namespace
+
+bool Checked::all_passed() const { return count(*this, Verdict::broken) == 0; }
+
+std::string text_of(const Checked& checked) {
+  std::string text;
+  for (const Outcome& outcome : checked.outcomes) {
+    if (outcome.verdict != Verdict::broken) continue;
+    const Rule& rule = rule_of(outcome);
+    text += (outcome.law.empty() ? "" : outcome.law + ": ") + rule.id + ": " + rule.required + " (" +
+            rule.source + ")\n" + text_of_finding(checked, outcome, "  ");
+  }
+  text += checked.file + ": " + std::to_string(count(checked, Verdict::passed)) + " passed, " +
+          std::to_string(count(checked, Verdict::broken)) + " broken, " +
+          std::to_string(count(checked, Verdict::not_judged)) + " not judged (seed " +
+          std::to_string(checked.seed) + ")\n";
+  return text;
+}
+
+std::string json_of(const Checked& checked) {
+  ordered_json all = ordered_json::array();
+  for (const Outcome& outcome : checked.outcomes) {
+    const Rule& rule = rule_of(outcome);
+    ordered_json one = {{"rule", rule.id}, {"law", outcome.law}};
+    one["result"] = outcome.verdict == Verdict::passed   ? "passed"
+                    : outcome.verdict == Verdict::broken ? "broken"
+                                                         : "not judged";
+    if (outcome.verdict == Verdict::not_judged) one["why"] = outcome.why;
+    if (outcome.verdict == Verdict::broken) {
+      ordered_json arrays = ordered_json::object();
+      for (const NamedArray& array : outcome.finding.arrays) {
+        arrays[array.name] = ordered_json::array();
+        for (const double value : array.values) arrays[array.name].push_back(number_or_text(value));
+      }
+      one.update({{"required", rule.required},
+                  {"source", rule.source},
+                  {"seen", outcome.finding.seen},
+                  {"allowed", outcome.finding.allowed},
+                  {"setting", outcome.finding.setting},
+                  {"arrays", arrays},
+                  {"seed", checked.seed},
+                  {"repeat", repeat(checked, outcome)}});
+    }
+    all.push_back(one);
+  }
+  return all.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+bool write_junit(const Checked& checked, const std::string& file) {
+  tinyxml2::XMLDocument document;
+  document.InsertFirstChild(document.NewDeclaration());
+  tinyxml2::XMLElement* suite = document.NewElement("testsuite");
+  document.InsertEndChild(suite);
+  suite->SetAttribute("name", checked.file.c_str());
+  suite->SetAttribute("tests", static_cast<unsigned>(checked.outcomes.size()));
+  suite->SetAttribute("failures", static_cast<unsigned>(count(checked, Verdict::broken)));
+  suite->SetAttribute("skipped", static_cast<unsigned>(count(checked, Verdict::not_judged)));
+  for (const Outcome& outcome : checked.outcomes) {
+    tinyxml2::XMLElement* one = suite->InsertNewChildElement("testcase");
+    one->SetAttribute("classname", outcome.law.c_str());
+    one->SetAttribute("name", outcome.rule.c_str());
+    one->SetAttribute("time", outcome.seconds);
+    if (outcome.verdict == Verdict::not_judged)
+      one->InsertNewChildElement("skipped")->SetAttribute("message", outcome.why.c_str());
+    if (outcome.verdict != Verdict::broken) continue;
+    tinyxml2::XMLElement* failure = one->InsertNewChildElement("failure");
+    failure->SetAttribute("message", outcome.finding.seen.c_str());
+    failure->SetText(
+        (std::string(rule_of(outcome).required) + "\n" + text_of_finding(checked, outcome, "")).c_str());
+  }
+  return document.SaveFile(file.c_str()) == tinyxml2::XML_SUCCESS;
+}
+
+std::string table_of_rules() {
+  std::string table = "| rule | what is required | where the contract says so |\n| --- | --- | --- |\n";
+  for (const Rule& rule : rules())
+    table += std::string("| `") + rule.id + "` | " + rule.required + " | " + rule.source + " |\n";
+  return table;
+}
+
+}  // namespace ilaw::check

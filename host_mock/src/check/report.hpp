@@ -1,0 +1,28 @@
+// report.hpp - what a check found: as text, JSON, JUnit XML; the table of all rules.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "check/check.hpp"
+
+#include <string>
+
+namespace ilaw::check {
+
+// What is needed to repeat a finding.
+struct Checked {
+  std::string file;
+  std::uint64_t seed;
+  std::vector<Outcome> outcomes;
+
+  bool all_passed() const;
+};
+
+std::string text_of(const Checked& checked);
+std::string json_of(const Checked& checked);
+// False where the file cannot be written whole.
+bool write_junit(const Checked& checked, const std::string& file);
+
+// Markdown: id, sentence, where the contract says so.
+std::string table_of_rules();
+
+}  // namespace ilaw::check

@@ -1,0 +1,201 @@
+// Rules: what the results at a node have to do with each other, by what the law says it can do.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ilaw::check {
+namespace {
+
+constexpr double ulp = std::numeric_limits<double>::epsilon();
+
+// Calls look with the results of every good node of every step.
+template <class Look>
+void for_nodes(const Subject& subject, bool (*applies)(const Trial& trial), Look look,
+               const char* otherwise) {
+  for_trials(
+      subject,
+      [&](const Trial& trial, Draw& draw) {
+        if (!applies(trial)) return false;
+        const Script script = draw_script(trial, draw, {17, 8});
+        const std::vector<Results> results = run(trial, script);
+        for (std::size_t k = 0; k < script.size(); ++k)
+          for (std::size_t i = 0; i < script[k].count; ++i)
+            if (results[k].status.empty() || results[k].status[i] != ILAW_BAD_INPUT)
+              look(trial, script[k], results[k], i);
+        return true;
+      },
+      otherwise);
+}
+
+Vector impulse(const Inputs& in, const Results& found, std::size_t i) {
+  return found.vector(found.impulse, i, in.dimension);
+}
+
+// Size of what cancels in v_free + H r.
+double natural_velocity(const Inputs& in, std::size_t i, const Vector& r) {
+  const Matrix h = in.h(i);
+  double size = 0.0;
+  for (std::size_t a = 0; a < in.dimension; ++a) {
+    size += std::abs(in.v_free[i * in.dimension + a]);
+    for (std::size_t b = 0; b < in.dimension; ++b) size += std::abs(h[a][b] * r[b]);
+  }
+  return size;
+}
+
+void complementarity(const Subject& subject) {
+  for_nodes(
+      subject, [](const Trial& trial) { return !trial.can(ILAW_CAN_ADHERE); },
+      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
+        const Vector r = impulse(in, found, i);
+        const double normal = dot(in.normal_at(i), r);
+        if (normal < -16.0 * ulp * length(r)) fail(trial, in, i, "r_N = " + text_of(normal), "r_N >= 0");
+      },
+      "the law adheres");
+}
+
+void friction_needs_pressure(const Subject& subject) {
+  for_nodes(
+      subject, [](const Trial& trial) { return !trial.can(ILAW_CAN_ADHERE); },
+      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
+        const Vector r = impulse(in, found, i);
+        const double normal = dot(in.normal_at(i), r);
+        if (normal <= 16.0 * ulp * length(r) && length(r) > 0.0)
+          fail(trial, in, i, "r = " + text_of(r, in.dimension) + " without pressure",
+               "no tangential impulse where r_N = 0");
+      },
+      "the law adheres");
+}
+
+void status(const Subject& subject) {
+  for_nodes(
+      subject, [](const Trial& trial) { return trial.writes(ILAW_OUTPUT_STATUS); },
+      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
+        const std::uint8_t said = found.status[i];
+        const Vector r = impulse(in, found, i);
+        const double normal = dot(in.normal_at(i), r);
+        if (said >= ILAW_STATUS_COUNT) fail(trial, in, i, "status " + std::to_string(said), "0 to 7");
+        if (said == ILAW_FREE && r != Vector{})
+          fail(trial, in, i, "ILAW_FREE with the impulse " + text_of(r, in.dimension), "no impulse");
+        const bool sheared = length(r) > std::abs(normal) * (1.0 + 64.0 * ulp);
+        if (said == ILAW_CLOSED && (sheared || normal < 0.0))
+          fail(trial, in, i, "ILAW_CLOSED with the impulse " + text_of(r, in.dimension),
+               "pushed, no friction");
+      },
+      "the law writes no status");
+}
+
+void velocity(const Subject& subject) {
+  for_nodes(
+      subject, [](const Trial& trial) { return trial.writes(ILAW_OUTPUT_VELOCITY); },
+      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
+        const Vector r = impulse(in, found, i), v = found.vector(found.velocity, i, in.dimension),
+                     gained = times(in.h(i), r), free = in.vector(in.v_free, i);
+        const double tolerance = 64.0 * ulp * natural_velocity(in, i, r);
+        for (std::size_t c = 0; c < in.dimension; ++c)
+          if (!(std::abs(free[c] + gained[c] - v[c]) <= tolerance))
+            fail(trial, in, i, "velocity[" + std::to_string(c) + "] = " + text_of(v[c]),
+                 "v_free + H r = " + text_of(free[c] + gained[c]) + " to " + text_of(tolerance));
+      },
+      "the law writes no velocity");
+}
+
+void energy_parts(const Subject& subject) {
+  for_nodes(
+      subject, [](const Trial& trial) { return trial.writes(ILAW_OUTPUT_ENERGY); },
+      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
+        const double* parts = &found.energy[i * ILAW_ENERGY_COUNT];
+        for (int c = 0; c < ILAW_ENERGY_STORED; ++c)
+          if (!(parts[c] >= 0.0))
+            fail(trial, in, i, "dissipated part " + std::to_string(c) + " of " + text_of(parts[c]),
+                 "none is negative, or NaN");
+        const double stored = parts[ILAW_ENERGY_STORED];
+        if (!(stored >= 0.0 || stored < 0.0) || (stored != 0.0 && !trial.can(ILAW_CAN_STORE_ENERGY)))
+          fail(trial, in, i, "stored energy " + text_of(stored),
+               "0 without ILAW_CAN_STORE_ENERGY, never NaN");
+      },
+      "the law writes no energy");
+}
+
+// Coefficients of friction by the names that the kit gives them.
+double cone_of(const Trial& trial) {
+  double most = -1.0;
+  for (const char* name : {"friction", "friction_2"}) {
+    const ilaw_parameter* p = parameter_of(trial.law, name);
+    if (!p || p->kind != ILAW_PARAMETER_NUMBER || std::string(p->unit) != "1") continue;
+    const double value = number_of(trial.law, trial.values, name);
+    if (name == std::string("friction_2") && std::isinf(value)) continue;  // the same as friction
+    most = std::max(most, value);
+  }
+  return most;
+}
+
+void cone(const Subject& subject) {
+  for_nodes(
+      subject,
+      [](const Trial& trial) {
+        return trial.writes(ILAW_OUTPUT_STATUS) && cone_of(trial) >= 0.0 && std::isfinite(cone_of(trial));
+      },
+      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
+        if (found.status[i] != ILAW_STICK && found.status[i] != ILAW_SLIP) return;
+        const Vector r = impulse(in, found, i), n = in.normal_at(i);
+        const double normal = dot(n, r);
+        Vector along = r;
+        for (std::size_t c = 0; c < in.dimension; ++c) along[c] -= normal * n[c];
+        const double most = cone_of(trial) * normal;
+        if (length(along) > most + 1e-12 * length(r))
+          fail(trial, in, i, "|r_T| = " + text_of(length(along)), "at most friction r_N = " + text_of(most));
+      },
+      "no parameter is called friction");
+}
+
+// Any positive step: from picoseconds to hours.
+void step_limits(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    Script script = draw_script(trial, draw, {9, 1}, true);
+    for (const double step : {1e-13, 3e-7, 0.0171, 11.0, 7300.0}) {
+      Inputs& in = script[0];
+      for (double& gap : in.gap) gap *= step / in.position_step;
+      for (double& offset : in.gap_offset) offset *= step / in.position_step;
+      in.velocity_step = in.position_step = in.time = step;
+      const Results found = run(trial, script)[0];
+      if (found.code != ILAW_OK)
+        fail(trial, in, 0,
+             "code " + std::to_string(found.code) + " with steps of " + text_of(step) +
+                 " s: " + (found.report.reason ? found.report.reason : "no reason"),
+             "ILAW_OK for any step > 0");
+      for (std::size_t k = 0; k < found.impulse.size(); ++k)
+        if (!std::isfinite(found.impulse[k]))
+          fail(trial, in, k / in.dimension, "impulse " + text_of(found.impulse[k]), "a finite impulse");
+    }
+    return true;
+  });
+}
+
+}  // namespace
+
+std::vector<Rule> result_rules() {
+  return {
+      {"complementarity", "Without ILAW_CAN_ADHERE an impulse pushes or is none: r_N >= 0.",
+       "ilaw.h, ILAW_CAN_ADHERE", Needs::motion, complementarity},
+      {"friction-pressure", "Without ILAW_CAN_ADHERE there is no tangential impulse where r_N = 0.",
+       "ilaw.h, ILAW_CAN_ADHERE", Needs::motion, friction_needs_pressure},
+      {"friction-cone",
+       "Where a law has a coefficient called friction (and friction_2), |r_T| of a status stick or "
+       "slip is at most the larger one times r_N.",
+       "check.md, Names with a meaning", Needs::motion, cone},
+      {"status-meaning", "A status is one of the eight; free is r = 0, closed is pushed without friction.",
+       "ilaw.h, ILAW_FREE", Needs::motion, status},
+      {"velocity-output", "The velocity is v_free + H r.", "ilaw.h, ilaw_batch.velocity", Needs::motion,
+       velocity},
+      {"energy-parts",
+       "No dissipated part is negative and none NaN; nothing is stored without "
+       "ILAW_CAN_STORE_ENERGY.",
+       "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, energy_parts},
+      {"step-limits", "Any positive step is served.", "ilaw.h, ilaw_batch.velocity_step", Needs::motion,
+       step_limits}};
+}
+
+}  // namespace ilaw::check

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+
+#include "check/sandbox.hpp"
+
+#include <algorithm>
+
+namespace ilaw::check {
+namespace {
+
+constexpr std::size_t trials_wanted = 24;
+
+Draw draw_of(const Subject& subject, std::size_t trial) { return Draw(subject.seed * 1000003U + trial); }
+
+}  // namespace
+
+const std::vector<Rule>& rules() {
+  static const std::vector<Rule> all = [] {
+    std::vector<Rule> made;
+    for (const auto part : {description_rules, parameter_rules, setup_rules, call_rules, purity_rules,
+                            independence_rules, memory_rules, quiet_rules, float_rules, bad_input_rules,
+                            state_rules, result_rules, energy_rules, symmetry_rules}) {
+      const std::vector<Rule> more = part();
+      made.insert(made.end(), more.begin(), more.end());
+    }
+    return made;
+  }();
+  return all;
+}
+
+void for_trials(const Subject& subject, const std::function<bool(const Trial& trial, Draw& draw)>& look,
+                const char* otherwise) {
+  const std::vector<Setup> setups = setups_of(subject.law);
+  const std::size_t count = std::max(setups.size(), trials_wanted);
+  bool judged = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Setup& setup = setups[k % setups.size()];
+    Draw draw = draw_of(subject, k);
+    const std::optional<Values> values = draw_values(subject.law, setup, draw);
+    if (!values) continue;
+    const Trial trial(subject.law, setup, *values);
+    set_setting(trial.text());
+    judged = look(trial, draw) || judged;
+  }
+  if (!judged) throw NotJudged{otherwise};
+}
+
+Trial any_trial(const Subject& subject) {
+  const std::vector<Setup> setups = setups_of(subject.law);
+  for (std::size_t k = 0; k < setups.size(); ++k) {
+    Draw draw = draw_of(subject, k);
+    if (const std::optional<Values> values = draw_values(subject.law, setups[k], draw))
+      return Trial(subject.law, setups[k], *values);
+  }
+  throw NotJudged{"the law accepted no parameters"};
+}
+
+}  // namespace ilaw::check

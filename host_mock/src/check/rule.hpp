@@ -1,0 +1,65 @@
+// rule.hpp - what a law must do: an id, one sentence, where the contract says so, and the function that
+// looks.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "check/run.hpp"
+
+#include <ilaw/loader.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace ilaw::check {
+
+// What is judged, by which random numbers.
+struct Subject {
+  const ilaw::library& library;
+  const ilaw_law& law;
+  std::uint64_t seed;
+};
+
+// What must hold before a rule can be judged.
+enum class Needs { nothing, library, instance, motion };
+
+// Throws Finding or NotJudged.
+struct Rule {
+  const char* id;
+  const char* required;
+  const char* source;
+  Needs needs;
+  void (*judge)(const Subject& subject);
+};
+
+// The three that others need: Needs::library, instance and motion.
+inline constexpr const char* opens_id = "library-opens";
+inline constexpr const char* creates_id = "setups-served";
+inline constexpr const char* returns_id = "functions-return";
+
+const std::vector<Rule>& rules();
+
+std::vector<Rule> description_rules();
+std::vector<Rule> parameter_rules();
+std::vector<Rule> setup_rules();
+std::vector<Rule> call_rules();
+std::vector<Rule> purity_rules();
+std::vector<Rule> independence_rules();
+std::vector<Rule> memory_rules();
+std::vector<Rule> quiet_rules();
+std::vector<Rule> float_rules();
+std::vector<Rule> bad_input_rules();
+std::vector<Rule> state_rules();
+std::vector<Rule> result_rules();
+std::vector<Rule> energy_rules();
+std::vector<Rule> symmetry_rules();
+
+// Calls look for trials in every setup, with parameters that the law accepts: the same ones for every rule.
+// NotJudged where there was none, which is why "look" says whether it could judge.
+void for_trials(const Subject& subject, const std::function<bool(const Trial& trial, Draw& draw)>& look,
+                const char* otherwise = "the law accepted no parameters");
+
+// Some parameters that the law accepts, in the first setup that it serves.
+Trial any_trial(const Subject& subject);
+
+}  // namespace ilaw::check

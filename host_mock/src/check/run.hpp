@@ -1,0 +1,127 @@
+// run.hpp - a script through the functions of a law, in any layout of its arrays.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "check/inputs.hpp"
+#include "check/memory.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ilaw::check {
+
+enum class Order { interleaved, by_component, spread };
+enum class List { none, of_32_bits, of_64_bits };
+inline constexpr std::uint32_t all_outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY;
+
+struct Layout {
+  Order order = Order::interleaved;
+  List list = List::none;
+  std::int32_t index_base = 0;
+  std::size_t spare = 0;  // nodes of the arrays that are on no list
+  bool in_place = false;  // state_out is state_in
+  std::uint32_t outputs = all_outputs;
+  std::vector<std::size_t> nodes{};  // of the script, in their order; empty: all
+};
+
+// Of each node in turn, whatever the layout was.
+struct Results {
+  std::size_t nodes = 0;
+  std::int32_t code = ILAW_OK;
+  ilaw_report report{};
+  std::vector<double> impulse, state, velocity, energy;
+  std::vector<std::uint8_t> status;
+
+  Vector vector(const std::vector<double>& of, std::size_t node, std::size_t dimension) const;
+};
+
+// An array of nodes with some components each, between sentinels.
+class Field {
+ public:
+  Field() = default;
+  Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use);
+
+  bool given() const { return values_ != nullptr; }
+  double& at(std::size_t node, std::size_t component);
+  ilaw_input input() const;
+  ilaw_output output() const;
+  void clear();
+  // Whether all that belongs to no node of the list still is as clear left it.
+  bool is_untouched_beside(const std::vector<std::size_t>& nodes);
+  const char* name() const { return name_; }
+  std::size_t components() const { return components_; }
+
+ private:
+  const char* name_ = "";
+  double* values_ = nullptr;
+  std::size_t components_ = 0, room_ = 0, node_stride_ = 0, component_stride_ = 0, size_ = 0;
+};
+
+// The arrays of a batch for a trial.
+class Arrays {
+ public:
+  Arrays(const Trial& trial, const Inputs& first, const Layout& layout, Memory& memory);
+
+  std::int32_t initialise(const Inputs& in);
+  // From the state that the last call left.
+  Results evaluate(const Inputs& in);
+  Results evaluate_with(const Instance& instance, const Inputs& in);
+  void set_state(const std::vector<double>& state);  // of each node in turn
+  std::vector<double> state();
+  std::vector<double> impulses();
+  // Of the last evaluate: an output that was written where no node of the batch is; null where none was.
+  const char* written_beside();
+  ilaw_batch& batch() { return batch_; }
+  void load(const Inputs& in);
+
+ private:
+  void make_list(Memory& memory);
+  void make_inputs(const Inputs& first, Memory& memory);
+  void make_outputs(Memory& memory);
+  void describe();
+  void load_one(Field& field, const std::vector<double>& values);
+  std::vector<double> take(Field& field);
+  Results results(std::int32_t code);
+  std::size_t node(std::size_t k) const { return layout_.nodes[k]; }
+
+  const Trial& trial_;
+  Layout layout_;
+  Memory& memory_;
+  std::size_t room_;
+  std::vector<std::size_t> places_;  // in the arrays, of each node of the batch
+  ilaw_batch batch_{};
+  ilaw_report report_{};
+  Field v_free_, delassus_, gap_, gap_offset_, v_previous_, area_, normal_, tangent_;
+  Field state_in_, state_out_, impulse_, velocity_, energy_;
+  std::vector<Field> per_node_;
+  ilaw_input* per_node_inputs_ = nullptr;
+  std::uint8_t* status_ = nullptr;
+  std::int32_t* index_ = nullptr;
+  std::int64_t* index64_ = nullptr;
+  std::size_t status_stride_ = 1;
+};
+
+// Results of all steps, from the first state on.
+std::vector<Results> run(const Trial& trial, const Script& script, const Layout& layout = {});
+std::vector<Results> run(const Trial& trial, const Script& script, const Layout& layout, Memory& memory);
+
+// The first array in which two results differ in a bit, at which node, with both values. "what" are the bits
+// of ILAW_OUTPUT_* that both have.
+struct Difference {
+  std::size_t node;
+  std::string text;
+};
+std::optional<Difference> difference(const Results& a, const Results& b, std::uint32_t outputs = all_outputs);
+
+// Throws the finding where two runs of a script differ.
+void expect_same(const Trial& trial, const Script& script, const std::vector<Results>& expected,
+                 const std::vector<Results>& found, const std::string& how,
+                 std::uint32_t outputs = all_outputs);
+[[noreturn]] void fail(const Trial& trial, const Inputs& in, std::size_t node, const std::string& seen,
+                       const std::string& allowed);
+std::string text_of(double value);
+std::string text_of(const Vector& a, std::size_t dimension);
+
+}  // namespace ilaw::check

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/sandbox.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <ucontext.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+#include <thread>
+
+namespace ilaw::check {
+namespace {
+
+constexpr std::size_t most_result = 1U << 18, most_printed = 2000, most_written = 1U << 20;
+
+// What the child leaves for its parent, whatever becomes of it.
+struct Shared {
+  std::array<char, 64> call;
+  std::array<char, 160> what;
+  std::array<char, 2048> setting;
+  bool returned;
+  std::size_t size;
+  std::array<char, most_result> result;
+};
+
+Shared* shared = nullptr;
+DescribeAddress describe_address = nullptr;
+
+// Cuts what is too long; for a signal handler too.
+template <std::size_t N>
+void put(std::array<char, N>& room, const char* text) {
+  std::size_t at = 0;
+  for (; text[at] != '\0' && at + 1 < N; ++at) room[at] = text[at];
+  room[at] = '\0';
+}
+template <std::size_t N>
+void append(std::array<char, N>& room, const char* text) {
+  std::size_t at = std::strlen(room.data());
+  for (; *text != '\0' && at + 1 < N; ++at) room[at] = *text++;
+  room[at] = '\0';
+}
+
+bool was_write(const void* context) {
+#if defined(__x86_64__)
+  return (static_cast<const ucontext_t*>(context)->uc_mcontext.gregs[REG_ERR] & 2) != 0;
+#else
+  static_cast<void>(context);
+  return false;
+#endif
+}
+
+void on_signal(int number, siginfo_t* info, void* context) {
+  const char* name = sigabbrev_np(number);
+  put(shared->what, "was ended by SIG");
+  append(shared->what, name ? name : "?");
+  if (number == SIGSEGV || number == SIGBUS) {
+    const bool written = was_write(context);
+    append(shared->what, written ? ", writing " : ", reading ");
+    const char* place = describe_address ? describe_address(info->si_addr) : nullptr;
+    append(shared->what, place ? place : "where nothing of the batch is");
+  }
+  if (number == SIGSYS) {
+    std::array<char, 40> text{};
+    std::snprintf(text.data(), text.size(), ", making the system call %d", info->si_syscall);
+    append(shared->what, text.data());
+  }
+  _exit(1);
+}
+
+// On a stack of their own: one that is full has no room for a handler.
+void catch_signals() {
+  static std::array<char, 1U << 16> stack;
+  stack_t given{};
+  given.ss_sp = stack.data();
+  given.ss_size = stack.size();
+  sigaltstack(&given, nullptr);
+  struct sigaction action {};
+  action.sa_sigaction = on_signal;
+  action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTERM, SIGPIPE, SIGXCPU,
+                           SIGXFSZ, SIGTRAP, SIGALRM, SIGUSR1, SIGUSR2, SIGHUP})
+    sigaction(number, &action, nullptr);
+}
+
+void limit(int resource, rlim_t amount) {
+  const rlimit given{amount, amount};
+  setrlimit(resource, &given);
+}
+
+std::size_t bytes_of_address_space() {
+  std::size_t pages = 0;
+  if (FILE* file = std::fopen("/proc/self/statm", "r")) {
+    if (std::fscanf(file, "%zu", &pages) != 1) pages = 0;
+    std::fclose(file);
+  }
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+void set_limits(const Limits& limits) {
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds) + 2);
+  limit(RLIMIT_FSIZE, most_written);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__has_feature)
+#define ILAW_HAS_SHADOW (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#else
+#define ILAW_HAS_SHADOW 0
+#endif
+  if (!ILAW_HAS_SHADOW) limit(RLIMIT_AS, bytes_of_address_space() + limits.megabytes * (1U << 20));
+#endif
+}
+
+[[noreturn]] void run_child(const Limits& limits, int output, const std::function<std::string()>& work) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setpgid(0, 0);
+  if (const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC); nothing >= 0) dup2(nothing, STDIN_FILENO);
+  dup2(output, STDOUT_FILENO);
+  dup2(output, STDERR_FILENO);
+  set_limits(limits);
+  catch_signals();
+  try {
+    const std::string result = work();
+    shared->size = std::min(result.size(), most_result);
+    std::memcpy(shared->result.data(), result.data(), shared->size);
+    shared->returned = true;
+  } catch (...) {
+    put(shared->what, "threw an exception");
+  }
+  std::fflush(nullptr);
+  _exit(0);
+}
+
+// False where the child had to be ended.
+bool wait_for(pid_t child, double seconds, int& status) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  auto pause = std::chrono::microseconds(100);
+  for (;;) {
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child || (ended < 0 && errno != EINTR)) return true;
+    if (std::chrono::steady_clock::now() > end) break;
+    std::this_thread::sleep_for(pause);
+    pause = std::min(pause * 3 / 2, std::chrono::microseconds(5000));
+  }
+  kill(-child, SIGKILL);
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  return false;
+}
+
+std::string read_printed(int output) {
+  std::string text(most_printed, '\0');
+  const ssize_t size = pread(output, text.data(), text.size(), 0);
+  text.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
+  for (char& c : text)
+    if ((c < 0x20 && c != '\n') || c > 0x7E) c = '?';
+  return text;
+}
+
+std::string how_it_ended(bool in_time, int status, double seconds) {
+  std::array<char, 80> text{};
+  if (!in_time)
+    std::snprintf(text.data(), text.size(), "did not return within %g s", seconds);
+  else if (WIFSIGNALED(status))
+    std::snprintf(text.data(), text.size(), "was ended by signal %d", WTERMSIG(status));
+  else
+    std::snprintf(text.data(), text.size(), "ended the process with exit code %d", WEXITSTATUS(status));
+  return text.data();
+}
+
+Ending ending_of(const Shared& left, bool in_time, int status, double seconds) {
+  Ending ending;
+  ending.returned = in_time && left.returned;
+  ending.result.assign(left.result.data(), left.size);
+  if (!ending.returned)
+    ending.how = in_time && left.what[0] != '\0' ? left.what.data() : how_it_ended(in_time, status, seconds);
+  ending.call = left.call.data();
+  ending.setting = left.setting.data();
+  return ending;
+}
+
+}  // namespace
+
+Ending run_apart(const Limits& limits, const std::function<std::string()>& work) {
+  void* room = mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  const int output = memfd_create("printed", MFD_CLOEXEC);
+  if (room == MAP_FAILED || output < 0) throw std::runtime_error("no memory for a child process");
+  Shared* const own = static_cast<Shared*>(room);
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("a child process cannot be started");
+  if (child == 0) {
+    shared = own;
+    run_child(limits, output, work);
+  }
+  int status = 0;
+  const bool in_time = wait_for(child, limits.seconds, status);
+  kill(-child, SIGKILL);  // what the library may have started
+  Ending ending = ending_of(*own, in_time, status, limits.seconds);
+  ending.printed = read_printed(output);
+  close(output);
+  munmap(room, sizeof(Shared));
+  return ending;
+}
+
+void calling(const char* function) {
+  if (shared) put(shared->call, function);
+}
+
+void set_setting(const std::string& text) {
+  if (shared) put(shared->setting, text.c_str());
+}
+
+void end_here(const char* what, const char* name) {
+  put(shared->what, what);
+  append(shared->what, name);
+  _exit(1);
+}
+
+void describe_addresses_by(DescribeAddress describe) { describe_address = describe; }
+
+}  // namespace ilaw::check

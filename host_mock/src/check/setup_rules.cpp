@@ -1,0 +1,220 @@
+// Rules: setups that a law does not serve, structs of other versions, messages.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+
+#include "check/sandbox.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace ilaw::check {
+namespace {
+
+void expect_unserved(const Trial& trial, const ilaw_setup& setup, const std::string& what,
+                     bool by_code = true) {
+  set_setting(what + "; " + text_of(trial.values));
+  Refusal refusal{};
+  if (create(trial.law, setup, refusal))
+    throw Finding{"create accepted " + what, "a refusal", trial.text(), {}};
+  if (by_code && refusal.code != ILAW_UNSUPPORTED)
+    throw Finding{"create refused " + what + " with code " + std::to_string(refusal.code),
+                  "ILAW_UNSUPPORTED (-3)",
+                  trial.text(),
+                  {}};
+}
+
+void setup_unserved(const Subject& subject) {
+  const Trial trial = any_trial(subject);
+  const SetupStruct given(trial.setup, trial.values);
+  for (std::uint32_t d = 0; d <= 5; ++d) {
+    if (d >= 1 && d <= 3 && (subject.law.dimensions & (1U << d))) continue;
+    ilaw_setup setup = given.given;
+    setup.dimension = d;
+    expect_unserved(trial, setup, "dimension " + std::to_string(d));
+  }
+  for (const std::uint32_t form : {0U, 1U, 2U, 3U, 4U, 8U, 16U}) {
+    const bool single = form != 0 && (form & (form - 1)) == 0;
+    if (single && (subject.law.delassus_forms & form)) continue;
+    ilaw_setup setup = given.given;
+    setup.delassus_form = form;
+    expect_unserved(trial, setup, "form " + std::to_string(form) + " of H");
+  }
+  ilaw_setup setup = given.given;
+  setup.frame = 7;
+  expect_unserved(trial, setup, "frame 7", false);
+}
+
+void setup_flags(const Subject& subject) {
+  const Trial trial = any_trial(subject);
+  const SetupStruct given(trial.setup, trial.values);
+  for (const int bit : {0, 31, 63}) {
+    ilaw_setup setup = given.given;
+    setup.flags = std::uint64_t{1} << bit;
+    expect_unserved(trial, setup, "bit " + std::to_string(bit) + " of flags");
+  }
+}
+
+std::int32_t code_of(const Trial& trial, const ilaw_setup* setup) {
+  ilaw_instance* made = nullptr;
+  calling("create");
+  const std::int32_t code = trial.law.create(setup, &made, nullptr, 0);
+  if (made) trial.law.destroy(made);
+  return code;
+}
+
+void sizes_short(const Subject& subject) {
+  const Trial trial = any_trial(subject);
+  const auto expect = [&](std::int32_t code, const std::string& what) {
+    if (code != ILAW_INVALID_ARGUMENT)
+      throw Finding{
+          what + " returned " + std::to_string(code) + " for a struct smaller than that of version 1.0",
+          "ILAW_INVALID_ARGUMENT (-1)",
+          trial.text(),
+          {}};
+  };
+  SetupStruct given(trial.setup, trial.values);
+  for (const std::uint32_t size : {0U, static_cast<std::uint32_t>(ILAW_SETUP_SIZE_1_0) - 1}) {
+    ilaw_setup setup = given.given;
+    setup.struct_size = size;
+    expect(code_of(trial, &setup), "create");
+  }
+  ilaw_instance_info info{};
+  info.struct_size = static_cast<std::uint32_t>(ILAW_INSTANCE_INFO_SIZE_1_0) - 1;
+  calling("info");
+  expect(trial.law.info(trial.instance.get(), &info), "info");
+  Draw draw(subject.seed);
+  const Script script = draw_script(trial, draw, {2, 1});
+  Heap heap;
+  Arrays arrays(trial, script[0], {}, heap);
+  arrays.initialise(script[0]);
+  ilaw_batch batch = arrays.batch();
+  batch.struct_size = static_cast<std::uint32_t>(ILAW_BATCH_SIZE_1_0) - 1;
+  expect(trial.instance.evaluate(batch, nullptr), "evaluate");
+  expect(trial.instance.initialise(batch, nullptr), "initialise");
+}
+
+// A struct with what a later minor version would append.
+template <class Struct>
+struct Longer {
+  explicit Longer(const Struct& value) : known(value) {
+    std::memset(appended.data(), 0x5a, appended.size());
+    known.struct_size = sizeof *this;
+  }
+  bool is_untouched() const {
+    return std::all_of(appended.begin(), appended.end(), [](unsigned char byte) { return byte == 0x5a; });
+  }
+  Struct known;
+  std::array<unsigned char, 40> appended;
+};
+
+void sizes_long(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    const SetupStruct given(trial.setup, trial.values);
+    Longer<ilaw_setup> setup(given.given);
+    const Script script = draw_script(trial, draw, {3, 1});
+    if (const std::int32_t code = code_of(trial, &setup.known); code != ILAW_OK)
+      throw Finding{
+          "create returned " + std::to_string(code) + " for a longer setup", "ILAW_OK", trial.text(), {}};
+    Longer<ilaw_instance_info> info(ilaw_instance_info{});
+    calling("info");
+    if (trial.law.info(trial.instance.get(), &info.known) != ILAW_OK || !info.is_untouched())
+      throw Finding{"info wrote beyond the known struct, or refused a longer one",
+                    "members that it knows",
+                    trial.text(),
+                    {}};
+    Heap heap;
+    Arrays arrays(trial, script[0], {}, heap);
+    arrays.initialise(script[0]);
+    arrays.evaluate(script[0]);
+    Longer<ilaw_batch> batch(arrays.batch());
+    ilaw_report blank{};
+    Longer<ilaw_report> report(blank);
+    const std::int32_t code = trial.instance.evaluate(batch.known, &report.known);
+    if (code < 0 || !report.is_untouched())
+      throw Finding{"evaluate returned " + std::to_string(code) + ", or wrote beyond the known report",
+                    "ILAW_OK for structs of a later version",
+                    trial.text(),
+                    {}};
+    return true;
+  });
+}
+
+// Nothing of the setup need outlive create.
+void setup_copied(const Subject& subject) {
+  for_trials(subject, [](const Trial& trial, Draw& draw) {
+    Values values = trial.values;
+    for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
+      const ilaw_parameter& p = *trial.law.parameters[k];
+      const double value = number_of(trial.law, trial.values, p.name);
+      const Values varied = with(values, {p.name, ILAW_VALUE_TABLE, 0.0, {}, {0.0, value, 1.0, value}});
+      if ((p.may_be & ILAW_MAY_BE_TABLE) && p.kind != ILAW_PARAMETER_CHOICE && in_range(p, value) &&
+          create(trial.law, trial.setup, varied))
+        values = varied;
+    }
+    const Trial kept(trial.law, trial.setup, values);
+    const Script script = draw_script(kept, draw);
+    const std::vector<Results> expected = run(trial, script);
+    expect_same(kept, script, expected, run(kept, script), "after the setup was gone");
+    return true;
+  });
+}
+
+bool is_line(const char* text) {
+  for (; *text; ++text)
+    if (static_cast<unsigned char>(*text) < 0x20 || *text == 0x7F) return false;
+  return true;
+}
+
+void refusal_message(const Subject& subject) {
+  const Trial trial = any_trial(subject);
+  const Values values = with(trial.values, {"nobody_has_this", ILAW_VALUE_NUMBER, 1.0});
+  const SetupStruct given(trial.setup, values);
+  set_setting(text_of(trial.setup) + "; " + text_of(values));
+  for (const std::size_t size : {std::size_t{512}, std::size_t{8}, std::size_t{1}, std::size_t{0}}) {
+    std::array<char, 513> text;
+    text.fill('#');
+    ilaw_instance* made = reinterpret_cast<ilaw_instance*>(text.data());
+    calling("create");
+    const std::int32_t code = trial.law.create(&given.given, &made, size ? text.data() : nullptr, size);
+    if (code == ILAW_OK) throw NotJudged{"the law accepts any parameter"};
+    if (made) throw Finding{"a refusal left *instance set", "null", trial.text(), {}};
+    const auto beyond = std::find_if(text.begin() + static_cast<std::ptrdiff_t>(size), text.end(),
+                                     [](char c) { return c != '#'; });
+    if (beyond != text.end())
+      throw Finding{"create wrote beyond the " + std::to_string(size) + " bytes of the message",
+                    "within them",
+                    trial.text(),
+                    {}};
+    if (size > 0 && !std::memchr(text.data(), 0, size))
+      throw Finding{"the message has no zero at its end",
+                    "one within " + std::to_string(size) + " bytes",
+                    trial.text(),
+                    {}};
+    if (size == 512 && (text[0] == '\0' || !is_line(text.data())))
+      throw Finding{"the message is \"" + std::string(text.data()) + "\"",
+                    "one line that says which parameter, its value and what is allowed",
+                    trial.text(),
+                    {}};
+  }
+}
+
+}  // namespace
+
+std::vector<Rule> setup_rules() {
+  return {
+      {"setup-unserved", "A dimension, form of H or frame that the law does not serve is refused.",
+       "ilaw.h, ILAW_UNSUPPORTED", Needs::instance, setup_unserved},
+      {"setup-flags", "A bit of the setup's flags that the law does not know is refused.",
+       "ilaw.h, How ABI 1 grows", Needs::instance, setup_flags},
+      {"sizes-short", "A struct that is smaller than that of version 1.0 is refused.",
+       "abi.md, How ABI 1 grows", Needs::instance, sizes_short},
+      {"sizes-long", "Structs of later minor versions are served; nothing is written beyond what is known.",
+       "abi.md, How ABI 1 grows", Needs::motion, sizes_long},
+      {"setup-copied", "Nothing of the setup need outlive create.", "abi.md, ilaw_setup", Needs::motion,
+       setup_copied},
+      {"refusal-message", "A refusal leaves no instance, and a message of one line within its bytes.",
+       "ilaw.h, ilaw_law.create", Needs::instance, refusal_message}};
+}
+
+}  // namespace ilaw::check

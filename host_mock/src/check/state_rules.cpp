@@ -1,0 +1,164 @@
+// Rules: what a law makes of its state, and of nodes that are out of reach.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/rule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace ilaw::check {
+namespace {
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b, std::size_t node,
+               std::size_t width) {
+  return width == 0 || std::memcmp(&a[node * width], &b[node * width], width * sizeof(double)) == 0;
+}
+
+// Velocities that close the gap exactly but for rounding, and an ulp beside that.
+void draw_borderline(Inputs& in, Draw& draw) {
+  for (std::size_t i = 0; i < in.count; ++i) {
+    const double gap = 1e-3 * static_cast<double>(1 + draw.below(99));
+    in.gap[i] = in.gap_offset[i] + gap;
+    const double closing = -in.slack(i) / in.position_step;
+    const double along = draw.one_in(3)   ? closing
+                         : draw.one_in(2) ? std::nextafter(closing, -1e9)
+                                          : std::nextafter(closing, 1e9);
+    const Vector n = in.normal_at(i);
+    Vector v{}, before{};
+    for (std::size_t c = 0; c < in.dimension; ++c) {
+      v[c] = in.normal.empty() && c > 0 ? 0.25 : along * n[c];
+      before[c] = -3.0 * n[c];
+    }
+    in.set_vector(in.v_free, i, v);
+    in.set_vector(in.v_previous, i, before);
+  }
+}
+
+void expect_left_alone(const Trial& trial, const Inputs& in, std::size_t i, const std::vector<double>& state,
+                       const Results& found) {
+  const Vector r = found.vector(found.impulse, i, in.dimension);
+  if (r != Vector{}) fail(trial, in, i, "out of reach, impulse " + text_of(r, in.dimension), "r = 0");
+  if (!same_bits(state, found.state, i, trial.info.state_size))
+    fail(trial, in, i, "out of reach, its state changed", "the same bits of state");
+  if (!found.status.empty() && found.status[i] != ILAW_FREE)
+    fail(trial, in, i, "out of reach, status " + std::to_string(found.status[i]), "ILAW_FREE (0)");
+}
+
+void skip_promise(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (trial.can(ILAW_CAN_ACT_AT_DISTANCE) || !trial.reads(ILAW_INPUT_GAP)) return false;
+        Script script = draw_script(trial, draw, {40, 3}, true);
+        Heap heap;
+        Arrays arrays(trial, script[0], {}, heap);
+        for (Inputs& in : script) {
+          if (&in != &script[0]) draw_borderline(in, draw);
+          arrays.initialise(in);
+          const std::vector<double> state = arrays.state();
+          const Results found = arrays.evaluate(in);
+          for (std::size_t i = 0; i < in.count; ++i)
+            if (in.is_out_of_reach(i)) expect_left_alone(trial, in, i, state, found);
+        }
+        return true;
+      },
+      "the law acts at a distance");
+}
+
+void rest_promise(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (!trial.can(ILAW_CAN_REST) || !trial.writes(ILAW_OUTPUT_STATUS) || !trial.reads(ILAW_INPUT_GAP))
+          return false;
+        Script script = draw_script(trial, draw, {30, 16}, true);
+        Heap heap;
+        Arrays arrays(trial, script[0], {}, heap);
+        arrays.initialise(script[0]);
+        for (std::size_t k = 0; k + 1 < script.size(); k += 2) {
+          const Results before = arrays.evaluate(script[k]);
+          Inputs& in = script[k + 1];
+          draw_borderline(in, draw);
+          const Results found = arrays.evaluate(in);
+          for (std::size_t i = 0; i < in.count; ++i)
+            if (before.status[i] == ILAW_FREE && in.is_out_of_reach(i))
+              expect_left_alone(trial, in, i, before.state, found);
+        }
+        return true;
+      },
+      "the law promises no rest");
+}
+
+// The state of one node replaced: bad input, or a finite result; the others as ever.
+void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, const std::vector<double>& state,
+                      const Results& good, std::size_t entry, double value) {
+  constexpr std::size_t node = 2;
+  const std::size_t size = trial.info.state_size, d = in.dimension;
+  std::vector<double> foreign = state;
+  foreign[node * size + entry] = value;
+  arrays.set_state(foreign);
+  const Results found = arrays.evaluate(in);
+  const auto say = [&](std::size_t at, const std::string& seen, const std::string& allowed) {
+    fail(trial, in, at, "state_in[" + std::to_string(entry) + "] of node 2 = " + text_of(value) + ": " + seen,
+         allowed);
+  };
+  for (std::size_t i = 0; i < in.count; ++i) {
+    if (i == node) continue;
+    if (!same_bits(good.impulse, found.impulse, i, d) || !same_bits(good.state, found.state, i, size))
+      say(i, "node " + std::to_string(i) + " changed", "as ever at the other nodes");
+  }
+  for (std::size_t c = 0; c < d; ++c)
+    if (!std::isfinite(found.impulse[node * d + c]))
+      say(node, "an impulse that is not finite", "a finite impulse");
+  const bool refused = found.code == ILAW_BAD_NODES;
+  if (!std::isfinite(value) && !refused)
+    say(node, "code " + std::to_string(found.code), "ILAW_BAD_NODES (1)");
+  if (!refused) return;
+  for (std::size_t c = 0; c < d; ++c)
+    if (found.impulse[node * d + c] != 0.0) say(node, "bad input with an impulse", "r = 0");
+  if (!same_bits(foreign, found.state, node, size))
+    say(node, "bad input with another state", "state_out = state_in");
+}
+
+void foreign_state(const Subject& subject) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        const std::size_t size = trial.info.state_size;
+        if (size == 0) return false;
+        const Script script = draw_script(trial, draw, {5, 4}, true);
+        Heap heap;
+        Arrays arrays(trial, script[0], {}, heap);
+        arrays.initialise(script[0]);
+        for (std::size_t k = 0; k < 3; ++k) arrays.evaluate(script[k]);
+        const std::vector<double> state = arrays.state();
+        const Results good = arrays.evaluate(script[3]);
+        if (good.code != ILAW_OK) return false;
+        for (std::size_t k = 0; k < std::min<std::size_t>(size, 24); ++k)
+          for (const double value :
+               {std::nan(""), infinity, -infinity, 1e300, -1e300, 1e18, 4096.0, -17.0, 0.5, 1e-310})
+            expect_contained(trial, script[3], arrays, state, good, k, value);
+        return true;
+      },
+      "the law has no state");
+}
+
+}  // namespace
+
+std::vector<Rule> state_rules() {
+  return {
+      {"skip-promise",
+       "Without ILAW_CAN_ACT_AT_DISTANCE a fresh node that is out of reach gets r = 0 and keeps its "
+       "state, bit for bit.",
+       "ilaw.h, ILAW_CAN_ACT_AT_DISTANCE", Needs::motion, skip_promise},
+      {"rest-promise", "With ILAW_CAN_REST a node that was free gets r = 0 and keeps its state out of reach.",
+       "ilaw.h, ILAW_CAN_REST", Needs::motion, rest_promise},
+      {"foreign-state",
+       "A state that the law cannot have written is bad input, or does no harm; NaN and infinity "
+       "are bad input.",
+       "abi.md, State", Needs::motion, foreign_state}};
+}
+
+}  // namespace ilaw::check

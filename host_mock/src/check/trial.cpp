@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/trial.hpp"
+
+#include "check/sandbox.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace ilaw::check {
+namespace {
+
+std::string text_of_number(double value) {
+  std::array<char, 32> text{};
+  for (int digits = 6; digits <= 17; ++digits) {
+    std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+    if (std::strtod(text.data(), nullptr) == value) break;
+  }
+  return text.data();
+}
+
+std::string text_of(const Value& value) {
+  switch (value.kind) {
+    case ILAW_VALUE_TEXT:
+      return value.name + " = \"" + value.text + "\"";
+    case ILAW_VALUE_TABLE: {
+      std::string pairs;
+      for (const double number : value.table) pairs += (pairs.empty() ? "" : ", ") + text_of_number(number);
+      return value.name + " = table {" + pairs + "}";
+    }
+    case ILAW_VALUE_PER_NODE:
+      return value.name + " per node";
+    default:
+      return value.name + " = " + text_of_number(value.number);
+  }
+}
+
+}  // namespace
+
+std::string text_of(const Values& values) {
+  std::string text;
+  for (const Value& value : values) text += (text.empty() ? "" : ", ") + text_of(value);
+  return text.empty() ? "default parameters" : text;
+}
+
+Values with(Values values, const Value& value) {
+  std::erase_if(values, [&](const Value& old) { return old.name == value.name; });
+  values.push_back(value);
+  return values;
+}
+
+std::size_t Setup::form_width() const {
+  const std::size_t d = dimension;
+  if (form == ILAW_DELASSUS_SCALAR) return 1;
+  if (form == ILAW_DELASSUS_DIAGONAL) return d;
+  return form == ILAW_DELASSUS_FULL ? d * (d + 1) / 2 : 2;
+}
+
+std::string text_of(const Setup& setup) {
+  const char* form = setup.form == ILAW_DELASSUS_SCALAR     ? "scalar"
+                     : setup.form == ILAW_DELASSUS_DIAGONAL ? "diagonal"
+                     : setup.form == ILAW_DELASSUS_FULL     ? "full"
+                                                            : "transverse";
+  return "dimension " + std::to_string(setup.dimension) + ", " + form + " H, " +
+         (setup.global() ? "global" : "local") + " frame" + (setup.tangent_given ? " with tangents" : "");
+}
+
+SetupStruct::SetupStruct(const Setup& setup, const Values& values) : values_(values) {
+  for (const Value& value : values_) {
+    ilaw_argument argument{};
+    argument.struct_size = sizeof argument;
+    argument.kind = value.kind;
+    argument.name = value.name.c_str();
+    argument.number = value.number;
+    if (value.kind == ILAW_VALUE_TEXT) argument.text = value.text.c_str();
+    if (value.kind == ILAW_VALUE_TABLE) {
+      argument.values = value.table.data();
+      argument.count = value.table.size() / 2;
+    }
+    arguments.push_back(argument);
+  }
+  for (const ilaw_argument& argument : arguments) pointers_.push_back(&argument);
+  given.struct_size = sizeof given;
+  given.dimension = setup.dimension;
+  given.delassus_form = setup.form;
+  given.frame = setup.frame;
+  given.tangent_given = setup.tangent_given;
+  given.arguments = pointers_.empty() ? nullptr : pointers_.data();
+  given.argument_count = static_cast<std::uint32_t>(pointers_.size());
+}
+
+SetupStruct::~SetupStruct() {
+  for (Value& value : values_) {
+    std::fill(value.table.begin(), value.table.end(), std::numeric_limits<double>::quiet_NaN());
+    std::fill(value.text.begin(), value.text.end(), '#');
+    std::fill(value.name.begin(), value.name.end(), '#');
+  }
+}
+
+Instance::Instance(Instance&& other) noexcept
+    : law_(other.law_), made_(std::exchange(other.made_, nullptr)) {}
+Instance& Instance::operator=(Instance&& other) noexcept {
+  std::swap(law_, other.law_);
+  std::swap(made_, other.made_);
+  return *this;
+}
+Instance::~Instance() {
+  if (!made_) return;
+  calling("destroy");
+  law_->destroy(made_);
+}
+
+ilaw_instance_info Instance::info() const {
+  ilaw_instance_info info{};
+  info.struct_size = sizeof info;
+  calling("info");
+  if (const std::int32_t code = law_->info(made_, &info); code != ILAW_OK)
+    throw Finding{"info returned " + std::to_string(code) + " for its own instance", "ILAW_OK", {}, {}};
+  return info;
+}
+
+std::int32_t Instance::initialise(const ilaw_batch& batch, ilaw_report* report) const {
+  calling("initialise");
+  return law_->initialise(made_, &batch, report);
+}
+
+std::int32_t Instance::evaluate(const ilaw_batch& batch, ilaw_report* report) const {
+  calling("evaluate");
+  return law_->evaluate(made_, &batch, report);
+}
+
+std::optional<Instance> create(const ilaw_law& law, const ilaw_setup& setup, Refusal& refusal) {
+  std::array<char, 1024> message{};
+  ilaw_instance* made = nullptr;
+  calling("create");
+  refusal.code = law.create(&setup, &made, message.data(), message.size());
+  message.back() = '\0';
+  refusal.message = message.data();
+  if (refusal.code != ILAW_OK) return std::nullopt;
+  if (!made) throw Finding{"create returned ILAW_OK and no instance", "an instance", {}, {}};
+  return Instance(law, made);
+}
+
+std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Values& values) {
+  const SetupStruct given(setup, values);
+  Refusal refusal{};
+  set_setting(text_of(setup) + "; " + text_of(values));
+  return create(law, given.given, refusal);
+}
+
+namespace {
+
+Instance created(const ilaw_law& law, const Setup& setup, const Values& values) {
+  const SetupStruct given(setup, values);
+  Refusal refusal{};
+  set_setting(text_of(setup) + "; " + text_of(values));
+  std::optional<Instance> made = create(law, given.given, refusal);
+  if (!made)
+    throw Finding{"create refused them with code " + std::to_string(refusal.code) + ": " + refusal.message,
+                  "an instance, since it accepted these parameters before",
+                  text_of(setup) + "; " + text_of(values),
+                  {}};
+  return std::move(*made);
+}
+
+}  // namespace
+
+Trial::Trial(const ilaw_law& of, const Setup& given, const Values& chosen)
+    : law(of), setup(given), values(chosen), instance(created(of, given, chosen)), info(instance.info()) {}
+
+std::string Trial::text() const { return text_of(setup) + "; " + text_of(values); }
+
+const ilaw_parameter* parameter_of(const ilaw_law& law, const std::string& name) {
+  for (std::uint32_t k = 0; k < law.parameter_count; ++k)
+    if (name == law.parameters[k]->name) return law.parameters[k];
+  return nullptr;
+}
+
+bool in_range(const ilaw_parameter& p, double value) {
+  if (value == std::numeric_limits<double>::infinity()) return p.infinity_allowed != 0;
+  return value <= p.maximum && (p.minimum_excluded ? value > p.minimum : value >= p.minimum);
+}
+
+double number_of(const ilaw_law& law, const Values& values, const std::string& name) {
+  for (const Value& value : values)
+    if (value.name == name) return value.number;
+  const ilaw_parameter* p = parameter_of(law, name);
+  return p ? p->default_value : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::vector<Setup> setups_of(const ilaw_law& law) {
+  std::vector<Setup> setups;
+  for (std::uint32_t d = 3; d >= 1; --d)
+    for (const std::uint32_t form :
+         {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE}) {
+      if (!(law.dimensions & (1U << d)) || !(law.delassus_forms & form)) continue;
+      setups.push_back({d, form, ILAW_FRAME_LOCAL, 0});
+      setups.push_back({d, form, ILAW_FRAME_GLOBAL, 0});
+      if (d == 3) setups.push_back({d, form, ILAW_FRAME_GLOBAL, 1});
+    }
+  return setups;
+}
+
+Value draw_value(const ilaw_parameter& p, Draw& draw) {
+  Value value{p.name};
+  if (p.kind == ILAW_PARAMETER_CHOICE) {
+    value.kind = ILAW_VALUE_TEXT;
+    value.text = p.choices[draw.below(p.choice_count)];
+    return value;
+  }
+  if (p.infinity_allowed && draw.one_in(8)) {
+    value.number = std::numeric_limits<double>::infinity();
+    return value;
+  }
+  const bool whole = p.kind == ILAW_PARAMETER_COUNT;
+  const double low = p.minimum, high = std::min(p.maximum, whole ? std::max(8.0, low + 2.0) : p.maximum);
+  // Most numbers are of order one, strengths and stiffnesses are large, times and toughnesses small.
+  const double drawn = high - low <= 4.0 ? draw.within(low, high) : std::pow(10.0, draw.within(-3.0, 5.0));
+  value.number = std::clamp(drawn, low, high);
+  if (whole) value.number = std::clamp(std::floor(draw.within(low, high + 1.0)), std::ceil(low), high);
+  if (!in_range(p, value.number)) value.number = std::nextafter(low, high);
+  return value;
+}
+
+std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw& draw) {
+  constexpr int attempts = 200;
+  for (int k = 0; k < attempts; ++k) {
+    Values values;
+    for (std::uint32_t p = 0; p < law.parameter_count; ++p)
+      if (law.parameters[p]->required || draw.one_in(2))
+        values.push_back(draw_value(*law.parameters[p], draw));
+    if (create(law, setup, values)) return values;
+  }
+  return std::nullopt;
+}
+
+}  // namespace ilaw::check

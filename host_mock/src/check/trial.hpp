@@ -1,0 +1,111 @@
+// trial.hpp - instances of a law: which setups it serves, which parameters it accepts, its functions called
+// with what is needed to name them in a finding.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "check/draw.hpp"
+#include "check/finding.hpp"
+
+#include <ilaw/ilaw.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ilaw::check {
+
+// A value of a parameter, with what its ilaw_argument points to.
+struct Value {
+  std::string name;
+  std::uint32_t kind = ILAW_VALUE_NUMBER;
+  double number = 0.0;
+  std::string text{};
+  std::vector<double> table{};  // time, value, time, value ...
+};
+using Values = std::vector<Value>;
+std::string text_of(const Values& values);
+// With one more, or another for the same name.
+Values with(Values values, const Value& value);
+
+struct Setup {
+  std::uint32_t dimension = 3, form = ILAW_DELASSUS_SCALAR, frame = ILAW_FRAME_LOCAL, tangent_given = 0;
+
+  bool global() const { return frame == ILAW_FRAME_GLOBAL; }
+  std::size_t form_width() const;
+};
+std::string text_of(const Setup& setup);
+
+// The struct of the ABI with all that it points to; ends as rubbish, since nothing of it need outlive create.
+class SetupStruct {
+ public:
+  SetupStruct(const Setup& setup, const Values& values);
+  SetupStruct(const SetupStruct&) = delete;
+  SetupStruct& operator=(const SetupStruct&) = delete;
+  ~SetupStruct();
+
+  ilaw_setup given{};
+  std::vector<ilaw_argument> arguments;
+
+ private:
+  Values values_;
+  std::vector<const ilaw_argument*> pointers_;
+};
+
+struct Refusal {
+  std::int32_t code;
+  std::string message;
+};
+
+// Owns an instance of a law.
+class Instance {
+ public:
+  Instance(const ilaw_law& law, ilaw_instance* made) : law_(&law), made_(made) {}
+  Instance(Instance&& other) noexcept;
+  Instance& operator=(Instance&& other) noexcept;
+  ~Instance();
+
+  ilaw_instance_info info() const;
+  std::int32_t initialise(const ilaw_batch& batch, ilaw_report* report) const;
+  std::int32_t evaluate(const ilaw_batch& batch, ilaw_report* report) const;
+  const ilaw_instance* get() const { return made_; }
+
+ private:
+  const ilaw_law* law_;
+  ilaw_instance* made_;
+};
+
+// Makes an instance, or says why not.
+std::optional<Instance> create(const ilaw_law& law, const ilaw_setup& setup, Refusal& refusal);
+std::optional<Instance> create(const ilaw_law& law, const Setup& setup, const Values& values);
+
+// A law with parameters and a setup that it accepts.
+struct Trial {
+  Trial(const ilaw_law& law, const Setup& setup, const Values& values);  // throws Finding where it is refused
+
+  std::string text() const;
+  bool writes(std::uint32_t output) const { return (law.outputs & output) != 0; }
+  bool can(std::uint32_t capability) const { return (info.capabilities & capability) != 0; }
+  bool reads(std::uint32_t input) const { return (info.inputs & input) != 0; }
+
+  const ilaw_law& law;
+  Setup setup;
+  Values values;
+  Instance instance;
+  ilaw_instance_info info;
+};
+
+const ilaw_parameter* parameter_of(const ilaw_law& law, const std::string& name);
+bool in_range(const ilaw_parameter& p, double value);
+// The value that a parameter has: of the list, or its default.
+double number_of(const ilaw_law& law, const Values& values, const std::string& name);
+
+// All setups that the law's description serves.
+std::vector<Setup> setups_of(const ilaw_law& law);
+// A value of a parameter within what its description allows.
+Value draw_value(const ilaw_parameter& p, Draw& draw);
+// Draws values until the law accepts them in a setup; none where it accepts nothing.
+std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw& draw);
+
+}  // namespace ilaw::check

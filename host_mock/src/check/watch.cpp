@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/watch.hpp"
+
+#include "check/sandbox.hpp"
+
+#include <dlfcn.h>
+#include <elf.h>
+#include <link.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <utility>
+
+namespace ilaw::check {
+namespace {
+
+struct Named {
+  Forbidden kind;
+  const char* name;  // of the function; with a '*' at its end, of all that begin so
+};
+
+constexpr std::array named{Named{Forbidden::allocation, "malloc"},
+                           Named{Forbidden::allocation, "calloc"},
+                           Named{Forbidden::allocation, "realloc"},
+                           Named{Forbidden::allocation, "free"},
+                           Named{Forbidden::allocation, "aligned_alloc"},
+                           Named{Forbidden::allocation, "posix_memalign"},
+                           Named{Forbidden::allocation, "memalign"},
+                           Named{Forbidden::allocation, "strdup"},
+                           Named{Forbidden::allocation, "mmap*"},
+                           Named{Forbidden::allocation, "_Znw*"},
+                           Named{Forbidden::allocation, "_Zna*"},
+                           Named{Forbidden::allocation, "_Zdl*"},
+                           Named{Forbidden::allocation, "_Zda*"},
+                           Named{Forbidden::allocation, "_ZNSt7__cxx1112basic_string*"},
+                           Named{Forbidden::lock, "pthread_mutex_*"},
+                           Named{Forbidden::lock, "pthread_rwlock_*"},
+                           Named{Forbidden::lock, "pthread_spin_*"},
+                           Named{Forbidden::lock, "pthread_cond_*"},
+                           Named{Forbidden::lock, "pthread_once"},
+                           Named{Forbidden::lock, "pthread_create"},
+                           Named{Forbidden::lock, "sem_*"},
+                           Named{Forbidden::lock, "mtx_*"},
+                           Named{Forbidden::lock, "thrd_*"},
+                           Named{Forbidden::lock, "__cxa_guard_acquire"},
+                           Named{Forbidden::lock, "GOMP_*"},
+                           Named{Forbidden::lock, "_ZNSt6thread*"},
+                           Named{Forbidden::input_output, "printf"},
+                           Named{Forbidden::input_output, "fprintf"},
+                           Named{Forbidden::input_output, "vfprintf"},
+                           Named{Forbidden::input_output, "__printf_chk"},
+                           Named{Forbidden::input_output, "__fprintf_chk"},
+                           Named{Forbidden::input_output, "puts"},
+                           Named{Forbidden::input_output, "putchar"},
+                           Named{Forbidden::input_output, "fputs"},
+                           Named{Forbidden::input_output, "fputc"},
+                           Named{Forbidden::input_output, "fwrite"},
+                           Named{Forbidden::input_output, "fread"},
+                           Named{Forbidden::input_output, "fgets"},
+                           Named{Forbidden::input_output, "fflush"},
+                           Named{Forbidden::input_output, "fopen*"},
+                           Named{Forbidden::input_output, "fclose"},
+                           Named{Forbidden::input_output, "open*"},
+                           Named{Forbidden::input_output, "read"},
+                           Named{Forbidden::input_output, "write"},
+                           Named{Forbidden::input_output, "perror"},
+                           Named{Forbidden::input_output, "syslog"},
+                           Named{Forbidden::input_output, "getenv"},
+                           Named{Forbidden::input_output, "setenv"},
+                           Named{Forbidden::input_output, "system"},
+                           Named{Forbidden::input_output, "_ZSt16__ostream_insert*"},
+                           Named{Forbidden::input_output, "_ZStlsISt11char_traits*"},
+                           Named{Forbidden::input_output, "_ZNSo*"},
+                           Named{Forbidden::clock, "time"},
+                           Named{Forbidden::clock, "clock"},
+                           Named{Forbidden::clock, "clock_gettime"},
+                           Named{Forbidden::clock, "gettimeofday"},
+                           Named{Forbidden::clock, "timespec_get"},
+                           Named{Forbidden::clock, "sleep"},
+                           Named{Forbidden::clock, "usleep"},
+                           Named{Forbidden::clock, "nanosleep"},
+                           Named{Forbidden::clock, "_ZNSt6chrono*"},
+                           Named{Forbidden::clock, "rand"},
+                           Named{Forbidden::clock, "rand_r"},
+                           Named{Forbidden::clock, "random*"},
+                           Named{Forbidden::clock, "drand48*"},
+                           Named{Forbidden::clock, "lrand48*"},
+                           Named{Forbidden::clock, "getrandom"},
+                           Named{Forbidden::clock, "arc4random*"},
+                           Named{Forbidden::ending, "exit"},
+                           Named{Forbidden::ending, "_exit"},
+                           Named{Forbidden::ending, "abort"},
+                           Named{Forbidden::ending, "raise"},
+                           Named{Forbidden::ending, "kill"},
+                           Named{Forbidden::ending, "signal"},
+                           Named{Forbidden::ending, "sigaction"},
+                           Named{Forbidden::ending, "_setjmp"},
+                           Named{Forbidden::ending, "longjmp"}};
+
+bool matches(const char* pattern, const char* name) {
+  const std::size_t size = std::strlen(pattern);
+  if (pattern[size - 1] == '*') return std::strncmp(pattern, name, size - 1) == 0;
+  return std::strcmp(pattern, name) == 0;
+}
+
+// Which of them a symbol is; the size of the list where it is none.
+std::size_t place_of(const char* name, Forbidden kind) {
+  std::size_t k = 0;
+  while (k < named.size() && !(named[k].kind == kind && matches(named[k].name, name))) ++k;
+  return k;
+}
+
+// What stands in place of a forbidden function. It never returns, so its arguments do not matter.
+template <std::size_t K>
+[[noreturn]] void called() {
+  end_here("called ", named[K].name);
+}
+template <std::size_t... K>
+constexpr auto substitutes(std::index_sequence<K...>) {
+  return std::array<void (*)(), sizeof...(K)>{called<K>...};
+}
+constexpr auto all_substitutes = substitutes(std::make_index_sequence<named.size()>{});
+
+// What the dynamic section of a loaded file says.
+struct Dynamic {
+  ElfW(Addr) base = 0;
+  const ElfW(Sym) * symbols = nullptr;
+  const char* strings = nullptr;
+  const ElfW(Rela) * tables[2] = {nullptr, nullptr};
+  std::size_t sizes[2] = {0, 0};
+};
+
+Dynamic dynamic_of(const link_map& map) {
+  Dynamic found;
+  found.base = map.l_addr;
+  for (const ElfW(Dyn)* entry = map.l_ld; entry->d_tag != DT_NULL; ++entry) {
+    const void* const address = reinterpret_cast<const void*>(entry->d_un.d_ptr);
+    switch (entry->d_tag) {
+      case DT_SYMTAB:
+        found.symbols = static_cast<const ElfW(Sym)*>(address);
+        break;
+      case DT_STRTAB:
+        found.strings = static_cast<const char*>(address);
+        break;
+      case DT_JMPREL:
+        found.tables[0] = static_cast<const ElfW(Rela)*>(address);
+        break;
+      case DT_PLTRELSZ:
+        found.sizes[0] = entry->d_un.d_val / sizeof(ElfW(Rela));
+        break;
+      case DT_RELA:
+        found.tables[1] = static_cast<const ElfW(Rela)*>(address);
+        break;
+      case DT_RELASZ:
+        found.sizes[1] = entry->d_un.d_val / sizeof(ElfW(Rela));
+        break;
+      default:
+        break;
+    }
+  }
+  return found;
+}
+
+// Calls look for each place that holds the address of a function of another library, with its name.
+void for_imports(const std::string& library,
+                 const std::function<void(void** place, const char* name)>& look) {
+  void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
+  link_map* map = nullptr;
+  if (!handle) return;
+  if (dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 && map) {
+    const Dynamic file = dynamic_of(*map);
+    for (int t = 0; t < 2; ++t)
+      for (std::size_t k = 0; file.tables[t] && k < file.sizes[t]; ++k) {
+        const ElfW(Rela)& entry = file.tables[t][k];
+        const std::size_t symbol = ELF64_R_SYM(entry.r_info);
+        if (symbol == 0 || file.symbols[symbol].st_shndx != SHN_UNDEF) continue;
+        look(reinterpret_cast<void**>(file.base + entry.r_offset),
+             file.strings + file.symbols[symbol].st_name);
+      }
+  }
+  dlclose(handle);
+}
+
+void make_writable(const void* place) {
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const std::size_t address = reinterpret_cast<std::size_t>(place) / page * page;
+  mprotect(reinterpret_cast<void*>(address), page, PROT_READ | PROT_WRITE);
+}
+
+}  // namespace
+
+CallWatch::CallWatch(const std::string& library, Forbidden kind) {
+  for_imports(library, [&](void** place, const char* name) {
+    const std::size_t k = place_of(name, kind);
+    if (k == named.size()) return;
+    make_writable(place);
+    slots_.push_back({place, *place});
+    *place = reinterpret_cast<void*>(all_substitutes[k]);
+  });
+}
+
+CallWatch::~CallWatch() {
+  for (const Slot& slot : slots_) *slot.place = slot.value;
+}
+
+Globals::Globals(const std::string& library) {
+  struct Search {
+    std::string path;
+    std::vector<Part>* parts;
+  } search{library, &parts_};
+  dl_iterate_phdr(
+      [](dl_phdr_info* file, std::size_t, void* context) {
+        const Search& wanted = *static_cast<Search*>(context);
+        if (!file->dlpi_name || wanted.path != file->dlpi_name) return 0;
+        for (int k = 0; k < file->dlpi_phnum; ++k) {
+          const ElfW(Phdr)& part = file->dlpi_phdr[k];
+          if (part.p_type != PT_LOAD || !(part.p_flags & PF_W)) continue;
+          const char* begin = reinterpret_cast<const char*>(file->dlpi_addr + part.p_vaddr);
+          wanted.parts->push_back({begin, std::vector<char>(begin, begin + part.p_memsz)});
+        }
+        return 1;
+      },
+      &search);
+}
+
+std::size_t Globals::changed() const {
+  std::size_t bytes = 0;
+  for (const Part& part : parts_)
+    for (std::size_t k = 0; k < part.copy.size(); ++k) bytes += part.begin[k] != part.copy[k];
+  return bytes;
+}
+
+bool forbid_system_calls() {
+  const auto allow = [](unsigned number) {
+    return std::array{sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, 1),
+                      sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
+  };
+  const auto write = allow(SYS_write), end = allow(SYS_exit_group), back = allow(SYS_rt_sigreturn);
+  std::array filter{sock_filter BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+                    write[0],
+                    write[1],
+                    end[0],
+                    end[1],
+                    back[0],
+                    back[1],
+                    sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP)};
+  const sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
+  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+}  // namespace ilaw::check

@@ -1,0 +1,68 @@
+// `ilaw check`: whether a library keeps the contract, rule by rule.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands.hpp"
+
+#include "base/exit_code.hpp"
+#include "check/report.hpp"
+
+#include <cstdio>
+#include <string>
+
+namespace ilaw::host {
+namespace {
+
+struct CheckOptions {
+  std::string file, junit;
+  check::Options check;
+  bool as_json = false, rules = false;
+};
+
+int check_library(const CheckOptions& options) {
+  if (options.rules) {
+    std::fputs(check::table_of_rules().c_str(), stdout);
+    return exit_done;
+  }
+  if (options.file.empty()) {
+    std::fprintf(stderr, "ilaw: found no library, expected one to check, or --rules\n");
+    return exit_bad_input;
+  }
+  check::Checked checked{options.file, options.check.seed, {}};
+  try {
+    checked.outcomes = check::check(options.file, options.check);
+  } catch (const check::UsageError& error) {
+    std::fprintf(stderr, "ilaw: %s\n", error.what());
+    return exit_bad_input;
+  }
+  if (!options.junit.empty() && !check::write_junit(checked, options.junit)) {
+    std::fprintf(stderr, "ilaw: %s: cannot be written\n", options.junit.c_str());
+    return exit_failed;
+  }
+  std::fputs((options.as_json ? check::json_of(checked) : check::text_of(checked)).c_str(), stdout);
+  return checked.all_passed() ? exit_done : exit_failed;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& chosen) {
+  const auto options = std::make_shared<CheckOptions>();
+  CLI::App* command =
+      app.add_subcommand("check", "Check a library of laws against the contract, rule by rule");
+  command->add_option("library", options->file, "Path of a library, or name of a law");
+  command->add_option("--law", options->check.law, "This law of the library alone");
+  command->add_option("--only", options->check.only, "This rule alone; to be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--seed", options->check.seed,
+                      "Of the random numbers: the same seed, the same findings");
+  command->add_option("--limit", options->check.limits.seconds, "Seconds for each rule and law")
+      ->check(CLI::Range(0.1, 3600.0));
+  command->add_flag("--json", options->as_json, "Print an array of objects, one for each rule and law");
+  command->add_option("--junit", options->junit, "Write a report in JUnit's XML, too");
+  command->add_flag("--rules", options->rules, "Print the table of rules");
+  command->footer(
+      "Exit codes: 0 no rule is broken; 1 some are; 2 bad usage.\n"
+      "Example: ilaw check ./build/lib/ilaw/my_law.so --junit check.xml");
+  command->callback([options, &chosen] { chosen = [options] { return check_library(*options); }; });
+}
+
+}  // namespace ilaw::host
