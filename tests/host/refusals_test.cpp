@@ -201,7 +201,7 @@ TEST(Warnings, TellWhatCanHardlyBeMeant) {
   EXPECT_EQ(warnings_of("/time/dt", "0.5"),
             Warnings{"/time/end: found 0.1, less than one step, 0.5, which is taken all the same"});
   EXPECT_EQ(warnings_of("/output/every", "101"),
-            Warnings{"/output/every: found 101: the history has no row in 100 steps"});
+            Warnings{"/output/every: found 101: the history has the last of 100 steps alone"});
   EXPECT_EQ(
       warnings_of("/interfaces/0/obstacle", R"({"type": "sphere", "center": [0.5, 1], "radius": 0.75})"),
       Warnings{"/interfaces/0: 2 node(s) start inside the obstacle, node 0 by 0.25"});

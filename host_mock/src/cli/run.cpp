@@ -7,6 +7,7 @@
 #include "base/scene_error.hpp"
 #include "cli/progress.hpp"
 #include "results/checkpoint.hpp"
+#include "results/events.hpp"
 #include "results/fields.hpp"
 #include "results/history.hpp"
 #include "results/summary.hpp"
@@ -20,8 +21,10 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace ilaw::host {
@@ -45,6 +48,13 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// What an earlier run left in the folder, and pictures of it, would pass for results of this one.
+void clear_results(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const char* name : {"events.csv", "history.png", "history.svg", "history.gnuplot"})
+    std::filesystem::remove(folder / name, ignored);
+}
+
 // A run and what it writes. The constructor throws std::runtime_error where there is nothing to
 // resume from, or nothing can be written.
 class Run {
@@ -59,7 +69,9 @@ class Run {
       return;
     }
     history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
+    clear_results(options_.folder);
     fields_.clear();
+    if (scene_.output.events) events_.emplace(scene_, options_.folder);
   }
 
   // Steps to the end, to a request to stop, or to a failure; the record says which.
@@ -69,15 +81,19 @@ class Run {
       if (!options_.resume && scene_.output.fields > 0) fields_.write(integrator_);
       while (integrator_.steps() < scene_.steps && !stop_requested) {
         integrator_.step();
+        history_->add_step(integrator_);
+        if (events_) events_->add_step(integrator_);
         write_outputs();
         progress.show(integrator_.steps());
       }
       record.interrupted = integrator_.steps() < scene_.steps;
       if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
       history_->commit();
+      if (events_) events_->commit();
     } catch (const std::exception& failure) {
       record.failure = failure.what();
       history_->keep_rows();
+      if (events_) events_->keep_rows();
     }
   }
 
@@ -85,6 +101,7 @@ class Run {
   void finish(double seconds_total) {
     record.seconds_total = seconds_total;
     record.warnings = integrator_.warnings();
+    record.forces = history_->forces().summary();
     try {
       write_summary(scene_, integrator_, record, options_.folder);
     } catch (const std::exception& failure) {
@@ -99,14 +116,18 @@ class Run {
   void resume() {
     const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder);
     history_ = std::make_unique<History>(scene_, integrator_, options_.folder, checkpoint.history_size);
+    std::istringstream history(checkpoint.history), events(checkpoint.events);
+    history_->load(history);
+    if (scene_.output.events) events_.emplace(scene_, options_.folder, checkpoint.events_size).load(events);
     fields_.resume(checkpoint.fields);
     record.resumed_at = integrator_.steps();
   }
 
   void write_outputs() {
     const std::int64_t step = integrator_.steps();
-    const bool row = step % scene_.output.every == 0;
-    const bool field = scene_.output.fields > 0 && step % scene_.output.fields == 0;
+    const bool last = step == scene_.steps;
+    const bool row = last || step % scene_.output.every == 0;
+    const bool field = scene_.output.fields > 0 && (last || step % scene_.output.fields == 0);
     const bool checkpoint = options_.checkpoint_every > 0 && step % options_.checkpoint_every == 0;
     if (!row && !field && !checkpoint) return;
     const Clock::time_point start = Clock::now();
@@ -117,7 +138,13 @@ class Run {
   }
 
   void write_checkpoint_now() {
-    write_checkpoint(scene_, integrator_, {history_->flush(), fields_.written()}, options_.folder);
+    std::ostringstream history, events;
+    history_->save(history);
+    if (events_) events_->save(events);
+    write_checkpoint(
+        scene_, integrator_,
+        {history_->flush(), fields_.written(), history.str(), events_ ? events_->flush() : 0, events.str()},
+        options_.folder);
   }
 
   Scene& scene_;
@@ -125,6 +152,7 @@ class Run {
   Integrator integrator_;
   Fields fields_;
   std::unique_ptr<History> history_;
+  std::optional<Events> events_;
 };
 
 std::optional<Scene> read_or_explain(const std::filesystem::path& file) {

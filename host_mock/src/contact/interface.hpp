@@ -66,6 +66,7 @@ class Interface {
   bool is_active(int contact_index) const;
   auto impulse(int contact_index) const { return contacts_.vector(contacts_.impulse, contact_index); }
   int status(int contact_index) const { return contacts_.status[at(contact_index)]; }
+  int node_index_of(int contact_index) const { return contacts_.node_index[at(contact_index)]; }
   int node_of(int contact_index) const { return setup_.nodes[at(contacts_.node_index[at(contact_index)])]; }
   double delassus(int contact_index) const { return contacts_.delassus[at(contact_index)]; }
   // Without partners where the counterpart is rigid.

@@ -44,36 +44,54 @@ void Shock::add_impulse(StepTimes step, Dofs& impulse) const {
   for (int node : nodes_) impulse.segment(node * d, d) += impulse_;
 }
 
-PrescribedMotion::PrescribedMotion(std::vector<int> nodes, std::vector<int> axes, int dimension,
+PrescribedMotion::PrescribedMotion(const Model& model, std::vector<int> nodes, std::vector<int> axes,
                                    Motion motion)
-    : nodes_(std::move(nodes)), axes_(std::move(axes)), dimension_(dimension), motion_(std::move(motion)) {}
+    : model_(model), nodes_(std::move(nodes)), axes_(std::move(axes)), motion_(std::move(motion)) {}
 
-// Positions follow the motion: the velocity is its mean over the step to come.
-void PrescribedMotion::correct(StepTimes step, const Dofs& /*v_before*/, Dofs& v) const {
+// Positions follow the motion: the velocity is its mean over the step to come. Calls changed(dof,
+// by).
+template <class Changed>
+void PrescribedMotion::prescribe(StepTimes step, Dofs& v, Changed changed) const {
   const Vector mean = motion_.velocity(step.after, step.after + (step.after - step.before));
   for (int node : nodes_)
-    for (int axis : axes_) v[node * dimension_ + axis] = mean[axis];
+    for (int axis : axes_) {
+      const Eigen::Index dof = Eigen::Index{node} * model_.dimension() + axis;
+      changed(dof, mean[axis] - v[dof]);
+      v[dof] = mean[axis];
+    }
 }
 
-void PrescribedMotion::start(double dt, const Dofs& v_start, Dofs& v) const {
-  correct({-dt, 0.0}, v_start, v);
+void PrescribedMotion::correct(StepTimes step, const Dofs& /*v_before*/, Dofs& v, Dofs& impulse) const {
+  prescribe(step, v, [&](Eigen::Index dof, double by) { impulse[dof] += model_.mass()[dof] * by; });
 }
 
-Damping::Damping(std::vector<int> nodes, int dimension, double rate)
-    : nodes_(std::move(nodes)), dimension_(dimension), rate_(rate) {}
-
-void Damping::correct(StepTimes step, const Dofs& v_before, Dofs& v) const {
-  damp(step.after - step.before, v_before, v);
+void PrescribedMotion::start(double dt, const Dofs& /*v_start*/, Dofs& v) const {
+  prescribe({-dt, 0.0}, v, [](Eigen::Index, double) {});
 }
 
-void Damping::start(double dt, const Dofs& v_start, Dofs& v) const { damp(0.5 * dt, v_start, v); }
+Damping::Damping(const Model& model, std::vector<int> nodes, double rate)
+    : model_(model), nodes_(std::move(nodes)), rate_(rate) {}
+
+void Damping::correct(StepTimes step, const Dofs& v_before, Dofs& v, Dofs& impulse) const {
+  damp(step.after - step.before, v_before, v,
+       [&](Eigen::Index dof, double by) { impulse[dof] += model_.mass()[dof] * by; });
+}
+
+void Damping::start(double dt, const Dofs& v_start, Dofs& v) const {
+  damp(0.5 * dt, v_start, v, [](Eigen::Index, double) {});
+}
 
 // m (v' - v_before) = m (v - v_before) - rate h m (v_before + v')/2, solved for v'.
-void Damping::damp(double duration, const Dofs& v_before, Dofs& v) const {
+template <class Changed>
+void Damping::damp(double duration, const Dofs& v_before, Dofs& v, Changed changed) const {
   const double a = 0.5 * rate_ * duration;
-  const Eigen::Index d = dimension_;
+  const Eigen::Index d = model_.dimension();
   for (int node : nodes_)
-    v.segment(node * d, d) = (v.segment(node * d, d) - a * v_before.segment(node * d, d)) / (1.0 + a);
+    for (Eigen::Index dof = node * d; dof < (node + 1) * d; ++dof) {
+      const double damped = (v[dof] - a * v_before[dof]) / (1.0 + a);
+      changed(dof, damped - v[dof]);
+      v[dof] = damped;
+    }
 }
 
 }  // namespace ilaw::host

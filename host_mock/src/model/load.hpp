@@ -23,12 +23,14 @@ class Load {
   virtual void add_force(double /*time*/, Dofs& /*force*/) const {}
   // Adds the impulses that fall into a step.
   virtual void add_impulse(StepTimes /*step*/, Dofs& /*impulse*/) const {}
-  // Changes the velocity that a step would leave with, without interfaces; the change counts as an
-  // external impulse.
-  virtual void correct(StepTimes /*step*/, const Dofs& /*v_before*/, Dofs& /*v*/) const {}
+  // Changes the velocity that a step would leave with, without interfaces, and adds the impulse that
+  // this takes.
+  virtual void correct(StepTimes /*step*/, const Dofs& /*v_before*/, Dofs& /*v*/, Dofs& /*impulse*/) const {}
   // The same for the half step that a run starts with, from V_0 to V_{1/2}.
   virtual void start(double /*dt*/, const Dofs& /*v_start*/, Dofs& /*v*/) const {}
   virtual bool corrects() const { return false; }
+  // Whether its work is that of damping.
+  virtual bool damps() const { return false; }
   // Whether it is the same force at all times, and nothing else.
   virtual bool is_steady() const { return false; }
   // Nodes whose motion is prescribed.
@@ -78,31 +80,37 @@ class Shock : public Load {
 // Viscous damping by mass: the force -rate m (v_before + v)/2.
 class Damping : public Load {
  public:
-  Damping(std::vector<int> nodes, int dimension, double rate);
-  void correct(StepTimes step, const Dofs& v_before, Dofs& v) const override;
+  Damping(const Model& model, std::vector<int> nodes, double rate);
+  void correct(StepTimes step, const Dofs& v_before, Dofs& v, Dofs& impulse) const override;
   void start(double dt, const Dofs& v_start, Dofs& v) const override;
   bool corrects() const override { return true; }
+  bool damps() const override { return true; }
 
  private:
-  void damp(double duration, const Dofs& v_before, Dofs& v) const;
+  template <class Changed>
+  void damp(double duration, const Dofs& v_before, Dofs& v, Changed changed) const;
 
+  const Model& model_;
   std::vector<int> nodes_;
-  int dimension_;
   double rate_;
 };
 
 // Nodes that follow a given motion; axes that are not driven stay free.
 class PrescribedMotion : public Load {
  public:
-  PrescribedMotion(std::vector<int> nodes, std::vector<int> axes, int dimension, Motion motion);
-  void correct(StepTimes step, const Dofs& v_before, Dofs& v) const override;
+  PrescribedMotion(const Model& model, std::vector<int> nodes, std::vector<int> axes, Motion motion);
+  // The impulse is the reaction of what holds the nodes.
+  void correct(StepTimes step, const Dofs& v_before, Dofs& v, Dofs& impulse) const override;
   void start(double dt, const Dofs& v_start, Dofs& v) const override;
   bool corrects() const override { return true; }
   const std::vector<int>& prescribed_nodes() const override { return nodes_; }
 
  private:
+  template <class Changed>
+  void prescribe(StepTimes step, Dofs& v, Changed changed) const;
+
+  const Model& model_;
   std::vector<int> nodes_, axes_;
-  int dimension_;
   Motion motion_;
 };
 

@@ -24,10 +24,17 @@ json identity_of(const Scene& scene) {
                     {"state_size", interface->info().state_size},
                     {"state_version", interface->info().state_version}});
   return {
-      {"format", "ilaw checkpoint 2"}, {"program", ILAW_VERSION}, {"scene", scene.source}, {"laws", laws}};
+      {"format", "ilaw checkpoint 3"}, {"program", ILAW_VERSION}, {"scene", scene.source}, {"laws", laws}};
 }
 
 using Bytes = std::vector<std::uint8_t>;
+
+json binary_of(const std::string& bytes) { return json::binary({bytes.begin(), bytes.end()}); }
+
+std::string text_of(const json& binary) {
+  const auto& bytes = binary.get_binary();
+  return {bytes.begin(), bytes.end()};
+}
 
 // FNV-1a: tells a damaged file, not a forged one.
 std::uint64_t checksum_of(const Bytes& bytes) {
@@ -60,11 +67,10 @@ void write_checkpoint(const Scene& scene, const Integrator& integrator, const Ch
                       const std::filesystem::path& folder) {
   std::ostringstream state;
   integrator.save(state);
-  const std::string bytes = state.str();
-  const json content = {{"identity", identity_of(scene)},
-                        {"history_size", checkpoint.history_size},
-                        {"fields", checkpoint.fields},
-                        {"state", json::binary({bytes.begin(), bytes.end()})}};
+  const json content = {{"identity", identity_of(scene)},        {"history_size", checkpoint.history_size},
+                        {"fields", checkpoint.fields},           {"history", binary_of(checkpoint.history)},
+                        {"events_size", checkpoint.events_size}, {"events", binary_of(checkpoint.events)},
+                        {"state", binary_of(state.str())}};
   Bytes packed = json::to_cbor(content);
   const std::uint64_t checksum = checksum_of(packed);
   AtomicFile file(folder / "checkpoint.cbor");
@@ -85,10 +91,11 @@ Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std
   }
   try {
     check_identity(content["identity"], identity_of(scene));
-    const auto& bytes = content["state"].get_binary();
-    std::istringstream state(std::string(bytes.begin(), bytes.end()));
+    std::istringstream state(text_of(content["state"]));
     integrator.load(state);
-    return {content.at("history_size").get<std::uintmax_t>(), content.at("fields")};
+    return {content.at("history_size").get<std::uintmax_t>(), content.at("fields"),
+            text_of(content.at("history")), content.at("events_size").get<std::uintmax_t>(),
+            text_of(content.at("events"))};
   } catch (const std::exception& error) {
     throw std::runtime_error(path.string() + ": " + error.what());
   }

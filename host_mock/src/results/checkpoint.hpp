@@ -11,8 +11,11 @@
 namespace ilaw::host {
 
 struct Checkpoint {
-  std::uintmax_t history_size;  // bytes of history.csv that belong to it
-  nlohmann::json fields;        // files written so far
+  std::uintmax_t history_size;     // bytes of history.csv that belong to it
+  nlohmann::json fields;           // files written so far
+  std::string history = {};        // what its next row depends on
+  std::uintmax_t events_size = 0;  // bytes of events.csv that belong to it
+  std::string events = {};         // what the next events depend on
 };
 
 // Replaces folder/checkpoint.cbor, whole or not at all.

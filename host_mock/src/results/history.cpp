@@ -24,16 +24,29 @@ void for_each_state(const ilaw_instance_info& info, Visit visit) {
 
 }  // namespace
 
-History::History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder)
-    : scene_(scene), file_(folder / "history.csv"), table_(file_.stream()) {
+History::History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder)
+    : scene_(scene), file_(folder / "history.csv"), table_(file_.stream()), forces_(scene, integrator) {
   find_contacts(integrator);
+  find_motions(integrator);
   write_header();
 }
 
-History::History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder,
+History::History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
                  std::uintmax_t size)
-    : scene_(scene), file_(folder / "history.csv", size), table_(file_.stream()) {
+    : scene_(scene), file_(folder / "history.csv", size), table_(file_.stream()), forces_(scene, integrator) {
   find_contacts(integrator);
+  find_motions(integrator);
+}
+
+// No interface acts on the nodes that a motion drives: their impulse is its reaction.
+void History::find_motions(Integrator& integrator) {
+  const std::vector<int>& watch = scene_.output.watch;
+  for (std::size_t k = 0; k < scene_.loads.size(); ++k) {
+    const std::vector<int>& driven = scene_.loads[k]->prescribed_nodes();
+    if (std::find_first_of(watch.begin(), watch.end(), driven.begin(), driven.end()) == watch.end()) continue;
+    integrator.keep_load_impulse(k);
+    motions_.push_back(k);
+  }
 }
 
 void History::find_contacts(const Integrator& integrator) {
@@ -65,9 +78,11 @@ void History::write_header() {
                      [&](const std::string& name, int) { table_ << contact.prefix + name; });
     }
   }
+  forces_.write_header(table_);
   if (scene_.output.balance) {
     for (const char* quantity :
-         {"kinetic", "internal", "potential", "external_work", "interface_work", "error"})
+         {"kinetic", "internal", "potential", "external_work", "damping_work", "interface_work",
+          "dissipated_friction", "dissipated_impact", "dissipated_rupture", "stored", "error"})
       table_ << std::string("balance.") + quantity;
     for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c)
       table_ << "balance.angular_momentum" + std::to_string(c);
@@ -94,13 +109,17 @@ void History::add_node(std::size_t watched, const Integrator& integrator, const 
 void History::add_row(const Integrator& integrator) {
   table_ << integrator.time();
   if (!contacts_.empty()) {
-    const Dofs impulse = integrator.interface_impulse();
+    Dofs impulse = integrator.interface_impulse();
+    for (const std::size_t load : motions_) integrator.add_load_impulse(load, impulse);
     for (std::size_t w = 0; w < contacts_.size(); ++w) add_node(w, integrator, impulse);
   }
+  forces_.write_row(table_);
   if (scene_.output.balance) {
     const EnergyReport energy = integrator.energy();
-    for (const double value : {energy.kinetic, energy.internal, energy.potential, energy.external_work,
-                               energy.interface_work, energy.balance_error})
+    for (const double value :
+         {energy.kinetic, energy.internal, energy.potential, energy.external_work, energy.damping_work,
+          energy.interface_work, energy.by_law[ILAW_ENERGY_FRICTION], energy.by_law[ILAW_ENERGY_IMPACT],
+          energy.by_law[ILAW_ENERGY_RUPTURE], energy.by_law[ILAW_ENERGY_STORED], energy.balance_error})
       table_ << value;
     for (const double component : integrator.angular_momentum()) table_ << component;
   }

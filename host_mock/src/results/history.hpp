@@ -4,6 +4,7 @@
 
 #include "base/csv.hpp"
 #include "base/files.hpp"
+#include "results/forces.hpp"
 #include "scene/scene.hpp"
 #include "step/integrator.hpp"
 
@@ -18,14 +19,21 @@ namespace ilaw::host {
 // axes.
 class History {
  public:
-  History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder);
+  History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder);
   // Goes on after the first size bytes of an earlier run's.
-  History(const Scene& scene, const Integrator& integrator, const std::filesystem::path& folder,
+  History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
           std::uintmax_t size);
+  // After every step, before its row.
+  void add_step(const Integrator& integrator) { forces_.add_step(integrator); }
   void add_row(const Integrator& integrator);
   std::uintmax_t flush() { return file_.flush(); }
   void commit() { file_.commit(); }
   void keep_rows() { file_.keep_lines(); }
+
+  const Forces& forces() const { return forces_; }
+  // What the next row depends on beside the integrator.
+  void save(std::ostream& out) const { forces_.save(out); }
+  void load(std::istream& in) { forces_.load(in); }
 
  private:
   // A watched node in one interface.
@@ -35,6 +43,7 @@ class History {
     std::string prefix;  // "n0." or, where the node has several, "n0.<interface>."
   };
   void find_contacts(const Integrator& integrator);
+  void find_motions(Integrator& integrator);
   void write_header();
   void add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse);
 
@@ -42,6 +51,8 @@ class History {
   AtomicFile file_;
   CsvWriter table_;
   std::vector<std::vector<Contact>> contacts_;  // per watched node
+  std::vector<std::size_t> motions_;            // loads that drive one of them
+  Forces forces_;
 };
 
 }  // namespace ilaw::host

@@ -15,8 +15,9 @@ namespace ilaw::host {
 struct RunRecord {
   std::int64_t resumed_at = 0;  // step
   bool interrupted = false;
-  std::string failure;                // empty: none
-  std::vector<std::string> warnings;  // of the integrator, at the end
+  std::string failure;                               // empty: none
+  std::vector<std::string> warnings;                 // of the integrator, at the end
+  nlohmann::json forces = nlohmann::json::object();  // per name, as Forces sums them up
   double seconds_total = 0.0, seconds_output = 0.0;
 };
 

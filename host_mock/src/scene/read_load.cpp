@@ -22,15 +22,16 @@ std::vector<double> shares_of(const NodeSet& set, const std::string& pointer) {
   return shares;
 }
 
-std::unique_ptr<Load> read_prescribed(const json& load, const NodeSet& set, int d,
+std::unique_ptr<Load> read_prescribed(const json& load, const Model& model, const NodeSet& set,
                                       const std::string& pointer) {
+  const int d = model.dimension();
   std::vector<int> axes(static_cast<std::size_t>(d));
   std::iota(axes.begin(), axes.end(), 0);
   if (load.contains("axes")) axes = load["axes"].get<std::vector<int>>();
   for (const int axis : axes)
     if (axis >= d)
       throw mistake(pointer + "/axes", "axis " + std::to_string(axis), "0 to " + std::to_string(d - 1));
-  return std::make_unique<PrescribedMotion>(set.nodes, axes, d, read_motion(load, d, pointer));
+  return std::make_unique<PrescribedMotion>(model, set.nodes, axes, read_motion(load, d, pointer));
 }
 
 }  // namespace
@@ -50,8 +51,8 @@ std::unique_ptr<Load> read_load(const json& load, const Model& model, const std:
                                    read_vector(load["direction"], d, pointer + "/direction"),
                                    read_table(load["history"], 1, pointer + "/history"));
   }
-  if (type == "damping") return std::make_unique<Damping>(set.nodes, d, load["rate"].get<double>());
-  if (type == "motion") return read_prescribed(load, set, d, pointer);
+  if (type == "damping") return std::make_unique<Damping>(model, set.nodes, load["rate"].get<double>());
+  if (type == "motion") return read_prescribed(load, model, set, pointer);
   const double time = load["time"].get<double>();
   if (time <= 0.0) throw mistake(pointer + "/time", load["time"].dump(), "a time > 0");
   return std::make_unique<Shock>(set.nodes, time, read_vector(load["impulse"], d, pointer + "/impulse"));

@@ -2,6 +2,7 @@
 #include "scene/scene.hpp"
 
 #include "scene/json_text.hpp"
+#include "scene/read_forces.hpp"
 #include "scene/read_interface.hpp"
 #include "scene/read_load.hpp"
 #include "scene/read_model.hpp"
@@ -27,6 +28,7 @@ using nlohmann::json;
 void read_output(const json& output, Scene& scene) {
   scene.output.every = output.value("every", std::int64_t{1});
   scene.output.balance = output.value("balance", false);
+  scene.output.events = output.value("events", false);
   scene.output.fields = output.value("fields", std::int64_t{0});
   const json watch = output.value("watch", json::array());
   for (std::size_t k = 0; k < watch.size(); ++k) {
@@ -34,6 +36,7 @@ void read_output(const json& output, Scene& scene) {
       if (std::find(scene.output.watch.begin(), scene.output.watch.end(), node) == scene.output.watch.end())
         scene.output.watch.push_back(node);
   }
+  scene.output.forces = read_forces(output.value("forces", json::array()), scene);
 }
 
 void check_names(const Scene& scene) {

@@ -11,15 +11,27 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace ilaw::host {
 
+// A resultant that the history shows: of an interface, or of loads.
+struct ForceSetup {
+  std::string name;
+  int interface = -1;              // -1: of loads
+  std::vector<std::size_t> loads;  // by number
+  std::vector<int> nodes;          // of the loads' nodes, those that count; empty: all
+  std::optional<Vector> about;     // the point that a moment is asked for about
+};
+
 struct OutputSetup {
-  std::int64_t every = 1;   // steps per row of the history
-  std::vector<int> watch;   // nodes
-  bool balance = false;     // energies and angular momentum in the history
+  std::int64_t every = 1;  // steps per row of the history
+  std::vector<int> watch;  // nodes
+  bool balance = false;    // energies and angular momentum in the history
+  bool events = false;     // events.csv
+  std::vector<ForceSetup> forces;
   std::int64_t fields = 0;  // steps per VTK file; 0: none
 };
 

@@ -25,7 +25,7 @@ void warn_of_times(Scene& scene) {
                              json(scene.dt).dump() + ", which is taken all the same");
   if (scene.output.every > scene.steps)
     scene.warnings.push_back("/output/every: found " + std::to_string(scene.output.every) +
-                             ": the history has no row in " + std::to_string(scene.steps) + " steps");
+                             ": the history has the last of " + std::to_string(scene.steps) + " steps alone");
 }
 
 void warn_of_start(Scene& scene) {

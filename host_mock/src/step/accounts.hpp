@@ -29,7 +29,7 @@ struct Tally {
 
 // A step that is done: its impulses per degree of freedom, and the velocities at its ends.
 struct StepRecord {
-  const Dofs* external_impulse;  // null: no loads
+  const Dofs *external_impulse, *damping_impulse;  // null: none
   const Dofs &internal_impulse, &v_before, &v;
 };
 

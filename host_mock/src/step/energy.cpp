@@ -53,6 +53,11 @@ void EnergyBalance::add_external(const Dofs& impulse, const Dofs& v_before, cons
   note_size(sums_.external_work);
 }
 
+void EnergyBalance::add_damping(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after) {
+  sums_.damping_work += work(impulse, v_before, v_after);
+  note_size(sums_.damping_work);
+}
+
 void EnergyBalance::add_internal(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after) {
   sums_.internal_work += work(impulse, v_before, v_after);
 }
@@ -72,7 +77,8 @@ EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs
                                    const Dofs& v) const {
   const Sum kinetic = kinetic_energy(model, v);
   const Sum internal = model.is_linear() ? Sum{mixed_potential(model, u, u_next)} : -sums_.internal_work;
-  const Sum open = kinetic + internal - sums_.initial - sums_.external_work - sums_.interface_work;
+  const Sum open =
+      kinetic + internal - sums_.initial - sums_.external_work - sums_.damping_work - sums_.interface_work;
   const double scale =
       std::max({sums_.largest, static_cast<double>(kinetic), std::abs(static_cast<double>(internal))});
   EnergyReport report{};
@@ -80,6 +86,7 @@ EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs
   report.internal = static_cast<double>(internal);
   report.potential = model.potential(u);
   report.external_work = static_cast<double>(sums_.external_work);
+  report.damping_work = static_cast<double>(sums_.damping_work);
   report.interface_work = static_cast<double>(sums_.interface_work);
   report.scale = scale;
   report.balance_error = scale > 0.0 ? std::abs(static_cast<double>(open)) / scale : 0.0;

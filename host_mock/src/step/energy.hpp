@@ -20,7 +20,7 @@
 namespace ilaw::host {
 
 struct EnergyReport {
-  double kinetic, internal, potential, external_work, interface_work, balance_error;
+  double kinetic, internal, potential, external_work, damping_work, interface_work, balance_error;
   std::array<double, ILAW_ENERGY_COUNT> by_law;  // friction, impact, rupture dissipated; stored now
   double least_dissipation;                      // smallest dissipation of one node in one step, >= 0
   double reaction_work;                          // interface_work + dissipated + stored: see docs/scenes.md
@@ -34,6 +34,7 @@ class EnergyBalance {
 
   // Impulses of a step, per degree of freedom, with the velocities at its ends.
   void add_external(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);
+  void add_damping(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);
   void add_internal(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);
   // Work of an interface on the bodies: in all, and relative to moving obstacles, to compare with
   // what the laws dissipated.
@@ -54,12 +55,13 @@ class EnergyBalance {
   // Extended precision: the sums run over millions of steps and must close to 1e-12.
   using Sum = long double;
   struct Sums {
-    Sum initial = 0, external_work = 0, internal_work = 0, interface_work = 0, relative_work = 0;
+    Sum initial = 0, external_work = 0, damping_work = 0, internal_work = 0, interface_work = 0,
+        relative_work = 0;
     double least_dissipation = 0.0;
     double largest = 0.0;  // of the energies and works so far
   };
-  static constexpr std::array all_sums{&Sums::initial, &Sums::external_work, &Sums::internal_work,
-                                       &Sums::interface_work, &Sums::relative_work};
+  static constexpr std::array all_sums{&Sums::initial,       &Sums::external_work,  &Sums::damping_work,
+                                       &Sums::internal_work, &Sums::interface_work, &Sums::relative_work};
   void note_size(Sum energy);
 
   Sums sums_;

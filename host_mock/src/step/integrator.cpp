@@ -26,8 +26,10 @@ void Integrator::step() {
   speed_before_ = largest_speed(v_, model_.dimension());
   check_motion(speed_before_, times.after);
   ++steps_;
-  accounts_.add_step(model_, interfaces_,
-                     {loads_.empty() ? nullptr : &external_impulse_, internal_impulse_, v_before_, v_});
+  accounts_.add_step(
+      model_, interfaces_,
+      {loads_.empty() ? nullptr : &external_impulse_,
+       damping_impulse_.size() == 0 ? nullptr : &damping_impulse_, internal_impulse_, v_before_, v_});
 }
 
 void Integrator::move() {
@@ -73,16 +75,21 @@ double Integrator::kick(StepTimes step) {
     }
     return largest_square(v_, d, first, end);
   }));
-  if (!loads_correct_) return speed;
+  if (correcting_.empty()) return speed;
   correct(step);
   return largest_speed(v_, d);
 }
 
-// What a load takes off or adds, times the mass, is its impulse.
+// Damping works apart from the other loads.
 void Integrator::correct(StepTimes step) {
-  const Dofs uncorrected = v_;
-  for (const auto& load : loads_) load->correct(step, v_before_, v_);
-  external_impulse_ += model_.mass().cwiseProduct(v_ - uncorrected);
+  damping_impulse_.setZero();
+  for (const std::size_t k : correcting_) {
+    Dofs& sum = loads_[k]->damps() ? damping_impulse_ : external_impulse_;
+    Dofs& kept = kept_load_impulses_[k];
+    kept.setZero();
+    loads_[k]->correct(step, v_before_, v_, kept.size() == 0 ? sum : kept);
+    if (kept.size() != 0) sum += kept;
+  }
 }
 
 // Where no two contacts share a node, each law is evaluated once: for blocks of contacts the

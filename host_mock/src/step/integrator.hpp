@@ -37,6 +37,10 @@ class Integrator {
   const Dofs& velocity() const { return v_; }      // at the half step after time()
   // Impulse of the interfaces in the last step, per degree of freedom.
   Dofs interface_impulse() const;
+  // The impulse of one load in the last step, added to those per degree of freedom. Of a load that
+  // corrects velocities (a motion, damping) it is kept from when it is first asked for.
+  void keep_load_impulse(std::size_t load);
+  void add_load_impulse(std::size_t load, Dofs& impulse) const;
   EnergyReport energy() const { return accounts_.energy().report(model_, u_, u_ + dt_ * v_, v_); }
   double interface_work() const { return accounts_.energy().interface_work(); }
   // At the half step after time(); components as in energy.hpp.
@@ -66,10 +70,12 @@ class Integrator {
   Interfaces& interfaces_;
   std::optional<CoupledContacts> coupled_;  // where contacts share nodes
   double dt_;
-  bool loads_are_steady_, loads_correct_;
+  bool loads_are_steady_;
+  std::vector<std::size_t> correcting_;   // loads in the order in which they correct velocities
+  std::vector<Dofs> kept_load_impulses_;  // by load; empty where nobody asks
   std::int64_t steps_ = 0;
   double speed_before_ = 0.0;  // the largest of v_
-  Dofs u_, v_, v_before_, external_impulse_, internal_impulse_;
+  Dofs u_, v_, v_before_, external_impulse_, damping_impulse_, internal_impulse_;
   Dofs inverse_mass_;
   Accounts accounts_;
   TickLength tick_length_;

@@ -8,6 +8,19 @@
 
 namespace ilaw::host {
 
+namespace {
+
+// Prescribed motions have the last word, so that positions follow them whatever else acts.
+std::vector<std::size_t> order_of_corrections(const Loads& loads) {
+  std::vector<std::size_t> order;
+  for (const bool prescribed : {false, true})
+    for (std::size_t k = 0; k < loads.size(); ++k)
+      if (loads[k]->corrects() && loads[k]->prescribed_nodes().empty() != prescribed) order.push_back(k);
+  return order;
+}
+
+}  // namespace
+
 // Half a kick takes V_0 to V_{1/2}.
 Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt)
     : model_(model),
@@ -16,8 +29,8 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       dt_(dt),
       loads_are_steady_(
           std::all_of(loads.begin(), loads.end(), [](const auto& load) { return load->is_steady(); })),
-      loads_correct_(
-          std::any_of(loads.begin(), loads.end(), [](const auto& load) { return load->corrects(); })),
+      correcting_(order_of_corrections(loads)),
+      kept_load_impulses_(loads.size()),
       u_(model.initial_displacement()),
       v_(model.initial_velocity()),
       v_before_(v_),
@@ -30,7 +43,10 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
   if (loads_are_steady_ && !loads_.empty()) external_impulse_ = dt_ * force;
   model_.add_internal_forces(u_, force);
   v_ += 0.5 * dt_ * force.cwiseQuotient(model_.mass());
-  for (const auto& load : loads_) load->start(dt_, v_before_, v_);
+  for (const std::size_t k : correcting_) loads_[k]->start(dt_, v_before_, v_);
+  const bool damped =
+      std::any_of(loads_.begin(), loads_.end(), [](const auto& load) { return load->damps(); });
+  damping_impulse_ = Dofs::Zero(damped ? u_.size() : 0);
   accounts_.start(model_, u_, u_ + dt_ * v_, v_);
   speed_before_ = largest_speed(v_, model_.dimension());
 }
@@ -41,6 +57,23 @@ Dofs Integrator::interface_impulse() const {
     for (const std::int32_t contact_index : interface->active())
       interface->add_impulse(contact_index, impulse);
   return impulse;
+}
+
+void Integrator::keep_load_impulse(std::size_t load) {
+  if (loads_[load]->corrects() && kept_load_impulses_[load].size() == 0)
+    kept_load_impulses_[load] = Dofs::Zero(u_.size());
+}
+
+void Integrator::add_load_impulse(std::size_t load, Dofs& impulse) const {
+  if (steps_ == 0) return;
+  if (const Dofs& kept = kept_load_impulses_[load]; kept.size() != 0) {
+    impulse += kept;
+    return;
+  }
+  Dofs force = Dofs::Zero(u_.size());
+  loads_[load]->add_force(time(), force);
+  impulse += dt_ * force;
+  loads_[load]->add_impulse({static_cast<double>(steps_ - 1) * dt_, time()}, impulse);
 }
 
 void Integrator::save(std::ostream& out) const {

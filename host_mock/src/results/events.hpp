@@ -1,0 +1,46 @@
+// events.hpp - events.csv: every contact, release, rupture and healing of every node, whatever the
+// rows and the watched nodes of the history.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/csv.hpp"
+#include "base/files.hpp"
+#include "scene/scene.hpp"
+#include "step/integrator.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <vector>
+
+namespace ilaw::host {
+
+class Events {
+ public:
+  Events(const Scene& scene, const std::filesystem::path& folder);
+  // Goes on after the first size bytes of an earlier run's.
+  Events(const Scene& scene, const std::filesystem::path& folder, std::uintmax_t size);
+
+  // After every step.
+  void add_step(const Integrator& integrator);
+
+  std::uintmax_t flush() { return file_.flush(); }
+  void commit() { file_.commit(); }
+  void keep_rows() { file_.keep_lines(); }
+
+  // Which nodes touch: the checkpoint takes it along.
+  void save(std::ostream& out) const;
+  void load(std::istream& in);
+
+ private:
+  void add_interface(std::size_t number, const Integrator& integrator);
+  void add_row(double time, int node, const Interface& interface, const char* event, const double* impulse);
+
+  const Scene& scene_;
+  AtomicFile file_;
+  CsvWriter table_;
+  // By node_index, per interface: those whose status was not free after the last step.
+  std::vector<std::vector<int>> touching_, still_touching_;
+};
+
+}  // namespace ilaw::host

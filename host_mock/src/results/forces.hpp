@@ -1,0 +1,53 @@
+// forces.hpp - the resultants that a scene asks for, as means over the time of a row: the sum of
+// force times time over all rows is the impulse, however many steps a row has.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/csv.hpp"
+#include "scene/scene.hpp"
+#include "step/integrator.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <iosfwd>
+#include <vector>
+
+namespace ilaw::host {
+
+class Forces {
+ public:
+  Forces(const Scene& scene, Integrator& integrator);
+
+  // After every step.
+  void add_step(const Integrator& integrator);
+
+  // <name>.F0 ..., and <name>.M0 ... where a moment is asked for.
+  void write_header(CsvWriter& table) const;
+  // Means over the steps since the last row.
+  void write_row(CsvWriter& table);
+
+  // Per name the impulse of the whole run, and the largest size of a row's force.
+  nlohmann::json summary() const;
+
+  // What has been added up: the checkpoint takes it along.
+  void save(std::ostream& out) const;
+  void load(std::istream& in);
+
+ private:
+  struct Resultant {
+    Dofs impulse, moment;  // since the last row; moment empty where none is asked for
+    Dofs total;            // impulse up to the last row
+    double largest = 0.0;
+  };
+  void add(const ForceSetup& force, Resultant& sum, const Integrator& integrator);
+  void add_at(int node, const double* impulse, const ForceSetup& force, Resultant& sum,
+              const Dofs& displacement) const;
+
+  const Scene& scene_;
+  std::vector<Resultant> sums_;  // by scene.output.forces
+  std::int64_t steps_ = 0;       // since the last row
+  Dofs of_load_;                 // per degree of freedom
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/read_forces.hpp"
+
+#include "scene/json_text.hpp"
+#include "scene/values.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+// What a name may mean.
+class Named {
+ public:
+  explicit Named(const Scene& scene) : scene_(scene) {
+    for (std::size_t i = 0; i < scene.interfaces.size(); ++i)
+      add(scene.interfaces[i]->name()).interface = static_cast<int>(i);
+    const json loads = scene.source.value("loads", json::array());
+    for (std::size_t i = 0; i < loads.size(); ++i)
+      if (loads[i].contains("name")) add_load(loads[i]["name"].get<std::string>(), i);
+    for (const auto& [name, set] : scene.model->sets()) add_driven(name, set);
+  }
+
+  const ForceSetup& find(const std::string& name, const std::string& pointer) const {
+    const auto is_named = [&](const ForceSetup& one) { return one.name == name; };
+    const auto found = std::find_if(all_.begin(), all_.end(), is_named);
+    if (found == all_.end())
+      throw mistake(pointer, "\"" + name + "\"",
+                    "the name of an interface, of a load, or of a set that a motion drives: " + known());
+    if (std::find_if(found + 1, all_.end(), is_named) != all_.end())
+      throw mistake(pointer, "\"" + name + "\", which means several things", "a name for one of them alone");
+    return *found;
+  }
+
+ private:
+  ForceSetup& add(const std::string& name) {
+    all_.push_back({name, -1, {}, {}, {}});
+    return all_.back();
+  }
+
+  void add_load(const std::string& name, std::size_t load) {
+    for (const ForceSetup& one : all_)
+      if (one.name == name)
+        throw mistake(at("/loads", load) + "/name", "'" + name + "' twice",
+                      "a name that no other load and no interface has");
+    add(name).loads = {load};
+  }
+
+  // The reaction of what holds or moves nodes of a set.
+  void add_driven(const std::string& name, const NodeSet& set) {
+    std::vector<std::size_t> loads;
+    const std::set<int> own(set.nodes.begin(), set.nodes.end());
+    for (std::size_t k = 0; k < scene_.loads.size(); ++k) {
+      const std::vector<int>& driven = scene_.loads[k]->prescribed_nodes();
+      if (std::any_of(driven.begin(), driven.end(), [&](int node) { return own.count(node) > 0; }))
+        loads.push_back(k);
+    }
+    if (loads.empty()) return;
+    ForceSetup& force = add(name);
+    force.loads = loads;
+    force.nodes = set.nodes;
+  }
+
+  std::string known() const {
+    std::vector<std::string> names;
+    for (const ForceSetup& one : all_) names.push_back(one.name);
+    return names.empty() ? "the scene has none" : joined(names);
+  }
+
+  const Scene& scene_;
+  std::vector<ForceSetup> all_;
+};
+
+}  // namespace
+
+std::vector<ForceSetup> read_forces(const json& forces, const Scene& scene) {
+  std::vector<ForceSetup> found;
+  const Named named(scene);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const std::string pointer = at("/output/forces", k);
+    const bool plain = forces[k].is_string();
+    ForceSetup force = named.find((plain ? forces[k] : forces[k]["of"]).get<std::string>(),
+                                  plain ? pointer : pointer + "/of");
+    if (std::any_of(found.begin(), found.end(), [&](const auto& one) { return one.name == force.name; }))
+      throw mistake(pointer, "'" + force.name + "' twice", "each once");
+    if (!plain && forces[k].contains("about")) {
+      if (scene.model->dimension() == 1)
+        throw mistake(pointer + "/about", forces[k]["about"].dump(), "none: forces on a line have no moment");
+      force.about = read_vector(forces[k]["about"], scene.model->dimension(), pointer + "/about");
+    }
+    found.push_back(std::move(force));
+  }
+  return found;
+}
+
+}  // namespace ilaw::host
