@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
       "anything ran.\nExample: ilaw run scene.json --out results && ilaw plot results");
 
   Action chosen;
-  for (const auto add : {add_run, add_plot, add_converge, add_study, add_list, add_describe})
+  for (const auto add : {add_run, add_plot, add_converge, add_study, add_list, add_describe, add_stress})
     add(app, chosen);
   try {
     app.parse(argc, argv);
