@@ -13,8 +13,9 @@ struct template_law {
                                  .title = "One-sided dashpot",
                                  .doc =
                                      "Where the gap is closed, a pressure proportional to the speed of "
-                                     "approach; nothing where the bodies separate.",
-                                 .inputs = reads_gap | reads_area,
+                                     "approach; nothing where the bodies separate, or turn back no faster "
+                                     "than they were separating.",
+                                 .inputs = reads_gap | reads_v_previous | reads_area,
                                  .names_tangents = false};
 
   static constexpr const char* references[] = {"The linear dashpot, made one-sided by this project"};
@@ -26,12 +27,14 @@ struct template_law {
                                                             .doc = "Pressure over the speed of approach.",
                                                             .required = true}};
 
-  // r_N = h c A <-(v_free + H_NN r_N)>, solved for r_N: the dashpot is one more inverse mass beside H_NN.
+  // r_N = h c A <-(v_N + <v_N^->)>, v_N = v_free + H_NN r_N, solved for r_N: the dashpot is one more inverse
+  // mass beside H_NN. The work r_N (v_N^- + v_N)/2 is never positive (contact.hpp says why).
   template <class Node>
   void step(Node& node) const {
     const double compliance = 1.0 / (node.velocity_step * damping * node.area);
-    const double impulse = positive_part(-node.v_free.n / (node.delassus.normal() + compliance));
-    node.impulse.n = node.gap <= 0.0 ? impulse : 0.0;
+    const contact_condition contact = contact_leaving_at(0.0, node.gap, node.v_free.n, node.v_previous.n);
+    const double impulse = positive_part(-contact.excess / (node.delassus.normal() + compliance));
+    node.impulse.n = contact.slack <= 0.0 ? impulse : 0.0;
     node.status = node.impulse.n > 0.0 ? status::closed : status::free;
   }
 };

@@ -49,7 +49,7 @@ struct tie {
                                                         .whole = true}};
   static constexpr state_variable history_variable = window_variable;
 
-  std::uint32_t inputs() const { return strength < infinity ? card.inputs : 0U; }
+  std::uint32_t inputs() const { return strength < infinity ? card.inputs : reads_v_previous; }
   std::int64_t history_size() const { return window::doubles(duration, buckets); }
 
   // Without strength and memory: nothing to sum.
@@ -66,7 +66,7 @@ struct tie {
       touch(node);
       return;
     }
-    const vector trial = -node.delassus.solve(node.v_free);
+    const vector trial = stopping_impulse(node);
     const double limit = strength < infinity ? strength * node.area : infinity;
     if (load(earlier.sum + trial) <= limit * at_the_limit) {
       node.impulse = trial;
@@ -104,7 +104,7 @@ struct tie::unbreakable : tie {
 
   template <class Node>
   void step(Node& node) const {
-    const vector trial = -node.delassus.solve(node.v_free);
+    const vector trial = stopping_impulse(node);
     touch(node);  // if the state says broken, by a strength that there was
     const bool holds = node.state.broken == 0.0;
     node.impulse = {holds ? trial.n : node.impulse.n, holds ? trial.t1 : 0.0, holds ? trial.t2 : 0.0};

@@ -63,7 +63,7 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   EXPECT_EQ(empty.output, "ilaw: " + (folder / "history.csv").string() + ": found no such file" + wanted);
   EXPECT_EQ(run_program("plot " + ball).output,
             "ilaw: " + ball + "/history.csv: found no such file" + wanted);
-  for (const char* command : {"", "run", "plot", "converge", "list", "describe"}) {
+  for (const char* command : {"", "run", "plot", "converge", "study", "list", "describe", "stress"}) {
     const Outcome help = run_program(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.output.find("Example: "), std::string::npos) << command;
@@ -94,7 +94,7 @@ TEST(Program, NamesWhatItDoesNotKnow) {
   };
   EXPECT_EQ(
       first_line("rnu"),
-      "ilaw: found 'rnu', expected one of run, plot, converge, study, list, describe, --help, --version");
+      "ilaw: found 'rnu', expected one of run, plot, converge, study, list, describe, stress, --help, --version");
   EXPECT_EQ(first_line("run " + ball + " --outt here"),
             "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads");
   EXPECT_EQ(first_line("run " + ball), "ilaw: --out is required");

@@ -48,7 +48,8 @@ int main(int argc, char** argv) {
       "anything ran.\nExample: ilaw run scene.json --out results && ilaw plot results");
 
   Action chosen;
-  for (const auto add : {add_run, add_plot, add_converge, add_study, add_list, add_describe, add_check})
+  for (const auto add :
+       {add_run, add_plot, add_converge, add_study, add_stress, add_list, add_describe, add_check})
     add(app, chosen);
   try {
     app.parse(argc, argv);

@@ -205,28 +205,24 @@ void Interface::evaluate(const ContactList& contacts, const StepView& step) {
   check(refusal);
 }
 
-double Interface::apply(const ContactList& contacts, Dofs& v) {
+void Interface::apply(const ContactList& contacts, Dofs& v) {
   const Eigen::Index d = dimension_;
   const auto count = static_cast<std::ptrdiff_t>(contacts.size());
-  speeds_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), 0.0);
-  for_each_chunk(count, contact_chunk, [&](std::ptrdiff_t c, std::ptrdiff_t first, std::ptrdiff_t end) {
-    double& speed = speeds_[static_cast<std::size_t>(c)];
+  for_each_chunk(count, contact_chunk, [&](std::ptrdiff_t, std::ptrdiff_t first, std::ptrdiff_t end) {
     for (std::ptrdiff_t i = first; i < end; ++i) {
       const std::int32_t k = contacts[static_cast<std::size_t>(i)];
       const Vector added = impulse(k) - contacts_.vector(contacts_.previous_impulse, k);
       if (added.isZero(0.0)) continue;  // idle contacts must not even write nodes they share
       point(k).for_each_node(node_of(k), [&](int node, double weight) {
         v.segment(node * d, d) += (weight / model_.mass()[node * d]) * added;
-        speed = std::max(speed, v.segment(node * d, d).norm());
       });
     }
   });
-  return speeds_.empty() ? 0.0 : *std::max_element(speeds_.begin(), speeds_.end());
 }
 
-void Interface::change_impulse(int contact_index, const Vector& change) {
-  contacts_.vector(contacts_.previous_impulse, contact_index) = impulse(contact_index);
-  contacts_.vector(contacts_.impulse, contact_index) += change;
+void Interface::start_from(int contact_index, const Vector& impulse) {
+  contacts_.vector(contacts_.previous_impulse, contact_index).setZero();
+  contacts_.vector(contacts_.impulse, contact_index) = impulse;
 }
 
 void Interface::accept(const StepView& step, const Dofs& v) {

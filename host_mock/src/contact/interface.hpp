@@ -51,11 +51,10 @@ class Interface {
   void gather(const ContactList& contacts, const Dofs& v, const StepView& step);
   // The law: impulse, state, energies and status. Throws ilaw::error on bad nodes.
   void evaluate(const ContactList& contacts, const StepView& step);
-  // Adds to v what the impulses have changed by since gather. Returns the largest speed of a node
-  // it moved.
-  double apply(const ContactList& contacts, Dofs& v);
-  // Adds to the impulse of a contact, for apply to pass on; change has a component per dimension.
-  void change_impulse(int contact_index, const Vector& change);
+  // Adds to v what the impulses have changed by since gather.
+  void apply(const ContactList& contacts, Dofs& v);
+  // Gives a contact an impulse, for apply to add to v_free as a whole.
+  void start_from(int contact_index, const Vector& impulse);
   // The step is done: its state becomes the state before the next.
   void accept(const StepView& step, const Dofs& v);
 
@@ -67,7 +66,7 @@ class Interface {
   auto impulse(int contact_index) const { return contacts_.vector(contacts_.impulse, contact_index); }
   int status(int contact_index) const { return contacts_.status[at(contact_index)]; }
   int node_index_of(int contact_index) const { return contacts_.node_index[at(contact_index)]; }
-  int node_of(int contact_index) const { return setup_.nodes[at(contacts_.node_index[at(contact_index)])]; }
+  int node_of(int contact_index) const { return setup_.nodes[at(node_index_of(contact_index))]; }
   double delassus(int contact_index) const { return contacts_.delassus[at(contact_index)]; }
   // Without partners where the counterpart is rigid.
   const ContactPoint& point(int contact_index) const;
@@ -77,13 +76,14 @@ class Interface {
   }
   // Adds the contact's impulse to those per degree of freedom.
   void add_impulse(int contact_index, Dofs& impulse) const;
+  // Relative velocity of a contact in a velocity field, without the obstacle's own.
+  Vector relative(int contact_index, const Dofs& v) const;
+  const Vector& obstacle_velocity() const { return obstacle_velocity_; }
+  const Vector& obstacle_velocity_before() const { return obstacle_velocity_before_; }
   // Only where contacts share nodes.
   auto normal(int contact_index) const { return contacts_.vector(contacts_.normal, contact_index); }
   auto v_free(int contact_index) const { return contacts_.vector(contacts_.v_free, contact_index); }
   double gap(int contact_index) const { return contacts_.gap[at(contact_index)]; }
-  // Relative velocity of a contact in a velocity field, without the obstacle's own.
-  Vector relative(int contact_index, const Dofs& v) const;
-  const Vector& obstacle_velocity() const { return obstacle_velocity_; }
 
   // ---- for outputs, by node_index, whether active or not ----
   double gap_at(int node_index, const Dofs& u, double time) const {
@@ -121,7 +121,6 @@ class Interface {
   std::vector<std::ptrdiff_t> chunk_starts_;  // in near_, and its end
   Vector obstacle_velocity_, obstacle_velocity_before_;
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
-  std::vector<double> speeds_;
   ContactSums sums_;
 };
 

@@ -12,13 +12,17 @@ namespace {
 // Part of the largest energy that interfaces may put in before a warning: a penalty that suits its
 // step puts in far less.
 constexpr double much_energy = 0.1;
+// The same of a step whose contacts do not agree, before the run ends.
+constexpr double wrong_energy = 1e-3;
 
 // One by one: the bytes between them mean nothing, and equal runs write equal checkpoints.
 template <class Any, class Work>
 void for_each_member(Any& tally, Work work) {
   for (auto* count : {&tally.active, &tally.skipped, &tally.sweeps, &tally.unconverged}) work(*count);
   work(tally.sweeps_max);
-  for (auto* value : {&tally.coupling_residual_max, &tally.penetration_max, &tally.stable_step}) work(*value);
+  for (auto* value :
+       {&tally.coupling_residual_max, &tally.coupling_energy, &tally.penetration_max, &tally.stable_step})
+    work(*value);
   for (auto& count : tally.status_counts) work(count);
 }
 
@@ -28,7 +32,14 @@ void Accounts::add_solution(const CoupledContacts::Outcome& outcome) {
   tally_.sweeps += outcome.sweeps;
   tally_.sweeps_max = std::max(tally_.sweeps_max, outcome.sweeps);
   tally_.coupling_residual_max = std::max(tally_.coupling_residual_max, outcome.residual);
+  tally_.coupling_energy += outcome.energy;
   if (outcome.residual > CoupledContacts::tolerance) ++tally_.unconverged;
+}
+
+bool Accounts::is_wrong(const Model& model, const CoupledContacts::Outcome& outcome,
+                        const Dofs& v_before) const {
+  if (outcome.energy <= wrong_energy * energy_.largest()) return false;
+  return !(outcome.energy <= wrong_energy * kinetic_energy(model, v_before));
 }
 
 void Accounts::add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step) {
@@ -66,9 +77,10 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
   };
   if (tally_.unconverged > 0)
     say("contacts that share nodes are not solved in %lld of %lld steps: residual up to %.1e after %d sweeps, "
-        "expected %g",
+        "expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
         static_cast<long long>(tally_.unconverged), static_cast<long long>(steps),
-        tally_.coupling_residual_max, CoupledContacts::most_sweeps, CoupledContacts::tolerance);
+        tally_.coupling_residual_max, CoupledContacts::most_sweeps, CoupledContacts::tolerance,
+        tally_.coupling_energy, energy.scale);
   if (dt > tally_.stable_step)
     say("the time step is %g, where a law is stable up to %g at its nodes: an explicit spring is too stiff for "
         "it",

@@ -22,6 +22,7 @@ struct Tally {
   std::int64_t unconverged = 0;          // steps that ended above the tolerance
   int sweeps_max = 0;
   double coupling_residual_max = 0.0;  // at the end of any step
+  double coupling_energy = 0.0;        // that laws may account for wrongly, over all steps
   double penetration_max = 0.0;
   double stable_step = std::numeric_limits<double>::infinity();  // the least that a law asked for
   std::array<std::int64_t, ILAW_STATUS_COUNT> status_counts{};
@@ -40,6 +41,8 @@ class Accounts {
     energy_.start(model, u, u_next, v);
   }
   void add_solution(const CoupledContacts::Outcome& outcome);
+  // Whether contacts that do not agree change the energy by more than a small part of it.
+  bool is_wrong(const Model& model, const CoupledContacts::Outcome& outcome, const Dofs& v_before) const;
   void add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step);
 
   const EnergyBalance& energy() const { return energy_; }

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/coupled_contacts.hpp"
 
+#include "step/dof_loops.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 namespace ilaw::host {
 
@@ -21,26 +25,31 @@ bool share_nodes(const Model& model, const Interfaces& interfaces) {
 }
 
 CoupledContacts::CoupledContacts(const Model& model, Interfaces& interfaces)
-    : interfaces_(interfaces), colours_(interfaces.size(), Colours(model.node_count())) {
+    : interfaces_(interfaces),
+      dimension_(model.dimension()),
+      colours_(interfaces.size(), Colours(model.node_count())) {
   for (const auto& interface : interfaces_) interface->evaluate_repeatedly();
 }
 
-// Which contacts may act follows from a bound on speeds. Where impulses of other contacts make a
+// Which contacts may act follows from a bound on speeds. Where impulses of other contacts leave a
 // node faster, the step is solved again with a larger one: whether that happens does not depend on
-// which are active.
+// which are active. The others are out of reach of any such speed, and evaluated once, for their
+// states: on the way speeds may be larger.
 CoupledContacts::Outcome CoupledContacts::solve(StepView step, Dofs& v) {
   const double speed = std::max(step.speed_before, step.speed_after);
-  const Dofs v_free = v;
+  v_free_ = v;
   Outcome outcome{};
   step.speed_after = 2.0 * speed;
   for (bool bounded = false; !bounded;) {
     open(step);
-    v = v_free;
-    const double fastest = iterate(step, speed, v, outcome);
+    v = v_free_;
+    iterate(step, speed, v, outcome);
+    const double fastest = largest_speed(v, dimension_);
     bounded = !(fastest > step.speed_after);
     step.speed_after = 2.0 * fastest;
   }
-  for (const auto& interface : interfaces_) interface->accept(step, v);
+  for (std::size_t i = 0; i < interfaces_.size(); ++i) answer(*interfaces_[i], colours_[i].idle(), step, v);
+  outcome.energy = disagreement(v).energy;
   return outcome;
 }
 
@@ -51,35 +60,96 @@ void CoupledContacts::open(const StepView& step) {
   }
 }
 
-// Sweeps to the tolerance. Returns the largest speed of a node that was moved, here as below.
-double CoupledContacts::iterate(const StepView& step, double speed, Dofs& v, Outcome& outcome) {
-  double fastest = 0.0;
+// Sweeps to the tolerance.
+void CoupledContacts::iterate(const StepView& step, double speed, Dofs& v, Outcome& outcome) {
   Anderson anderson;
-  std::vector<double> impulses_before;
-  outcome = {0, 1.0};
-  for (; outcome.residual > tolerance && outcome.sweeps < most_sweeps; ++outcome.sweeps) {
+  Dofs impulses_before;
+  outcome = {0, 1.0, 0.0};
+  const auto sweep_once = [&] {
+    sweep(step, v);
+    const Residual found = residual(speed, v);
+    if (outcome.sweeps == 0) out_of_reach_ = most_growth * found.size;
+    outcome.residual = found.size > 0.0 ? found.change / found.size : 0.0;
+    ++outcome.sweeps;
+  };
+  const auto try_from = [&](const Dofs& scaled) {
+    if (!is_in_reach(scaled)) return false;
+    move_to(scaled, v);
+    return true;
+  };
+  while (outcome.residual > tolerance && outcome.sweeps < most_sweeps) {
+    if (outcome.sweeps >= long_patience) {
+      search(sweep_once, try_from, outcome);
+      continue;
+    }
     if (outcome.sweeps == patience) impulses_before = scaled_impulses();
-    if (outcome.sweeps > patience && outcome.sweeps % 2 == 0)
-      fastest = std::max(fastest, accelerate(anderson, impulses_before, v));
-    fastest = std::max(fastest, sweep(step, v));
-    outcome.residual = residual(speed, v);
+    if (outcome.sweeps > patience && outcome.sweeps % 2 == 0) {
+      const Dofs image = scaled_impulses();
+      const Dofs next = image + anderson.correction(image, image - impulses_before);
+      impulses_before = try_from(next) ? next : image;
+    }
+    sweep_once();
   }
-  return fastest;
 }
 
-// Evaluates every contact once, each against the impulses of the others.
-double CoupledContacts::sweep(const StepView& step, Dofs& v) {
-  double fastest = 0.0;
-  for (std::size_t i = 0; i < interfaces_.size(); ++i) {
-    const auto solve = [&](const ContactList& contacts) {
-      interfaces_[i]->gather(contacts, v, step);
-      interfaces_[i]->evaluate(contacts, step);
-      fastest = std::max(fastest, interfaces_[i]->apply(contacts, v));
-    };
-    colours_[i].for_each_acting(solve);
-    solve(colours_[i].idle());
+// Along the way that a sweep takes, to where the next one would go back. Sweeps of dissipative laws
+// do not move apart, so that the part left along it only falls: it is bracketed by ever longer
+// steps, then found by the Illinois method (Dowell and Jarratt 1971). This ends where the
+// acceleration runs in circles: it knows no kinks, and mass ratios of 1e5 make the way from one to
+// the next long.
+template <class Sweep, class Try>
+void CoupledContacts::search(Sweep sweep_once, Try try_from, const Outcome& outcome) {
+  constexpr double longer = 8.0, near = 1e-3;
+  const Dofs start = scaled_impulses();
+  sweep_once();
+  const Dofs image = scaled_impulses(), way = image - start;
+  const auto is_over = [&] { return !(outcome.residual > tolerance && outcome.sweeps < most_sweeps); };
+  double left = 1.0;  // of a sweep from start + t way, along the way
+  const auto sweep_from = [&](double t) {
+    const Dofs from = start + t * way;
+    if (!try_from(from)) return false;
+    sweep_once();
+    left = (scaled_impulses() - from).dot(way) / way.squaredNorm();
+    return true;
+  };
+  double low = 0.0, left_low = 1.0, high = longer;
+  for (; !is_over(); high *= longer) {
+    if (!sweep_from(high)) return void(try_from(image));
+    if (!(left > 0.0)) break;
+    low = high;
+    left_low = left;
   }
-  return fastest;
+  int kept_low = 0;  // in a row; negative: the higher end
+  for (double left_high = left; !is_over();) {
+    const double t = (low * left_high - high * left_low) / (left_high - left_low);
+    if (!(t > low && t < high) || !sweep_from(t) || std::abs(left) < near) break;
+    if (left > 0.0) {
+      low = t;
+      left_low = left;
+      kept_low = std::min(kept_low, 0) - 1;
+      if (kept_low < -1) left_high *= 0.5;
+    } else {
+      high = t;
+      left_high = left;
+      kept_low = std::max(kept_low, 0) + 1;
+      if (kept_low > 1) left_low *= 0.5;
+    }
+  }
+}
+
+// Evaluates every contact that may act once, each against the impulses of the others.
+void CoupledContacts::sweep(const StepView& step, Dofs& v) {
+  for (std::size_t i = 0; i < interfaces_.size(); ++i)
+    colours_[i].for_each_acting(
+        [&](const ContactList& contacts) { answer(*interfaces_[i], contacts, step, v); });
+}
+
+// What a law makes of v, for contacts that share no node.
+void CoupledContacts::answer(Interface& interface, const ContactList& contacts, const StepView& step,
+                             Dofs& v) {
+  interface.gather(contacts, v, step);
+  interface.evaluate(contacts, step);
+  interface.apply(contacts, v);
 }
 
 // Calls visit(interface, contacts) with what may be solved at once, in a fixed order.
@@ -90,52 +160,99 @@ void CoupledContacts::for_each_acting(Visit visit) const {
 }
 
 // Every impulse is what its law answered to some velocity of its contact: how far the contact is
-// from that velocity, relative to the largest velocity there is, or that an impulse makes. Zero
-// where all laws hold. Of contacts that may act: what the idle ones were evaluated with must not
-// matter.
-double CoupledContacts::residual(double speed, const Dofs& v) const {
-  double change = 0.0, size = speed;
+// from that velocity.
+Vector CoupledContacts::since_answer(const Interface& interface, std::int32_t contact, const Dofs& v) {
+  return interface.relative(contact, v) - interface.obstacle_velocity() -
+         interface.delassus(contact) * interface.impulse(contact) - interface.v_free(contact);
+}
+
+// That, beside the largest velocity there is, or that an impulse makes. Zero where all laws hold. Of
+// contacts that may act: what the idle ones were evaluated with must not matter.
+CoupledContacts::Residual CoupledContacts::residual(double speed, const Dofs& v) const {
+  Residual found{0.0, speed};
   for_each_acting([&](const Interface& interface, const ContactList& contacts) {
     for (const std::int32_t contact : contacts) {
-      const Vector own = interface.delassus(contact) * interface.impulse(contact);
-      const Vector since =
-          interface.relative(contact, v) - interface.obstacle_velocity() - own - interface.v_free(contact);
-      change = std::max(change, since.cwiseAbs().maxCoeff());
-      size = std::max(size, own.cwiseAbs().maxCoeff());
+      const double own = interface.delassus(contact) * interface.impulse(contact).cwiseAbs().maxCoeff();
+      found.change = std::max(found.change, since_answer(interface, contact, v).cwiseAbs().maxCoeff());
+      found.size = std::max(found.size, own);
     }
   });
-  return size > 0.0 ? change / size : 0.0;
+  return found;
+}
+
+// The work of an impulse r is r.(v^- + v)/2: at a contact that is off by s from the velocity w that
+// its law answered to, it is what the law accounts for plus r.s/2.
+CoupledContacts::Disagreement CoupledContacts::disagreement(const Dofs& v) const {
+  Disagreement all{};
+  double worst = 0.0;
+  for_each_acting([&](const Interface& interface, const ContactList& contacts) {
+    for (const std::int32_t contact : contacts) {
+      const Vector off = since_answer(interface, contact, v);
+      const double energy = 0.5 * std::abs(interface.impulse(contact).dot(off));
+      all.energy += energy;
+      if (!(energy > worst)) continue;
+      worst = energy;
+      all.interface = &interface;
+      all.node = interface.node_of(contact);
+      all.velocity = off.norm();
+    }
+  });
+  return all;
+}
+
+// Where laws contradict each other they push each other up, to far more than any mass ratio asks for.
+// Long columns, which more sweeps would solve, do not.
+std::string CoupledContacts::explain(const Dofs& v, const Outcome& outcome) const {
+  constexpr double run_away = 1e6;
+  const Disagreement found = disagreement(v);
+  if (!found.interface || !(residual(0.0, v).size > run_away * (out_of_reach_ / most_growth))) return "";
+  std::array<char, 400> text{};
+  std::snprintf(text.data(), text.size(),
+                "contacts that share node %d find no velocity that suits them all: after %d sweeps '%s' (law "
+                "'%s') is off by %.3g, which is worth the energy %.3g. Two laws there contradict each other",
+                found.node, outcome.sweeps, found.interface->name().c_str(),
+                found.interface->setup().law.c_str(), found.velocity, found.energy);
+  return text.data();
 }
 
 // Times the root of their delassus: a norm in energy.
-std::vector<double> CoupledContacts::scaled_impulses() const {
+Dofs CoupledContacts::scaled_impulses() const {
   std::vector<double> scaled;
   for_each_acting([&](const Interface& interface, const ContactList& contacts) {
     for (const std::int32_t contact : contacts)
       for (const double component : interface.impulse(contact))
         scaled.push_back(std::sqrt(interface.delassus(contact)) * component);
   });
-  return scaled;
+  return Eigen::Map<const Dofs>(scaled.data(), static_cast<Eigen::Index>(scaled.size()));
 }
 
-// Two sweeps took impulses_before to those there are, which are taken further.
-double CoupledContacts::accelerate(Anderson& anderson, std::vector<double>& impulses_before, Dofs& v) {
-  const std::vector<double> now = scaled_impulses();
-  const auto count = static_cast<Eigen::Index>(now.size());
-  const Eigen::Map<const Dofs> image(now.data(), count), before(impulses_before.data(), count);
-  const Dofs correction = anderson.correction(image, image - before);
+// Whether what impulses make of velocities is worth more than its rounding.
+bool CoupledContacts::is_in_reach(const Dofs& scaled) const {
   Eigen::Index next = 0;
   double fastest = 0.0;
+  for_each_acting([&](const Interface& interface, const ContactList& contacts) {
+    for (const std::int32_t contact : contacts) {
+      const Eigen::Index d = interface.impulse(contact).size();
+      const double root = std::sqrt(interface.delassus(contact));
+      fastest = std::max(fastest, root * scaled.segment(next, d).cwiseAbs().maxCoeff());
+      next += d;
+    }
+  });
+  return fastest <= out_of_reach_;  // false for NaN
+}
+
+// From v_free anew: what large impulses would leave of each other is rounding.
+void CoupledContacts::move_to(const Dofs& scaled, Dofs& v) {
+  Eigen::Index next = 0;
+  v = v_free_;
   for_each_acting([&](Interface& interface, const ContactList& contacts) {
     for (const std::int32_t contact : contacts) {
       const Eigen::Index d = interface.impulse(contact).size();
-      interface.change_impulse(contact, correction.segment(next, d) / std::sqrt(interface.delassus(contact)));
+      interface.start_from(contact, scaled.segment(next, d) / std::sqrt(interface.delassus(contact)));
       next += d;
     }
-    fastest = std::max(fastest, interface.apply(contacts, v));
+    interface.apply(contacts, v);
   });
-  impulses_before = scaled_impulses();
-  return fastest;
 }
 
 }  // namespace ilaw::host

@@ -7,6 +7,7 @@
 #include "step/anderson.hpp"
 #include "step/colours.hpp"
 
+#include <string>
 #include <vector>
 
 namespace ilaw::host {
@@ -26,25 +27,51 @@ class CoupledContacts {
   struct Outcome {
     int sweeps;
     double residual;
+    double energy;  // that laws may account for wrongly, as they do not agree on velocities
   };
   // Opens the step in all interfaces, and takes v from v_free to the velocities that fulfil all
   // laws.
   Outcome solve(StepView step, Dofs& v);
+  // Of the last solution: where laws agree least.
+  std::string explain(const Dofs& v, const Outcome& outcome) const;
 
  private:
-  static constexpr int patience = 20;  // sweeps without acceleration
+  static constexpr int patience = 20;        // sweeps without acceleration
+  static constexpr int long_patience = 300;  // sweeps until the acceleration is given up
+
+  // No impulse may make a speed larger than that many times the first: it would be all rounding.
+  static constexpr double most_growth = 0x1p50;
+
+  struct Residual {
+    double change, size;
+  };
+  struct Disagreement {
+    double energy;               // of all contacts
+    const Interface* interface;  // of the worst; null: there is none
+    int node;
+    double velocity;
+  };
 
   void open(const StepView& step);
-  double iterate(const StepView& step, double speed, Dofs& v, Outcome& outcome);
-  double sweep(const StepView& step, Dofs& v);
-  double residual(double speed, const Dofs& v) const;
-  std::vector<double> scaled_impulses() const;
-  double accelerate(Anderson& anderson, std::vector<double>& impulses_before, Dofs& v);
+  void iterate(const StepView& step, double speed, Dofs& v, Outcome& outcome);
+  void sweep(const StepView& step, Dofs& v);
+  static void answer(Interface& interface, const ContactList& contacts, const StepView& step, Dofs& v);
+  Residual residual(double speed, const Dofs& v) const;
+  template <class Sweep, class Try>
+  void search(Sweep sweep_once, Try try_from, const Outcome& outcome);
+  bool is_in_reach(const Dofs& scaled) const;
+  static Vector since_answer(const Interface& interface, std::int32_t contact, const Dofs& v);
+  Disagreement disagreement(const Dofs& v) const;
+  Dofs scaled_impulses() const;
+  void move_to(const Dofs& scaled, Dofs& v);
   template <class Visit>
   void for_each_acting(Visit visit) const;
 
   Interfaces& interfaces_;
+  int dimension_;
   std::vector<Colours> colours_;  // one per interface
+  Dofs v_free_;
+  double out_of_reach_ = 0.0;
 };
 
 }  // namespace ilaw::host

@@ -11,7 +11,7 @@
 namespace ilaw::host {
 namespace {
 
-long double kinetic_energy(const Model& model, const Dofs& v) {
+long double kinetic_sum(const Model& model, const Dofs& v) {
   long double twice = 0;
   for (Eigen::Index i = 0; i < v.size(); ++i)
     twice += static_cast<long double>(model.mass()[i]) * v[i] * v[i];
@@ -38,7 +38,7 @@ double mixed_potential(const Model& model, const Dofs& u, const Dofs& u_next) {
 }  // namespace
 
 void EnergyBalance::start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) {
-  sums_.initial = kinetic_energy(model, v);
+  sums_.initial = kinetic_sum(model, v);
   sums_.initial += model.is_linear() ? mixed_potential(model, u, u_next) : model.potential(u);
   if (!model.is_linear()) sums_.internal_work = -static_cast<Sum>(model.potential(u));
   note_size(sums_.initial);
@@ -75,7 +75,7 @@ void EnergyBalance::add_dissipation(const std::array<double, ILAW_ENERGY_COUNT>&
 
 EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs& u_next,
                                    const Dofs& v) const {
-  const Sum kinetic = kinetic_energy(model, v);
+  const Sum kinetic = kinetic_sum(model, v);
   const Sum internal = model.is_linear() ? Sum{mixed_potential(model, u, u_next)} : -sums_.internal_work;
   const Sum open =
       kinetic + internal - sums_.initial - sums_.external_work - sums_.damping_work - sums_.interface_work;
@@ -98,6 +98,10 @@ EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs
   report.least_dissipation = sums_.least_dissipation;
   report.reaction_work = static_cast<double>(sums_.relative_work + parts);
   return report;
+}
+
+double kinetic_energy(const Model& model, const Dofs& v) {
+  return static_cast<double>(kinetic_sum(model, v));
 }
 
 Vector angular_momentum(const Model& model, const Dofs& u, const Dofs& v) {

@@ -41,6 +41,7 @@ class EnergyBalance {
   void add_interface(double work, double relative_work);
   // What the laws of an interface dissipated in a step, and the least of a node.
   void add_dissipation(const std::array<double, ILAW_ENERGY_COUNT>& energy, double least);
+  double largest() const { return sums_.largest; }  // of energies and works so far
   void set_stored(double energy) { by_law_[ILAW_ENERGY_STORED] = energy; }
 
   EnergyReport report(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) const;
@@ -68,6 +69,7 @@ class EnergyBalance {
   std::array<Sum, ILAW_ENERGY_COUNT> by_law_{};
 };
 
+double kinetic_energy(const Model& model, const Dofs& v);
 // About the origin: one component in 2D, three in 3D, none in 1D.
 Vector angular_momentum(const Model& model, const Dofs& u, const Dofs& v);
 

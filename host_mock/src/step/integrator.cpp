@@ -98,9 +98,18 @@ void Integrator::correct(StepTimes step) {
 void Integrator::add_reactions(double time, double speed_free) {
   const StepView step{u_, v_before_, time, dt_, speed_before_, speed_free};
   if (coupled_)
-    accounts_.add_solution(coupled_->solve(step, v_));
+    add_coupled_reactions(step);
   else
     for (const auto& interface : interfaces_) interface->solve(step, v_);
+}
+
+// Laws that contradict each other end the run before their states are accepted.
+void Integrator::add_coupled_reactions(const StepView& step) {
+  const CoupledContacts::Outcome outcome = coupled_->solve(step, v_);
+  accounts_.add_solution(outcome);
+  if (accounts_.is_wrong(model_, outcome, v_before_))
+    if (const std::string why = coupled_->explain(v_, outcome); !why.empty()) throw std::runtime_error(why);
+  for (const auto& interface : interfaces_) interface->accept(step, v_);
 }
 
 // An infinite speed may also be the square of a large one.

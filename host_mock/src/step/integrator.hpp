@@ -63,6 +63,7 @@ class Integrator {
   double kick(StepTimes step);
   void correct(StepTimes step);
   void add_reactions(double time, double speed_free);
+  void add_coupled_reactions(const StepView& step);
   void check_motion(double speed, double time) const;
 
   const Model& model_;

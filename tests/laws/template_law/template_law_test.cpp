@@ -6,7 +6,7 @@
 namespace ilaw::testing {
 namespace {
 
-// r_N = h c A <-v_N> with the velocity after the step, for any form of H.
+// r_N = h c A <-v_N - <v_N^->> with the velocities after and before the step, for any form of H.
 TEST(template_law, KeepsItsEquation) {
   for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL})
     for (const double damping : {0.0, 1e-3, 1.0, 1e3, 1e6}) {
@@ -21,7 +21,11 @@ TEST(template_law, KeepsItsEquation) {
         ASSERT_EQ(run.r[i][1], 0.0);
         ASSERT_EQ(run.r[i][2], 0.0);
         // Cancellation leaves ulps of v_free in v_N.
-        ASSERT_NEAR(run.r[i][0], c * std::max(0.0, -run.v[i][0]), 4 * ulp * (1.0 + c));
+        const double before = std::max(0.0, nodes.v_previous[i][0]),
+                     size = 1.0 + std::abs(nodes.v_free[i][0]);
+        ASSERT_NEAR(run.r[i][0], c * std::max(0.0, -run.v[i][0] - before),
+                    4 * ulp * (1.0 + c) * (size + before));
+        ASSERT_LE(run.r[i][0] * (run.v[i][0] + nodes.v_previous[i][0]), 0.0);
         ASSERT_EQ(run.status[i], run.r[i][0] > 0.0 ? ILAW_CLOSED : ILAW_FREE);
       }
     }

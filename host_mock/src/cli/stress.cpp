@@ -1,0 +1,82 @@
+// `ilaw stress`: random scenes, held to what every scene must fulfil.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stress/stress.hpp"
+
+#include "base/exit_code.hpp"
+#include "base/files.hpp"
+#include "cli/commands.hpp"
+#include "cli/progress.hpp"
+
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+void print_table(const StressReport& report) {
+  std::vector<Row> rows = {{"law", "scenes", "refused", "stopped", "failed", "steps", "node-steps", "balance",
+                            "added", "penetration", "of bound"}};
+  const auto count = [](std::int64_t n) { return std::to_string(n); };
+  for (const StressRow& row : report.rows)
+    rows.push_back({row.law, count(row.scenes), count(row.refused), count(row.stopped), count(row.failed),
+                    text_of("%.2g", static_cast<double>(row.worst.steps)),
+                    text_of("%.2g", static_cast<double>(row.worst.node_steps)),
+                    text_of("%.1e", row.worst.balance), text_of("%.1e", row.worst.added),
+                    text_of("%.2f", row.worst.penetration), text_of("%.2f", row.worst.worst_bound)});
+  print_rows(rows, "");
+}
+
+int run_stress(const StressSetup& setup) {
+  if (!setup.keep.empty() && !make_folder(setup.keep)) return exit_bad_input;
+  StressReport report;
+  try {
+    Progress progress(0, setup.scenes);
+    report = stress(setup, [&](std::int64_t done) { progress.show(done); });
+  } catch (const ilaw::error& error) {
+    std::fprintf(stderr, "ilaw: %s\n", error.what());
+    return exit_bad_input;
+  }
+  if (report.rows.empty()) {
+    std::fprintf(stderr, "ilaw: found no law on the search path, %s\n", ilaw::search_path().c_str());
+    return exit_bad_input;
+  }
+  print_table(report);
+  for (const StressFailure& failure : report.failures)
+    std::printf("seed %llu (%s): %s%s%s\n", static_cast<unsigned long long>(failure.seed),
+                failure.law.c_str(), failure.reason.c_str(), failure.file.empty() ? "" : "; ",
+                failure.file.c_str());
+  return report.failures.empty() ? exit_done : exit_failed;
+}
+
+}  // namespace
+
+void add_stress(CLI::App& app, Action& chosen) {
+  const auto setup = std::make_shared<StressSetup>();
+  CLI::App* command =
+      app.add_subcommand("stress", "Run random scenes of all laws and check what every scene must fulfil");
+  command->add_option("--law", setup->laws, "Only the laws of this library; may be repeated (all)");
+  command->add_option("--seed", setup->seed, "Of the first scene; the next has the next number")
+      ->capture_default_str();
+  command->add_option("--scenes", setup->scenes, "Scenes; the laws take turns")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}))
+      ->capture_default_str();
+  command->add_option("--steps", setup->size.steps, "Most steps of a scene; the least are a tenth")
+      ->check(CLI::Range(std::int64_t{10}, std::int64_t{1'000'000'000}))
+      ->capture_default_str();
+  command->add_option("--nodes", setup->size.nodes, "Most points of a scene")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--keep", setup->keep,
+                      "Folder for scenes that failed, made as small as they still fail");
+  command->footer(
+      "Exit codes: 0 all scenes fulfil them, or were refused or stopped with a reason; 1 a scene does not;\n"
+      "2 bad usage, or a library that cannot be opened.\n"
+      "Example: ilaw stress --law postit --scenes 200 --keep failures");
+  command->callback([setup, &chosen] { chosen = [setup] { return run_stress(*setup); }; });
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stress/ledger.hpp"
+
+#include "step/dof_loops.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ilaw::host {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr double operations = 16.0;
+
+// Whether a law stops a node at once that approaches where the gap is closed. Its node alone, with
+// the parameters of the scene's first.
+bool stops(const nlohmann::json& interface, int dimension) {
+  std::vector<double> normal(static_cast<std::size_t>(dimension), 0.0), velocity = normal;
+  normal.back() = 1.0;
+  velocity.back() = -1.0;
+  const std::vector<double> origin(static_cast<std::size_t>(dimension), 0.0);
+  const nlohmann::json point = {{"mass", 1.0}, {"position", origin}, {"velocity", velocity}};
+  nlohmann::json alone = interface;
+  alone.erase("against");
+  alone["nodes"] = "all";
+  alone["obstacle"] = {{"type", "plane"}, {"point", origin}, {"normal", normal}};
+  Scene scene = read_scene({{"model", {{"type", "points"}, {"dimension", dimension}, {"points", {point}}}},
+                            {"time", {{"dt", 1.0}, {"end", 1.0}}},
+                            {"interfaces", {alone}}},
+                           "alone.json");
+  Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
+  integrator.step();
+  return integrator.velocity().tail(1)[0] >= -operations * eps;
+}
+
+bool is_rigid(const Interface& interface, const nlohmann::json& source, int dimension) {
+  return (interface.info().capabilities & ILAW_CAN_STORE_ENERGY) == 0 && stops(source, dimension);
+}
+
+}  // namespace
+
+Ledger::Ledger(const Scene& scene) : scene_(scene), start_depth_(scene.interfaces.size()) {
+  const Dofs u = Dofs::Zero(scene.model->mass().size());
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    const Interface& interface = *scene.interfaces[i];
+    if (!is_rigid(interface, scene.source["interfaces"][i], scene.model->dimension())) continue;
+    start_depth_[i] = Dofs::Zero(scene.model->node_count());
+    for (std::size_t k = 0; k < interface.nodes().size(); ++k)
+      start_depth_[i][interface.nodes()[k]] = std::max(0.0, -interface.gap_at(static_cast<int>(k), u, 0.0));
+  }
+}
+
+void Ledger::close(const Integrator& integrator) {
+  ++steps_;
+  const int dimension = scene_.model->dimension();
+  const double speed =
+      std::max(largest_speed(v_before_, dimension), largest_speed(integrator.velocity(), dimension));
+  for (std::size_t i = 0; i < scene_.interfaces.size(); ++i) add(i, integrator, speed);
+  if (steps_ % every == 1) sample(integrator);
+}
+
+// Stored energies are known in sum alone, which is no less than that of a node.
+void Ledger::add(std::size_t number, const Integrator& integrator, double speed) {
+  const Interface& interface = *scene_.interfaces[number];
+  const bool is_alone = interface.setup().counterpart->partners().empty();
+  fastest_ = std::max(fastest_, (is_alone ? 1.0 : 2.0) * speed + interface.obstacle_velocity().norm());
+  if (interface.sums().penetration > penetration_) measure_depth(number, integrator);
+  const double stored = interface.sums().energy[ILAW_ENERGY_STORED];
+  stored_ += stored;
+  rounded_most_ = std::max(rounded_most_, stored);
+  for (const std::int32_t contact : interface.active()) {
+    if (interface.impulse(contact).isZero(0.0)) continue;
+    const Vector before = interface.relative(contact, v_before_) - interface.obstacle_velocity_before();
+    const Vector after = interface.relative(contact, integrator.velocity()) - interface.obstacle_velocity();
+    const Vector change = interface.delassus(contact) * interface.impulse(contact);
+    const double rounded =
+        interface.impulse(contact).norm() * (before.norm() + (after - change).norm() + change.norm());
+    rounded_ += rounded;
+    rounded_most_ = std::max(rounded_most_, rounded + stored);
+  }
+}
+
+void Ledger::measure_depth(std::size_t number, const Integrator& integrator) {
+  const Interface& interface = *scene_.interfaces[number];
+  const Dofs& start_depth = start_depth_[number];
+  if (start_depth.size() == 0) return;
+  for (const std::int32_t contact : interface.active()) {
+    const double gap =
+        interface.gap_at(interface.node_index_of(contact), integrator.displacement(), integrator.time());
+    penetration_ = std::max(penetration_, -gap - start_depth[interface.node_of(contact)]);
+  }
+}
+
+void Ledger::sample(const Integrator& integrator) {
+  const Dofs &u = integrator.displacement(), &v = integrator.velocity(), &mass = scene_.model->mass();
+  const double dt = scene_.dt, critical = scene_.model->critical_step();
+  const double kinetic = mass.dot(v.cwiseAbs2()) + mass.dot(v_before_.cwiseAbs2());
+  // |p| <= m |change of v|, twice: outer and inner impulses may cancel.
+  double size = kinetic;
+  if (std::isfinite(critical)) size += 4.0 / (critical * critical) * mass.dot(u.cwiseAbs2());
+  size_ = std::max(size_, size);
+  farthest_ = std::max(farthest_, u.cwiseAbs().maxCoeff() + scene_.model->position().cwiseAbs().maxCoeff());
+  if (!scene_.model->is_linear() || !(dt < critical)) return;
+  const EnergyReport energy = integrator.energy();
+  const double courant = std::isfinite(critical) ? dt / critical : 0.0;
+  const double most = energy.kinetic + energy.internal + operations * eps * size;
+  if (energy.kinetic > 0.0)
+    worst_velocity_ = std::max(worst_velocity_, energy.kinetic * (1.0 - courant * courant) / most);
+}
+
+double Ledger::balance_bound() const {
+  return operations * eps * (static_cast<double>(steps_ + 1) * size_ + rounded_);
+}
+
+double Ledger::added_bound(const Tally& tally) const {
+  return operations * eps * (rounded_ + stored_) + tally.coupling_energy;
+}
+
+double Ledger::dissipation_bound() const { return operations * eps * rounded_most_; }
+
+double Ledger::penetration_bound() const {
+  const double a_step = scene_.dt * fastest_;
+  const double rounding = operations * eps * static_cast<double>(steps_) * (a_step + farthest_);
+  return a_step + rounding;
+}
+
+}  // namespace ilaw::host

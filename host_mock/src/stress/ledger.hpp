@@ -1,0 +1,52 @@
+// ledger.hpp - what a run must be held to, collected step by step.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "scene/scene.hpp"
+#include "step/integrator.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace ilaw::host {
+
+class Ledger {
+ public:
+  explicit Ledger(const Scene& scene);
+
+  // Before and after each step.
+  void open(const Integrator& integrator) { v_before_ = integrator.velocity(); }
+  void close(const Integrator& integrator);
+
+  // The balance adds p.(v^- + v)/2 of all impulses to the kinetic and internal energies: per step
+  // each of them is rounded, and so are the displacements that the forces come from.
+  double balance_bound() const;
+  // Work of impulses r and what laws say of it are rounded by |r| (|v^-| + |v_free| + H |r|); stored
+  // energies by themselves. Coupled contacts agree to a residual, whose energy is counted.
+  double added_bound(const Tally& tally) const;
+  double dissipation_bound() const;
+  // Rigid contact lets a node in by what it moves within a step; one that started inside goes no
+  // deeper.
+  double penetration() const { return penetration_; }  // beyond that at the start
+  double penetration_bound() const;
+  double fastest() const { return fastest_; }
+  // Of a linear model below its critical step: K (1 - cfl^2) <= K + I, as U_n.K U_{n+1}/2 is that of
+  // the mean of both minus h^2 V.K V/8.
+  double worst_velocity() const { return worst_velocity_; }
+
+ private:
+  void add(std::size_t number, const Integrator& integrator, double speed);
+  void measure_depth(std::size_t number, const Integrator& integrator);
+  void sample(const Integrator& integrator);
+
+  static constexpr std::int64_t every = 16;  // steps from sample to sample
+
+  const Scene& scene_;
+  Dofs v_before_;
+  std::vector<Dofs> start_depth_;  // per interface, of all nodes; empty: its law gives way
+  std::int64_t steps_ = 0;
+  double rounded_ = 0.0, rounded_most_ = 0.0, stored_ = 0.0, size_ = 0.0, farthest_ = 0.0;
+  double fastest_ = 0.0, penetration_ = 0.0, worst_velocity_ = 0.0;
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stress/shrink.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+// A run of one step can be made shorter for ever.
+constexpr double shortest = 1e-9;
+
+double rounded(double value, int digits) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*e", digits - 1, value);
+  return std::strtod(text.data(), nullptr);
+}
+
+void add_without_each(const json& scene, const json::json_pointer& list, std::vector<json>& made) {
+  if (!scene.contains(list)) return;
+  for (std::size_t i = 0; i < scene[list].size(); ++i) {
+    made.push_back(scene);
+    made.back()[list].erase(i);
+  }
+}
+
+// Loads name points by number: the first is kept.
+void add_with_fewer_points(const json& scene, std::vector<json>& made) {
+  const json::json_pointer points("/model/points");
+  if (!scene.contains(points)) return;
+  const std::size_t count = scene[points].size();
+  for (std::size_t part = count; part > 1; part /= 2)
+    for (std::size_t from = 0; from < count; from += part) {
+      json fewer = json::array();
+      for (std::size_t i = from; i < std::min(count, from + (part + 1) / 2); ++i)
+        fewer.push_back(scene[points][i]);
+      made.push_back(scene);
+      made.back()[points] = fewer;
+    }
+}
+
+void add_with_fewer_parameters(const json& scene, std::vector<json>& made) {
+  for (std::size_t i = 0; i < scene["interfaces"].size(); ++i)
+    for (const auto& item : scene["interfaces"][i]["parameters"].items()) {
+      made.push_back(scene);
+      made.back()["interfaces"][i]["parameters"].erase(item.key());
+    }
+}
+
+void add_with_rounder_numbers(const json& scene, std::vector<json>& made) {
+  const json flat = scene.flatten();
+  for (const auto& [pointer, value] : flat.items()) {
+    if (!value.is_number_float()) continue;
+    for (const double simpler : {0.0, 1.0, rounded(value, 1), rounded(value, 3)}) {
+      if (simpler == value.get<double>()) break;
+      made.push_back(scene);
+      made.back()[json::json_pointer(pointer)] = simpler;
+    }
+  }
+}
+
+std::vector<json> simpler_than(const json& scene) {
+  std::vector<json> made;
+  const double end = scene["time"]["end"].get<double>();
+  for (const double part : {0.01, 0.1, 0.5, 0.9}) {
+    if (end * part < shortest) continue;
+    made.push_back(scene);
+    made.back()["time"]["end"] = end * part;
+  }
+  add_with_fewer_points(scene, made);
+  add_without_each(scene, json::json_pointer("/loads"), made);
+  add_without_each(scene, json::json_pointer("/interfaces"), made);
+  add_with_fewer_parameters(scene, made);
+  add_with_rounder_numbers(scene, made);
+  return made;
+}
+
+}  // namespace
+
+json shrink(json scene, const std::function<bool(const json&)>& fails, int most_tries) {
+  int tries = 0;
+  for (bool shrunk = true; shrunk;) {
+    shrunk = false;
+    for (json& simpler : simpler_than(scene)) {
+      if (tries++ >= most_tries) return scene;
+      if (!fails(simpler)) continue;
+      scene = std::move(simpler);
+      shrunk = true;
+      break;
+    }
+  }
+  return scene;
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,46 @@
+// stress.hpp - many random scenes, and what came of them, law by law.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "stress/invariants.hpp"
+#include "stress/random_scene.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+struct StressSetup {
+  std::vector<std::string> laws;  // names of their libraries; empty: all on the search path
+  std::uint64_t seed = 1;         // of the first scene; the others follow
+  std::int64_t scenes = 100;
+  StressSize size;
+  std::filesystem::path keep;  // where failures are written, made smaller; empty: nowhere
+};
+
+// Of one law, that of the first interface.
+struct StressRow {
+  std::string law;
+  std::int64_t scenes = 0, refused = 0, stopped = 0, failed = 0;
+  StressFigures worst;  // sums of steps, largest of the others
+};
+
+struct StressFailure {
+  std::uint64_t seed;
+  std::string law, reason;
+  std::filesystem::path file;  // empty: not kept
+};
+
+struct StressReport {
+  std::vector<StressRow> rows;
+  std::vector<StressFailure> failures;
+};
+
+// The laws take turns. progress is told the number of scenes done. Throws ilaw::error where a library
+// cannot be opened, std::runtime_error where a scene cannot be written.
+StressReport stress(const StressSetup& setup, const std::function<void(std::int64_t)>& progress);
+
+}  // namespace ilaw::host

@@ -1,0 +1,185 @@
+// Random scenes fulfil what every scene must; scenes that once did not, too; what is found is made small.
+#include "host_runner.hpp"
+#include "program_runner.hpp"
+
+#include "stress/random_parameters.hpp"
+#include "stress/shrink.hpp"
+#include "stress/stress.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+json scene_that_failed(const std::string& name) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  return read_scene_source(std::filesystem::path(ILAW_STRESS_SCENES) / (name + ".json"));
+}
+
+struct Solved {
+  const char* name;
+  double part;  // of the run, which shows what went wrong
+};
+std::ostream& operator<<(std::ostream& out, const Solved& solved) { return out << solved.name; }
+
+class SceneThatFailed : public ::testing::TestWithParam<Solved> {};
+
+// Energy was added near the critical step, by a bond that caught a moving node, and by bonds that were
+// not solved.
+TEST_P(SceneThatFailed, IsSolved) {
+  json scene = scene_that_failed(GetParam().name);
+  scene["time"]["end"] = scene["time"]["end"].get<double>() * GetParam().part;
+  const StressVerdict verdict = stress_scene(scene);
+  EXPECT_EQ(verdict.ending, StressEnding::passed) << verdict.reason;
+  EXPECT_GT(verdict.figures.node_steps, 1000);
+  // The tolerance of coupled contacts, times the largest mass ratio.
+  EXPECT_LT(verdict.figures.added, 1e5 * CoupledContacts::tolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Stress, SceneThatFailed,
+    ::testing::Values(Solved{"rebound_at_the_critical_step", 1.0}, Solved{"rough_spring_from_inside", 0.2},
+                      Solved{"bond_and_rebound", 0.2}, Solved{"bond_on_a_stiff_spring", 0.5},
+                      Solved{"mass_ratio_of_1e5", 0.02}, Solved{"tie_on_a_stiff_spring", 0.05}));
+
+// Light between heavy: sweeps alone take 1e5 of them, and the acceleration ran in circles between the
+// kinks of the bonds. All laws hold now, to the tolerance.
+TEST(CoupledContacts, AreSolvedWhereTheAccelerationRunsInCircles) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  Scene scene = read_scene(scene_that_failed("mass_ratio_of_1e5"), "scene.json");
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < 200) integrator.step();
+  EXPECT_EQ(integrator.tally().unconverged, 0);
+  EXPECT_GT(integrator.tally().sweeps_max, 300);
+  EXPECT_LE(integrator.tally().coupling_residual_max, CoupledContacts::tolerance);
+}
+
+class LawsThatContradict : public ::testing::TestWithParam<const char*> {};
+
+// A node that cannot do what both of its laws want: the run ends there, and says so, instead of
+// reporting dissipations a million times its energy.
+TEST_P(LawsThatContradict, EndTheRunWithTheReason) {
+  Scene scene = read_scene(scene_that_failed(GetParam()), "scene.json");
+  Integrator integrator = integrator_of(scene);
+  std::string reason;
+  try {
+    while (integrator.steps() < scene.steps) integrator.step();
+  } catch (const std::runtime_error& error) {
+    reason = error.what();
+  }
+  EXPECT_NE(reason.find("find no velocity that suits them all"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("contradict each other"), std::string::npos) << reason;
+  const EnergyReport energy = integrator.energy();
+  EXPECT_LE(energy.by_law[ILAW_ENERGY_FRICTION] + energy.by_law[ILAW_ENERGY_IMPACT], energy.scale);
+}
+
+INSTANTIATE_TEST_SUITE_P(Stress, LawsThatContradict,
+                         ::testing::Values("rough_wedge", "bond_that_leaves_a_floor",
+                                           "plane_against_a_bond"));
+
+// Of every law that there is, whatever it is called: within the limits that it gives, and all of them
+// within some draws.
+TEST(RandomParameters, AreWithinTheLimitsOfTheLaw) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const LawBook laws({});
+  ASSERT_GT(laws.all().size(), 5U);
+  Draw draw(1);
+  for (const LawBook::Entry& entry : laws.all())
+    for (std::uint32_t i = 0; i < entry.law->parameter_count; ++i) {
+      const ilaw_parameter& p = *entry.law->parameters[i];
+      std::set<json> drawn;
+      for (int k = 0; k < 200; ++k) {
+        const json parameters = random_parameters(*entry.law, 1e-3, draw);
+        ASSERT_TRUE(parameters.contains(p.name) || p.required == 0) << entry.law->id << " " << p.name;
+        if (!parameters.contains(p.name)) continue;
+        const json& value = parameters[p.name];
+        drawn.insert(value);
+        if (!value.is_number()) continue;
+        const double number = value.get<double>();
+        ASSERT_TRUE(p.minimum_excluded != 0 ? number > p.minimum : number >= p.minimum)
+            << entry.law->id << " " << p.name << " " << number;
+        ASSERT_LE(number, p.maximum) << entry.law->id << " " << p.name;
+      }
+      EXPECT_GE(drawn.size(), p.kind == ILAW_PARAMETER_CHOICE ? p.choice_count : 10U)
+          << entry.law->id << " " << p.name;
+    }
+}
+
+TEST(RandomScene, IsThatOfItsSeed) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const LawBook laws({"contact"});
+  const auto scene = [&](std::uint64_t seed) { return random_scene(laws, laws.all().front(), seed, {}); };
+  EXPECT_EQ(scene(5), scene(5));
+  EXPECT_NE(scene(5), scene(6));
+}
+
+// Fails as long as a shock of more than 3 meets a point heavier than 2: all the rest goes.
+TEST(Shrink, LeavesWhatFails) {
+  json scene = {
+      {"model", {{"type", "points"}, {"points", json::array()}}},
+      {"time", {{"dt", 0.1}, {"end", 7.7}}},
+      {"loads", {{{"type", "gravity"}}, {{"type", "shock"}, {"impulse", 3.14159}}, {{"type", "force"}}}},
+      {"interfaces", {{{"law", "a"}, {"parameters", {{"x", 1.5}, {"y", 2.5}}}}}}};
+  for (int i = 0; i < 9; ++i) scene["model"]["points"].push_back({{"mass", 0.3 * i}});
+  const auto fails = [](const json& s) {
+    const bool heavy = std::any_of(s["model"]["points"].begin(), s["model"]["points"].end(),
+                                   [](const json& p) { return p["mass"].get<double>() > 2.0; });
+    return heavy && std::any_of(s["loads"].begin(), s["loads"].end(), [](const json& load) {
+             return load.contains("impulse") && load["impulse"].get<double>() > 3.0;
+           });
+  };
+  const json small = shrink(scene, fails, 1000);
+  EXPECT_TRUE(fails(small));
+  EXPECT_EQ(small["model"]["points"].size(), 1U);
+  ASSERT_EQ(small["loads"].size(), 1U);
+  EXPECT_EQ(small["loads"][0]["impulse"], 3.14);
+  EXPECT_TRUE(small["interfaces"].empty());
+  EXPECT_EQ(small["time"]["end"], 0.0);
+}
+
+// A motion that leaves the range of numbers is no solution, whatever was promised: it must be found.
+TEST(Stress, FindsASceneThatStops) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const json scene = json::parse(R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1.0,
+      "position": [1.0], "velocity": [-1e308]}]}, "time": {"dt": 1e3, "end": 1e6}, "interfaces": [{"law": "contact",
+      "nodes": "all", "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0]}}]})");
+  const StressVerdict verdict = stress_scene(scene);
+  EXPECT_EQ(verdict.ending, StressEnding::failed);
+  EXPECT_EQ(verdict.invariant, "stops");
+}
+
+// The command in the small: `ilaw stress` for longer.
+TEST(Stress, RandomScenesFulfilTheInvariants) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  StressSetup setup;
+  setup.scenes = 84;
+  setup.size = {4000, 1000};
+  const StressReport report = stress(setup, [](std::int64_t) {});
+  std::int64_t node_steps = 0, ran = 0;
+  for (const StressRow& row : report.rows) {
+    node_steps += row.worst.node_steps;
+    ran += row.scenes - row.refused;
+  }
+  EXPECT_GT(node_steps, 10'000'000);
+  EXPECT_GT(ran, 60);
+  for (const StressFailure& failure : report.failures)
+    ADD_FAILURE() << failure.law << ", seed " << failure.seed << ": " << failure.reason;
+}
+
+TEST(StressCommand, SaysWhatItFoundByItsExitCode) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const Outcome help = run_program("stress --help"),
+                done = run_program("stress --law contact --scenes 2 --steps 50");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_NE(help.output.find("Example: ilaw stress"), std::string::npos) << help.output;
+  EXPECT_EQ(done.code, 0) << done.output;
+  EXPECT_NE(done.output.find("node-steps"), std::string::npos) << done.output;
+  EXPECT_EQ(run_program("stress --law nonsense").code, 2);
+  EXPECT_EQ(run_program("stress --scenes 0").code, 2);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
