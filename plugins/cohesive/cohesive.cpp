@@ -184,7 +184,8 @@ struct cohesive : bond {
 
   template <class Node>
   static coupled_node with_full_delassus(const Node& node) {
-    const local_coulomb same = problem_of(node.delassus);
+    local_coulomb same{};
+    fill(same, node.delassus);
     return {.time = node.time,
             .velocity_step = node.velocity_step,
             .position_step = node.position_step,

@@ -67,7 +67,8 @@ struct coupled_modes {
 
   template <class Delassus>
   coupled_modes(const Delassus& given, double w) : normal(given.normal()), weight(w) {
-    const local_coulomb h = problem_of(given);
+    local_coulomb h{};
+    fill(h, given);
     const double scale = power_scale_of(larger(h.h[0], larger(h.h[1], h.h[2]))).down;
     double a[3][3] = {{scale * h.h[0], scale * w * h.h[3], scale * w * h.h[4]},
                       {0.0, scale * w * w * h.h[1], scale * w * w * h.h[5]},

@@ -159,10 +159,10 @@ struct full_delassus {
 
 // Why a law refuses a node; the text goes into the report. A double, like the status, to stay in vector code.
 inline constexpr double not_refused = 0.0;
-inline constexpr double several_solutions = 1.0;     // the law's equations have more than one
-inline constexpr double no_solution = 2.0;           // the law's equations have none for this input
-inline constexpr double impossible_state = 3.0;      // the law cannot have written this state
-inline constexpr double time_before_history = 4.0;   // the clock was set back
+inline constexpr double several_solutions = 1.0;    // the law's equations have more than one
+inline constexpr double no_solution = 2.0;          // the law's equations have none for this input
+inline constexpr double impossible_state = 3.0;     // the law cannot have written this state
+inline constexpr double time_before_history = 4.0;  // the clock was set back
 
 // History of a law beyond its named state: doubles of one node, wherever the host keeps them.
 struct const_history {
