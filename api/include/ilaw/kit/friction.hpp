@@ -38,7 +38,7 @@ contact_problem<Vector> contact_problem_of(contact_condition condition, Vector v
 // A number in [0, 1], not yet divided.
 template <class V>
 struct fraction {
-  V over, under;
+  V over = 1.0, under = 1.0;
 };
 
 // The largest s in [0, 1] with c2 s^2 + c1 s + c0 <= 0, where c0 <= 0 <= c2 and that does not hold at 1;
