@@ -69,7 +69,7 @@ struct coulomb : friction_in_packs {
       activation_parameter(&coulomb::activation)};
 
   bool falls() const { return kinetic_friction < friction || kinetic_friction < second(); }
-  bool tells_tangents_apart() const { return friction_2 != infinity && friction_2 != friction; }
+  bool tells_tangents_apart() const { return (friction_2 != infinity) & (friction_2 != friction); }
 
   // One coefficient at all speeds, or one that falls, which keeps their loops free of all that follows.
   struct plain;
@@ -85,7 +85,8 @@ struct coulomb : friction_in_packs {
   template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const requires has_tangents<Node> {
     const double part = left(node);
-    return ask_friction(node, contact(node), fallen(friction, part), fallen(second(), part), open);
+    return ask_friction(node, contact(node), fallen(friction, part), fallen(second(), part),
+                        !tells_tangents_apart(), open);
   }
 
  private:
@@ -122,7 +123,7 @@ struct coulomb::plain : coulomb {
   }
   template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const requires(!has_scalar_delassus<Node>) {
-    return ask_friction(node, contact(node), friction, friction, open);
+    return ask_friction(node, contact(node), friction, friction, true, open);
   }
 };
 
@@ -134,7 +135,7 @@ struct coulomb::falling : coulomb {
   template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const requires(!has_scalar_delassus<Node>) {
     const double fallen_to = fallen(friction, left(node));
-    return ask_friction(node, contact(node), fallen_to, fallen_to, open);
+    return ask_friction(node, contact(node), fallen_to, fallen_to, true, open);
   }
 };
 

@@ -7,11 +7,10 @@
 // of the way on which it is closed. The right-hand side never increases with r: one solution.
 #pragma once
 
-#include <ilaw/kit/math.hpp>
+#include <ilaw/kit/pack.hpp>
 
-#include <bit>
-#include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace penalty_law {
 
@@ -27,29 +26,32 @@ inline double damping_ratio(double restitution) {
   return lost / pi * (((0.0081 * lost + 0.022) * lost + 0.2088) * lost + 1.0);
 }
 
-struct compression {
-  double free, previous;  // v_free, v^-
-  double delassus, step;
-  double indentation;  // x
-  double stiffness, exponent, damping;
-  double lead;  // 0: keeps all energy; 1/2: a rigid spring keeps none
+// V: double, or a pack of them for Hertz's exponent.
+template <class V>
+struct compression_of_any {
+  using Mask = kit::mask_of<V>;
+
+  V free, previous;  // v_free, v^-
+  V delassus, step;
+  V indentation;  // x
+  V stiffness, exponent, damping;
+  V lead;  // 0: keeps all energy; 1/2: a rigid spring keeps none
 
   struct solution {
-    double impulse;
-    bool opens;
+    V impulse, opens;  // opens: 1 where the way ends open, else 0
   };
 
-  double mean_velocity(double v) const { return 0.5 * (previous + v); }
-  double travel(double v) const {
-    return step * (mean_velocity(v) + lead * kit::positive_part(v - previous));
-  }
+  V mean_velocity(V v) const { return 0.5 * (previous + v); }
+  V travel(V v) const { return step * (mean_velocity(v) + lead * kit::positive_part(v - previous)); }
 
   // p = 1. <v - v^-> is the larger of 0 and v - v^-, and the impulse falls as the travel grows: it is the
   // smaller of those that either choice gives.
   solution linear() const {
     const solution plain = linear_with(0.0), leading = linear_with(lead);
     const bool leads = leading.impulse <= plain.impulse;
-    return {leads ? leading.impulse : plain.impulse, leads ? leading.opens : plain.opens};
+    // By arithmetic, since GCC vectorises no choice between conditions.
+    const double part = leads ? 1.0 : 0.0;
+    return {leads ? leading.impulse : plain.impulse, plain.opens + part * (leading.opens - plain.opens)};
   }
 
   // x', and where the spring is stiff from its force, which then is the more accurate.
@@ -58,56 +60,68 @@ struct compression {
     const double moved = kit::positive_part(indentation - travel(v));
     const double pressed =
         2.0 / stiffness * (found.impulse / step + damping * mean_velocity(v)) - indentation;
-    const bool is_stiff = exponent == 1.0 && step * step * stiffness * delassus > 4.0;
-    const double closed = is_stiff && found.impulse > 0.0 ? kit::positive_part(pressed) : moved;
-    return found.opens || stiffness == kit::infinity ? 0.0 : closed;
+    const bool is_stiff = (exponent == 1.0) & (step * step * stiffness * delassus > 4.0);
+    const double closed = is_stiff & (found.impulse > 0.0) ? kit::positive_part(pressed) : moved;
+    return (found.opens != 0.0) | (stiffness == kit::infinity) ? 0.0 : closed;
   }
 
   // The impulse h <S - c phi vbar> that springs and damper give on a way that ends with v.
-  double given(double v) const {
-    const double way = travel(v), end = kit::positive_part(indentation - way);
-    const double closed = way > indentation ? indentation / way : 1.0;
-    const double spring = closed * mean_force(indentation, end);
+  V given(V v) const {
+    const V way = travel(v), end = kit::positive_part(indentation - way);
+    const V closed = kit::select(way > indentation, indentation / way, V(1.0));
+    const V spring = closed * mean_force(indentation, end);
     return step * kit::positive_part(spring - closed * damping * mean_velocity(v));
   }
 
-  // Any p.
+  // Any p; a pack: Hertz's.
   [[gnu::noinline]] solution power_law() const {
-    const double r = impulse_where([this](double trial) { return given(free + delassus * trial) - trial; });
-    return {r, travel(free + delassus * r) > indentation};
+    const V r = impulse_where([this](V trial) { return given(free + delassus * trial) - trial; });
+    return {r, kit::select(travel(free + delassus * r) > indentation, V(1.0), V(0.0))};
   }
 
   // The impulse r where f(r), the force for a step with r less r itself, is zero; NaN where it has no root,
   // which only friction that is coupled to the normal brings about. f(0) is the force of the free step: an
   // upper bound without coupling. Secants that keep the root bracketed (Illinois; Dowell and Jarratt 1971),
-  // and every third time the middle, so that no shape takes long.
+  // and every third time the middle, so that no shape takes long. Lanes that are done keep their numbers.
   template <class Function>
-  static double impulse_where(Function f) {
-    double low = 0.0, at_low = f(low), high = at_low, last = 0.0;
-    if (!(at_low > 0.0)) return low;
-    double at_high = f(high);
-    for (int k = 0; k < most_doublings && at_high > 0.0; ++k) at_high = f(high *= 2.0);
-    if (at_high > 0.0) return std::numeric_limits<double>::quiet_NaN();
-    for (int k = 0; k < most_iterations && at_high < 0.0; ++k) {
-      const double secant = low + (high - low) * (at_low / (at_low - at_high));
-      const bool halves = k % 3 == 2 || !(secant > low) || !(secant < high);
-      const double x = halves ? middle(low, high) : secant;
-      if (!(x > low) || !(x < high)) break;
-      const double value = f(x);
-      (value > 0.0 ? low : high) = x;
-      (value > 0.0 ? at_high : at_low) *= last * value > 0.0 ? 0.5 : 1.0;
-      (value > 0.0 ? at_low : at_high) = value;
-      last = value > 0.0 ? 1.0 : -1.0;
+  static V impulse_where(Function f) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    V low = 0.0, at_low = f(low), high = at_low, last = 0.0;
+    const Mask pushes = at_low > 0.0;
+    if (!kit::any(pushes)) return low;
+    V at_high = f(high);
+    for (int k = 0; k < most_doublings && kit::any(pushes & (at_high > 0.0)); ++k) {
+      const Mask grows = pushes & (at_high > 0.0);
+      high = kit::select(grows, 2.0 * high, high);
+      at_high = kit::select(grows, f(high), at_high);
     }
-    return high;
+    const Mask unbounded = at_high > 0.0;
+    Mask active = pushes & (at_high < 0.0);
+    for (int k = 0; k < most_iterations && kit::any(active); ++k) {
+      const V secant = low + (high - low) * (at_low / (at_low - at_high));
+      const Mask inside = (secant > low) & (secant < high);
+      const V x = k % 3 == 2 ? middle(low, high) : kit::select(inside, secant, middle(low, high));
+      active = active & (x > low) & (x < high);
+      const V value = f(x), factor = kit::select(last * value > 0.0, V(0.5), V(1.0));
+      const Mask rises = active & (value > 0.0), falls = active & !(value > 0.0);
+      low = kit::select(rises, x, low);
+      high = kit::select(falls, x, high);
+      at_low = kit::select(rises, value, kit::select(falls, at_low * factor, at_low));
+      at_high = kit::select(falls, value, kit::select(rises, at_high * factor, at_high));
+      last = kit::select(rises, V(1.0), kit::select(falls, V(-1.0), last));
+      active = active & (at_high < 0.0);
+    }
+    return kit::select(pushes, kit::select(unbounded, V(none), high), V(0.0));
   }
 
   // (P(x) - P(x'))/(x - x'), without cancelling where both are close.
-  double mean_force(double x, double end) const {
-    const double most = kit::larger(x, end), least = kit::smaller(x, end);
-    if (exponent == 1.0) return 0.5 * stiffness * (x + end);
-    if (!(most > 0.0)) return 0.0;
-    return stiffness * raised(most) * mean_power(least / most);
+  V mean_force(V x, V end) const {
+    const V most = kit::larger(x, end), least = kit::smaller(x, end);
+    if constexpr (std::is_same_v<V, double>)
+      if (exponent != 1.5) return exponent == 1.0 ? 0.5 * stiffness * (x + end) : any_mean_force(most, least);
+    const V s = kit::square_root(kit::select(most > 0.0, least / most, V(0.0)));
+    const V mean = 0.4 * ((((s + 1.0) * s + 1.0) * s + 1.0) * s + 1.0) / (1.0 + s);
+    return stiffness * (most * kit::square_root(most)) * mean;
   }
 
  private:
@@ -129,21 +143,17 @@ struct compression {
     const double root = kit::length(linear, 2.0 * kit::square_root(step * gain * constant));
     const double above = 2.0 * constant / (linear + root), below = 0.5 * (root - linear) / (step * gain);
     const double opening = linear > 0.0 ? above : below;
-    return {opens ? opening : closed, opens};
+    return {opens ? opening : closed, opens ? 1.0 : 0.0};
   }
 
-  double raised(double x) const {
-    return exponent == 1.5 ? x * kit::square_root(x) : kit::power(x, exponent);
+  double any_mean_force(double most, double least) const {
+    return most > 0.0 ? stiffness * kit::power(most, exponent) * mean_power(least / most) : 0.0;
   }
 
-  // (1 - t^(p+1))/((p + 1) (1 - t)): for Hertz in roots, else by its series in 1 - t where that is small.
+  // (1 - t^(p+1))/((p + 1) (1 - t)), by its series in 1 - t where that is small.
   double mean_power(double t) const {
     const double q = exponent + 1.0, d = 1.0 - t;
-    if (exponent == 1.5) {
-      const double s = kit::square_root(t);
-      return 0.4 * ((((s + 1.0) * s + 1.0) * s + 1.0) * s + 1.0) / (1.0 + s);
-    }
-    if (d > 0x1p-4) return (1.0 - t * raised(t)) / (q * d);
+    if (d > 0x1p-4) return (1.0 - t * kit::power(t, exponent)) / (q * d);
     double sum = 1.0, term = 1.0;
     for (int k = 1; k < series_terms; ++k) {
       term *= d * (k - q) / (k + 1);
@@ -154,11 +164,11 @@ struct compression {
   static constexpr int series_terms = 16;
   static constexpr int most_iterations = 200, most_doublings = 64;
   // Half way as the bits count where the numbers are far apart, so that an impulse of any size is found.
-  static double middle(double low, double high) {
-    if (high <= 4.0 * low) return 0.5 * (low + high);
-    const auto a = std::bit_cast<std::uint64_t>(kit::larger(low, 0x1p-80 * high));
-    return std::bit_cast<double>(a + (std::bit_cast<std::uint64_t>(high) - a) / 2);
+  static V middle(V low, V high) {
+    return kit::select(high <= 4.0 * low, 0.5 * (low + high),
+                       kit::halfway(kit::larger(low, 0x1p-80 * high), high));
   }
 };
+using compression = compression_of_any<double>;
 
 }  // namespace penalty_law

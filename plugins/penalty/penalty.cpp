@@ -132,7 +132,7 @@ struct penalty {
   void in_form(Run run) const;
   template <class Node>
   void step(Node& node) const {
-    in_form([&node](const auto& chosen) { chosen.step(node); });
+    in_form([&node](const auto& chosen) { step_alone(chosen, node); });
   }
 
  private:
@@ -161,55 +161,74 @@ struct penalty {
 
   // Gives the node a normal impulse that is known already, and the tangential one -q/softness within the
   // cone.
+  // Says whether it slides.
   template <class Node>
-  void rub(Node& node, double normal, vector q, double softness) const {
+  bool rub(Node& node, double normal, vector q, double softness) const {
     q.n = -normal;
     const auto result = solve_contact_friction(diagonal_delassus{1.0, softness, softness}, -1.0, q, friction);
     node.impulse = result.impulse;
     const double rubbed = result.slips ? status::slip : status::stick;
     const double closed = friction > 0.0 ? rubbed : status::closed;
     node.status = normal > 0.0 ? closed : status::free;
+    return result.slips | !(friction * normal > 0.0);
   }
 
   // The mean over the step of forces that the step ends with, so that springs give back what they took: see
-  // penalty.md. q + H/2 r is the mean velocity of what slips.
+  // penalty.md.
   template <bool Linear, class Node>
   void step_implicitly(Node& node, double damping_ratio) const {
     penalty_law::compression normal = compression_of(node, damping_ratio);
-    const bool enters =
-        !is_out_of_reach(node) && node.gap + 0.5 * node.position_step * node.v_previous.n <= 0.0;
-    const bool acts = node.state.indentation > 0.0 || enters;
-    const double rate = 2.0 / node.velocity_step;
-    const double softness = rate / (node.velocity_step * tangential_stiffness);
-    const vector spring{0.0, node.state.slip_1, node.state.slip_2};
-    const vector q = 0.5 * (node.v_free + held(node) * node.v_previous) + rate * spring;
-    penalty_law::compression::solution found{0.0, false};
+    const bool acts = acts_on(node);
     if (friction > 0.0 && node.delassus.anisotropy() != 0.0) {
-      found = rub_any<Linear>(node, acts, normal, q, softness);
+      const auto found = rub_any<Linear>(node, acts, normal, sliding_velocity(node), softness_of(node));
+      strain<Linear>(node, acts ? normal.next(found) : 0.0, node.status != status::stick);
     } else {
-      found = Linear ? normal.linear() : normal.power_law();
-      found.impulse = acts ? found.impulse : 0.0;
-      rub(node, found.impulse, q, 0.5 * node.delassus.tangential() + softness);
+      give<Linear>(node, normal, Linear ? normal.linear() : normal.power_law(), acts);
     }
-    strain<Linear>(node, acts ? normal.next(found) : 0.0);
+  }
+
+  template <class Node>
+  bool acts_on(const Node& node) const {
+    const bool enters =
+        !is_out_of_reach(node) & (node.gap + 0.5 * node.position_step * node.v_previous.n <= 0.0);
+    return (node.state.indentation > 0.0) | enters;
+  }
+  // q + H/2 r is the mean velocity of what slips.
+  template <class Node>
+  vector sliding_velocity(const Node& node) const {
+    const vector spring{0.0, node.state.slip_1, node.state.slip_2};
+    return 0.5 * (node.v_free + held(node) * node.v_previous) + (2.0 / node.velocity_step) * spring;
+  }
+  template <class Node>
+  double softness_of(const Node& node) const {
+    return 2.0 / node.velocity_step / (node.velocity_step * tangential_stiffness);
+  }
+
+  // Gives the node what its normal spring gives, and what friction makes of it.
+  template <bool Linear, class Node>
+  void give(Node& node, const penalty_law::compression& normal, penalty_law::compression::solution found,
+            bool acts) const {
+    found.impulse = acts ? found.impulse : 0.0;
+    const double softness = 0.5 * node.delassus.tangential() + softness_of(node);
+    const bool slides = rub(node, found.impulse, sliding_velocity(node), softness);
+    strain<Linear>(node, acts ? normal.next(found) : 0.0, slides);
   }
 
   // What the step leaves in the springs. One that sticks moves along; one that slides keeps no more than its
   // force holds, in the direction of its end.
   template <bool Linear, class Node>
-  void strain(Node& node, double indentation) const {
+  void strain(Node& node, double indentation, bool slides) const {
     const double h = node.velocity_step, per_impulse = 1.0 / (h * tangential_stiffness);
     const vector spring{0.0, node.state.slip_1, node.state.slip_2}, r = node.impulse;
     const vector v = node.v_free + node.delassus.times(r);
     const vector moved = spring + (0.5 * h) * (node.v_previous + v);
     const double most = per_impulse * r.tangential_length(), length = moved.tangential_length();
     const bool is_stiff = h * h * tangential_stiffness * node.delassus.tangential() > 4.0;
-    const bool slides = node.status != status::stick;
-    const double kept = slides && length > most ? most / length : 1.0;
-    const bool by_force = is_stiff && !slides, holds = tangential_stiffness < infinity && friction > 0.0;
+    const double kept = slides & (length > most) ? most / length : 1.0;
+    const bool by_force = is_stiff & !slides, holds = tangential_stiffness < infinity && friction > 0.0;
     const auto next = [&](double before, double after, double impulse) {
       const double end = by_force ? 0.0 - 2.0 * per_impulse * impulse - before : kept * after;
-      return holds ? end + 0.0 : 0.0;  // never -0: a node at rest keeps its bits
+      return kept_if(holds, end) + 0.0;  // never -0: a node at rest keeps its bits
     };
     const vector strained{0.0, next(spring.t1, moved.t1, r.t1), next(spring.t2, moved.t2, r.t2)};
     const double stored_normal = potential<Linear>(indentation);
@@ -266,7 +285,7 @@ struct penalty {
     if (stiffness == infinity) {
       problem.q[0] = 0.5 * (normal.free + (normal.previous < 0.0 ? restitution : 1.0) * normal.previous);
       apply_local_coulomb(node, acts ? -1.0 : 1.0, problem);
-      return {node.impulse.n, false};
+      return {node.impulse.n, 0.0};
     }
     problem.h[3] = problem.h[4] = 0.0;
     const double free = normal.free;
@@ -278,14 +297,14 @@ struct penalty {
       node.impulse.n = r;
       return free + coupling_1 * node.impulse.t1 + coupling_2 * node.impulse.t2;
     };
-    penalty_law::compression::solution found{0.0, false};
+    penalty_law::compression::solution found{0.0, 0.0};
     if (acts && coupling_1 == 0.0 && coupling_2 == 0.0)
       found = Linear ? normal.linear() : normal.power_law();
     else if (acts)
       found.impulse = normal.impulse_where([&](double r) { return normal.given(tangents(r) + nn * r) - r; });
     normal.free = tangents(acts ? found.impulse : 0.0);
     if (!finite(found.impulse)) node.refused = no_solution;
-    found.opens = normal.travel(normal.free + nn * found.impulse) > normal.indentation;
+    found.opens = normal.travel(normal.free + nn * found.impulse) > normal.indentation ? 1.0 : 0.0;
     return found;
   }
 
@@ -322,12 +341,45 @@ template <bool Implicit, bool Linear>
 struct penalty::form : penalty {
   double damping_ratio;
 
+  // Springs with a root to find are solved in packs, of Hertz's exponent alone; others one by one.
+  template <class V>
+  using problem = penalty_law::compression_of_any<V>;
+  template <class V>
+  struct answer {
+    V impulse, opens;
+  };
   template <class Node>
-  void step(Node& node) const {
+  static constexpr bool finds_roots = Implicit && !Linear && has_scalar_delassus<Node>;
+
+  template <class Node>
+  void step(Node& node) const requires(!finds_roots<Node>) {
     if constexpr (Implicit)
       step_implicitly<Linear>(node, damping_ratio);
     else
       step_explicitly<Linear>(node);
+  }
+
+  template <class Node>
+  bool asks(Node& node, problem<double>& open) const requires finds_roots<Node> {
+    open = compression_of(node, damping_ratio);
+    const bool acts = acts_on(node);
+    give<Linear>(node, open, {0.0, 0.0}, false);
+    return acts;
+  }
+  template <class V>
+  mask_of<V> solve(const problem<V>& p, answer<V>& a) const {
+    const auto found = p.power_law();
+    a = {found.impulse, found.opens};
+    if constexpr (std::is_same_v<V, double>) return false;
+    return p.exponent != 1.5;
+  }
+  void solve_alone(const problem<double>& p, answer<double>& a) const {
+    const auto found = p.power_law();
+    a = {found.impulse, found.opens};
+  }
+  template <class Node>
+  void answered(Node& node, const answer<double>& a) const {
+    give<Linear>(node, compression_of(node, damping_ratio), {a.impulse, a.opens}, true);
   }
 };
 

@@ -38,7 +38,7 @@ contact_problem<Vector> contact_problem_of(contact_condition condition, Vector v
 // A number in [0, 1], not yet divided.
 template <class V>
 struct fraction {
-  V over, under;
+  V over = 1.0, under = 1.0;
 };
 
 // The largest s in [0, 1] with c2 s^2 + c1 s + c0 <= 0, where c0 <= 0 <= c2 and that does not hold at 1;
@@ -237,15 +237,16 @@ mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
   take_off_positive_work(p, a);
 }
 
-// What of it is asked at a node: nothing where the contact is open, or where the closed form is at hand.
+// What of it is asked at a node: nothing where the contact is open, or, with a scalar H, where the cone is
+// circular. Whether it is follows from the parameters, which loops know before they know the coefficients.
 template <class Node, class Vector>
 bool ask_friction(Node& node, const contact_problem<Vector>& contact, double friction_1, double friction_2,
-                  friction_problem<double>& problem) {
+                  bool is_circular, friction_problem<double>& problem) {
   fill(problem, node.delassus, contact, friction_1, friction_2);
   const bool is_pressed = (contact.slack <= 0.0) & (contact.q.n < 0.0);
   if constexpr (has_scalar_delassus<Node>) {
     apply_isotropic_friction(node, contact, friction_1);
-    return is_pressed & (friction_1 != friction_2);
+    return is_pressed & !is_circular;
   }
   node.impulse = {};
   node.status = status::free;
@@ -284,7 +285,7 @@ template <class Node>
 void apply_any_friction(Node& node, const contact_problem<vector>& contact, double friction_1,
                         double friction_2) {
   friction_problem<double> problem;
-  if (!ask_friction(node, contact, friction_1, friction_2, problem)) return;
+  if (!ask_friction(node, contact, friction_1, friction_2, friction_1 == friction_2, problem)) return;
   friction_answer<double> answer;
   if (solve_friction(problem, answer)) solve_friction_alone(problem, answer);
   give_friction(node, answer);

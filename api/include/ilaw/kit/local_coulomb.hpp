@@ -62,16 +62,10 @@ struct sliding {
   }
 };
 
-// Halfway between two positive numbers as the bits count: a bisection ends after 64 steps at neighbours.
-inline double between(double low, double high) {
-  const auto a = std::bit_cast<std::uint64_t>(low), b = std::bit_cast<std::uint64_t>(high);
-  return std::bit_cast<double>(a + (b - a) / 2);
-}
-
 // Where a property ends that holds at low and not at high.
 template <class Holds>
 double end_of(double low, double high, Holds holds) {
-  for (double x = between(low, high); x > low && x < high; x = between(low, high))
+  for (double x = halfway(low, high); x > low && x < high; x = halfway(low, high))
     (holds(x) ? low : high) = x;
   return low;
 }
@@ -105,7 +99,7 @@ inline double multiplier(const sliding& f) {
     const sliding::state x = f.at(alpha);
     if (absolute(x.need - f.n) <= rounding * x.scale) break;
     (f.fits(x) ? high : low) = alpha;
-    const double newton = alpha + f.step(alpha, x), middle = between(low, high);
+    const double newton = alpha + f.step(alpha, x), middle = halfway(low, high);
     const bool good = k < newton_steps && newton > low && newton < high;
     const double next = good ? newton : middle;
     if (!(absolute(next - alpha) > 0.5 * rounding * alpha)) break;

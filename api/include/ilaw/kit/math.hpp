@@ -28,7 +28,17 @@ inline bool is_whole(double x) {
   return ((x + to_integer) - to_integer == x) | (__builtin_fabs(x) >= 0x1p51);
 }
 inline double absolute(double x) { return __builtin_fabs(x); }
+// x or 0. By its bits, since GCC vectorises no choice by a condition that is the same at all nodes.
+inline double kept_if(bool condition, double x) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & (std::uint64_t{0} - std::uint64_t{condition}));
+}
 inline double square_root(double x) { return __builtin_sqrt(x); }
+
+// Halfway between two positive numbers as the bits count: a bisection ends after 64 steps at neighbours.
+inline double halfway(double low, double high) {
+  const auto a = std::bit_cast<std::uint64_t>(low), b = std::bit_cast<std::uint64_t>(high);
+  return std::bit_cast<double>(a + (b - a) / 2);
+}
 
 // Powers of two that bring a number to [2, 4) and back: number * down lies there, number = scaled * up / 2.
 // They are made from its exponent by integer arithmetic, which vectorises without a branch or a division.

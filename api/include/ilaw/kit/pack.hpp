@@ -110,6 +110,7 @@ inline pack square_root(pack x) {
 inline pack larger(pack a, pack b) { return select(a > b, a, b); }
 inline pack smaller(pack a, pack b) { return select(a < b, a, b); }
 inline pack positive_part(pack x) { return select(x > 0.0, x, 0.0); }
+inline pack halfway(pack low, pack high) { return pack(low.bits() + ((high.bits() - low.bits()) >> 1)); }
 
 // What a comparison of V gives.
 template <class V>

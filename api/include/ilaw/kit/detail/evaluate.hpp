@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ilaw/kit/detail/batch_walk.hpp>
-#include <ilaw/kit/detail/run_block.hpp>
+#include <ilaw/kit/detail/node_parameters.hpp>
 
 #include <string>
 
@@ -173,33 +173,21 @@ const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool
   return "the impulse or the state overflows";
 }
 
-// The parameters of one node, where some are given per node; says what is wrong with them, null where nothing
-// is. Then law stays as it was: no step need stand what no parameter may be.
-template <class Law>
-const char* at_node(const instance<Law>& made, const ilaw_batch& batch, std::int64_t node, Law& law) {
-  Law own = law;
-  for (std::uint32_t k = 0; k < made.per_node_count; ++k) {
-    const ilaw_input& given = batch.per_node_parameters[k];
-    const double value = given.values[node * given.node_stride];
-    if (!in_range(*made.per_node[k], value)) return "a per-node parameter is out of range";
-    own.*made.per_node_members[k] = value;
-  }
-  if constexpr (requires { own.conflict(); })
-    if (const char* conflict = made.per_node_count > 0 ? own.conflict() : nullptr) return conflict;
-  law = own;
-  return nullptr;
-}
-
-// The whole of a batch; Varying: with parameters per node, one node at a time.
+// The whole of a batch; Varying: with parameters per node.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, bool Varying>
 struct evaluate_walk {
   static tally run(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
     block_room<Law> room;
     batch_walk<Law, Layout> walk(made, batch, room);
+    using parameters_of_nodes = std::conditional_t<Varying, node_parameters<Law>, same_parameters>;
+    [[maybe_unused]] parameters_of_nodes parameters(made, law, batch);
     tally found;
     for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
       walk.open(first);
-      run_nodes(made, law, batch, walk);
+      if constexpr (Varying)
+        run_block<Law, Delassus, Frame, Layout, Scope>(parameters.of(walk.nodes()), walk.block());
+      else
+        run_form(law, walk.block());
       limit_step(made, law, batch, walk, found);
       const bool refused = walk.any_refused();
       if (refused) explain(made, law, batch, walk, found);
@@ -224,25 +212,10 @@ struct evaluate_walk {
     }
   }
 
-  static void run_nodes(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
-                        batch_walk<Law, Layout>& walk) {
-    if constexpr (Varying)
-      run_varying(made, law, batch, walk);
-    else
-      in_its_form(law, [&walk](const auto& form) {
-        run_block<Law, Delassus, Frame, Layout, Scope>(form, walk.block());
-      });
-  }
-
-  // Flattened: passing nodes by memory from function to function costs more than a plain step.
-  [[gnu::noinline, gnu::flatten]] static void run_varying(const instance<Law>& made, const Law& law,
-                                                          const ilaw_batch& batch,
-                                                          batch_walk<Law, Layout>& walk) {
-    for (int i = 0; i < walk.nodes().count; ++i) {
-      Law own = law;
-      const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
-      run_node<Law, Delassus, Frame, Layout, Scope>(own, walk.block(), i, stepping_alone(own), !wrong);
-    }
+  static void run_form(const Law& law, const node_block<Law>& block) {
+    in_its_form(law, [&block]<class Form>(const Form& form) {
+      run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
+    });
   }
 
   [[gnu::noinline, gnu::cold]] static void explain(const instance<Law>& made, const Law& law,

@@ -1,7 +1,7 @@
-// run_block.hpp - a block of nodes with the same parameters: in one loop, or, for laws in pack form, in two
-// phases. Phase one asks every node whether a problem is left that has no closed form; those are gathered
-// into full packs and solved, and one more loop gives the answers to their nodes. So nodes without a problem
-// cost what they cost in any other law, and no lane waits for a node that has nothing to do.
+// run_block.hpp - a block of nodes: in one loop, or, for laws in pack form, in two phases. Phase one asks
+// every node whether a problem is left that has no closed form; those are gathered into full packs and
+// solved, and one more loop gives the answers to their nodes. So nodes without a problem cost what they cost
+// in any other law, and no lane waits for a node that has nothing to do.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -38,6 +38,34 @@ template <class Form>
 auto stepping_alone(const Form& law) {
   return [&law](auto& node) { step_alone(law, node); };
 }
+
+// The law at the nodes of a block: the same at all of them, or with parameters per node in columns, in the
+// order of Law::parameters.
+template <class Form>
+struct one_law {
+  using form = Form;
+  Form law;
+  const Form& at(int /*i*/) const { return law; }
+  static constexpr bool is_valid(int /*i*/) { return true; }
+};
+template <class Law>
+struct law_per_node {
+  using form = Law;
+  Law law;
+  const column* parameters;
+  const double* valid;  // 1 or 0
+
+  Law at(int i) const { return with(i, std::make_index_sequence<detail::parameter_count<Law>>{}); }
+  bool is_valid(int i) const { return valid[i] != 0.0; }
+
+ private:
+  template <std::size_t... K>
+  Law with(int i, std::index_sequence<K...>) const {
+    Law own = law;
+    ((own.*Law::parameters[K].member = parameters[K].values[i]), ...);
+    return own;
+  }
+};
 
 // Step: what is done at node i.
 template <class Law, class Form, class Step>
@@ -108,23 +136,45 @@ void choose(Node& a, const Node& b, bool second) {
   }
 }
 
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
-void ask_node(const Form& law, const node_block<Law>& b, asked_block<Form>& asked, int i) {
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+bool ask_node(const Laws& laws, const node_block<Law>& b, int i,
+              problem_of_form<typename Laws::form>& problem) {
   auto node = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
-  problem_of_form<Form> problem{};
-  const bool open = law.asks(node, problem);
-  asked.open.values[i] = open ? 1.0 : 0.0;
-  to_columns(problem, asked.problem, i, places<problem_of_form<Form>>);
+  return laws.at(i).asks(node, problem);
 }
 
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
-[[gnu::noinline, gnu::flatten]] void ask_block(const Form& law, const node_block<Law>& b,
-                                               asked_block<Form>& asked) {
-  const Form l = law;
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+void mark_node(const Laws& laws, const node_block<Law>& b, asked_block<typename Laws::form>& asked, int i) {
+  problem_of_form<typename Laws::form> problem{};
+  asked.open.values[i] = ask_node<Law, Delassus, Frame, Layout, Scope>(laws, b, i, problem) ? 1.0 : 0.0;
+}
+
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+void keep_problem(const Laws& laws, const node_block<Law>& b, asked_block<typename Laws::form>& asked,
+                  int i) {
+  problem_of_form<typename Laws::form> problem{};
+  ask_node<Law, Delassus, Frame, Layout, Scope>(laws, b, i, problem);
+  to_columns(problem, asked.problem, i, places<problem_of_form<typename Laws::form>>);
+}
+
+// Who has a problem: of asks the compiler keeps what this needs, so that a block without any costs little.
+// Structs that were declared in these loops themselves would be arrays of 64 in memory.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+[[gnu::noinline, gnu::flatten]] void mark_block(const Laws& laws, const node_block<Law>& b,
+                                                asked_block<typename Laws::form>& asked) {
+  const Laws l = laws;
   const node_block<Law> own = b;
-  // A struct declared in this loop itself would be an array of 64 in memory.
 #pragma omp simd
-  for (int i = 0; i < own.count; ++i) ask_node<Law, Delassus, Frame, Layout, Scope>(l, own, asked, i);
+  for (int i = 0; i < own.count; ++i) mark_node<Law, Delassus, Frame, Layout, Scope>(l, own, asked, i);
+}
+
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+[[gnu::noinline, gnu::flatten]] void keep_problems(const Laws& laws, const node_block<Law>& b,
+                                                   asked_block<typename Laws::form>& asked) {
+  const Laws l = laws;
+  const node_block<Law> own = b;
+#pragma omp simd
+  for (int i = 0; i < own.count; ++i) keep_problem<Law, Delassus, Frame, Layout, Scope>(l, own, asked, i);
 }
 
 // Solves the problems of a block in packs. The last pack is filled up with its first problem.
@@ -133,9 +183,8 @@ template <class Form>
   using problem_type = typename Form::template problem<pack>;
   using answer_type = typename Form::template answer<pack>;
   using answer_packs = std::array<pack, asked_block<Form>::answers>;
-  for (column& c : asked.problem)  // entry j moves to the front from where it was or further back
+  for (column& c : asked.problem)  // in place: none moves back
     for (int j = 0; j < count; ++j) c.values[j] = c.values[asked.nodes[j]];
-  for (column& c : asked.answer) c = zeros;
   for (int first = 0; first < count; first += pack_size) {
     const int lanes = count - first < pack_size ? count - first : pack_size;
     std::array<pack, asked_block<Form>::problems> problem;
@@ -177,42 +226,48 @@ void step_answered(const Form& law, const asked_block<Form>& asked, int i, Node&
 
 // GCC vectorises these loops only where each stands alone. Copies, so that no store can alias a parameter or
 // a time step.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
-[[gnu::noinline, gnu::flatten]] void step_block(const Form& law, const node_block<Law>& b) {
-  const Form l = law;
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+[[gnu::noinline, gnu::flatten]] void step_block(const Laws& laws, const node_block<Law>& b) {
+  const Laws l = laws;
   const auto run = [&l](const node_block<Law>& own, int i) {
-    run_node<Law, Delassus, Frame, Layout, Scope>(l, own, i, stepping_alone(l));
+    const auto& law = l.at(i);
+    run_node<Law, Delassus, Frame, Layout, Scope>(law, own, i, stepping_alone(law), l.is_valid(i));
   };
-  over_nodes<Law, Form>(b, run);
+  over_nodes<Law, typename Laws::form>(b, run);
 }
 
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
-[[gnu::noinline, gnu::flatten]] void finish_block(const Form& law, const node_block<Law>& b,
-                                                  const detail::asked_block<Form>& asked) {
-  const Form l = law;
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+[[gnu::noinline, gnu::flatten]] void finish_block(const Laws& laws, const node_block<Law>& b,
+                                                  const detail::asked_block<typename Laws::form>& asked) {
+  const Laws l = laws;
   const auto run = [&l, &asked](const node_block<Law>& own, int i) {
-    run_node<Law, Delassus, Frame, Layout, Scope>(
-        l, own, i, [&l, &asked, i](auto& node) { detail::step_answered<Law>(l, asked, i, node); });
+    const auto& law = l.at(i);
+    const auto step = [&law, &asked, i](auto& node) { detail::step_answered<Law>(law, asked, i, node); };
+    run_node<Law, Delassus, Frame, Layout, Scope>(law, own, i, step, l.is_valid(i));
   };
-  over_nodes<Law, Form>(b, run);
+  over_nodes<Law, typename Laws::form>(b, run);
 }
 
-// Form: the law, or the form of it that it chose for its parameters.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
-void run_block(const Form& law, const node_block<Law>& b) {
-  if constexpr (asks_first<Form, node_in<Law, Delassus, Frame>>) {
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+void run_block(const Laws& laws, const node_block<Law>& b) {
+  using form = typename Laws::form;
+  if constexpr (asks_first<form, node_in<Law, Delassus, Frame>>) {
     constexpr scope reads = Scope == scope::impulse ? scope::impulse : scope::with_previous;
-    detail::asked_block<Form> asked;
-    detail::ask_block<Law, Delassus, Frame, Layout, reads>(law, b, asked);
+    detail::asked_block<form> asked;
+    for (column& c : asked.answer) c = zeros;
+    detail::mark_block<Law, Delassus, Frame, Layout, reads>(laws, b, asked);
     int count = 0;
     for (int i = 0; i < b.count; ++i) {
       asked.nodes[count] = i;
       count += asked.open.values[i] != 0.0 ? 1 : 0;
     }
-    detail::solve_asked(law, asked, count);
-    finish_block<Law, Delassus, Frame, Layout, Scope>(law, b, asked);
+    if (count > 0) {
+      detail::keep_problems<Law, Delassus, Frame, Layout, reads>(laws, b, asked);
+      detail::solve_asked(laws.law, asked, count);
+    }
+    finish_block<Law, Delassus, Frame, Layout, Scope>(laws, b, asked);
   } else {
-    step_block<Law, Delassus, Frame, Layout, Scope>(law, b);
+    step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
   }
 }
 

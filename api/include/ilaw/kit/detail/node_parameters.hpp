@@ -1,0 +1,86 @@
+// node_parameters.hpp - the parameters of a block of nodes where some come per node, as columns, so that its
+// loop is the vector code of any other.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/gather.hpp>
+#include <ilaw/kit/detail/instance.hpp>
+#include <ilaw/kit/detail/run_block.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+// The parameters of one node; says what is wrong with them, null where nothing is. Then law stays as it was:
+// no step need stand what no parameter may be.
+template <class Law>
+const char* at_node(const instance<Law>& made, const ilaw_batch& batch, std::int64_t node, Law& law) {
+  Law own = law;
+  for (std::uint32_t k = 0; k < made.per_node_count; ++k) {
+    const ilaw_input& given = batch.per_node_parameters[k];
+    const double value = given.values[node * given.node_stride];
+    if (!in_range(*made.per_node[k], value)) return "a per-node parameter is out of range";
+    own.*made.per_node_members[k] = value;
+  }
+  if constexpr (requires { own.conflict(); })
+    if (const char* conflict = made.per_node_count > 0 ? own.conflict() : nullptr) return conflict;
+  law = own;
+  return nullptr;
+}
+
+// Where none comes per node.
+struct same_parameters {
+  template <class... Arguments>
+  explicit same_parameters(const Arguments&... /*unused*/) {}
+};
+
+template <class Law>
+class node_parameters {
+ public:
+  static constexpr int count = static_cast<int>(detail::parameter_count<Law>);
+
+  node_parameters(const instance<Law>& made, const Law& law, const ilaw_batch& batch)
+      : made_(made), law_(law), batch_(batch) {
+    for (int p = 0; p < count; ++p)
+      for (double& value : values_[p].values) value = law.*Law::parameters[p].member;
+  }
+
+  law_per_node<Law> of(const node_range& nodes) {
+    for (double& valid : valid_.values) valid = 1.0;
+    for (std::uint32_t k = 0; k < made_.per_node_count; ++k) take(k, nodes);
+    if constexpr (requires { law_.conflict(); })
+      for (int i = 0; i < nodes.count; ++i)
+        if (Law own = law_; at_node(made_, batch_, nodes.node(i), own)) valid_.values[i] = 0.0;
+    for (std::uint32_t k = 0; k < made_.per_node_count; ++k) keep_valid(position_of(k), nodes.count);
+    return {law_, values_, valid_.values};
+  }
+
+ private:
+  int position_of(std::uint32_t k) const {
+    int p = 0;
+    while (Law::parameters[p].member != made_.per_node_members[k]) ++p;
+    return p;
+  }
+
+  void take(std::uint32_t k, const node_range& nodes) {
+    const ilaw_parameter& p = *made_.per_node[k];
+    double* own = values_[position_of(k)].values;
+    const double* given = gather(batch_.per_node_parameters[k], 0, nodes, own);
+    for (int i = 0; i < nodes.count; ++i) {
+      own[i] = given[i];
+      valid_.values[i] = in_range(p, own[i]) ? valid_.values[i] : 0.0;
+    }
+  }
+
+  // Elsewhere the law stays as it was.
+  void keep_valid(int parameter, int nodes) {
+    const double otherwise = law_.*Law::parameters[parameter].member;
+    double* own = values_[parameter].values;
+    for (int i = 0; i < nodes; ++i) own[i] = valid_.values[i] != 0.0 ? own[i] : otherwise;
+  }
+
+  const instance<Law>& made_;
+  const Law law_;
+  const ilaw_batch& batch_;
+  column values_[count + 1], valid_;  // one more than needed: no array of length zero
+};
+
+}  // namespace ilaw::kit
