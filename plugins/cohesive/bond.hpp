@@ -134,7 +134,8 @@ struct bond {
   // Several are a snap-back, and nothing says how much of it this step is to do.
   template <class Zone, class Excess>
   double ambiguity(const Zone& z, share stiffest, Excess excess) const {
-    const double slope = larger(softening_at(0.0).steepest(), softening_at(1.0).steepest());
+    const double opened = softening_at(0.0).steepest();
+    const double slope = mixes() ? larger(opened, softening_at(1.0).steepest()) : opened;
     if (!(z.compliance_scale * z.modes.trace_ratio() * slope > 1.0)) return not_refused;
     // By what is left in the direction that gives way most: the others have had most of theirs by then.
     const double ratio = z.modes.largest_ratio(), first = stiffest.times(ratio).left;

@@ -74,8 +74,10 @@ struct coupled_modes {
                       {0.0, scale * w * w * h.h[1], scale * w * w * h.h[5]},
                       {0.0, 0.0, scale * w * w * h.h[2]}};
     axis[0].n = axis[1].t1 = axis[2].t2 = 1.0;
-    for (int sweep = 0; sweep < sweeps; ++sweep)
-      if (!(rotate(a, 0, 1) | rotate(a, 0, 2) | rotate(a, 1, 2))) break;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      const bool first = rotate(a, 0, 1), second = rotate(a, 0, 2), third = rotate(a, 1, 2);
+      if (!(first || second || third)) break;
+    }
     for (int i = 0; i < 3; ++i) {
       value[i] = larger(a[i][i], local::definite * a[0][0]) / scale;
       ratio[i] = value[i] / normal;

@@ -35,6 +35,8 @@ const std::vector<Case> cases = {
     {"tie_broken", R"("law": "tie", "parameters": {"strength": 1e-9})"},
     {"cohesive_broken", R"("law": "cohesive", "parameters": {"strength": 1.0, "toughness": 0.0})"},
     {"cohesive", R"("law": "cohesive", "parameters": {"strength": 0.05, "toughness": 1e-4})", 0.0, 1.0},
+    {"cohesive_that_softens",
+     R"("law": "cohesive", "parameters": {"strength": 0.05, "toughness": 5e-3, "stiffness": 2.0})", 0.0, 1.0},
     {"cohesive_that_holds", R"("law": "cohesive", "parameters": {"strength": 10.0, "toughness": 1.0})", 0.0,
      1.0}};
 

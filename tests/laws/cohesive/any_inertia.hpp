@@ -17,7 +17,6 @@ inline Vector times(const Matrix& m, const Vector& a) {
   return product;
 }
 inline double norm(const Vector& a) { return std::hypot(a[0], a[1], a[2]); }
-inline double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Q diag Q^T with a condition of up to 10^decades, then scaled by axis; and what that makes of the condition.
 struct Inertia {
