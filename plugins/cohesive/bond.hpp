@@ -146,8 +146,10 @@ struct bond {
     return changes_sign_again(at) ? several_solutions : not_refused;
   }
 
-  // Exact for the constant target f that the opening at the end of the step sets (Allix and Deu 1997):
-  // d = f - ln(1 + (exp(a z) - 1) exp(-a h/tau_c))/a, z = f - d before the step.
+  // Exact for the constant target f that the opening at the end of the step sets (Allix and Deu 1997), z = f
+  // - d before the step: d grows by -ln(1 - q)/a, q = (1 - exp(-a z)) (1 - exp(-a h/tau_c)). It may be tiny:
+  // a stiff bond of great toughness is soft already at a damage of 1e-16. Where q is large, the same is f -
+  // ln(1 + (exp(a z) - 1) exp(-a h/tau_c))/a.
   double delayed_damage(double damage, double position_step, const motion& m) const {
     const softening s = softening_along(m.opening, m.size);
     const double progress = s.progress(m.size);
@@ -155,6 +157,8 @@ struct bond {
     const double distance = target - damage;
     if (!(distance > 0.0)) return damage;
     const double a = delay_exponent, decline = a * position_step / delay_time;
+    const double q = one_minus_exp(a * distance) * one_minus_exp(decline);
+    if (q < 0.5) return smaller(damage + minus_log_one_minus(q) / a, 1.0);
     const double ahead = a * distance - decline;
     const double left = ahead < 40.0 ? log((1.0 - exp(-decline)) + exp(ahead)) : ahead;
     return larger(damage, smaller(target - left / a, 1.0));

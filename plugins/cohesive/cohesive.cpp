@@ -153,7 +153,7 @@ struct cohesive : bond {
   // that it does.
   template <class Node>
   bool stands_still(Node& node) const {
-    const vector r = -node.delassus.solve(node.v_free);
+    const vector r = stopping_impulse(node);
     if (strength < infinity) {
       const double capacity = node.velocity_step * node.area, w = weight();
       const vector effective{positive_part(-r.n), r.t1 / w, r.t2 / w};
@@ -210,12 +210,26 @@ struct cohesive : bond {
     node.refused = solved.refused;
   }
 
+  // Where a bond is that has not been moved: it is made where the node is now. Its work r.(v^- + v)/2 and the
+  // energy that it stores, r.v/2, then differ by r.v^-/2 < 0, an impact. That is positive where the node
+  // turns round within the step, as on a stiff spring: there the bond was made half a step before, at l
+  // v^-/2.
+  template <class Node>
+  static vector start(const Node& node) {
+    const vector &p = node.state.position, &w = node.state.opening, &v = node.v_free, &u = node.v_previous;
+    const bool is_new = length(p.n, p.t1, p.t2) + length(w.n, w.t1, w.t2) == 0.0;
+    const double half = 0.5 * node.position_step, normal = is_new && v.n * u.n < 0.0 ? half : 0.0;
+    const double tangential = is_new && tangential_product(v, u) < 0.0 ? half : 0.0;
+    return p + vector{normal * u.n, tangential * u.t1, tangential * u.t2};
+  }
+
   template <class Modes, class Node>
   void solve_bond(Node& node) const {
     const auto& s = node.state;
     const double w = weight();
+    const vector position = start(node);
     const zone<Modes> z{
-        .position = s.position,
+        .position = position,
         .opening = s.opening,
         .v_previous = node.v_previous,
         .position_step = node.position_step,
@@ -223,8 +237,8 @@ struct cohesive : bond {
         .friction = s.damage > 0.0 ? friction * s.damage : 0.0,
         .compliance_scale =
             0.25 * node.position_step * node.velocity_step * node.area * node.delassus.normal(),
-        .drive = 0.5 * node.v_free + (1.0 / node.position_step) * (s.position + s.opening),
-        .ground = ground_below(s.position.n, node.v_free.n, node.v_previous.n, node.position_step),
+        .drive = 0.5 * node.v_free + (1.0 / node.position_step) * (position + s.opening),
+        .ground = ground_below(position.n, node.v_free.n, node.v_previous.n, node.position_step),
         .modes = Modes(node.delassus, w)};
     const bool is_delayed = delay_time > 0.0 && strength < infinity;
     settle(node, z, is_delayed ? delayed(s.damage, node.position_step, z) : at_once(s.damage, z));

@@ -104,7 +104,7 @@ struct zone {
 // The lowest next position: where the bond was made, or as deep as the node is. A node that was leaving turns
 // round at most at the speed with which it left (see contact_leaving_at), which matters where steps differ.
 inline double ground_below(double position, double v_free, double v_previous, double position_step) {
-  const double rounding = 0x1p-32 * (absolute(v_free) + absolute(v_previous));
+  const double rounding = 0x1p-48 * (absolute(v_free) + absolute(v_previous));
   const double lowest = smaller(position, 0.0), returned = position - position_step * v_previous;
   return position_step * (v_previous - rounding) > position - lowest ? returned : lowest;
 }

@@ -80,6 +80,33 @@ INSTANTIATE_TEST_SUITE_P(Stress, LawsThatContradict,
                          ::testing::Values("rough_wedge", "bond_that_leaves_a_floor",
                                            "plane_against_a_bond"));
 
+// Shear is weighed by the ratio of strengths, which two infinite ones do not have: it was found in the first
+// step, by an overflow.
+TEST(SceneThatFailed, IsRefusedBeforeTheRunWhereItsLawMakesNoSense) {
+  const StressVerdict verdict = stress_scene(scene_that_failed("rigid_bond_of_infinite_strength"));
+  EXPECT_EQ(verdict.ending, StressEnding::refused);
+  EXPECT_NE(verdict.reason.find("parameter 'strength' must be finite"), std::string::npos) << verdict.reason;
+}
+
+// A step beyond the critical one does not end as if it were right: it is refused where the limit is known,
+// and else warned of, and diverges with a message.
+TEST(StepBeyondTheCriticalOne, IsRefusedOrDivergesWithAMessage) {
+  json scene = scene_that_failed("rebound_at_the_critical_step");
+  scene["time"]["cfl"] = 1.01;
+  const StressVerdict refused = stress_scene(scene);
+  EXPECT_EQ(refused.ending, StressEnding::refused);
+  EXPECT_NE(refused.reason.find("/time/cfl"), std::string::npos) << refused.reason;
+
+  scene = json::parse(R"({"model": {"type": "blocks", "blocks": [{"name": "b", "size": [1, 1, 1],
+      "elements": [2, 2, 2], "velocity": [0.1, 0.2, -0.3],
+      "material": {"type": "linear", "young": 100, "poisson": 0.3, "density": 1}}]}, "time": {"dt": 1, "end": 1000},
+      "interfaces": [{"law": "contact", "nodes": "b.z_min",
+                      "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
+  const StressVerdict diverged = stress_scene(scene);
+  EXPECT_EQ(diverged.ending, StressEnding::stopped);
+  EXPECT_NE(diverged.reason.find("the motion diverged"), std::string::npos) << diverged.reason;
+}
+
 // Of every law that there is, whatever it is called: within the limits that it gives, and all of them
 // within some draws.
 TEST(RandomParameters, AreWithinTheLimitsOfTheLaw) {

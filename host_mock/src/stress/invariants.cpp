@@ -88,9 +88,10 @@ std::string other_bits(const json& source, std::int64_t steps, const Bits& expec
 }
 
 // Where a run may have to stop: laws on one node may contradict each other, explicit springs and
-// large deformations have steps of their own.
-bool may_stop(const Run& run) {
-  return run.integrator.tally().sweeps > 0 || run.integrator.tally().stable_step < run.scene.dt ||
+// large deformations have steps of their own, and a law may say that a step has no one solution.
+bool may_stop(const Run& run, const std::string& reason) {
+  return reason.find("the law's equations have ") != std::string::npos || run.integrator.tally().sweeps > 0 ||
+         run.integrator.tally().stable_step < run.scene.dt ||
          run.scene.dt > run.scene.model->critical_step() || !run.scene.model->is_linear();
 }
 
@@ -110,7 +111,7 @@ class Judge {
     try {
       advance();
     } catch (const std::exception& stop) {
-      if (may_stop(*run_))
+      if (may_stop(*run_, stop.what()))
         end(StressEnding::stopped, "", stop.what());
       else
         end(StressEnding::failed, "stops", stop.what());
@@ -164,6 +165,9 @@ class Judge {
     figures.steps = integrator.steps();
     figures.node_steps = tally.active + tally.skipped;
     figures.balance = energy.balance_error;
+    const bool is_beyond = run_->scene.dt > run_->scene.model->critical_step() * (1.0 + rounding);
+    if (is_beyond && run_->scene.warnings.empty())
+      return end(StressEnding::failed, "warning", "nothing says that the step is beyond the critical one");
     const double open = energy.balance_error * energy.scale;
     figures.worst_bound = open / ledger.balance_bound();
     hold("energy balance", open, ledger.balance_bound());

@@ -5,13 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ilaw::host {
 namespace {
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr double operations = 16.0;
 
 // Whether a law stops a node at once that approaches where the gap is closed. Its node alone, with
 // the parameters of the scene's first.
@@ -31,11 +27,15 @@ bool stops(const nlohmann::json& interface, int dimension) {
                            "alone.json");
   Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
   integrator.step();
-  return integrator.velocity().tail(1)[0] >= -operations * eps;
+  return integrator.velocity().tail(1)[0] >= -rounding;
+}
+
+bool stores(const Interface& interface) {
+  return (interface.info().capabilities & ILAW_CAN_STORE_ENERGY) != 0;
 }
 
 bool is_rigid(const Interface& interface, const nlohmann::json& source, int dimension) {
-  return (interface.info().capabilities & ILAW_CAN_STORE_ENERGY) == 0 && stops(source, dimension);
+  return !stores(interface) && stops(source, dimension);
 }
 
 }  // namespace
@@ -67,6 +67,7 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
   fastest_ = std::max(fastest_, (is_alone ? 1.0 : 2.0) * speed + interface.obstacle_velocity().norm());
   if (interface.sums().penetration > penetration_) measure_depth(number, integrator);
   const double stored = interface.sums().energy[ILAW_ENERGY_STORED];
+  const bool turns = stores(interface) && !interface.setup().counterpart->keeps_normal();
   stored_ += stored;
   rounded_most_ = std::max(rounded_most_, stored);
   for (const std::int32_t contact : interface.active()) {
@@ -78,7 +79,21 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
         interface.impulse(contact).norm() * (before.norm() + (after - change).norm() + change.norm());
     rounded_ += rounded;
     rounded_most_ = std::max(rounded_most_, rounded + stored);
+    if (turns)
+      turned_ +=
+          0.5 * interface.impulse(contact).norm() * before.norm() * turn(interface, contact, integrator);
   }
+}
+
+// |n_{n+1} - n_n|: by no more of itself a vector changes that turns with the normal.
+double Ledger::turn(const Interface& interface, int contact, const Integrator& integrator) const {
+  const Counterpart& counterpart = *interface.setup().counterpart;
+  const int node_index = interface.node_index_of(contact);
+  const Dofs& u = integrator.displacement();
+  const double time = integrator.time();
+  return (counterpart.contact_point(node_index, u, time).normal -
+          counterpart.contact_point(node_index, u - scene_.dt * v_before_, time - scene_.dt).normal)
+      .norm();
 }
 
 void Ledger::measure_depth(std::size_t number, const Integrator& integrator) {
@@ -104,25 +119,25 @@ void Ledger::sample(const Integrator& integrator) {
   if (!scene_.model->is_linear() || !(dt < critical)) return;
   const EnergyReport energy = integrator.energy();
   const double courant = std::isfinite(critical) ? dt / critical : 0.0;
-  const double most = energy.kinetic + energy.internal + operations * eps * size;
+  const double most = energy.kinetic + energy.internal + rounding * size;
   if (energy.kinetic > 0.0)
     worst_velocity_ = std::max(worst_velocity_, energy.kinetic * (1.0 - courant * courant) / most);
 }
 
 double Ledger::balance_bound() const {
-  return operations * eps * (static_cast<double>(steps_ + 1) * size_ + rounded_);
+  return rounding * (static_cast<double>(steps_ + 1) * size_ + rounded_);
 }
 
 double Ledger::added_bound(const Tally& tally) const {
-  return operations * eps * (rounded_ + stored_) + tally.coupling_energy;
+  return rounding * (rounded_ + stored_) + turned_ + tally.coupling_energy;
 }
 
-double Ledger::dissipation_bound() const { return operations * eps * rounded_most_; }
+double Ledger::dissipation_bound() const { return rounding * rounded_most_; }
 
 double Ledger::penetration_bound() const {
   const double a_step = scene_.dt * fastest_;
-  const double rounding = operations * eps * static_cast<double>(steps_) * (a_step + farthest_);
-  return a_step + rounding;
+  const double rounded = rounding * static_cast<double>(steps_) * (a_step + farthest_);
+  return a_step + rounded;
 }
 
 }  // namespace ilaw::host

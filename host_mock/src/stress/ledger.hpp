@@ -6,9 +6,13 @@
 #include "step/integrator.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace ilaw::host {
+
+// The few operations of each term of a bound, times what one of them rounds.
+inline constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 class Ledger {
  public:
@@ -22,7 +26,9 @@ class Ledger {
   // each of them is rounded, and so are the displacements that the forces come from.
   double balance_bound() const;
   // Work of impulses r and what laws say of it are rounded by |r| (|v^-| + |v_free| + H |r|); stored
-  // energies by themselves. Coupled contacts agree to a residual, whose energy is counted.
+  // energies by themselves. Coupled contacts agree to a residual, whose energy is counted. An energy that is
+  // stored by an opening remembers v^- in the axes of the step before: r.(Q v^- - v^-)/2 where the normal
+  // has turned by Q since.
   double added_bound(const Tally& tally) const;
   double dissipation_bound() const;
   // Rigid contact lets a node in by what it moves within a step; one that started inside goes no
@@ -37,6 +43,7 @@ class Ledger {
  private:
   void add(std::size_t number, const Integrator& integrator, double speed);
   void measure_depth(std::size_t number, const Integrator& integrator);
+  double turn(const Interface& interface, int contact, const Integrator& integrator) const;
   void sample(const Integrator& integrator);
 
   static constexpr std::int64_t every = 16;  // steps from sample to sample
@@ -45,7 +52,8 @@ class Ledger {
   Dofs v_before_;
   std::vector<Dofs> start_depth_;  // per interface, of all nodes; empty: its law gives way
   std::int64_t steps_ = 0;
-  double rounded_ = 0.0, rounded_most_ = 0.0, stored_ = 0.0, size_ = 0.0, farthest_ = 0.0;
+  double rounded_ = 0.0, rounded_most_ = 0.0, stored_ = 0.0, turned_ = 0.0;
+  double size_ = 0.0, farthest_ = 0.0;
   double fastest_ = 0.0, penetration_ = 0.0, worst_velocity_ = 0.0;
 };
 

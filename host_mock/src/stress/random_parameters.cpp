@@ -24,6 +24,9 @@ Range usual_range(const std::string& unit, double dt) {
 }
 
 double random_number(const ilaw_parameter& p, double dt, Draw& draw) {
+  if (p.kind == ILAW_PARAMETER_COUNT)  // the largest is a state of 100 kB per node, which is only slow
+    return draw.whole(static_cast<int>(std::ceil(p.minimum)),
+                      static_cast<int>(std::min(p.maximum, p.minimum + 64.0)));
   if (draw.chance(0.15) && p.minimum_excluded == 0) return p.minimum;
   const bool is_bounded = p.maximum < std::numeric_limits<double>::max();
   if (draw.chance(0.15) && is_bounded) return p.maximum;
@@ -31,9 +34,6 @@ double random_number(const ilaw_parameter& p, double dt, Draw& draw) {
   const bool is_usual = !is_bounded || p.maximum > usual.high;
   const double low = is_usual ? std::max(p.minimum, usual.low) : p.minimum;
   const double high = is_usual ? std::max(usual.high, low) : p.maximum;
-  if (p.kind == ILAW_PARAMETER_COUNT)
-    return draw.whole(static_cast<int>(std::ceil(p.minimum)),
-                      static_cast<int>(std::min(p.maximum, p.minimum + 64.0)));
   return is_usual && low > 0.0 ? draw.magnitude(low, high) : draw.uniform(low, high);
 }
 
