@@ -19,16 +19,19 @@
 #include <stdexcept>
 #include <thread>
 
-#if !defined(__has_feature)
-#define __has_feature(what) 0
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define ILAW_INSTRUMENTED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define ILAW_INSTRUMENTED
+#endif
 #endif
 
 namespace ilaw::check {
 namespace {
 
 // Sanitizers take all addresses for themselves.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || __has_feature(address_sanitizer) || \
-    __has_feature(thread_sanitizer)
+#if defined(ILAW_INSTRUMENTED)
 constexpr bool is_instrumented = true;
 #else
 constexpr bool is_instrumented = false;
