@@ -63,7 +63,8 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   EXPECT_EQ(empty.output, "ilaw: " + (folder / "history.csv").string() + ": found no such file" + wanted);
   EXPECT_EQ(run_program("plot " + ball).output,
             "ilaw: " + ball + "/history.csv: found no such file" + wanted);
-  for (const char* command : {"", "run", "plot", "converge", "study", "list", "describe", "stress"}) {
+  for (const char* command :
+       {"", "run", "plot", "converge", "study", "list", "describe", "stress", "check"}) {
     const Outcome help = run_program(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.output.find("Example: "), std::string::npos) << command;
@@ -86,6 +87,21 @@ TEST(Program, SaysWhyASceneCannotBeRead) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
+// 0 where no rule is broken, 1 where one is, 2 where there is nothing to check. What is found: tests/check.
+TEST(Program, ChecksALibrary) {
+  const Outcome sound = run_program("check coulomb --law coulomb --only mirror --json");
+  EXPECT_EQ(sound.code, 0) << sound.output;
+  EXPECT_EQ(nlohmann::json::parse(sound.output).at(0).at("result"), "passed");
+  const Outcome odd = run_program("check " ILAW_ODD_STATUS " --only status-meaning");
+  EXPECT_EQ(odd.code, 1) << odd.output;
+  EXPECT_NE(odd.output.find("seen:    status 42"), std::string::npos) << odd.output;
+  for (const char* wrong :
+       {"check", "check no_such_law", "check coulomb --only nonsense", "check coulomb --law tie"})
+    EXPECT_EQ(run_program(wrong).code, 2) << wrong;
+  EXPECT_EQ(run_program("check coulomb --only mirror --junit /dev/full/report.xml").code, 1);
+  EXPECT_NE(run_program("check --rules").output.find("| `purity-twice` | "), std::string::npos);
+}
+
 // What is misspelt is named, rather than what is missing for it.
 TEST(Program, NamesWhatItDoesNotKnow) {
   const auto first_line = [](const std::string& arguments) {
@@ -94,7 +110,7 @@ TEST(Program, NamesWhatItDoesNotKnow) {
   };
   EXPECT_EQ(
       first_line("rnu"),
-      "ilaw: found 'rnu', expected one of run, plot, converge, study, list, describe, stress, --help, --version");
+      "ilaw: found 'rnu', expected one of run, plot, converge, study, stress, list, describe, check, --help, --version");
   EXPECT_EQ(first_line("run " + ball + " --outt here"),
             "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads");
   EXPECT_EQ(first_line("run " + ball), "ilaw: --out is required");

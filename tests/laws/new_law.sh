@@ -24,6 +24,7 @@ export ILAW_PATH=$tree/build/lib/ilaw ILAW_TEST_TREE=$tree ILAW_TEST_PLUGINS=$tr
 "$programs/ilaw" describe my_law
 quietly "$programs/ilaw" run plugins/my_law/my_law.json --out results
 test -s results/history.csv
+"$programs/ilaw" check build/lib/ilaw/my_law.so
 
 # Its own tests and the check of its library; then what the tests of all laws say of it.
 quietly ctest --test-dir build --output-on-failure --no-tests=error -R '^(my_law|plugin_is_portable[.]my_law)'

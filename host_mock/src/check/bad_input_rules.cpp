@@ -98,7 +98,7 @@ void reported_in_lists(const Subject& subject) {
     Heap heap;
     Arrays arrays(trial, in, {.list = List::of_32_bits, .index_base = 1}, heap);
     arrays.initialise(in);
-    arrays.evaluate(in);
+    if (arrays.evaluate(in).code != ILAW_OK) return false;
     in.v_free[2 * in.dimension] = in.v_free[4 * in.dimension] = nan;
     arrays.initialise(script[0]);
     const Results found = arrays.evaluate(in);

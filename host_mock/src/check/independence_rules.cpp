@@ -3,6 +3,7 @@
 #include "check/rule.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ilaw::check {
 namespace {
@@ -115,27 +116,30 @@ void outputs(const Subject& subject) {
   });
 }
 
-// One value for all nodes, by a stride of 0.
+// One value for all nodes, by a stride of 0: nothing else is there to be read.
 void shared_value(const Subject& subject) {
-  for_trials(subject, [](const Trial& trial, Draw& draw) {
-    Script script = draw_script(trial, draw, {5, 1});
-    Inputs& in = script[0];
-    const auto repeat = [&](std::vector<double>& values, std::size_t width) {
-      for (std::size_t k = width; k < values.size(); ++k) values[k] = values[k - width];
-    };
-    repeat(in.delassus, in.form_width);
-    repeat(in.area, 1);
-    repeat(in.normal, in.dimension);
-    repeat(in.tangent, in.dimension);
+  constexpr std::vector<double> Inputs::*shared[] = {&Inputs::delassus, &Inputs::area, &Inputs::normal,
+                                                     &Inputs::tangent};
+  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+    Inputs in = draw_script(trial, draw, {5, 1})[0];
+    Inputs first_alone = in;
+    for (const auto array : shared) {
+      std::vector<double>&values = in.*array, &alone = first_alone.*array;
+      const std::size_t width = values.size() / in.count;
+      for (std::size_t k = width; k < values.size(); ++k) {
+        values[k] = values[k - width];
+        alone[k] = std::nan("");
+      }
+    }
     Heap heap;
-    Arrays arrays(trial, in, {}, heap);
+    Arrays arrays(trial, in, {}, heap), others(trial, first_alone, {}, heap);
     arrays.initialise(in);
     const Results expected = arrays.evaluate(in);
-    for (ilaw_input* one :
-         {&arrays.batch().delassus, &arrays.batch().area, &arrays.batch().normal, &arrays.batch().tangent})
+    ilaw_batch& batch = others.batch();
+    for (ilaw_input* one : {&batch.delassus, &batch.area, &batch.normal, &batch.tangent})
       one->node_stride = 0;
-    arrays.initialise(in);
-    if (const auto differs = difference(expected, arrays.evaluate(in)))
+    others.initialise(first_alone);
+    if (const auto differs = difference(expected, others.evaluate(first_alone)))
       fail(trial, in, differs->node, "with node_stride 0 for H, area and axes: " + differs->text,
            "the same bits");
     return true;

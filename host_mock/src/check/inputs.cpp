@@ -207,35 +207,36 @@ Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size, bool 
   return script;
 }
 
-Inputs turned(Inputs local, const std::vector<Matrix>& axes) {
-  Inputs out = local;
-  if (local.form == ILAW_DELASSUS_DIAGONAL) {
-    out.form = ILAW_DELASSUS_FULL;
-    out.form_width = local.dimension * (local.dimension + 1) / 2;
-    out.delassus.assign(local.count * out.form_width, 0.0);
+Inputs turned(Inputs in, const std::vector<Matrix>& axes) {
+  std::vector<Matrix> h;
+  for (std::size_t i = 0; i < in.count; ++i) h.push_back(from_axes(in.h(i), axes[i]));
+  if (in.form == ILAW_DELASSUS_DIAGONAL) {
+    in.form = ILAW_DELASSUS_FULL;
+    in.form_width = in.dimension * (in.dimension + 1) / 2;
+    in.delassus.assign(in.count * in.form_width, 0.0);
   }
-  out.normal.resize(local.count * local.dimension);
-  out.tangent.resize(local.count * local.dimension);
-  for (std::size_t i = 0; i < local.count; ++i) {
+  in.normal.resize(in.count * in.dimension);
+  in.tangent.resize(in.count * in.dimension);
+  for (std::size_t i = 0; i < in.count; ++i) {
     const Matrix to_host = transposed(axes[i]);
-    out.set_vector(out.v_free, i, times(to_host, local.vector(local.v_free, i)));
-    out.set_vector(out.v_previous, i, times(to_host, local.vector(local.v_previous, i)));
-    out.set_vector(out.normal, i, axes[i][0]);
-    out.set_vector(out.tangent, i, axes[i][1]);
-    if (out.form == ILAW_DELASSUS_FULL) set_full(out, i, from_axes(local.h(i), axes[i]));
+    in.set_vector(in.v_free, i, times(to_host, in.vector(in.v_free, i)));
+    in.set_vector(in.v_previous, i, times(to_host, in.vector(in.v_previous, i)));
+    in.set_vector(in.normal, i, axes[i][0]);
+    in.set_vector(in.tangent, i, axes[i][1]);
+    if (in.form == ILAW_DELASSUS_FULL) set_full(in, i, h[i]);
   }
-  return out;
+  return in;
 }
 
-Inputs turned_as_a_whole(Inputs given, const Matrix& rotation) {
-  Inputs out = given;
-  for (std::size_t i = 0; i < given.count; ++i) {
+Inputs turned_as_a_whole(Inputs in, const Matrix& rotation) {
+  const Matrix back = transposed(rotation);
+  for (std::size_t i = 0; i < in.count; ++i) {
     for (std::vector<double> Inputs::*of :
          {&Inputs::v_free, &Inputs::v_previous, &Inputs::normal, &Inputs::tangent})
-      if (!(given.*of).empty()) out.set_vector(out.*of, i, times(rotation, given.vector(given.*of, i)));
-    if (given.form == ILAW_DELASSUS_FULL) set_full(out, i, from_axes(given.h(i), transposed(rotation)));
+      if (!(in.*of).empty()) in.set_vector(in.*of, i, times(rotation, in.vector(in.*of, i)));
+    if (in.form == ILAW_DELASSUS_FULL) set_full(in, i, from_axes(in.h(i), back));
   }
-  return out;
+  return in;
 }
 
 }  // namespace ilaw::check

@@ -10,11 +10,14 @@ namespace {
 using Flush = GuardedPages::Flush;
 
 // A fault ends the process, and is the finding of the rule.
-void between_guards(const Subject& subject, const GuardedPages::Guarded& guarded) {
+void between_guards(const Subject& subject, const GuardedPages::Guarded& guarded, std::uint32_t outputs) {
   for_trials(subject, [&](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw, {13, 2});
     for (const Flush flush : {Flush::with_the_end, Flush::with_the_beginning})
-      for (const Layout& layout : {Layout{}, Layout{.order = Order::spread, .list = List::of_32_bits}}) {
+      for (const Layout& layout :
+           {Layout{.outputs = outputs},
+            Layout{.order = Order::spread, .list = List::of_32_bits, .outputs = outputs},
+            Layout{.order = Order::by_component, .list = List::of_64_bits, .outputs = outputs}}) {
         GuardedPages pages(flush, guarded);
         run(trial, script, layout, pages);
       }
@@ -23,24 +26,15 @@ void between_guards(const Subject& subject, const GuardedPages::Guarded& guarded
 }
 
 void reads(const Subject& subject) {
-  for_trials(subject, [&](const Trial& trial, Draw& draw) {
-    const Script script = draw_script(trial, draw, {13, 2});
-    for (const Flush flush : {Flush::with_the_end, Flush::with_the_beginning})
-      for (const Layout& layout : {Layout{}, Layout{.order = Order::spread, .list = List::of_32_bits},
-                                   Layout{.order = Order::by_component, .list = List::of_64_bits}}) {
-        GuardedPages pages(flush, {.inputs = true, .outputs = false, .unneeded = false});
-        run(trial, script, layout, pages);
-      }
-    return true;
-  });
+  between_guards(subject, {.inputs = true, .outputs = false, .unneeded = false}, all_outputs);
 }
 
 void writes(const Subject& subject) {
-  between_guards(subject, {.inputs = false, .outputs = true, .unneeded = false});
+  between_guards(subject, {.inputs = false, .outputs = true, .unneeded = false}, all_outputs);
 }
 
 void unneeded(const Subject& subject) {
-  between_guards(subject, {.inputs = false, .outputs = false, .unneeded = true});
+  between_guards(subject, {.inputs = false, .outputs = false, .unneeded = true}, ILAW_OUTPUT_VELOCITY);
 }
 
 void beside(const Subject& subject) {
@@ -65,7 +59,7 @@ void beside(const Subject& subject) {
 // Outputs that begin as one number or another end the same.
 void all_written(const Subject& subject) {
   for_trials(subject, [](const Trial& trial, Draw& draw) {
-    const Script script = draw_script(trial, draw, {13, 3});
+    const Script script = draw_script(trial, draw, {11, 3});
     for (const Results& found : run(trial, script)) {
       const auto unwritten = [](const std::vector<double>& values) {
         for (const double value : values)

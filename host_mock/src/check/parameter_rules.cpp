@@ -137,15 +137,15 @@ void varying(const Subject& subject) {
 // Every value at an end of its range is accepted beside some others: which, a law may restrict.
 bool accepted_somewhere(const Trial& trial, const Value& value, Draw& draw) {
   constexpr int attempts = 300;
+  const std::vector<Setup> setups = setups_of(trial.law);
   for (int k = 0; k < attempts; ++k) {
-    Values values = trial.values;
-    if (k > 0)
-      for (std::uint32_t p = 0; p < trial.law.parameter_count; ++p)
-        if (draw.one_in(2)) values = with(values, draw_value(*trial.law.parameters[p], draw));
-    Setup setup = trial.setup;
-    const std::vector<Setup> setups = setups_of(trial.law);
-    if (k > 0) setup = setups[draw.below(setups.size())];
-    if (create(trial.law, setup, with(values, value))) return true;
+    Values values = {value};
+    for (std::uint32_t p = 0; p < trial.law.parameter_count; ++p) {
+      const ilaw_parameter& other = *trial.law.parameters[p];
+      if (other.name != value.name && (other.required || (k > 9 && draw.one_in(3))))
+        values.push_back(draw_value(other, draw));
+    }
+    if (create(trial.law, setups[static_cast<std::size_t>(k) % setups.size()], values)) return true;
   }
   return false;
 }
@@ -283,12 +283,13 @@ void node_range(const Subject& subject) {
           std::fill(own.begin(), own.end(), good);
           Heap heap;
           Arrays arrays(varied, script[0], {}, heap);
-          if (arrays.initialise(script[0]) != ILAW_OK || arrays.evaluate(script[0]).code != ILAW_OK) continue;
+          if (arrays.initialise(script[0]) != ILAW_OK) continue;
+          const std::vector<double> state = arrays.state();
+          if (arrays.evaluate(script[0]).code != ILAW_OK) continue;
           for (const double bad :
                {p.minimum - 1.0, std::nan(""), p.infinity_allowed ? -infinity : infinity}) {
             own[4] = bad;
-            arrays.initialise(script[0]);
-            arrays.set_state(std::vector<double>(7 * varied.info.state_size));
+            arrays.set_state(state);
             const Results found = arrays.evaluate(script[0]);
             if (found.code != ILAW_BAD_NODES || found.report.first_bad_node != 4)
               fail(varied, script[0], 4,

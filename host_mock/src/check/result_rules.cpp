@@ -56,13 +56,13 @@ void complementarity(const Subject& subject) {
       "the law adheres");
 }
 
+// In the local frame, where r_N = 0 is a number without rounding.
 void friction_needs_pressure(const Subject& subject) {
   for_nodes(
-      subject, [](const Trial& trial) { return !trial.can(ILAW_CAN_ADHERE); },
+      subject, [](const Trial& trial) { return !trial.can(ILAW_CAN_ADHERE) && !trial.setup.global(); },
       [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
         const Vector r = impulse(in, found, i);
-        const double normal = dot(in.normal_at(i), r);
-        if (normal <= 16.0 * ulp * length(r) && length(r) > 0.0)
+        if (!(r[0] > 0.0) && (r[1] != 0.0 || r[2] != 0.0))
           fail(trial, in, i, "r = " + text_of(r, in.dimension) + " without pressure",
                "no tangential impulse where r_N = 0");
       },
@@ -155,6 +155,7 @@ void cone(const Subject& subject) {
 void step_limits(const Subject& subject) {
   for_trials(subject, [](const Trial& trial, Draw& draw) {
     Script script = draw_script(trial, draw, {9, 1}, true);
+    if (run(trial, script)[0].code != ILAW_OK) return false;
     for (const double step : {1e-13, 3e-7, 0.0171, 11.0, 7300.0}) {
       Inputs& in = script[0];
       for (double& gap : in.gap) gap *= step / in.position_step;

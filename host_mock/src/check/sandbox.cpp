@@ -19,8 +19,23 @@
 #include <stdexcept>
 #include <thread>
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define ILAW_INSTRUMENTED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define ILAW_INSTRUMENTED
+#endif
+#endif
+
 namespace ilaw::check {
 namespace {
+
+// Sanitizers take all addresses for themselves.
+#if defined(ILAW_INSTRUMENTED)
+constexpr bool is_instrumented = true;
+#else
+constexpr bool is_instrumented = false;
+#endif
 
 constexpr std::size_t most_result = 1U << 18, most_printed = 2000, most_written = 1U << 20;
 
@@ -111,14 +126,7 @@ void set_limits(const Limits& limits) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, static_cast<rlim_t>(limits.seconds) + 2);
   limit(RLIMIT_FSIZE, most_written);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#if defined(__has_feature)
-#define ILAW_HAS_SHADOW (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
-#else
-#define ILAW_HAS_SHADOW 0
-#endif
-  if (!ILAW_HAS_SHADOW) limit(RLIMIT_AS, bytes_of_address_space() + limits.megabytes * (1U << 20));
-#endif
+  if (!is_instrumented) limit(RLIMIT_AS, bytes_of_address_space() + limits.megabytes * (1U << 20));
 }
 
 [[noreturn]] void run_child(const Limits& limits, int output, const std::function<std::string()>& work) {

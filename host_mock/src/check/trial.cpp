@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <limits>
 #include <utility>
 
@@ -110,7 +111,7 @@ Instance& Instance::operator=(Instance&& other) noexcept {
 }
 Instance::~Instance() {
   if (!made_) return;
-  calling("destroy");
+  if (std::uncaught_exceptions() == 0) calling("destroy");  // else what threw is what is named
   law_->destroy(made_);
 }
 

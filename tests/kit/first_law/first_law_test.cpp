@@ -32,6 +32,9 @@ std::string build(const fs::path& folder, const std::string& ilaw_dir, const std
                               (folder / "log").string() + " 2>&1 && " + ILAW_CMAKE + " --build " +
                               (folder / "build").string() + " >>" + (folder / "log").string() + " 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << std::ifstream(folder / "log").rdbuf();
+  const std::string check = "ctest --test-dir " + (folder / "build").string() +
+                            " --no-tests=error --output-on-failure >" + (folder / "log").string() + " 2>&1";
+  EXPECT_EQ(std::system(check.c_str()), 0) << std::ifstream(folder / "log").rdbuf();
   return (folder / "build" / "lib" / "ilaw" / "viscous.so").string();
 }
 

@@ -1,0 +1,178 @@
+/* Steps of the law. r_N = -v_N/(H_NN + 1/(h c A)) where the gap is closed and closing; friction within its
+ * cone takes at most the tangential velocity. */
+#define _GNU_SOURCE
+#include "sample.h"
+#include "sample_node.h"
+
+#include <fenv.h>
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+static int32_t refuse(ilaw_report* report, int32_t code, const char* reason) {
+  if (!report) return code;
+  report->bad_count = 0;
+  report->first_bad_node = -1;
+  report->reason = reason;
+  return code;
+}
+
+/* What is wrong with a batch as a whole. */
+static const char* wrong_list(const ilaw_batch* b) {
+  int64_t k;
+  if (b->index_base != 0 && b->index_base != 1) return "index_base is neither 0 nor 1";
+  if (b->index && b->index64) return "index and index64 are both given";
+  for (k = 0; k < b->node_count; ++k)
+    if ((b->index && b->index[k] < b->index_base) || (b->index64 && b->index64[k] < b->index_base))
+      return "a node lies below index_base";
+  return NULL;
+}
+
+static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) {
+  if (!b->v_free.values || !b->delassus.values || !b->impulse.values) return "an array is null";
+  if (!b->gap.values || !b->area.values || !b->state_in.values) return "an array is null";
+  if (made->setup.frame == ILAW_FRAME_GLOBAL && !b->normal.values) return "normal is null";
+  if (made->setup.tangent_given && made->setup.dimension == 3 && !b->tangent.values) return "tangent is null";
+  if (b->node_count > 1 && b->impulse.node_stride == 0) return "impulse has a stride of 0";
+  return NULL;
+}
+
+static const char* wrong_call(const ilaw_instance* made, const ilaw_batch* b, int evaluates) {
+  if (b->node_count < 0) return "node_count is negative";
+  if (!isfinite(b->time) && !breaks("call-refused")) return "time is not finite";
+  if (wrong_list(b)) return wrong_list(b);
+  if (b->node_count == 0) return breaks("empty-batch") ? "there are no nodes" : NULL;
+  if (!b->state_out.values) return "state_out is null";
+  if (!evaluates) return NULL;
+  if (!(b->velocity_step > 0.0) || !isfinite(b->velocity_step)) return "velocity_step is not a number > 0";
+  if (!(b->position_step > 0.0) || !isfinite(b->position_step)) return "position_step is not a number > 0";
+  if (breaks("step-limits") && b->velocity_step > 100.0) return "velocity_step is too large";
+  return wrong_arrays(made, b);
+}
+
+static int32_t check_call(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report,
+                          int evaluates) {
+  const char* wrong;
+  if (!made || !b) return ILAW_INVALID_ARGUMENT;
+  if (b->struct_size < ILAW_BATCH_SIZE_1_0 && !breaks("sizes-short"))
+    return refuse(report, ILAW_INVALID_ARGUMENT, "the batch is too small");
+  if (b->flags != 0 && !breaks("batch-flags")) return refuse(report, ILAW_UNSUPPORTED, "flags are not known");
+  wrong = wrong_call(made, b, evaluates);
+  return wrong ? refuse(report, ILAW_INVALID_ARGUMENT, wrong) : ILAW_OK;
+}
+
+int32_t sample_initialise(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report) {
+  const int32_t code = check_call(made, b, report, 0);
+  int64_t k;
+  if (code != ILAW_OK) return code;
+  for (k = 0; k < b->node_count; ++k) {
+    const int64_t node = node_of(b, k);
+    double first = 0.0;
+    if (breaks("initialise-reads")) first = 0.0 * *(const volatile double*)b->v_free.values;
+    b->state_out.values[node * b->state_out.node_stride] = first;
+  }
+  refuse(report, ILAW_OK, NULL);
+  if (report) report->stable_velocity_step = INFINITY;
+  return ILAW_OK;
+}
+
+/* Things that evaluate may not do, each for its rule. */
+static void misbehave(const ilaw_batch* b) {
+  static volatile int counter;
+  static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+  volatile char* room;
+  jmp_buf here;
+  if (breaks("functions-return")) *(volatile int*)8 = 1;
+  if (breaks("hang"))
+    for (;;) ++counter;
+  if (breaks("exit")) exit(3);
+  if (breaks("quiet exit")) _exit(0);
+  if (breaks("abort")) abort();
+  if (breaks("throw")) throw_something();
+  if (breaks("memory bomb"))
+    for (;;) {
+      room = malloc(1 << 20);
+      memset((char*)room, 1, 1 << 20);
+    }
+  if (breaks("purity-globals")) ++counter;
+  if (breaks("evaluate-allocates")) {
+    room = malloc(64);
+    if (room) room[0] = 1;
+    free((char*)room);
+  }
+  if (breaks("evaluate-locks")) {
+    pthread_mutex_lock(&lock);
+    pthread_mutex_unlock(&lock);
+  }
+  if (breaks("evaluate-io") && getenv("HOME") == (char*)b) abort();
+  if (breaks("evaluate-clock") && time(NULL) == 0) abort();
+  if (breaks("evaluate-ends") && setjmp(here) != 0) abort();
+  if (breaks("evaluate-system") && getppid() < 0) abort();
+  if (breaks("memory-reads")) (void)*(const volatile double*)(b->v_free.values + b->node_count * 7);
+  if (breaks("memory-unneeded")) (void)*(const volatile double*)b->v_previous.values;
+}
+
+static int32_t step_all(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report) {
+  const char* reason = NULL;
+  int64_t k, bad = 0, first = -1;
+  for (k = 0; k < b->node_count; ++k) {
+    const char* wrong = step_node(made, b, k, bad > 0);
+    if (!wrong) continue;
+    if (bad++ == 0) {
+      reason = wrong;
+      first = node_of(b, k) + (breaks("bad-input-list") ? b->index_base : 0);
+    }
+  }
+  if (report) {
+    report->bad_count = bad;
+    report->first_bad_node = bad == 0 && breaks("report-clean") ? 0 : first;
+    report->reason = breaks("bad-input-report") ? NULL : reason;
+    report->stable_velocity_step = breaks("stable-step") ? b->area.values[0] : INFINITY;
+  }
+  return bad > 0 ? ILAW_BAD_NODES : ILAW_OK;
+}
+
+/* The environment in which steps are computed; a broken rule leaves part of the host's. */
+static void enter(const fenv_t* host, int mode, int traps) {
+  (void)host;
+  fesetenv(FE_DFL_ENV);
+  if (breaks("float-rounding")) fesetround(mode);
+  if (breaks("float-traps")) feenableexcept(traps);
+}
+
+int32_t sample_evaluate(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report) {
+  int32_t code = check_call(made, b, report, 1);
+  fenv_t host;
+  const int mode = fegetround(), traps = fegetexcept();
+#if defined(__x86_64__)
+  const unsigned flushing = _mm_getcsr() & 0x8040;
+#endif
+  if (code != ILAW_OK || b->node_count == 0) {
+    if (code == ILAW_OK) refuse(report, ILAW_OK, NULL);
+    return code;
+  }
+  if (breaks("report-null")) *(volatile int64_t*)&report->bad_count = 0;
+  fegetenv(&host);
+  enter(&host, mode, traps);
+#if defined(__x86_64__)
+  if (breaks("float-flushing")) _mm_setcsr(_mm_getcsr() | flushing);
+#endif
+  misbehave(b);
+  remember(made, b);
+  code = step_all(made, b, report);
+  if (breaks("memory-writes") && !b->index && !b->index64 && b->impulse.component_stride == 1)
+    ((volatile double*)b->impulse.values)[b->node_count * b->impulse.node_stride] = 1.0;
+  if (breaks("memory-beside") && b->impulse.component_stride == 2)
+    b->impulse.values[node_of(b, 0) * b->impulse.node_stride + 1] = 1.0;
+  fesetenv(&host);
+  if (breaks("float-flags")) feraiseexcept(FE_INEXACT);
+  return code;
+}

@@ -1,0 +1,297 @@
+#include "sample_node.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What a node is given, and what it gets. */
+typedef struct node {
+  int d, global, strays;
+  double v[3], n[3], t[3], h[3][3], gap, area, damping, friction;
+  double closures, r[3], after[3], energy[4];
+  uint8_t status;
+} node;
+
+int64_t node_of(const ilaw_batch* b, int64_t k) {
+  if (b->index) return b->index[k] - b->index_base;
+  return b->index64 ? b->index64[k] - b->index_base : k;
+}
+
+static double read(const ilaw_input* from, int64_t i, int c) {
+  int64_t node_stride = from->node_stride, stride = from->component_stride;
+  if (breaks("layout-components") && stride > 10) stride = 1;
+  if (breaks("layout-strides") && stride == 2) stride = 1;
+  if (breaks("layout-shared") && node_stride == 0) node_stride = 1;
+  return from->values[i * node_stride + c * stride];
+}
+
+double value_at(const quantity* given, double time) {
+  uint64_t k;
+  const double* t = given->table;
+  if (!t) return given->constant;
+  for (k = 0; k < given->count; ++k)
+    if (time <= t[2 * k]) {
+      double part;
+      if (k == 0 || t[2 * k + 1] == t[2 * k - 1]) return t[2 * k + 1];
+      part = (time - t[2 * k - 2]) / (t[2 * k] - t[2 * k - 2]);
+      return t[2 * k - 1] * (1.0 - part) + t[2 * k + 1] * part;
+    }
+  return t[2 * given->count - 1];
+}
+
+static double sum_of(const ilaw_input* from, const ilaw_batch* b, int width) {
+  double sum = (double)from->node_stride;
+  int64_t k;
+  int c;
+  for (k = 0; k < b->node_count; ++k)
+    for (c = 0; c < width; ++c) sum += read(from, node_of(b, k), c) * (double)(1 + k % 7 + 3 * c);
+  return sum;
+}
+
+/* Of all that a result may depend on. */
+static double sum_of_all(const ilaw_batch* b, int d) {
+  double sum = b->time + b->velocity_step + sum_of(&b->v_free, b, d) + sum_of(&b->delassus, b, 1) +
+               sum_of(&b->gap, b, 1) + sum_of(&b->area, b, 1) + sum_of(&b->state_in, b, 1);
+  if (b->v_previous.values) sum += sum_of(&b->v_previous, b, d);
+  if (b->gap_offset.values) sum += sum_of(&b->gap_offset, b, 1);
+  if (b->normal.values) sum += sum_of(&b->normal, b, d);
+  return sum;
+}
+
+/* The text of an argument that may be gone. */
+static int is_mode(const char* text) {
+  return text && (strcmp(text, "rough") == 0 || strcmp(text, "smooth") == 0);
+}
+
+/* Whether a broken rule asks for another result of this call. */
+static int strays(const ilaw_instance* made, const ilaw_batch* b) {
+  const memory* own = made->own;
+  if (breaks("purity-history")) return own->saw_nine && b->node_count == 13;
+  if (breaks("purity-steps")) return own->largest_step > 5.0 * b->velocity_step;
+  if (breaks("purity-instances")) return shared()->last != made && shared()->before == made;
+  if (breaks("purity-threads")) return !on_first_thread();
+  if (breaks("index-32")) return b->index != NULL;
+  if (breaks("index-64")) return b->index64 != NULL;
+  if (breaks("state-in-place")) return b->state_in.values == b->state_out.values;
+  if (breaks("batch-parts")) return b->node_count == 7;
+  if (breaks("batch-large")) return b->node_count > 100;
+  if (breaks("outputs-asked")) return !b->energy.values;
+  if (breaks("gap-offset")) return b->gap_offset.values != NULL;
+  if (breaks("table-constant")) return made->friction.table != NULL;
+  if (breaks("per-node-constant")) return made->damping.per_node;
+  if (breaks("setup-copied")) return own->started && !is_mode(made->mode);
+  return breaks("purity-twice") && own->started > 1;
+}
+
+void remember(const ilaw_instance* made, const ilaw_batch* b) {
+  memory* own = made->own;
+  if (breaks("purity-twice")) {
+    const double sum = sum_of_all(b, (int)made->setup.dimension);
+    own->started = sum == own->last_sum ? 2 : 1;
+    own->last_sum = sum;
+  } else if (breaks("setup-copied") && is_mode(made->mode)) {
+    own->started = 1;
+  } else if (breaks("restart") && !own->started) {
+    own->started = 1;
+    own->first_time = b->time;
+  } else if (breaks("purity-history") && b->node_count == 9) {
+    own->saw_nine = 1;
+  } else if (breaks("purity-steps") && b->velocity_step > own->largest_step) {
+    own->largest_step = b->velocity_step;
+  }
+}
+
+static void gather_delassus(node* at, const ilaw_instance* made, const ilaw_batch* b, int64_t i) {
+  static const int rows[3] = {0, 0, 1}, columns[3] = {1, 2, 2};
+  const uint32_t form = made->setup.delassus_form;
+  int c;
+  for (c = 0; c < at->d; ++c) at->h[c][c] = read(&b->delassus, i, form == ILAW_DELASSUS_SCALAR ? 0 : c);
+  for (c = 0; form == ILAW_DELASSUS_FULL && c < at->d * (at->d - 1) / 2; ++c)
+    at->h[rows[c]][columns[c]] = at->h[columns[c]][rows[c]] = read(&b->delassus, i, at->d + c);
+}
+
+static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int64_t i) {
+  int c;
+  memset(at, 0, sizeof *at);
+  at->d = (int)made->setup.dimension;
+  at->global = made->setup.frame == ILAW_FRAME_GLOBAL;
+  at->n[0] = 1.0;
+  at->t[1] = 1.0;
+  for (c = 0; c < at->d; ++c) {
+    at->v[c] = read(&b->v_free, i, c);
+    if (at->global) at->n[c] = read(&b->normal, i, c);
+    if (at->global && at->d == 3 && made->setup.tangent_given) at->t[c] = read(&b->tangent, i, c);
+  }
+  if (at->global && at->d == 2) {
+    at->t[0] = -at->n[1];
+    at->t[1] = at->n[0];
+  }
+  gather_delassus(at, made, b, i);
+  at->gap = b->gap_offset.values ? read(&b->gap, i, 0) - read(&b->gap_offset, i, 0) : read(&b->gap, i, 0);
+  at->area = read(&b->area, i, 0);
+  at->damping =
+      made->damping.per_node ? read(&b->per_node_parameters[0], i, 0) : value_at(&made->damping, b->time);
+  at->friction = value_at(&made->friction, b->time);
+  at->closures = read(&b->state_in, i, 0);
+}
+
+static double dot(const double* a, const double* b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
+static int definite(const node* at) {
+  const double(*h)[3] = at->h;
+  const double minor = h[0][0] * h[1][1] - h[0][1] * h[0][1];
+  int c;
+  for (c = 0; c < at->d; ++c)
+    if (!(h[c][c] > 0.0) || !isfinite(h[c][c])) return 0;
+  if (breaks("bad-input-definite") || at->d == 1) return 1;
+  if (!(minor > 0.0) || at->d == 2) return minor > 0.0;
+  return h[2][2] * minor - h[1][2] * (h[0][0] * h[1][2] - h[0][1] * h[0][2]) +
+             h[0][2] * (h[0][1] * h[1][2] - h[1][1] * h[0][2]) >
+         0.0;
+}
+
+static int near_one(double value) { return fabs(value - 1.0) < 1e-6; }
+
+static const char* defect(node* at, const ilaw_instance* made, const ilaw_batch* b) {
+  int c;
+  for (c = 0; c < at->d; ++c)
+    if (!isfinite(at->v[c])) return "v_free is not finite";
+  if (!definite(at)) return "H is not positive definite";
+  if (!isfinite(at->gap)) return "the gap is not finite";
+  if (!(at->area >= 0.0) || !isfinite(at->area)) return "the area is not a number >= 0";
+  if (!near_one(dot(at->n, at->n))) return "the normal is no unit vector";
+  if (made->setup.tangent_given && at->d == 3 &&
+      (!near_one(dot(at->t, at->t)) || !(fabs(dot(at->t, at->n)) < 1e-6)))
+    return "the tangent is no unit vector";
+  if (!(at->damping > 0.0) && !breaks("per-node-range")) return "damping is out of range";
+  if (breaks("foreign-state") && isnan(at->closures)) at->closures = 0.0;
+  if (!(at->closures >= 0.0 && at->closures <= 9e15 && floor(at->closures) == at->closures))
+    return "the state is none that the law can have written";
+  if (breaks("good-input-served")) {
+    const double steps = fabs(at->gap) / (b->position_step * sqrt(dot(at->v, at->v)));
+    if (steps > 1.0 && steps < 1.03) return "the gap is not liked";
+  }
+  return NULL;
+}
+
+/* What a rule is broken by in the coefficient of friction. */
+static double spoilt_friction(const node* at, const ilaw_instance* made, const ilaw_batch* b,
+                              const double* tangential) {
+  const double along = dot(tangential, at->t);
+  if (breaks("friction-cone")) return 1.5 * at->friction + 0.1;
+  if (breaks("restart"))
+    return at->friction * (1.0 - 1e-6 * (b->time - made->own->first_time) / b->velocity_step);
+  if (breaks("frame-indifference") && !at->global) return 0.99 * at->friction;
+  if (breaks("frame-turned") && at->d == 3 && at->global && !made->setup.tangent_given)
+    return at->friction * (1.0 - 0.1 * fabs(at->n[0]));
+  if (breaks("isotropy") && at->d == 3 && (!at->global || made->setup.tangent_given))
+    return at->friction * (1.0 - 0.3 * along * along / (1e-300 + dot(tangential, tangential)));
+  if (breaks("mirror") && at->d == 2 && along < 0.0) return 0.9 * at->friction;
+  return at->friction * (made->rough ? 1.0 : 0.5);
+}
+
+static double normal_impulse(const node* at, const ilaw_batch* b, double normal, double delassus) {
+  const double compliance = isinf(at->damping) ? 0.0 : 1.0 / (b->velocity_step * at->damping * at->area);
+  double r = at->gap <= 0.0 && normal < 0.0 ? -normal / (delassus + compliance) : 0.0;
+  if (breaks("complementarity") && at->gap <= 0.0 && normal > 0.0) r = -0.1 * normal / delassus;
+  if (breaks("energy-made")) r *= 3.0;
+  if (breaks("units") && fabs(normal) < 0.1) r = 0.0;
+  return r;
+}
+
+/* The impulse; returns how much of the cone it fills, 0 without friction. */
+static double solve(node* at, const ilaw_instance* made, const ilaw_batch* b) {
+  double normal = dot(at->n, at->v), along[3], delassus = 0.0, trace = 0.0, speed, r, most, least;
+  int a, c;
+  for (c = 0; c < 3; ++c) along[c] = at->v[c] - normal * at->n[c];
+  for (a = 0; a < at->d; ++a) {
+    trace += at->h[a][a];
+    for (c = 0; c < at->d; ++c) delassus += at->n[a] * at->h[a][c] * at->n[c];
+  }
+  speed = at->d > 1 ? sqrt(dot(along, along)) : 0.0;
+  r = normal_impulse(at, b, normal, delassus);
+  most = spoilt_friction(at, made, b, along) / (1.0 + 1e-3 * made->wear * at->closures) * r;
+  if (breaks("friction-pressure") && r == 0.0 && at->gap <= 0.0) most = 0.1 * speed / trace;
+  least = speed / trace < most ? speed / trace : most;
+  if (at->strays) r *= 1.0 + 4e-16;
+  for (c = 0; c < at->d; ++c) at->r[c] = r * at->n[c] - (least > 0.0 ? least * (along[c] / speed) : 0.0);
+  for (a = 0; a < at->d; ++a) {
+    at->after[a] = at->v[a];
+    for (c = 0; c < at->d; ++c) at->after[a] += at->h[a][c] * at->r[c];
+  }
+  at->status = r == 0.0 ? ILAW_FREE : least <= 0.0 ? ILAW_CLOSED : least < most ? ILAW_STICK : ILAW_SLIP;
+  if (r < 0.0 || (r == 0.0 && least > 0.0)) at->status = ILAW_BONDED;
+  if (breaks("status-meaning")) at->status = ILAW_FREE;
+  return r;
+}
+
+static void account(node* at, const ilaw_batch* b, int64_t i) {
+  double mean[3] = {0.0, 0.0, 0.0}, normal, impact;
+  int c;
+  if (!b->energy.values) return;
+  for (c = 0; c < at->d; ++c) mean[c] = 0.5 * (read(&b->v_previous, i, c) + at->after[c]);
+  normal = dot(at->n, at->r);
+  impact = -normal * dot(at->n, mean);
+  at->energy[ILAW_ENERGY_IMPACT] = impact;
+  at->energy[ILAW_ENERGY_FRICTION] = -dot(at->r, mean) - impact;
+  if (breaks("energy-balance")) at->energy[ILAW_ENERGY_IMPACT] *= 2.0;
+  for (c = 0; c < 4 && !breaks("energy-parts"); ++c)
+    if (!(at->energy[c] > 0.0)) at->energy[c] = 0.0;
+}
+
+static void write_node(const node* at, const ilaw_batch* b, int64_t k, const double* state) {
+  const int64_t i = node_of(b, k);
+  int c;
+  for (c = 0; c < at->d; ++c)
+    b->impulse.values[i * b->impulse.node_stride + c * b->impulse.component_stride] = at->r[c];
+  memcpy(&b->state_out.values[i * b->state_out.node_stride], state, sizeof *state);
+  for (c = 0; b->energy.values && c < 4; ++c)
+    b->energy.values[i * b->energy.node_stride + c * b->energy.component_stride] = at->energy[c];
+  if (b->status) b->status[i * b->status_stride] = at->status;
+  if (!b->velocity.values || (breaks("outputs-written") && b->node_count == 11 && k == 10)) return;
+  for (c = 0; c < at->d; ++c)
+    b->velocity.values[i * b->velocity.node_stride + c * b->velocity.component_stride] =
+        breaks("velocity-output") ? at->v[c] : at->after[c];
+}
+
+static int out_of_reach(const node* at, const ilaw_batch* b) {
+  return at->gap > 0.0 && at->gap + b->position_step * dot(at->n, at->v) > 0.0;
+}
+
+static const char* step_good(node* at, const ilaw_instance* made, const ilaw_batch* b, int64_t k) {
+  const int64_t i = node_of(b, k);
+  const double closures = at->closures, r = solve(at, made, b);
+  double next = closures + (r != 0.0 ? 1.0 : 0.0);
+  int c, finite = 1;
+  account(at, b, i);
+  for (c = 0; c < at->d; ++c) finite = finite && isfinite(at->r[c]);
+  if (!finite && !breaks("impulse-finite")) return "the impulse overflows";
+  if (breaks("skip-promise") && closures == 0.0 && b->time == b->velocity_step && out_of_reach(at, b))
+    next += 1.0;
+  if (breaks("rest-promise") && closures > 0.0 && out_of_reach(at, b)) next += 1.0;
+  write_node(at, b, k, &next);
+  return NULL;
+}
+
+const char* step_node(const ilaw_instance* made, const ilaw_batch* b, int64_t k, int after_bad) {
+  const int64_t i = node_of(b, k);
+  node at, none;
+  const char* wrong;
+  int c;
+  gather(&at, made, b, i);
+  none = at;
+  at.strays = strays(made, b) || (breaks("batch-order") && b->node_count == 13 && k == 12) ||
+              (breaks("bad-input-others") && after_bad && b->node_count == 11);
+  wrong = defect(&at, made, b);
+  if (!wrong) wrong = step_good(&at, made, b, k);
+  if (k == b->node_count - 1 && breaks("purity-instances")) {
+    shared()->before = shared()->last;
+    shared()->last = made;
+  }
+  if (!wrong) return NULL;
+  for (c = 0; c < 3; ++c) {
+    none.r[c] = 0.0;
+    none.after[c] = breaks("bad-input-node") ? 0.0 : none.v[c];
+  }
+  none.status = ILAW_BAD_INPUT;
+  write_node(&none, b, k, &b->state_in.values[i * b->state_in.node_stride]);
+  return wrong;
+}

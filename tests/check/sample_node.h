@@ -1,0 +1,13 @@
+/* One node of a batch of the sample law. */
+#ifndef ILAW_TESTS_SAMPLE_NODE_H
+#define ILAW_TESTS_SAMPLE_NODE_H
+
+#include "sample.h"
+
+int64_t node_of(const ilaw_batch* b, int64_t k);
+/* What instances that break a rule keep of a call. */
+void remember(const ilaw_instance* made, const ilaw_batch* b);
+/* Steps the k-th node of the batch; says what is wrong with it, null where nothing is. */
+const char* step_node(const ilaw_instance* made, const ilaw_batch* b, int64_t k, int after_bad);
+
+#endif

@@ -1,0 +1,2 @@
+// What C cannot do.
+extern "C" void throw_something() { throw 1; }
