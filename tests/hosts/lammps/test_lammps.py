@@ -132,13 +132,40 @@ def test_ranks_do_not_matter(tmp_path):
     assert difference(alone, read(tmp_path, "two")) < 1e-11
 
 
-@pytest.mark.parametrize("law", ["coulomb friction 0.3", "postit memory 0.01 friction 0.3"])
-def test_a_restart_goes_on_as_if_nothing_had_been(tmp_path, law):
-    lammps(tmp_path, pile(law) + "run 100\nwrite_restart half\nrun 100\n" + state("on"))
-    again = BEGIN.replace("atom_style sphere\n", "").replace("newton off", "newton off\nread_restart half")
-    again = again.replace("boundary f f f\n", "").replace("atom_modify map array\n", "")
-    lammps(tmp_path, again + INTEGRATE + WALLS + f"fix p all ilaw/pair {law} sweeps 30 tol 1e-10\nrun 100\n" + state("again"))
+# Two grains hit each other off centre, are bonded by that, and turn: the bond carries what else they would fly
+# apart with, on both sides of the border of ranks, across which they go.
+PAIR = (BEGIN + "processors * 1 1\nregion box block 0 6 0 4 0 4\ncreate_box 1 box\n"
+        + "create_atoms 1 single 1 2 2\ncreate_atoms 1 single 2.1 2.4 2\n" + MASS
+        + "group left id 1\nvelocity left set 8 0 0\ngroup right id 2\nvelocity right set 4 0 0\n")
+FLIGHT = "pair_coeff * *\nfix nve all nve/sphere\nfix p all ilaw/pair postit memory 0.01 friction 0.3\n"
+
+
+def assert_bonded(atoms):
+    a, b = (row[1:4] for row in atoms)
+    assert a[0] > 3 and b[0] > 3
+    assert sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5 == pytest.approx(1.0, abs=5e-3)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_bond_goes_with_its_grains_to_another_rank(tmp_path, ranks):
+    lammps(tmp_path, PAIR + FLIGHT + "run 500\n" + state("bonded"), ranks)
+    assert_bonded(read(tmp_path, "bonded"))
+
+
+def restarted():
+    return BEGIN.replace("atom_style sphere\n", "").replace("boundary f f f\n", "").replace(
+        "newton off\natom_modify map array", "newton off\nread_restart half.100")
+
+
+@pytest.mark.parametrize("begin, fixes, steps", [
+    (BEGIN + BOX + grains(1.05) + MASS, INTEGRATE + WALLS + "fix p all ilaw/pair coulomb friction 0.3\n", 200),
+    (PAIR, FLIGHT, 500)], ids=["pile", "bond"])
+def test_a_restart_goes_on_as_if_nothing_had_been(tmp_path, begin, fixes, steps):
+    lammps(tmp_path, begin + fixes + f"restart 100 half\nrun {steps}\n" + state("on"))
+    lammps(tmp_path, restarted() + fixes + f"run {steps - 100}\n" + state("again"))
     assert difference(read(tmp_path, "on"), read(tmp_path, "again")) < 1e-12
+    if steps == 500:
+        assert_bonded(read(tmp_path, "again"))
 
 
 def test_tied_grains_move_as_one(tmp_path):
