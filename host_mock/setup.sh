@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what the project needs and this machine lacks (Debian 12). Does nothing, and needs no network, when all is
-# there. Usage: host_mock/setup.sh [tests|ci|results], for host_mock/demo.sh without.
+# there. Usage: host_mock/setup.sh [tests|ci|results] [without-hosts], for host_mock/demo.sh without.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libtinyxml2-dev gnuplot-nox
@@ -8,6 +8,9 @@ packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev
 for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsiconos-numerics-dev qemu-user
            dpkg-dev pkgconf python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv
            python3-matplotlib)
+# Solvers that the laws are tried in: LAMMPS with its headers, and MPI.
+for_hosts=(lammps liblammps-dev libopenmpi-dev openmpi-bin)
+[ "${2:-}" = without-hosts ] || for_tests+=("${for_hosts[@]}")
 case ${1:-} in
   tests) packages+=("${for_tests[@]}") ;;
   ci) packages+=("${for_tests[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache) ;;

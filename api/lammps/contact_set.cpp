@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "contact_set.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+
+namespace ilaw::lammps {
+namespace {
+
+const ilaw_parameter* find(const ilaw_law& law, const std::string& name) {
+  for (std::uint32_t i = 0; i < law.parameter_count; ++i)
+    if (name == law.parameters[i]->name) return law.parameters[i];
+  return nullptr;
+}
+
+double number(const std::string& name, const std::string& text) {
+  if (text == "inf") return std::numeric_limits<double>::infinity();
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0')
+    throw error(ILAW_INVALID_PARAMETER, name + ": expected a number or inf, found " + text);
+  return value;
+}
+
+}  // namespace
+
+ContactSet::ContactSet(const std::string& law, const std::vector<std::array<std::string, 2>>& parameters) {
+  const library opened(law);
+  if (opened.plugin().law_count != 1) throw error(ILAW_NOT_FOUND, law + ": not a library of one law");
+  const ilaw_law& description = *opened.plugin().laws[0];
+  std::vector<ilaw_argument> arguments(parameters.size());
+  std::vector<const ilaw_argument*> pointers;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto& [name, text] = parameters[i];
+    arguments[i].struct_size = sizeof arguments[i];
+    arguments[i].name = name.c_str();
+    const ilaw_parameter* known = find(description, name);
+    if (known && known->kind == ILAW_PARAMETER_CHOICE) {
+      arguments[i].kind = ILAW_VALUE_TEXT;
+      arguments[i].text = text.c_str();
+    } else if (known) {
+      arguments[i].number = number(name, text);
+    }
+    pointers.push_back(&arguments[i]);
+  }
+  ilaw_setup setup{};
+  setup.struct_size = sizeof setup;
+  setup.dimension = 3;
+  setup.delassus_form = ILAW_DELASSUS_FULL;
+  setup.frame = ILAW_FRAME_GLOBAL;
+  setup.arguments = pointers.data();
+  setup.argument_count = static_cast<std::uint32_t>(pointers.size());
+  interface_ = std::make_unique<ilaw::interface>(opened, "", setup);
+  state_size_ = interface_->info().state_size;
+}
+
+void ContactSet::clear(double velocity_step) {
+  velocity_step_ = velocity_step;
+  contacts_.clear();
+  new_.clear();
+  for (auto* list : {&body_, &counterpart_}) list->clear();
+  for (auto* values :
+       {&gap_, &area_, &normal_, &arm_, &counterpart_arm_, &wall_, &impulse_, &state_, &energy_})
+    values->clear();
+}
+
+void ContactSet::add(const Contact& contact, const Row& row, double partner) {
+  const std::size_t k = contacts_.size();
+  contacts_.push_back(contact);
+  body_.push_back(contact.body);
+  counterpart_.push_back(contact.counterpart);
+  gap_.push_back(contact.gap);
+  area_.push_back(contact.area);
+  for (std::size_t c = 0; c < 3; ++c) {
+    normal_.push_back(contact.normal[c]);
+    arm_.push_back(-contact.arm * contact.normal[c]);
+    counterpart_arm_.push_back(contact.counterpart_arm * contact.normal[c]);
+    wall_.push_back(contact.wall_velocity[c]);
+  }
+  impulse_.resize(3 * (k + 1));
+  state_.resize(state_size_ * (k + 1));
+  for (std::size_t at = 0; at < row.size(); at += entry_size())
+    if (row[at] == partner) {
+      const auto entry = row.begin() + static_cast<std::ptrdiff_t>(at);
+      for (std::ptrdiff_t c = 0; c < 3; ++c)
+        impulse_[3 * k + static_cast<std::size_t>(c)] = velocity_step_ * entry[1 + c];
+      std::copy(entry + 4, entry + static_cast<std::ptrdiff_t>(entry_size()),
+                state_.end() - static_cast<std::ptrdiff_t>(state_size_));
+      return;
+    }
+  new_.push_back(static_cast<std::int32_t>(k));
+}
+
+const ilaw_contacts* ContactSet::describe(double time, double position_step) {
+  energy_.assign(ILAW_ENERGY_COUNT * size(), 0.0);
+  status_.assign(size(), ILAW_FREE);
+  const auto state_size = static_cast<std::int64_t>(state_size_);
+  batch_ = {};
+  batch_.struct_size = sizeof batch_;
+  batch_.node_count = static_cast<std::int64_t>(size());
+  batch_.time = time;
+  batch_.velocity_step = velocity_step_;
+  batch_.position_step = position_step;
+  batch_.gap = {gap_.data(), 1, 0};
+  batch_.area = {area_.data(), 1, 0};
+  batch_.normal = {normal_.data(), 3, 1};
+  batch_.state_in = {state_.data(), state_size, 1};
+  batch_.state_out = {state_.data(), state_size, 1};
+  batch_.impulse = {impulse_.data(), 3, 1};
+  batch_.energy = {energy_.data(), ILAW_ENERGY_COUNT, 1};
+  batch_.status = status_.data();
+  batch_.status_stride = 1;
+  initialise_new(batch_);
+  described_ = {};
+  described_.struct_size = sizeof described_;
+  described_.delassus_form = ILAW_DELASSUS_FULL;
+  described_.law = &interface_->law();
+  described_.instance = interface_->instance();
+  described_.batch = &batch_;
+  described_.body = body_.data();
+  described_.counterpart = counterpart_.data();
+  described_.arm = {arm_.data(), 3, 1};
+  described_.counterpart_arm = {counterpart_arm_.data(), 3, 1};
+  described_.wall_velocity = {wall_.data(), 3, 1};
+  return &described_;
+}
+
+void ContactSet::initialise_new(const ilaw_batch& batch) {
+  if (new_.empty()) return;
+  ilaw_batch part = batch;
+  part.index = new_.data();
+  part.node_count = static_cast<std::int64_t>(new_.size());
+  interface_->initialise(part);  // what is bad is found, and named, by evaluate
+}
+
+void ContactSet::keep(std::size_t k, double partner, Row& row) const {
+  row.push_back(partner);
+  for (std::size_t c = 0; c < 3; ++c) row.push_back(impulse_[3 * k + c] / velocity_step_);
+  const auto state = state_.begin() + static_cast<std::ptrdiff_t>(k * state_size_);
+  row.insert(row.end(), state, state + static_cast<std::ptrdiff_t>(state_size_));
+}
+
+}  // namespace ilaw::lammps

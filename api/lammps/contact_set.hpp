@@ -1,0 +1,69 @@
+// contact_set.hpp - the contacts of one fix at one step as arrays for coupled.h, and what each leaves for the
+// next step, kept per atom under the tag of the partner: rows that LAMMPS moves, sorts and writes with atoms.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/coupled.h>
+#include <ilaw/loader.hpp>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ilaw::lammps {
+
+using Vector = std::array<double, 3>;
+
+// Contacts of an atom, one after the other: tag of the partner, force (3), state.
+using Row = std::vector<double>;
+
+class ContactSet {
+ public:
+  // The law by name or path, its parameters as pairs of texts. Throws ilaw::error.
+  ContactSet(const std::string& law, const std::vector<std::array<std::string, 2>>& parameters);
+
+  std::size_t entry_size() const { return 4 + state_size_; }
+  std::uint64_t state_size() const { return state_size_; }
+  std::uint32_t state_version() const { return interface_->info().state_version; }
+
+  // Begins a step, in which a force makes an impulse over velocity_step.
+  void clear(double velocity_step);
+  // n points from the counterpart to the body. partner is the name of the other in the row of the first;
+  // `counted` on one rank alone.
+  struct Contact {
+    int body, counterpart;  // counterpart below 0: a wall
+    double partner_of_body, partner_of_counterpart;
+    Vector normal, wall_velocity;
+    double gap, arm, counterpart_arm, area;
+    bool counted;
+  };
+  // What the contact left in the row of one of its atoms, the first if it is here.
+  void add(const Contact& contact, const Row& row, double partner);
+
+  // Arrays in, once all contacts are there. The pointers live until the next clear.
+  const ilaw_contacts* describe(double time, double position_step);
+
+  std::size_t size() const { return contacts_.size(); }
+  const Contact& operator[](std::size_t k) const { return contacts_[k]; }
+  std::uint8_t status(std::size_t k) const { return status_[k]; }
+  const double* energy(std::size_t k) const { return &energy_[k * ILAW_ENERGY_COUNT]; }
+  // Appends what the contact leaves.
+  void keep(std::size_t k, double partner, Row& row) const;
+
+ private:
+  void initialise_new(const ilaw_batch& batch);
+
+  std::unique_ptr<ilaw::interface> interface_;
+  std::uint64_t state_size_ = 0;
+  double velocity_step_ = 0.0;
+  std::vector<Contact> contacts_;
+  std::vector<std::int32_t> body_, counterpart_, new_;
+  std::vector<double> gap_, area_, normal_, arm_, counterpart_arm_, wall_, impulse_, state_, energy_;
+  std::vector<std::uint8_t> status_;
+  ilaw_batch batch_{};
+  ilaw_contacts described_{};
+};
+
+}  // namespace ilaw::lammps

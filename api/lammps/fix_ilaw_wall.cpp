@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fix_ilaw_wall.hpp"
+
+#include <atom.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace LAMMPS_NS {
+namespace {
+
+using ilaw::lammps::Vector;
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+}  // namespace
+
+FixIlawWall::FixIlawWall(LAMMPS* lammps, int narg, char** arg) : FixIlaw(lammps, narg, arg) {
+  read_words();
+  if (walls_.empty()) refuse("expected a wall: plane, sphere or cylinder");
+}
+
+Vector FixIlawWall::read_vector(const std::vector<std::string>& words, std::size_t at) {
+  return {number(words, at), number(words, at + 1), number(words, at + 2)};
+}
+
+int FixIlawWall::read_own(const std::vector<std::string>& words, std::size_t at) {
+  const std::string& word = words[at];
+  if (word == "velocity") {
+    if (walls_.empty()) refuse("velocity has to follow a wall");
+    walls_.back().velocity = read_vector(words, at + 1);
+    return 4;
+  }
+  if (word != "plane" && word != "sphere" && word != "cylinder") return 0;
+  Wall wall{};
+  wall.point = read_vector(words, at + 1);
+  std::size_t next = at + 4;
+  wall.shape = word == "plane" ? Shape::plane : word == "sphere" ? Shape::sphere : Shape::cylinder;
+  if (wall.shape != Shape::sphere) {
+    wall.direction = read_vector(words, next);
+    const double length = std::sqrt(dot(wall.direction, wall.direction));
+    if (!(length > 0.0)) refuse("the direction of a " + word + " is zero");
+    for (double& component : wall.direction) component /= length;
+    next += 3;
+  }
+  if (wall.shape != Shape::plane) {
+    wall.radius = number(words, next++);
+    if (!(wall.radius > 0.0)) refuse("the radius of a " + word + " must be larger than 0");
+    if (next >= words.size() || (words[next] != "inside" && words[next] != "outside"))
+      refuse("say whether grains are inside or outside of the " + word);
+    wall.inside = words[next++] == "inside";
+  }
+  walls_.push_back(wall);
+  return static_cast<int>(next - at);
+}
+
+double FixIlawWall::distance(const Wall& wall, const double* x, Vector& normal) const {
+  Vector from;
+  for (std::size_t c = 0; c < 3; ++c) from[c] = x[c] - (wall.point[c] + moved_time_ * wall.velocity[c]);
+  const double along = dot(from, wall.direction);
+  if (wall.shape == Shape::plane) {
+    normal = wall.direction;
+    return along;
+  }
+  for (std::size_t c = 0; c < 3; ++c) from[c] -= along * wall.direction[c];  // a sphere has no axis
+  const double length = std::sqrt(dot(from, from));
+  const double sense = wall.inside ? -1.0 : 1.0;
+  for (std::size_t c = 0; c < 3; ++c) normal[c] = sense * from[c] / length;
+  return sense * (length - wall.radius);
+}
+
+void FixIlawWall::find() {
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+      ilaw::lammps::ContactSet::Contact contact{};
+      contact.arm = atom->radius[i];
+      contact.gap = distance(walls_[w], atom->x[i], contact.normal) - contact.arm;
+      if (contact.gap >= contact.arm) continue;  // a wall's contacts begin one radius away
+      contact.body = i;
+      contact.counterpart = -1;
+      contact.partner_of_body = -1.0 - static_cast<double>(w);
+      contact.wall_velocity = walls_[w].velocity;
+      contact.area = area_ > 0.0 ? area_ : M_PI * contact.arm * contact.arm;
+      contact.counted = true;
+      contacts_->add(contact, row(i), contact.partner_of_body);
+    }
+  }
+}
+
+}  // namespace LAMMPS_NS

@@ -1,0 +1,34 @@
+// fix_ilaw_wall.hpp - fix ilaw/wall: a law between grains and planes, spheres and cylinders, fixed or moving.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "fix_ilaw.hpp"
+
+namespace LAMMPS_NS {
+
+class FixIlawWall : public FixIlaw {
+ public:
+  FixIlawWall(LAMMPS* lammps, int narg, char** arg);
+
+ private:
+  using Vector = ilaw::lammps::Vector;
+  enum class Shape { plane, sphere, cylinder };
+  struct Wall {
+    Shape shape;
+    Vector point;      // of the plane, centre, on the axis; at time 0
+    Vector direction;  // unit normal of the plane, unit axis
+    double radius;
+    bool inside;  // grains are inside of it
+    Vector velocity;
+  };
+
+  int read_own(const std::vector<std::string>& words, std::size_t at) override;
+  Vector read_vector(const std::vector<std::string>& words, std::size_t at);
+  void find() override;
+  // From the wall to a point, and the normal there.
+  double distance(const Wall& wall, const double* x, Vector& normal) const;
+
+  std::vector<Wall> walls_;
+};
+
+}  // namespace LAMMPS_NS

@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""fix ilaw/pair and fix ilaw/wall in the system's lmp, on one and two ranks: closed forms, runs that go on, restarts."""
+import os
+import pathlib
+import re
+import subprocess
+
+import pytest
+
+STYLES = os.environ["ILAW_LAMMPS"]
+EXAMPLES = sorted((pathlib.Path(os.environ["ILAW_SOURCE"]) / "api" / "lammps" / "examples").glob("in.*"))
+
+BEGIN = f"""
+include {STYLES}
+units si
+atom_style sphere
+newton off
+atom_modify map array
+boundary f f f
+pair_style zero 1.2
+neighbor 0.3 bin
+timestep 1e-3
+"""
+BOX = "region box block 0 3.2 0 3.2 0 6\ncreate_box 1 box\n"
+MASS = "set type 1 diameter 1.0 density 1.909859317102744\n"  # 1
+INTEGRATE = "pair_coeff * *\nfix nve all nve/sphere\nfix g all gravity 10 vector 0 0 -1\n"
+WALLS = ("fix w all ilaw/wall coulomb friction 0.3 plane 0 0 0 0 0 1 plane 0 0 0 1 0 0 plane 3.2 0 0 -1 0 0 "
+         "plane 0 0 0 0 1 0 plane 0 3.2 0 0 -1 0\n")
+
+
+def grains(spacing, skew=0.02):
+    """27 on a lattice, a little off their places."""
+    return "".join(f"create_atoms 1 single {0.52 + spacing * i + skew * k} {0.52 + spacing * j + skew * i} "
+                   f"{0.55 + spacing * k + skew * j}\n" for k in range(3) for j in range(3) for i in range(3))
+
+
+def pile(law="coulomb friction 0.3", sweeps="sweeps 30 tol 1e-10"):
+    return BEGIN + BOX + grains(1.05) + MASS + INTEGRATE + WALLS + f"fix p all ilaw/pair {law} {sweeps}\n"
+
+
+def state(name):
+    """A command that writes all that moves, to the last bit."""
+    return f"write_dump all custom {name} {COLUMNS} modify sort id format float %.17g\n"
+
+
+COLUMNS = "id x y z vx vy vz omegax omegay omegaz"
+
+
+def lammps(tmp_path, text, ranks=1):
+    """What a script prints; raises with it where LAMMPS refuses."""
+    script = tmp_path / f"in.{len(list(tmp_path.iterdir()))}"
+    script.write_text(text)
+    command = ["lmp", "-in", script.name, "-log", "none", "-nocite"]
+    if ranks > 1:
+        command = ["mpirun", "--oversubscribe", "-n", str(ranks), *command]
+    environment = dict(os.environ, OMP_NUM_THREADS="1", OMPI_MCA_mpi_yield_when_idle="1",
+                       OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    done = subprocess.run(command, cwd=tmp_path, env=environment, text=True, timeout=300,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if done.returncode != 0 or "ERROR" in done.stdout:
+        raise RuntimeError(done.stdout[-2000:])
+    return done.stdout
+
+
+def read(tmp_path, name):
+    """Rows of a dump: atoms by tag."""
+    frame = (tmp_path / name).read_text().rsplit("omegaz", 1)[1]
+    return [[float(number) for number in line.split()] for line in frame.strip().splitlines()]
+
+
+def difference(a, b):
+    assert len(a) == len(b)
+    return max(abs(x - y) for left, right in zip(a, b) for x, y in zip(left, right))
+
+
+def thermo(output):
+    """Numbers of the rows between the header of the thermo output and the time of the loop."""
+    rows = re.findall(r"^Step .*\n((?: *[-\d].*\n)+)", output, re.M)
+    return [[float(number) for number in line.split()] for line in "".join(rows).splitlines()]
+
+
+def test_a_grain_bounces_to_the_height_it_fell_from(tmp_path):
+    text = (BEGIN + BOX + "create_atoms 1 single 2 2 2\n" + MASS + INTEGRATE
+            + "fix w all ilaw/wall contact restitution 1 plane 0 0 0 0 0 1\n"
+            + "variable z equal z[1]\nvariable e equal 0.5*vz[1]^2+10*z[1]\n"
+            + "thermo_style custom step v_z v_e f_w[4] f_w[7]\nthermo 1\nrun 1600\n")
+    rows = thermo(lammps(tmp_path, text))
+    assert max(row[1] for row in rows[800:]) == pytest.approx(2.0, abs=1e-4)
+    # In the two steps about a bounce velocities are means of before and after.
+    assert sum(abs(row[2] - 20.0) > 1e-3 for row in rows) <= 3
+    assert max(row[3] for row in rows) == 0.0, "penetrates"
+    assert abs(rows[-1][4]) < 1e-12, "an elastic bounce dissipates nothing"
+
+
+def test_a_pile_settles_and_its_outputs_say_so(tmp_path):
+    text = pile() + ("thermo_style custom step ke f_p[1] f_p[3] f_p[4] f_p[5] f_p[6] f_w[1] f_w[4]\n"
+                     "thermo 600\nrun 600\n")
+    last = thermo(lammps(tmp_path, text))[-1]
+    _, kinetic, contacts, residual, overlap, approach, friction, at_walls, wall_overlap = last
+    assert kinetic < 0.05 * 27 * 10
+    assert contacts > 10 and at_walls >= 9
+    assert residual < 1e-3
+    assert max(overlap, wall_overlap) < 1e-2
+    assert approach < 1e-2
+    assert friction > 0
+
+
+def test_ten_runs_are_one_run(tmp_path):
+    lammps(tmp_path, pile() + "run 300\n" + state("one"))
+    lammps(tmp_path, pile() + "run 30\n" * 10 + state("ten"))
+    one = read(tmp_path, "one")
+    assert max(abs(row[6]) for row in one) > 1e-3, "nothing happened"
+    assert difference(one, read(tmp_path, "ten")) < 1e-12
+
+
+# In the step in which the grain touches, runs end before and after it.
+def test_a_bounce_on_the_border_of_two_runs_is_not_lost(tmp_path):
+    begin = (BEGIN + BOX + "create_atoms 1 single 2 2 0.501\nvelocity all set 0 0 -1\n" + MASS
+             + "pair_coeff * *\nfix nve all nve/sphere\n"
+             + "fix w all ilaw/wall contact restitution 1 plane 0 0 0 0 0 1\n")
+    for steps in (1, 2, 3):
+        lammps(tmp_path, begin + f"run {steps}\nrun {6 - steps}\n" + state("bounced"))
+        assert read(tmp_path, "bounced")[0][6] == pytest.approx(1.0, abs=1e-14), steps
+
+
+def test_ranks_do_not_matter(tmp_path):
+    short = "sweeps 5 tol 1e-6"
+    lammps(tmp_path, pile(sweeps=short) + "run 100\n" + state("alone"))
+    lammps(tmp_path, "processors 2 1 1\n" + pile(sweeps=short) + "run 100\n" + state("two"), ranks=2)
+    alone = read(tmp_path, "alone")
+    assert max(abs(row[6]) for row in alone) > 1e-3, "nothing happened"
+    assert difference(alone, read(tmp_path, "two")) < 1e-11
+
+
+# Two grains hit each other off centre, are bonded by that, and turn: the bond carries what else they would fly
+# apart with, on both sides of the border of ranks, across which they go.
+PAIR = (BEGIN + "processors * 1 1\nregion box block 0 6 0 4 0 4\ncreate_box 1 box\n"
+        + "create_atoms 1 single 1 2 2\ncreate_atoms 1 single 2.1 2.4 2\n" + MASS
+        + "group left id 1\nvelocity left set 8 0 0\ngroup right id 2\nvelocity right set 4 0 0\n")
+FLIGHT = "pair_coeff * *\nfix nve all nve/sphere\nfix p all ilaw/pair postit memory 0.01 friction 0.3\n"
+
+
+def assert_bonded(atoms):
+    a, b = (row[1:4] for row in atoms)
+    assert a[0] > 3 and b[0] > 3
+    assert sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5 == pytest.approx(1.0, abs=5e-3)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_bond_goes_with_its_grains_to_another_rank(tmp_path, ranks):
+    lammps(tmp_path, PAIR + FLIGHT + "run 500\n" + state("bonded"), ranks)
+    assert_bonded(read(tmp_path, "bonded"))
+
+
+def restarted():
+    return BEGIN.replace("atom_style sphere\n", "").replace("boundary f f f\n", "").replace(
+        "newton off\natom_modify map array", "newton off\nread_restart half.100")
+
+
+@pytest.mark.parametrize("begin, fixes, steps", [
+    (BEGIN + BOX + grains(1.05) + MASS, INTEGRATE + WALLS + "fix p all ilaw/pair coulomb friction 0.3\n", 200),
+    (PAIR, FLIGHT, 500)], ids=["pile", "bond"])
+def test_a_restart_goes_on_as_if_nothing_had_been(tmp_path, begin, fixes, steps):
+    lammps(tmp_path, begin + fixes + f"restart 100 half\nrun {steps}\n" + state("on"))
+    lammps(tmp_path, restarted() + fixes + f"run {steps - 100}\n" + state("again"))
+    assert difference(read(tmp_path, "on"), read(tmp_path, "again")) < 1e-12
+    if steps == 500:
+        assert_bonded(read(tmp_path, "again"))
+
+
+def test_tied_grains_move_as_one(tmp_path):
+    text = (BEGIN + BOX + grains(1.0, 0.0) + MASS + "pair_coeff * *\nfix nve all nve/sphere\n"
+            + "velocity all create 1e22 4711 dist gaussian\n"
+            + "fix p all ilaw/pair tie sweeps 2000 tol 1e-12\nthermo_style custom step ke f_p[3]\nthermo 5\nrun 20\n")
+    rows = thermo(lammps(tmp_path, text))
+    for before, after in zip(rows[1:], rows[2:]):
+        assert after[1] <= before[1] * (1.0 + 1e-2), "ties explode"
+    assert max(row[2] for row in rows) < 1e-10
+
+
+@pytest.mark.parametrize("wall, lowest", [("cylinder 1.6 1.6 1.6 1 0 0 1.5 inside", 0.6),
+                                          ("sphere 1.6 1.6 1.6 1.5 inside", 0.6),
+                                          ("sphere 1.6 1.6 -1 1.2 outside", 0.7),
+                                          ("plane 0 0 -0.5 0 0 1 velocity 0 0 1", 0.5)])
+def test_walls_hold_where_they_are(tmp_path, wall, lowest):
+    text = (BEGIN + BOX + "create_atoms 1 single 1.6 1.6 1.2\n" + MASS + INTEGRATE
+            + f"fix w all ilaw/wall contact {wall}\nvariable z equal z[1]\n"
+            + "thermo_style custom step v_z\nthermo 500\nrun 500\n")
+    assert thermo(lammps(tmp_path, text))[-1][1] == pytest.approx(lowest, abs=2e-5)
+
+
+@pytest.mark.parametrize("change, message", [
+    (("newton off", "newton on"), "needs newton off: with newton on only one of two ranks finds"),
+    (("coulomb friction 0.3 sweeps", "coulomb friction -1 sweeps"), "parameter 'friction'"),
+    (("coulomb friction 0.3 sweeps", "no_such_law sweeps"), "no_such_law"),
+    (("pair_style zero 1.2", "pair_style zero 0.9"), "has to be larger than the largest diameter"),
+    (("pair coulomb", "pair coulomb mu 0.1"), "mu"),
+    (("tol 1e-10\n", "tol 1e-10\nfix late all gravity 1 vector 1 0 0\n"), "fix late comes later"),
+])
+def test_says_what_it_refuses(tmp_path, change, message):
+    text = pile() + "run 1\n"
+    assert change[0] in text
+    with pytest.raises(RuntimeError, match=re.escape(message)):
+        lammps(tmp_path, text.replace(*change))
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.name)
+def test_examples_run(tmp_path, example):
+    text = example.read_text()
+    assert "include ${ilaw}" in text
+    shorter = re.sub(r"^run .*", "run 50", text, flags=re.M)
+    rows = thermo(lammps(tmp_path, f"variable ilaw string {STYLES}\n" + shorter))
+    assert rows[-1][0] >= 50
