@@ -3,6 +3,7 @@
 #include "cli/commands.hpp"
 
 #include "base/exit_code.hpp"
+#include "cli/terminal.hpp"
 
 #include <ilaw/loader.hpp>
 
