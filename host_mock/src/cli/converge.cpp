@@ -5,6 +5,7 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/scene_error.hpp"
+#include "cli/guard.hpp"
 #include "cli/terminal.hpp"
 #include "study/convergence.hpp"
 #include "study/convergence_files.hpp"
@@ -47,6 +48,7 @@ void print_table(const ErrorTable& table) {
 
 int converge(const Options& options) {
   set_threads(options.threads);
+  guard_against_laws();
   ErrorTable table;
   std::string title;
   std::optional<HeldFolder> held;

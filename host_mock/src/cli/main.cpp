@@ -3,6 +3,7 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "cli/commands.hpp"
+#include "cli/guard.hpp"
 #include "cli/terminal.hpp"
 
 #include <CLI/CLI.hpp>
@@ -73,5 +74,7 @@ int run_command(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   ilaw::host::open_standard_streams();
-  return ilaw::host::after_output(run_command(argc, argv));
+  const int code = ilaw::host::after_output(run_command(argc, argv));
+  ilaw::host::end_guard();
+  return code;
 }

@@ -5,6 +5,7 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/scene_error.hpp"
+#include "cli/guard.hpp"
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "results/checkpoint.hpp"
@@ -15,7 +16,7 @@
 #include "scene/scene.hpp"
 
 #include <chrono>
-#include <csignal>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -25,6 +26,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -38,11 +40,6 @@ struct Options {
   bool resume = false;
   int threads = 1;
 };
-
-// Ctrl-C and kill end a run at the end of its step, with whole files.
-volatile std::sig_atomic_t stop_requested = 0;
-
-void request_stop(int /*signal*/) { stop_requested = 1; }
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -71,7 +68,7 @@ class Run {
     Progress progress(integrator_.steps(), scene_.steps);
     try {
       if (!options_.resume && scene_.output.fields > 0) fields_.write(integrator_);
-      while (integrator_.steps() < scene_.steps && !stop_requested) {
+      while (integrator_.steps() < scene_.steps && !stop_requested()) {
         integrator_.step();
         history_->add_step(integrator_);
         if (events_) events_->add_step(integrator_);
@@ -79,6 +76,7 @@ class Run {
         progress.show(integrator_.steps());
       }
       record.interrupted = integrator_.steps() < scene_.steps;
+      check_results();
       if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
       history_->commit();
       if (events_) events_->commit();
@@ -108,8 +106,8 @@ class Run {
   // What an earlier run left in the folder, and pictures of it, would be taken for this one's.
   void clear() const {
     clear_checkpoints(options_.folder);
-    for (const char* name : {"summary.json", "history.csv", "events.csv", "history.png", "history.svg",
-                             "history.gnuplot"})
+    for (const char* name :
+         {"summary.json", "history.csv", "events.csv", "history.png", "history.svg", "history.gnuplot"})
       std::filesystem::remove(options_.folder / name);
     fields_.clear();
   }
@@ -136,10 +134,28 @@ class Run {
     const bool checkpoint = options_.checkpoint_every > 0 && step % options_.checkpoint_every == 0;
     if (!row && !field && !checkpoint) return;
     const Clock::time_point start = Clock::now();
+    if (row || field) check_motion();
     if (row) history_->add_row(integrator_);
     if (field) fields_.write(integrator_);
     if (checkpoint) write_checkpoint_now();
     record.seconds_output += seconds_since(start);
+  }
+
+  // Velocities are looked at in every step; what follows from them, where it is written.
+  void check_motion() const {
+    if (!integrator_.displacement().allFinite())
+      throw std::runtime_error("the motion diverged: a displacement is not finite");
+  }
+  void check_results() const {
+    check_motion();
+    const EnergyReport energy = integrator_.energy();
+    for (const auto& [name, value] :
+         {std::pair{"kinetic energy", energy.kinetic}, std::pair{"internal energy", energy.internal},
+          std::pair{"external work", energy.external_work},
+          std::pair{"work of the interfaces", energy.interface_work}})
+      if (!std::isfinite(value))
+        throw std::runtime_error("the motion diverged: the " + std::string(name) + " is " +
+                                 std::to_string(value));
   }
 
   void write_checkpoint_now() {
@@ -204,15 +220,15 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
 
 int run(const Options& options) {
   set_threads(options.threads);
+  guard_against_laws();
+  warn_of_search_path();
   const Clock::time_point start = Clock::now();
   std::optional<Scene> scene = read_or_explain(options.scene);
   if (!scene) return exit_bad_input;
   // What a run resumes from stands in its folder already.
   std::optional<HeldFolder> held;
   if (!options.resume || std::filesystem::is_directory(options.folder)) held.emplace(options.folder);
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to report, not one to die of
+  catch_interrupts();
   const std::unique_ptr<Run> run = start_or_explain(*scene, options);
   if (!run) return exit_bad_input;
   const auto warn = [&](const std::vector<std::string>& warnings) {

@@ -5,6 +5,7 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/scene_error.hpp"
+#include "cli/guard.hpp"
 #include "cli/terminal.hpp"
 #include "scene/scene.hpp"
 #include "study/work_precision.hpp"
@@ -102,6 +103,7 @@ int study_scene(const std::filesystem::path& file, const std::filesystem::path& 
 
 int study(const Options& options) {
   set_threads(options.threads);
+  guard_against_laws();
   const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
   if (options.scenes.size() == 1) return study_scene(options.scenes[0], folder, options);
   // A folder for each.

@@ -4,12 +4,15 @@
 #include "base/exit_code.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 namespace ilaw::host {
 
@@ -39,6 +42,19 @@ std::string printable(std::string_view text) {
 }
 
 void complain(std::string_view text) { std::fprintf(stderr, "ilaw: %s\n", printable(text).c_str()); }
+
+void warn_of_search_path() {
+  const char* path = std::getenv("ILAW_PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    struct stat found {};
+    if (folder.empty() || stat(folder.c_str(), &found) != 0) continue;
+    if (folder.front() != '/')
+      complain("ILAW_PATH: " + folder + " is not searched, expected an absolute path");
+    else if (found.st_mode & S_IWOTH)
+      complain("ILAW_PATH: " + folder + " is not searched, since every user may write there");
+  }
+}
 
 int after_output(int code) {
   errno = 0;

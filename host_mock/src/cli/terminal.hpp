@@ -18,6 +18,9 @@ std::string printable(std::string_view text);
 // A line on stderr, after the program's name.
 void complain(std::string_view text);
 
+// Of folders in ILAW_PATH that the loader leaves out.
+void warn_of_search_path();
+
 // code, or exit_failed where stdout did not take all that was printed.
 int after_output(int code);
 
