@@ -10,6 +10,7 @@
 #include "search.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <list>
@@ -193,6 +194,16 @@ std::unique_ptr<ilaw_interface> create_interface(ilaw_library& library, const il
   return std::unique_ptr<ilaw_interface>(made.release());
 }
 
+// A reason may be a pointer to nowhere, or steer a terminal: hosts print it.
+std::int32_t with_readable_reason(std::int32_t code, ilaw_report* report) {
+  if (code == ILAW_OK || !report ||
+      report->struct_size < offsetof(ilaw_report, reason) + sizeof report->reason || !report->reason)
+    return code;
+  if (!ilaw::loading::readable_text(report->reason) || !ilaw::loading::clean_text(report->reason, false))
+    report->reason = "(the library gave a reason that is no readable text)";
+  return code;
+}
+
 // A report whose struct_size cannot be true is given to no library.
 bool usable(ilaw_report* report) { return !report || ilaw::sized::cleared(report); }
 
@@ -286,13 +297,13 @@ int32_t ilaw_interface_info(const ilaw_interface* interface, ilaw_instance_info*
 int32_t ilaw_interface_initialise(const ilaw_interface* interface, const ilaw_batch* batch,
                                   ilaw_report* report) {
   if (!interface || !usable(report)) return ILAW_INVALID_ARGUMENT;
-  return interface->law->initialise(interface->instance, batch, report);
+  return with_readable_reason(interface->law->initialise(interface->instance, batch, report), report);
 }
 
 int32_t ilaw_interface_evaluate(const ilaw_interface* interface, const ilaw_batch* batch,
                                 ilaw_report* report) {
   if (!interface || !usable(report)) return ILAW_INVALID_ARGUMENT;
-  return interface->law->evaluate(interface->instance, batch, report);
+  return with_readable_reason(interface->law->evaluate(interface->instance, batch, report), report);
 }
 
 int32_t ilaw_search(int32_t (*visit)(const char* path, void* context), void* context) {

@@ -1,41 +1,106 @@
-// files.hpp - the folder of the results, and files that are written whole or not at all.
+// files.hpp - the folder of the results, and files that are written whole or not at all: whatever
+// fails or breaks off meanwhile, what has a file's name is complete. Symbolic links in the folder
+// are replaced, never followed.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <ostream>
+#include <stdexcept>
+#include <streambuf>
+#include <string>
 
 namespace ilaw::host {
 
-// Makes the folder that --out names, if it does not exist, and tries whether files can be made in
-// it; says on stderr why they cannot.
-bool make_folder(const std::filesystem::path& folder);
+// A folder that cannot hold results: found before anything ran.
+class FolderError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
-// A file that appears under its name only when it is complete: written beside it, then renamed.
+// A file that cannot be written, and why.
+class WriteError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// The folder that --out names: made if it does not exist, and held by this process alone. Throws
+// FolderError where that cannot be, and names the process that holds it.
+class HeldFolder {
+ public:
+  explicit HeldFolder(const std::filesystem::path& folder);
+  ~HeldFolder();
+  HeldFolder(const HeldFolder&) = delete;
+  HeldFolder& operator=(const HeldFolder&) = delete;
+
+ private:
+  std::filesystem::path lock_;
+  int descriptor_ = -1;
+};
+
+// What tells bytes from others: their number and their CRC-32.
+struct FileMark {
+  std::uintmax_t size = 0;
+  std::uint32_t checksum = 0;
+  bool operator==(const FileMark&) const = default;
+
+  void add(const char* bytes, std::size_t count);
+};
+
+// Reads a file, but no symbolic link. Throws std::runtime_error with the file and the reason.
+std::string read_whole(const std::filesystem::path& file);
+// Throws std::runtime_error where the file, complete or not, does not begin with what was marked.
+void check_begins_with(const std::filesystem::path& file, const FileMark& mark);
+
+// What goes to a descriptor, every write checked. The first error stays.
+class FileBuffer : public std::streambuf {
+ public:
+  void open(int descriptor, const FileMark& written);
+  int close();  // 0 or the first error
+  int error() const { return error_; }
+  // Of all that was written, once the stream was flushed.
+  const FileMark& mark() const { return mark_; }
+  // All that was written is on the disk when this returns; 0 or the first error.
+  int keep();
+
+ protected:
+  int_type overflow(int_type character) override;
+  int sync() override;
+
+ private:
+  std::array<char, 1 << 14> room_{};
+  int descriptor_ = -1, error_ = 0;
+  FileMark mark_;
+};
+
+// A file that appears under its name only when it is complete and on the disk: written beside it,
+// then renamed.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path file);
-  // Goes on after the first size bytes of what an earlier run left, complete or not.
-  AtomicFile(std::filesystem::path file, std::uintmax_t size);
+  // Goes on after what an earlier run had written, complete or not.
+  AtomicFile(std::filesystem::path file, const FileMark& written);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   std::ostream& stream() { return stream_; }
-  // Bytes written so far, all of them in the file.
-  std::uintmax_t flush();
-  // Throws std::runtime_error when the disk did not take all so far, as far as is known.
+  // Of what was written so far, all of it on the disk.
+  FileMark flush();
+  // Throws WriteError when the disk did not take all so far, as far as is known.
   void check() const;
-  // Throws std::runtime_error when the disk did not take it all.
-  void commit();
+  // Throws WriteError when the disk did not take it all.
+  FileMark commit();
   // Instead, where the file cannot be completed: the whole lines that the disk took get its name.
   void keep_lines();
 
  private:
+  [[noreturn]] void fail(int error) const;
+
   std::filesystem::path file_, partial_;
-  std::ofstream stream_;
-  bool committed_ = false;
+  FileBuffer buffer_;
+  std::ostream stream_{&buffer_};
+  bool is_kept_ = false;
 };
 
 }  // namespace ilaw::host

@@ -5,11 +5,14 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/scene_error.hpp"
+#include "cli/guard.hpp"
+#include "cli/terminal.hpp"
 #include "study/convergence.hpp"
 #include "study/convergence_files.hpp"
 
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace ilaw::host {
@@ -45,19 +48,21 @@ void print_table(const ErrorTable& table) {
 
 int converge(const Options& options) {
   set_threads(options.threads);
+  guard_against_laws();
   ErrorTable table;
   std::string title;
+  std::optional<HeldFolder> held;
   const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
   try {
     const json source = read_scene_source(options.scene);
     const Sweep sweep = options.sweep.over(read_sweep(source.value("converge", json::object())));
     title = source.value("title", options.scene.stem().string());
     check_sweep(source, sweep, options.scene);  // before anything is written
-    if (!make_folder(folder)) return exit_bad_input;
+    held.emplace(folder);
     table = run_levels(source, sweep, options.scene);
     write_convergence(table, sweep, title, folder);
   } catch (const SceneError& error) {
-    std::fprintf(stderr, "ilaw: %s: %s\n", options.scene.c_str(), error.what());
+    complain(options.scene.string() + ": " + error.what());
     return exit_bad_input;
   }
   print_table(table);

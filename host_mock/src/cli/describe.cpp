@@ -3,6 +3,8 @@
 #include "cli/commands.hpp"
 
 #include "base/exit_code.hpp"
+#include "cli/child.hpp"
+#include "cli/terminal.hpp"
 
 #include <ilaw/loader.hpp>
 
@@ -12,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +23,8 @@ namespace ilaw::host {
 namespace {
 
 using nlohmann::json;
+
+constexpr auto replace = json::error_handler_t::replace;  // names of files need not be UTF-8
 
 struct Bit {
   std::uint32_t value;
@@ -149,20 +154,25 @@ void print_law(const json& law) {
 
 int describe(const std::string& law_or_file, bool as_json) {
   try {
-    const ilaw::library library(law_or_file);
-    const json description = describe_library(library);
+    warn_of_search_path();
+    const json description = json::parse(
+        in_child([&] { return describe_library(ilaw::library(law_or_file)).dump(-1, ' ', false, replace); }));
     if (as_json) {
       std::printf("%s\n", description.dump(2).c_str());
       return exit_done;
     }
-    std::printf("%s %s (%s, %s), ABI %u.%u\n%s\n", library.plugin().name, library.plugin().version,
-                library.plugin().vendor, library.plugin().licence, library.plugin().abi_major,
-                library.plugin().abi_minor, library.path().c_str());
+    const auto text = [&](const char* key) { return text_of(description[key]); };
+    std::printf("%s %s (%s, %s), ABI %s.%s\n%s\n", text("name").c_str(), text("version").c_str(),
+                text("vendor").c_str(), text("licence").c_str(), description["abi"][0].dump().c_str(),
+                description["abi"][1].dump().c_str(), printable(text("file")).c_str());
     for (const json& law : description["laws"]) print_law(law);
     return exit_done;
   } catch (const ilaw::error& error) {
-    std::fprintf(stderr, "ilaw: %s\n", error.what());
+    complain(error.what());
     return exit_bad_input;
+  } catch (const std::runtime_error& error) {
+    complain("library '" + law_or_file + "': " + error.what());
+    return exit_failed;
   }
 }
 

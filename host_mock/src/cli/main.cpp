@@ -1,12 +1,15 @@
 // The `ilaw` program.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/exit_code.hpp"
+#include "base/files.hpp"
 #include "cli/commands.hpp"
+#include "cli/guard.hpp"
+#include "cli/terminal.hpp"
 
 #include <CLI/CLI.hpp>
 
-#include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -32,9 +35,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
   return text + "\nRun `" + name + " --help` for more.\n";
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_command(int argc, char** argv) {
   using namespace ilaw::host;
   CLI::App app{
       "ilaw - interface laws in explicit dynamics: runs scenes, draws them, tells what laws there are"};
@@ -58,8 +59,22 @@ int main(int argc, char** argv) {
   }
   try {
     return chosen();
+  } catch (const FolderError& error) {
+    complain(error.what());
+    return exit_bad_input;
+  } catch (const std::bad_alloc&) {
+    complain("the memory does not suffice");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "ilaw: %s\n", error.what());
-    return exit_failed;
+    complain(error.what());
   }
+  return exit_failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ilaw::host::open_standard_streams();
+  const int code = ilaw::host::after_output(run_command(argc, argv));
+  ilaw::host::end_guard();
+  return code;
 }

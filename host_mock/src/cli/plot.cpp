@@ -4,6 +4,7 @@
 
 #include "base/csv.hpp"
 #include "base/exit_code.hpp"
+#include "cli/terminal.hpp"
 #include "results/gnuplot.hpp"
 #include "results/picture.hpp"
 
@@ -50,8 +51,8 @@ Caption read_caption(const std::filesystem::path& folder) {
 }
 
 int refuse(const std::filesystem::path& history, const char* found) {
-  std::fprintf(stderr, "ilaw: %s: found %s, expected the history that `ilaw run` writes of watched nodes\n",
-               history.c_str(), found);
+  complain(history.string() + ": found " + found +
+           ", expected the history that `ilaw run` writes of watched nodes");
   return exit_bad_input;
 }
 

@@ -5,7 +5,9 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/scene_error.hpp"
+#include "cli/guard.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
 #include "results/fields.hpp"
@@ -14,7 +16,7 @@
 #include "scene/scene.hpp"
 
 #include <chrono>
-#include <csignal>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -24,7 +26,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <system_error>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -39,24 +41,12 @@ struct Options {
   int threads = 1;
 };
 
-// Ctrl-C and kill end a run at the end of its step, with whole files.
-volatile std::sig_atomic_t stop_requested = 0;
-
-void request_stop(int /*signal*/) { stop_requested = 1; }
-
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// What an earlier run left in the folder, and pictures of it, would pass for results of this one.
-void clear_results(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  for (const char* name : {"events.csv", "history.png", "history.svg", "history.gnuplot"})
-    std::filesystem::remove(folder / name, ignored);
-}
-
-// A run and what it writes. The constructor throws std::runtime_error where there is nothing to
-// resume from, or nothing can be written.
+// A run and what it writes. The constructor throws WriteError where nothing can be written, and
+// other std::runtime_error where there is nothing to resume from.
 class Run {
  public:
   Run(Scene& scene, const Options& options)
@@ -68,9 +58,8 @@ class Run {
       resume();
       return;
     }
+    clear();
     history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
-    clear_results(options_.folder);
-    fields_.clear();
     if (scene_.output.events) events_.emplace(scene_, options_.folder);
   }
 
@@ -79,7 +68,7 @@ class Run {
     Progress progress(integrator_.steps(), scene_.steps);
     try {
       if (!options_.resume && scene_.output.fields > 0) fields_.write(integrator_);
-      while (integrator_.steps() < scene_.steps && !stop_requested) {
+      while (integrator_.steps() < scene_.steps && !stop_requested()) {
         integrator_.step();
         history_->add_step(integrator_);
         if (events_) events_->add_step(integrator_);
@@ -87,6 +76,7 @@ class Run {
         progress.show(integrator_.steps());
       }
       record.interrupted = integrator_.steps() < scene_.steps;
+      check_results();
       if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
       history_->commit();
       if (events_) events_->commit();
@@ -113,12 +103,25 @@ class Run {
   RunRecord record;
 
  private:
+  // What an earlier run left in the folder, and pictures of it, would be taken for this one's.
+  void clear() const {
+    clear_checkpoints(options_.folder);
+    for (const char* name :
+         {"summary.json", "history.csv", "events.csv", "history.png", "history.svg", "history.gnuplot"})
+      std::filesystem::remove(options_.folder / name);
+    fields_.clear();
+  }
+
   void resume() {
-    const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder);
-    history_ = std::make_unique<History>(scene_, integrator_, options_.folder, checkpoint.history_size);
-    std::istringstream history(checkpoint.history), events(checkpoint.events);
+    std::string said;
+    const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder, said);
+    if (!said.empty())
+      complain(said + "; going on from the checkpoint before it, at step " +
+               std::to_string(integrator_.steps()));
+    history_ = std::make_unique<History>(scene_, integrator_, options_.folder, checkpoint.history);
+    std::istringstream history(checkpoint.history_state), events(checkpoint.events_state);
     history_->load(history);
-    if (scene_.output.events) events_.emplace(scene_, options_.folder, checkpoint.events_size).load(events);
+    if (scene_.output.events) events_.emplace(scene_, options_.folder, checkpoint.events).load(events);
     fields_.resume(checkpoint.fields);
     record.resumed_at = integrator_.steps();
   }
@@ -131,20 +134,38 @@ class Run {
     const bool checkpoint = options_.checkpoint_every > 0 && step % options_.checkpoint_every == 0;
     if (!row && !field && !checkpoint) return;
     const Clock::time_point start = Clock::now();
+    if (row || field) check_motion();
     if (row) history_->add_row(integrator_);
     if (field) fields_.write(integrator_);
     if (checkpoint) write_checkpoint_now();
     record.seconds_output += seconds_since(start);
   }
 
+  // Velocities are looked at in every step; what follows from them, where it is written.
+  void check_motion() const {
+    if (!integrator_.displacement().allFinite())
+      throw std::runtime_error("the motion diverged: a displacement is not finite");
+  }
+  void check_results() const {
+    check_motion();
+    const EnergyReport energy = integrator_.energy();
+    for (const auto& [name, value] :
+         {std::pair{"kinetic energy", energy.kinetic}, std::pair{"internal energy", energy.internal},
+          std::pair{"external work", energy.external_work},
+          std::pair{"work of the interfaces", energy.interface_work}})
+      if (!std::isfinite(value))
+        throw std::runtime_error("the motion diverged: the " + std::string(name) + " is " +
+                                 std::to_string(value));
+  }
+
   void write_checkpoint_now() {
     std::ostringstream history, events;
     history_->save(history);
     if (events_) events_->save(events);
-    write_checkpoint(
-        scene_, integrator_,
-        {history_->flush(), fields_.written(), history.str(), events_ ? events_->flush() : 0, events.str()},
-        options_.folder);
+    write_checkpoint(scene_, integrator_,
+                     {history_->flush(), fields_.written(), history.str(),
+                      events_ ? events_->flush() : FileMark{}, events.str()},
+                     options_.folder);
   }
 
   Scene& scene_;
@@ -159,7 +180,7 @@ std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
   try {
     return read_scene(file);
   } catch (const SceneError& error) {
-    std::fprintf(stderr, "ilaw: %s: %s\n", file.c_str(), error.what());
+    complain(file.string() + ": " + error.what());
   }
   return std::nullopt;
 }
@@ -167,8 +188,10 @@ std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
 std::unique_ptr<Run> start_or_explain(Scene& scene, const Options& options) {
   try {
     return std::make_unique<Run>(scene, options);
+  } catch (const WriteError&) {
+    throw;
   } catch (const std::runtime_error& error) {
-    std::fprintf(stderr, "ilaw: %s\n", error.what());
+    complain(error.what());
   }
   return nullptr;
 }
@@ -176,20 +199,20 @@ std::unique_ptr<Run> start_or_explain(Scene& scene, const Options& options) {
 int report(const Scene& scene, const Integrator& integrator, const RunRecord& record,
            const Options& options) {
   const std::filesystem::path& folder = options.folder;
+  const std::string file = scene.file.string(), steps = std::to_string(integrator.steps());
   if (!record.failure.empty()) {
-    std::fprintf(stderr, "ilaw: %s: failed after step %lld, time %g: %s\n", scene.file.c_str(),
-                 static_cast<long long>(integrator.steps()), integrator.time(), record.failure.c_str());
+    complain(file + ": failed after step " + steps + ", time " + text_of("%g", integrator.time()) + ": " +
+             record.failure);
     return exit_failed;
   }
   if (record.interrupted) {
-    std::fprintf(
-        stderr, "ilaw: %s: interrupted at step %lld of %lld; the files in %s are whole up to there%s\n",
-        scene.file.c_str(), static_cast<long long>(integrator.steps()), static_cast<long long>(scene.steps),
-        folder.c_str(), options.checkpoint_every > 0 ? ", and --resume goes on from there" : "");
+    complain(file + ": interrupted at step " + steps + " of " + std::to_string(scene.steps) +
+             "; the files in " + folder.string() + " are whole up to there" +
+             (options.checkpoint_every > 0 ? ", and --resume goes on from there" : ""));
     return exit_failed;
   }
   std::printf("%s: %lld steps to time %g in %.2g s, energy balance closed to %.1e%s; results in %s\n",
-              scene.title.c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
+              printable(scene.title).c_str(), static_cast<long long>(integrator.steps()), integrator.time(),
               record.seconds_total, integrator.energy().balance_error,
               scene.warnings.empty() && record.warnings.empty() ? "" : ", with warnings", folder.c_str());
   return exit_done;
@@ -197,18 +220,19 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
 
 int run(const Options& options) {
   set_threads(options.threads);
+  guard_against_laws();
+  warn_of_search_path();
   const Clock::time_point start = Clock::now();
   std::optional<Scene> scene = read_or_explain(options.scene);
+  if (!scene) return exit_bad_input;
   // What a run resumes from stands in its folder already.
-  if (!scene || !(options.resume || make_folder(options.folder))) return exit_bad_input;
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to report, not one to die of
+  std::optional<HeldFolder> held;
+  if (!options.resume || std::filesystem::is_directory(options.folder)) held.emplace(options.folder);
+  catch_interrupts();
   const std::unique_ptr<Run> run = start_or_explain(*scene, options);
   if (!run) return exit_bad_input;
   const auto warn = [&](const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings)
-      std::fprintf(stderr, "ilaw: %s: warning: %s\n", options.scene.c_str(), warning.c_str());
+    for (const std::string& warning : warnings) complain(options.scene.string() + ": warning: " + warning);
   };
   warn(scene->warnings);
   run->advance();

@@ -5,12 +5,15 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "cli/commands.hpp"
+#include "cli/guard.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 
 #include <array>
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,17 +34,19 @@ void print_table(const StressReport& report) {
 }
 
 int run_stress(const StressSetup& setup) {
-  if (!setup.keep.empty() && !make_folder(setup.keep)) return exit_bad_input;
+  std::optional<HeldFolder> held;
+  if (!setup.keep.empty()) held.emplace(setup.keep);
+  guard_against_laws();
   StressReport report;
   try {
     Progress progress(0, setup.scenes);
     report = stress(setup, [&](std::int64_t done) { progress.show(done); });
   } catch (const ilaw::error& error) {
-    std::fprintf(stderr, "ilaw: %s\n", error.what());
+    complain(error.what());
     return exit_bad_input;
   }
   if (report.rows.empty()) {
-    std::fprintf(stderr, "ilaw: found no law on the search path, %s\n", ilaw::search_path().c_str());
+    complain("found no law on the search path, " + ilaw::search_path());
     return exit_bad_input;
   }
   print_table(report);

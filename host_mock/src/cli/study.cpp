@@ -5,6 +5,8 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/scene_error.hpp"
+#include "cli/guard.hpp"
+#include "cli/terminal.hpp"
 #include "scene/scene.hpp"
 #include "study/work_precision.hpp"
 #include "study/work_precision_files.hpp"
@@ -79,19 +81,20 @@ int study_scene(const std::filesystem::path& file, const std::filesystem::path& 
                 const Options& options) {
   Study study;
   std::string title;
+  std::optional<HeldFolder> held;
   try {
     json source = read_scene_source(file);
     const StudySetup setup = setup_of(source, options);
     title = source.value("title", file.stem().string());
     check_study(source, setup, file);  // before anything is written
-    if (!make_folder(folder)) return exit_bad_input;
+    held.emplace(folder);
     study = run_study(source, setup, file);
     write_study(study, title, folder);
   } catch (const SceneError& error) {
-    std::fprintf(stderr, "ilaw: %s: %s\n", file.c_str(), error.what());
+    complain(file.string() + ": " + error.what());
     return exit_bad_input;
   }
-  std::printf("%s, against the %s\n", title.c_str(),
+  std::printf("%s, against the %s\n", printable(title).c_str(),
               study.exact ? "exact solution" : "finest run of the first law");
   print_runs(study);
   print_costs(study);
@@ -100,17 +103,17 @@ int study_scene(const std::filesystem::path& file, const std::filesystem::path& 
 
 int study(const Options& options) {
   set_threads(options.threads);
+  guard_against_laws();
   const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
   if (options.scenes.size() == 1) return study_scene(options.scenes[0], folder, options);
   // A folder for each.
   std::set<std::string> names;
   for (const std::filesystem::path& scene : options.scenes)
     if (!names.insert(scene.stem()).second) {
-      std::fprintf(stderr, "ilaw: found two scenes called '%s', expected a different name for each\n",
-                   scene.stem().c_str());
+      complain("found two scenes called '" + scene.stem().string() + "', expected a different name for each");
       return exit_bad_input;
     }
-  if (!make_folder(folder)) return exit_bad_input;
+  const HeldFolder held(folder);
   for (const std::filesystem::path& scene : options.scenes)
     if (const int code = study_scene(scene, folder / scene.stem(), options); code != exit_done) return code;
   return exit_done;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/block_step.hpp"
 
+#include "contact/law_faults.hpp"
+
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace ilaw::host {
@@ -27,6 +30,10 @@ class Blocks {
       obstacle_[c] = step.obstacle_velocity[c];
       obstacle_before_[c] = step.obstacle_velocity_before[c];
     }
+    // What a law does not give is what it was.
+    const ilaw_law* law = step.law.library().law(step.setup.law);
+    if (!(law->outputs & ILAW_OUTPUT_ENERGY)) energy_.fill(0.0);
+    if (!(law->outputs & ILAW_OUTPUT_STATUS)) status_room_.fill(ILAW_FREE);
   }
 
   void solve(const std::int32_t* contacts, std::ptrdiff_t count, ChunkOutcome& outcome) {
@@ -39,6 +46,7 @@ class Blocks {
     mark_touched(batch);
     apply();
     add_up(outcome.sums);
+    if (show_fault(outcome.sums)) find_fault(outcome.refusal);
     if (!in_row_) scatter(batch);
   }
 
@@ -147,8 +155,11 @@ class Blocks {
   // ---- the law, and what follows from it ----
 
   bool evaluate(const ilaw_batch& batch, ChunkOutcome& outcome) {
+    std::optional<InputCopy> inputs;
+    if (is_watched_) inputs.emplace(batch, D, at_.parameters.size());
     const Answer answer = step_.law.evaluate(batch);
     outcome.refusal.add(answer, static_cast<std::size_t>(count_), contacts_);
+    if (const char* changed = inputs ? inputs->changed() : nullptr) outcome.refusal.add(overwriting(changed));
     outcome.sums.add_stable_step(answer.report.stable_velocity_step);
     outcome.refusal.add_unknown(status_, contacts_, answer.code == ILAW_OK ? count_ : 0);
     return outcome.refusal.code == ILAW_OK;
@@ -205,6 +216,12 @@ class Blocks {
     for (std::ptrdiff_t i = 0; i < count_; ++i) sums.add_energy(&energy_[ILAW_ENERGY_COUNT * i]);
   }
 
+  void find_fault(Refusal& refusal) const {
+    for (std::ptrdiff_t i = 0; i < count_; ++i)
+      if (const char* fault = fault_of(impulse_ + D * i, D, &energy_[ILAW_ENERGY_COUNT * i], status_[i]))
+        return refusal.add({ILAW_BAD_LIBRARY, 0, contacts_[i], 0, fault});
+  }
+
   void scatter(const ilaw_batch& batch) {
     const std::size_t size = step_.law.info().state_size;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
@@ -221,6 +238,7 @@ class Blocks {
   const std::int32_t* contacts_ = nullptr;
   std::ptrdiff_t count_ = 0;
   bool in_row_ = false;
+  const bool is_watched_ = InputCopy::is_due(step_.step.time, step_.step.dt);
   Components obstacle_, obstacle_before_;
   // What this block works on: in the host's arrays or the rooms below.
   double *delassus_ = nullptr, *impulse_ = nullptr;

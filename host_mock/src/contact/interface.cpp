@@ -3,8 +3,11 @@
 
 #include "base/bytes.hpp"
 #include "base/parallel.hpp"
+#include "base/running_law.hpp"
+#include "contact/law_faults.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace ilaw::host {
@@ -25,14 +28,16 @@ void Interface::check(const Refusal& refusal) const {
 
 void Interface::check(const Refusal& refusal, const std::string& node) const {
   if (refusal.code == ILAW_OK) return;
-  const std::string whose = "interface '" + setup_.name + "' (law '" + setup_.law + "'";
+  std::string text =
+      "interface '" + setup_.name + "' (law '" + setup_.law + "', library " + library().path() + "): ";
   if (refusal.status >= ILAW_STATUS_COUNT)
-    throw ilaw::error(refusal.code, whose + ", library " + library().path() + "): found status " +
-                                        std::to_string(refusal.status) + " at node " + node +
-                                        ", expected 0 to " + std::to_string(ILAW_STATUS_COUNT - 1));
-  std::string text = whose + "): ";
-  if (!node.empty())
+    throw ilaw::error(refusal.code, text + "found status " + std::to_string(refusal.status) + " at node " +
+                                        node + ", expected 0 to " + std::to_string(ILAW_STATUS_COUNT - 1));
+  if (refusal.code == ILAW_BAD_NODES)
     text += std::to_string(refusal.bad_count) + " node(s) refused, first node " + node + ": ";
+  else if (!node.empty())
+    text += "node " + node + ": ";
+  if (!refusal.reason) text += "code " + std::to_string(refusal.code) + ", ";
   throw ilaw::error(refusal.code, text + (refusal.reason ? refusal.reason : "no reason given"));
 }
 
@@ -70,6 +75,7 @@ std::vector<double> Interface::first_state(int node_index, const Dofs& u) const 
   batch.normal = {normal.data(), dimension_, 1};
   batch.per_node_parameters = inputs.data();
   batch.state_out = {state.data(), static_cast<std::int64_t>(state.size()), 1};
+  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   const Answer answer = law_.initialise(batch);
   check({answer.code, 1, -1, 0, answer.report.reason}, std::to_string(setup_.nodes[at(node_index)]));
   return state;
@@ -135,6 +141,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
   const BlockStep blocks{setup_, model_, law_, contacts_, step, obstacle_velocity_, obstacle_velocity_before_,
                          v};
   outcomes_.resize(chunk_starts_.size() - 1);
+  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   for_each_chunk(static_cast<std::ptrdiff_t>(outcomes_.size()), 1, [&](std::ptrdiff_t c, auto, auto) {
     const std::ptrdiff_t* const range = &chunk_starts_[static_cast<std::size_t>(c)];
     outcomes_[static_cast<std::size_t>(c)] =
@@ -188,13 +195,18 @@ void Interface::evaluate(const ContactList& contacts, const StepView& step) {
   const ilaw_batch batch = contacts_.repeated_batch(setup_, step.time, step.dt);
   const auto count = static_cast<std::ptrdiff_t>(contacts.size());
   outcomes_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), {});
+  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
+  const bool is_watched = InputCopy::is_due(step.time, step.dt);
   for_each_chunk(count, contact_chunk, [&](std::ptrdiff_t c, std::ptrdiff_t first, std::ptrdiff_t end) {
     ilaw_batch part = batch;
     part.index = contacts.data() + first;
     part.node_count = end - first;
     ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
+    std::optional<InputCopy> inputs;
+    if (is_watched) inputs.emplace(part, static_cast<std::size_t>(dimension_), contacts_.parameters.size());
     const Answer answer = law_.evaluate(part);
     outcome.refusal.add(answer, contacts_.count());
+    if (const char* changed = inputs ? inputs->changed() : nullptr) outcome.refusal.add(overwriting(changed));
     outcome.sums.add_stable_step(answer.report.stable_velocity_step);
   });
   Refusal refusal;
@@ -244,6 +256,12 @@ void Interface::accept(const StepView& step, const Dofs& v) {
     contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach, law_.rests());
     contacts_.accept_state(contact_index);
   }
+  if (!show_fault(sums_)) return;
+  for (const std::int32_t contact_index : active_)
+    if (const char* fault =
+            fault_of(impulse(contact_index).data(), dimension_,
+                     &contacts_.energy[at(contact_index) * ILAW_ENERGY_COUNT], status(contact_index)))
+      check({ILAW_BAD_LIBRARY, 0, contact_index, 0, fault});
 }
 
 // ---- the last step --------------------------------------------------------------------------------------

@@ -1,13 +1,78 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/law.hpp"
 
+#include "base/floating_control.hpp"
+#include "base/running_law.hpp"
+
+#include <cxxabi.h>
+
+#include <algorithm>
+#include <exception>
+
 namespace ilaw::host {
+namespace {
+
+ilaw::library open_library(const std::string& library, const std::string& law) {
+  const RunningLaw running(law.c_str(), library.c_str(), nullptr);
+  return library.find('/') == std::string::npos ? ilaw::library::named(library) : ilaw::library(library);
+}
+
+ilaw::interface create_named(const std::string& law, const Arguments& arguments, const Vector& tangent,
+                             const ilaw::library& library, int dimension) {
+  const RunningLaw running(law.c_str(), ilaw_library_path(library.get()), nullptr);
+  return create_law(law, arguments, tangent, library, dimension);
+}
+
+// The text stays until the thread's next call of a law.
+Answer broken(const std::string& what) {
+  static thread_local std::string text;
+  text = what;
+  Answer answer{ILAW_BAD_LIBRARY, {}};
+  answer.report.first_bad_node = -1;
+  answer.report.reason = text.c_str();
+  return answer;
+}
+
+bool is_in(const ilaw_batch& batch, std::int64_t node) {
+  if (!batch.index) return node >= 0 && node < batch.node_count;
+  return std::find(batch.index, batch.index + batch.node_count, node) != batch.index + batch.node_count;
+}
+
+// A call of a library's code, and what it leaves behind for all code after it.
+template <class Call>
+Answer answer_of(const ilaw_batch& batch, Call call) {
+  Answer answer{ILAW_OK, {}};
+  answer.report.struct_size = sizeof(ilaw_report);
+  const FloatingControl before = FloatingControl::now();
+  try {
+    answer.code = call(&answer.report);
+  } catch (const abi::__forced_unwind&) {
+    throw;
+  } catch (const std::exception& error) {
+    return broken(std::string("it threw an exception: ") + error.what());
+  } catch (...) {
+    return broken("it threw an exception");
+  }
+  if (FloatingControl::now() != before) {
+    before.restore();
+    return broken("it changed how the processor rounds, traps or flushes, expected all as it was");
+  }
+  if (answer.code == ILAW_OK) return answer;
+  if (answer.code > ILAW_BAD_NODES || answer.code < ILAW_OUT_OF_MEMORY)
+    return broken("it returned the code " + std::to_string(answer.code) + ", which ABI 1 does not know");
+  const std::int64_t first = answer.report.first_bad_node;
+  if (answer.code == ILAW_BAD_NODES && !is_in(batch, first))
+    return broken("it named node " + std::to_string(first) +
+                  ", which is none of the batch, as the first bad one");
+  return answer;
+}
+
+}  // namespace
 
 Law::Law(const std::string& library, const std::string& law, const Arguments& arguments,
          const Vector& tangent, int dimension)
-    : library_(library.find('/') == std::string::npos ? ilaw::library::named(library)
-                                                      : ilaw::library(library)),
-      interface_(create_law(law, arguments, tangent, library_, dimension)),
+    : library_(open_library(library, law)),
+      interface_(create_named(law, arguments, tangent, library_, dimension)),
       info_(interface_.info()) {}
 
 bool Law::carries_axes() const {
@@ -17,17 +82,11 @@ bool Law::carries_axes() const {
 }
 
 Answer Law::initialise(const ilaw_batch& batch) const {
-  Answer answer{ILAW_OK, {}};
-  answer.report.struct_size = sizeof(ilaw_report);
-  answer.code = interface_.initialise(batch, &answer.report);
-  return answer;
+  return answer_of(batch, [&](ilaw_report* report) { return interface_.initialise(batch, report); });
 }
 
 Answer Law::evaluate(const ilaw_batch& batch) const {
-  Answer answer{ILAW_OK, {}};
-  answer.report.struct_size = sizeof(ilaw_report);
-  answer.code = interface_.evaluate(batch, &answer.report);
-  return answer;
+  return answer_of(batch, [&](ilaw_report* report) { return interface_.evaluate(batch, report); });
 }
 
 }  // namespace ilaw::host

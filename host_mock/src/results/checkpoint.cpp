@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/checkpoint.hpp"
 
-#include "base/files.hpp"
-
 #include <cstdint>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -36,18 +33,22 @@ std::string text_of(const json& binary) {
   return {bytes.begin(), bytes.end()};
 }
 
-// FNV-1a: tells a damaged file, not a forged one.
-std::uint64_t checksum_of(const Bytes& bytes) {
-  std::uint64_t sum = 0xcbf29ce484222325;
-  for (const std::uint8_t byte : bytes) sum = (sum ^ byte) * 0x100000001b3;
-  return sum;
+std::uint32_t checksum_of(const Bytes& bytes) {
+  FileMark mark;
+  mark.add(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return mark.checksum;
+}
+
+json as_json(const FileMark& mark) { return {{"size", mark.size}, {"checksum", mark.checksum}}; }
+FileMark mark_of(const json& mark) {
+  return {mark.at("size").get<std::uintmax_t>(), mark.at("checksum").get<std::uint32_t>()};
 }
 
 // What write_checkpoint put into the file; throws where that is not what it finds.
-json content_of(std::istream& file) {
+json content_of(const std::string& file) {
   const json sealed = json::from_cbor(file);
   const Bytes& bytes = sealed.at("content").get_binary();
-  if (checksum_of(bytes) != sealed.at("checksum").get<std::uint64_t>())
+  if (checksum_of(bytes) != sealed.at("checksum").get<std::uint32_t>())
     throw std::runtime_error("the checksum does not fit");
   return json::from_cbor(bytes);
 }
@@ -61,44 +62,100 @@ void check_identity(const json& found, const json& expected) {
       throw std::runtime_error("is " + std::string(other) + ", expected the very run that is to be resumed");
 }
 
+constexpr const char *newest = "checkpoint.cbor", *previous = "checkpoint.previous.cbor";
+
+// A checkpoint, or what it goes on from, that is not as it was written.
+class Damage : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void check_files(const Checkpoint& checkpoint, const std::filesystem::path& folder) {
+  try {
+    check_begins_with(folder / "history.csv", checkpoint.history);
+    if (checkpoint.events.size > 0) check_begins_with(folder / "events.csv", checkpoint.events);
+    for (const json& field : checkpoint.fields)
+      check_begins_with(folder / field.at("name").get<std::string>(), mark_of(field));
+  } catch (const std::runtime_error& error) {
+    throw Damage(error.what());
+  }
+}
+
+// Throws Damage, or std::runtime_error where the checkpoint is whole but of another run.
+Checkpoint read_generation(const Scene& scene, Integrator& integrator, const std::filesystem::path& path) {
+  json content;
+  try {
+    content = content_of(read_whole(path));
+  } catch (const std::exception& error) {
+    throw Damage(path.string() + ": the checkpoint is damaged (" + error.what() + ")");
+  }
+  try {
+    check_identity(content["identity"], identity_of(scene));
+    const Checkpoint checkpoint{mark_of(content.at("history")), content.at("fields"),
+                                text_of(content.at("history_state")), mark_of(content.at("events")),
+                                text_of(content.at("events_state"))};
+    check_files(checkpoint, path.parent_path());
+    std::istringstream state(text_of(content.at("state")));
+    integrator.load(state);
+    return checkpoint;
+  } catch (const Damage&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  }
+}
+
+bool is_there(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::symlink_status(file, ignored));
+}
+
 }  // namespace
 
 void write_checkpoint(const Scene& scene, const Integrator& integrator, const Checkpoint& checkpoint,
                       const std::filesystem::path& folder) {
   std::ostringstream state;
   integrator.save(state);
-  const json content = {{"identity", identity_of(scene)},        {"history_size", checkpoint.history_size},
-                        {"fields", checkpoint.fields},           {"history", binary_of(checkpoint.history)},
-                        {"events_size", checkpoint.events_size}, {"events", binary_of(checkpoint.events)},
+  const json content = {{"identity", identity_of(scene)},
+                        {"history", as_json(checkpoint.history)},
+                        {"history_state", binary_of(checkpoint.history_state)},
+                        {"events", as_json(checkpoint.events)},
+                        {"events_state", binary_of(checkpoint.events_state)},
+                        {"fields", checkpoint.fields},
                         {"state", binary_of(state.str())}};
   Bytes packed = json::to_cbor(content);
-  const std::uint64_t checksum = checksum_of(packed);
-  AtomicFile file(folder / "checkpoint.cbor");
+  const std::uint32_t checksum = checksum_of(packed);
+  AtomicFile file(folder / newest);
   json::to_cbor(json{{"checksum", checksum}, {"content", json::binary(std::move(packed))}},
                 nlohmann::detail::output_adapter<char>(file.stream()));
+  file.flush();
+  if (is_there(folder / newest)) std::filesystem::rename(folder / newest, folder / previous);
   file.commit();
 }
 
-Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder) {
-  const std::filesystem::path path = folder / "checkpoint.cbor";
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error(path.string() + ": found no checkpoint to resume from");
-  json content;
+// What was damaged gives its place to the one before it: the next checkpoint must not push that out.
+Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
+                           std::string& said) {
+  const std::filesystem::path path = folder / newest, older = folder / previous;
+  if (!is_there(path) && !is_there(older))
+    throw std::runtime_error(path.string() + ": found no checkpoint to resume from");
   try {
-    content = content_of(file);
-  } catch (const std::exception& error) {
-    throw std::runtime_error(path.string() + ": the checkpoint is damaged (" + error.what() + ")");
+    if (is_there(path)) return read_generation(scene, integrator, path);
+    said = path.string() + ": found none";
+  } catch (const Damage& damage) {
+    if (!is_there(older)) throw;
+    said = damage.what();
   }
   try {
-    check_identity(content["identity"], identity_of(scene));
-    std::istringstream state(text_of(content["state"]));
-    integrator.load(state);
-    return {content.at("history_size").get<std::uintmax_t>(), content.at("fields"),
-            text_of(content.at("history")), content.at("events_size").get<std::uintmax_t>(),
-            text_of(content.at("events"))};
-  } catch (const std::exception& error) {
-    throw std::runtime_error(path.string() + ": " + error.what());
+    const Checkpoint checkpoint = read_generation(scene, integrator, older);
+    std::filesystem::rename(older, path);
+    return checkpoint;
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(said + "; and " + error.what());
   }
+}
+
+void clear_checkpoints(const std::filesystem::path& folder) {
+  for (const char* name : {newest, previous}) std::filesystem::remove(folder / name);
 }
 
 }  // namespace ilaw::host

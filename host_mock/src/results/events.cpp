@@ -22,9 +22,9 @@ Events::Events(const Scene& scene, const std::filesystem::path& folder)
   table_.end_row();
 }
 
-Events::Events(const Scene& scene, const std::filesystem::path& folder, std::uintmax_t size)
+Events::Events(const Scene& scene, const std::filesystem::path& folder, const FileMark& written)
     : scene_(scene),
-      file_(folder / "events.csv", size),
+      file_(folder / "events.csv", written),
       table_(file_.stream()),
       touching_(scene.interfaces.size()),
       still_touching_(touching_) {}

@@ -8,7 +8,6 @@
 #include "scene/scene.hpp"
 #include "step/integrator.hpp"
 
-#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
 #include <vector>
@@ -18,13 +17,13 @@ namespace ilaw::host {
 class Events {
  public:
   Events(const Scene& scene, const std::filesystem::path& folder);
-  // Goes on after the first size bytes of an earlier run's.
-  Events(const Scene& scene, const std::filesystem::path& folder, std::uintmax_t size);
+  // Goes on after what an earlier run had written.
+  Events(const Scene& scene, const std::filesystem::path& folder, const FileMark& written);
 
   // After every step.
   void add_step(const Integrator& integrator);
 
-  std::uintmax_t flush() { return file_.flush(); }
+  FileMark flush() { return file_.flush(); }
   void commit() { file_.commit(); }
   void keep_rows() { file_.keep_lines(); }
 

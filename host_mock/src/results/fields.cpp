@@ -117,6 +117,16 @@ void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const 
     status->SetValue(interface.node_of(contact_index), interface.status(contact_index));
 }
 
+// VTK's own writer of files tells nobody of a disk that is full, but for its debug text.
+std::string text_of(vtkUnstructuredGrid& grid) {
+  vtkObject::GlobalWarningDisplayOff();
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->WriteToOutputStringOn();
+  writer->SetInputData(&grid);
+  if (!writer->Write()) throw std::runtime_error("VTK cannot write the fields");
+  return writer->GetOutputString();
+}
+
 }  // namespace
 
 void Fields::clear() const {
@@ -141,17 +151,20 @@ void Fields::write(const Integrator& integrator) {
 
   char name[40];
   std::snprintf(name, sizeof name, "fields_%06zu.vtu", written_.size());
-  const std::filesystem::path file = folder_ / name, partial = file.string() + ".partial";
-  vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  writer->SetFileName(partial.c_str());
-  writer->SetInputData(grid);
-  if (!writer->Write())
-    throw std::runtime_error(partial.string() + ": could not be written; is the disk full?");
-  std::filesystem::rename(partial, file);
+  AtomicFile file(folder_ / name);
+  file.stream() << text_of(*grid);
+  const FileMark mark = file.commit();
+  written_.push_back(
+      {{"name", name}, {"time", integrator.time()}, {"size", mark.size}, {"checksum", mark.checksum}});
+  write_series();
+}
 
-  written_.push_back({{"name", name}, {"time", integrator.time()}});
+void Fields::write_series() const {
+  nlohmann::json files = nlohmann::json::array();
+  for (const nlohmann::json& field : written_)
+    files.push_back({{"name", field.at("name")}, {"time", field.at("time")}});
   AtomicFile series(folder_ / "fields.vtu.series");
-  series.stream() << nlohmann::json{{"file-series-version", "1.0"}, {"files", written_}}.dump(1) << '\n';
+  series.stream() << nlohmann::json{{"file-series-version", "1.0"}, {"files", files}}.dump(1) << '\n';
   series.commit();
 }
 

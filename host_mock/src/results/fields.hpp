@@ -24,11 +24,16 @@ class Fields {
   // Removes those of an earlier run in the folder, which this one would not replace.
   void clear() const;
 
-  // The files so far, with their times: to go on after a checkpoint.
+  // The files so far, with their times and what is in them: to go on after a checkpoint.
   const nlohmann::json& written() const { return written_; }
-  void resume(nlohmann::json written) { written_ = std::move(written); }
+  void resume(nlohmann::json written) {
+    written_ = std::move(written);
+    if (!written_.empty()) write_series();
+  }
 
  private:
+  void write_series() const;
+
   const Scene& scene_;
   std::filesystem::path folder_;
   nlohmann::json written_ = nlohmann::json::array();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/gnuplot.hpp"
 
+#include "base/files.hpp"
+
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -8,7 +10,6 @@
 
 #include <cctype>
 #include <cstdio>
-#include <fstream>
 #include <string>
 #include <utility>
 
@@ -54,12 +55,10 @@ std::string in_quotes(std::string_view text) {
 }
 
 bool draw_by_gnuplot(const std::filesystem::path& script, const std::function<void(std::ostream&)>& write) {
-  std::ofstream stream(script);
-  write(stream);
-  stream.close();
-  if (stream) return run(script);
-  std::fprintf(stderr, "ilaw: %s: cannot be written\n", script.c_str());
-  return false;
+  AtomicFile file(script);
+  write(file.stream());
+  file.commit();
+  return run(script);
 }
 
 bool draw_log_sheet(const std::filesystem::path& folder, const std::string& name, const LogSheet& sheet,

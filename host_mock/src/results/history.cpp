@@ -32,8 +32,11 @@ History::History(const Scene& scene, Integrator& integrator, const std::filesyst
 }
 
 History::History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
-                 std::uintmax_t size)
-    : scene_(scene), file_(folder / "history.csv", size), table_(file_.stream()), forces_(scene, integrator) {
+                 const FileMark& written)
+    : scene_(scene),
+      file_(folder / "history.csv", written),
+      table_(file_.stream()),
+      forces_(scene, integrator) {
   find_contacts(integrator);
   find_motions(integrator);
 }

@@ -8,7 +8,6 @@
 #include "scene/scene.hpp"
 #include "step/integrator.hpp"
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -20,13 +19,13 @@ namespace ilaw::host {
 class History {
  public:
   History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder);
-  // Goes on after the first size bytes of an earlier run's.
+  // Goes on after what an earlier run had written.
   History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
-          std::uintmax_t size);
+          const FileMark& written);
   // After every step, before its row.
   void add_step(const Integrator& integrator) { forces_.add_step(integrator); }
   void add_row(const Integrator& integrator);
-  std::uintmax_t flush() { return file_.flush(); }
+  FileMark flush() { return file_.flush(); }
   void commit() { file_.commit(); }
   void keep_rows() { file_.keep_lines(); }
 

@@ -96,7 +96,8 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
         {"output", record.seconds_output}}},
       {"interface_share", interface_share}};
   AtomicFile file(folder / "summary.json");
-  file.stream() << summary.dump(2) << '\n';
+  // Names of files need not be UTF-8.
+  file.stream() << summary.dump(2, ' ', false, json::error_handler_t::replace) << '\n';
   file.commit();
 }
 

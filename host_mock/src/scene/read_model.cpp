@@ -9,7 +9,12 @@
 #include "scene/packed_points.hpp"
 #include "scene/values.hpp"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <array>
+#include <cstdio>
 #include <set>
 #include <string>
 #include <vector>
@@ -63,6 +68,30 @@ class BodyNames {
   std::set<std::string> seen_;
 };
 
+// What a run needs at least: positions, displacements, velocities, masses and impulses, and the
+// nodes of the elements.
+constexpr double bytes_per_node(int dimension) { return dimension == 1 ? 72.0 : 12.0 * 24.0; }
+
+// Of the machine, or less where the process may not have it all.
+double bytes_of_memory() {
+  rlimit limit{};
+  const double all =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return all;
+  return std::min(all, static_cast<double>(limit.rlim_cur));
+}
+
+// Before any of it is asked for.
+void check_memory(double nodes, int dimension, const std::string& pointer) {
+  const double needed = nodes * bytes_per_node(dimension), there = bytes_of_memory();
+  if (!(needed > there)) return;
+  std::array<char, 96> found{}, expected{};
+  std::snprintf(found.data(), found.size(), "%.4g nodes, which take %.3g GB of memory or more", nodes,
+                needed * 1e-9);
+  std::snprintf(expected.data(), expected.size(), "at most the %.3g GB that there are", there * 1e-9);
+  throw mistake(pointer, found.data(), expected.data());
+}
+
 // Nodes of all bodies read so far: three degrees of freedom each must fit a 32-bit number.
 void check_nodes(double nodes, const json& body, const std::string& pointer) {
   if (nodes > 5e8)
@@ -94,6 +123,7 @@ std::unique_ptr<Model> read_bars(const json& model) {
                     bar.value("section", 1.0), bar.value("velocity", 0.0),
                     read_end_displacements(bar, pointer)});
   }
+  check_memory(nodes, 1, "/model/bars");
   return std::make_unique<Bars>(bars);
 }
 
@@ -119,6 +149,7 @@ std::unique_ptr<Model> read_blocks(const json& model) {
                       read_material(block["material"]),
                       block.value("element", "full") == "full" ? Element::full : Element::mean_dilatation});
   }
+  check_memory(nodes, 3, "/model/blocks");
   return std::make_unique<Blocks>(blocks);
 }
 

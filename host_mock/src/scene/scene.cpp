@@ -53,6 +53,8 @@ std::string read_file(const std::filesystem::path& file) {
   if (status.type() == std::filesystem::file_type::not_found)
     throw SceneError("no such file, expected a scene");
   if (std::filesystem::is_directory(status)) throw SceneError("found a folder, expected a scene");
+  if (!error && !std::filesystem::is_regular_file(status))  // a pipe might never end
+    throw SceneError("found something that is no file, expected a scene");
   std::ifstream stream(file, std::ios::binary);
   std::string text;
   if (const auto size = std::filesystem::file_size(file, error); !error) text.reserve(size);

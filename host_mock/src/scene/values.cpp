@@ -29,8 +29,11 @@ Vector read_vector_or_zero(const json& object, const char* key, int dimension, c
 
 Vector read_direction(const json& value, int dimension, const std::string& pointer) {
   Vector direction = read_vector(value, dimension, pointer);
-  if (direction.norm() == 0.0) throw mistake(pointer, "a vector of length 0", "a direction");
-  return direction;
+  const double largest = direction.cwiseAbs().maxCoeff();
+  if (largest == 0.0) throw mistake(pointer, "a vector of length 0", "a direction");
+  constexpr double square_is_normal = 1e150;  // the square of its length neither overflows nor vanishes
+  if (largest < square_is_normal && largest > 1.0 / square_is_normal) return direction;
+  throw mistake(pointer, value.dump(), "a direction with a length of 1e-150 to 1e150");
 }
 
 Table read_table(const json& rows, int width, const std::string& pointer) {

@@ -3,11 +3,31 @@
 
 #include "scene/json_text.hpp"
 
+#include <array>
+#include <cstdio>
 #include <string>
 
 namespace ilaw::host {
 
 using nlohmann::json;
+
+namespace {
+
+// What a step of a small scene costs at least, and each node of a larger one.
+constexpr double seconds_per_step = 2e-7, seconds_per_node = 1e-8;
+
+void warn_of_duration(Scene& scene) {
+  constexpr double day = 86400.0;
+  const double seconds =
+      static_cast<double>(scene.steps) * (seconds_per_step + seconds_per_node * scene.model->node_count());
+  if (seconds < day) return;
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "/time: found %.3g steps, which take some %.2g days or more",
+                static_cast<double>(scene.steps), seconds / day);
+  scene.warnings.emplace_back(text.data());
+}
+
+}  // namespace
 
 void warn_of_times(Scene& scene) {
   const double end = static_cast<double>(scene.steps) * scene.dt;
@@ -23,6 +43,7 @@ void warn_of_times(Scene& scene) {
   if (scene.dt > wanted * (1.0 + 1e-9))
     scene.warnings.push_back("/time/end: found " + json(wanted).dump() + ", less than one step, " +
                              json(scene.dt).dump() + ", which is taken all the same");
+  warn_of_duration(scene);
   if (scene.output.every > scene.steps)
     scene.warnings.push_back("/output/every: found " + std::to_string(scene.output.every) +
                              ": the history has the last of " + std::to_string(scene.steps) + " steps alone");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/integrator.hpp"
 
+#include "base/running_law.hpp"
 #include "step/dof_loops.hpp"
 
 #include <cmath>
@@ -12,6 +13,7 @@ namespace ilaw::host {
 void Integrator::step() {
   const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
   double speed_free = 0.0;
+  RunningLaw::set_step(steps_ + 1);
   move();  // u = u + h v
   {
     const Stopwatch watch(force_ticks_);
@@ -112,11 +114,13 @@ void Integrator::add_coupled_reactions(const StepView& step) {
   for (const auto& interface : interfaces_) interface->accept(step, v_);
 }
 
-// An infinite speed may also be the square of a large one.
+// A speed whose square is infinite has no kinetic energy, either.
 void Integrator::check_motion(double speed, double time) const {
-  if (std::isfinite(speed) || v_.allFinite()) return;
-  Eigen::Index dof = 0;
-  while (std::isfinite(v_[dof])) ++dof;
+  if (std::isfinite(speed)) return;
+  Eigen::Index dof = 0, largest = 0;
+  v_.cwiseAbs().maxCoeff(&largest);
+  while (dof < v_.size() && std::isfinite(v_[dof])) ++dof;
+  if (dof == v_.size()) dof = largest;
   throw std::runtime_error("the motion diverged: velocity " + std::to_string(v_[dof]) + " at node " +
                            std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_ + 1) +
                            ", time " + std::to_string(time));

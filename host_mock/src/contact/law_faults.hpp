@@ -1,0 +1,50 @@
+// law_faults.hpp - what a law answers with the code ILAW_OK, but cannot be. What goes into sums
+// shows in them, at no cost per contact; the contact is sought once something is wrong.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/contact_sums.hpp"
+#include "contact/refusal.hpp"
+
+#include <ilaw/ilaw.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace ilaw::host {
+
+// Whether one of the contacts added up may have such an answer.
+bool show_fault(const ContactSums& sums);
+
+// What is wrong with the answer for a contact; null where nothing is. The text stays until the
+// thread's next call. energy has ILAW_ENERGY_COUNT values.
+const char* fault_of(const double* impulse, int dimension, const double* energy, int status);
+
+// Of a law that wrote to the named input.
+Refusal overwriting(const char* input);
+
+// Inputs of a batch as they were, to see whether a law writes to them.
+class InputCopy {
+ public:
+  // Of the steps that are watched: the first, and every thousandth after it. A law that writes to
+  // its inputs does so at once; `ilaw check` looks at every call.
+  static bool is_due(double time, double dt);
+
+  InputCopy(const ilaw_batch& batch, std::size_t dimension, std::size_t parameter_count);
+  // The name of the first input that changed; null where none did.
+  const char* changed() const;
+
+ private:
+  struct Input {
+    const char* name;
+    ilaw_input from;
+    std::size_t components;
+    std::vector<double> values;
+  };
+  std::vector<double> read(const ilaw_input& from, std::size_t components) const;
+
+  std::vector<std::size_t> entries_;
+  std::vector<Input> inputs_;
+};
+
+}  // namespace ilaw::host

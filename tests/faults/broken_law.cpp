@@ -1,0 +1,134 @@
+// A law that gives no impulse, and breaks one promise: the one that ILAW_BROKEN names.
+#define ILAW_BUILDING_PLUGIN
+#include <ilaw/ilaw.h>
+
+#include <unistd.h>
+
+#include <cfenv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+
+struct ilaw_instance {};
+
+namespace {
+
+bool breaks(const char* promise) {
+  const char* named = std::getenv("ILAW_BROKEN");
+  return named && std::strcmp(named, promise) == 0;
+}
+
+[[noreturn]] void hang() {
+  for (;;) pause();
+}
+
+struct AtLoad {
+  AtLoad() {
+    if (breaks("abort_at_load")) std::abort();
+    if (breaks("exit_at_load")) std::exit(0);
+  }
+} at_load;
+
+int deeper(volatile char* before) {
+  volatile char here[4096];
+  here[0] = before ? before[0] : '\1';
+  return here[0] ? deeper(here) + here[0] : 0;
+}
+
+std::int32_t create(const ilaw_setup*, ilaw_instance** instance, char*, std::size_t) {
+  static ilaw_instance only;
+  *instance = &only;
+  return ILAW_OK;
+}
+
+void destroy(ilaw_instance*) {}
+
+std::int32_t info(const ilaw_instance*, ilaw_instance_info* out) {
+  const std::uint32_t size = out->struct_size;
+  std::memset(out, 0, size);
+  out->struct_size = size;
+  out->inputs = ILAW_INPUT_GAP;
+  return ILAW_OK;
+}
+
+std::int32_t initialise(const ilaw_instance*, const ilaw_batch*, ilaw_report*) { return ILAW_OK; }
+
+// Of the last node.
+std::int32_t answer(const ilaw_batch& batch, ilaw_report& report) {
+  const std::int64_t last = batch.node_count - 1;
+  double* const energy = batch.energy.values + last * batch.energy.node_stride;
+  if (breaks("status")) batch.status[last * batch.status_stride] = 200;
+  if (breaks("bad_input")) batch.status[last * batch.status_stride] = ILAW_BAD_INPUT;
+  if (breaks("negative_energy")) energy[ILAW_ENERGY_IMPACT * batch.energy.component_stride] = -0.5;
+  if (breaks("nan_energy")) energy[ILAW_ENERGY_STORED * batch.energy.component_stride] = std::nan("");
+  if (breaks("nan_impulse")) batch.impulse.values[last * batch.impulse.node_stride] = std::nan("");
+  if (breaks("rounding")) std::fesetround(FE_UPWARD);
+  if (breaks("traps")) feenableexcept(FE_DIVBYZERO);
+  if (breaks("code")) return 57;
+  if (breaks("negative_code")) return ILAW_UNSUPPORTED;
+  report.bad_count = 1;
+  report.first_bad_node = breaks("bad_node") ? std::int64_t{1} << 40 : last;
+  report.reason = breaks("wild_reason")     ? reinterpret_cast<const char*>(16)
+                  : breaks("steering_text") ? "a \033[2J title"
+                                            : "a reason";
+  return breaks("bad_node") || breaks("wild_reason") || breaks("steering_text") ? ILAW_BAD_NODES : ILAW_OK;
+}
+
+std::int32_t evaluate(const ilaw_instance*, const ilaw_batch* batch, ilaw_report* report) {
+  for (std::int64_t i = 0; i < batch->node_count; ++i) {
+    batch->impulse.values[i * batch->impulse.node_stride] = 0.0;
+    batch->status[i * batch->status_stride] = ILAW_FREE;
+    for (std::int64_t k = 0; k < ILAW_ENERGY_COUNT; ++k)
+      batch->energy.values[i * batch->energy.node_stride + k * batch->energy.component_stride] = 0.0;
+  }
+  if (breaks("v_free")) const_cast<double*>(batch->v_free.values)[0] = 7.0;
+  if (breaks("gap")) const_cast<double*>(batch->gap.values)[0] = 7.0;
+  if (batch->time < 2.9) return ILAW_OK;  // the third step
+  if (breaks("throw")) throw std::runtime_error("what it threw");
+  if (breaks("throw_number")) throw 3;
+  if (breaks("abort")) std::abort();
+  if (breaks("exit")) std::exit(0);
+  if (breaks("crash")) *reinterpret_cast<volatile int*>(8) = 1;
+  if (breaks("stack")) return deeper(nullptr);
+  if (breaks("hang")) hang();
+  return answer(*batch, *report);
+}
+
+const void* extension(const char*) { return nullptr; }
+
+ilaw_law law() {
+  ilaw_law made{};
+  made.struct_size = sizeof made;
+  made.dimensions = ILAW_DIMENSION_1;
+  made.delassus_forms = ILAW_DELASSUS_SCALAR;
+  made.inputs = ILAW_INPUT_GAP;
+  made.outputs = ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY;
+  made.id = "broken";
+  made.title = "Breaks a promise";
+  made.doc = "";
+  made.create = create;
+  made.destroy = destroy;
+  made.info = info;
+  made.initialise = initialise;
+  made.evaluate = evaluate;
+  made.extension = extension;
+  return made;
+}
+
+}  // namespace
+
+extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {
+  static const ilaw_law only = law();
+  static const ilaw_law* const laws[] = {&only};
+  static ilaw_plugin plugin{};
+  plugin.struct_size = sizeof plugin;
+  plugin.abi_major = ILAW_ABI_MAJOR;
+  plugin.name = "broken";
+  plugin.version = "0.1";
+  plugin.vendor = "tests";
+  plugin.licence = "BSD-3-Clause";
+  plugin.laws = laws;
+  plugin.law_count = 1;
+  return &plugin;
+}

@@ -1,0 +1,138 @@
+// Laws that break their promises: each ends the run with its name, its library and the step, and no exit code
+// 0.
+#include "faults/faults.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+// Two points, of which the law sees the second; it breaks its promise in the third step. coupled: in the loop
+// of contacts that share nodes.
+json scene_with_broken_law(bool coupled) {
+  json scene = json::parse(R"({"model": {"type": "points", "dimension": 1, "points": [
+      {"mass": 1, "position": [1]}, {"mass": 1, "position": [0.25]}]}, "time": {"dt": 1, "end": 5},
+    "interfaces": [{"name": "floor", "law": "broken", "nodes": [1], "skip": false,
+                    "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
+  scene["interfaces"][0]["library"] = ILAW_BROKEN_LAW;
+  if (coupled)
+    scene["interfaces"].push_back({{"name", "roof"},
+                                   {"law", "contact"},
+                                   {"nodes", {1}},
+                                   {"obstacle", {{"type", "plane"}, {"point", {9.0}}, {"normal", {-1.0}}}}});
+  return scene;
+}
+
+Outcome run_breaking(const std::string& promise, bool coupled) {
+  const auto folder = empty_folder();
+  return run_program("run " + written(scene_with_broken_law(coupled), folder).string() + " --out " +
+                         (folder / "out").string(),
+                     "ILAW_BROKEN=" + promise + " ");
+}
+
+struct Broken {
+  std::string promise, said;
+};
+
+class BrokenLaw : public ::testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenLaw, IsNamedAndEndsTheRun) {
+  for (const bool coupled : {false, true}) {
+    const Outcome outcome = run_breaking(GetParam().promise, coupled);
+    EXPECT_EQ(outcome.code, 1) << outcome.output;
+    EXPECT_NE(outcome.output.find(GetParam().said), std::string::npos) << outcome.output;
+    for (const char* part : {"law 'broken'", "library " ILAW_BROKEN_LAW, "interface 'floor'", "step "})
+      EXPECT_NE(outcome.output.find(part), std::string::npos) << part << " in " << outcome.output;
+    EXPECT_EQ(outcome.output.find('\033'), std::string::npos);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Faults, BrokenLaw,
+    ::testing::Values(
+        Broken{"status", "after step 2, time 2: interface 'floor' (law 'broken', library " ILAW_BROKEN_LAW
+                         "): found status 200 at node 1, expected 0 to 7"},
+        Broken{"bad_input", "node 1: found the status of bad input, but no code that says so"},
+        Broken{"negative_energy", "node 1: found a dissipated energy of -0.5, expected none below 0"},
+        Broken{"nan_energy", "node 1: found the energy nan, expected a number"},
+        Broken{"nan_impulse", "node 1: found the impulse nan, expected a finite one"},
+        Broken{"v_free", "it wrote to its input v_free"}, Broken{"gap", "it wrote to its input gap"},
+        Broken{"rounding", "it changed how the processor rounds"},
+        Broken{"traps", "it changed how the processor rounds"},
+        Broken{"code", "it returned the code 57, which ABI 1 does not know"},
+        Broken{"negative_code", "code -3, no reason given"}, Broken{"bad_node", "1099511627776"},
+        Broken{"wild_reason", "(the library gave a reason that is no readable text)"},
+        Broken{"steering_text", "(the library gave a reason that is no readable text)"},
+        Broken{"throw", "it threw an exception: what it threw"},
+        Broken{"throw_number", "it threw an exception"}, Broken{"abort", "crashed: Aborted in step 3"},
+        Broken{"crash", "crashed: Segmentation fault in step 3"},
+        Broken{"stack", "crashed: Segmentation fault in step 3"},
+        Broken{"exit", "ended the program in step 3"}),
+    [](const auto& drawn) { return drawn.param.promise; });
+
+// Nothing of the above is said of a law that keeps its promises.
+TEST(BrokenLaw, ThatKeepsItsPromisesRuns) {
+  for (const bool coupled : {false, true}) EXPECT_EQ(run_breaking("nothing", coupled).code, 0);
+}
+
+TEST(BrokenLaw, ThatHangsDoesNotOutliveTwoInterrupts) {
+  const auto folder = empty_folder();
+  const std::string scene = written(scene_with_broken_law(false), folder).string();
+  setenv("ILAW_BROKEN", "hang", 1);
+  const pid_t child = start_program({"run", scene, "--out", (folder / "out").string()}, folder / "messages");
+  unsetenv("ILAW_BROKEN");
+  for (int k = 0; k < 5000 && !std::filesystem::exists(folder / "out" / "history.csv.partial"); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  int status = 0;
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(waitpid(child, &status, WNOHANG), 0);
+    kill(child, SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  bool has_ended = false;
+  for (int k = 0; k < 1000 && !has_ended; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    has_ended = waitpid(child, &status, WNOHANG) == child;
+  }
+  if (!has_ended) {
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+  }
+  EXPECT_TRUE(has_ended && WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_NE(text_of(folder / "messages")
+                .find("law 'broken' of interface 'floor' (library " ILAW_BROKEN_LAW
+                      ") does not come back in step 3"),
+            std::string::npos)
+      << text_of(folder / "messages");
+}
+
+// Such a library does not take the others with it.
+TEST(BrokenLaw, ThatEndsTheProgramWhenItIsLoadedIsListedAsRefused) {
+  const auto folder = empty_folder();
+  std::filesystem::copy(ILAW_BROKEN_LAW, folder / "broken.so");
+  const std::string path = "ILAW_PATH=" + folder.string() + ":" ILAW_PLUGIN_FOLDER " ILAW_BROKEN=";
+  for (const auto& [promise, said] : {std::pair{"abort_at_load", "its code crashed: Aborted"},
+                                      std::pair{"exit_at_load", "its code ended the program with code 0"}}) {
+    const Outcome list = run_program("list", path + promise + " ");
+    EXPECT_EQ(list.code, 0);
+    EXPECT_NE(list.output.find("refused: " + (folder / "broken.so").string() + ": " + said),
+              std::string::npos)
+        << list.output;
+    EXPECT_NE(list.output.find("coulomb.so"), std::string::npos) << list.output;
+    const Outcome describe = run_program("describe broken", path + promise + " ");
+    EXPECT_EQ(describe.code, 1);
+    EXPECT_NE(describe.output.find(said), std::string::npos) << describe.output;
+    const Outcome run = run_breaking(promise, false);
+    EXPECT_EQ(run.code, 1);
+    EXPECT_NE(run.output.find("law 'broken' (library " ILAW_BROKEN_LAW ")"), std::string::npos) << run.output;
+  }
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
