@@ -104,13 +104,13 @@ INSTANTIATE_TEST_SUITE_P(Rules, Broken, ::testing::ValuesIn(with_id_of_rules()),
 // Whatever ends a process: the words, and nothing but this one rule.
 TEST(Ending, OfTheProcessIsAFinding) {
   const std::map<std::string, std::string> words = {
-    {"functions-return", "evaluate was ended by SIGSEGV, writing where nothing of the batch is"},
-    {"hang", "evaluate did not return within 1 s"},
-    {"exit", "evaluate ended the process with exit code 3"},
-    {"quiet exit", "evaluate ended the process with exit code 0"},
-    {"abort", "evaluate was ended by SIGABRT"},
-    {"throw", "evaluate threw an exception"},
-    {"memory bomb", "evaluate was ended by SIGSEGV"},
+      {"functions-return", "evaluate was ended by SIGSEGV, writing where nothing of the batch is"},
+      {"hang", "evaluate did not return within 1 s"},
+      {"exit", "evaluate ended the process with exit code 3"},
+      {"quiet exit", "evaluate ended the process with exit code 0"},
+      {"abort", "evaluate was ended by SIGABRT"},
+      {"throw", "evaluate threw an exception"},
+      {"memory bomb", "evaluate was ended by SIGSEGV"},
   };
   for (const auto& [breaks, expected] : words) {
     Options options = only({"functions-return", "purity-twice"});

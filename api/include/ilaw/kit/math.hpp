@@ -30,7 +30,8 @@ inline bool is_whole(double x) {
 inline double absolute(double x) { return __builtin_fabs(x); }
 // x or 0. By its bits, since GCC vectorises no choice by a condition that is the same at all nodes.
 inline double kept_if(bool condition, double x) {
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & (std::uint64_t{0} - std::uint64_t{condition}));
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) &
+                               (std::uint64_t{0} - std::uint64_t{condition}));
 }
 inline double square_root(double x) { return __builtin_sqrt(x); }
 
