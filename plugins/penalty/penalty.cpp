@@ -110,6 +110,13 @@ struct penalty {
     return nullptr;
   }
 
+  // A damper lets the node go before the spring is at rest: such a node is free, and may push once more.
+  static constexpr bool rests_by_parameters = true;
+  std::uint32_t capabilities() const {
+    const bool lets_go_early = integration == implicitly && (damping > 0.0 || restitution < 1.0);
+    return card.capabilities & ~(lets_go_early ? std::uint32_t{ILAW_CAN_REST} : 0U);
+  }
+
   // Explicit springs with a damper that lags: omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega)
   // (Belytschko, Liu, Moran 2000, eq. 6.2.31). The normal spring is taken as closed, and as stiff as it is
   // now.

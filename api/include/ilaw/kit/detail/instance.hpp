@@ -74,9 +74,12 @@ struct instance {
   std::uint32_t energy_inputs() const { return ILAW_INPUT_V_PREVIOUS & ~inputs(); }
 
   std::uint32_t capabilities() const {
+    const bool vary = table_count > 0 || per_node_count > 0;
     std::uint32_t mask = Law::card.capabilities;
     if constexpr (requires { law.capabilities(); })
-      if (table_count == 0 && per_node_count == 0) mask = law.capabilities();
+      if (!vary) mask = law.capabilities();
+    if constexpr (requires { Law::rests_by_parameters; })
+      if (vary) mask &= ~std::uint32_t{ILAW_CAN_REST};  // a promise, unlike the others
     // A frame follows the normal wherever the node is, unless the law says when its memory rests.
     const bool frame_moves = carries_frame && has_history<Law> && !(mask & ILAW_CAN_REST);
     return frame_moves ? mask | ILAW_CAN_ACT_AT_DISTANCE : mask;
