@@ -61,8 +61,8 @@ struct compression_of_any {
     const double pressed =
         2.0 / stiffness * (found.impulse / step + damping * mean_velocity(v)) - indentation;
     const bool is_stiff = (exponent == 1.0) & (step * step * stiffness * delassus > 4.0);
-    const double closed = is_stiff & (found.impulse > 0.0) ? kit::positive_part(pressed) : moved;
-    return (found.opens != 0.0) | (stiffness == kit::infinity) ? 0.0 : closed;
+    const double closed = (is_stiff & (found.impulse > 0.0)) ? kit::positive_part(pressed) : moved;
+    return ((found.opens != 0.0) | (stiffness == kit::infinity)) ? 0.0 : closed;
   }
 
   // The impulse h <S - c phi vbar> that springs and damper give on a way that ends with v.

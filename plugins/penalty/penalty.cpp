@@ -231,7 +231,7 @@ struct penalty {
     const vector moved = spring + (0.5 * h) * (node.v_previous + v);
     const double most = per_impulse * r.tangential_length(), length = moved.tangential_length();
     const bool is_stiff = h * h * tangential_stiffness * node.delassus.tangential() > 4.0;
-    const double kept = slides & (length > most) ? most / length : 1.0;
+    const double kept = (slides & (length > most)) ? most / length : 1.0;
     const bool by_force = is_stiff & !slides, holds = tangential_stiffness < infinity && friction > 0.0;
     const auto next = [&](double before, double after, double impulse) {
       const double end = by_force ? 0.0 - 2.0 * per_impulse * impulse - before : kept * after;
