@@ -51,7 +51,8 @@ static double sum_of(const ilaw_input* from, const ilaw_batch* b, int width) {
 static double sum_of_all(const ilaw_batch* b, int d) {
   double sum = b->time + b->velocity_step + sum_of(&b->v_free, b, d) + sum_of(&b->delassus, b, 1) +
                sum_of(&b->gap, b, 1) + sum_of(&b->area, b, 1) + sum_of(&b->state_in, b, 1);
-  if (b->v_previous.values) sum += sum_of(&b->v_previous, b, d);
+  if (b->energy.values) sum += sum_of(&b->v_previous, b, d);
+  if (b->tangent.values) sum += sum_of(&b->tangent, b, d);
   if (b->gap_offset.values) sum += sum_of(&b->gap_offset, b, 1);
   if (b->normal.values) sum += sum_of(&b->normal, b, d);
   return sum;

@@ -50,7 +50,7 @@ Vector Results::vector(const std::vector<double>& of, std::size_t node, std::siz
 }
 
 Field::Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use)
-    : name_(name), components_(components), room_(room) {
+    : name_(name), components_(components) {
   node_stride_ = order == Order::interleaved    ? components
                  : order == Order::by_component ? 1
                                                 : 2 * components + 1;

@@ -56,7 +56,7 @@ class Field {
  private:
   const char* name_ = "";
   double* values_ = nullptr;
-  std::size_t components_ = 0, room_ = 0, node_stride_ = 0, component_stride_ = 0, size_ = 0;
+  std::size_t components_ = 0, node_stride_ = 0, component_stride_ = 0, size_ = 0;
 };
 
 // The arrays of a batch for a trial.
