@@ -12,16 +12,19 @@
 #include <cstdio>
 #include <string>
 #include <utility>
+#include <vector>
 
 extern char** environ;
 
 namespace ilaw::host {
 namespace {
 
+constexpr const char* drawn = ".drawn";  // what a picture's name ends in until it is complete
+
 // -1 when it cannot be started.
 int exit_status_of_gnuplot(std::string file) {
-  std::string program = "gnuplot";
-  char* arguments[] = {program.data(), file.data(), nullptr};
+  std::string program = "gnuplot", option = "-e", suffix = std::string("suffix = '") + drawn + "'";
+  char* arguments[] = {program.data(), option.data(), suffix.data(), file.data(), nullptr};
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
@@ -30,12 +33,33 @@ int exit_status_of_gnuplot(std::string file) {
   posix_spawn_file_actions_destroy(&actions);
   int status = 0;
   if (started != 0 || waitpid(child, &status, 0) != child) return -1;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+// gnuplot does not notice a disk that is full: the end of a picture tells.
+void complete(const std::filesystem::path& picture) {
+  const std::filesystem::path found = picture.string() + drawn;
+  const std::string bytes = read_whole(found);
+  std::filesystem::remove(found);
+  const std::string_view end = picture.extension() == ".png" ? "IEND\xAE\x42\x60\x82" : "</svg>\n";
+  if (bytes.size() < end.size() || bytes.find(end, bytes.size() - end.size() - 8) == std::string::npos)
+    throw WriteError(picture.string() + ": gnuplot could not write it whole; is the disk full?");
+  AtomicFile file(picture);
+  file.stream() << bytes;
+  file.commit();
 }
 
 bool run(const std::filesystem::path& script) {
+  std::vector<std::filesystem::path> pictures(2, script);
+  pictures[0].replace_extension(".png");
+  pictures[1].replace_extension(".svg");
+  for (const auto& picture : pictures) std::filesystem::remove(picture.string() + drawn);
   const int status = exit_status_of_gnuplot(script.string());
-  if (status == 0) return true;
+  if (status == 0) {
+    for (const auto& picture : pictures) complete(picture);
+    return true;
+  }
+  for (const auto& picture : pictures) std::filesystem::remove(picture.string() + drawn);
   if (status < 0 || status == 127)
     std::fprintf(stderr, "ilaw: gnuplot cannot be started; it is in the package gnuplot-nox\n");
   else
@@ -56,6 +80,7 @@ std::string in_quotes(std::string_view text) {
 
 bool draw_by_gnuplot(const std::filesystem::path& script, const std::function<void(std::ostream&)>& write) {
   AtomicFile file(script);
+  file.stream() << "if (!exists('suffix')) suffix = ''\n";
   write(file.stream());
   file.commit();
   return run(script);
@@ -65,13 +90,14 @@ bool draw_log_sheet(const std::filesystem::path& folder, const std::string& name
                     const std::function<void(std::ostream&)>& panels) {
   return draw_by_gnuplot(folder / (name + ".gnuplot"), [&](std::ostream& script) {
     for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
-      script << "reset\nset datafile separator comma\nset datafile missing ''\nset terminal " << terminal
-             << " size " << sheet.size << " font 'sans,11' background rgb 'white'\nset output "
-             << in_quotes((folder / (name + kind)).string())
-             << "\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\n"
-                "set ylabel 'relative error'\nset multiplot "
-             << sheet.layout << " title " << in_quotes(sheet.title) << ' ' << sheet.title_font
-             << " noenhanced\n";
+      script
+          << "reset\nset datafile separator comma\nset datafile missing ''\nset terminal " << terminal
+          << " size " << sheet.size << " font 'sans,11' background rgb 'white'\nset output "
+          << in_quotes((folder / (name + kind)).string())
+          << ".suffix\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\n"
+             "set ylabel 'relative error'\nset multiplot "
+          << sheet.layout << " title " << in_quotes(sheet.title) << ' ' << sheet.title_font
+          << " noenhanced\n";
       panels(script);
       script << "unset multiplot\nunset output\n";
     }
