@@ -25,10 +25,12 @@ concept asks_first = requires(const Form& law, Node& node, problem_of_form<Form>
 template <class Form, class Node>
 void step_alone(const Form& law, Node& node) {
   if constexpr (asks_first<Form, Node>) {
+    const Node before = node;
     problem_of_form<Form> problem{};
     if (!law.asks(node, problem)) return;
     answer_of_form<Form> answer{};
     if (law.solve(problem, answer)) law.solve_alone(problem, answer);
+    node = before;
     law.answered(node, answer);
   } else {
     law.step(node);
@@ -216,8 +218,8 @@ template <class Form>
 template <class Law, class Form, class Node>
 void step_answered(const Form& law, const asked_block<Form>& asked, int i, Node& node) {
   problem_of_form<Form> problem{};
-  law.asks(node, problem);
   Node solved = node;
+  law.asks(node, problem);
   law.answered(solved, from_columns<answer_of_form<Form>>(asked.answer, i, places<answer_of_form<Form>>));
   choose<Law>(node, solved, asked.open.values[i] != 0.0);
 }
