@@ -10,7 +10,7 @@
 static int32_t refuse(char* message, size_t size, int32_t code, const char* name, const char* what) {
   if (breaks("prints-nothing")) fprintf(stderr, "sample: %s\n", what);
   if (message && size > 0)
-    snprintf(message, size, breaks("refusal-message") ? "" : "law 'sample': %s: %s", name, what);
+    snprintf(message, size, "law 'sample': %s: %s", breaks("refusal-message") ? "\n" : name, what);
   return code;
 }
 

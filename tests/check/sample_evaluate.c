@@ -1,6 +1,5 @@
 /* Steps of the law. r_N = -v_N/(H_NN + 1/(h c A)) where the gap is closed and closing; friction within its
  * cone takes at most the tangential velocity. */
-#define _GNU_SOURCE
 #include "sample.h"
 #include "sample_node.h"
 
