@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/exit_code.hpp"
 #include "cli/commands.hpp"
+#include "cli/table.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -49,7 +50,7 @@ int main(int argc, char** argv) {
 
   Action chosen;
   for (const auto add :
-       {add_run, add_plot, add_converge, add_study, add_stress, add_list, add_describe, add_check})
+       {add_run, add_plot, add_table, add_converge, add_study, add_stress, add_list, add_describe, add_check})
     add(app, chosen);
   try {
     app.parse(argc, argv);

@@ -1,11 +1,14 @@
 // `ilaw run`: a scene from JSON to results.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cli/run.hpp"
 #include "cli/commands.hpp"
 
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/scene_error.hpp"
 #include "cli/progress.hpp"
+#include "cli/sweep.hpp"
+#include "model/elements.hpp"
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
 #include "results/fields.hpp"
@@ -13,6 +16,7 @@
 #include "results/summary.hpp"
 #include "scene/scene.hpp"
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -31,13 +35,6 @@ namespace ilaw::host {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-struct Options {
-  std::filesystem::path scene, folder;
-  std::int64_t checkpoint_every = 0;  // steps; 0: never
-  bool resume = false;
-  int threads = 1;
-};
 
 // Ctrl-C and kill end a run at the end of its step, with whole files.
 volatile std::sig_atomic_t stop_requested = 0;
@@ -59,7 +56,7 @@ void clear_results(const std::filesystem::path& folder) {
 // resume from, or nothing can be written.
 class Run {
  public:
-  Run(Scene& scene, const Options& options)
+  Run(Scene& scene, const RunOptions& options)
       : scene_(scene),
         options_(options),
         integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt),
@@ -76,7 +73,8 @@ class Run {
 
   // Steps to the end, to a request to stop, or to a failure; the record says which.
   void advance() {
-    Progress progress(integrator_.steps(), scene_.steps);
+    std::optional<Progress> progress;
+    if (options_.shows_progress) progress.emplace(integrator_.steps(), scene_.steps);
     try {
       if (!options_.resume && scene_.output.fields > 0) fields_.write(integrator_);
       while (integrator_.steps() < scene_.steps && !stop_requested) {
@@ -84,7 +82,7 @@ class Run {
         history_->add_step(integrator_);
         if (events_) events_->add_step(integrator_);
         write_outputs();
-        progress.show(integrator_.steps());
+        if (progress) progress->show(integrator_.steps());
       }
       record.interrupted = integrator_.steps() < scene_.steps;
       if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
@@ -101,6 +99,7 @@ class Run {
   void finish(double seconds_total) {
     record.seconds_total = seconds_total;
     record.warnings = integrator_.warnings();
+    warn_of_penetration();
     record.forces = history_->forces().summary();
     try {
       write_summary(scene_, integrator_, record, options_.folder);
@@ -121,6 +120,19 @@ class Run {
     if (scene_.output.events) events_.emplace(scene_, options_.folder, checkpoint.events_size).load(events);
     fields_.resume(checkpoint.fields);
     record.resumed_at = integrator_.steps();
+  }
+
+  void warn_of_penetration() {
+    constexpr double much = 0.05;
+    const double depth = integrator_.tally().penetration_max, part = depth / shortest_edge(*scene_.model);
+    if (!(part > much)) return;
+    std::array<char, 160> text{};
+    std::snprintf(
+        text.data(), text.size(),
+        "nodes penetrate by up to %.2g, %.0f %% of the shortest element edge: a penalty that is too "
+        "soft does, and a large step",
+        depth, 100.0 * part);
+    record.warnings.emplace_back(text.data());
   }
 
   void write_outputs() {
@@ -148,7 +160,7 @@ class Run {
   }
 
   Scene& scene_;
-  const Options& options_;
+  const RunOptions& options_;
   Integrator integrator_;
   Fields fields_;
   std::unique_ptr<History> history_;
@@ -164,7 +176,7 @@ std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
   return std::nullopt;
 }
 
-std::unique_ptr<Run> start_or_explain(Scene& scene, const Options& options) {
+std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
   try {
     return std::make_unique<Run>(scene, options);
   } catch (const std::runtime_error& error) {
@@ -174,7 +186,7 @@ std::unique_ptr<Run> start_or_explain(Scene& scene, const Options& options) {
 }
 
 int report(const Scene& scene, const Integrator& integrator, const RunRecord& record,
-           const Options& options) {
+           const RunOptions& options) {
   const std::filesystem::path& folder = options.folder;
   if (!record.failure.empty()) {
     std::fprintf(stderr, "ilaw: %s: failed after step %lld, time %g: %s\n", scene.file.c_str(),
@@ -195,32 +207,37 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
   return exit_done;
 }
 
-int run(const Options& options) {
+int run(const RunOptions& options) {
   set_threads(options.threads);
-  const Clock::time_point start = Clock::now();
   std::optional<Scene> scene = read_or_explain(options.scene);
   // What a run resumes from stands in its folder already.
   if (!scene || !(options.resume || make_folder(options.folder))) return exit_bad_input;
+  return run_scene(*scene, options);
+}
+
+}  // namespace
+
+int run_scene(Scene& scene, const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to report, not one to die of
-  const std::unique_ptr<Run> run = start_or_explain(*scene, options);
+  const std::unique_ptr<Run> run = start_or_explain(scene, options);
   if (!run) return exit_bad_input;
   const auto warn = [&](const std::vector<std::string>& warnings) {
     for (const std::string& warning : warnings)
       std::fprintf(stderr, "ilaw: %s: warning: %s\n", options.scene.c_str(), warning.c_str());
   };
-  warn(scene->warnings);
+  warn(scene.warnings);
   run->advance();
   run->finish(seconds_since(start));
   warn(run->record.warnings);
-  return report(*scene, run->integrator(), run->record, options);
+  return report(scene, run->integrator(), run->record, options);
 }
 
-}  // namespace
-
 void add_run(CLI::App& app, Action& chosen) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
+  const auto settings = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
   command->add_option("scene", options->scene, "Scene file (JSON)")->required();
   command->add_option("--out", options->folder, "Folder for the results, made if it does not exist")
@@ -231,8 +248,17 @@ void add_run(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000'000}));
   command->add_flag("--resume", options->resume, "Go on from the checkpoint in the folder, to the same bits");
   add_threads(*command, options->threads);
+  command
+      ->add_option("--set", *settings,
+                   "/pointer=value,value,...: a run with each value of a key of the scene, --threads at a "
+                   "time, and sweep.csv; may be repeated")
+      ->excludes("--resume")
+      ->expected(1)
+      ->take_all();
   command->footer("Example: ilaw run plugins/contact/bouncing_ball.json --out results");
-  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+  command->callback([=, &chosen] {
+    chosen = [=] { return settings->empty() ? run(*options) : sweep(*options, *settings); };
+  });
 }
 
 }  // namespace ilaw::host
