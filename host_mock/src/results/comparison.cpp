@@ -15,12 +15,12 @@ namespace ilaw::host {
 namespace {
 
 // Sizes in pixels.
-constexpr double left = 95, plot_width = 780, above = 45, below = 55, between = 18, panel_height = 150,
-                 letter = 7.5, key_line = 18;
+constexpr double margin_left = 95, plot_width = 780, margin_above = 45, margin_below = 55, panel_gap = 18,
+                 panel_height = 150, letter = 7.5, legend_line = 18;
 
 // Colours that colour-blind readers tell apart (Okabe and Ito 2008).
-constexpr const char* palette[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                   "#E69F00", "#56B4E9", "#000000"};
+constexpr const char* run_colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                       "#E69F00", "#56B4E9", "#000000"};
 
 std::set<std::string> columns_that_vary(const RunFolder& run) {
   HistoryFile history(run.folder / "history.csv");
@@ -78,21 +78,22 @@ void write_comparison(std::ostream& script, const std::filesystem::path& picture
   std::size_t longest = 0;
   for (const std::string& legend : legends) longest = std::max(longest, legend.size());
   const double right = runs.size() > 1 ? 60.0 + letter * static_cast<double>(longest) : 30.0;
-  const double key_height = runs.size() > 1 ? key_line * static_cast<double>(runs.size()) : 0.0;
+  const double key_height = runs.size() > 1 ? legend_line * static_cast<double>(runs.size()) : 0.0;
   const auto panels = static_cast<double>(setup.y.size());
   const double tall = setup.y.size() == 1 ? 2.0 * panel_height : panel_height;
-  const double width = left + plot_width + right;
-  const double height = above + below + std::max(panels * (tall + between) - between, key_height);
+  const double width = margin_left + plot_width + right;
+  const double height =
+      margin_above + margin_below + std::max(panels * (tall + panel_gap) - panel_gap, key_height);
   for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
     script << "reset\nset datafile separator comma\nset terminal " << terminal << " size " << width << ","
            << height << " font 'sans,11' rounded background rgb 'white'\nset output "
            << in_quotes(picture.string() + kind) << "\nset multiplot title "
            << in_quotes(runs.front().summary["scene"].value("title", runs.front().name()))
-           << " font ',14' noenhanced\nset lmargin at screen " << left / width << "\nset rmargin at screen "
-           << 1.0 - right / width << "\nset border 3 linecolor rgb '#808080'\n"
+           << " font ',14' noenhanced\nset lmargin at screen " << margin_left / width
+           << "\nset rmargin at screen " << 1.0 - right / width << "\nset border 3 linecolor rgb '#808080'\n"
            << "set tics nomirror textcolor rgb 'black'\nset grid linewidth 1 linecolor rgb '#d0d0d0'\n"
            << "set format x ''\nset format y '%.4g'\nset ytics font ',10'\n";
-    double top = height - above;
+    double top = height - margin_above;
     for (std::size_t p = 0; p < setup.y.size(); ++p) {
       const double bottom = top - tall;
       script << "set tmargin at screen " << top / height << "\nset bmargin at screen " << bottom / height
@@ -107,12 +108,12 @@ void write_comparison(std::ostream& script, const std::filesystem::path& picture
         const HistoryFile history(runs[k].folder / "history.csv");
         script << (k == 0 ? "plot " : ", ") << in_quotes((runs[k].folder / "history.csv").string())
                << " using " << *history.index_of(setup.x) + 1 << ":" << *history.index_of(setup.y[p]) + 1
-               << " with lines linewidth 1.4 dashtype " << 1 + k / std::size(palette) << " linecolor rgb "
-               << in_quotes(palette[k % std::size(palette)]) << " title "
+               << " with lines linewidth 1.4 dashtype " << 1 + k / std::size(run_colours) << " linecolor rgb "
+               << in_quotes(run_colours[k % std::size(run_colours)]) << " title "
                << in_quotes(p == 0 && runs.size() > 1 ? legends[k] : "");
       }
       script << "\n";
-      top = bottom - between;
+      top = bottom - panel_gap;
     }
     script << "unset multiplot\nunset output\n";
   }

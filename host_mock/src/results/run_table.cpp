@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-std::string text_of(const json& value) {
+std::string cell_text(const json& value) {
   if (value.is_null()) return "";
   std::string text = value.is_string() ? value.get<std::string>() : value.dump();
   std::replace_if(
@@ -62,14 +62,14 @@ std::optional<double> reduced(const RunFolder& run, const std::string& column, c
 
 std::optional<std::string> cell(const RunFolder& run, const std::string& column) {
   const std::map<std::string, json> numbers = numbers_of(run.summary);
-  if (const auto found = numbers.find(column); found != numbers.end()) return text_of(found->second);
+  if (const auto found = numbers.find(column); found != numbers.end()) return cell_text(found->second);
   const std::size_t colon = column.rfind(':');
   const std::string kind = colon == std::string::npos ? "last" : column.substr(colon + 1);
   if (kind != "last" && kind != "min" && kind != "max" && kind != "mean")
     throw std::runtime_error(column + ": found '" + kind + "', expected one of last, min, max, mean");
   const std::optional<double> value = reduced(run, column.substr(0, colon), kind);
   if (!value) return std::nullopt;
-  return text_of(json(*value));
+  return cell_text(json(*value));
 }
 
 std::vector<std::string> all_columns(const std::vector<RunFolder>& runs) {
@@ -85,7 +85,7 @@ std::vector<std::string> all_columns(const std::vector<RunFolder>& runs) {
 std::string RunFolder::name() const { return folder.filename().string(); }
 
 std::string RunFolder::said(const std::string& pointer) const {
-  return text_of(summary["scene"]["source"].value(json::json_pointer(pointer), json("-")));
+  return cell_text(summary["scene"]["source"].value(json::json_pointer(pointer), json("-")));
 }
 
 RunFolder open_run(const std::filesystem::path& folder) {
