@@ -148,8 +148,8 @@ TEST(Forces, AreTheStressOfAJointAndTheReactionOfAGrip) {
   const Ran run = ran(scene);
   const double force = 100 * 0.3 * 0.01 / 2, h = 0.8 * 0.2 / 10;
   EXPECT_NEAR(run.last("joint.F0"), -force / (1.0 + 0.5 * 0.5 * h), 1e-4 * force);
-  EXPECT_NEAR(run.last("b.right.F0"), force, 0.005 * force);
-  EXPECT_NEAR(run.last("n10.r0"), force * h, 0.005 * force * h);
+  EXPECT_NEAR(run.last("b.right.F0"), force, 1e-4 * force);
+  EXPECT_NEAR(run.last("n10.r0"), force * h, 1e-4 * force * h);
 }
 
 // Positions follow a path, though damping is listed after it.

@@ -4,6 +4,7 @@
 #include "base/files.hpp"
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
+#include "cli/table.hpp"
 #include "cli/terminal.hpp"
 
 #include <CLI/CLI.hpp>
@@ -50,7 +51,7 @@ int run_command(int argc, char** argv) {
 
   Action chosen;
   for (const auto add :
-       {add_run, add_plot, add_converge, add_study, add_stress, add_list, add_describe, add_check})
+       {add_run, add_plot, add_table, add_converge, add_study, add_stress, add_list, add_describe, add_check})
     add(app, chosen);
   try {
     app.parse(argc, argv);

@@ -1,20 +1,21 @@
-// `ilaw plot`: the history of a run as a picture, drawn by gnuplot.
+// `ilaw plot`: runs as pictures, drawn by gnuplot: the history of one, or several in comparison.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.hpp"
 
-#include "base/csv.hpp"
 #include "base/exit_code.hpp"
 #include "cli/terminal.hpp"
+#include "results/comparison.hpp"
 #include "results/gnuplot.hpp"
+#include "results/history_file.hpp"
 #include "results/picture.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -22,20 +23,20 @@
 namespace ilaw::host {
 namespace {
 
-Columns read_columns(const std::filesystem::path& history) {
-  std::ifstream stream(history);
-  std::string line;
-  std::getline(stream, line);
-  Columns columns{csv_cells(line), {}, {}};
+struct Options {
+  std::vector<std::string> folders, y;
+  std::string x = "time", out;
+};
+
+Columns read_columns(const std::filesystem::path& file) {
+  HistoryFile history(file);
+  Columns columns{history.names(), {}, {}};
   columns.all_zero.assign(columns.names.size(), true);
-  while (std::getline(stream, line)) {
-    const std::vector<std::string> cells = csv_cells(line);
-    for (std::size_t k = 0; k < std::min(cells.size(), columns.names.size()); ++k) {
-      const double value = std::strtod(cells[k].c_str(), nullptr);
-      if (value != 0.0) columns.all_zero[k] = false;
-      if (columns.names[k].ends_with(".status")) columns.statuses.insert(static_cast<int>(value));
+  for (std::vector<double> row; history.next(row);)
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      if (row[k] != 0.0) columns.all_zero[k] = false;
+      if (columns.names[k].ends_with(".status")) columns.statuses.insert(static_cast<int>(row[k]));
     }
-  }
   return columns;
 }
 
@@ -58,7 +59,7 @@ int refuse(const std::filesystem::path& history, const char* found) {
 
 // Reads history.csv and summary.json of a run's folder and writes history.png and history.svg
 // beside them.
-int plot(const std::filesystem::path& results) {
+int plot_history(const std::filesystem::path& results) {
   // gnuplot takes file names that begin with < or | for commands: an absolute path never does.
   const std::filesystem::path folder = std::filesystem::absolute(results).lexically_normal();
   const std::filesystem::path history = folder / "history.csv";
@@ -78,14 +79,74 @@ int plot(const std::filesystem::path& results) {
   return exit_done;
 }
 
+void check_columns(const std::vector<RunFolder>& runs, std::vector<std::string> columns) {
+  for (const RunFolder& run : runs) {
+    const HistoryFile history(run.folder / "history.csv");
+    std::string names;
+    for (const std::string& name : history.names()) names += (names.empty() ? "" : ", ") + name;
+    for (const std::string& column : columns)
+      if (!history.index_of(column))
+        throw std::runtime_error((run.folder / "history.csv").string() + ": found no column '" + column +
+                                 "', expected one of " + names);
+  }
+}
+
+// What the picture is called: comparison, or its columns.
+std::string picture_name(const Options& options) {
+  if (options.y.empty()) return "comparison";
+  std::string name;
+  for (const std::string& column : options.y) name += (name.empty() ? "" : "_") + column;
+  return name + "_over_" + options.x;
+}
+
+int plot_columns(const Options& options) {
+  std::vector<RunFolder> runs;
+  ComparisonSetup setup{options.x, options.y};
+  try {
+    for (const std::string& folder : options.folders) runs.push_back(open_run(folder));
+    if (setup.y.empty()) setup.y = comparable_columns(runs);
+    if (setup.y.empty()) throw std::runtime_error("found no columns that all runs have");
+    std::vector<std::string> needed = setup.y;
+    needed.push_back(setup.x);
+    check_columns(runs, needed);
+  } catch (const std::runtime_error& error) {
+    complain(error.what());
+    return exit_bad_input;
+  }
+  if (options.y.empty() && setup.y.size() > most_panels) {
+    complain(std::to_string(setup.y.size() - most_panels) + " columns are left out; --y chooses");
+    setup.y.resize(most_panels);
+  }
+  const std::filesystem::path first = runs.front().folder;
+  const std::filesystem::path folder = !options.out.empty() ? std::filesystem::absolute(options.out)
+                                       : runs.size() > 1    ? first.parent_path()
+                                                            : first;
+  const std::string picture = (folder / picture_name(options)).string();
+  if (!draw_by_gnuplot(picture + ".gnuplot",
+                       [&](std::ostream& script) { write_comparison(script, picture, runs, setup); }))
+    return exit_failed;
+  std::printf("%s.png\n%s.svg\n", picture.c_str(), picture.c_str());
+  return exit_done;
+}
+
+int plot(const Options& options) {
+  const bool history = options.folders.size() == 1 && options.y.empty() && options.x == "time";
+  return history ? plot_history(options.folders.front()) : plot_columns(options);
+}
+
 }  // namespace
 
 void add_plot(CLI::App& app, Action& chosen) {
-  const auto results = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("plot", "Draw the history of a run: history.png and history.svg");
-  command->add_option("folder", *results, "Folder that `ilaw run` wrote")->required();
-  command->footer("Example: ilaw plot results");
-  command->callback([results, &chosen] { chosen = [results] { return plot(*results); }; });
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("plot", "Draw the history of a run, or several runs over each other: .png and .svg");
+  command->add_option("folders", options->folders, "Folders that `ilaw run` wrote")->required();
+  command->add_option("--y", options->y, "Columns of history.csv, a panel each")->delimiter(',');
+  command->add_option("--x", options->x, "Column to draw them over")->capture_default_str();
+  command->add_option("--out", options->out,
+                      "Folder of the picture, which exists (that of the run, or the one above several)");
+  command->footer("Example: ilaw plot results\n         ilaw plot results/* --y glue.F2,n50.u2");
+  command->callback([options, &chosen] { chosen = [options] { return plot(*options); }; });
 }
 
 }  // namespace ilaw::host

@@ -1,5 +1,6 @@
 // `ilaw run`: a scene from JSON to results.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cli/run.hpp"
 #include "cli/commands.hpp"
 
 #include "base/exit_code.hpp"
@@ -7,7 +8,9 @@
 #include "base/scene_error.hpp"
 #include "cli/guard.hpp"
 #include "cli/progress.hpp"
+#include "cli/sweep.hpp"
 #include "cli/terminal.hpp"
+#include "model/elements.hpp"
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
 #include "results/fields.hpp"
@@ -15,6 +18,7 @@
 #include "results/summary.hpp"
 #include "scene/scene.hpp"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -34,13 +38,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Options {
-  std::filesystem::path scene, folder;
-  std::int64_t checkpoint_every = 0;  // steps; 0: never
-  bool resume = false;
-  int threads = 1;
-};
-
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -49,7 +46,7 @@ double seconds_since(Clock::time_point start) {
 // other std::runtime_error where there is nothing to resume from.
 class Run {
  public:
-  Run(Scene& scene, const Options& options)
+  Run(Scene& scene, const RunOptions& options)
       : scene_(scene),
         options_(options),
         integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt),
@@ -65,7 +62,8 @@ class Run {
 
   // Steps to the end, to a request to stop, or to a failure; the record says which.
   void advance() {
-    Progress progress(integrator_.steps(), scene_.steps);
+    std::optional<Progress> progress;
+    if (options_.shows_progress) progress.emplace(integrator_.steps(), scene_.steps);
     try {
       if (!options_.resume && scene_.output.fields > 0) fields_.write(integrator_);
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
@@ -73,7 +71,7 @@ class Run {
         history_->add_step(integrator_);
         if (events_) events_->add_step(integrator_);
         write_outputs();
-        progress.show(integrator_.steps());
+        if (progress) progress->show(integrator_.steps());
       }
       record.interrupted = integrator_.steps() < scene_.steps;
       check_results();
@@ -91,6 +89,7 @@ class Run {
   void finish(double seconds_total) {
     record.seconds_total = seconds_total;
     record.warnings = integrator_.warnings();
+    warn_of_penetration();
     record.forces = history_->forces().summary();
     try {
       write_summary(scene_, integrator_, record, options_.folder);
@@ -124,6 +123,19 @@ class Run {
     if (scene_.output.events) events_.emplace(scene_, options_.folder, checkpoint.events).load(events);
     fields_.resume(checkpoint.fields);
     record.resumed_at = integrator_.steps();
+  }
+
+  void warn_of_penetration() {
+    constexpr double much = 0.05;
+    const double depth = integrator_.tally().penetration_max, part = depth / shortest_edge(*scene_.model);
+    if (!(part > much)) return;
+    std::array<char, 160> text{};
+    std::snprintf(
+        text.data(), text.size(),
+        "nodes penetrate by up to %.2g, %.0f %% of the shortest element edge: a penalty that is too "
+        "soft does, and a large step",
+        depth, 100.0 * part);
+    record.warnings.emplace_back(text.data());
   }
 
   void write_outputs() {
@@ -169,7 +181,7 @@ class Run {
   }
 
   Scene& scene_;
-  const Options& options_;
+  const RunOptions& options_;
   Integrator integrator_;
   Fields fields_;
   std::unique_ptr<History> history_;
@@ -185,7 +197,7 @@ std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
   return std::nullopt;
 }
 
-std::unique_ptr<Run> start_or_explain(Scene& scene, const Options& options) {
+std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
   try {
     return std::make_unique<Run>(scene, options);
   } catch (const WriteError&) {
@@ -197,7 +209,7 @@ std::unique_ptr<Run> start_or_explain(Scene& scene, const Options& options) {
 }
 
 int report(const Scene& scene, const Integrator& integrator, const RunRecord& record,
-           const Options& options) {
+           const RunOptions& options) {
   const std::filesystem::path& folder = options.folder;
   const std::string file = scene.file.string(), steps = std::to_string(integrator.steps());
   if (!record.failure.empty()) {
@@ -218,33 +230,38 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
   return exit_done;
 }
 
-int run(const Options& options) {
+int run(const RunOptions& options) {
   set_threads(options.threads);
   guard_against_laws();
   warn_of_search_path();
-  const Clock::time_point start = Clock::now();
   std::optional<Scene> scene = read_or_explain(options.scene);
   if (!scene) return exit_bad_input;
-  // What a run resumes from stands in its folder already.
-  std::optional<HeldFolder> held;
-  if (!options.resume || std::filesystem::is_directory(options.folder)) held.emplace(options.folder);
-  catch_interrupts();
-  const std::unique_ptr<Run> run = start_or_explain(*scene, options);
-  if (!run) return exit_bad_input;
-  const auto warn = [&](const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings) complain(options.scene.string() + ": warning: " + warning);
-  };
-  warn(scene->warnings);
-  run->advance();
-  run->finish(seconds_since(start));
-  warn(run->record.warnings);
-  return report(*scene, run->integrator(), run->record, options);
+  return run_scene(*scene, options);
 }
 
 }  // namespace
 
+int run_scene(Scene& scene, const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
+  // What a run resumes from stands in its folder already.
+  std::optional<HeldFolder> held;
+  if (!options.resume || std::filesystem::is_directory(options.folder)) held.emplace(options.folder);
+  catch_interrupts();
+  const std::unique_ptr<Run> run = start_or_explain(scene, options);
+  if (!run) return exit_bad_input;
+  const auto warn = [&](const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) complain(options.scene.string() + ": warning: " + warning);
+  };
+  warn(scene.warnings);
+  run->advance();
+  run->finish(seconds_since(start));
+  warn(run->record.warnings);
+  return report(scene, run->integrator(), run->record, options);
+}
+
 void add_run(CLI::App& app, Action& chosen) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
+  const auto settings = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
   command->add_option("scene", options->scene, "Scene file (JSON)")->required();
   command->add_option("--out", options->folder, "Folder for the results, made if it does not exist")
@@ -255,8 +272,17 @@ void add_run(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000'000}));
   command->add_flag("--resume", options->resume, "Go on from the checkpoint in the folder, to the same bits");
   add_threads(*command, options->threads);
+  command
+      ->add_option("--set", *settings,
+                   "/pointer=value,value,...: a run with each value of a key of the scene, --threads at a "
+                   "time, and sweep.csv; may be repeated")
+      ->excludes("--resume")
+      ->expected(1)
+      ->take_all();
   command->footer("Example: ilaw run plugins/contact/bouncing_ball.json --out results");
-  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+  command->callback([=, &chosen] {
+    chosen = [=] { return settings->empty() ? run(*options) : sweep(*options, *settings); };
+  });
 }
 
 }  // namespace ilaw::host

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/picture.hpp"
 
+#include "results/envelope.hpp"
 #include "results/gnuplot.hpp"
+#include "results/history_file.hpp"
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
 #include <iterator>
+#include <map>
 #include <string_view>
 
 namespace ilaw::host {
@@ -45,20 +49,35 @@ bool is_component(std::string_view name) {
          std::isdigit(static_cast<unsigned char>(name[1]));
 }
 
+bool is_node(std::string_view name) {
+  return name.size() > 1 && name[0] == 'n' && std::isdigit(static_cast<unsigned char>(name[1]));
+}
+
+// Of a resultant, "floor.F2": its force and its moment.
+bool is_resultant(std::string_view owner, std::string_view name) {
+  return !is_node(owner) && name.size() == 2 && (name[0] == 'F' || name[0] == 'M') &&
+         std::isdigit(static_cast<unsigned char>(name[1]));
+}
+
 Panel& panel_of(const std::string& quantity, std::vector<Panel>& panels) {
   const auto found = std::find_if(panels.begin(), panels.end(),
                                   [&](const Panel& panel) { return panel.quantity == quantity; });
   return found != panels.end() ? *found : panels.emplace_back(Panel{quantity, quantity, {}});
 }
 
-// The balance of the whole: energies in one panel, what must be small or constant in panels of its
-// own.
+// The balance of the whole: energies in one panel, what laws dissipate in another, what must be
+// small or constant in panels of its own.
 constexpr std::string_view balance = "balance.";
 void add_balance(const std::string& name, std::size_t column, std::vector<Panel>& panels) {
   const std::string quantity = name.substr(balance.size());
-  const bool is_energy = quantity != "error" && !quantity.starts_with("angular_momentum");
-  const std::string label = is_energy ? "energy" : quantity == "error" ? "balance error" : "angular momentum";
-  const std::string legend = quantity.substr(0, quantity.find("_work"));
+  constexpr std::string_view dissipated = "dissipated_";
+  const bool is_loss = quantity.starts_with(dissipated);
+  const std::string label = is_loss                                    ? "dissipated"
+                            : quantity == "error"                      ? "balance error"
+                            : quantity.starts_with("angular_momentum") ? "angular momentum"
+                                                                       : "energy";
+  const std::string legend =
+      is_loss ? quantity.substr(dissipated.size()) : quantity.substr(0, quantity.find("_work"));
   panel_of(label, panels).curves.push_back({column, legend, legend, ""});
 }
 
@@ -73,12 +92,17 @@ std::vector<Panel> panels_of(const Columns& columns, int every) {
       {"gap", "gap", {}}, {"u", "displacement", {}}, {"v", "velocity", {}}, {"r", "impulse", {}}};
   Panel status{"status", "status", {}};
   for (std::size_t i = 1; i < header.size(); ++i) {
-    if (header[i].starts_with(balance)) {
-      add_balance(header[i], i + 1, panels);
-      continue;
-    }
     const std::string owner = header[i].substr(0, header[i].rfind('.'));
     std::string name = header[i].substr(owner.size() + 1), component;
+    if (is_resultant(owner, name)) {
+      const char* label = name[0] == 'F' ? "force" : "moment";
+      panel_of(label, panels).curves.push_back({i + 1, owner, owner, name});
+      continue;
+    }
+    if (header[i].starts_with(balance)) {
+      if (!columns.all_zero[i]) add_balance(header[i], i + 1, panels);
+      continue;
+    }
     if (is_component(name)) {
       component = name;
       name.resize(1);
@@ -86,10 +110,6 @@ std::vector<Panel> panels_of(const Columns& columns, int every) {
     Panel& panel = name == "status" ? status : panel_of(name, panels);
     panel.curves.push_back({i + 1, owner.substr(0, owner.find('.')), owner, component});
   }
-  // On a line, the gap tells the displacement.
-  const bool on_a_line =
-      !panels[2].curves.empty() && (panels[2].curves.size() == 1 || panels[2].curves[1].component == "v0");
-  if (on_a_line && !panels[0].curves.empty()) panels[1].curves.clear();
   // A force is hardly seen beside a shock, but its sum is. A sum needs every step.
   if (every == 1) panels.insert(panels.begin() + 4, {"r", "summed impulse", panels[3].curves, true});
   // States that the scene does not use stay zero.
@@ -114,6 +134,12 @@ std::size_t component_count(const Panel& panel) {
   return components.size();
 }
 
+// More nodes than a key can tell apart are drawn as an envelope.
+bool is_crowded(const Panel& panel) {
+  constexpr std::size_t most_nodes = 6;
+  return node_count(panel) > most_nodes && is_node(panel.curves.front().node);
+}
+
 // The key tells nodes by colour and components by dash, each once, where there are several of both.
 bool has_split_key(const Panel& panel) { return node_count(panel) > 1 && component_count(panel) > 1; }
 
@@ -124,6 +150,7 @@ std::string legend_of(const Panel& panel, const Curve& curve) {
 
 // Room for the key on the right; the status needs a row per contact on the left, too.
 double height_of(const Panel& panel, const Columns& columns) {
+  if (is_crowded(panel)) return curve_height;
   if (panel.quantity == "status")
     return std::max({row_height * static_cast<double>(panel.curves.size()),
                      key_line * static_cast<double>(columns.statuses.size()), 2.0 * key_line});
@@ -135,7 +162,9 @@ double height_of(const Panel& panel, const Columns& columns) {
 // An impulse belongs to the step that ends at its row's time, a velocity to the half step after it.
 const char* style_of(const Panel& panel) {
   if (panel.quantity == "v") return "steps";
-  return panel.quantity == "r" && !panel.summed ? "fsteps" : "lines";
+  const bool ends_with_row =
+      (panel.quantity == "r" && !panel.summed) || panel.quantity == "force" || panel.quantity == "moment";
+  return ends_with_row ? "fsteps" : "lines";
 }
 
 std::string key_entry(const std::string& name, std::size_t dash, const char* colour) {
@@ -166,6 +195,47 @@ void draw_curves(std::ostream& script, const Panel& panel) {
   script << key << key_of_components << "\n";
 }
 
+// The data block of a component of a crowded panel.
+std::string block_of(const Panel& panel, const std::string& component) {
+  std::string name = "$band_";
+  for (const char c : panel.label + "_" + component)
+    name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  return name;
+}
+
+// A band per component from the least to the largest of all nodes, and the median.
+void draw_envelope(std::ostream& script, const Panel& panel) {
+  script << "set yrange [*<0:0<*] noextend\nset ytics autofreq\n";
+  std::set<std::string> components;
+  for (const Curve& curve : panel.curves) components.insert(curve.component);
+  std::size_t k = 0;
+  for (const std::string& component : components) {
+    const std::string block = block_of(panel, component), colour = in_quotes(palette[k]);
+    script << (k == 0 ? "plot " : ", ") << block << " using 1:2:4 with filledcurves fillcolor rgb " << colour
+           << " fillstyle transparent solid 0.2 noborder title '', " << block
+           << " using 1:3 with lines linewidth 1.4 linecolor rgb " << colour << " title "
+           << in_quotes(component.empty() ? "median" : component);
+    k = (k + 1) % std::size(palette);
+  }
+  script << ", NaN with lines linecolor rgb 'white' title "
+         << in_quotes(std::to_string(node_count(panel)) + " nodes") << "\n";
+}
+
+// How many contacts have each status, one upon the other.
+void draw_counts(std::ostream& script, const Panel& panel, const Columns& columns) {
+  script << "set yrange [0:" << panel.curves.size() << "] noextend\nset ytics autofreq\n";
+  const std::string block = block_of(panel, "");
+  const char* separator = "plot ";
+  for (std::size_t k = 0; k < std::size(statuses); ++k) {
+    if (!columns.statuses.contains(static_cast<int>(k))) continue;
+    script << separator << block << " using 1:(" << (k == 0 ? "0" : "$" + std::to_string(k + 1))
+           << "):" << k + 2 << " with filledcurves fillcolor rgb " << in_quotes(statuses[k].colour)
+           << " fillstyle solid noborder title " << in_quotes(statuses[k].name);
+    separator = ", ";
+  }
+  script << "\n";
+}
+
 // A row per contact. A status that lasts one step is a dot, thanks to round caps, and lies on top.
 void draw_status(std::ostream& script, const Panel& panel, const Columns& columns) {
   const std::size_t rows = panel.curves.size();
@@ -184,7 +254,47 @@ void draw_status(std::ostream& script, const Panel& panel, const Columns& column
       separator = ", ";
     }
   }
-  script << "\n";
+  script << ", $ruptures using 1:2 with points pointtype 1 pointsize 0.8 linewidth 1.6 linecolor rgb "
+         << in_quotes(statuses[ILAW_BROKEN].colour) << " title ''\n";
+}
+
+// Ruptures that events.csv has of watched nodes, which may lie between rows: time and row in the
+// panel. A block without lines is an error for gnuplot.
+void write_ruptures(std::ostream& script, const std::filesystem::path& folder, const Panel& panel) {
+  std::map<std::string, std::size_t> rows;
+  for (std::size_t k = 0; k < panel.curves.size(); ++k) rows[panel.curves[k].owner] = k + 1;
+  script << "$ruptures << EOD\nNaN,NaN\n";
+  std::ifstream events(folder / "events.csv");
+  for (std::string line; std::getline(events, line);) {
+    const std::vector<std::string> cells = csv_cells(line);
+    if (cells.size() < 4 || cells[3] != "rupture") continue;
+    auto found = rows.find("n" + cells[1]);
+    if (found == rows.end()) found = rows.find("n" + cells[1] + "." + cells[2]);
+    if (found != rows.end()) script << cells[0] << "," << found->second << "\n";
+  }
+  script << "EOD\n";
+}
+
+// The data blocks of what is drawn of many nodes, for one pass through the history.
+void write_blocks(std::ostream& script, const std::filesystem::path& folder,
+                  const std::vector<Panel>& panels) {
+  std::vector<Envelope> envelopes;
+  for (const Panel& panel : panels) {
+    if (!is_crowded(panel)) {
+      if (panel.quantity == "status") write_ruptures(script, folder, panel);
+      continue;
+    }
+    std::map<std::string, std::vector<std::size_t>> columns;
+    for (const Curve& curve : panel.curves) columns[curve.component].push_back(curve.column - 1);
+    for (const auto& [component, own] : columns)
+      envelopes.emplace_back(
+          EnvelopeSetup{block_of(panel, component), own, panel.summed, panel.quantity == "status"});
+  }
+  if (envelopes.empty()) return;
+  HistoryFile history(folder / "history.csv");
+  for (std::vector<double> row; history.next(row);)
+    for (Envelope& envelope : envelopes) envelope.add(row);
+  for (const Envelope& envelope : envelopes) envelope.write(script);
 }
 
 void draw(std::ostream& script, const std::string& terminal, const std::filesystem::path& file,
@@ -205,10 +315,11 @@ void draw(std::ostream& script, const std::string& terminal, const std::filesyst
            << in_quotes(panel.label) << " noenhanced at screen 0.015," << 0.5 * (top + bottom) / height
            << " center rotate by 90\n";
     if (&panel == &panels.back()) script << "set xlabel 'time'\nset format x '%g'\n";
+    const bool crowded = is_crowded(panel);
     if (panel.quantity == "status")
-      draw_status(script, panel, columns);
+      crowded ? draw_counts(script, panel, columns) : draw_status(script, panel, columns);
     else
-      draw_curves(script, panel);
+      crowded ? draw_envelope(script, panel) : draw_curves(script, panel);
     top = bottom - between;
   }
   script << "unset multiplot\nunset output\n";
@@ -219,6 +330,7 @@ void draw(std::ostream& script, const std::string& terminal, const std::filesyst
 void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,
                    const Caption& caption) {
   const std::vector<Panel> panels = panels_of(columns, caption.every);
+  write_blocks(script, folder, panels);
   for (const auto& [terminal, kind] : {std::pair{"pngcairo", "png"}, std::pair{"svg", "svg"}}) {
     script << "reset\nset datafile separator comma\nhistory = "
            << in_quotes((folder / "history.csv").string())

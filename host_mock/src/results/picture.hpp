@@ -23,8 +23,9 @@ struct Columns {
 };
 
 // A script that draws folder/history.csv as folder/history.png and .svg: panels over a common time
-// for gap (and displacement in 2D and 3D), velocity, impulse and its running sum, each state
-// variable of the laws that is not zero throughout, and the status as a band per node. folder is
+// for gap, displacement, velocity, impulse and its running sum, each state variable of the laws that
+// is not zero throughout, resultants, energies, and the status as a band per node. Of more than six
+// nodes their least, median and largest values are drawn, and how many have which status. folder is
 // absolute.
 void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,
                    const Caption& caption);

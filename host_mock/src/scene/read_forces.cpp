@@ -2,6 +2,7 @@
 #include "scene/read_forces.hpp"
 
 #include "scene/json_text.hpp"
+#include "scene/suggestion.hpp"
 #include "scene/values.hpp"
 
 #include <algorithm>
@@ -30,7 +31,7 @@ class Named {
     const auto found = std::find_if(all_.begin(), all_.end(), is_named);
     if (found == all_.end())
       throw mistake(pointer, "\"" + name + "\"",
-                    "the name of an interface, of a load, or of a set that a motion drives: " + known());
+                    "the name of an interface, of a load, or of a set that a motion drives: " + known(name));
     if (std::find_if(found + 1, all_.end(), is_named) != all_.end())
       throw mistake(pointer, "\"" + name + "\", which means several things", "a name for one of them alone");
     return *found;
@@ -65,10 +66,10 @@ class Named {
     force.nodes = set.nodes;
   }
 
-  std::string known() const {
+  std::string known(const std::string& wanted) const {
     std::vector<std::string> names;
     for (const ForceSetup& one : all_) names.push_back(one.name);
-    return names.empty() ? "the scene has none" : joined(names);
+    return names.empty() ? "the scene has none" : joined(names) + suggestion(wanted, names);
   }
 
   const Scene& scene_;

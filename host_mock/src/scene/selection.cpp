@@ -2,6 +2,7 @@
 #include "scene/selection.hpp"
 
 #include "scene/json_text.hpp"
+#include "scene/suggestion.hpp"
 #include "scene/values.hpp"
 
 #include <set>
@@ -11,18 +12,19 @@ namespace {
 
 using nlohmann::json;
 
-std::string names_of(const Model& model, bool with_facets) {
+// The sets there are, and which of them may be meant.
+std::string names_of(const Model& model, bool with_facets, const std::string& wanted) {
   std::vector<std::string> names;
   for (const auto& [name, set] : model.sets())
     if (!with_facets || !set.facets.empty()) names.push_back(name);
-  return names.empty() ? "no name: the model has none" : joined(names);
+  return names.empty() ? "no name: the model has none" : joined(names) + suggestion(wanted, names);
 }
 
 const NodeSet& find_set(const std::string& name, const Model& model, bool with_facets,
                         const std::string& pointer) {
   const auto found = model.sets().find(name);
   if (found == model.sets().end() || (with_facets && found->second.facets.empty()))
-    throw mistake(pointer, "\"" + name + "\"", "one of " + names_of(model, with_facets));
+    throw mistake(pointer, "\"" + name + "\"", "one of " + names_of(model, with_facets, name));
   return found->second;
 }
 

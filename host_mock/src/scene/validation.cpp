@@ -4,6 +4,7 @@
 
 #include "scene/json_text.hpp"
 #include "scene/packed_points.hpp"
+#include "scene/suggestion.hpp"
 
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -13,7 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <string>
 #include <vector>
 
 namespace ilaw::host {
@@ -21,22 +22,6 @@ namespace {
 
 using nlohmann::json;
 using Adapter = valijson::adapters::NlohmannJsonAdapter;
-
-// Fewest edits that turn one word into another, to suggest the key that was meant (Levenshtein
-// 1966).
-std::size_t edits(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
-}
 
 std::string shortened(const json& value) {
   const std::string text = value.dump();
@@ -89,33 +74,36 @@ std::string allowed(const json& part) {
   return text;
 }
 
-void explain_keys(const json& value, const json& part, const std::string& pointer) {
+using Mistakes = std::vector<std::string>;
+
+void explain_keys(const json& value, const json& part, const std::string& pointer, Mistakes& mistakes) {
   std::vector<std::string> keys;
   for (const auto& [key, ignored] : part["properties"].items()) keys.push_back(key);
-  for (const auto& [key, ignored] : value.items()) {
-    if (part["properties"].contains(key)) continue;
-    std::string nearest;
-    for (const auto& [candidate, also_ignored] : part["properties"].items())
-      if (edits(key, candidate) <= 2 && (nearest.empty() || edits(key, candidate) < edits(key, nearest)))
-        nearest = candidate;
-    throw SceneError(pointer + "/" + key, "unknown key, expected one of: " + joined(keys) +
-                                              (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
-  }
+  for (const auto& [key, ignored] : value.items())
+    if (!part["properties"].contains(key))
+      mistakes.emplace_back(SceneError(pointer + "/" + key, "unknown key, expected one of: " + joined(keys) +
+                                                                suggestion(key, keys))
+                                .what());
 }
 
 // Says in words what valijson found wrong at a value; the pointer is known, the words come from the
 // schema.
-[[noreturn]] void explain(const json& value, const json& part, const std::string& pointer,
-                          const std::string& description) {
+void explain(const json& value, const json& part, const std::string& pointer, const std::string& description,
+             Mistakes& mistakes) {
+  const std::size_t before = mistakes.size();
   if (value.is_object() && part.contains("properties")) {
     for (const json& key : part.value("required", json::array()))
       if (!value.contains(key.get<std::string>()))
-        throw SceneError(pointer,
-                         "key '" + key.get<std::string>() + "' is missing, found " + shortened(value));
-    if (part.contains("additionalProperties")) explain_keys(value, part, pointer);
+        mistakes.emplace_back(
+            SceneError(pointer, "key '" + key.get<std::string>() + "' is missing, found " + shortened(value))
+                .what());
+    if (part.contains("additionalProperties")) explain_keys(value, part, pointer, mistakes);
   }
-  if (part.is_null()) throw SceneError(pointer, description + " Found " + shortened(value));
-  throw mistake(pointer, shortened(value), allowed(part));
+  if (mistakes.size() > before) return;
+  if (part.is_null())
+    mistakes.emplace_back(SceneError(pointer, description + " Found " + shortened(value)).what());
+  else
+    mistakes.emplace_back(mistake(pointer, shortened(value), allowed(part)).what());
 }
 
 // valijson names a value as <root>, [3], ["key"].
@@ -124,8 +112,10 @@ std::string token_of(const std::string& context) {
   return inside.front() == '"' || inside.front() == '\'' ? inside.substr(1, inside.size() - 2) : inside;
 }
 
-[[noreturn]] void explain_error(const json& scene, const json& root, const std::string& base,
-                                const valijson::ValidationResults::Error& error) {
+using Context = std::vector<std::string>;
+
+void explain_error(const json& scene, const json& root, const std::string& base,
+                   const valijson::ValidationResults::Error& error, Mistakes& mistakes) {
   const json* value = &scene;
   const json* part = &root;
   std::string pointer = base;
@@ -135,10 +125,16 @@ std::string token_of(const std::string& context) {
     value = value->is_array() ? &value->at(std::stoul(token)) : &value->at(token);
     pointer += "/" + token;
   }
-  explain(*value, *part, pointer, error.description);
+  explain(*value, *part, pointer, error.description, mistakes);
 }
 
-void validate(const json& value, const json& part, const std::string& base) {
+bool begins_with(const Context& context, const Context& beginning) {
+  return context.size() >= beginning.size() &&
+         std::equal(beginning.begin(), beginning.end(), context.begin());
+}
+
+// valijson also reports all that a mistake is inside of: the most deeply nested ones count.
+void validate(const json& value, const json& part, const std::string& base, Mistakes& mistakes) {
   // A schema of its own for each part, with the shared definitions beside it.
   json standalone = part;
   standalone["definitions"] = schema()["definitions"];
@@ -148,10 +144,37 @@ void validate(const json& value, const json& part, const std::string& base) {
   valijson::Validator validator;
   valijson::ValidationResults results;
   if (validator.validate(compiled, Adapter(value), &results)) return;
-  std::optional<valijson::ValidationResults::Error> deepest;
-  for (valijson::ValidationResults::Error error; results.popError(error);)
-    if (!deepest || error.context.size() > deepest->context.size()) deepest = error;
-  explain_error(value, part, base, *deepest);
+  std::vector<valijson::ValidationResults::Error> innermost;
+  for (valijson::ValidationResults::Error error; results.popError(error);) {
+    if (std::any_of(innermost.begin(), innermost.end(),
+                    [&](const auto& other) { return begins_with(other.context, error.context); }))
+      continue;
+    std::erase_if(innermost, [&](const auto& other) { return begins_with(error.context, other.context); });
+    innermost.push_back(error);
+  }
+  std::stable_sort(innermost.begin(), innermost.end(),
+                   [](const auto& a, const auto& b) { return a.context.size() > b.context.size(); });
+  for (const auto& error : innermost) explain_error(value, part, base, error, mistakes);
+}
+
+// All at once, as far as they help.
+void refuse(const Mistakes& mistakes) {
+  constexpr std::size_t most = 10;
+  if (mistakes.empty()) return;
+  std::string text = mistakes.front();
+  for (std::size_t k = 1; k < std::min(most, mistakes.size()); ++k) text += "\n  " + mistakes[k];
+  if (mistakes.size() > most) text += "\n  and " + std::to_string(mistakes.size() - most) + " more";
+  throw SceneError(text);
+}
+
+// Parts that come in types have a schema per type. What the schema of the whole refused is left
+// out.
+void validate_typed(const json& value, const std::string& kind, const std::string& pointer,
+                    Mistakes& mistakes) {
+  if (!value.is_object() || !value.contains("type") || !value["type"].is_string()) return;
+  const json& definitions = schema()["definitions"];
+  const std::string name = kind + "_" + value["type"].get<std::string>();
+  if (definitions.contains(name)) validate(value, definitions[name], pointer, mistakes);
 }
 
 }  // namespace
@@ -159,17 +182,19 @@ void validate(const json& value, const json& part, const std::string& base) {
 void validate_scene(const json& source) {
   // Packed points were checked as they were read: one that is right stands in for them.
   const json scene = with_packed_points_as(source, {{{"mass", 1.0}, {"position", {0.0}}}});
-  validate(scene, schema(), "");
-  // Parts that come in types have a schema per type.
-  const auto validate_typed = [](const json& value, const std::string& kind, const std::string& pointer) {
-    validate(value, schema()["definitions"][kind + "_" + value["type"].get<std::string>()], pointer);
+  Mistakes mistakes;
+  validate(scene, schema(), "", mistakes);
+  if (!scene.is_object()) refuse(mistakes);
+  const auto list = [&](const char* key) -> json {
+    return scene.contains(key) && scene[key].is_array() ? scene[key] : json::array();
   };
-  validate_typed(scene["model"], "model", "/model");
-  for (std::size_t i = 0; scene.contains("loads") && i < scene["loads"].size(); ++i)
-    validate_typed(scene["loads"][i], "load", at("/loads", i));
-  for (std::size_t i = 0; i < scene["interfaces"].size(); ++i)
-    if (scene["interfaces"][i].contains("obstacle"))
-      validate_typed(scene["interfaces"][i]["obstacle"], "obstacle", at("/interfaces", i) + "/obstacle");
+  if (scene.contains("model")) validate_typed(scene["model"], "model", "/model", mistakes);
+  const json loads = list("loads"), interfaces = list("interfaces");
+  for (std::size_t i = 0; i < loads.size(); ++i) validate_typed(loads[i], "load", at("/loads", i), mistakes);
+  for (std::size_t i = 0; i < interfaces.size(); ++i)
+    if (interfaces[i].is_object() && interfaces[i].contains("obstacle"))
+      validate_typed(interfaces[i]["obstacle"], "obstacle", at("/interfaces", i) + "/obstacle", mistakes);
+  refuse(mistakes);
 }
 
 }  // namespace ilaw::host

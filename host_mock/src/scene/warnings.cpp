@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/warnings.hpp"
 
+#include "model/elements.hpp"
 #include "scene/json_text.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 
@@ -49,26 +53,69 @@ void warn_of_times(Scene& scene) {
                              ": the history has the last of " + std::to_string(scene.steps) + " steps alone");
 }
 
-void warn_of_start(Scene& scene) {
+namespace {
+
+// A gap of some interface at the start, and where.
+struct StartGaps {
+  std::size_t below = 0, above = 0;  // nodes with gaps below and above the limits
+  double least = 0.0, largest = 0.0;
+  int deepest = -1, farthest = -1;  // their nodes
+};
+
+StartGaps gaps_at_start(const Scene& scene, const Interface& interface, double low, double high) {
+  StartGaps found;
   const Dofs& start = scene.model->initial_displacement();
+  for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
+    const double gap = interface.gap_at(static_cast<int>(k), start, 0.0);
+    const int node = interface.nodes()[k];
+    if (gap < low) ++found.below;
+    if (gap > high) ++found.above;
+    if (gap < found.least) {
+      found.least = gap;
+      found.deepest = node;
+    }
+    if (gap > found.largest) {
+      found.largest = gap;
+      found.farthest = node;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+// Nodes of the same body may lie on both sides of a mesh surface, so that only pairs of nodes and
+// obstacles tell.
+void warn_of_start(Scene& scene) {
   const double rounding = 1e-12 * scene.model->position().cwiseAbs().maxCoeff();
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
-    if (!interface.setup().counterpart->partners().empty()) continue;
-    std::size_t count = 0, deepest = 0;
-    double least = 0.0;
-    for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
-      const double gap = interface.gap_at(static_cast<int>(k), start, 0.0);
-      if (gap < -rounding) ++count;
-      if (gap < least) {
-        least = gap;
-        deepest = k;
-      }
-    }
-    if (count > 0)
-      scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(count) +
-                               " node(s) start inside the obstacle, node " +
-                               std::to_string(interface.nodes()[deepest]) + " by " + json(-least).dump());
+    const bool rigid = interface.setup().counterpart->partners().empty();
+    if (!rigid && interface.setup().counterpart->shares_partners()) continue;
+    const StartGaps gaps = gaps_at_start(scene, interface, -rounding, HUGE_VAL);
+    if (gaps.below > 0)
+      scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(gaps.below) +
+                               " node(s) start inside the " + (rigid ? "obstacle" : "other body") +
+                               ", node " + std::to_string(gaps.deepest) + " by " + json(-gaps.least).dump());
+  }
+}
+
+// A bond is made where the bodies are: across a gap it pulls from afar.
+void warn_of_open_bonds(Scene& scene) {
+  constexpr double much = 0.1;
+  constexpr std::uint32_t bond = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE;
+  const double edge = shortest_edge(*scene.model);
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    const Interface& interface = *scene.interfaces[i];
+    if ((interface.info().capabilities & bond) != bond || interface.setup().birth > 0.0) continue;
+    const double offset = std::abs(interface.setup().gap_offset);
+    const double limit = much * (std::isfinite(edge) ? std::max(edge, offset) : offset);
+    if (!(limit > 0.0)) continue;
+    const StartGaps gaps = gaps_at_start(scene, interface, 0.0, limit);
+    if (gaps.above > 0 && std::isfinite(gaps.largest))
+      scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(gaps.above) +
+                               " node(s) start bonded across an open gap, node " +
+                               std::to_string(gaps.farthest) + " across " + json(gaps.largest).dump());
   }
 }
 

@@ -8,8 +8,10 @@ namespace ilaw::host {
 
 // Times at which nothing can happen any more.
 void warn_of_times(Scene& scene);
-// Nodes that start inside a rigid obstacle: most laws throw them out of it.
+// Nodes that start inside a rigid obstacle or beyond their partners: most laws throw them out of it.
 void warn_of_start(Scene& scene);
+// Bonds across a gap, which pull from afar.
+void warn_of_open_bonds(Scene& scene);
 // Blocks that can hardly bend: full elements close to incompressibility.
 void warn_of_locking(Scene& scene);
 

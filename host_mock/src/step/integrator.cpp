@@ -3,12 +3,24 @@
 #include "step/integrator.hpp"
 
 #include "base/running_law.hpp"
+#include "model/elements.hpp"
 #include "step/dof_loops.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
 namespace ilaw::host {
+namespace {
+
+void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undamped, Dofs& v, Dofs& impulse) {
+  for (const auto& load : loads)
+    for (const int node : load->prescribed_nodes()) {
+      v.segment(node * d, d) = undamped.segment(node * d, d);
+      impulse.segment(node * d, d).setZero();
+    }
+}
+
+}  // namespace
 
 void Integrator::step() {
   const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
@@ -82,14 +94,18 @@ double Integrator::kick(StepTimes step) {
   return largest_speed(v_, d);
 }
 
-// Damping works apart from the other loads.
+// Damping works apart from the other loads, and leaves alone what a motion drives, which comes
+// after it: what holds a node has the whole reaction.
 void Integrator::correct(StepTimes step) {
+  const Dofs undamped = damping_impulse_.size() == 0 ? Dofs() : v_;
   damping_impulse_.setZero();
   for (const std::size_t k : correcting_) {
     Dofs& sum = loads_[k]->damps() ? damping_impulse_ : external_impulse_;
     Dofs& kept = kept_load_impulses_[k];
     kept.setZero();
     loads_[k]->correct(step, v_before_, v_, kept.size() == 0 ? sum : kept);
+    if (loads_[k]->damps())
+      leave_driven_undamped(loads_, model_.dimension(), undamped, v_, kept.size() == 0 ? sum : kept);
     if (kept.size() != 0) sum += kept;
   }
 }
@@ -123,7 +139,7 @@ void Integrator::check_motion(double speed, double time) const {
   if (dof == v_.size()) dof = largest;
   throw std::runtime_error("the motion diverged: velocity " + std::to_string(v_[dof]) + " at node " +
                            std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_ + 1) +
-                           ", time " + std::to_string(time));
+                           ", time " + std::to_string(time) + advice_on_divergence(model_, u_, dt_));
 }
 
 }  // namespace ilaw::host

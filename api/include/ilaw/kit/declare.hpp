@@ -9,7 +9,8 @@
 //   static constexpr state_variable state_variables[];    in the order of struct state
 //   std::uint32_t inputs() const;                         what these parameters read (default: card.inputs)
 //   std::uint32_t capabilities() const;                   what these parameters can do (default: the card's)
-//   static constexpr bool rests_by_parameters = true;     ILAW_CAN_REST is for capabilities() to promise: it is
+//   static constexpr bool rests_by_parameters = true;     ILAW_CAN_REST is for capabilities() to promise: it
+//   is
 //                                                         not promised where parameters vary
 //   template <class Node> double stable_velocity_step(const Node&) const   if it limits the step: by how much
 //                                                         at this node, whatever its state; see ilaw_report

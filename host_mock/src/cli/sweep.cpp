@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/sweep.hpp"
+
+#include "base/exit_code.hpp"
+#include "base/files.hpp"
+#include "base/scene_error.hpp"
+#include "cli/commands.hpp"
+#include "cli/guard.hpp"
+#include "cli/terminal.hpp"
+#include "results/run_table.hpp"
+#include "scene/validation.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <mutex>
+#include <set>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+struct Setting {
+  json::json_pointer pointer;
+  std::string name;  // for folders
+  std::vector<json> values;
+};
+
+// At commas that are not inside brackets or quotes.
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  bool quoted = false;
+  for (const char c : text) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted && (c == '[' || c == '{')) ++depth;
+    if (!quoted && (c == ']' || c == '}')) --depth;
+    if (c == ',' && depth == 0 && !quoted)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+// A word that is no JSON is a string.
+json value_of(const std::string& text) {
+  json value = json::parse(text, nullptr, false);
+  return value.is_discarded() ? json(text) : value;
+}
+
+Setting parse_setting(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  if (text.empty() || text.front() != '/' || sign == std::string::npos || sign + 1 == text.size())
+    throw SceneError("--set " + text, "expected /pointer=value,value,...");
+  try {
+    Setting setting{json::json_pointer(text.substr(0, sign)), "", {}};
+    setting.name = setting.pointer.back();
+    for (const std::string& part : split(text.substr(sign + 1))) setting.values.push_back(value_of(part));
+    return setting;
+  } catch (const json::exception&) {
+    throw SceneError("--set " + text, "expected a JSON pointer before '='");
+  }
+}
+
+// Folders are named by the last key, or by the whole pointer where that is not unique.
+std::vector<Setting> parse_settings(const std::vector<std::string>& texts) {
+  std::vector<Setting> settings;
+  settings.reserve(texts.size());
+  for (const std::string& text : texts) settings.push_back(parse_setting(text));
+  std::multiset<std::string> names;
+  for (const Setting& setting : settings) names.insert(setting.name);
+  for (Setting& setting : settings)
+    if (names.count(setting.name) > 1) {
+      setting.name = setting.pointer.to_string().substr(1);
+      std::replace(setting.name.begin(), setting.name.end(), '/', '.');
+    }
+  return settings;
+}
+
+// What the last key belongs to may itself be left out in the scene, if it is an object.
+void set(json& source, const json::json_pointer& pointer, const json& value) {
+  json::json_pointer owner = pointer.parent_pointer();
+  while (!source.contains(owner)) owner = owner.parent_pointer();
+  if (!source.contains(pointer) && !source[owner].is_object())
+    throw SceneError(pointer.to_string(), "found nothing there to set");
+  source[pointer] = value;
+}
+
+// One of the runs.
+struct Variant {
+  std::string name;
+  std::vector<std::size_t> choice;  // by setting
+  int exit_code = exit_done;
+};
+
+std::string folder_name(const std::string& text) {
+  std::string name = text;
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && std::string("=.+-_").find(c) == std::string::npos)
+      c = '_';
+  return name.substr(0, 100);
+}
+
+std::vector<Variant> variants_of(const std::vector<Setting>& settings) {
+  std::vector<Variant> variants(1);
+  for (const Setting& setting : settings) {
+    std::vector<Variant> more;
+    for (const Variant& one : variants)
+      for (std::size_t k = 0; k < setting.values.size(); ++k) {
+        Variant next = one;
+        const json& value = setting.values[k];
+        const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+        next.name += (one.name.empty() ? "" : "_") + folder_name(setting.name + "=" + text);
+        next.choice.push_back(k);
+        more.push_back(next);
+      }
+    variants = std::move(more);
+  }
+  std::set<std::string> seen;
+  for (std::size_t k = 0; k < variants.size(); ++k)
+    if (!seen.insert(variants[k].name).second) variants[k].name += "_" + std::to_string(k);
+  return variants;
+}
+
+Scene scene_of(const Variant& variant, const std::vector<Setting>& settings, json source,
+               const std::filesystem::path& file) {
+  for (std::size_t k = 0; k < settings.size(); ++k)
+    set(source, settings[k].pointer, settings[k].values[variant.choice[k]]);
+  validate_scene(source);
+  return read_scene(std::move(source), file);
+}
+
+void write_table(const std::vector<Variant>& variants, const std::filesystem::path& folder) {
+  std::vector<RunFolder> runs;
+  for (const Variant& variant : variants)
+    if (std::filesystem::exists(folder / variant.name / "summary.json"))
+      runs.push_back(open_run(folder / variant.name));
+  AtomicFile file(folder / "sweep.csv");
+  write_csv(file.stream(), table_of(runs, {}));
+  file.commit();
+}
+
+// One thread each; libraries are opened by one of them at a time.
+void run_all(std::vector<Variant>& variants, const std::vector<Setting>& settings, const json& source,
+             const RunOptions& options) {
+  std::mutex reading;
+  const auto count = static_cast<std::ptrdiff_t>(variants.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    Variant& variant = variants[static_cast<std::size_t>(k)];
+    RunOptions own = options;
+    own.folder = options.folder / variant.name;
+    own.shows_progress = false;  // bars of several runs would overwrite each other
+    try {
+      std::unique_lock lock(reading);
+      Scene scene = scene_of(variant, settings, source, options.scene);
+      lock.unlock();
+      variant.exit_code = run_scene(scene, own);
+    } catch (const std::exception& error) {
+      complain(variant.name + ": " + error.what());
+      variant.exit_code = exit_failed;
+    }
+  }
+}
+
+}  // namespace
+
+int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
+  std::vector<Setting> settings;
+  std::vector<Variant> variants;
+  json source;
+  std::string name;
+  guard_against_laws();
+  warn_of_search_path();
+  try {
+    settings = parse_settings(texts);
+    variants = variants_of(settings);
+    source = read_scene_source(options.scene);
+    for (const Variant& variant : variants) {
+      name = variant.name;
+      scene_of(variant, settings, source, options.scene);
+    }
+  } catch (const std::exception& error) {
+    complain(options.scene.string() + ": " + (name.empty() ? name : name + ": ") + error.what() +
+             "; nothing was run");
+    return exit_bad_input;
+  }
+  const HeldFolder held(options.folder);
+  set_threads(options.threads);
+  run_all(variants, settings, source, options);
+  write_table(variants, options.folder);
+  const auto failed =
+      std::count_if(variants.begin(), variants.end(), [](const Variant& one) { return one.exit_code != 0; });
+  std::printf("%zu runs, %td failed; their summaries in %s\n", variants.size(), failed,
+              (options.folder / "sweep.csv").c_str());
+  return failed == 0 ? exit_done : exit_failed;
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,61 @@
+// `ilaw table`: several runs side by side, in numbers.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/table.hpp"
+
+#include "base/exit_code.hpp"
+#include "cli/terminal.hpp"
+#include "results/run_table.hpp"
+
+#include <cstdio>
+#include <iostream>
+#include <stdexcept>
+
+namespace ilaw::host {
+namespace {
+
+struct Options {
+  std::vector<std::string> folders, columns;
+  bool csv = false;
+};
+
+// Many columns are read more easily below each other.
+Rows transposed(const Rows& rows) {
+  Rows columns(rows.front().size());
+  for (const auto& row : rows)
+    for (std::size_t k = 0; k < row.size(); ++k) columns[k].push_back(row[k]);
+  return columns;
+}
+
+int table(const Options& options) {
+  try {
+    std::vector<RunFolder> runs;
+    for (const std::string& folder : options.folders) runs.push_back(open_run(folder));
+    const Rows rows = table_of(runs, options.columns);
+    if (options.csv)
+      write_csv(std::cout, rows);
+    else
+      print_rows(options.columns.empty() ? transposed(rows) : rows, "");
+  } catch (const std::runtime_error& error) {
+    complain(error.what());
+    return exit_bad_input;
+  }
+  return exit_done;
+}
+
+}  // namespace
+
+void add_table(CLI::App& app, Action& chosen) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("table", "Runs side by side: a row each, with what differs");
+  command->add_option("folders", options->folders, "Folders that `ilaw run` wrote")->required();
+  command
+      ->add_option(
+          "--columns", options->columns,
+          "Numbers of the summary (energy.kinetic) or of the history (n0.u0:max; :last, :min, :mean)")
+      ->delimiter(',');
+  command->add_flag("--csv", options->csv, "As comma-separated values");
+  command->footer("Example: ilaw table results/* --columns steps,n0.u0:max");
+  command->callback([options, &chosen] { chosen = [options] { return table(*options); }; });
+}
+
+}  // namespace ilaw::host

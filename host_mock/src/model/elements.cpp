@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/elements.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace ilaw::host {
+namespace {
+
+// The neighbours of each corner of a hexahedron in VTK's order, right-handed.
+constexpr std::array<std::array<std::size_t, 3>, 8> neighbours = {
+    {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
+
+// The nodes of an element.
+class Cell {
+ public:
+  Cell(const Model& model, std::size_t first) : model_(model), nodes_(&model.mesh().cells[first]) {}
+
+  Vector at(std::size_t corner, const Dofs& u) const {
+    const Eigen::Index d = model_.dimension(), dof = d * nodes_[corner];
+    return model_.position().segment(dof, d) + u.segment(dof, d);
+  }
+  bool is_inverted(const Dofs& u) const {
+    if (model_.dimension() == 1) return !(at(1, u)[0] > at(0, u)[0]);
+    for (std::size_t k = 0; k < neighbours.size(); ++k) {
+      const Eigen::Vector3d x = at(k, u), a = at(neighbours[k][0], u), b = at(neighbours[k][1], u),
+                            c = at(neighbours[k][2], u);
+      if (!((a - x).cross(b - x).dot(c - x) > 0.0)) return true;
+    }
+    return false;
+  }
+
+ private:
+  const Model& model_;
+  const int* nodes_;
+};
+
+template <class Visit>
+void for_each_cell(const Model& model, Visit visit) {
+  const auto size = static_cast<std::size_t>(model.mesh().nodes_per_cell);
+  for (std::size_t first = 0; size > 0 && first < model.mesh().cells.size(); first += size)
+    visit(Cell(model, first), first / size);
+}
+
+std::string text_of(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+}  // namespace
+
+double shortest_edge(const Model& model) {
+  const Dofs undeformed = Dofs::Zero(model.position().size());
+  double shortest = std::numeric_limits<double>::infinity();
+  for_each_cell(model, [&](const Cell& cell, std::size_t /*number*/) {
+    if (model.dimension() == 1) {
+      shortest = std::min(shortest, (cell.at(1, undeformed) - cell.at(0, undeformed)).norm());
+      return;
+    }
+    for (const std::size_t end : neighbours[0])
+      shortest = std::min(shortest, (cell.at(end, undeformed) - cell.at(0, undeformed)).norm());
+  });
+  return shortest;
+}
+
+InvertedElement first_inverted(const Model& model, const Dofs& u) {
+  const auto corners = static_cast<std::size_t>(model.mesh().nodes_per_cell);
+  const Dofs undeformed = Dofs::Zero(u.size());
+  InvertedElement found;
+  for_each_cell(model, [&](const Cell& cell, std::size_t number) {
+    if (found.number >= 0 || !cell.is_inverted(u)) return;
+    found = {static_cast<int>(number), Vector::Zero(model.dimension())};
+    for (std::size_t k = 0; k < corners; ++k)
+      found.centre += cell.at(k, undeformed) / static_cast<double>(corners);
+  });
+  return found;
+}
+
+std::string advice_on_divergence(const Model& model, const Dofs& u, double dt) {
+  std::string text;
+  if (const InvertedElement inverted = first_inverted(model, u); inverted.number >= 0) {
+    text = "; element " + std::to_string(inverted.number) + ", at (";
+    for (Eigen::Index c = 0; c < inverted.centre.size(); ++c)
+      text += (c > 0 ? ", " : "") + text_of(inverted.centre[c]);
+    text += ") of the undeformed body, is turned inside out";
+  }
+  const double critical = model.critical_step();
+  if (!std::isfinite(critical)) return text + "; a smaller 'dt' may cure it";
+  return text + "; half the step is \"cfl\": " + text_of(0.5 * dt / critical);
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/comparison.hpp"
+
+#include "results/gnuplot.hpp"
+#include "results/history_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <iterator>
+#include <set>
+#include <utility>
+
+namespace ilaw::host {
+namespace {
+
+// Sizes in pixels.
+constexpr double margin_left = 95, plot_width = 780, margin_above = 45, margin_below = 55, panel_gap = 18,
+                 panel_height = 150, letter = 7.5, legend_line = 18;
+
+// Colours that colour-blind readers tell apart (Okabe and Ito 2008).
+constexpr const char* run_colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                       "#E69F00", "#56B4E9", "#000000"};
+
+std::set<std::string> columns_that_vary(const RunFolder& run) {
+  HistoryFile history(run.folder / "history.csv");
+  std::set<std::string> vary;
+  for (std::vector<double> row; history.next(row);)
+    for (std::size_t k = 1; k < row.size(); ++k)
+      if (row[k] != 0.0 && row[k] == row[k]) vary.insert(history.names()[k]);
+  return vary;
+}
+
+// Resultants, then the balance, then nodes.
+int rank(const std::string& column) {
+  if (column.starts_with("balance.")) return 1;
+  const bool of_node =
+      column.size() > 1 && column[0] == 'n' && std::isdigit(static_cast<unsigned char>(column[1]));
+  return of_node ? 2 : 0;
+}
+
+std::string last_key(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
+
+}  // namespace
+
+std::vector<std::string> comparable_columns(const std::vector<RunFolder>& runs) {
+  std::set<std::string> vary;
+  for (const RunFolder& run : runs) vary.merge(columns_that_vary(run));
+  std::vector<std::string> columns;
+  const HistoryFile first(runs.front().folder / "history.csv");
+  for (const std::string& name : first.names())
+    if (vary.contains(name) && !name.ends_with("status")) columns.push_back(name);
+  for (const RunFolder& run : runs) {
+    const HistoryFile history(run.folder / "history.csv");
+    std::erase_if(columns, [&](const std::string& name) { return !history.index_of(name); });
+  }
+  std::stable_sort(columns.begin(), columns.end(),
+                   [](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  return columns;
+}
+
+std::vector<std::string> legends_of(const std::vector<RunFolder>& runs) {
+  const std::vector<std::string> different = differences(runs);
+  std::vector<std::string> legends;
+  constexpr std::size_t most_keys = 3;
+  for (const RunFolder& run : runs) {
+    std::string& text = legends.emplace_back();
+    for (std::size_t k = 0; k < std::min(most_keys, different.size()); ++k)
+      text += (k > 0 ? " " : "") + last_key(different[k]) + "=" + run.said(different[k]);
+    if (text.empty() || different.size() > most_keys) text = run.name();
+  }
+  return legends;
+}
+
+void write_comparison(std::ostream& script, const std::filesystem::path& picture,
+                      const std::vector<RunFolder>& runs, const ComparisonSetup& setup) {
+  const std::vector<std::string> legends = legends_of(runs);
+  std::size_t longest = 0;
+  for (const std::string& legend : legends) longest = std::max(longest, legend.size());
+  const double right = runs.size() > 1 ? 60.0 + letter * static_cast<double>(longest) : 30.0;
+  const double key_height = runs.size() > 1 ? legend_line * static_cast<double>(runs.size()) : 0.0;
+  const auto panels = static_cast<double>(setup.y.size());
+  const double tall = setup.y.size() == 1 ? 2.0 * panel_height : panel_height;
+  const double width = margin_left + plot_width + right;
+  const double height =
+      margin_above + margin_below + std::max(panels * (tall + panel_gap) - panel_gap, key_height);
+  for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
+    script << "reset\nset datafile separator comma\nset terminal " << terminal << " size " << width << ","
+           << height << " font 'sans,11' rounded background rgb 'white'\nset output "
+           << in_quotes(picture.string() + kind) << "\nset multiplot title "
+           << in_quotes(runs.front().summary["scene"].value("title", runs.front().name()))
+           << " font ',14' noenhanced\nset lmargin at screen " << margin_left / width
+           << "\nset rmargin at screen " << 1.0 - right / width << "\nset border 3 linecolor rgb '#808080'\n"
+           << "set tics nomirror textcolor rgb 'black'\nset grid linewidth 1 linecolor rgb '#d0d0d0'\n"
+           << "set format x ''\nset format y '%.4g'\nset ytics font ',10'\n";
+    double top = height - margin_above;
+    for (std::size_t p = 0; p < setup.y.size(); ++p) {
+      const double bottom = top - tall;
+      script << "set tmargin at screen " << top / height << "\nset bmargin at screen " << bottom / height
+             << "\nset key at screen " << 1.0 - (right - 10.0) / width << "," << top / height
+             << " left top vertical maxcols 1 noenhanced samplen 2 Left reverse\nset label 1 "
+             << in_quotes(setup.y[p].substr(setup.y[p].starts_with("balance.") ? 8 : 0))
+             << " font ',9' noenhanced at screen 0.015," << 0.5 * (top + bottom) / height
+             << " center rotate by 90\n";
+      if (p + 1 == setup.y.size())
+        script << "set xlabel " << in_quotes(setup.x) << " noenhanced\nset format x '%g'\n";
+      for (std::size_t k = 0; k < runs.size(); ++k) {
+        const HistoryFile history(runs[k].folder / "history.csv");
+        script << (k == 0 ? "plot " : ", ") << in_quotes((runs[k].folder / "history.csv").string())
+               << " using " << *history.index_of(setup.x) + 1 << ":" << *history.index_of(setup.y[p]) + 1
+               << " with lines linewidth 1.4 dashtype " << 1 + k / std::size(run_colours) << " linecolor rgb "
+               << in_quotes(run_colours[k % std::size(run_colours)]) << " title "
+               << in_quotes(p == 0 && runs.size() > 1 ? legends[k] : "");
+      }
+      script << "\n";
+      top = bottom - panel_gap;
+    }
+    script << "unset multiplot\nunset output\n";
+  }
+}
+
+}  // namespace ilaw::host

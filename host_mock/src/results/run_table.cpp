@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/run_table.hpp"
+
+#include "base/csv.hpp"
+#include "results/history_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <stdexcept>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+std::string cell_text(const json& value) {
+  if (value.is_null()) return "";
+  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == ',' || c == '\n'; }, ';');
+  return text;
+}
+
+// Of a summary, by names as "energy.kinetic".
+std::map<std::string, json> numbers_of(const json& summary) {
+  std::map<std::string, json> numbers;
+  for (const char* part : {"steps", "dt", "time", "failure", "interrupted", "penetration_max", "stable_step",
+                           "energy", "status_counts", "forces", "seconds"}) {
+    if (!summary.contains(part)) continue;
+    const json flat = json{{part, summary[part]}}.flatten();
+    for (const auto& [pointer, value] : flat.items()) {
+      std::string name = pointer.substr(1);
+      std::replace(name.begin(), name.end(), '/', '.');
+      if (!value.is_structured()) numbers[name] = value;
+    }
+  }
+  numbers["warnings"] = summary.value("warnings", json::array()).size();
+  return numbers;
+}
+
+// Of a column of the history; nothing where there is none.
+std::optional<double> reduced(const RunFolder& run, const std::string& column, const std::string& kind) {
+  HistoryFile history(run.folder / "history.csv");
+  const auto index = history.index_of(column);
+  if (!index) return std::nullopt;
+  double last = std::nan(""), least = HUGE_VAL, largest = -HUGE_VAL, sum = 0.0, count = 0.0;
+  for (std::vector<double> row; history.next(row);) {
+    last = row[*index];
+    if (!std::isfinite(last)) continue;
+    least = std::min(least, last);
+    largest = std::max(largest, last);
+    sum += last;
+    ++count;
+  }
+  if (kind == "min") return least;
+  if (kind == "max") return largest;
+  return kind == "mean" ? sum / count : last;
+}
+
+std::optional<std::string> cell(const RunFolder& run, const std::string& column) {
+  const std::map<std::string, json> numbers = numbers_of(run.summary);
+  if (const auto found = numbers.find(column); found != numbers.end()) return cell_text(found->second);
+  const std::size_t colon = column.rfind(':');
+  const std::string kind = colon == std::string::npos ? "last" : column.substr(colon + 1);
+  if (kind != "last" && kind != "min" && kind != "max" && kind != "mean")
+    throw std::runtime_error(column + ": found '" + kind + "', expected one of last, min, max, mean");
+  const std::optional<double> value = reduced(run, column.substr(0, colon), kind);
+  if (!value) return std::nullopt;
+  return cell_text(json(*value));
+}
+
+std::vector<std::string> all_columns(const std::vector<RunFolder>& runs) {
+  std::vector<std::string> columns;
+  for (const RunFolder& run : runs)
+    for (const auto& [name, value] : numbers_of(run.summary))
+      if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
+  return columns;
+}
+
+}  // namespace
+
+std::string RunFolder::name() const { return folder.filename().string(); }
+
+std::string RunFolder::said(const std::string& pointer) const {
+  return cell_text(summary["scene"]["source"].value(json::json_pointer(pointer), json("-")));
+}
+
+RunFolder open_run(const std::filesystem::path& folder) {
+  // gnuplot takes file names that begin with < or | for commands: an absolute path never does.
+  std::filesystem::path path = std::filesystem::absolute(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  std::ifstream stream(path / "summary.json");
+  json summary = json::parse(stream, nullptr, false);
+  if (!summary.is_object() || !summary.contains("/scene/source"_json_pointer))
+    throw std::runtime_error((path / "summary.json").string() +
+                             ": found no summary, expected that of a run in this folder");
+  return {path, std::move(summary)};
+}
+
+std::vector<std::string> differences(const std::vector<RunFolder>& runs) {
+  std::vector<json> scenes;
+  std::vector<std::string> pointers;
+  for (const RunFolder& run : runs) scenes.push_back(run.summary["scene"]["source"].flatten());
+  for (const json& scene : scenes)
+    for (const auto& [pointer, value] : scene.items()) {
+      const bool differs =
+          std::any_of(scenes.begin(), scenes.end(), [&key = pointer, &own = value](const json& other) {
+            return !other.contains(key) || other[key] != own;
+          });
+      const bool is_text = pointer == "/title" || pointer == "/doc";
+      if (differs && !is_text && std::find(pointers.begin(), pointers.end(), pointer) == pointers.end())
+        pointers.push_back(pointer);
+    }
+  return pointers;
+}
+
+Rows table_of(const std::vector<RunFolder>& runs, const std::vector<std::string>& columns) {
+  const std::vector<std::string> different = differences(runs);
+  const std::vector<std::string> shown = columns.empty() ? all_columns(runs) : columns;
+  Rows rows(1, {"run"});
+  rows[0].insert(rows[0].end(), different.begin(), different.end());
+  rows[0].insert(rows[0].end(), shown.begin(), shown.end());
+  for (const RunFolder& run : runs) {
+    std::vector<std::string>& row = rows.emplace_back(1, run.name());
+    for (const std::string& pointer : different) row.push_back(run.said(pointer));
+  }
+  for (const std::string& column : shown) {
+    bool found = false;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      const std::optional<std::string> value = cell(runs[k], column);
+      found = found || value;
+      rows[k + 1].push_back(value.value_or(""));
+    }
+    if (!found)
+      throw std::runtime_error(column +
+                               ": found in no run, expected a number of summary.json (energy.kinetic) or a "
+                               "column of history.csv (n0.u0, n0.u0:max)");
+  }
+  return rows;
+}
+
+void write_csv(std::ostream& out, const Rows& rows) {
+  CsvWriter table(out);
+  for (const auto& row : rows) {
+    for (const std::string& text : row) table << text;
+    table.end_row();
+  }
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,38 @@
+// run_table.hpp - several runs side by side: what differs between their scenes, and what came of it.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+// The folder of a run, as its summary tells it.
+struct RunFolder {
+  std::filesystem::path folder;
+  nlohmann::json summary;
+
+  std::string name() const;
+  // What the scene has at a JSON pointer, in words.
+  std::string said(const std::string& pointer) const;
+};
+
+// Throws std::runtime_error where the folder has no summary.
+RunFolder open_run(const std::filesystem::path& folder);
+
+// JSON pointers of the scenes' numbers and words that are not the same in all runs.
+std::vector<std::string> differences(const std::vector<RunFolder>& runs);
+
+// A row per run: its name, what differs, then the columns: numbers of the summary (energy.kinetic),
+// or of the history (n0.u0:max; :last, :min, :max, :mean, last where none is given). Without
+// columns all numbers of the summary. Throws std::runtime_error for a column that no run has.
+using Rows = std::vector<std::vector<std::string>>;
+Rows table_of(const std::vector<RunFolder>& runs, const std::vector<std::string>& columns);
+
+void write_csv(std::ostream& out, const Rows& rows);
+
+}  // namespace ilaw::host

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/suggestion.hpp"
+
+#include <algorithm>
+
+namespace ilaw::host {
+namespace {
+
+// Fewest edits that turn one word into another (Levenshtein 1966).
+std::size_t edits(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string suggestion(const std::string& found, const std::vector<std::string>& words) {
+  std::size_t fewest = 3;
+  std::string nearest;
+  for (const std::string& word : words)
+    if (const std::size_t count = edits(found, word); count < fewest) {
+      fewest = count;
+      nearest = word;
+    }
+  return nearest.empty() ? "" : " (did you mean '" + nearest + "'?)";
+}
+
+}  // namespace ilaw::host

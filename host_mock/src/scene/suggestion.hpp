@@ -1,0 +1,13 @@
+// suggestion.hpp - the name that was meant.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+// " (did you mean 'one'?)" with the nearest of the words, or nothing where none is near.
+std::string suggestion(const std::string& found, const std::vector<std::string>& words);
+
+}  // namespace ilaw::host

@@ -1,0 +1,188 @@
+// Several runs side by side: sweeps, tables, pictures; and the pictures of many nodes.
+#include "host_runner.hpp"
+#include "program_runner.hpp"
+
+#include "base/csv.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <map>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+std::vector<std::vector<std::string>> rows_of(const std::string& text) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) rows.push_back(csv_cells(line));
+  return rows;
+}
+
+std::string cell(const std::vector<std::vector<std::string>>& rows, std::size_t row,
+                 const std::string& column) {
+  for (std::size_t k = 0; k < rows[0].size(); ++k)
+    if (rows[0][k] == column) return k < rows[row].size() ? rows[row][k] : "";
+  return "no column " + column;
+}
+
+// A block that slides until it stops, at v0^2/(2 mu g).
+json sliding() {
+  return json::parse(
+      R"({"model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0], "velocity": [2, 0]}]},
+    "time": {"dt": 0.001, "end": 4}, "loads": [{"type": "gravity", "acceleration": [0, -10]}],
+    "interfaces": [{"name": "floor", "law": "coulomb", "nodes": "all", "parameters": {"friction": 0.5},
+      "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}],
+    "output": {"watch": [0], "forces": ["floor"], "every": 10}})");
+}
+
+TEST(Sweep, RunsEachValueAndGathersTheSummaries) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << sliding().dump();
+  const std::string run = "run " + (folder / "scene.json").string() + " --out " + (folder / "all").string();
+  const Outcome outcome = run_program(
+      run +
+      " --set /interfaces/0/parameters/friction=0.1,0.2,0.4 --set /model/points/0/mass=1,3 --threads 2");
+  ASSERT_EQ(outcome.code, 0) << outcome.output;
+  const auto rows = rows_of(text_of(folder / "all" / "sweep.csv"));
+  ASSERT_EQ(rows.size(), 7U);
+  EXPECT_EQ(rows[4][0], "friction=0.2_mass=3");
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const double friction = std::stod(cell(rows, k, "/interfaces/0/parameters/friction")),
+                 mass = std::stod(cell(rows, k, "/model/points/0/mass"));
+    EXPECT_NEAR(std::stod(cell(rows, k, "energy.dissipated_friction")), 0.5 * mass * 4, 0.02 * mass) << k;
+    EXPECT_NEAR(std::stod(cell(rows, k, "forces.floor.impulse.0")), -2 * mass, 1e-9) << k;
+    const json summary = json::parse(text_of(folder / "all" / rows[k][0] / "summary.json"));
+    EXPECT_EQ(summary["scene"]["source"]["interfaces"][0]["parameters"]["friction"], friction);
+  }
+  // A table of some of them, by columns of the summary and of the history.
+  const std::string one = (folder / "all" / "friction=0.1_mass=1").string(),
+                    other = (folder / "all" / "friction=0.4_mass=1").string();
+  const Outcome table =
+      run_program("table " + one + " " + other + " --csv --columns steps,n0.u0,n0.v0:max,floor.F1:mean");
+  const auto cells = rows_of(table.output);
+  ASSERT_EQ(cells.size(), 3U) << table.output;
+  EXPECT_EQ(cells[0], (std::vector<std::string>{"run", "/interfaces/0/parameters/friction", "steps", "n0.u0",
+                                                "n0.v0:max", "floor.F1:mean"}));
+  EXPECT_EQ(cells[1][2], "4000");
+  EXPECT_NEAR(std::stod(cells[1][3]), 2.0, 0.01);
+  EXPECT_NEAR(std::stod(cells[2][3]), 0.5, 0.01);
+  EXPECT_NEAR(std::stod(cells[2][5]), 10.0, 1e-9);
+  EXPECT_EQ(run_program("table " + one + " --columns nothing").code, 2);
+  // And one picture of both, whose legend is what differs.
+  ASSERT_EQ(run_program("plot " + one + " " + other).code, 0);
+  const std::string script = text_of(folder / "all" / "comparison.gnuplot");
+  EXPECT_NE(script.find("title 'friction=0.1'"), std::string::npos) << script;
+  EXPECT_EQ(text_of(folder / "all" / "comparison.png").substr(1, 3), "PNG");
+  ASSERT_EQ(run_program("plot " + one + " --x n0.u0 --y floor.F0").code, 0);
+  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(one) / "floor.F0_over_n0.u0.svg"));
+  EXPECT_EQ(run_program("plot " + one + " --y n7.u0").code, 2);
+}
+
+TEST(Sweep, RunsNothingIfOneIsRefused) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << sliding().dump();
+  const std::string run =
+      "run " + (folder / "scene.json").string() + " --out " + (folder / "all").string() + " --set ";
+  for (const auto& [setting, message] : std::map<std::string, std::string>{
+           {"/interfaces/0/parameters/friction=0.1,-1", "friction=-1: /interfaces/0/parameters/friction"},
+           {"/time/dt=0.1,fast", "dt=fast: /time/dt: found \"fast\""},
+           {"/interfaces/1/skip=true", "/interfaces/1/skip: found nothing there to set"},
+           {"/output/evry=1", "/output/evry: unknown key"},
+           {"friction=1", "--set friction=1: expected /pointer=value"}}) {
+    const Outcome outcome = run_program(run + setting);
+    EXPECT_EQ(outcome.code, 2) << setting;
+    EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
+    EXPECT_FALSE(std::filesystem::exists(folder / "all")) << setting;
+  }
+}
+
+// 45 nodes: panels of an envelope each, in a moment.
+TEST(Picture, OfManyNodesIsAnEnvelope) {
+  json scene = sliding();
+  json& points = scene["model"]["points"];
+  for (int k = 1; k < 45; ++k) {
+    points.push_back(points[0]);
+    points[static_cast<std::size_t>(k)]["velocity"][0] = 0.05 * k;
+  }
+  scene["output"]["watch"] = {"all"};
+  scene["time"]["end"] = 0.5;
+  scene["output"]["every"] = 1;
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << scene.dump();
+  ASSERT_EQ(run_program("run " + (folder / "scene.json").string() + " --out " + folder.string()).code, 0);
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(run_program("plot " + folder.string()).code, 0);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 15.0);
+  const std::string script = text_of(folder / "history.gnuplot");
+  EXPECT_NE(script.find("'45 nodes'"), std::string::npos);
+  // The velocities after the first step, 0.05 k (and 2) less mu g h: least, median (23rd) and largest.
+  const std::size_t block = script.find("$band_velocity_v0 << EOD\n");
+  ASSERT_NE(block, std::string::npos);
+  std::istringstream lines(script.substr(block));
+  std::string line;
+  std::getline(lines, line);
+  std::getline(lines, line);
+  const std::vector<std::string> first = csv_cells(line);
+  EXPECT_NEAR(std::stod(first[1]), 0.05 - 0.005, 1e-9) << line;
+  EXPECT_NEAR(std::stod(first[2]), 0.05 * 23 - 0.005, 1e-9);
+  EXPECT_NEAR(std::stod(first[3]), 2.2 - 0.005, 1e-9);
+  const std::string svg = text_of(folder / "history.svg");
+  const std::size_t height = svg.find("height=\"");
+  EXPECT_LT(std::stod(svg.substr(height + 8)), 1500.0);
+}
+
+TEST(Picture, OfAnEarlierRunIsRemoved) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << sliding().dump();
+  const std::string run = "run " + (folder / "scene.json").string() + " --out " + folder.string();
+  ASSERT_EQ(run_program(run).code, 0);
+  ASSERT_EQ(run_program("plot " + folder.string()).code, 0);
+  ASSERT_TRUE(std::filesystem::exists(folder / "history.png"));
+  ASSERT_EQ(run_program(run).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "history.png"));
+}
+
+// A rubber block thrown too hard for its step: the message tells which element, and a smaller step.
+TEST(Divergence, NamesTheElementAndTheCure) {
+  json scene = json::parse(R"({
+    "model": {"type": "blocks", "blocks": [{"name": "b", "size": [0.1, 0.1, 0.1], "elements": [2, 2, 2], "velocity": [0, 0, -60],
+      "material": {"type": "neo_hookean", "young": 1e6, "poisson": 0.3, "density": 1000}}]},
+    "time": {"cfl": 0.9, "end": 0.1},
+    "interfaces": [{"law": "contact", "nodes": "b.z_min", "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << scene.dump();
+  const Outcome outcome =
+      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.output.find("; element "), std::string::npos) << outcome.output;
+  EXPECT_NE(
+      outcome.output.find("of the undeformed body, is turned inside out; half the step is \"cfl\": 0.45"),
+      std::string::npos)
+      << outcome.output;
+}
+
+TEST(Refusals, NameSeveralMistakesAndWhatIsMeant) {
+  const auto folder = fresh_folder();
+  const auto said = [&](const json& scene) {
+    std::ofstream(folder / "scene.json") << scene.dump();
+    return run_program("run " + (folder / "scene.json").string() + " --out " + (folder / "out").string())
+        .output;
+  };
+  json scene = sliding();
+  scene["output"]["evry"] = 1;
+  scene["model"]["dimensions"] = 2;
+  scene["time"]["dt"] = -1;
+  const std::string refusal = said(scene);
+  for (const char* part : {"(did you mean 'every'?)", "(did you mean 'dimension'?)", "/time/dt: found -1"})
+    EXPECT_NE(refusal.find(part), std::string::npos) << part << " in " << refusal;
+  scene = sliding();
+  scene["interfaces"][0]["law"] = "coulom";
+  EXPECT_NE(said(scene).find("(did you mean 'coulomb'?)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
