@@ -110,9 +110,11 @@ TEST(Program, NamesWhatItDoesNotKnow) {
   };
   EXPECT_EQ(
       first_line("rnu"),
-      "ilaw: found 'rnu', expected one of run, plot, converge, study, stress, list, describe, check, --help, --version");
-  EXPECT_EQ(first_line("run " + ball + " --outt here"),
-            "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads");
+      "ilaw: found 'rnu', expected one of run, plot, table, converge, study, stress, list, describe, check, "
+      "--help, --version");
+  EXPECT_EQ(
+      first_line("run " + ball + " --outt here"),
+      "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads, --set");
   EXPECT_EQ(first_line("run " + ball), "ilaw: --out is required");
   EXPECT_EQ(first_line("run " + ball + " --out here --threads 0"),
             "ilaw: --threads: Value 0 not in range 1 to 1024");

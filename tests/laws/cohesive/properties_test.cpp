@@ -27,7 +27,8 @@ TEST(CohesiveProperties, HoldForAnyMotion) {
       ASSERT_LE(node.named("damage"), 1.0);
       for (const double part : node.energy) ASSERT_GE(part, 0.0);
       if (damage == 1.0) break;
-      ASSERT_GE(node.named("opening"), 0.0);
+      // Not below zero, but for what contact below a bond takes for rounding of the velocities.
+      ASSERT_GE(node.named("opening"), -0x1p-47 * node.dt * (std::abs(v[0]) + std::abs(node.v_free[0])));
       double balance = stored - node.energy[ILAW_ENERGY_STORED];
       double scale = 1e-13 * (node.energy[ILAW_ENERGY_STORED] + stored);
       for (std::size_t c = 0; c < 3; ++c) {
@@ -55,22 +56,22 @@ TEST(CohesiveProperties, HoldForAnyMotion) {
 TEST(CohesiveProperties, ABondMadeOnAMovingNodeAddsNoEnergy) {
   Draw draw(13);
   int turned = 0;
-  for (int k = 0; k < 20000; ++k) {
+  for (int k = 0; k < 2000; ++k) {
     Bond node(draw.bond(), draw.power_of_ten(-3.0, 1.0), draw.between(0.1, 2.0),
               draw.power_of_ten(-2.0, 2.0));
-    node.v_previous = draw.vector(1.0);
-    const Vector free = draw.vector(3.0);
+    const Vector before = draw.vector(1.0), free = draw.vector(3.0);
+    node.v_previous = before;
     if (node.step(free) != ILAW_OK) continue;  // several solutions
     double work = node.energy[ILAW_ENERGY_STORED], size = work, along = 0.0;
     for (std::size_t c = 0; c < 3; ++c) {
-      work += 0.5 * node.r[c] * (node.v_previous[c] + node.v[c]) + node.energy[c];
+      work += 0.5 * node.r[c] * (before[c] + node.v[c]) + node.energy[c];
       size += std::abs(node.r[c]) * (2.0 + node.h[0] * std::abs(node.r[c]));
-      along += node.v_previous[c] * free[c];
+      along += before[c] * free[c];
     }
     ASSERT_LE(work, 1e-13 * size) << "draw " << k;
     turned += along < 0.0;
   }
-  EXPECT_GT(turned, 5000);
+  EXPECT_GT(turned, 500);
 }
 
 // Pressed and sheared, the tangential impulse is that of the bond, -h A k w with w the mean slip of the two

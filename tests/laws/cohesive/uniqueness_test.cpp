@@ -95,6 +95,7 @@ TEST(CohesiveUniqueness, IsSaidInOneDirection) {
     NodeRun& node = *run;
     node.h[0] = 4.0 * d.c / (node.dt * node.dt);
     node.state = {damage, d.f, 0.0, 0.0, d.f, 0.0, 0.0};
+    node.v_previous = {};  // at rest before: a new bond starts where the node is
     const std::int32_t code = node.step({2.0 * (d.drive - 2.0 * d.f) / node.dt, 0.0, 0.0});
     if (d.holds()) {
       ASSERT_EQ(code, ILAW_OK) << k;
