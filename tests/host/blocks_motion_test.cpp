@@ -13,8 +13,8 @@ using nlohmann::json;
 
 Scene scene_of(const json& source) { return testing::scene_of(source.dump()); }
 
-json material(const char* type, double poisson) {
-  return {{"type", type}, {"young", 3.0}, {"poisson", poisson}, {"density", 2.0}};
+json material(const char* type, double ratio) {
+  return {{"type", type}, {"young", 3.0}, {"poisson", ratio}, {"density", 2.0}};
 }
 
 json block(const json& size, const json& elements, const json& of, const char* element = "full") {
@@ -33,12 +33,12 @@ json shock(const json& nodes, const json& impulse) {
 
 // ---- waves ----------------------------------------------------------------------------------------------
 
-// A column of elements that moves along its axis alone is a bar: of Young's modulus E where poisson = 0, of
+// A column of elements that moves along its axis alone is a bar: of Young's modulus E where Poisson's ratio is 0, of
 // lambda + 2 mu where it cannot narrow. A shock on its end makes its nodes move as those of the bar.
-void expect_a_bar(double poisson, double modulus, json loads) {
+void expect_a_bar(double ratio, double modulus, json loads) {
   const json time = {{"dt", 0.7 * 0.05 * std::sqrt(2.0 / modulus)}, {"end", 6.0}};
   loads.push_back(shock("b.x_max", {-0.01, 0.0, 0.0}));
-  Scene blocks = scene_of({{"model", block({2.0, 0.3, 0.2}, {40, 1, 1}, material("linear", poisson))},
+  Scene blocks = scene_of({{"model", block({2.0, 0.3, 0.2}, {40, 1, 1}, material("linear", ratio))},
                            {"time", time},
                            {"loads", loads},
                            {"interfaces", json::array()}});
@@ -127,10 +127,10 @@ Eigen::Vector3d momentum(const Scene& scene, const Integrator& integrator) {
 // Two shocks make a block fly, spin and ring. Internal forces have no resultant, and a neo-Hookean body's no
 // moment about where it is; a linear one's has, once it turns. Forces of elements are sums that cancel, of
 // terms of a modulus times (element size) u, each rounded; all nodes stay within 10 of the origin.
-void expect_conserved(const char* law, const char* element, double poisson) {
-  const double modulus = std::max(3.0, 3.0 / (3.0 * (1.0 - 2.0 * poisson)));
+void expect_conserved(const char* law, const char* element, double ratio) {
+  const double modulus = std::max(3.0, 3.0 / (3.0 * (1.0 - 2.0 * ratio)));
   Scene scene = scene_of(
-      {{"model", block({1.0, 0.5, 0.4}, {4, 3, 2}, material(law, poisson), element)},
+      {{"model", block({1.0, 0.5, 0.4}, {4, 3, 2}, material(law, ratio), element)},
        {"time", {{"cfl", 0.5}, {"end", 20.0}}},
        {"loads", {shock("b.x_min", {0.002, -0.002, 0.004}), shock("b.x_max", {-0.001, 0.003, -0.001})}},
        {"interfaces", json::array()}});

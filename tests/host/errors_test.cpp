@@ -9,7 +9,7 @@
 namespace ilaw::host::testing {
 namespace {
 
-constexpr double never = ContactInstants::none;
+constexpr double no_instant = ContactInstants::none;
 
 // A point that comes at speed 1, meets something at an instant, and goes back at speed 1.
 ExactNode bounce(double instant) {
@@ -93,10 +93,10 @@ TEST(Norms, AgainstAFinerRunSeeNoErrorOfADecelerationThatIsExact) {
 TEST(Norms, TakeTheInstantThatIsFarthestOffOfThoseThatBothHave) {
   Trace trace = trace_of(bounce(0.5), 1e-2, 100);
   ExactNode exact = bounce(0.5);
-  trace.instants[0] = {0.51, never, 0.7};
+  trace.instants[0] = {0.51, no_instant, 0.7};
   exact.instants = {0.5, 0.6, 0.75};
   EXPECT_NEAR(errors_against({exact}, trace).instant, 0.05, 1e-15);
-  exact.instants = {never, 0.6, never};
+  exact.instants = {no_instant, 0.6, no_instant};
   EXPECT_TRUE(std::isnan(errors_against({exact}, trace).instant));
 }
 
@@ -122,7 +122,7 @@ TEST(Order, LeavesOutWhatIsAtRoundingLevel) {
   EXPECT_TRUE(std::isnan(order_of(h, {r, r, r, r, r})));
   EXPECT_TRUE(std::isnan(order_of({1.0, 0.5}, {0.4, 0.1})));
   // An error that is missing is not small.
-  EXPECT_TRUE(std::isnan(order_of(h, {0.4, 0.2, 0.1, never, 0.025})));
+  EXPECT_TRUE(std::isnan(order_of(h, {0.4, 0.2, 0.1, no_instant, 0.025})));
 }
 
 }  // namespace
