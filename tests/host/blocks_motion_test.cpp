@@ -33,8 +33,8 @@ json shock(const json& nodes, const json& impulse) {
 
 // ---- waves ----------------------------------------------------------------------------------------------
 
-// A column of elements that moves along its axis alone is a bar: of Young's modulus E where Poisson's ratio is 0, of
-// lambda + 2 mu where it cannot narrow. A shock on its end makes its nodes move as those of the bar.
+// A column of elements that moves along its axis alone is a bar: of Young's modulus E where Poisson's ratio
+// is 0, of lambda + 2 mu where it cannot narrow. A shock on its end makes its nodes move as those of the bar.
 void expect_a_bar(double ratio, double modulus, json loads) {
   const json time = {{"dt", 0.7 * 0.05 * std::sqrt(2.0 / modulus)}, {"end", 6.0}};
   loads.push_back(shock("b.x_max", {-0.01, 0.0, 0.0}));

@@ -79,7 +79,7 @@ int plot_history(const std::filesystem::path& results) {
   return exit_done;
 }
 
-void check_columns(const std::vector<RunFolder>& runs, std::vector<std::string> columns) {
+void check_columns(const std::vector<RunFolder>& runs, const std::vector<std::string>& columns) {
   for (const RunFolder& run : runs) {
     const HistoryFile history(run.folder / "history.csv");
     std::string names;

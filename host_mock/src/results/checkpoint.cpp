@@ -90,9 +90,9 @@ Checkpoint read_generation(const Scene& scene, Integrator& integrator, const std
   }
   try {
     check_identity(content["identity"], identity_of(scene));
-    const Checkpoint checkpoint{mark_of(content.at("history")), content.at("fields"),
-                                text_of(content.at("history_state")), mark_of(content.at("events")),
-                                text_of(content.at("events_state"))};
+    Checkpoint checkpoint{mark_of(content.at("history")), content.at("fields"),
+                          text_of(content.at("history_state")), mark_of(content.at("events")),
+                          text_of(content.at("events_state"))};
     check_files(checkpoint, path.parent_path());
     std::istringstream state(text_of(content.at("state")));
     integrator.load(state);
@@ -146,7 +146,7 @@ Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std
     said = damage.what();
   }
   try {
-    const Checkpoint checkpoint = read_generation(scene, integrator, older);
+    Checkpoint checkpoint = read_generation(scene, integrator, older);
     std::filesystem::rename(older, path);
     return checkpoint;
   } catch (const std::runtime_error& error) {

@@ -103,6 +103,7 @@ RunFolder open_run(const std::filesystem::path& folder) {
 std::vector<std::string> differences(const std::vector<RunFolder>& runs) {
   std::vector<json> scenes;
   std::vector<std::string> pointers;
+  scenes.reserve(runs.size());
   for (const RunFolder& run : runs) scenes.push_back(run.summary["scene"]["source"].flatten());
   for (const json& scene : scenes)
     for (const auto& [pointer, value] : scene.items()) {

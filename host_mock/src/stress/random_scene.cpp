@@ -42,8 +42,8 @@ class Scenery {
  private:
   double speed() { return draw_.chance(0.1) ? 0.0 : draw_.uniform(-1.0, 1.0) * draw_.magnitude(0.1, 3.0); }
   std::vector<double> vector(int dimension, double size) {
-    std::vector<double> made;
-    for (int c = 0; c < dimension; ++c) made.push_back(size * draw_.uniform(-1.0, 1.0));
+    std::vector<double> made(static_cast<std::size_t>(dimension));
+    for (double& component : made) component = size * draw_.uniform(-1.0, 1.0);
     return made;
   }
 

@@ -41,7 +41,7 @@ std::filesystem::path keep(const json& scene, const StressVerdict& verdict, cons
   };
   json small = shrink(scene, fails, most_tries);
   small["doc"] = last.reason;
-  const std::filesystem::path path = folder / (name + ".json");
+  std::filesystem::path path = folder / (name + ".json");
   AtomicFile file(path);
   file.stream() << small.dump(1) << '\n';
   file.commit();
