@@ -173,11 +173,10 @@ class Scenery {
 
   json random_obstacle(const Body& body) {
     const int d = body.dimension;
-    std::vector<double> normal(static_cast<std::size_t>(d), 0.0);
-    normal.back() = 1.0;
+    json normal = json::array();  // along the last axis
+    for (int c = 0; c < d; ++c) normal.push_back(c + 1 < d ? 0.0 : 1.0);
     if (d > 1 && draw_.chance(0.3)) normal = draw_.direction(d);
     json obstacle = {{"type", "plane"}, {"point", vector(d, 0.0)}, {"normal", normal}};
-    if (d == 1) obstacle["normal"] = {1.0};
     if (d > 1 && draw_.chance(0.25)) {
       std::vector<double> center(static_cast<std::size_t>(d), 0.0);
       center.back() = -5.0;
