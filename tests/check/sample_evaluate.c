@@ -86,10 +86,11 @@ int32_t sample_initialise(const ilaw_instance* made, const ilaw_batch* b, ilaw_r
 /* Things that evaluate may not do, each for its rule. */
 static void misbehave(const ilaw_batch* b) {
   static volatile int counter;
+  static int* volatile nowhere = (int*)8; /* read at run time, so that the compiler does not see through it */
   static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
   volatile char* room;
   jmp_buf here;
-  if (breaks("functions-return")) *(volatile int*)8 = 1;
+  if (breaks("functions-return")) *nowhere = 1;
   if (breaks("hang"))
     for (;;) ++counter;
   if (breaks("exit")) exit(3);
