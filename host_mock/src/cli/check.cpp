@@ -4,6 +4,7 @@
 
 #include "base/exit_code.hpp"
 #include "check/report.hpp"
+#include "cli/terminal.hpp"
 
 #include <cstdio>
 #include <string>
@@ -23,18 +24,18 @@ int check_library(const CheckOptions& options) {
     return exit_done;
   }
   if (options.file.empty()) {
-    std::fprintf(stderr, "ilaw: found no library, expected one to check, or --rules\n");
+    complain("found no library, expected one to check, or --rules");
     return exit_bad_input;
   }
   check::Checked checked{options.file, options.check.seed, {}};
   try {
     checked.outcomes = check::check(options.file, options.check);
   } catch (const check::UsageError& error) {
-    std::fprintf(stderr, "ilaw: %s\n", error.what());
+    complain(error.what());
     return exit_bad_input;
   }
   if (!options.junit.empty() && !check::write_junit(checked, options.junit)) {
-    std::fprintf(stderr, "ilaw: %s: cannot be written\n", options.junit.c_str());
+    complain(options.junit + ": cannot be written");
     return exit_failed;
   }
   std::fputs((options.as_json ? check::json_of(checked) : check::text_of(checked)).c_str(), stdout);
