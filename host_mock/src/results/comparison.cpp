@@ -87,7 +87,7 @@ void write_comparison(std::ostream& script, const std::filesystem::path& picture
   for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
     script << "reset\nset datafile separator comma\nset terminal " << terminal << " size " << width << ","
            << height << " font 'sans,11' rounded background rgb 'white'\nset output "
-           << in_quotes(picture.string() + kind) << ".suffix\nset multiplot title "
+           << drawn_name(picture.string() + kind) << "\nset multiplot title "
            << in_quotes(runs.front().summary["scene"].value("title", runs.front().name()))
            << " font ',14' noenhanced\nset lmargin at screen " << margin_left / width
            << "\nset rmargin at screen " << 1.0 - right / width << "\nset border 3 linecolor rgb '#808080'\n"

@@ -86,18 +86,21 @@ bool draw_by_gnuplot(const std::filesystem::path& script, const std::function<vo
   return run(script);
 }
 
+std::string drawn_name(const std::filesystem::path& picture) {
+  return in_quotes(picture.string()) + ".suffix";
+}
+
 bool draw_log_sheet(const std::filesystem::path& folder, const std::string& name, const LogSheet& sheet,
                     const std::function<void(std::ostream&)>& panels) {
   return draw_by_gnuplot(folder / (name + ".gnuplot"), [&](std::ostream& script) {
     for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
-      script
-          << "reset\nset datafile separator comma\nset datafile missing ''\nset terminal " << terminal
-          << " size " << sheet.size << " font 'sans,11' background rgb 'white'\nset output "
-          << in_quotes((folder / (name + kind)).string())
-          << ".suffix\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\n"
-             "set ylabel 'relative error'\nset multiplot "
-          << sheet.layout << " title " << in_quotes(sheet.title) << ' ' << sheet.title_font
-          << " noenhanced\n";
+      script << "reset\nset datafile separator comma\nset datafile missing ''\nset terminal " << terminal
+             << " size " << sheet.size << " font 'sans,11' background rgb 'white'\nset output "
+             << drawn_name(folder / (name + kind))
+             << "\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\n"
+                "set ylabel 'relative error'\nset multiplot "
+             << sheet.layout << " title " << in_quotes(sheet.title) << ' ' << sheet.title_font
+             << " noenhanced\n";
       panels(script);
       script << "unset multiplot\nunset output\n";
     }

@@ -17,6 +17,10 @@ std::string in_quotes(std::string_view text);
 // gnuplot's warnings (an axis of a constant, say). Says on stderr why it failed.
 bool draw_by_gnuplot(const std::filesystem::path& script, const std::function<void(std::ostream&)>& write);
 
+// What such a script sets its output to, for a picture that is to stand under its name only when it
+// is whole.
+std::string drawn_name(const std::filesystem::path& picture);
+
 // A sheet of panels over logarithmic axes.
 struct LogSheet {
   const char *size, *layout, *title_font;  // as gnuplot reads them

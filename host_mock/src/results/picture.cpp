@@ -302,8 +302,8 @@ void draw(std::ostream& script, const std::string& terminal, const std::filesyst
   double height = above + below - between;
   for (const Panel& panel : panels) height += height_of(panel, columns) + between;
   script << "set terminal " << terminal << " size " << width << "," << height
-         << " font 'sans,11' rounded background rgb 'white'\nset output " << in_quotes(file.string())
-         << ".suffix\nset multiplot title " << in_quotes(title) << " font ',14' noenhanced\n"
+         << " font 'sans,11' rounded background rgb 'white'\nset output " << drawn_name(file)
+         << "\nset multiplot title " << in_quotes(title) << " font ',14' noenhanced\n"
          << "set lmargin at screen " << left / width << "\nset rmargin at screen " << 1.0 - right / width
          << "\n";
   double top = height - above;
