@@ -61,11 +61,23 @@ json peeled_beam() {
       "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
 }
 
+// A point that slips off a ball: the axes of its bond have turned with the normal before it is touched.
+json slipping_point() {
+  return json::parse(R"({
+    "model": {"type": "points", "dimension": 3, "points": [
+      {"mass": 1, "area": 0, "position": [0, 0, 0]}, {"mass": 1, "area": 0, "position": [0, -0.2, 0], "velocity": [1, 0, -0.5]}]},
+    "time": {"dt": 0.0003, "end": 0.0676},
+    "interfaces": [{"law": "postit", "nodes": "all", "parameters": {"memory": "inf"},
+      "obstacle": {"type": "sphere", "center": [0, 0, -5], "radius": 5}}]})");
+}
+
 std::vector<std::pair<std::string, json>> resumed_scenes() {
   json strip = shipped("postit_3d");
   strip["model"]["blocks"][0]["elements"] = {20, 2, 1};
-  std::vector<std::pair<std::string, json>> scenes{
-      {"cohesive", peeled_beam()}, {"postit_3d", strip}, {"penalty_history", dragged_block()}};
+  std::vector<std::pair<std::string, json>> scenes{{"cohesive", peeled_beam()},
+                                                   {"postit_3d", strip},
+                                                   {"penalty_history", dragged_block()},
+                                                   {"slipping_point", slipping_point()}};
   for (const char* name : {"block_impact", "two_blocks", "rotating_spring", "postit_test2", "postit_test3",
                            "two_bars", "bouncing_ball"})
     scenes.emplace_back(name, shipped(name));

@@ -35,7 +35,8 @@ void ContactArrays::add(const Entry& entry) {
   if (reads_area_) area.push_back(entry.area);
   for (std::size_t p = 0; p < parameters.size(); ++p) parameters[p].push_back(entry.parameters[p]);
   status.push_back(ILAW_FREE);
-  marks_.push_back(entry.must_be_evaluated ? awake | changed : 0);
+  const int touched = entry.turns ? changed : 0;
+  marks_.push_back(static_cast<std::uint8_t>(entry.must_be_evaluated ? awake | changed : touched));
   if (partnered_) point.emplace_back();
   if (is_repeated_) make_room();
 }

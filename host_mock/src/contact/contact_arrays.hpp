@@ -40,6 +40,7 @@ class ContactArrays {
     std::vector<double> parameters;  // of the law per node, in its order
     std::vector<double> state;
     bool must_be_evaluated;
+    bool turns;  // the state has axes, which turn with the normal out of reach, too
   };
 
   std::size_t count() const { return node_index.size(); }

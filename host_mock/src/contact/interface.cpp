@@ -47,7 +47,8 @@ int Interface::contact_index_of(int node_index, const Dofs& u) {
   const std::size_t k = at(node_index);
   if (const int found = contacts_.index_of(k); found >= 0) return found;
   contacts_.add({node_index, 1.0 / model_.mass()[setup_.nodes[k] * dimension_], setup_.areas[k],
-                 parameters_of(node_index), first_state(node_index, u), law_.acts_at_distance()});
+                 parameters_of(node_index), first_state(node_index, u), law_.acts_at_distance(),
+                 law_.carries_axes() && !setup_.counterpart->keeps_normal()});
   return contacts_.index_of(k);
 }
 
