@@ -144,8 +144,9 @@ void cone(const Subject& subject) {
         const double normal = dot(n, r);
         Vector along = r;
         for (std::size_t c = 0; c < in.dimension; ++c) along[c] -= normal * n[c];
-        const double most = cone_of(trial) * normal;
-        if (length(along) > most + 1e-12 * length(r))
+        // r_N = n.r rounds as a part of |r|, however small it is.
+        const double friction = cone_of(trial), most = friction * normal;
+        if (length(along) > most + (1e-12 + 16.0 * ulp * friction) * length(r))
           fail(trial, in, i, "|r_T| = " + text_of(length(along)), "at most friction r_N = " + text_of(most));
       },
       "no parameter is called friction");
