@@ -152,6 +152,25 @@ TEST(MovingPlane, CarriesItsPoint) {
   }
 }
 
+// A plane that starts to recede at the instant of the impact: it approached at v^- - 0, and leaves with v = w
+// - e v^- for the plane's velocity w in the step to come.
+TEST(MovingPlane, CountsWithItsVelocityBeforeAndAfterAKink) {
+  for (const double w : {-0.3, 0.4}) {
+    Scene scene = scene_of(
+        R"({"model": {"type": "points", "dimension": 1,
+                      "points": [{"mass": 1.0, "position": [0.2495], "velocity": [-1.0]}]},
+      "time": {"dt": 1e-3, "end": 0.3}, "loads": [],
+      "interfaces": [{"law": "contact", "nodes": [0], "parameters": {"restitution": 0.5, "activation": "moreau"},
+                      "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0],
+                                   "path": [[0.0, 0.0], [0.25, 0.0], [1.25, )" +
+        number(w) + "]]}}]}");
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) integrator.step();
+    EXPECT_NEAR(integrator.velocity()[0], w + 0.5, 1e-12) << w;
+    EXPECT_LE(integrator.energy().balance_error, 1e-12);
+  }
+}
+
 // A point in the corner of two planes that are not at right angles: each impulse moves it along the other
 // plane, and the sweep over both must leave it at rest.
 TEST(Corner, OfTwoPlanesHoldsAPoint) {
