@@ -172,7 +172,7 @@ measure_share() {
     "$ilaw" run $here/scenes/block_share.json --out "$work/block_share" >/dev/null 2>&1
     summary=$work/block_share/summary.json
     echo "$repetition,$((8000 * $(value "$summary" .steps))),$(value "$summary" '.interfaces[0].nodes'),$(
-      value "$summary" .interface_share),$(value "$summary" '.interfaces[0].bytes_per_node')" >>"$share"
+      value "$summary" .execution.interface_share),$(value "$summary" '.interfaces[0].bytes_per_node')" >>"$share"
   done
 }
 if wanted share; then measure_share; fi

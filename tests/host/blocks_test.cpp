@@ -86,6 +86,22 @@ const std::vector<Side> sides{{"b.x_min", {-1, 0, 0}, 0.72}, {"b.x_max", {1, 0, 
 
 // ---- geometry -------------------------------------------------------------------------------------------
 
+// Where no face is named a node offers the length of its area vector: of all faces that meet there.
+TEST(Block, NodesOfTheWholeOfferTheAreasOfAllTheirFaces) {
+  const Blocks block = block_of(linear);
+  std::vector<Eigen::Vector3d> vectors(static_cast<std::size_t>(block.node_count()), Eigen::Vector3d::Zero());
+  for (const Side& side : sides) {
+    const NodeSet& face = block.sets().at(side.name);
+    for (std::size_t k = 0; k < face.nodes.size(); ++k)
+      vectors[static_cast<std::size_t>(face.nodes[k])] += face.areas[k] * side.normal.cwiseAbs();
+  }
+  const NodeSet& whole = block.sets().at("all");
+  ASSERT_EQ(whole.nodes.size(), vectors.size());
+  for (std::size_t k = 0; k < whole.nodes.size(); ++k)
+    EXPECT_NEAR(whole.areas[k], vectors[static_cast<std::size_t>(whole.nodes[k])].norm(), 1e-15)
+        << "node " << whole.nodes[k];
+}
+
 TEST(Block, HasTheMassAndTheFacesOfItsBox) {
   const Blocks block = block_of(linear);
   ASSERT_EQ(block.node_count(), 5 * 4 * 3);

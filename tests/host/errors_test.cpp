@@ -1,5 +1,6 @@
 // Errors and their orders: the norms, on motions made by hand.
 #include "study/errors.hpp"
+#include "study/convergence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -123,6 +124,24 @@ TEST(Order, LeavesOutWhatIsAtRoundingLevel) {
   EXPECT_TRUE(std::isnan(order_of({1.0, 0.5}, {0.4, 0.1})));
   // An error that is missing is not small.
   EXPECT_TRUE(std::isnan(order_of(h, {0.4, 0.2, 0.1, no_instant, 0.025})));
+}
+
+// Errors of instants are times: those of a run of 1e6 s are at rounding level below 1e-5 s. All others are
+// relative.
+TEST(Order, OfATableScalesInstantsByTheRun) {
+  ErrorTable table;
+  double h = 1e3;
+  for (const double error : {0.4, 0.2, 0.1, 1e-9, 1e-9}) {
+    Trace run;
+    run.dt = h;
+    run.steps = std::llround(1e6 / h);
+    table.runs.push_back(run);
+    table.errors.push_back({error, error, error, error, error, error});
+    h *= 0.5;
+  }
+  EXPECT_NEAR(table.order(norm_instant), 1.0, 1e-12);
+  for (const Norm norm : {norm_u_L2, norm_u_max, norm_v_L1, norm_impulse, norm_energy})
+    EXPECT_GT(table.order(norm), 5.0) << norm;
 }
 
 }  // namespace

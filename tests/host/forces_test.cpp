@@ -232,8 +232,8 @@ TEST(Forces, AndEventsSurviveACheckpointWithTheSameBytes) {
   ASSERT_EQ(run_program(command).code, 0);
   ASSERT_EQ(run_program(command + " --resume").code, 0);
   const json summary = json::parse(text_of(pieces / "summary.json"));
-  EXPECT_NE(summary["resumed_at_step"].get<int>() % 7, 0);
-  EXPECT_NE(summary["resumed_at_step"], summary["steps"]);
+  EXPECT_NE(summary["execution"]["resumed_at_step"].get<int>() % 7, 0);
+  EXPECT_NE(summary["execution"]["resumed_at_step"], summary["steps"]);
   EXPECT_EQ(text_of(pieces / "history.csv"), text_of(whole / "history.csv"));
   EXPECT_EQ(text_of(pieces / "events.csv"), text_of(whole / "events.csv"));
   EXPECT_EQ(summary["forces"], json::parse(text_of(whole / "summary.json"))["forces"]);

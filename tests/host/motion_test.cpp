@@ -152,6 +152,25 @@ TEST(MovingPlane, CarriesItsPoint) {
   }
 }
 
+// A plane that starts to recede at the instant of the impact: it approached at v^- - 0, and leaves with v = w
+// - e v^- for the plane's velocity w in the step to come.
+TEST(MovingPlane, CountsWithItsVelocityBeforeAndAfterAKink) {
+  for (const double w : {-0.3, 0.4}) {
+    Scene scene = scene_of(
+        R"({"model": {"type": "points", "dimension": 1,
+                      "points": [{"mass": 1.0, "position": [0.2495], "velocity": [-1.0]}]},
+      "time": {"dt": 1e-3, "end": 0.3}, "loads": [],
+      "interfaces": [{"law": "contact", "nodes": [0], "parameters": {"restitution": 0.5, "activation": "moreau"},
+                      "obstacle": {"type": "plane", "point": [0.0], "normal": [1.0],
+                                   "path": [[0.0, 0.0], [0.25, 0.0], [1.25, )" +
+        number(w) + "]]}}]}");
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) integrator.step();
+    EXPECT_NEAR(integrator.velocity()[0], w + 0.5, 1e-12) << w;
+    EXPECT_LE(integrator.energy().balance_error, 1e-12);
+  }
+}
+
 // A point in the corner of two planes that are not at right angles: each impulse moves it along the other
 // plane, and the sweep over both must leave it at rest.
 TEST(Corner, OfTwoPlanesHoldsAPoint) {
@@ -190,18 +209,28 @@ TEST(Shock, EntersExactlyOneStep) {
     }
 }
 
-// Instants as people write them, in decimals, which n dt meets only but for rounding.
+// Instants as people write them, in decimals, which n dt meets only but for rounding: one for each step.
 TEST(Shock, AtADecimalInstantEntersTheStepThatEndsThere) {
-  for (int n = 1; n <= 999; ++n) {
-    char instant[16];
-    std::snprintf(instant, sizeof instant, "%.3f", n * 1e-3);
+  constexpr int shocks = 120;
+  const auto decimal = [](int thousandths) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%d.%03d", thousandths / 1000, thousandths % 1000);
+    return std::string(text);
+  };
+  for (const int dt : {1, 3, 7, 9, 11}) {
+    std::string loads;
+    for (int n = 1; n <= shocks; ++n)
+      loads += std::string(n > 1 ? ", " : "") +
+               R"({"type": "shock", "nodes": [0], "impulse": [1.0], "time": )" + decimal(n * dt) + "}";
     Scene scene = scene_of(
         R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1.0, "position": [9.0]}]},
-        "time": {"dt": 0.001, "end": 1.0}, "loads": [{"type": "shock", "nodes": [0], "time": )" +
-        std::string(instant) + R"(, "impulse": [1.0]}], "interfaces": []})");
+        "time": {"dt": )" +
+        decimal(dt) + R"(, "end": 10.0}, "loads": [)" + loads + R"(], "interfaces": []})");
     Integrator integrator = integrator_of(scene);
-    while (integrator.velocity()[0] == 0.0) integrator.step();
-    ASSERT_EQ(integrator.steps(), n);
+    for (int n = 1; n <= shocks; ++n) {
+      integrator.step();
+      ASSERT_EQ(integrator.velocity()[0], n) << "dt = " << decimal(dt) << ", step " << n;
+    }
   }
 }
 

@@ -71,6 +71,25 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   }
 }
 
+// Whole or not at all, as every file; a device is not replaced by a file.
+TEST(Program, WritesTheReportOfACheck) {
+  const auto folder = fresh_folder();
+  const auto report_to = [&](const std::string& file) {
+    return run_program("check " ILAW_PLUGIN_FOLDER "/contact.so --only library-opens --junit " + file,
+                       "cd " + folder.string() + "; ");
+  };
+  EXPECT_EQ(report_to("report.xml").code, 0);
+  EXPECT_NE(text_of(folder / "report.xml").find("</testsuite>"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder / "report.xml.partial"));
+  const Outcome nowhere = report_to("none/report.xml");
+  EXPECT_EQ(nowhere.code, 1);
+  EXPECT_NE(nowhere.output.find("none/report.xml"), std::string::npos) << nowhere.output;
+  const Outcome device = report_to("/dev/full");
+  EXPECT_EQ(device.code, 2);
+  EXPECT_EQ(device.output.find("ilaw: /dev/full: is no regular file"), 0U) << device.output;
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
 TEST(Program, SaysWhyASceneCannotBeRead) {
   const auto folder = fresh_folder();
   const auto output_of = [&](const std::string& scene) {

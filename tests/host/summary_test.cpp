@@ -52,23 +52,23 @@ TEST(Summary, CountsActiveAndSkippedContacts) {
   const nlohmann::json complete = summary_of(scene);
   const auto steps = skipping["steps"].get<std::int64_t>();
   for (const nlohmann::json& summary : {skipping, complete}) {
-    const nlohmann::json& count = summary["node_steps"];
+    const nlohmann::json& count = summary["execution"]["node_steps"];
     EXPECT_EQ(count["active"].get<std::int64_t>() + count["skipped"].get<std::int64_t>(), nodes * steps);
     std::int64_t sum = 0;
     for (const auto& [status, times] : summary["status_counts"].items()) sum += times.get<std::int64_t>();
     EXPECT_EQ(sum, nodes * steps);
   }
-  EXPECT_EQ(complete["node_steps"]["skipped"], 0);
-  EXPECT_GT(skipping["node_steps"]["skipped"], nodes * steps / 2);
+  EXPECT_EQ(complete["execution"]["node_steps"]["skipped"], 0);
+  EXPECT_GT(skipping["execution"]["node_steps"]["skipped"], nodes * steps / 2);
   EXPECT_EQ(complete["status_counts"], skipping["status_counts"]);
-  EXPECT_EQ(complete["interfaces"][0]["nodes_stored"], 9 * 9 * 9);
-  EXPECT_LT(skipping["interfaces"][0]["nodes_stored"], 9 * 9 * 9);
+  EXPECT_EQ(complete["execution"]["nodes_stored"][0], 9 * 9 * 9);
+  EXPECT_LT(skipping["execution"]["nodes_stored"][0], 9 * 9 * 9);
 }
 
 TEST(Summary, TellsTheInterfacesShareAndMemory) {
   const nlohmann::json summary = summary_of(shipped("postit_test3.json"));
   const nlohmann::json& seconds = summary["seconds"];
-  const double share = summary["interface_share"];
+  const double share = summary["execution"]["interface_share"];
   EXPECT_GT(share, 0.0);
   EXPECT_LT(share, 1.0);
   EXPECT_NEAR(share,

@@ -96,6 +96,34 @@ TEST_P(BadState, HarmsNothingElse) {
     }
 }
 
+// A step judges what it reads of a window (abi.md, State): NaN in any slot is refused in the end, or written
+// over, and no impulse before depends on it. Over more than two memories, so that every slot has had its
+// turn.
+TEST_P(BadState, ThatIsNotReadChangesNoImpulse) {
+  const auto run_on = [](Trio& trio, auto look) {
+    for (int k = 0; k < 100 && look(trio.advance()); ++k) continue;
+  };
+  Trio trio(GetParam().law, GetParam().parameters);
+  const std::vector<double> start = trio.memory;
+  const double begin = trio.time;
+  std::vector<std::array<double, 9>> sound;
+  run_on(trio, [&](std::int32_t) { return sound.push_back(trio.impulse), true; });
+  std::size_t late = 0;
+  for (std::size_t entry = 0; entry < trio.size; ++entry) {
+    trio.memory = start;
+    trio.time = begin;
+    trio.of(1)[entry] = nan_value;
+    std::size_t step = 0;
+    run_on(trio, [&](std::int32_t code) {
+      if (code == ILAW_OK) EXPECT_EQ(trio.impulse, sound[step]) << "double " << entry << ", step " << step;
+      return code == ILAW_OK && !HasFailure() && ++step < sound.size();
+    });
+    if (step > 0) ++late;
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(late, 0U) << "every slot was read at once: nothing was tested";
+}
+
 TEST_P(BadState, OfAClockSetBackIsRefused) {
   Trio trio(GetParam().law, GetParam().parameters);
   trio.time -= 0.03;

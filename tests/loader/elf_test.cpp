@@ -46,6 +46,20 @@ Elf64_Dyn& dynamic(Bytes& bytes, Elf64_Sxword tag) {
   }
 }
 
+Elf64_Phdr& last_loaded(Bytes& bytes) {
+  Elf64_Phdr* last = nullptr;
+  for (std::uint64_t i = 0; i < header(bytes).e_phnum; ++i) {
+    auto& found = entry_at<Elf64_Phdr>(bytes, header(bytes).e_phoff + i * sizeof(Elf64_Phdr));
+    if (found.p_type == PT_LOAD) last = &found;
+  }
+  return *last;
+}
+
+// The last byte of the table of names, in the first loaded segment, which begins the file.
+char& end_of_names(Bytes& bytes) {
+  return bytes[dynamic(bytes, DT_STRTAB).d_un.d_ptr + dynamic(bytes, DT_STRSZ).d_un.d_val - 1];
+}
+
 // The code and message of opening those bytes, in a process of its own: some make the loader die.
 std::string answer_to(const Bytes& bytes) {
   const std::string path = testing::TempDir() + "ilaw_elf_" + std::to_string(getpid()) + ".so";
@@ -59,6 +73,23 @@ std::string answer_to(const Bytes& bytes) {
 }
 
 TEST(ElfFile, WholeOneIsOpened) { EXPECT_EQ(answer_to(whole_library()), "0\nstatus 0\n"); }
+
+// dlopen would refuse it, too, but not by its number.
+TEST(ElfFile, OfAnotherMachineIsRefusedByItsName) {
+  Bytes bytes = whole_library();
+  header(bytes).e_machine = header(bytes).e_machine == EM_AARCH64 ? EM_X86_64 : EM_AARCH64;
+  const std::string path = testing::TempDir() + "ilaw_machine_" + std::to_string(getpid()) + ".so";
+  std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  std::string said;
+  try {
+    const ilaw::library library(path);
+  } catch (const ilaw::error& error) {
+    said = error.what();
+  }
+  unlink(path.c_str());
+  EXPECT_NE(said.find("ELF file for machine " + std::to_string(header(bytes).e_machine)), std::string::npos)
+      << said;
+}
 
 struct Damage {
   const char* name;
@@ -95,9 +126,18 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{"HugeSegment", [](Bytes& b) { segment(b, PT_LOAD).p_memsz = UINT64_MAX / 2; }},
         Damage{"SegmentLessThanItsFile", [](Bytes& b) { segment(b, PT_LOAD).p_memsz = 8; }},
         Damage{"SegmentFarAway", [](Bytes& b) { segment(b, PT_LOAD).p_vaddr = nowhere << 12; }},
+        // What is beyond the end of a file is a SIGBUS when dlopen clears the rest of its page.
+        Damage{"SegmentBeyondTheFile",
+               [](Bytes& b) {
+                 last_loaded(b).p_filesz += 1 << 20;
+                 last_loaded(b).p_memsz = last_loaded(b).p_filesz + 64;
+               }},
         Damage{"OddAlignment", [](Bytes& b) { segment(b, PT_LOAD).p_align = 12288; }},
         Damage{"NamesElsewhere", [](Bytes& b) { dynamic(b, DT_STRTAB).d_un.d_ptr = nowhere; }},
         Damage{"SymbolsElsewhere", [](Bytes& b) { dynamic(b, DT_SYMTAB).d_un.d_ptr = nowhere; }},
+        Damage{"NamesWithoutEnd", [](Bytes& b) { end_of_names(b) = 'x'; }},
+        Damage{"NoSymbols", [](Bytes& b) { dynamic(b, DT_SYMTAB).d_tag = DT_DEBUG; }},
+        Damage{"NoNames", [](Bytes& b) { dynamic(b, DT_STRTAB).d_tag = DT_DEBUG; }},
         Damage{"HashesElsewhere", [](Bytes& b) { dynamic(b, DT_GNU_HASH).d_un.d_ptr = nowhere; }},
         Damage{"RelocationsElsewhere", [](Bytes& b) { dynamic(b, DT_RELA).d_un.d_ptr = nowhere; }},
         Damage{"RelocationsWithoutEnd", [](Bytes& b) { dynamic(b, DT_RELASZ).d_un.d_val = 1 << 30; }},

@@ -56,6 +56,13 @@ TEST_F(Searched, NameOfAnInputFileIsNeverAPath) {
     EXPECT_NE(refusal_of(name).find("is no name of a library"), std::string::npos) << name;
 }
 
+TEST_F(Searched, RelativeEntriesOfThePathAreLeftOut) {
+  setenv("ILAW_PATH", ("relative_entry:./dotted_entry::" + (folder / "in").string()).c_str(), 1);
+  const std::string path = ilaw::search_path();
+  EXPECT_EQ(path.find((folder / "in").string()), 0U) << path;
+  EXPECT_EQ(path.find("entry"), std::string::npos) << path;
+}
+
 TEST_F(Searched, NamesWithOddLettersAreRefusedInEveryWay) {
   EXPECT_THROW(ilaw::library("he re"), ilaw::error);
   EXPECT_THROW(ilaw::library(".."), ilaw::error);

@@ -1,104 +1,190 @@
 #!/usr/bin/env python3
-"""Do the tests notice? Breaks one line at a time, builds the nearest tests, and runs them.
+"""Do the tests notice? Faults of one line, all compiled into one copy of the tree, switched on one at a time.
 
-    tests/mutants/run.py                   all mutants of mutants.json, in a copy of the tree below build/mutants
+    tests/mutants/run.py                   all mutants of mutants.json
     tests/mutants/run.py --only window     those whose name holds this word
+    tests/mutants/run.py --area kit        those of an area: plugins, kit, loader or host
     tests/mutants/run.py --check           only whether each still fits the sources, exactly once
+    tests/mutants/run.py --table           and writes the score into docs/reliability.md
 
-A mutant is caught when a test fails, hangs for minutes, or the compiler refuses it. Prints a line for each and the
-score of each area. Exit codes: 0 all fit (and at least 90 % are caught), 1 otherwise.
+The copy is build/mutants; the environment variable ILAW_MUTANT is the number of the mutant that its programs have,
+0 for none. The nearest tests come first ("program", or "program:filter"), then all of the mutant's area, until one
+fails, crashes or hangs: that has caught it. Exit codes: 0 at least 90 % are caught in every area, 1 otherwise.
 """
 import argparse
 import collections
+import concurrent.futures
 import json
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import time
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 MUTANTS = pathlib.Path(__file__).with_name("mutants.json")
+PAGE = SOURCE / "docs" / "reliability.md"
+TREE = SOURCE / "build" / "mutants"
+BUILD = TREE / "build" / "dev"
 GOAL = 0.9
-BUILD = "build/dev"
+HANGS = 120  # seconds
+AREAS = {"plugins": ["laws_test"],
+         "kit": ["kit_test", "laws_test"],
+         "loader": ["loader_test"],
+         "host": ["host_test", "bars_test", "blocks_test", "proximity_filter_test", "keys_test", "checkpoint_test"]}
+SWITCH = """#pragma once
+#include <cstdlib>
+// Read when a program or law is loaded, so that evaluate stays pure.
+[[maybe_unused]] static const int ilaw_mutant = [] {
+  const char* text = std::getenv("ILAW_MUTANT");
+  return text ? std::atoi(text) : 0;
+}();
+"""
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="mutants whose name holds this word")
+    parser.add_argument("--area", choices=sorted(AREAS), action="append", help="mutants of this area; to be repeated")
     parser.add_argument("--check", action="store_true", help="do not build: see whether mutants fit the sources")
-    parser.add_argument("--jobs", default=os.cpu_count(), type=int, help="processes of a build")
+    parser.add_argument("--table", action="store_true", help="write the score into docs/reliability.md")
+    parser.add_argument("--jobs", default=os.cpu_count(), type=int, help="processes of the build and of the tests")
     return parser.parse_args()
 
 
-def misfits(mutants):
-    """What a mutant replaces must stand in its file once, else nobody knows what was tested."""
-    for mutant in mutants:
-        count = (SOURCE / mutant["file"]).read_text().count(mutant["from"])
-        if count != 1:
-            yield f"{mutant['name']}: {mutant['file']} has {count} times: {mutant['from']}"
+def place_of(mutant, text):
+    """Where a mutant's "from" stands: "in" is the text around it, with @ in its place."""
+    around = mutant.get("in", "@")
+    whole = around.replace("@", mutant["from"])
+    count = text.count(whole)
+    if count != 1:
+        raise ValueError(f"{mutant['name']}: {mutant['file']} has {count} times: {whole}")
+    begin = text.index(whole) + around.index("@")
+    return begin, begin + len(mutant["from"])
 
 
-def copy_of_tree(folder):
-    """The files under version control, so that the tree itself is never touched."""
+def switched(mutant):
+    """Both forms of an expression, or of a statement."""
+    number, before, after = mutant["number"], mutant["from"], mutant["to"]
+    if before.endswith(";"):
+        return f"{{ if (ilaw_mutant == {number}) {{ {after} }} else {{ {before} }} }}"
+    return f"(ilaw_mutant == {number} ? ({after}) : ({before}))"
+
+
+def with_mutants(file, mutants):
+    text = (SOURCE / file).read_text()
+    places = sorted(((place_of(mutant, text), mutant) for mutant in mutants), key=lambda found: found[0])
+    for ((_, end), one), ((begin, _), other) in zip(places, places[1:]):
+        if begin < end:
+            raise ValueError(f"{one['name']}, {other['name']}: at the same place")
+    for (begin, end), mutant in reversed(places):
+        text = text[:begin] + switched(mutant) + text[end:]
+    return f'#include "{TREE / "mutant_switch.hpp"}"\n' + text
+
+
+def write(file, text):
+    """Leaves what is the same alone, which need not be built again."""
+    if file.exists() and file.read_text() == text:
+        return
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text)
+
+
+def copy_tree(by_file):
     files = subprocess.run(["git", "ls-files"], cwd=SOURCE, check=True, capture_output=True, text=True).stdout
     for name in files.splitlines():
-        source, target = SOURCE / name, folder / name
-        if target.exists() and target.read_bytes() == source.read_bytes():
-            continue
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(source, target)
+        source, target = SOURCE / name, TREE / name
+        if name in by_file:
+            write(target, by_file[name])
+        elif source.exists() and (not target.exists() or target.read_bytes() != source.read_bytes()):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(source, target)
+    write(TREE / "mutant_switch.hpp", SWITCH)
 
 
-def quietly(command, folder, seconds=600):
-    """Whether a command ends well, in time."""
+def build(programs, jobs):
+    configure = ["cmake", "-S", TREE, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DILAW_TESTS=ON",
+                 "-DCMAKE_CXX_FLAGS_DEBUG=-O1", "-DCMAKE_C_FLAGS_DEBUG=-O1"]
+    if shutil.which("ccache"):
+        configure += ["-DCMAKE_C_COMPILER_LAUNCHER=ccache", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"]
+    subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", BUILD, "-j", str(jobs), "--target", *sorted(programs), "--", "--quiet"],
+                   check=True)
+
+
+def passes(test, number):
+    """Whether a program's tests pass with a mutant, in time."""
+    program, _, chosen = test.partition(":")
+    command = [BUILD / "bin" / program, "--gtest_brief=1", "--gtest_fail_fast"]
+    if chosen:
+        command.append(f"--gtest_filter={chosen}")
     try:
-        return subprocess.run(command, cwd=folder, capture_output=True, timeout=seconds).returncode == 0
+        return subprocess.run(command, capture_output=True, timeout=HANGS,
+                              env={**os.environ, "ILAW_MUTANT": str(number)}).returncode == 0
     except subprocess.TimeoutExpired:
         return False
 
 
-def tests_pass(mutant, tree, jobs):
-    """Builds what holds the nearest tests and runs them; "not compiled" where the compiler noticed."""
-    build = ["cmake", "--build", BUILD, "-j", str(jobs), "--target", *mutant["targets"]]
-    if not quietly(build, tree, 1800):
-        return "not compiled"
-    programs = [target for target in mutant["targets"] if target.endswith("_test")]
-    for program in programs:
-        filters = [f"--gtest_filter={mutant['tests']}"] if "tests" in mutant else []
-        if not quietly([f"{BUILD}/bin/{program}", "--gtest_brief=1", *filters], tree):
-            return "caught"
-    return "survived"
+def tests_of(mutant):
+    return list(dict.fromkeys(mutant["tests"] + AREAS[mutant["area"]]))
+
+
+def caught_by(mutant):
+    """The first tests that fail with it; none where it survives."""
+    begin = time.monotonic()
+    found = next((test for test in tests_of(mutant) if not passes(test, mutant["number"])), "")
+    return found, time.monotonic() - begin
+
+
+def table(score):
+    rows = ["| area | mutants | caught |", "| --- | --- | --- |"]
+    rows += [f"| {area} | {len(caught)} | {sum(caught)} |" for area, caught in sorted(score.items())]
+    everything = [one for caught in score.values() for one in caught]
+    return "\n".join(rows + [f"| all | {len(everything)} | {sum(everything)} |"])
+
+
+def write_table(text):
+    begin, end = "<!-- score of the mutants -->\n", "<!-- end of the score -->"
+    before, _, rest = PAGE.read_text().partition(begin)
+    PAGE.write_text(before + begin + "\n" + text + "\n\n" + end + rest.partition(end)[2])
 
 
 def main():
     options = arguments()
-    mutants = [m for m in json.loads(MUTANTS.read_text()) if options.only in m["name"]]
-    wrong = list(misfits(mutants))
-    print("\n".join(wrong) if wrong else f"{len(mutants)} mutants fit the sources")
-    if wrong or options.check:
-        return 1 if wrong else 0
+    everything = json.loads(MUTANTS.read_text())
+    by_file = collections.defaultdict(list)
+    for number, mutant in enumerate(everything, 1):
+        mutant["number"] = number
+        by_file[mutant["file"]].append(mutant)
+    try:
+        sources = {file: with_mutants(file, mutants) for file, mutants in by_file.items()}
+    except ValueError as misfit:
+        print(misfit)
+        return 1
+    print(f"{len(everything)} mutants fit the sources")
+    if options.check:
+        return 0
 
-    tree = SOURCE / "build" / "mutants"
-    copy_of_tree(tree)
-    configure = ["cmake", "-S", ".", "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DILAW_TESTS=ON",
-                 "-DCMAKE_CXX_FLAGS_DEBUG=-O1", "-DCMAKE_C_FLAGS_DEBUG=-O1"]
-    subprocess.run(configure, cwd=tree, check=True, stdout=subprocess.DEVNULL)
-    score = collections.defaultdict(list)
-    for mutant in mutants:
-        file = tree / mutant["file"]
-        whole = file.read_text()
-        file.write_text(whole.replace(mutant["from"], mutant["to"]))
-        try:
-            outcome = tests_pass(mutant, tree, options.jobs)
-        finally:
-            file.write_text(whole)
-        score[mutant["area"]].append(outcome != "survived")
-        print(f"{outcome:12}  {mutant['area']:8}  {mutant['name']}", flush=True)
-    for area, caught in sorted(score.items()):
-        print(f"{area}: {sum(caught)} of {len(caught)} caught")
-    everything = [one for caught in score.values() for one in caught]
-    return 0 if sum(everything) >= GOAL * len(everything) else 1
+    chosen = [mutant for mutant in everything
+              if options.only in mutant["name"] and mutant["area"] in (options.area or AREAS)]
+    copy_tree(sources)
+    tests = {test for mutant in chosen for test in tests_of(mutant)}
+    build({test.partition(":")[0] for test in tests}, options.jobs)
+    score, survivors = collections.defaultdict(list), []
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        broken = [test for test, good in zip(tests, pool.map(lambda test: passes(test, 0), tests)) if not good]
+        if broken:
+            print("fail without any mutant: " + ", ".join(sorted(broken)))
+            return 1
+        for mutant, (test, seconds) in zip(chosen, pool.map(caught_by, chosen)):
+            score[mutant["area"]].append(bool(test))
+            print(f"{'caught' if test else 'SURVIVED':8} {seconds:6.1f} s  {mutant['area']:8} {mutant['name']}"
+                  + (f"  ({test})" if test else ""), flush=True)
+    print(table(score))
+    if options.table:
+        write_table(table(score))
+    return 0 if all(sum(caught) >= GOAL * len(caught) for caught in score.values()) else 1
 
 
 if __name__ == "__main__":

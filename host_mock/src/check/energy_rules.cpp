@@ -24,12 +24,23 @@ double stored_of(const Results& found, std::size_t i) {
   return found.energy.empty() ? 0.0 : found.energy[i * ILAW_ENERGY_COUNT + ILAW_ENERGY_STORED];
 }
 
-Step step_of(const Inputs& in, const Results& found, std::size_t i, double stored_before) {
+// Of v_free + H r, in which it rounds.
+double velocity_terms(const Inputs& in, const Results& found, std::size_t i) {
+  return length(in.vector(in.v_free, i)) +
+         length(times(in.h(i), found.vector(found.impulse, i, in.dimension)));
+}
+
+// v^- is the last step's v_free + H r as the host rounded it. A law that moves its bond by what it solved
+// knows it unrounded, so that the work differs from what becomes of it by |r| ulp (|v_free| + |H r|) of the
+// last step: all there is where a node was stopped, and only that is left of its velocity.
+Step step_of(const Inputs& in, const Results& found, std::size_t i, double stored_before,
+             double terms_before) {
   const Vector r = found.vector(found.impulse, i, in.dimension), v = in.vector(in.v_free, i),
                gained = times(in.h(i), r);
   // v^- = v_free and v = v_free + H r: the work r.(v^- + v)/2.
   const double work = dot(r, v) + 0.5 * dot(r, gained), now = stored_of(found, i);
-  const double size = length(r) * (length(v) + length(gained)) + std::abs(now) + std::abs(stored_before);
+  const double size =
+      length(r) * (velocity_terms(in, found, i) + terms_before) + std::abs(now) + std::abs(stored_before);
   return {in, found, i, work, now - stored_before, size};
 }
 
@@ -49,7 +60,7 @@ void fly(const Subject& subject, Look look) {
           Heap heap;
           Arrays arrays(trial, in, {}, heap);
           arrays.initialise(in);
-          std::vector<double> stored(nodes);
+          std::vector<double> stored(nodes), terms(nodes);
           for (std::size_t k = 0; k < steps; ++k) {
             in.v_previous = in.v_free;
             const Results found = arrays.evaluate(in);
@@ -57,8 +68,9 @@ void fly(const Subject& subject, Look look) {
             if (std::isfinite(found.report.stable_velocity_step) && found.report.stable_velocity_step > 0.0)
               return false;
             for (std::size_t i = 0; i < nodes; ++i) {
-              look(trial, step_of(in, found, i, stored[i]));
+              look(trial, step_of(in, found, i, stored[i], terms[i]));
               stored[i] = stored_of(found, i);
+              terms[i] = velocity_terms(in, found, i);
               const Vector r = found.vector(found.impulse, i, in.dimension), gained = times(in.h(i), r);
               Vector v = in.vector(in.v_free, i);
               for (std::size_t c = 0; c < in.dimension; ++c) v[c] += gained[c];

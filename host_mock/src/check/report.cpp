@@ -99,7 +99,7 @@ std::string json_of(const Checked& checked) {
   return all.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-bool write_junit(const Checked& checked, const std::string& file) {
+std::string junit_of(const Checked& checked) {
   tinyxml2::XMLDocument document;
   document.InsertFirstChild(document.NewDeclaration());
   tinyxml2::XMLElement* suite = document.NewElement("testsuite");
@@ -121,7 +121,9 @@ bool write_junit(const Checked& checked, const std::string& file) {
     failure->SetText(
         (std::string(rule_of(outcome).required) + "\n" + text_of_finding(checked, outcome, "")).c_str());
   }
-  return document.SaveFile(file.c_str()) == tinyxml2::XML_SUCCESS;
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
 }
 
 std::string table_of_rules() {

@@ -19,8 +19,7 @@ struct Checked {
 
 std::string text_of(const Checked& checked);
 std::string json_of(const Checked& checked);
-// False where the file cannot be written whole.
-bool write_junit(const Checked& checked, const std::string& file);
+std::string junit_of(const Checked& checked);
 
 // Markdown: id, sentence, where the contract says so.
 std::string table_of_rules();

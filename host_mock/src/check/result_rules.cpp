@@ -144,8 +144,9 @@ void cone(const Subject& subject) {
         const double normal = dot(n, r);
         Vector along = r;
         for (std::size_t c = 0; c < in.dimension; ++c) along[c] -= normal * n[c];
-        const double most = cone_of(trial) * normal;
-        if (length(along) > most + 1e-12 * length(r))
+        // r_N = n.r rounds as a part of |r|, however small it is.
+        const double friction = cone_of(trial), most = friction * normal;
+        if (length(along) > most + (1e-12 + 16.0 * ulp * friction) * length(r))
           fail(trial, in, i, "|r_T| = " + text_of(length(along)), "at most friction r_N = " + text_of(most));
       },
       "no parameter is called friction");
@@ -162,7 +163,8 @@ void step_limits(const Subject& subject) {
       for (double& offset : in.gap_offset) offset *= step / in.position_step;
       in.velocity_step = in.position_step = in.time = step;
       const Results found = run(trial, script)[0];
-      if (found.code != ILAW_OK)
+      const bool is_too_large = trial.may_soften() && step > 0x1p-9 && found.code == ILAW_BAD_NODES;
+      if (found.code != ILAW_OK && !is_too_large)
         fail(trial, in, 0,
              "code " + std::to_string(found.code) + " with steps of " + text_of(step) +
                  " s: " + (found.report.reason ? found.report.reason : "no reason"),
@@ -195,8 +197,8 @@ std::vector<Rule> result_rules() {
        "No dissipated part is negative and none NaN; nothing is stored without "
        "ILAW_CAN_STORE_ENERGY.",
        "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, energy_parts},
-      {"step-limits", "Any positive step is served.", "ilaw.h, ilaw_batch.velocity_step", Needs::motion,
-       step_limits}};
+      {"step-limits", "Any positive step is served; a bond that may soften may refuse one that is too large.",
+       "ilaw.h, ilaw_batch.velocity_step", Needs::motion, step_limits}};
 }
 
 }  // namespace ilaw::check

@@ -124,6 +124,9 @@ void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, cons
   const bool refused = found.code == ILAW_BAD_NODES;
   if (!std::isfinite(value) && !refused && !is_history(trial, entry))
     say(node, "code " + std::to_string(found.code), "ILAW_BAD_NODES (1)");
+  if (!std::isfinite(value) && !refused && !same_bits(good.impulse, found.impulse, node, d))
+    say(node, "an impulse that depends on it",
+        "bad input, or the same impulse if this step does not read it");
   if (!refused) return;
   for (std::size_t c = 0; c < d; ++c)
     if (found.impulse[node * d + c] != 0.0) say(node, "bad input with an impulse", "r = 0");
@@ -167,7 +170,7 @@ std::vector<Rule> state_rules() {
        "ilaw.h, ILAW_CAN_REST", Needs::motion, rest_promise},
       {"foreign-state",
        "A state that the law cannot have written is bad input, or does no harm; NaN and infinity "
-       "are bad input.",
+       "are bad input, in a history in the step that reads them.",
        "abi.md, State", Needs::motion, foreign_state}};
 }
 

@@ -3,10 +3,12 @@
 #include "cli/commands.hpp"
 
 #include "base/exit_code.hpp"
+#include "base/files.hpp"
 #include "check/report.hpp"
 #include "cli/terminal.hpp"
 
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 namespace ilaw::host {
@@ -17,6 +19,24 @@ struct CheckOptions {
   check::Options check;
   bool as_json = false, rules = false;
 };
+
+// Whole or not at all. What is no file, such as a device, would be replaced by one.
+int write_report(const check::Checked& checked, const std::string& file) {
+  const std::filesystem::file_status status = std::filesystem::symlink_status(file);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    complain(file + ": is no regular file, expected one, or none yet, for the report");
+    return exit_bad_input;
+  }
+  try {
+    AtomicFile report(file);
+    report.stream() << check::junit_of(checked);
+    report.commit();
+  } catch (const WriteError& error) {
+    complain(error.what());
+    return exit_failed;
+  }
+  return exit_done;
+}
 
 int check_library(const CheckOptions& options) {
   if (options.rules) {
@@ -34,10 +54,8 @@ int check_library(const CheckOptions& options) {
     complain(error.what());
     return exit_bad_input;
   }
-  if (!options.junit.empty() && !check::write_junit(checked, options.junit)) {
-    complain(options.junit + ": cannot be written");
-    return exit_failed;
-  }
+  if (!options.junit.empty())
+    if (const int code = write_report(checked, options.junit); code != exit_done) return code;
   std::fputs((options.as_json ? check::json_of(checked) : check::text_of(checked)).c_str(), stdout);
   return checked.all_passed() ? exit_done : exit_failed;
 }

@@ -22,7 +22,6 @@ json describe_interface(const Interface& interface) {
           {"library", interface.library().path()},
           {"library_version", interface.library().plugin().version},
           {"nodes", interface.nodes().size()},
-          {"nodes_stored", interface.contact_count()},
           {"state_size", interface.info().state_size},
           {"bytes_per_node", interface.bytes_per_contact()}};
 }
@@ -52,14 +51,25 @@ json describe_statuses(const Tally& tally) {
   return counts;
 }
 
+// Like the seconds, what may be another in a run that was interrupted: which contacts were looked at and
+// stored depends on when the near ones were last found.
+json describe_execution(const Scene& scene, const Tally& tally, const RunRecord& record,
+                        const PhaseSeconds& seconds) {
+  const double stepping = seconds.internal_forces + seconds.interfaces;
+  json stored = json::array();
+  for (const auto& interface : scene.interfaces) stored.push_back(interface->contact_count());
+  return {{"resumed_at_step", record.resumed_at},
+          {"interface_share", stepping > 0.0 ? seconds.interfaces / stepping : 0.0},
+          {"node_steps", {{"active", tally.active}, {"skipped", tally.skipped}}},
+          {"nodes_stored", stored}};
+}
+
 }  // namespace
 
 void write_summary(const Scene& scene, const Integrator& integrator, const RunRecord& record,
                    const std::filesystem::path& folder) {
   const Tally& tally = integrator.tally();
   const PhaseSeconds seconds = integrator.seconds();
-  const double stepping = seconds.internal_forces + seconds.interfaces;
-  const double interface_share = stepping > 0.0 ? seconds.interfaces / stepping : 0.0;
   json interfaces = json::array();
   for (const auto& interface : scene.interfaces) interfaces.push_back(describe_interface(*interface));
   std::vector<std::string> warnings = scene.warnings;
@@ -69,7 +79,6 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
       {"program", {{"name", "ilaw"}, {"version", ILAW_VERSION}, {"abi", {ILAW_ABI_MAJOR, ILAW_ABI_MINOR}}}},
       {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", source}}},
       {"interfaces", interfaces},
-      {"resumed_at_step", record.resumed_at},
       {"interrupted", record.interrupted},
       {"failure", record.failure},
       {"steps", integrator.steps()},
@@ -82,7 +91,6 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
       {"warnings", warnings},
       {"penetration_max", tally.penetration_max},
       {"status_counts", describe_statuses(tally)},
-      {"node_steps", {{"active", tally.active}, {"skipped", tally.skipped}}},
       {"coupling",
        {{"sweeps", tally.sweeps},
         {"sweeps_max", tally.sweeps_max},
@@ -94,7 +102,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
         {"internal_forces", seconds.internal_forces},
         {"interfaces", seconds.interfaces},
         {"output", record.seconds_output}}},
-      {"interface_share", interface_share}};
+      {"execution", describe_execution(scene, tally, record, seconds)}};
   AtomicFile file(folder / "summary.json");
   // Names of files need not be UTF-8.
   file.stream() << summary.dump(2, ' ', false, json::error_handler_t::replace) << '\n';

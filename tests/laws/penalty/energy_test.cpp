@@ -67,7 +67,7 @@ class ImplicitEnergy : public ::testing::TestWithParam<std::uint32_t> {
 
 TEST_P(ImplicitEnergy, GivesBackWhatItDoesNotDissipate) {
   std::map<int, int> seen;
-  for (int instance = 0; instance < 1500 && !HasFatalFailure(); ++instance) {
+  for (int instance = 0; instance < 500 && !HasFatalFailure(); ++instance) {
     const bool rigid_tangent = instance % 5 == 0, rigid = instance % 17 == 0;
     const double scale = decades(1.0), h = decades(1.0);
     const Springs springs{rigid ? inf_value : decades(3.0) / (h * h),
@@ -91,7 +91,7 @@ TEST_P(ImplicitEnergy, GivesBackWhatItDoesNotDissipate) {
       ++seen[node.status];
     }
   }
-  for (const int status : {ILAW_FREE, ILAW_STICK, ILAW_SLIP}) EXPECT_GT(seen[status], 5000) << status;
+  for (const int status : {ILAW_FREE, ILAW_STICK, ILAW_SLIP}) EXPECT_GT(seen[status], 1500) << status;
 }
 
 INSTANTIATE_TEST_SUITE_P(Inertia, ImplicitEnergy,

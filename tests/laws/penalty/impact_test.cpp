@@ -60,7 +60,7 @@ TEST(Impact, LinearSpringReturnsTheMass) {
 // back, or what the restitution leaves of it, exactly so where the spring is soft or stiff to the step.
 TEST(Impact, ImplicitReachesItsRestitution) {
   for (const double e : {1.0, 0.95, 0.8, 0.5, 0.3, 0.15, 0.05, 0.0})
-    for (double pace = 0.02; pace < 2000.0; pace *= 1.37)
+    for (double pace = 0.02; pace < 2000.0; pace *= 1.87)
       for (const double phase : {0.0, 0.13, 0.31, 0.5, 0.77, 0.93})
         for (const double exponent : {1.0, 1.5}) {
           if (exponent != 1.0 && e != 1.0) continue;

@@ -159,6 +159,22 @@ TEST(Postit, ShearBreaksBeyondFrictionAndTangentialAdhesion) {
   }
 }
 
+// A rupture in shear under a press that has lasted: what was pressed before no longer heals, only the press
+// of the step itself.
+TEST(Postit, ARuptureUnderPressureHealsByItsOwnStepAlone) {
+  Glued node(
+      {{{"efficiency_decrease", 10.0}, {"memory", 1.0}, {"friction", 0.1}, {"tangent_influence", 0.8}}, {}},
+      1e-3);
+  for (int k = 1; k <= 3; ++k) {
+    node.push({-0.2, 0, 0});
+    EXPECT_NEAR(node.named("adhesion"), 0.2 * k, 1e-15);
+  }
+  const double most = 0.1 * 0.65 + 0.8 * 0.6;  // friction carries mu S_N, the bond lambda R
+  EXPECT_EQ(node.push({-0.05, most + 0.01, 0}), ILAW_BROKEN);
+  EXPECT_EQ(node.named("ruptures"), 1.0);
+  EXPECT_NEAR(node.named("adhesion"), std::exp(-0.1) * 0.05, 1e-15);
+}
+
 // Pull and shear together: the ellipse (a/R)^2 + (b/(lambda R))^2 = 1.
 TEST(Postit, MixedModeFollowsTheEllipse) {
   for (double angle = 0.0; angle < 1.58; angle += 0.1)
