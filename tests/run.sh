@@ -5,7 +5,7 @@
 #   tests/run.sh -R postit       builds and runs only programs with a test of this name (a regular expression, as
 #                                ctest -R reads it), told from the programs' names and the tests in their sources;
 #                                everything where no name fits, as with parameters that programs make up
-#   tests/run.sh --without-hosts ...   goes without the solvers that the laws are tried in (LAMMPS)
+#   tests/run.sh --without-hosts ...   goes without the solvers that the laws are tried in (LAMMPS, dolfinx, Yade)
 #   tests/run.sh --help          this text
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -59,8 +59,8 @@ done
 
 bash host_mock/setup.sh tests $without
 echo "build: build/release"
-cmake --preset release -DILAW_TESTS=ON -DILAW_LAMMPS=$hosts -DILAW_WERROR="${ILAW_WERROR:-OFF}" \
-      -DILAW_UNITY="${ILAW_UNITY:-OFF}" >/dev/null
+cmake --preset release -DILAW_TESTS=ON -DILAW_LAMMPS=$hosts -DILAW_SOLVERS=$hosts \
+      -DILAW_WERROR="${ILAW_WERROR:-OFF}" -DILAW_UNITY="${ILAW_UNITY:-OFF}" >/dev/null
 targets=()
 if [ -n "$expression" ]; then
   mapfile -t targets < <(targets_of "$expression" | tr ' ' '\n' | sort -u)

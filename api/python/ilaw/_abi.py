@@ -309,6 +309,7 @@ SIGNATURES = {
     "ilaw_interface_create": (c_int32, [c_void_p, c_char_p, POINTER(setup), POINTER(c_void_p), c_char_p, c_size_t]),
     "ilaw_interface_destroy": (None, [c_void_p]),
     "ilaw_interface_law": (POINTER(law), [c_void_p]),
+    "ilaw_interface_instance": (c_void_p, [c_void_p]),
     "ilaw_interface_info": (c_int32, [c_void_p, POINTER(instance_info)]),
     "ilaw_interface_initialise": (c_int32, [c_void_p, POINTER(batch), POINTER(report)]),
     "ilaw_interface_evaluate": (c_int32, [c_void_p, POINTER(batch), POINTER(report)]),

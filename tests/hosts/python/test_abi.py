@@ -38,7 +38,7 @@ def run_c(folder, lines):
     """Numbers that a C program prints, one a line."""
     source = folder / "probe.c"
     source.write_text(
-        "#include <ilaw/loader.h>\n#include <stdio.h>\nint main(void) {\n"
+        "#include <ilaw/coupled.h>\n#include <ilaw/loader.h>\n#include <stdio.h>\nint main(void) {\n"
         + "".join(f'  printf("%lld\\n", (long long)({line}));\n' for line in lines)
         + "  return 0;\n}\n"
     )

@@ -19,6 +19,7 @@ def test_the_code_of_the_page_runs(tmp_path, monkeypatch, capsys):
     assert "'friction' = -0.3 is not allowed: expected a number in [0, inf]" in said
     # v0^2/(2 mu g), to the step's second order
     np.testing.assert_allclose(names["u"][:3, 0], [0.24, 2 / 3, 1.5], atol=0.3 * 10 * 1e-6)
+    np.testing.assert_allclose(names["contacts"].impulse[:, 2], [0.1, 0.08, 0.06, 0.04, 0.02], rtol=1e-9)
     for picture in ("friction.png", "cohesive.png"):
         assert (tmp_path / picture).stat().st_size > 10_000
     stress, path = np.array(names["stress"]), names["path"][1:]

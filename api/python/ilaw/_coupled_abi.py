@@ -1,0 +1,105 @@
+"""The structs and functions of <ilaw/coupled.h>, for ctypes: member for member as the header has them."""
+from __future__ import annotations
+
+import ctypes
+import functools
+from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
+
+from . import _abi
+from ._loader import open_library
+
+
+class bodies(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("dimension", c_uint32),
+        ("count", c_int64),
+        ("owned_count", c_int64),
+        ("inverse_mass", _abi.input),
+        ("inverse_inertia", _abi.input),
+        ("v_free", _abi.input),
+        ("spin_free", _abi.input),
+        ("v_previous", _abi.input),
+        ("spin_previous", _abi.input),
+        ("velocity", _abi.output),
+        ("spin", _abi.output),
+        ("impulse", _abi.output),
+        ("angular_impulse", _abi.output),
+    ]
+
+
+class contacts(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("delassus_form", c_uint32),
+        ("law", POINTER(_abi.law)),
+        ("instance", c_void_p),
+        ("batch", POINTER(_abi.batch)),
+        ("body", c_void_p),
+        ("counterpart", c_void_p),
+        ("arm", _abi.input),
+        ("counterpart_arm", _abi.input),
+        ("wall_velocity", _abi.input),
+        ("wall_previous", _abi.input),
+    ]
+
+
+call_with_values = CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)
+
+
+class exchange(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("context", c_void_p),
+        ("sum_bodies", call_with_values),
+        ("largest", call_with_values),
+        ("sum", call_with_values),
+    ]
+
+
+class coupled_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("most_sweeps", c_uint32),
+        ("tolerance", c_double),
+        ("exchange", POINTER(exchange)),
+    ]
+
+
+class coupled_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("sweeps", c_uint32),
+        ("residual", c_double),
+        ("work", c_double),
+        ("energy", c_double * _abi.ENERGY_COUNT),
+        ("bad_count", c_int64),
+        ("bad_group", c_int64),
+        ("bad_contact", c_int64),
+        ("reason", c_char_p),
+        ("stable_velocity_step", c_double),
+    ]
+
+
+SIGNATURES = {
+    "ilaw_coupled_create": (c_void_p, []),
+    "ilaw_coupled_destroy": (None, [c_void_p]),
+    "ilaw_coupled_solve": (
+        c_int32,
+        [
+            c_void_p,
+            POINTER(bodies),
+            POINTER(POINTER(contacts)),
+            c_int64,
+            POINTER(coupled_options),
+            POINTER(coupled_report),
+        ],
+    ),
+}
+
+
+@functools.cache
+def library() -> ctypes.CDLL:
+    """The functions of coupled contacts, with their types. Calls release the interpreter's lock."""
+    return open_library("libilaw_coupled.so.1", "ILAW_COUPLED", SIGNATURES)

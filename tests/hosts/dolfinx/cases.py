@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Small runs of the example api/python/examples/dolfinx, one after the other, on the ranks of mpirun.
+
+cases.py OUT: writes what came out to OUT/<ranks>.npz, nodes sorted by their place.
+cases.py OUT alone: one rank raises while the others wait for it.
+"""
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.environ["ILAW_SOURCE"], "api/python/examples/dolfinx"))
+from block import MPI, Block, box  # noqa: E402
+from throw import Fields, Throw, summary  # noqa: E402
+
+COMM = MPI.COMM_WORLD
+FLAT, TALL = ([2.0, 1.0, 0.5], [6, 4, 2]), ([0.5, 0.5, 3.0], [2, 2, 10])
+
+
+def gathered(throw):
+    """Of all ranks on the first one: x, u, v of nodes, and at the plane impulse, status and adhesion."""
+    block, at = throw.block, throw.nodes
+    status, impulse = np.full(block.owned, -1.0), np.zeros((block.owned, 3))
+    status[at], impulse[at] = throw.contact.status, throw.contact.impulse
+    rows = COMM.gather(np.column_stack([block.x, block.u, block.v, impulse, status]))
+    if COMM.rank:
+        return None
+    rows = np.concatenate(rows)
+    return rows[np.lexsort(np.round(rows[:, :3], 9).T)]
+
+
+def run(law, shape, material, out, h, end, pull=0.0, fields=False, size=FLAT):
+    block = Block(box(*size, shape), material, cache=out / "compiled")
+    throw = Throw(block, law, h, pull=pull)
+    at_plane = COMM.allgather(len(throw.nodes))
+    written = Fields(throw, out) if fields else None
+    for step in range(round(end / h)):
+        throw.step()
+        if written and step % 40 == 0:
+            written.write()
+    if written:
+        written.close()
+    said = {**summary(throw, 1.0, 1.0), "at_plane": at_plane, "worst_u": block.largest(np.abs(block.u).max(initial=0.0))}
+    return gathered(throw), said
+
+
+def critical_step(shape, material, out):
+    return Block(box(*FLAT, shape), material, cache=out / "compiled").critical_step()
+
+
+CASES = {
+    "coulomb, hexahedra": dict(law="coulomb", shape="hexahedra", material="elastic", h=0.008, end=0.4),
+    "coulomb, tetrahedra": dict(law="coulomb", shape="tetrahedra", material="elastic", h=0.007, end=0.35),
+    "postit, tetrahedra": dict(
+        law="postit", shape="tetrahedra", material="elastic", h=0.007, end=1.12, pull=10.0, fields=True
+    ),
+    "coulomb, neo-hookean": dict(law="coulomb", shape="hexahedra", material="neo-hookean", h=0.004, end=0.3),
+    "postit, tall": dict(
+        law="postit", shape="hexahedra", material="elastic", h=0.008, end=0.4, pull=0.1, size=TALL
+    ),
+}
+
+
+def main(out):
+    results, said = {}, {}
+    for name, case in CASES.items():
+        results[name], said[name] = run(out=out, **case)
+    if COMM.size == 1:
+        # The drift of the stored energy of a material that is not linear is of second order in h.
+        case = dict(CASES["coulomb, neo-hookean"], end=0.2, out=out)
+        steps = [0.004, 0.0027, 0.0019]
+        said["drifts"] = [[h, run(**{**case, "h": h})[1]["energy"]["drift"]] for h in steps]
+    said["critical step"] = critical_step("tetrahedra", "elastic", out)
+    if COMM.rank == 0:
+        np.savez(out / f"{COMM.size}.npz", **results)
+        (out / f"{COMM.size}.json").write_text(json.dumps(said, indent=1))
+
+
+def one_raises():
+    if COMM.rank == COMM.size - 1:
+        raise RuntimeError("this rank alone")
+    COMM.barrier()
+
+
+if len(sys.argv) > 2:
+    one_raises()
+else:
+    main(Path(sys.argv[1]))

@@ -1,0 +1,259 @@
+"""Contacts that share bodies: closed forms, a stack, ties, no copies, ranks as threads, refusals."""
+import ctypes
+import gc
+import os
+import re
+import threading
+import weakref
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_abi import run_c
+
+import ilaw
+from ilaw import _abi, _coupled_abi
+from ilaw.coupled import Bodies, Contacts, Solver
+
+HEADER = (Path(os.environ["ILAW_INCLUDE"]) / "ilaw/coupled.h").read_text()
+H, G, UP = 1e-3, 10.0, [0.0, 0.0, 1.0]
+
+
+def law(name="coulomb", **given):
+    if name == "coulomb":
+        given = {"friction": 0.3, **given}
+    return ilaw.Interface(name, delassus=given.pop("delassus", "scalar"), velocity_step=H, **given)
+
+
+def stack(count):
+    """Weights that stand on each other: the free velocity of a step, and contacts k of grain k with k - 1."""
+    v = np.zeros((count, 3))
+    v[:, 2] = -G * H
+    return v, np.arange(count), np.arange(count) - 1
+
+
+def test_a_stack_stays_at_rest():
+    v, body, counterpart = stack(10)
+    m = np.random.default_rng(3).uniform(0.5, 2.0, 10)
+    bodies = Bodies(v_free=v, inverse_mass=1 / m, v_previous=np.zeros((10, 3)), velocity=v, impulse=True)
+    contacts = Contacts(law(), body=body, counterpart=counterpart, gap=0.0, normal=UP, energy=True)
+    contacts.initialise()
+    report = Solver().solve(bodies, [contacts], time=H, most_sweeps=20000, tolerance=1e-14)
+    weights = np.cumsum((m * G * H)[::-1])[::-1]
+    np.testing.assert_allclose(contacts.impulse[:, 2], weights, rtol=1e-11)
+    assert np.abs(v).max() < 1e-12 * G * H * m.sum()
+    np.testing.assert_allclose(bodies.impulse[:, 2], m * G * H, rtol=1e-9)
+    assert report.residual <= 1e-14 and set(contacts.status) == {ilaw.Status.STICK}
+    # The warm start: what was found is found again at once.
+    v[:] = [0, 0, -G * H]
+    assert Solver().solve(bodies, [contacts], time=2 * H, tolerance=1e-12).sweeps <= 2
+
+
+@pytest.mark.parametrize("e", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize("solid", [True, False])
+def test_a_sphere_that_slides_throughout_its_impact(e, solid):
+    """v_x - mu (1 + e) v_z and omega = (m R/J) mu (1 + e) v_z, whatever the inertia, fast enough."""
+    m, radius, mu, fast, down = 2.0, 0.5, 0.3, 5.0, 1.0
+    inertia = (0.4 if solid else 2 / 3) * m * radius**2
+    v, w = np.array([[fast, 0.0, -down]]), np.zeros((1, 3))
+    bodies = Bodies(v_free=v, v_previous=v.copy(), spin_free=w, spin_previous=w.copy(), inverse_mass=1 / m,
+                    inverse_inertia=1 / inertia, velocity=v, spin=w, angular_impulse=True)  # fmt: skip
+    slide = law(delassus="full", friction=mu, restitution=e)
+    contact = Contacts(slide, body=[0], counterpart=[-1], gap=0.0, normal=UP, arm=[0, 0, -radius],
+                       counterpart_arm=[0, 0, 0], energy=True)  # fmt: skip
+    contact.initialise()
+    report = Solver().solve(bodies, [contact], time=H)
+    push = mu * (1 + e) * down
+    np.testing.assert_allclose(v, [[fast - push, 0.0, e * down]], rtol=1e-13, atol=1e-14)
+    np.testing.assert_allclose(w, [[0.0, m * radius / inertia * push, 0.0]], rtol=1e-13, atol=1e-14)
+    np.testing.assert_allclose(bodies.angular_impulse, w * inertia, rtol=1e-13, atol=1e-14)
+    lost = 0.5 * m * (fast**2 + down**2) - 0.5 * m * np.sum(v**2) - 0.5 * inertia * np.sum(w**2)
+    assert report.work == pytest.approx(-lost, rel=1e-12)
+    assert report.energy[:3].sum() == pytest.approx(lost, rel=1e-12)
+    assert contact.status[0] == ilaw.Status.SLIP
+
+
+def test_six_values_of_inertia_turn_with_the_host():
+    """A body of three moments, hit off its centre: momentum and spin as by hand."""
+    inverse = np.array([[2.0, 0.3, -0.2], [0.3, 1.5, 0.4], [-0.2, 0.4, 3.0]])
+    six = np.array([[inverse[0, 0], inverse[1, 1], inverse[2, 2], inverse[0, 1], inverse[0, 2], inverse[1, 2]]])
+    v, w, arm = np.array([[0.2, -0.1, -1.0]]), np.array([[0.3, 0.1, -0.4]]), np.array([0.3, -0.2, -0.6])
+    bodies = Bodies(v_free=v, v_previous=v, spin_free=w, spin_previous=w, inverse_mass=0.5, inverse_inertia=six)
+    contact = Contacts(law(delassus="full"), body=[0], counterpart=[-1], gap=0.0, normal=UP, arm=arm, counterpart_arm=arm)
+    contact.initialise()
+    Solver().solve(bodies, [contact], time=H, tolerance=1e-15)
+    r = contact.impulse[0]
+    assert r[2] > 0
+    np.testing.assert_allclose(bodies.velocity[0], v[0] + 0.5 * r, rtol=1e-13)
+    np.testing.assert_allclose(bodies.spin[0], w[0] + inverse @ np.cross(arm, r), rtol=1e-13)
+    assert (bodies.velocity[0] + np.cross(bodies.spin[0], arm))[2] == pytest.approx(0.0, abs=1e-14)
+
+
+def test_two_laws_at_one_body_and_a_wall_that_moves():
+    """A weight between a floor that lifts it and a tie at its side."""
+    v = np.array([[0.5, 0.0, -1.0], [0.0, 0.0, 0.0]])
+    bodies = Bodies(v_free=v, inverse_mass=np.array([1.0, 0.5]), v_previous=np.zeros((2, 3)))
+    floor = Contacts(law("contact"), body=[0], counterpart=[-1], gap=0.0, normal=UP, wall_velocity=[0, 0, 0.25])
+    tied = Contacts(law("tie"), body=[1], counterpart=[0], normal=[1.0, 0.0, 0.0], area=1.0, gap=0.0)
+    for group in (floor, tied):
+        group.initialise()
+    Solver().solve(bodies, [floor, tied], time=H, tolerance=1e-14)
+    np.testing.assert_allclose(bodies.velocity, [[0.5 / 3, 0, 0.25]] * 2, atol=1e-12)
+
+
+def test_arrays_are_used_where_they_are():
+    """Columns and sections go in as they are, results come out in place, and arrays live as long as they are used."""
+    room = np.zeros((5, 8))
+    room[:, 2] = -G * H
+    v, before = room[:, :3], room[:, 3:6]
+    body, counterpart = np.arange(5, dtype=np.int32), np.arange(-1, 4, dtype=np.int32)
+    state, impulse = np.zeros((5, 0)), np.asfortranarray(np.zeros((5, 3)))
+    bodies = Bodies(v_free=v, inverse_mass=1.0, v_previous=before, velocity=v)
+    contacts = Contacts(law("contact"), body=body, counterpart=counterpart, gap=room[:, 7], normal=UP,
+                        impulse=impulse, state=state)  # fmt: skip
+    assert bodies.velocity is v and contacts.body is body and contacts.impulse is impulse
+    Solver().solve(bodies, [contacts], time=H, tolerance=1e-13, most_sweeps=20000)
+    np.testing.assert_allclose(impulse[:, 2], G * H * np.arange(5, 0, -1), rtol=1e-9)
+    assert np.abs(room[:, 2]).max() < 1e-11 and not room[:, 3:].any()
+    gone = weakref.ref(impulse)
+    del impulse, contacts, bodies
+    gc.collect()
+    assert gone() is None
+
+
+def test_arrays_live_as_long_as_they_are_needed():
+    bodies = Bodies(v_free=np.full((3, 3), -1.0), inverse_mass=np.ones(3), v_previous=np.zeros((3, 3)))
+    contacts = Contacts(law("contact"), body=np.arange(3), counterpart=[-1] * 3, gap=np.zeros(3), normal=np.array(UP))
+    gc.collect()
+    junk = [np.full((3, 3), np.nan) for _ in range(200)]
+    Solver().solve(bodies, [contacts], time=H)
+    np.testing.assert_allclose(bodies.velocity, [[-1, -1, 0]] * 3, atol=1e-15)
+    assert len(junk) == 200
+
+
+def test_ranks_agree():
+    """Two threads as ranks: each has half of a stack's contacts and all bodies, and ends with what one rank finds."""
+    count = 8
+    v, body, counterpart = stack(count)
+    one = Bodies(v_free=v, inverse_mass=1.0, v_previous=np.zeros_like(v))
+    all_contacts = Contacts(law(), body=body, counterpart=counterpart, gap=0.0, normal=UP)
+    all_contacts.initialise()
+    Solver().solve(one, [all_contacts], time=H, tolerance=1e-13)
+
+    barrier, table, found = threading.Barrier(2, timeout=20), [None, None], [None, None]
+
+    class Threads:
+        def __init__(self, rank):
+            self.rank = rank
+
+        def combine(self, values, by):
+            table[self.rank] = values.copy()
+            barrier.wait()
+            values[...] = by(table[0], table[1])
+            barrier.wait()
+
+        def sum_bodies(self, values):
+            assert values.shape == (count, 4)
+            self.combine(values, np.add)
+
+        def largest(self, values):
+            self.combine(values, np.maximum)
+
+        def sum(self, values):
+            self.combine(values, np.add)
+
+    def run(rank):
+        mine = body % 2 == rank
+        # Bodies are owned by the first rank, and copies at the second.
+        bodies = Bodies(v_free=v, inverse_mass=1.0, v_previous=np.zeros_like(v), owned=count if rank == 0 else 0)
+        contacts = Contacts(law(), body=body[mine], counterpart=counterpart[mine], gap=0.0, normal=UP)
+        contacts.initialise()
+        report = Solver().solve(bodies, [contacts], time=H, tolerance=1e-13, exchange=Threads(rank))
+        found[rank] = report.sweeps, bodies.velocity
+
+    threads = [threading.Thread(target=run, args=(rank,)) for rank in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found[0][0] == found[1][0]
+    for _, velocity in found:
+        np.testing.assert_allclose(velocity, one.velocity, atol=1e-15)
+
+
+def test_what_an_exchange_raises_comes_out():
+    class Broken:
+        def sum_bodies(self, values):
+            raise ConnectionError("the other rank is gone")
+
+        largest = sum = sum_bodies
+
+    v, body, counterpart = stack(3)
+    bodies = Bodies(v_free=v, inverse_mass=1.0, v_previous=v)
+    contacts = Contacts(law(), body=body, counterpart=counterpart, gap=0.0, normal=UP)
+    with pytest.raises(ConnectionError, match="the other rank is gone"):
+        Solver().solve(bodies, [contacts], time=H, most_sweeps=5, exchange=Broken())
+
+
+def test_bad_contacts_are_named():
+    v, body, counterpart = stack(4)
+    gap = np.array([0.0, 0.0, np.nan, 0.0])
+    bodies = Bodies(v_free=v, inverse_mass=1.0, v_previous=v)
+    contacts = Contacts(law(), body=body, counterpart=counterpart, gap=gap, normal=UP)
+    with pytest.raises(ilaw.BadNodes, match="node 2: group 0: .*gap"):
+        Solver().solve(bodies, [contacts], time=H)
+    report = Solver().solve(bodies, [contacts], time=H, bad_nodes="report")
+    assert (report.bad_count, report.bad_group, report.bad_contact) == (1, 0, 2)
+    assert contacts.status[2] == ilaw.Status.BAD_INPUT and not contacts.impulse[2].any()
+
+
+V = np.zeros((2, 3))
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Bodies(v_free=[[0, 0, 0]], inverse_mass=1.0), "v_free: list, expected an array"),
+        (lambda: Bodies(v_free=V, inverse_mass=np.ones(3)), r"inverse_mass: shape \(3,\)"),
+        (lambda: Bodies(v_free=V, inverse_mass=1.0, spin_free=V), "inverse_inertia: missing"),
+        (lambda: Bodies(v_free=V, inverse_mass=1.0, inverse_inertia=1.0), "spin_free: missing"),
+        (lambda: Bodies(v_free=V, inverse_mass=1.0, v_previous=V, velocity=V), None),
+        (lambda: Contacts(law(), body=[0], counterpart=[-1], gap=0.0), "coulomb reads normal: give it to Contacts"),
+        (lambda: Contacts(law(), body=[0.5], counterpart=[-1], gap=0.0, normal=UP), "body: float64 of shape"),
+        (lambda: Contacts(law(), body=[0], counterpart=[1, 2], gap=0.0, normal=UP), "counterpart: int64 of shape"),
+        (lambda: Contacts(law(frame="local"), body=[0], counterpart=[1], gap=0.0), "expect an interface for the global"),
+        (lambda: solve(body=[0], counterpart=[5]), "a contact names a body that is not there"),
+        (lambda: solve(body=[1], counterpart=[1]), "a contact of a body with itself"),
+        (lambda: solve(bodies=Bodies(v_free=V, inverse_mass=1.0)), "the law reads v_previous"),
+    ],
+)
+def test_calls_are_refused_with_the_reason(call, message):
+    if message is None:  # v_previous in the place of v_free and of the result
+        message = "velocity and v_previous share memory"
+    with pytest.raises(ilaw.InvalidArgument, match=message):
+        call()
+
+
+def solve(body=(0,), counterpart=(-1,), bodies=None):
+    bodies = bodies or Bodies(v_free=V, inverse_mass=1.0, v_previous=V.copy())
+    contacts = Contacts(law(), body=body, counterpart=counterpart, gap=0.0, normal=UP)
+    Solver().solve(bodies, [contacts], time=H)
+
+
+def test_structs_have_the_layout_of_c(tmp_path):
+    wanted, found = ["ILAW_ENERGY_COUNT"], [4]
+    structs = {k: v for k, v in vars(_coupled_abi).items() if isinstance(v, type) and issubclass(v, ctypes.Structure)}
+    assert set(re.findall(r"^\} ilaw_(\w+);", HEADER, re.M)) == set(structs)
+    for name, kind in structs.items():
+        wanted.append(f"sizeof(ilaw_{name})")
+        found.append(ctypes.sizeof(kind))
+        for member, *_ in kind._fields_:
+            wanted += [f"offsetof(ilaw_{name}, {member})", f"sizeof(((ilaw_{name}*)0)->{member})"]
+            found += [getattr(kind, member).offset, getattr(kind, member).size]
+    assert found == run_c(tmp_path, wanted)
+
+
+def test_a_missing_library_is_named(monkeypatch):
+    monkeypatch.setenv("ILAW_COUPLED", "/none.so")
+    with pytest.raises(ilaw.NotFound, match="libilaw_coupled.so.1 cannot be loaded.*ILAW_COUPLED"):
+        _coupled_abi.library.__wrapped__()
