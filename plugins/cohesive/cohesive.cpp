@@ -93,22 +93,38 @@ struct cohesive : bond {
     vector position;  // at the time of the next impulse
     vector opening;   // half a step before: the bond's
   };
-  static constexpr state_variable state_variables[] = {
-      {.name = "damage", .doc = "0: intact, 1: broken.", .minimum = 0.0, .maximum = 1.0},
-      {.name = "opening", .unit = "m", .doc = "Normal displacement since the start."},
-      {.name = "slip_1", .unit = "m", .doc = "First tangential displacement.", .kind = ILAW_STATE_HISTORY},
-      {.name = "slip_2", .unit = "m", .doc = "Second tangential displacement.", .kind = ILAW_STATE_HISTORY},
-      {.name = "mean_opening", .unit = "m", .doc = "Mean of the last two openings.", .internal = true},
-      {.name = "mean_slip_1",
-       .unit = "m",
-       .doc = "Mean of the last two of slip_1.",
-       .kind = ILAW_STATE_HISTORY,
-       .internal = true},
-      {.name = "mean_slip_2",
-       .unit = "m",
-       .doc = "Mean of the last two of slip_2.",
-       .kind = ILAW_STATE_HISTORY,
-       .internal = true}};
+  static constexpr state_variable<state> state_variables[] = {{.member = &state::damage,
+                                                               .name = "damage",
+                                                               .doc = "0: intact, 1: broken.",
+                                                               .minimum = 0.0,
+                                                               .maximum = 1.0},
+                                                              {.member = {&state::position, &vector::n},
+                                                               .name = "opening",
+                                                               .unit = "m",
+                                                               .doc = "Normal displacement since the start."},
+                                                              {.member = {&state::position, &vector::t1},
+                                                               .name = "slip_1",
+                                                               .unit = "m",
+                                                               .doc = "First tangential displacement."},
+                                                              {.member = {&state::position, &vector::t2},
+                                                               .name = "slip_2",
+                                                               .unit = "m",
+                                                               .doc = "Second tangential displacement."},
+                                                              {.member = {&state::opening, &vector::n},
+                                                               .name = "mean_opening",
+                                                               .unit = "m",
+                                                               .doc = "Mean of the last two openings.",
+                                                               .internal = true},
+                                                              {.member = {&state::opening, &vector::t1},
+                                                               .name = "mean_slip_1",
+                                                               .unit = "m",
+                                                               .doc = "Mean of the last two of slip_1.",
+                                                               .internal = true},
+                                                              {.member = {&state::opening, &vector::t2},
+                                                               .name = "mean_slip_2",
+                                                               .unit = "m",
+                                                               .doc = "Mean of the last two of slip_2.",
+                                                               .internal = true}};
 
   const char* conflict() const {
     if ((strength == infinity) != (shear_strength() == infinity))
@@ -168,7 +184,7 @@ struct cohesive : bond {
 
   template <class Node>
   void step_bond(Node& node) const {
-    if constexpr (!std::is_same_v<decltype(node.delassus), scalar_delassus>)
+    if constexpr (!has_scalar_delassus<Node>)
       if (is_anisotropic(node.delassus)) {
         auto own = with_full_delassus(node);
         solve_coupled(own);

@@ -81,17 +81,18 @@ struct penalty {
 
   struct state {
     double indentation;
-    double normal, slip_1, slip_2;  // normal is always zero
+    vector spring;  // its normal component is always zero
   };
-  static constexpr state_variable state_variables[] = {
-      {.name = "indentation",
+  static constexpr state_variable<state> state_variables[] = {
+      {.member = &state::indentation,
+       .name = "indentation",
        .unit = "m",
        .doc = "Of the implicit normal spring since it closed.",
        .minimum = 0.0},
-      {.name = "spring",
+      {.member = &state::spring,
+       .name = "spring",
        .unit = "m",
-       .doc = "Elastic part of the slip; normal component zero.",
-       .kind = ILAW_STATE_VECTOR}};
+       .doc = "Elastic part of the slip; normal component zero."}};
 
   std::uint32_t inputs() const {
     return reads_gap | (integration == implicitly || damping > 0.0 ? reads_v_previous : 0U);
@@ -203,7 +204,7 @@ struct penalty {
   // q + H/2 r is the mean velocity of what slips.
   template <class Node>
   vector sliding_velocity(const Node& node) const {
-    const vector spring{0.0, node.state.slip_1, node.state.slip_2};
+    const vector spring{0.0, node.state.spring.t1, node.state.spring.t2};
     return 0.5 * (node.v_free + held(node) * node.v_previous) + (2.0 / node.velocity_step) * spring;
   }
   template <class Node>
@@ -226,7 +227,7 @@ struct penalty {
   template <bool Linear, class Node>
   void strain(Node& node, double indentation, bool slides) const {
     const double h = node.velocity_step, per_impulse = 1.0 / (h * tangential_stiffness);
-    const vector spring{0.0, node.state.slip_1, node.state.slip_2}, r = node.impulse;
+    const vector spring{0.0, node.state.spring.t1, node.state.spring.t2}, r = node.impulse;
     const vector v = node.v_free + node.delassus.times(r);
     const vector moved = spring + (0.5 * h) * (node.v_previous + v);
     const double most = per_impulse * r.tangential_length(), length = moved.tangential_length();
@@ -243,7 +244,7 @@ struct penalty {
     node.normal_gain = stored_normal - potential<Linear>(node.state.indentation);
     node.tangential_gain = stored_tangential - tangential_potential(spring, spring);
     node.stored = stored_normal + stored_tangential;
-    node.state = {indentation, 0.0, strained.t1, strained.t2};
+    node.state = {indentation, strained};
   }
 
   template <class Node>
@@ -323,7 +324,7 @@ struct penalty {
     const double elastic = h * spring_force<Linear>(penetration);
     const double viscous = penetration > 0.0 ? h * damping * node.v_previous.n : 0.0;
     const double shear = friction > 0.0 ? h * tangential_stiffness : 0.0;
-    const vector spring{0.0, node.state.slip_1, node.state.slip_2};
+    const vector spring{0.0, node.state.spring.t1, node.state.spring.t2};
     rub(node, positive_part(elastic - viscous), shear * spring, 1.0);
 
     const double per_impulse = shear > 0.0 ? 1.0 / shear : 0.0;
@@ -333,7 +334,7 @@ struct penalty {
     const vector kept{0.0, 0.0 - per_impulse * node.impulse.t1, 0.0 - per_impulse * node.impulse.t2};
     const vector next{0.0, kept.t1 + strains * v.t1, kept.t2 + strains * v.t2};
     if (node.state.indentation != 0.0) node.refused = impossible_state;
-    node.state = {0.0, 0.0, next.t1, next.t2};
+    node.state = {0.0, next};
 
     // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
     const vector mean = node.v_previous + v;

@@ -79,17 +79,23 @@ struct postit {
   struct state {
     double adhesion, ruptures, grace;
   };
-  static constexpr state_variable state_variables[] = {
-      {.name = "adhesion",
+  static constexpr state_variable<state> state_variables[] = {
+      {.member = &state::adhesion,
+       .name = "adhesion",
        .unit = "N.s",
        .doc = "Adhesion of the node; 0 when it is not bonded.",
        .minimum = 0.0},
-      {.name = "ruptures", .doc = "Number of ruptures that counted so far.", .minimum = 0.0, .whole = true},
-      {.name = "grace",
+      {.member = &state::ruptures,
+       .name = "ruptures",
+       .doc = "Number of ruptures that counted so far.",
+       .minimum = 0.0,
+       .whole = true},
+      {.member = &state::grace,
+       .name = "grace",
        .unit = "s",
        .doc = "Time that the bond has yet to hold for its rupture to count; 0: it counts.",
        .minimum = 0.0}};
-  static constexpr state_variable history_variable = window_variable;
+  static constexpr history_card history_variable = window_variable;
 
   std::uint32_t inputs() const {
     return reads_gap | reads_v_previous |

@@ -42,12 +42,13 @@ struct tie {
   struct state {
     double broken;
   };
-  static constexpr state_variable state_variables[] = {{.name = "broken",
-                                                        .doc = "1 once the bond has broken, else 0.",
-                                                        .minimum = 0.0,
-                                                        .maximum = 1.0,
-                                                        .whole = true}};
-  static constexpr state_variable history_variable = window_variable;
+  static constexpr state_variable<state> state_variables[] = {{.member = &state::broken,
+                                                               .name = "broken",
+                                                               .doc = "1 once the bond has broken, else 0.",
+                                                               .minimum = 0.0,
+                                                               .maximum = 1.0,
+                                                               .whole = true}};
+  static constexpr history_card history_variable = window_variable;
 
   std::uint32_t inputs() const { return strength < infinity ? card.inputs : reads_v_previous; }
   std::int64_t history_size() const { return window::doubles(duration, buckets); }

@@ -15,21 +15,26 @@ struct kit_probe {
                                  .title = "Viscous contact that counts and sums",
                                  .doc = "r = -c v where closed; remembers what it gave.",
                                  .inputs = reads_gap,
-                                 .capabilities = ILAW_CAN_ACT_AT_DISTANCE};
+                                 .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE};
   static constexpr const char* references[] = {"none"};
   static constexpr parameter<kit_probe> parameters[] = {
       {.member = &kit_probe::viscosity, .name = "viscosity", .unit = "N.s/m", .doc = "c", .required = true}};
+  // Described in another order than it has here: entries name their members.
   struct state {
+    tangential_vector slip;
     double count;
-    double sum_n, sum_t1, sum_t2;
-    double slip_1, slip_2;
+    vector sum;
   };
-  static constexpr state_variable state_variables[] = {
-      {.name = "count", .doc = "steps", .minimum = 0.0, .maximum = 1e6, .whole = true},
-      {.name = "sum", .unit = "N.s", .doc = "impulses", .kind = ILAW_STATE_VECTOR},
-      {.name = "slip", .unit = "m", .doc = "of closed steps", .kind = ILAW_STATE_TANGENTIAL}};
-  static constexpr state_variable history_variable{
-      .name = "last", .doc = "last two v_N", .kind = ILAW_STATE_HISTORY, .internal = true};
+  static constexpr state_variable<state> state_variables[] = {
+      {.member = &state::count,
+       .name = "count",
+       .doc = "steps",
+       .minimum = 0.0,
+       .maximum = 1e6,
+       .whole = true},
+      {.member = &state::sum, .name = "sum", .unit = "N.s", .doc = "impulses"},
+      {.member = &state::slip, .name = "slip", .unit = "m", .doc = "of closed steps"}};
+  static constexpr history_card history_variable{.name = "last", .doc = "last two v_N", .internal = true};
   std::int64_t history_size() const { return 2; }
   static const void* extension(const char* name) {
     return std::strcmp(name, "tests.answer/1") == 0 ? &answer : nullptr;
@@ -42,15 +47,13 @@ struct kit_probe {
     const double c = n.gap <= 0.0 ? viscosity : 0.0;
     const double h = n.delassus.normal();
     const double factor = -c / (1.0 + c * h);
-    n.impulse = factor * n.v_free - 0.125 * vector{n.history[0], n.state.sum_t1, n.state.sum_t2} -
-                0.25 * vector{0.0, n.state.slip_1, n.state.slip_2};
+    n.impulse = factor * n.v_free - 0.125 * vector{n.history[0], n.state.sum.t1, n.state.sum.t2} -
+                0.25 * static_cast<vector>(n.state.slip);
     n.state.count += 1.0;
-    n.state.sum_n += n.impulse.n;
-    n.state.sum_t1 += n.impulse.t1;
-    n.state.sum_t2 += n.impulse.t2;
+    n.state.sum = n.state.sum + n.impulse;
     const vector v = n.v_free + n.delassus.times(n.impulse);
-    n.state.slip_1 += c > 0.0 ? n.position_step * v.t1 : 0.0;
-    n.state.slip_2 += c > 0.0 ? n.position_step * v.t2 : 0.0;
+    n.state.slip.t1 += c > 0.0 ? n.position_step * v.t1 : 0.0;
+    n.state.slip.t2 += c > 0.0 ? n.position_step * v.t2 : 0.0;
     n.status = c > 0.0 ? status::closed : status::free;
   }
   template <class Node>

@@ -10,7 +10,8 @@ struct shared_header {
   static constexpr ilaw::kit::law_card card{.id = "shared_header",
                                             .title = "Viscous contact",
                                             .doc = "r = -c v where closed.",
-                                            .inputs = ILAW_INPUT_GAP};
+                                            .inputs = ILAW_INPUT_GAP,
+                                            .capabilities = ILAW_CAN_ADHERE};
   static constexpr const char* references[] = {"none"};
   static constexpr ilaw::kit::parameter<shared_header> parameters[] = {{.member = &shared_header::viscosity,
                                                                         .name = "viscosity",

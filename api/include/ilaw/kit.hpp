@@ -9,3 +9,4 @@
 #include <ilaw/kit/math.hpp>
 #include <ilaw/kit/node.hpp>
 #include <ilaw/kit/plugin.hpp>
+#include <ilaw/kit/state.hpp>

@@ -65,10 +65,7 @@ constexpr parameter<Law> buckets_parameter(double Law::*member) {
           .fixed = true};
 }
 
-inline constexpr state_variable window_variable{.name = "window",
-                                                .unit = "N.s",
-                                                .doc = "Impulses of the last memory.",
-                                                .kind = ILAW_STATE_HISTORY,
-                                                .internal = true};
+inline constexpr history_card window_variable{
+    .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .internal = true};
 
 }  // namespace ilaw::kit

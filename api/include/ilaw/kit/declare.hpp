@@ -5,8 +5,8 @@
 //   static constexpr parameter<Law> parameters[];         one per member
 //   template <class Node> void step(Node&) const;         its equations
 // and, where it needs them,
-//   struct state { double ...; };                         named memory, all double, vectors as three
-//   static constexpr state_variable state_variables[];    in the order of struct state
+//   struct state { ... };                                 named memory, and
+//   static constexpr state_variable<state> state_variables[];   its description, see state.hpp
 //   std::uint32_t inputs() const;                         what these parameters read (default: card.inputs)
 //   std::uint32_t capabilities() const;                   what these parameters can do (default: the card's)
 //   static constexpr bool rests_by_parameters = true;     ILAW_CAN_REST is for capabilities() to promise: it
@@ -18,7 +18,7 @@
 //   const char* conflict() const;                         why parameters do not go together, or null
 //   static const void* extension(const char* name);       see ilaw_law (default: it has none)
 //   template <class Node> void initialise(Node&) const;   first state (default: zeros)
-//   static constexpr state_variable history_variable;     declares a history, of
+//   static constexpr history_card history_variable;       declares a history, of
 //   std::int64_t history_size() const;                    doubles, which step reads as node.history and
 //   template <class Node> void record(const Node&, history) const   writes once the step is accepted
 //
@@ -41,8 +41,10 @@
 #pragma once
 
 #include <ilaw/kit/node.hpp>
+#include <ilaw/kit/state.hpp>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -51,11 +53,6 @@
 #include <utility>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
-
-// ILAW_INPUT_* as unsigned numbers, to be combined freely.
-inline constexpr std::uint32_t reads_gap = ILAW_INPUT_GAP;
-inline constexpr std::uint32_t reads_v_previous = ILAW_INPUT_V_PREVIOUS;
-inline constexpr std::uint32_t reads_area = ILAW_INPUT_AREA;
 
 struct law_card {
   const char* id;
@@ -107,34 +104,6 @@ struct parameter {
   }
 };
 
-struct state_variable {
-  const char* name;
-  const char* unit = "1";
-  const char* doc = "";
-  std::uint32_t kind = ILAW_STATE_SCALAR;
-  bool internal = false;  // bookkeeping, not for pictures
-  // What a scalar can be; a host's state with anything else is bad input. All are finite.
-  double minimum = -std::numeric_limits<double>::max();
-  double maximum = std::numeric_limits<double>::max();
-  bool whole = false;
-
-  constexpr int doubles() const {  // in struct state
-    return kind == ILAW_STATE_VECTOR ? 3 : (kind == ILAW_STATE_TANGENTIAL ? 2 : 1);
-  }
-  constexpr int components(int dimension) const {  // in the host's state
-    if (kind == ILAW_STATE_TANGENTIAL) return dimension - 1;
-    return kind == ILAW_STATE_VECTOR ? dimension : 1;
-  }
-  constexpr bool has_range() const {
-    return whole || minimum > -std::numeric_limits<double>::max() ||
-           maximum < std::numeric_limits<double>::max();
-  }
-  bool may_be(double value) const {
-    const bool inside = (value >= minimum) & (value <= maximum);
-    return whole ? inside & is_whole(value) : inside;
-  }
-};
-
 template <class Law>
 concept has_state = requires {
   typename Law::state;
@@ -148,8 +117,8 @@ concept has_history = requires {
 template <class Law>
 constexpr bool has_vector_state() {
   if constexpr (has_state<Law>)
-    for (const state_variable& v : Law::state_variables)
-      if (v.kind != ILAW_STATE_SCALAR) return true;
+    for (const auto& v : Law::state_variables)
+      if (v.member.kind() != ILAW_STATE_SCALAR) return true;
   return false;
 }
 
@@ -169,9 +138,19 @@ struct state_of<Law> {
 template <class Law>
 using state_t = typename detail::state_of<Law>::type;
 
+// A node as most laws see it.
+template <class Law>
+using plain_node = node<scalar_delassus, state_t<Law>, vector, Law::card.inputs>;
+
+// Whether a law gives a first state that is not zero.
+template <class Law>
+concept initialises = requires(const Law& law, initial_node<state_t<Law>, Law::card.inputs>& n) {
+  law.initialise(n);
+};
+
 // Whether a law says which steps it is stable at.
 template <class Law>
-concept limits_step = requires(const Law& law, const node<scalar_delassus, state_t<Law>>& n) {
+concept limits_step = requires(const Law& law, const plain_node<Law>& n) {
   law.stable_velocity_step(n);
 };
 
@@ -223,9 +202,11 @@ constexpr auto abi_parameters() {
   return result;
 }
 
-constexpr ilaw_state_variable abi_state_variable(const state_variable& v, std::uint64_t count) {
+// Text: a state_variable or a history_card.
+template <class Text>
+constexpr ilaw_state_variable abi_state_variable(const Text& v, std::uint32_t kind, std::uint64_t count) {
   return {.struct_size = sizeof(ilaw_state_variable),
-          .kind = v.kind,
+          .kind = kind,
           .name = v.name,
           .unit = v.unit,
           .doc = v.doc,
@@ -240,6 +221,16 @@ constexpr std::size_t declared_state_variables() {
   return 0;
 }
 
+// Where the variables stand in struct state.
+template <class Law>
+inline constexpr auto state_places = [] {
+  std::array<int, declared_state_variables<Law>() + 1> places{};  // one more: no array of length zero
+  if constexpr (has_state<Law>)
+    for (std::size_t v = 0; v < std::size(Law::state_variables); ++v)
+      places[v] = Law::state_variables[v].member.place();
+  return places;
+}();
+
 template <class Law>
 inline constexpr std::size_t state_variable_count = declared_state_variables<Law>() +
                                                     (has_history<Law> ? 1 : 0);
@@ -249,9 +240,11 @@ constexpr auto abi_state_variables(int dimension, std::uint64_t history_size) {
   std::array<ilaw_state_variable, state_variable_count<Law>> result{};
   std::size_t i = 0;
   if constexpr (has_state<Law>)
-    for (const state_variable& v : Law::state_variables)
-      result[i++] = abi_state_variable(v, static_cast<std::uint64_t>(v.components(dimension)));
-  if constexpr (has_history<Law>) result[i] = abi_state_variable(Law::history_variable, history_size);
+    for (const auto& v : Law::state_variables)
+      result[i++] =
+          abi_state_variable(v, v.member.kind(), static_cast<std::uint64_t>(v.member.components(dimension)));
+  if constexpr (has_history<Law>)
+    result[i] = abi_state_variable(Law::history_variable, ILAW_STATE_HISTORY, history_size);
   return result;
 }
 

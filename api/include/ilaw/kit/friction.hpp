@@ -26,7 +26,8 @@ struct contact_problem {
 // For v_free as given, which may contain what other impulses of the step have done. Tangential restitution is
 // the part of v_T^- that a sticking contact reverses.
 template <class Vector>
-contact_problem<Vector> contact_problem_of(contact_condition condition, Vector v_free, Vector v_previous,
+contact_problem<Vector> contact_problem_of(contact_condition condition, Vector v_free,
+                                           std::type_identity_t<Vector> v_previous,
                                            double tangential_restitution = 0.0) {
   auto q = v_free + tangential_restitution * v_previous;
   auto rest = (1.0 - tangential_restitution) * v_previous;

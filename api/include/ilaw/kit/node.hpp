@@ -209,17 +209,49 @@ inline constexpr double free = ILAW_FREE, closed = ILAW_CLOSED, stick = ILAW_STI
 
 struct stateless {};
 
-// One node in one step. A step reads the first part and writes the second. Vector is projected_vector only
-// for laws that remember no vector and do not tell tangents apart.
-template <class Delassus, class State = stateless, class Vector = vector>
+// ILAW_INPUT_* as unsigned numbers, to be combined freely.
+inline constexpr std::uint32_t reads_gap = ILAW_INPUT_GAP;
+inline constexpr std::uint32_t reads_v_previous = ILAW_INPUT_V_PREVIOUS;
+inline constexpr std::uint32_t reads_area = ILAW_INPUT_AREA;
+
+// What stands in the place of an input that the law's card does not name: whoever reads it is told what to
+// write.
+template <std::uint32_t Input>
+struct undeclared_input {
+  operator double() const {
+    static_assert(Input != reads_gap, "the law reads gap: write reads_gap among .inputs of its card");
+    static_assert(Input != reads_area, "the law reads area: write reads_area among .inputs of its card");
+    static_assert(Input != reads_v_previous,
+                  "the law reads v_previous: write reads_v_previous among .inputs of its card");
+    return 0.0;
+  }
+};
+template <class Vector>
+struct undeclared_vector {
+  undeclared_input<reads_v_previous> n, t1, t2;
+
+  operator Vector() const { return {n}; }
+  double tangential_length() const { return n; }
+};
+
+template <std::uint32_t Inputs, std::uint32_t Input>
+using scalar_input = std::conditional_t<(Inputs & Input) != 0, double, undeclared_input<Input>>;
+template <std::uint32_t Inputs, class Vector>
+using previous_input =
+    std::conditional_t<(Inputs & reads_v_previous) != 0, Vector, undeclared_vector<Vector>>;
+
+// One node in one step. A step reads the first part and writes the second. Inputs: what the law's card names.
+// Vector is projected_vector only for laws that remember no vector and do not tell tangents apart.
+template <class Delassus, class State = stateless, class Vector = vector,
+          std::uint32_t Inputs = reads_gap | reads_v_previous | reads_area>
 struct node {
-  double time, velocity_step, position_step;
-  Vector v_free;      // relative velocity without interface
-  Vector v_previous;  // relative velocity of the half step before; zero unless the law reads it
-  Delassus delassus;
-  double gap;   // offset already taken off
-  double area;  // zero unless the law reads it
-  const_history history;
+  const double time, velocity_step, position_step;
+  const Vector v_free;                              // relative velocity without interface
+  const previous_input<Inputs, Vector> v_previous;  // relative velocity of the half step before
+  const Delassus delassus;
+  const scalar_input<Inputs, reads_gap> gap;  // offset already taken off
+  const scalar_input<Inputs, reads_area> area;
+  const const_history history;
 
   Vector impulse;
   State state;          // comes in as it was, leaves as it is
@@ -232,10 +264,18 @@ struct node {
   double refused = not_refused;
 };
 
+// What initialise sees: there is no motion yet.
+template <class State, std::uint32_t Inputs>
+struct initial_node {
+  const double time;
+  const scalar_input<Inputs, reads_area> area;
+  State state;
+};
+
 // Kinds of nodes that laws tell apart when they are compiled.
 template <class Node>
-inline constexpr bool has_scalar_delassus = std::is_same_v<decltype(Node::delassus), scalar_delassus>;
+inline constexpr bool has_scalar_delassus = std::is_same_v<decltype(Node::delassus), const scalar_delassus>;
 template <class Node>
-inline constexpr bool has_tangents = std::is_same_v<decltype(Node::v_free), vector>;
+inline constexpr bool has_tangents = std::is_same_v<decltype(Node::v_free), const vector>;
 
 }  // namespace ilaw::kit

@@ -5,6 +5,7 @@
 #ifndef ILAW_BUILDING_PLUGIN
 #define ILAW_BUILDING_PLUGIN
 #endif
+#include <ilaw/kit/detail/checked.hpp>
 #include <ilaw/kit/detail/evaluate.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
@@ -56,8 +57,8 @@ inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .evaluate = evaluate<Law>,
                                   .extension = extension_of<Law>()};
 
-// The description of a library with these laws.
-template <class... Laws>
+// The description of a library with these laws; Checked: whether all of them are laws.
+template <bool Checked, class... Laws>
 class library {
  public:
   static const ilaw_plugin* describe(const char* name, const char* version, const char* vendor,
@@ -83,6 +84,14 @@ class library {
   }
   static constexpr auto pointers = all(std::index_sequence_for<Laws...>{});
 };
+template <class... Laws>
+class library<false, Laws...> {
+ public:
+  static const ilaw_plugin* describe(const char*, const char*, const char*, const char*) { return nullptr; }
+};
+
+template <class... Laws>
+using library_of = library<(checked<Laws>() && ...), Laws...>;
 
 }  // namespace ilaw::kit
 
@@ -92,8 +101,8 @@ class library {
 #define ILAW_PLUGIN(name, version, vendor, licence, ...) \
   extern "C" const ilaw_kit_walk* ILAW_KIT_WALKS() { return ilaw::kit::walks<__VA_ARGS__>; }
 #else
-#define ILAW_PLUGIN(name, version, vendor, licence, ...)                              \
-  extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {                        \
-    return ilaw::kit::library<__VA_ARGS__>::describe(name, version, vendor, licence); \
+#define ILAW_PLUGIN(name, version, vendor, licence, ...)                                 \
+  extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {                           \
+    return ilaw::kit::library_of<__VA_ARGS__>::describe(name, version, vendor, licence); \
   }
 #endif

@@ -23,13 +23,14 @@ struct block_room {
 // Entry of the host's state that holds double k of struct state; -1: a component beyond the dimension.
 template <class Law>
 int state_entry(int k, int dimension) {
-  int entry = 0, position = 0;
+  int entry = 0;
   if constexpr (has_state<Law>)
-    for (const state_variable& v : Law::state_variables) {
-      if (k < position + v.doubles())
-        return k - position < v.components(dimension) ? entry + (k - position) : -1;
-      position += v.doubles();
-      entry += v.components(dimension);
+    for (std::size_t v = 0; v < std::size(Law::state_variables); ++v) {
+      const auto& member = Law::state_variables[v].member;
+      const int component = k - detail::state_places<Law>[v];
+      if (component >= 0 && component < member.doubles())
+        return component < member.components(dimension) ? entry + component : -1;
+      entry += member.components(dimension);
     }
   return -1;
 }
@@ -73,10 +74,9 @@ class batch_walk {
     const double area = block_.area[i];
     if (!finite(area) || area < 0.0) return "the area is not a finite number >= 0";
     if (made_.carries_frame && !unit(columns::get(block_.axes, i))) return "the normal is not a unit vector";
-    kit::node<scalar_delassus, state_t<Law>> fresh{};
-    fresh.time = batch_.time;
-    fresh.area = area;
-    if constexpr (requires { law.initialise(fresh); }) law.initialise(fresh);
+    initial_node<state_t<Law>, Law::card.inputs> fresh{
+        .time = batch_.time, .area = detail::area_of<Law>(block_.area, i), .state = {}};
+    if constexpr (initialises<Law>) law.initialise(fresh);
     if (detail::state_defect<Law>(fresh.state) != 0.0) return "the state overflows";
     if constexpr (has_state<Law>) {
       const auto doubles = std::bit_cast<std::array<double, states>>(fresh.state);

@@ -135,15 +135,42 @@ struct range_reason {
 
 // The first state variable that is not what it may be; null where all are.
 template <class Law, std::size_t V = 0>
-const char* out_of_range(const state_t<Law>& state, int position = 0) {
+const char* out_of_range(const state_t<Law>& state) {
   if constexpr (has_state<Law>)
     if constexpr (V < std::size(Law::state_variables)) {
-      constexpr const state_variable& v = Law::state_variables[V];
+      constexpr const auto& v = Law::state_variables[V];
       const auto doubles = std::bit_cast<std::array<double, state_doubles<Law>>>(state);
-      if (v.has_range() && !v.may_be(doubles[position])) return range_reason<Law, V>::text.data();
-      return out_of_range<Law, V + 1>(state, position + v.doubles());
+      if (v.has_range() && !v.may_be(doubles[detail::state_places<Law>[V]]))
+        return range_reason<Law, V>::text.data();
+      return out_of_range<Law, V + 1>(state);
     }
   return nullptr;
+}
+
+// Whether a number of an impulse is none, without another that has overflowed.
+inline bool is_not_a_number(vector r) {
+  const double sum = absolute(r.n) + absolute(r.t1) + absolute(r.t2);
+  return sum != sum && absolute(r.n) != infinity && absolute(r.t1) != infinity && absolute(r.t2) != infinity;
+}
+inline bool is_not_a_number(projected_vector r) {
+  const double tangential = absolute(r.x) + absolute(r.y) + absolute(r.z);
+  return is_not_a_number(vector{r.n, tangential, 0.0});
+}
+
+// What is wrong with what a step gave.
+template <class Law, class Node>
+const char* result_reason(const Node& n) {
+  if (n.refused == several_solutions)
+    return "the law's equations have several solutions for this H and step: a smaller step is needed";
+  if (n.refused == no_solution) return "the law's equations have no solution for this H";
+  if (n.refused == impossible_state) return "the state is not one that the law can have written";
+  if (n.refused == time_before_history) return "the time lies before what the state remembers";
+  if (is_not_a_number(n.impulse)) return "the law gave an impulse that is not a number";
+  if (defect(4.0 * n.impulse) + detail::state_defect<Law>(n.state) != 0.0)
+    return "the impulse or the state overflows";
+  if (status_defect(n.status) != 0.0) return "the law gave a status that ilaw.h does not have";
+  if (pull_defect<Law>(n) != 0.0) return "the law pulled, which needs ILAW_CAN_ADHERE in its card";
+  return "the law acted out of reach, which needs ILAW_CAN_ACT_AT_DISTANCE in its card";
 }
 
 // Why a node was refused, from the same checks as step_node, in their order.
@@ -157,20 +184,17 @@ const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool
   if (!framed && tangent_given) return "the tangent is not a unit vector orthogonal to the normal";
   if (framed && defect(n.v_free) != 0.0) return "v_free is not finite";
   if (framed && n.delassus.positive_defect() != 0.0) return "H is not finite and positive definite";
-  if (defect(n.gap) != 0.0) return "the gap is not finite";
-  if (framed && defect(n.v_previous) != 0.0) return "v_previous is not finite";
-  if (!finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
+  if constexpr ((Law::card.inputs & reads_gap) != 0)
+    if (defect(n.gap) != 0.0) return "the gap is not finite";
+  if constexpr (reads_previous<Law>)
+    if (framed && defect(n.v_previous) != 0.0) return "v_previous is not finite";
+  if constexpr ((Law::card.inputs & reads_area) != 0)
+    if (!finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
   if (!framed) return "the state holds no frame: it is not one that the law can have written";
   if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
   if (const char* wrong = out_of_range<Law>(n.state)) return wrong;
-  const double refused =
-      step_node<Law, Delassus, Frame, Layout, Scope>(stepping_alone(law), b, i).result.refused;
-  if (refused == several_solutions)
-    return "the law's equations have several solutions for this H and step: a smaller step is needed";
-  if (refused == no_solution) return "the law's equations have no solution for this H";
-  if (refused == impossible_state) return "the state is not one that the law can have written";
-  if (refused == time_before_history) return "the time lies before what the state remembers";
-  return "the impulse or the state overflows";
+  const auto stepped = step_node<Law, Delassus, Frame, Layout, Scope>(stepping_alone(law), b, i).result;
+  return result_reason<Law>(stepped);
 }
 
 // The whole of a batch; Varying: with parameters per node.
@@ -242,12 +266,28 @@ tally walk_laid_out(const instance<Law>& made, const Law& law, const ilaw_batch&
   return evaluate_walk<Law, Delassus, Frame, Layout, scope::impulse, false>::run(made, law, batch);
 }
 
+// What the card serves; create refuses the rest, and no loop is compiled for it.
+template <class Law>
+constexpr bool serves(std::uint32_t forms) {
+  return (Law::card.delassus_forms & forms) != 0;
+}
+template <class Law>
+inline constexpr bool in_space = (Law::card.dimensions & ILAW_DIMENSION_3) != 0;
+template <class Law>
+inline constexpr bool has_varying_parameters = [] {
+  for (const ilaw_parameter& p : detail::description<Law>::parameters)
+    if (p.may_be & ILAW_MAY_BE_PER_NODE) return true;
+  return false;
+}();
+
 template <class Law, class Delassus, class Frame>
 tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
-  if (made.per_node_count > 0)
-    return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
-  if constexpr (std::is_same_v<Delassus, scalar_delassus> && !std::is_same_v<Frame, stored_frame>)
+  if constexpr (has_varying_parameters<Law>)
+    if (made.per_node_count > 0)
+      return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
+  if constexpr (std::is_same_v<Delassus, scalar_delassus> && !std::is_same_v<Frame, stored_frame> &&
+                in_space<Law>)
     if (all_interleaved(made, batch))
       return walk_laid_out<Law, Delassus, Frame, interleaved>(made, law, batch);
   return walk_laid_out<Law, Delassus, Frame, columns>(made, law, batch);
@@ -256,20 +296,27 @@ tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
 // A diagonal H turned out of its axes is full.
 template <class Law>
 tally walk_turned(const instance<Law>& made, const ilaw_batch& batch) {
-  if (made.delassus_form != ILAW_DELASSUS_SCALAR)
-    return walk_as<Law, full_delassus, stored_frame>(made, batch);
-  if constexpr (needs_no_tangents<Law>())
-    if (!made.stores_frame()) return walk_as<Law, scalar_delassus, normal_frame>(made, batch);
-  return walk_as<Law, scalar_delassus, stored_frame>(made, batch);
+  if constexpr (serves<Law>(ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL))
+    if (made.delassus_form != ILAW_DELASSUS_SCALAR)
+      return walk_as<Law, full_delassus, stored_frame>(made, batch);
+  if constexpr (serves<Law>(ILAW_DELASSUS_SCALAR)) {
+    if constexpr (needs_no_tangents<Law>() && in_space<Law>)
+      if (!made.stores_frame()) return walk_as<Law, scalar_delassus, normal_frame>(made, batch);
+    return walk_as<Law, scalar_delassus, stored_frame>(made, batch);
+  }
+  return {};
 }
 
 template <class Law>
 tally walk_local(const instance<Law>& made, const ilaw_batch& batch) {
-  if (made.delassus_form == ILAW_DELASSUS_SCALAR)
-    return walk_as<Law, scalar_delassus, local_frame>(made, batch);
-  return made.delassus_form == ILAW_DELASSUS_DIAGONAL
-             ? walk_as<Law, diagonal_delassus, local_frame>(made, batch)
-             : walk_as<Law, full_delassus, local_frame>(made, batch);
+  if constexpr (serves<Law>(ILAW_DELASSUS_SCALAR))
+    if (made.delassus_form == ILAW_DELASSUS_SCALAR)
+      return walk_as<Law, scalar_delassus, local_frame>(made, batch);
+  if constexpr (serves<Law>(ILAW_DELASSUS_DIAGONAL))
+    if (made.delassus_form == ILAW_DELASSUS_DIAGONAL)
+      return walk_as<Law, diagonal_delassus, local_frame>(made, batch);
+  if constexpr (serves<Law>(ILAW_DELASSUS_FULL)) return walk_as<Law, full_delassus, local_frame>(made, batch);
+  return {};
 }
 
 // An ilaw_kit_walk: a checked batch from end to end, compiled for this level.

@@ -13,12 +13,9 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // The local frame is carried along in the state where a law remembers vectors and the host gives only
 // normals.
-inline constexpr state_variable frame_variables[] = {
-    {.name = "frame_normal", .doc = "Normal of the last step.", .kind = ILAW_STATE_AXIS, .internal = true},
-    {.name = "frame_tangent",
-     .doc = "First tangent of the last step.",
-     .kind = ILAW_STATE_AXIS,
-     .internal = true}};
+inline constexpr history_card frame_variables[] = {
+    {.name = "frame_normal", .doc = "Normal of the last step.", .internal = true},
+    {.name = "frame_tangent", .doc = "First tangent of the last step.", .internal = true}};
 
 // Whether kernels may work from the normal alone: no tangent named, and no vector remembered, which would
 // need tangents to be written in.
@@ -233,8 +230,6 @@ class instance_builder {
   }
 
   std::int32_t check_together() {
-    constexpr std::uint32_t known = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA;
-    static_assert((Law::card.inputs & ~known) == 0, "a law reads gap, v_previous and area at most");
     if constexpr (requires { made_.law.inputs(); })
       if (const std::uint32_t extra = made_.law.inputs() & ~Law::card.inputs) {
         text_.add("law '%s': reads inputs 0x%x that its card does not name", id, extra);
@@ -320,7 +315,7 @@ class instance_builder {
     made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.tangent_given &&
                           (made_.history_size > 0 || has_vector_state<Law>());
     if (made_.carries_frame)
-      for (const state_variable& v : frame_variables) append(detail::abi_state_variable(v, 3));
+      for (const history_card& v : frame_variables) append(detail::abi_state_variable(v, ILAW_STATE_AXIS, 3));
     return ILAW_OK;
   }
 

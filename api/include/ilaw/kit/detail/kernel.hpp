@@ -47,7 +47,7 @@ struct node_block {
 enum class scope { impulse, with_previous, outputs };
 
 template <class Law, class Delassus, class Frame>
-using node_in = node<Delassus, state_t<Law>, typename Frame::vector_type>;
+using node_in = node<Delassus, state_t<Law>, typename Frame::vector_type, Law::card.inputs>;
 
 template <class Law, class Delassus, class Frame>
 struct stepped {
@@ -70,11 +70,11 @@ state_t<Law> state_at(const double* const* columns, int i, std::index_sequence<K
 
 // Of a state that comes in: finite, and every scalar what its variable may be.
 template <class Law, std::size_t V = 0>
-double range_defect(const std::array<double, state_doubles<Law>>& state, int position = 0) {
+double range_defect(const std::array<double, state_doubles<Law>>& state) {
   if constexpr (V < std::size(Law::state_variables)) {
-    constexpr const state_variable& v = Law::state_variables[V];
-    const double rest = range_defect<Law, V + 1>(state, position + v.doubles());
-    if constexpr (v.has_range()) return rest + defect_unless(v.may_be(state[position]));
+    constexpr const auto& v = Law::state_variables[V];
+    const double rest = range_defect<Law, V + 1>(state);
+    if constexpr (v.has_range()) return rest + defect_unless(v.may_be(state[state_places<Law>[V]]));
     return rest;
   }
   return 0.0;
@@ -105,6 +105,13 @@ bool same_bits(const state_t<Law>& a, const state_t<Law>& b) {
   return different == 0;
 }
 
+inline vector kept_if(bool condition, vector a) {
+  return {kit::kept_if(condition, a.n), kit::kept_if(condition, a.t1), kit::kept_if(condition, a.t2)};
+}
+inline projected_vector kept_if(bool condition, projected_vector a) {
+  return {kit::kept_if(condition, a.n), kit::kept_if(condition, a.x), kit::kept_if(condition, a.y),
+          kit::kept_if(condition, a.z)};
+}
 inline vector zero_unless_finite(vector a) {
   const bool good = defect(a) == 0.0;
   return {good ? a.n : 0.0, good ? a.t1 : 0.0, good ? a.t2 : 0.0};
@@ -121,47 +128,124 @@ template <class Law, class Frame>
 inline constexpr bool can_carry = std::is_same_v<Frame, stored_frame> &&
                                   (has_history<Law> || has_vector_state<Law>());
 
+template <class Law>
+inline constexpr bool reads_previous = (Law::card.inputs & reads_v_previous) != 0;
+template <class Law>
+concept chooses_inputs = requires(const Law& law) {
+  law.inputs();
+};
+
+namespace detail {
+
+// Inputs as the law's card has them. Where parameters make a law read no v_previous it is zero, whatever the
+// energies need.
+template <class Law, scope Scope, class Basis>
+auto previous_of(const node_block<Law>& b, int i, const Basis& frame) {
+  using vector_type = decltype(frame.to_local(axis{}));
+  if constexpr (!reads_previous<Law>) {
+    return undeclared_vector<vector_type>{};
+  } else if constexpr (Scope == scope::impulse) {
+    return vector_type{};
+  } else {
+    const vector_type v = frame.to_local(columns::get(b.v_previous, i));
+    if constexpr (chooses_inputs<Law>) return kept_if(!b.previous_for_energy_only, v);
+    return v;
+  }
+}
+template <class Law>
+auto gap_of(const node_block<Law>& b, int i) {
+  if constexpr ((Law::card.inputs & reads_gap) != 0)
+    return b.gap[i] - b.gap_offset[i];
+  else
+    return undeclared_input<reads_gap>{};
+}
+template <class Law>
+auto area_of(const double* areas, int i) {
+  if constexpr ((Law::card.inputs & reads_area) != 0)
+    return areas[i];
+  else
+    return undeclared_input<reads_area>{};
+}
+template <class Law>
+const_history history_of(const node_block<Law>& b, int i) {
+  if constexpr (has_history<Law>) return {b.history_values + b.history_offset(i), b.history_component_stride};
+  return {};
+}
+template <class Law>
+state_t<Law> incoming_state(const node_block<Law>& b, int i) {
+  if constexpr (has_state<Law>)
+    return state_at<Law>(b.state_in, i, std::make_index_sequence<state_doubles<Law>>{});
+  else
+    return {};
+}
+
+}  // namespace detail
+
 // A node as it comes in, in its local frame. A normal that is no unit vector makes v_free a defect.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
 node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
-  node_in<Law, Delassus, Frame> n;
-  n.time = b.time;
-  n.velocity_step = b.velocity_step;
-  n.position_step = b.position_step;
   const auto frame = Frame::template at<Layout>(b.axes, i);
-  n.v_free = frame.to_local(Layout::get(b.v_free, i));
-  n.v_free.n += frame.unit_defect();
-  if constexpr (Scope != scope::impulse) n.v_previous = frame.to_local(columns::get(b.v_previous, i));
-  if constexpr (Scope == scope::outputs)  // asking for energies must not change the motion
-    if (b.previous_for_energy_only) n.v_previous = detail::zero_unless_finite(n.v_previous);
-  n.delassus = frame.to_local(
-      detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{}));
-  n.gap = b.gap[i] - b.gap_offset[i];
-  n.area = b.area[i];
-  if constexpr (has_history<Law>)
-    n.history = {b.history_values + b.history_offset(i), b.history_component_stride};
-  if constexpr (has_state<Law>)
-    n.state = detail::state_at<Law>(b.state_in, i, std::make_index_sequence<state_doubles<Law>>{});
-  return n;
+  auto v_free = frame.to_local(Layout::get(b.v_free, i));
+  v_free.n += frame.unit_defect();
+  return {.time = b.time,
+          .velocity_step = b.velocity_step,
+          .position_step = b.position_step,
+          .v_free = v_free,
+          .v_previous = detail::previous_of<Law, Scope>(b, i, frame),
+          .delassus = frame.to_local(
+              detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{})),
+          .gap = detail::gap_of(b, i),
+          .area = detail::area_of<Law>(b.area, i),
+          .history = detail::history_of(b, i),
+          .impulse = {},
+          .state = detail::incoming_state(b, i)};
 }
 
 template <class Law, scope Scope, class Node>
 double input_defect(const Node& n) {
-  double sum = defect(n.v_free) + n.delassus.positive_defect() + defect(n.gap);
-  if constexpr (Scope != scope::impulse) sum += defect(n.v_previous);
+  double sum = defect(n.v_free) + n.delassus.positive_defect();
+  if constexpr ((Law::card.inputs & reads_gap) != 0) sum += defect(n.gap);
+  if constexpr (reads_previous<Law> && Scope != scope::impulse) sum += defect(n.v_previous);
   if constexpr ((Law::card.inputs & reads_area) != 0) sum += defect(n.area) + defect_unless(n.area >= 0.0);
   return sum + detail::incoming_state_defect<Law>(n.state);
 }
 
-// Steps one node, and says whether its input was good and its result can be represented.
+// What a law may not give: a status that ilaw.h does not have, a pull or an impulse out of reach that its
+// card does not announce. Who is out of reach is to be left alone while it is fresh: its state is zero.
+inline double status_defect(double s) {
+  constexpr double to_integer = 0x1.8p52;
+  return defect_unless((s >= status::free) & (s <= status::healed) & ((s + to_integer) - to_integer == s));
+}
+template <class Law, class Node>
+double pull_defect(const Node& n) {
+  if constexpr ((Law::card.capabilities & ILAW_CAN_ADHERE) != 0) return 0.0;
+  return defect_unless(!(n.impulse.n < 0.0));
+}
+template <class Law, class Node>
+double distance_defect(const Node& n, const state_t<Law>& before) {
+  constexpr bool may_act = (Law::card.capabilities & ILAW_CAN_ACT_AT_DISTANCE) != 0;
+  constexpr bool starts_at_zero = !has_history<Law> && !initialises<Law>;
+  if constexpr (may_act || !starts_at_zero || (Law::card.inputs & reads_gap) == 0) {
+    return 0.0;
+  } else {
+    const bool acts = (n.impulse.n != 0.0) | (tangential_product(n.impulse, n.impulse) != 0.0);
+    const bool far = is_out_of_reach(n), fresh = detail::same_bits<Law>(before, {});
+    return defect_unless(!(acts & far & fresh));
+  }
+}
+
+// Steps one node, and says whether its input was good and its result one that a law may give and a double
+// can hold.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Step>
 stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int i) {
   auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
   const double before = input_defect<Law, Scope>(n);
+  const state_t<Law> state_before = n.state;
   step(n);
   // In the host's axes a component may be as large as the whole vector: it must be a number there, too.
   const double after = defect(4.0 * n.impulse) + detail::state_defect<Law>(n.state);
-  return {n, before + after + n.refused == 0.0};
+  const double kept = status_defect(n.status) + pull_defect<Law>(n) + distance_defect<Law>(n, state_before);
+  return {n, before + after + kept + n.refused == 0.0};
 }
 
 // Energy split of ilaw.h from the work of the impulse, -r.(v^- + v)/2 less what was stored of it, normal and
@@ -171,8 +255,8 @@ struct energy_split {
   double friction, impact, rupture, stored;
 };
 template <class Node, class Vector>
-energy_split split_energy(const Node& n, Vector v) {
-  const Vector mean = n.v_previous + v;
+energy_split split_energy(const Node& n, Vector v_previous, Vector v) {
+  const Vector mean = v_previous + v;
   const double along_normal = -0.5 * normal_product(n.impulse, mean) - n.normal_gain;
   const double along_tangents = -0.5 * tangential_product(n.impulse, mean) - n.tangential_gain;
   const double normal = positive_part(along_normal + smaller(along_tangents, 0.0));
@@ -199,11 +283,23 @@ axis outgoing(const double* const* axes, int i, typename Frame::vector_type a, b
   return {accepted ? out.x : otherwise.x, accepted ? out.y : otherwise.y, accepted ? out.z : otherwise.z};
 }
 
+// The velocity before the step of a node whose law may not read it: asking for energies must not change the
+// motion.
+template <class Law, class Frame, class Layout, class Node>
+auto previous_for_energy(const node_block<Law>& b, int i, const Node& n) {
+  if constexpr (reads_previous<Law> && !chooses_inputs<Law>) {
+    return n.v_previous;
+  } else {
+    const auto frame = Frame::template at<Layout>(b.axes, i);
+    return detail::zero_unless_finite(frame.to_local(columns::get(b.v_previous, i)));
+  }
+}
+
 template <class Law, class Frame, class Layout, class Node>
 void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted) {
   const auto v = n.v_free + n.delassus.times(n.impulse);
   columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, Layout::get(b.v_free, i)));
-  const energy_split e = split_energy(n, v);
+  const energy_split e = split_energy(n, previous_for_energy<Law, Frame, Layout>(b, i, n), v);
   const bool known = accepted & (defect(columns::get(b.v_previous, i)) == 0.0);
   b.energy[ILAW_ENERGY_FRICTION][i] = known ? e.friction : 0.0;
   b.energy[ILAW_ENERGY_IMPACT][i] = known ? e.impact : 0.0;

@@ -21,17 +21,54 @@ concept asks_first = requires(const Form& law, Node& node, problem_of_form<Form>
   law.asks(node, problem);
 };
 
+namespace detail {
+
+inline void choose(double& a, double b, bool second) { a = second ? b : a; }
+inline void choose(vector& a, vector b, bool second) {
+  choose(a.n, b.n, second);
+  choose(a.t1, b.t1, second);
+  choose(a.t2, b.t2, second);
+}
+inline void choose(projected_vector& a, projected_vector b, bool second) {
+  choose(a.n, b.n, second);
+  choose(a.x, b.x, second);
+  choose(a.y, b.y, second);
+  choose(a.z, b.z, second);
+}
+
+// What a step writes, number by number: a choice between structs is a branch, which does not vectorise.
+template <class Node>
+void choose(Node& a, const Node& b, bool second) {
+  choose(a.impulse, b.impulse, second);
+  choose(a.stored, b.stored, second);
+  choose(a.normal_gain, b.normal_gain, second);
+  choose(a.tangential_gain, b.tangential_gain, second);
+  choose(a.rupture, b.rupture, second);
+  choose(a.status, b.status, second);
+  choose(a.refused, b.refused, second);
+  using state = decltype(a.state);
+  if constexpr (!std::is_same_v<state, stateless>) {
+    using doubles = std::array<double, sizeof(state) / sizeof(double)>;
+    auto x = std::bit_cast<doubles>(a.state);
+    const auto y = std::bit_cast<doubles>(b.state);
+    for (std::size_t k = 0; k < x.size(); ++k) choose(x[k], y[k], second);
+    a.state = std::bit_cast<state>(x);
+  }
+}
+
+}  // namespace detail
+
 // One node from end to end, with the same bits as in a pack.
 template <class Form, class Node>
 void step_alone(const Form& law, Node& node) {
   if constexpr (asks_first<Form, Node>) {
-    const Node before = node;
+    Node solved = node;
     problem_of_form<Form> problem{};
     if (!law.asks(node, problem)) return;
     answer_of_form<Form> answer{};
     if (law.solve(problem, answer)) law.solve_alone(problem, answer);
-    node = before;
-    law.answered(node, answer);
+    law.answered(solved, answer);
+    detail::choose(node, solved, true);
   } else {
     law.step(node);
   }
@@ -106,37 +143,6 @@ Struct from_columns(const column* columns, int i, std::index_sequence<K...>) {
 }
 template <class Struct>
 inline constexpr auto places = std::make_index_sequence<static_cast<std::size_t>(doubles_in<Struct>)>{};
-
-inline void choose(double& a, double b, bool second) { a = second ? b : a; }
-inline void choose(vector& a, vector b, bool second) {
-  choose(a.n, b.n, second);
-  choose(a.t1, b.t1, second);
-  choose(a.t2, b.t2, second);
-}
-inline void choose(projected_vector& a, projected_vector b, bool second) {
-  choose(a.n, b.n, second);
-  choose(a.x, b.x, second);
-  choose(a.y, b.y, second);
-  choose(a.z, b.z, second);
-}
-
-// What a step writes, number by number: a choice between structs is a branch, which does not vectorise.
-template <class Law, class Node>
-void choose(Node& a, const Node& b, bool second) {
-  choose(a.impulse, b.impulse, second);
-  choose(a.stored, b.stored, second);
-  choose(a.normal_gain, b.normal_gain, second);
-  choose(a.tangential_gain, b.tangential_gain, second);
-  choose(a.rupture, b.rupture, second);
-  choose(a.status, b.status, second);
-  choose(a.refused, b.refused, second);
-  if constexpr (has_state<Law>) {
-    auto x = std::bit_cast<std::array<double, state_doubles<Law>>>(a.state);
-    const auto y = std::bit_cast<std::array<double, state_doubles<Law>>>(b.state);
-    for (std::size_t k = 0; k < x.size(); ++k) choose(x[k], y[k], second);
-    a.state = std::bit_cast<state_t<Law>>(x);
-  }
-}
 
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 bool ask_node(const Laws& laws, const node_block<Law>& b, int i,
@@ -221,7 +227,7 @@ void step_answered(const Form& law, const asked_block<Form>& asked, int i, Node&
   Node solved = node;
   law.asks(node, problem);
   law.answered(solved, from_columns<answer_of_form<Form>>(asked.answer, i, places<answer_of_form<Form>>));
-  choose<Law>(node, solved, asked.open.values[i] != 0.0);
+  choose(node, solved, asked.open.values[i] != 0.0);
 }
 
 }  // namespace detail

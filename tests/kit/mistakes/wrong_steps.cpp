@@ -1,0 +1,69 @@
+// The same for mistakes within a function of a law, which compilers look at where there is no other. Never
+// built: mistakes_test.cpp has its syntax checked, and reads the answer.
+#include <ilaw/kit.hpp>
+
+using namespace ilaw::kit;
+
+// What all of them have, in two parts.
+#define CARD                                                                                         \
+  static constexpr law_card card{                                                                    \
+      .id = "wrong", .title = "A law", .doc = "A mistake.", .delassus_forms = ILAW_DELASSUS_SCALAR}; \
+  static constexpr const char* references[] = {"none"}
+#define PARAMETER(law) \
+  static constexpr parameter<law> parameters[] = {{.member = &law::a, .name = "a", .whole = true}}
+
+// the law reads gap: write reads_gap among .inputs of its card
+struct gap_not_declared {
+  double a;
+  static constexpr law_card card{.id = "wrong",
+                                 .title = "A law",
+                                 .doc = "A mistake.",
+                                 .delassus_forms = ILAW_DELASSUS_SCALAR,
+                                 .inputs = 0};
+  static constexpr const char* references[] = {"none"};
+  PARAMETER(gap_not_declared);
+  template <class Node>
+  void step(Node& node) const {
+    node.impulse.n = node.gap;
+  }
+};
+
+// the law reads area: write reads_area among .inputs of its card
+struct area_not_declared {
+  double a;
+  CARD;
+  PARAMETER(area_not_declared);
+  template <class Node>
+  void step(Node& node) const {
+    node.impulse.n = node.area;
+  }
+};
+
+// the law reads v_previous: write reads_v_previous among .inputs of its card
+struct contact_without_v_previous {
+  double a;
+  CARD;
+  PARAMETER(contact_without_v_previous);
+  template <class Node>
+  void step(Node& node) const {
+    apply_plain_contact(node, node.v_free, a);
+  }
+};
+
+// assignment of member 'ilaw::kit::vector::n' in read-only object
+struct writes_v_free {
+  double a;
+  CARD;
+  PARAMETER(writes_v_free);
+  template <class Node>
+  void step(Node& node) const {
+    node.v_free.n = 0.0;
+  }
+};
+
+// The compiler looks at each.
+#define SEEN(law) auto* const seen_##law = &library_of<law>::describe
+SEEN(gap_not_declared);
+SEEN(area_not_declared);
+SEEN(contact_without_v_previous);
+SEEN(writes_v_free);
