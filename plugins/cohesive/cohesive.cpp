@@ -168,7 +168,7 @@ struct cohesive : bond {
 
   template <class Node>
   void step_bond(Node& node) const {
-    if constexpr (!std::is_same_v<decltype(node.delassus), scalar_delassus>)
+    if constexpr (!has_transverse_delassus<Node>)
       if (is_anisotropic(node.delassus)) {
         auto own = with_full_delassus(node);
         solve_coupled(own);

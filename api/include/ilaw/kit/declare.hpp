@@ -62,7 +62,8 @@ struct law_card {
   const char* title;
   const char* doc;
   std::uint32_t dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3;
-  std::uint32_t delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL;
+  std::uint32_t delassus_forms =
+      ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL | ILAW_DELASSUS_TRANSVERSE;
   std::uint32_t inputs = reads_gap;
   std::uint32_t capabilities = 0;
   std::uint32_t state_version = 1;  // to be raised with every change of what a state means
@@ -171,7 +172,7 @@ using state_t = typename detail::state_of<Law>::type;
 
 // Whether a law says which steps it is stable at.
 template <class Law>
-concept limits_step = requires(const Law& law, const node<scalar_delassus, state_t<Law>>& n) {
+concept limits_step = requires(const Law& law, const node<transverse_delassus, state_t<Law>>& n) {
   law.stable_velocity_step(n);
 };
 

@@ -247,7 +247,7 @@ tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
   if (made.per_node_count > 0)
     return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
-  if constexpr (std::is_same_v<Delassus, scalar_delassus> && !std::is_same_v<Frame, stored_frame>)
+  if constexpr (std::is_same_v<Delassus, transverse_delassus> && !std::is_same_v<Frame, stored_frame>)
     if (all_interleaved(made, batch))
       return walk_laid_out<Law, Delassus, Frame, interleaved>(made, law, batch);
   return walk_laid_out<Law, Delassus, Frame, columns>(made, law, batch);
@@ -256,17 +256,15 @@ tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
 // A diagonal H turned out of its axes is full.
 template <class Law>
 tally walk_turned(const instance<Law>& made, const ilaw_batch& batch) {
-  if (made.delassus_form != ILAW_DELASSUS_SCALAR)
-    return walk_as<Law, full_delassus, stored_frame>(made, batch);
+  if (!made.is_transverse()) return walk_as<Law, full_delassus, stored_frame>(made, batch);
   if constexpr (needs_no_tangents<Law>())
-    if (!made.stores_frame()) return walk_as<Law, scalar_delassus, normal_frame>(made, batch);
-  return walk_as<Law, scalar_delassus, stored_frame>(made, batch);
+    if (!made.stores_frame()) return walk_as<Law, transverse_delassus, normal_frame>(made, batch);
+  return walk_as<Law, transverse_delassus, stored_frame>(made, batch);
 }
 
 template <class Law>
 tally walk_local(const instance<Law>& made, const ilaw_batch& batch) {
-  if (made.delassus_form == ILAW_DELASSUS_SCALAR)
-    return walk_as<Law, scalar_delassus, local_frame>(made, batch);
+  if (made.is_transverse()) return walk_as<Law, transverse_delassus, local_frame>(made, batch);
   return made.delassus_form == ILAW_DELASSUS_DIAGONAL
              ? walk_as<Law, diagonal_delassus, local_frame>(made, batch)
              : walk_as<Law, full_delassus, local_frame>(made, batch);
