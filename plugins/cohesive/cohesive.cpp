@@ -184,7 +184,7 @@ struct cohesive : bond {
 
   template <class Node>
   void step_bond(Node& node) const {
-    if constexpr (!has_scalar_delassus<Node>)
+    if constexpr (!has_transverse_delassus<Node>)
       if (is_anisotropic(node.delassus)) {
         auto own = with_full_delassus(node);
         solve_coupled(own);

@@ -118,22 +118,22 @@ struct coulomb : friction_in_packs {
 
 struct coulomb::plain : coulomb {
   template <class Node>
-  void step(Node& node) const requires has_scalar_delassus<Node> {
+  void step(Node& node) const requires has_transverse_delassus<Node> {
     apply_isotropic_friction(node, contact(node), friction);
   }
   template <class Node>
-  bool asks(Node& node, friction_problem<double>& open) const requires(!has_scalar_delassus<Node>) {
+  bool asks(Node& node, friction_problem<double>& open) const requires(!has_transverse_delassus<Node>) {
     return ask_friction(node, contact(node), friction, friction, true, open);
   }
 };
 
 struct coulomb::falling : coulomb {
   template <class Node>
-  void step(Node& node) const requires has_scalar_delassus<Node> {
+  void step(Node& node) const requires has_transverse_delassus<Node> {
     apply_isotropic_friction(node, contact(node), fallen(friction, left(node)));
   }
   template <class Node>
-  bool asks(Node& node, friction_problem<double>& open) const requires(!has_scalar_delassus<Node>) {
+  bool asks(Node& node, friction_problem<double>& open) const requires(!has_transverse_delassus<Node>) {
     const double fallen_to = fallen(friction, left(node));
     return ask_friction(node, contact(node), fallen_to, fallen_to, true, open);
   }

@@ -145,7 +145,7 @@ struct penalty {
 
  private:
   // Not below the largest inverse mass in the tangent plane, with what H couples to the normal.
-  static double largest_tangential(const scalar_delassus& h) { return h.h; }
+  static double largest_tangential(const transverse_delassus& h) { return h.t; }
   static double largest_tangential(const diagonal_delassus& h) { return larger(h.t1, h.t2); }
   static double largest_tangential(const full_delassus& h) {
     return larger(h.t11 + absolute(h.n1), h.t22 + absolute(h.n2)) + absolute(h.t12);
@@ -357,7 +357,7 @@ struct penalty::form : penalty {
     V impulse, opens;
   };
   template <class Node>
-  static constexpr bool finds_roots = Implicit && !Linear && has_scalar_delassus<Node>;
+  static constexpr bool finds_roots = Implicit && !Linear && has_transverse_delassus<Node>;
 
   template <class Node>
   void step(Node& node) const requires(!finds_roots<Node>) {

@@ -50,7 +50,8 @@ TEST_P(Contract, EveryFormOfHGivesTheSameBitsInAllLayoutsAndInstructionSets) {
   for (const int d : {1, 2, 3})
     for (const auto& [form, components] : {std::pair{ILAW_DELASSUS_SCALAR, 1},
                                            {ILAW_DELASSUS_DIAGONAL, d},
-                                           {ILAW_DELASSUS_FULL, d * (d + 1) / 2}})
+                                           {ILAW_DELASSUS_FULL, d * (d + 1) / 2},
+                                           {ILAW_DELASSUS_TRANSVERSE, 2}})
       for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL}) {
         if (!(any.law().delassus_forms & static_cast<std::uint32_t>(form))) continue;
         SCOPED_TRACE(::testing::Message() << "d " << d << ", form " << form << ", frame " << frame);

@@ -42,9 +42,10 @@ TEST(Create, RefusesSetupsThatTheLawDoesNotServe) {
   setup.setup.dimension = 4;
   EXPECT_EQ(refusal(), "law 'contact': dimension 4 is not served: expected 1 2 3");
   setup.setup.dimension = 3;
-  setup.setup.delassus_form = 8;
+  setup.setup.delassus_form = 16;
   EXPECT_EQ(refusal(),
-            "law 'contact': form 8 of H is not served: expected one of 1 (scalar) 2 (diagonal) 4 (full)");
+            "law 'contact': form 16 of H is not served: expected one of 1 (scalar) 2 (diagonal) 4 (full) "
+            "8 (transverse)");
   setup.setup.delassus_form = ILAW_DELASSUS_SCALAR;
   setup.setup.flags = std::uint64_t{1} << 40;
   EXPECT_EQ(refusal(), "law 'contact': flags 0x10000000000 are not known: expected 0");

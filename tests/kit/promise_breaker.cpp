@@ -32,7 +32,7 @@ struct promise_breaker {
 
   template <class Node>
   void step(Node& node) const {
-    static_assert(has_scalar_delassus<Node>, "what the card does not serve is not compiled");
+    static_assert(has_transverse_delassus<Node>, "what the card does not serve is not compiled");
     constexpr double gives[] = {1.0, 1.0, 1.0, std::numeric_limits<double>::quiet_NaN(), -1.0, 1.0};
     const bool closed = node.gap <= 0.0;
     const double given = gives[static_cast<int>(breaks)];

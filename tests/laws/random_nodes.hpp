@@ -92,7 +92,7 @@ inline Inertia inertia_of(const LawCase& given) {
 // Each law in each form of H, in 2D and 3D.
 inline const auto delassus_forms =
     ::testing::Values(std::uint32_t{ILAW_DELASSUS_SCALAR}, std::uint32_t{ILAW_DELASSUS_DIAGONAL},
-                      std::uint32_t{ILAW_DELASSUS_FULL});
+                      std::uint32_t{ILAW_DELASSUS_FULL}, std::uint32_t{ILAW_DELASSUS_TRANSVERSE});
 inline std::string name_of_combination(
     const ::testing::TestParamInfo<std::tuple<LawCase, std::uint32_t, std::uint32_t>>& drawn) {
   const auto& [law, form, dimension] = drawn.param;
@@ -161,7 +161,7 @@ class RandomNodes {
   void draw_inertia(Matrix& m) {
     const bool scalar = form == ILAW_DELASSUS_SCALAR;
     const double normal = uniform(0.1, 2.0), tangential = scalar ? normal : uniform(0.1, 2.0);
-    const bool equal = scalar || inertia == Inertia::isotropic;
+    const bool equal = scalar || form == ILAW_DELASSUS_TRANSVERSE || inertia == Inertia::isotropic;
     m = {
         Vector{normal, 0.0, 0.0}, {0.0, tangential, 0.0}, {0.0, 0.0, equal ? tangential : uniform(0.1, 2.0)}};
     if (form == ILAW_DELASSUS_FULL && inertia == Inertia::any) couple(m);
@@ -178,9 +178,9 @@ class RandomNodes {
   }
 };
 
-// The axes in which a law is given its nodes: their own, the host's, or their own with the first tangent
-// reversed.
-enum class Axes { local, host, mirrored };
+// The axes in which a law is given its nodes: their own, the host's with tangents or with normals alone, or
+// their own with the first tangent reversed.
+enum class Axes { local, host, normals, mirrored };
 
 // An instance that evaluates RandomNodes, with states of its own.
 class Runner {
@@ -189,12 +189,13 @@ class Runner {
          Axes axes = Axes::local, const Units& units = {})
       : nodes_(nodes),
         units_(units),
-        global_(axes == Axes::host),
+        global_(axes == Axes::host || axes == Axes::normals),
         mirrored_(axes == Axes::mirrored),
         form_(global_ && nodes.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL}
                                                               : nodes.form),
-        interface_(make_law(law, SetupBuilder(in_units(law, parameters, units), nodes.dimension, form_,
-                                              global_ ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL, global_))),
+        interface_(
+            make_law(law, SetupBuilder(in_units(law, parameters, units), nodes.dimension, form_,
+                                       global_ ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL, axes == Axes::host))),
         size_(interface_.info().state_size),
         r(nodes.count),
         v(nodes.count),

@@ -103,7 +103,7 @@ TEST_P(Work, IsNeverPositive) {
   for (unsigned seed = 1; done < draws && !result.wrong; ++seed)
     for (const std::uint32_t form :
          {std::uint32_t{ILAW_DELASSUS_SCALAR}, std::uint32_t{ILAW_DELASSUS_DIAGONAL},
-          std::uint32_t{ILAW_DELASSUS_FULL}})
+          std::uint32_t{ILAW_DELASSUS_FULL}, std::uint32_t{ILAW_DELASSUS_TRANSVERSE}})
       for (std::uint32_t dimension = 1; dimension <= 3 && !result.wrong; ++dimension) {
         RandomNodes nodes(count, dimension, form, Inertia::any, seed);
         Runner run(law.law, law.parameters, nodes);

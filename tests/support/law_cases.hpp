@@ -85,13 +85,15 @@ inline std::vector<LawCase> law_cases(const std::string& section) {
 }
 
 inline const char* name_of_form(std::uint32_t form) {
+  if (form == ILAW_DELASSUS_TRANSVERSE) return "transverse";
   return form == ILAW_DELASSUS_SCALAR ? "scalar" : form == ILAW_DELASSUS_DIAGONAL ? "diagonal" : "full";
 }
 
 // The "form" of H of a case, scalar if left out.
 inline std::uint32_t form_of(const LawCase& given) {
   const std::string name = given.more.value("form", "scalar");
-  for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL})
+  for (const std::uint32_t form :
+       {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE})
     if (name == name_of_form(form)) return form;
   throw std::runtime_error(given.name + ": no form of H is called " + name);
 }

@@ -152,6 +152,15 @@ def test_full_h_in_the_order_of_the_header():
     assert law.delassus_components == 1 and full.delassus_components == 6
 
 
+def test_transverse_h_of_rolling_spheres():
+    v, m = pressed()
+    transverse = ilaw.Interface("coulomb", delassus="transverse", velocity_step=1e-3, friction=np.inf)
+    batch = evaluated(v, m, transverse, delassus=np.stack([1 / m, 3.5 / m], axis=1))
+    expected = -m[:, None] * v / np.where(UP, 1.0, 3.5)
+    np.testing.assert_allclose(batch.impulse, expected, rtol=4e-15, atol=1e-15)
+    assert transverse.delassus_components == 2
+
+
 def test_state_goes_through_a_restart():
     def bond():
         law = ilaw.Interface("postit", dimension=1, frame="local", velocity_step=1e-3, adhesion_limit=1.0)

@@ -59,7 +59,8 @@ struct law_card {
   const char* title;
   const char* doc;
   std::uint32_t dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3;
-  std::uint32_t delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL;
+  std::uint32_t delassus_forms =
+      ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL | ILAW_DELASSUS_TRANSVERSE;
   std::uint32_t inputs = reads_gap;
   std::uint32_t capabilities = 0;
   std::uint32_t state_version = 1;  // to be raised with every change of what a state means
@@ -140,7 +141,7 @@ using state_t = typename detail::state_of<Law>::type;
 
 // A node as most laws see it.
 template <class Law>
-using plain_node = node<scalar_delassus, state_t<Law>, vector, Law::card.inputs>;
+using plain_node = node<transverse_delassus, state_t<Law>, vector, Law::card.inputs>;
 
 // Whether a law gives a first state that is not zero.
 template <class Law>

@@ -118,8 +118,9 @@ void apply_isotropic_friction(Node& node, const contact_problem<Vector>& problem
 }
 
 // The entries of H in the order of local_problem.
-inline void fill(local_coulomb& p, const scalar_delassus& h) {
-  p.h[0] = p.h[1] = p.h[2] = h.h;
+inline void fill(local_coulomb& p, const transverse_delassus& h) {
+  p.h[0] = h.n;
+  p.h[1] = p.h[2] = h.t;
   p.h[3] = p.h[4] = p.h[5] = 0.0;
 }
 inline void fill(local_coulomb& p, const diagonal_delassus& h) {
@@ -238,14 +239,14 @@ mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
   take_off_positive_work(p, a);
 }
 
-// What of it is asked at a node: nothing where the contact is open, or, with a scalar H, where the cone is
-// circular. Whether it is follows from the parameters, which loops know before they know the coefficients.
+// What of it is asked at a node: nothing where the contact is open, or, with a transverse H, where the cone
+// is circular. Whether it is follows from the parameters, which loops know before they know the coefficients.
 template <class Node, class Vector>
 bool ask_friction(Node& node, const contact_problem<Vector>& contact, double friction_1, double friction_2,
                   bool is_circular, friction_problem<double>& problem) {
   fill(problem, node.delassus, contact, friction_1, friction_2);
   const bool is_pressed = (contact.slack <= 0.0) & (contact.q.n < 0.0);
-  if constexpr (has_scalar_delassus<Node>) {
+  if constexpr (has_transverse_delassus<Node>) {
     apply_isotropic_friction(node, contact, friction_1);
     return is_pressed & !is_circular;
   }
@@ -319,7 +320,7 @@ vector stopping_impulse(const Node& node) {
 // Contact with friction, by the closed form where it holds.
 template <class Node, class Vector>
 void apply_contact_friction(Node& node, const contact_problem<Vector>& contact, double friction) {
-  if constexpr (has_scalar_delassus<Node>)
+  if constexpr (has_transverse_delassus<Node>)
     apply_isotropic_friction(node, contact, friction);
   else
     apply_any_friction(node, contact, friction, friction);

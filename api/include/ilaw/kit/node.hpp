@@ -62,24 +62,27 @@ constexpr double defect(vector a) { return defect(a.n) + defect(a.t1) + defect(a
 constexpr double defect(projected_vector a) { return defect(a.n) + defect(a.x) + defect(a.y) + defect(a.z); }
 constexpr double defect_unless(bool good) { return good ? 0.0 : std::numeric_limits<double>::quiet_NaN(); }
 
-// The three forms of H, with the same operations: H r, H^-1 v, and the defect of one that is not finite and,
-// by largest_condition, positive definite. anisotropy() is zero where closed forms for H = diag(h_N, h_T,
-// h_T) hold.
-struct scalar_delassus {
-  static constexpr int components = 1;
-  double h;
+// The forms of H, with the same operations: H r, H^-1 v, and the defect of one that is not finite and, by
+// largest_condition, positive definite. anisotropy() is zero where closed forms for H = diag(h_N, h_T, h_T)
+// hold. A scalar H is transverse with twice the same value, whose operations are the same to the last bit.
+struct transverse_delassus {
+  static constexpr int components = 2;
+  double n, t;
 
-  static scalar_delassus from(const double* c) { return {c[0]}; }
-  double normal() const { return h; }
-  double tangential() const { return h; }
+  static transverse_delassus from(const double* c) { return {c[0], c[1]}; }
+  double normal() const { return n; }
+  double tangential() const { return t; }
   double anisotropy() const { return 0.0; }
-  double positive_defect() const { return defect(h) + defect_unless(h >= smallest_delassus); }
-  template <class Vector>
-  Vector times(Vector r) const {
-    return h * r;
+  // tr(H) tr(H^-1) = 5 + 2 (n/t + t/n) here.
+  double positive_defect() const {
+    constexpr double largest_ratio = 0.5 * largest_condition;
+    return defect(n) + defect(t) + defect_unless((n >= smallest_delassus) & (t >= smallest_delassus)) +
+           defect_unless((n <= largest_ratio * t) & (t <= largest_ratio * n));
   }
-  vector solve(vector v) const { return {v.n / h, v.t1 / h, v.t2 / h}; }
-  projected_vector solve(projected_vector v) const { return {v.n / h, v.x / h, v.y / h, v.z / h}; }
+  vector times(vector r) const { return {n * r.n, t * r.t1, t * r.t2}; }
+  projected_vector times(projected_vector r) const { return {n * r.n, t * r.x, t * r.y, t * r.z}; }
+  vector solve(vector v) const { return {v.n / n, v.t1 / t, v.t2 / t}; }
+  projected_vector solve(projected_vector v) const { return {v.n / n, v.x / t, v.y / t, v.z / t}; }
 };
 
 struct diagonal_delassus {
@@ -272,9 +275,11 @@ struct initial_node {
   State state;
 };
 
-// Kinds of nodes that laws tell apart when they are compiled.
+// Kinds of nodes that laws tell apart when they are compiled: whether closed forms for H = diag(h_N, h_T,
+// h_T) hold at all of them, and whether their vectors have tangential components with names.
 template <class Node>
-inline constexpr bool has_scalar_delassus = std::is_same_v<decltype(Node::delassus), const scalar_delassus>;
+inline constexpr bool has_transverse_delassus =
+    std::is_same_v<decltype(Node::delassus), const transverse_delassus>;
 template <class Node>
 inline constexpr bool has_tangents = std::is_same_v<decltype(Node::v_free), const vector>;
 

@@ -174,9 +174,9 @@ class batch_walk {
     const auto component = [this](int c) {
       return gather(batch_.delassus, c, nodes_, room_.delassus[c].values);
     };
-    if (made_.delassus_form == ILAW_DELASSUS_SCALAR) {
+    if (made_.is_transverse()) {  // two columns are read; a scalar is both
       h[0] = component(0);
-      for (int e = 1; e < 6; ++e) h[e] = e < 3 ? h[0] : zeros.values;
+      h[1] = made_.delassus_form == ILAW_DELASSUS_TRANSVERSE && dimension_ > 1 ? component(1) : h[0];
       return;
     }
     for (int e = 0; e < 3; ++e) h[e] = e < dimension_ ? component(e) : h[0];
@@ -189,7 +189,7 @@ class batch_walk {
 
   // In two dimensions the second tangent is given the entry of the first, lest H pass for anisotropic.
   void pad_turned_delassus() {
-    if (made_.delassus_form == ILAW_DELASSUS_SCALAR) return;
+    if (made_.is_transverse()) return;
     const double* const* h = block_.delassus;
     double* padded = room_.delassus[4].values;
     for (int i = 0; i < nodes_.count; ++i) {

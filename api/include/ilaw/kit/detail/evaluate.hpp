@@ -286,7 +286,7 @@ tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   if constexpr (has_varying_parameters<Law>)
     if (made.per_node_count > 0)
       return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
-  if constexpr (std::is_same_v<Delassus, scalar_delassus> && !std::is_same_v<Frame, stored_frame> &&
+  if constexpr (std::is_same_v<Delassus, transverse_delassus> && !std::is_same_v<Frame, stored_frame> &&
                 in_space<Law>)
     if (all_interleaved(made, batch))
       return walk_laid_out<Law, Delassus, Frame, interleaved>(made, law, batch);
@@ -297,21 +297,19 @@ tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
 template <class Law>
 tally walk_turned(const instance<Law>& made, const ilaw_batch& batch) {
   if constexpr (serves<Law>(ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL))
-    if (made.delassus_form != ILAW_DELASSUS_SCALAR)
-      return walk_as<Law, full_delassus, stored_frame>(made, batch);
-  if constexpr (serves<Law>(ILAW_DELASSUS_SCALAR)) {
+    if (!made.is_transverse()) return walk_as<Law, full_delassus, stored_frame>(made, batch);
+  if constexpr (serves<Law>(ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE)) {
     if constexpr (needs_no_tangents<Law>() && in_space<Law>)
-      if (!made.stores_frame()) return walk_as<Law, scalar_delassus, normal_frame>(made, batch);
-    return walk_as<Law, scalar_delassus, stored_frame>(made, batch);
+      if (!made.stores_frame()) return walk_as<Law, transverse_delassus, normal_frame>(made, batch);
+    return walk_as<Law, transverse_delassus, stored_frame>(made, batch);
   }
   return {};
 }
 
 template <class Law>
 tally walk_local(const instance<Law>& made, const ilaw_batch& batch) {
-  if constexpr (serves<Law>(ILAW_DELASSUS_SCALAR))
-    if (made.delassus_form == ILAW_DELASSUS_SCALAR)
-      return walk_as<Law, scalar_delassus, local_frame>(made, batch);
+  if constexpr (serves<Law>(ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE))
+    if (made.is_transverse()) return walk_as<Law, transverse_delassus, local_frame>(made, batch);
   if constexpr (serves<Law>(ILAW_DELASSUS_DIAGONAL))
     if (made.delassus_form == ILAW_DELASSUS_DIAGONAL)
       return walk_as<Law, diagonal_delassus, local_frame>(made, batch);

@@ -59,7 +59,7 @@ struct basis {
     return {a.n * n.x + a.t1 * t1.x + a.t2 * t2.x, a.n * n.y + a.t1 * t1.y + a.t2 * t2.y,
             a.n * n.z + a.t1 * t1.z + a.t2 * t2.z};
   }
-  scalar_delassus to_local(scalar_delassus h) const { return h; }
+  transverse_delassus to_local(transverse_delassus h) const { return h; }
   full_delassus to_local(const full_delassus& h) const {  // B H B^T
     const vector a = to_local(h.row_times(n)), b = to_local(h.row_times(t1)), c = to_local(h.row_times(t2));
     return {a.n, b.t1, c.t2, a.t1, a.t2, b.t2};
@@ -114,7 +114,7 @@ struct projection {
     return {normal, a.x - normal * n.x, a.y - normal * n.y, a.z - normal * n.z};
   }
   axis to_global(projected_vector a) const { return {a.x + a.n * n.x, a.y + a.n * n.y, a.z + a.n * n.z}; }
-  scalar_delassus to_local(scalar_delassus h) const { return h; }
+  transverse_delassus to_local(transverse_delassus h) const { return h; }
 };
 struct normal_frame {
   using vector_type = projected_vector;

@@ -53,10 +53,14 @@ struct instance {
   std::int64_t frame_size() const { return carries_frame ? 6 : 0; }
   std::int64_t frame_offset() const { return static_cast<std::int64_t>(state_size) - frame_size(); }
 
+  // Whether H is transverse, which it is in any axes, or scalar, which is transverse with one value.
+  bool is_transverse() const {
+    return delassus_form == ILAW_DELASSUS_SCALAR || delassus_form == ILAW_DELASSUS_TRANSVERSE;
+  }
+
   // Whether kernels read all axes from columns, rather than the normal alone.
   bool stores_frame() const {
-    return !needs_no_tangents<Law>() || dimension < 3 || tangent_given || carries_frame ||
-           delassus_form != ILAW_DELASSUS_SCALAR;
+    return !needs_no_tangents<Law>() || dimension < 3 || tangent_given || carries_frame || !is_transverse();
   }
 
   std::uint32_t inputs() const {
@@ -121,12 +125,14 @@ class instance_builder {
       return ILAW_UNSUPPORTED;
     }
     const std::uint32_t form = setup_.delassus_form;
-    if ((form != ILAW_DELASSUS_SCALAR && form != ILAW_DELASSUS_DIAGONAL && form != ILAW_DELASSUS_FULL) ||
+    if ((form != ILAW_DELASSUS_SCALAR && form != ILAW_DELASSUS_DIAGONAL && form != ILAW_DELASSUS_FULL &&
+         form != ILAW_DELASSUS_TRANSVERSE) ||
         !(card.delassus_forms & form)) {
-      text_.add("law '%s': form %u of H is not served: expected one of%s%s%s", id, form,
+      text_.add("law '%s': form %u of H is not served: expected one of%s%s%s%s", id, form,
                 card.delassus_forms & ILAW_DELASSUS_SCALAR ? " 1 (scalar)" : "",
                 card.delassus_forms & ILAW_DELASSUS_DIAGONAL ? " 2 (diagonal)" : "",
-                card.delassus_forms & ILAW_DELASSUS_FULL ? " 4 (full)" : "");
+                card.delassus_forms & ILAW_DELASSUS_FULL ? " 4 (full)" : "",
+                card.delassus_forms & ILAW_DELASSUS_TRANSVERSE ? " 8 (transverse)" : "");
       return ILAW_UNSUPPORTED;
     }
     if (setup_.frame != ILAW_FRAME_LOCAL && setup_.frame != ILAW_FRAME_GLOBAL) {
