@@ -179,6 +179,36 @@ TEST(ProximityFilter, MissesNoContactOfDrawnPoints) {
   EXPECT_GT(skipped, active);
 }
 
+// Where the normal turns, a state with axes turns with it from step to step, also out of reach: the way round
+// a sphere counts, not its ends alone.
+TEST(ProximityFilter, AxesOfAStateTurnWithTheNormalOutOfReach) {
+  Draw draw(22);
+  std::int64_t touched = 0;
+  for (int k = 0; k < 8 && !HasFailure(); ++k) {
+    json points = json::array(), loads = json::array();
+    for (int node = 0; node < 4; ++node) {
+      points.push_back({{"mass", 1.0},
+                        {"position", {draw.in(2.0, 3.0), draw.in(-1.0, 1.0), draw.in(2.0, 3.0)}},
+                        {"velocity", {draw.in(-4.0, -2.0), draw.in(-2.0, 2.0), 0.0}}});
+      loads.push_back({{"type", "shock"},
+                       {"nodes", {node}},
+                       {"time", 0.9},
+                       {"impulse", {2.0, draw.in(-2.0, 2.0), -5.0}}});
+    }
+    const Tally tally =
+        expect_same_bits({{"model", {{"type", "points"}, {"dimension", 3}, {"points", points}}},
+                          {"time", {{"dt", 0.01}, {"end", 2.0}}},
+                          {"loads", loads},
+                          {"interfaces",
+                           {{{"law", "postit"},
+                             {"parameters", {{"memory", 0.1}, {"friction", 0.3}}},
+                             {"nodes", "all"},
+                             {"obstacle", {{"type", "sphere"}, {"center", {0, 0, 0}}, {"radius", 1.5}}}}}}});
+    touched += tally.active - tally.status_counts[ILAW_FREE];
+  }
+  EXPECT_GT(touched, 0);
+}
+
 // Two points fly towards each other: they close twice as fast as either flies. From every distance, so that
 // some meet just when the horizon ends.
 TEST(ProximityFilter, SeesBothBodiesFly) {
