@@ -2,6 +2,8 @@
 // parameters that vary over time or from node to node.
 #include "host_runner.hpp"
 
+#include "results/history.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <chrono>
@@ -95,6 +97,28 @@ TEST(BirthAndDeath, AreTheFirstStepWithAndTheFirstWithout) {
   const json falling = points_on_plane({point({0, 0, 0}, {0, 0, 0})}, {{"law", "contact"}, {"birth", 0.1}});
   EXPECT_NEAR(velocity_after(falling, 0.099)[2], -g * 0.0995, 1e-13);
   EXPECT_NEAR(velocity_after(falling, 0.1)[2], 0.0, 1e-15);
+}
+
+// Its last status is not the node's any more.
+TEST(BirthAndDeath, LeaveTheStatusFree) {
+  json scene = points_on_plane({point({0, 0, 0}, {0, 0, 0})}, {{"law", "contact"}, {"death", 0.1}});
+  scene["output"] = {{"watch", {0}}};
+  Scene run = scene_of(scene.dump());
+  Integrator integrator = integrator_of(run);
+  const auto folder = fresh_folder();
+  History history(run, integrator, folder);
+  while (integrator.steps() < run.steps) {
+    integrator.step();
+    history.add_row(integrator);
+  }
+  history.commit();
+  std::ifstream file(folder / "history.csv");
+  std::string row;
+  std::getline(file, row);
+  ASSERT_EQ(row.substr(row.rfind(',')), ",n0.status");
+  for (int step = 1; std::getline(file, row); ++step)
+    ASSERT_EQ(row.substr(row.rfind(',') + 1), std::to_string(int{step < 100 ? ILAW_CLOSED : ILAW_FREE}))
+        << "step " << step;
 }
 
 // The state that a bond was born with waits for its birth: pulled all the time, it breaks R_Y/F after it.
