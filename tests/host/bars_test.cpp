@@ -2,6 +2,8 @@
 // per step, so that contact is checked to rounding. A front brings half an element's mass first, whose
 // impulse is half that of the steps after it.
 #include "host_runner.hpp"
+
+#include "model/bars.hpp"
 #include "study/errors.hpp"
 
 #include <algorithm>
@@ -82,6 +84,22 @@ TEST(BarOnWall, IsNearBelowTheCriticalStep) {
 }
 
 // ---- two bars -------------------------------------------------------------------------------------------
+
+// Every node of a bar offers its section.
+TEST(ElasticBar, OffersItsSectionEverywhere) {
+  const Bars bar({{"b", 0.0, 1.0, 4, 1.0, 1.0, 0.3, 0.0, {}}});
+  for (const char* set : {"b", "b.left", "b.right", "all"})
+    for (const double area : bar.sets().at(set).areas) EXPECT_EQ(area, 0.3) << set;
+}
+
+// Whichever bar it belongs to: l sqrt(rho/E) of one element.
+TEST(TwoBars, AreLimitedByTheFasterElement) {
+  const BarSetup slow{"slow", 0.0, 1.0, 4, 1.0, 1.0, 1.0, 0.0, {}},
+      fast{"fast", 2.0, 1.0, 8, 4.0, 1.0, 1.0, 0.0, {}};
+  EXPECT_EQ(Bars({slow}).critical_step(), 0.25);
+  EXPECT_EQ(Bars({slow, fast}).critical_step(), 0.0625);
+  EXPECT_EQ(Bars({fast, slow}).critical_step(), 0.0625);
+}
 
 // Left: c = 2, Z = 2, L = 1, v = 1; right: c = 1.5, Z = 0.5 sqrt(9 4) = 3, L = 1.2, v = -0.5; both have
 // Le/c = 0.01. They meet after 10 steps and go together at (Z_A v_A + Z_B v_B)/(Z_A + Z_B) = 0.1, with the

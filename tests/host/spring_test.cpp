@@ -81,5 +81,22 @@ TEST(RotatingSpring, ClosesItsBalanceOverAMillionStepsAgainstAStop) {
   EXPECT_GE(impacts, 20);
 }
 
+// Along itself it is an oscillator, which central differences bear up to h = 2 sqrt(m/k).
+TEST(RotatingSpring, DivergesBeyondItsCriticalStepOnly) {
+  for (const double part : {0.9, 1.3}) {
+    std::string text = spring(0.1, 20.0, "");
+    text.replace(text.find("[0.0, 3.0]"), 10, "[0.0, 0.0]");
+    Scene scene = scene_of(text);
+    EXPECT_NEAR(scene.model->critical_step(), 0.2, 1e-15);
+    Integrator integrator(*scene.model, scene.loads, scene.interfaces, part * 0.2);
+    double farthest = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      integrator.step();
+      farthest = std::max(farthest, integrator.displacement().norm());
+    }
+    EXPECT_EQ(farthest > 100.0, part > 1.0) << part << ", " << farthest;
+  }
+}
+
 }  // namespace
 }  // namespace ilaw::host::testing

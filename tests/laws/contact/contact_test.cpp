@@ -87,5 +87,17 @@ TEST(Contact, TakesAnyForm) {
   EXPECT_NEAR(node.v[2], 0.75, 1e-15);
 }
 
+// The next gap is g + l v_N for the position step l, whatever the velocity step: it is closed and no more.
+TEST(Contact, PredictsWithThePositionStep) {
+  for (const double l : {3e-4, 1e-3, 7e-3}) {
+    NodeRun node("contact", {{}, {{"activation", "predictive"}}}, 1e-3);
+    node.position_dt = l;
+    node.gap = 0.4 * l;
+    node.v_previous = {-1.0, 0.0, 0.0};
+    ASSERT_EQ(node.step({-1.0, 0.2, 0.0}), ILAW_OK);
+    EXPECT_NEAR(node.gap + l * node.v[0], 0.0, 1e-18) << "position step " << l;
+  }
+}
+
 }  // namespace
 }  // namespace ilaw::testing
