@@ -177,6 +177,22 @@ TEST(Postit, ARuptureUnderPressureHealsByItsOwnStepAlone) {
   EXPECT_EQ(node.push({-0.05, most + 0.01, 0}), ILAW_BROKEN);
   EXPECT_EQ(node.named("ruptures"), 1.0);
   EXPECT_NEAR(node.named("adhesion"), std::exp(-0.1) * 0.05, 1e-15);
+  // The window begins anew with that press.
+  EXPECT_EQ(node.push({-0.03, -node.v[1], 0}), ILAW_BONDED);
+  EXPECT_NEAR(node.named("adhesion"), std::exp(-0.1) * 0.08, 1e-15);
+}
+
+// Presses that add up to more than a double holds: the one that would make the adhesion infinite is refused.
+TEST(Postit, AnAdhesionThatOverflowsIsRefused) {
+  NodeRun node("postit", {{{"memory", inf_value}}, {}}, 1e-3);
+  int presses = 0;
+  while (presses < 8 && node.step({-4e307, 0, 0}) == ILAW_OK) {
+    ++presses;
+    ASSERT_TRUE(std::isfinite(node.named("adhesion"))) << presses;
+  }
+  EXPECT_EQ(presses, 4);
+  EXPECT_STREQ(node.report.reason, "the impulse or the state overflows");
+  EXPECT_EQ(node.named("adhesion"), 1.6e308);
 }
 
 // Pull and shear together: the ellipse (a/R)^2 + (b/(lambda R))^2 = 1.

@@ -134,5 +134,22 @@ TEST(Tie, RefusesBadParameters) {
   }
 }
 
+// The interval of a step whose position step is short may begin a bucket before one that is open already:
+// what falls there leaves the window with that bucket. Buckets of 1; 3/4 of the second pull act before 2.
+TEST(Tie, AStepThatBeginsInTheBucketBeforeSpreadsOverBoth) {
+  NodeRun node("tie", {{{"strength", 1.0}, {"memory", 4.0}, {"buckets", 4.0}}, {}}, 0.2);
+  const auto pull = [&](double impulse, double time, double velocity_step, double position_step) {
+    node.time = time;
+    node.dt = velocity_step;
+    node.position_dt = position_step;
+    EXPECT_EQ(node.step({impulse, 0.0, 0.0}), ILAW_OK);
+    return int{node.status};
+  };
+  EXPECT_EQ(pull(0.1, 2.0, 0.2, 0.4), ILAW_BONDED);  // [2.0, 2.2]
+  EXPECT_EQ(pull(0.8, 2.1, 0.8, 0.2), ILAW_BONDED);  // [1.4, 2.2]
+  EXPECT_EQ(pull(0.5, 6.0, 0.1, 0.1), ILAW_BONDED);  // 0.3 are left, all but 1/20
+  EXPECT_EQ(pull(0.25, 6.01, 0.01, 0.1), ILAW_BROKEN);
+}
+
 }  // namespace
 }  // namespace ilaw::testing
