@@ -60,7 +60,7 @@ class Contacts:
         h = O.dt
         free, previous = self._velocities(h)
         places = np.array([state.pos for state in self._states]).reshape(-1, 3)
-        geometry = self._geometry(places, previous["v"])
+        geometry = self._geometry(places)
         bodies = Bodies(
             v_free=free["v"], spin_free=free["w"], v_previous=previous["v"], spin_previous=previous["w"],
             inverse_mass=self._inverse_mass, inverse_inertia=self._inverse_inertia,
@@ -128,21 +128,20 @@ class Contacts:
         inverse = np.append(self._inverse_mass, 0.0)
         return pairs[(inverse[self._row[pairs]] > 0).any(axis=1)]
 
-    def _geometry(self, places, v):
+    def _geometry(self, places):
         pairs = self._candidates()
         body, counterpart = self._row[pairs[:, 0]], self._row[pairs[:, 1]]
         other, wall_velocity = np.zeros((len(pairs), 3)), np.zeros((len(pairs), 3))
         radius = np.where(counterpart < 0, 0.0, self._radius[counterpart])
         other[counterpart >= 0] = places[counterpart[counterpart >= 0]]
-        for k in np.flatnonzero(counterpart < 0):
-            wall = self._walls[int(pairs[k, 1])]
-            axis, sense = wall.shape.axis, wall.shape.sense
-            foot = places[body[k]].copy()
-            side = sense if sense else (1.0 if foot[axis] >= wall.state.pos[axis] else -1.0)
+        for number, wall in self._walls.items():
+            at = np.flatnonzero(pairs[:, 1] == number)
+            axis, place = wall.shape.axis, wall.state.pos[wall.shape.axis]
+            other[at], radius[at] = places[body[at]], self._radius[body[at]]
+            side = np.sign(wall.shape.sense) or np.where(other[at, axis] >= place, 1.0, -1.0)
             # A point behind the wall, so that a centre which has sunk into it still finds its way out.
-            foot[axis] = wall.state.pos[axis] - side * self._radius[body[k]]
-            radius[k] = self._radius[body[k]]
-            other[k], wall_velocity[k] = foot, wall.state.vel
+            other[at, axis] = place - side * radius[at]
+            wall_velocity[at] = wall.state.vel
         apart = places[body] - other
         length = np.linalg.norm(apart, axis=1)
         return {
