@@ -311,7 +311,7 @@ struct penalty {
     else if (acts)
       found.impulse = normal.impulse_where([&](double r) { return normal.given(tangents(r) + nn * r) - r; });
     normal.free = tangents(acts ? found.impulse : 0.0);
-    if (!finite(found.impulse)) node.refused = no_solution;
+    if (!is_finite(found.impulse)) node.refused = no_solution;
     found.opens = normal.travel(normal.free + nn * found.impulse) > normal.indentation ? 1.0 : 0.0;
     return found;
   }

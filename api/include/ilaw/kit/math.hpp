@@ -18,7 +18,7 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // IEEE operations, spelled so that they inline into vector code; exact or correctly rounded everywhere.
-constexpr bool finite(double x) { return x - x == 0.0; }
+constexpr bool is_finite(double x) { return x - x == 0.0; }
 constexpr double larger(double a, double b) { return a > b ? a : b; }
 constexpr double smaller(double a, double b) { return a < b ? a : b; }
 constexpr double positive_part(double x) { return x > 0.0 ? x : 0.0; }

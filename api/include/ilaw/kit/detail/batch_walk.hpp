@@ -72,7 +72,7 @@ class batch_walk {
     for (std::int64_t c = 0; c < static_cast<std::int64_t>(made_.state_size); ++c)
       at(batch_.state_out, node, c) = 0.0;
     const double area = block_.area[i];
-    if (!finite(area) || area < 0.0) return "the area is not a finite number >= 0";
+    if (!is_finite(area) || area < 0.0) return "the area is not a finite number >= 0";
     if (made_.carries_frame && !unit(columns::get(block_.axes, i))) return "the normal is not a unit vector";
     initial_node<state_t<Law>, Law::card.inputs> fresh{
         .time = batch_.time, .area = detail::area_of<Law>(block_.area, i), .state = {}};

@@ -44,7 +44,7 @@ inline const char* wrong_index(const ilaw_batch& b) {
 
 inline const char* wrong_scalars(const ilaw_batch& b) {
   if (b.node_count < 0) return "node_count is negative";
-  if (!finite(b.time)) return "time is not finite";
+  if (!is_finite(b.time)) return "time is not finite";
   return wrong_index(b);
 }
 
@@ -73,8 +73,10 @@ const char* colliding_output(const instance<Law>& made, const ilaw_batch& b) {
 template <class Law>
 const char* wrong_batch(const instance<Law>& made, const ilaw_batch& b) {
   if (const char* wrong = wrong_scalars(b)) return wrong;
-  if (!(b.velocity_step > 0.0) || !finite(b.velocity_step)) return "velocity_step is not a finite number > 0";
-  if (!(b.position_step > 0.0) || !finite(b.position_step)) return "position_step is not a finite number > 0";
+  if (!(b.velocity_step > 0.0) || !is_finite(b.velocity_step))
+    return "velocity_step is not a finite number > 0";
+  if (!(b.position_step > 0.0) || !is_finite(b.position_step))
+    return "position_step is not a finite number > 0";
   if (b.node_count == 0) return nullptr;
   if (!b.v_free.values) return "v_free is null";
   if (!b.delassus.values) return "delassus is null";
@@ -189,7 +191,7 @@ const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool
   if constexpr (reads_previous<Law>)
     if (framed && defect(n.v_previous) != 0.0) return "v_previous is not finite";
   if constexpr ((Law::card.inputs & reads_area) != 0)
-    if (!finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
+    if (!is_finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
   if (!framed) return "the state holds no frame: it is not one that the law can have written";
   if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
   if (const char* wrong = out_of_range<Law>(n.state)) return wrong;

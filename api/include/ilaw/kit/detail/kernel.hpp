@@ -210,16 +210,23 @@ double input_defect(const Node& n) {
   return sum + detail::incoming_state_defect<Law>(n.state);
 }
 
+// NaN where a promise is broken. By its bits: a choice between constants, which a status is, would become a
+// branch.
+inline double defect_where(bool is_broken) {
+  return kit::kept_if(is_broken, std::numeric_limits<double>::quiet_NaN());
+}
+
 // What a law may not give: a status that ilaw.h does not have, a pull or an impulse out of reach that its
 // card does not announce. Who is out of reach is to be left alone while it is fresh: its state is zero.
 inline double status_defect(double s) {
   constexpr double to_integer = 0x1.8p52;
-  return defect_unless((s >= status::free) & (s <= status::healed) & ((s + to_integer) - to_integer == s));
+  const bool is_one = (s >= status::free) & (s <= status::healed) & ((s + to_integer) - to_integer == s);
+  return defect_where(!is_one);
 }
 template <class Law, class Node>
 double pull_defect(const Node& n) {
   if constexpr ((Law::card.capabilities & ILAW_CAN_ADHERE) != 0) return 0.0;
-  return defect_unless(!(n.impulse.n < 0.0));
+  return defect_where(n.impulse.n < 0.0);
 }
 template <class Law, class Node>
 double distance_defect(const Node& n, const state_t<Law>& before) {
@@ -230,7 +237,7 @@ double distance_defect(const Node& n, const state_t<Law>& before) {
   } else {
     const bool acts = (n.impulse.n != 0.0) | (tangential_product(n.impulse, n.impulse) != 0.0);
     const bool far = is_out_of_reach(n), fresh = detail::same_bits<Law>(before, {});
-    return defect_unless(!(acts & far & fresh));
+    return defect_where(acts & far & fresh);
   }
 }
 
