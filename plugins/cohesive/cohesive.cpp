@@ -154,8 +154,22 @@ struct cohesive : bond {
     node.state.damage = bonds() ? 0.0 : 1.0;
   }
 
+  // Bonds that surely stand still and nodes that touch have closed forms; what is left is gathered.
+  struct in_phases;
+  template <class Run>
+  void in_form(Run run) const;
+
   template <class Node>
   void step(Node& node) const {
+    any_node own = with_full_delassus(node);
+    step_any(own);
+    take_over(node, own);
+  }
+
+ private:
+  // Once for all forms of node: too long to be compiled for each.
+  using any_node = ilaw::kit::node<full_delassus, state>;
+  [[gnu::noinline]] void step_any(any_node& node) const {
     if (!(node.state.damage < 1.0 && node.area > 0.0))
       touch(node);
     else if (!bonds())
@@ -164,42 +178,8 @@ struct cohesive : bond {
       step_bond(node);
   }
 
- private:
-  // A rigid bond up to its strength: the same as a tie. Its traction is compared with the weight of the work
-  // that it does.
   template <class Node>
-  bool stands_still(Node& node) const {
-    const vector r = stopping_impulse(node);
-    if (strength < infinity) {
-      const double capacity = node.velocity_step * node.area, w = weight();
-      const vector effective{positive_part(-r.n), r.t1 / w, r.t2 / w};
-      const double size = length(effective.n, effective.t1, effective.t2);
-      const bool surely = size <= capacity * smaller(strength, shear_strength());
-      if (!surely && !(size <= capacity * softening_along(effective, size).strength)) return false;
-    }
-    node.impulse = r;
-    node.status = status::bonded;
-    return true;
-  }
-
-  template <class Node>
-  void step_bond(Node& node) const {
-    if constexpr (!has_transverse_delassus<Node>)
-      if (is_anisotropic(node.delassus)) {
-        auto own = with_full_delassus(node);
-        solve_coupled(own);
-        take_over(node, own);
-        return;
-      }
-    solve_bond<isotropic_modes>(node);
-  }
-
-  // Once for all forms of node: too long to be compiled for each.
-  using coupled_node = ilaw::kit::node<full_delassus, state>;
-  [[gnu::noinline]] void solve_coupled(coupled_node& node) const { solve_bond<coupled_modes>(node); }
-
-  template <class Node>
-  static coupled_node with_full_delassus(const Node& node) {
+  static any_node with_full_delassus(const Node& node) {
     local_coulomb same{};
     fill(same, node.delassus);
     return {.time = node.time,
@@ -215,7 +195,7 @@ struct cohesive : bond {
             .state = node.state};
   }
   template <class Node>
-  static void take_over(Node& node, const coupled_node& solved) {
+  static void take_over(Node& node, const any_node& solved) {
     node.impulse = solved.impulse;
     node.state = solved.state;
     node.stored = solved.stored;
@@ -224,6 +204,35 @@ struct cohesive : bond {
     node.rupture = solved.rupture;
     node.status = solved.status;
     node.refused = solved.refused;
+  }
+
+  // A rigid bond up to its strength: the same as a tie. Its traction is compared with the weight of the work
+  // that it does.
+  static vector effective(vector r, double weight) {
+    return {positive_part(-r.n), r.t1 / weight, r.t2 / weight};
+  }
+  template <class Node>
+  bool stands_still(Node& node) const {
+    const vector r = stopping_impulse(node), pull = effective(r, weight());
+    if (strength < infinity) {
+      const double capacity = node.velocity_step * node.area, size = length(pull.n, pull.t1, pull.t2);
+      const bool surely = size <= capacity * smaller(strength, shear_strength());
+      if (!surely && !(size <= capacity * softening_along(pull, size).strength)) return false;
+    }
+    node.impulse = r;
+    node.status = status::bonded;
+    return true;
+  }
+  // The traction that any rigid bond holds, whatever its direction.
+  double sure_strength() const {
+    return stiffness == infinity && bonds() ? smaller(strength, shear_strength()) : -1.0;
+  }
+
+  void step_bond(any_node& node) const {
+    if (is_anisotropic(node.delassus))
+      solve_bond<coupled_modes>(node);
+    else
+      solve_bond<isotropic_modes>(node);
   }
 
   // Where a bond is that has not been moved: it is made where the node is now. Its work r.(v^- + v)/2 and the
@@ -281,9 +290,12 @@ struct cohesive : bond {
 
   // No bond: contact and friction, by the gap. What the bond remembers stays as it was when it broke.
   template <class Node>
+  static auto contact(const Node& node) {
+    return contact_problem_of(contact_at(node, 0.0, predictive), node.v_free, node.v_previous);
+  }
+  template <class Node>
   void touch(Node& node) const {
-    const contact_condition contact = contact_at(node, 0.0, predictive);
-    apply_contact_friction(node, contact_problem_of(contact, node.v_free, node.v_previous), friction);
+    apply_contact_friction(node, contact(node), friction);
   }
 
   // Where the strength, given as a table, has come to nothing.
@@ -294,6 +306,102 @@ struct cohesive : bond {
     node.status = status::broken;
   }
 };
+
+struct cohesive::in_phases : cohesive {
+  double held, shear_weight;  // worked out once: sure_strength and weight
+
+  // A node as it comes in, and as it leaves.
+  template <class V>
+  struct problem {
+    V h[6], v_free[3], v_previous[3], gap, area, damage, position[3], opening[3], velocity_step,
+        position_step;
+  };
+  template <class V>
+  struct answer {
+    V impulse[3], damage, position[3], opening[3], stored, normal_gain, tangential_gain, rupture, status,
+        refused;
+  };
+
+  template <class Node>
+  bool asks(Node& node, problem<double>& open) const {
+    keep(node, open);
+    const state& s = node.state;
+    const bool bonded = (s.damage < 1.0) & (node.area > 0.0);
+    const vector r = stopping_impulse(node), pull = effective(r, shear_weight);
+    const double capacity = node.velocity_step * node.area;
+    const bool surely = length(pull.n, pull.t1, pull.t2) <= capacity * held;
+    const bool holds = bonded & (s.damage == 0.0) & surely;
+    friction_problem<double> rubbing;
+    const bool rubs = ask_friction(node, contact(node), friction, friction, true, rubbing);
+    node.impulse = {holds ? r.n : node.impulse.n, holds ? r.t1 : node.impulse.t1,
+                    holds ? r.t2 : node.impulse.t2};
+    node.status = holds ? status::bonded : node.status;
+    return (bonded & !holds) | (!bonded & rubs);
+  }
+  template <class V>
+  mask_of<V> solve(const problem<V>& /*p*/, answer<V>& /*a*/) const {
+    return mask_of<V>(true);
+  }
+  void solve_alone(const problem<double>& p, answer<double>& a) const {
+    any_node node{.time = 0.0,
+                  .velocity_step = p.velocity_step,
+                  .position_step = p.position_step,
+                  .v_free = {p.v_free[0], p.v_free[1], p.v_free[2]},
+                  .v_previous = {p.v_previous[0], p.v_previous[1], p.v_previous[2]},
+                  .delassus = full_delassus::from(p.h),
+                  .gap = p.gap,
+                  .area = p.area,
+                  .history = {},
+                  .impulse = {},
+                  .state = {p.damage,
+                            {p.position[0], p.position[1], p.position[2]},
+                            {p.opening[0], p.opening[1], p.opening[2]}}};
+    step_any(node);
+    const vector &r = node.impulse, &x = node.state.position, &w = node.state.opening;
+    a = {{r.n, r.t1, r.t2}, node.state.damage,    {x.n, x.t1, x.t2}, {w.n, w.t1, w.t2}, node.stored,
+         node.normal_gain,  node.tangential_gain, node.rupture,      node.status,       node.refused};
+  }
+  template <class Node>
+  void answered(Node& node, const answer<double>& a) const {
+    node.impulse = {a.impulse[0], a.impulse[1], a.impulse[2]};
+    node.state.damage = a.damage;
+    node.state.position = {a.position[0], a.position[1], a.position[2]};
+    node.state.opening = {a.opening[0], a.opening[1], a.opening[2]};
+    node.stored = a.stored;
+    node.normal_gain = a.normal_gain;
+    node.tangential_gain = a.tangential_gain;
+    node.rupture = a.rupture;
+    node.status = a.status;
+    node.refused = a.refused;
+  }
+
+ private:
+  template <class Node>
+  static void keep(const Node& node, problem<double>& p) {
+    local_coulomb same;
+    fill(same, node.delassus);
+    for (int k = 0; k < 6; ++k) p.h[k] = same.h[k];
+    keep(node.v_free, p.v_free);
+    keep(node.v_previous, p.v_previous);
+    p.gap = node.gap;
+    p.area = node.area;
+    p.damage = node.state.damage;
+    keep(node.state.position, p.position);
+    keep(node.state.opening, p.opening);
+    p.velocity_step = node.velocity_step;
+    p.position_step = node.position_step;
+  }
+  static void keep(vector a, double (&kept)[3]) {
+    kept[0] = a.n;
+    kept[1] = a.t1;
+    kept[2] = a.t2;
+  }
+};
+
+template <class Run>
+void cohesive::in_form(Run run) const {
+  run(in_phases{*this, sure_strength(), weight()});
+}
 
 }  // namespace
 

@@ -259,7 +259,7 @@ template <class Node>
 void give_friction(Node& node, const friction_answer<double>& a) {
   node.impulse = {a.r[0], a.r[1], a.r[2]};
   node.status = a.status;
-  node.refused = a.refused;
+  node.refused = larger(node.refused, a.refused);
 }
 
 // What makes a law whose only problem is friction one in pack form: it has but to ask.

@@ -175,7 +175,9 @@ const char* result_reason(const Node& n) {
 
 // Why a node was refused, from the same checks as step_node, in their order.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
-const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool tangent_given) {
+const char* refusal_reason(const Law& law, const node_block<Law>& block, int i, bool tangent_given) {
+  const block_of_one<Law> one(law, block, i);
+  const node_block<Law>& b = one.block;
   const auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
   if (defect(Frame::template at<Layout>(b.axes, i).unit_defect()) != 0.0)
     return "the normal is not a unit vector";
