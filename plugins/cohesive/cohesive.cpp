@@ -1,5 +1,6 @@
 // Cohesive zones: a bond that softens, with contact, friction and bounded damage rate. See cohesive.md.
 #include "bond.hpp"
+#include "gathered.hpp"
 
 #include <ilaw/kit.hpp>
 
@@ -161,51 +162,24 @@ struct cohesive : bond {
 
   template <class Node>
   void step(Node& node) const {
-    any_node own = with_full_delassus(node);
-    step_any(own);
-    take_over(node, own);
+    gathered<double> given;
+    gather(node, given);
+    solved<double> found;
+    solve_alone(given, found);
+    give(node, found);
   }
-
- private:
-  // Once for all forms of node: too long to be compiled for each.
-  using any_node = ilaw::kit::node<full_delassus, state>;
-  [[gnu::noinline]] void step_any(any_node& node) const {
+  [[gnu::noinline]] void solve_alone(const gathered<double>& given, solved<double>& found) const {
+    auto node = node_of<state>(given);
     if (!(node.state.damage < 1.0 && node.area > 0.0))
       touch(node);
     else if (!bonds())
       break_at_once(node);
     else if (!(stiffness == infinity && node.state.damage == 0.0 && stands_still(node)))
       step_bond(node);
+    leave(node, found);
   }
 
-  template <class Node>
-  static any_node with_full_delassus(const Node& node) {
-    local_coulomb same{};
-    fill(same, node.delassus);
-    return {.time = node.time,
-            .velocity_step = node.velocity_step,
-            .position_step = node.position_step,
-            .v_free = node.v_free,
-            .v_previous = node.v_previous,
-            .delassus = full_delassus::from(same.h),
-            .gap = node.gap,
-            .area = node.area,
-            .history = node.history,
-            .impulse = {},
-            .state = node.state};
-  }
-  template <class Node>
-  static void take_over(Node& node, const any_node& solved) {
-    node.impulse = solved.impulse;
-    node.state = solved.state;
-    node.stored = solved.stored;
-    node.normal_gain = solved.normal_gain;
-    node.tangential_gain = solved.tangential_gain;
-    node.rupture = solved.rupture;
-    node.status = solved.status;
-    node.refused = solved.refused;
-  }
-
+ private:
   // A rigid bond up to its strength: the same as a tie. Its traction is compared with the weight of the work
   // that it does.
   static vector effective(vector r, double weight) {
@@ -228,7 +202,8 @@ struct cohesive : bond {
     return stiffness == infinity && bonds() ? smaller(strength, shear_strength()) : -1.0;
   }
 
-  void step_bond(any_node& node) const {
+  template <class Node>
+  void step_bond(Node& node) const {
     if (is_anisotropic(node.delassus))
       solve_bond<coupled_modes>(node);
     else
@@ -310,21 +285,14 @@ struct cohesive : bond {
 struct cohesive::in_phases : cohesive {
   double held, shear_weight;  // worked out once: sure_strength and weight
 
-  // A node as it comes in, and as it leaves.
   template <class V>
-  struct problem {
-    V h[6], v_free[3], v_previous[3], gap, area, damage, position[3], opening[3], velocity_step,
-        position_step;
-  };
+  using problem = gathered<V>;
   template <class V>
-  struct answer {
-    V impulse[3], damage, position[3], opening[3], stored, normal_gain, tangential_gain, rupture, status,
-        refused;
-  };
+  using answer = solved<V>;
 
   template <class Node>
   bool asks(Node& node, problem<double>& open) const {
-    keep(node, open);
+    gather(node, open);
     const state& s = node.state;
     const bool bonded = (s.damage < 1.0) & (node.area > 0.0);
     const vector r = stopping_impulse(node), pull = effective(r, shear_weight);
@@ -338,63 +306,14 @@ struct cohesive::in_phases : cohesive {
     node.status = holds ? status::bonded : node.status;
     return (bonded & !holds) | (!bonded & rubs);
   }
+  // Its root is found one by one.
   template <class V>
   mask_of<V> solve(const problem<V>& /*p*/, answer<V>& /*a*/) const {
     return mask_of<V>(true);
   }
-  void solve_alone(const problem<double>& p, answer<double>& a) const {
-    any_node node{.time = 0.0,
-                  .velocity_step = p.velocity_step,
-                  .position_step = p.position_step,
-                  .v_free = {p.v_free[0], p.v_free[1], p.v_free[2]},
-                  .v_previous = {p.v_previous[0], p.v_previous[1], p.v_previous[2]},
-                  .delassus = full_delassus::from(p.h),
-                  .gap = p.gap,
-                  .area = p.area,
-                  .history = {},
-                  .impulse = {},
-                  .state = {p.damage,
-                            {p.position[0], p.position[1], p.position[2]},
-                            {p.opening[0], p.opening[1], p.opening[2]}}};
-    step_any(node);
-    const vector &r = node.impulse, &x = node.state.position, &w = node.state.opening;
-    a = {{r.n, r.t1, r.t2}, node.state.damage,    {x.n, x.t1, x.t2}, {w.n, w.t1, w.t2}, node.stored,
-         node.normal_gain,  node.tangential_gain, node.rupture,      node.status,       node.refused};
-  }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {
-    node.impulse = {a.impulse[0], a.impulse[1], a.impulse[2]};
-    node.state.damage = a.damage;
-    node.state.position = {a.position[0], a.position[1], a.position[2]};
-    node.state.opening = {a.opening[0], a.opening[1], a.opening[2]};
-    node.stored = a.stored;
-    node.normal_gain = a.normal_gain;
-    node.tangential_gain = a.tangential_gain;
-    node.rupture = a.rupture;
-    node.status = a.status;
-    node.refused = a.refused;
-  }
-
- private:
-  template <class Node>
-  static void keep(const Node& node, problem<double>& p) {
-    local_coulomb same;
-    fill(same, node.delassus);
-    for (int k = 0; k < 6; ++k) p.h[k] = same.h[k];
-    keep(node.v_free, p.v_free);
-    keep(node.v_previous, p.v_previous);
-    p.gap = node.gap;
-    p.area = node.area;
-    p.damage = node.state.damage;
-    keep(node.state.position, p.position);
-    keep(node.state.opening, p.opening);
-    p.velocity_step = node.velocity_step;
-    p.position_step = node.position_step;
-  }
-  static void keep(vector a, double (&kept)[3]) {
-    kept[0] = a.n;
-    kept[1] = a.t1;
-    kept[2] = a.t2;
+    give(node, a);
   }
 };
 

@@ -161,13 +161,6 @@ struct postit {
     return holds;
   }
 
-  // Contact with friction where the gap is closed and nothing rebounds.
-  template <class Node>
-  static auto contact(const Node& node, vector v_free) {
-    const contact_condition condition = contact_leaving_at(0.0, node.gap, v_free.n, node.v_previous.n);
-    return contact_problem_of(condition, v_free, node.v_previous);
-  }
-
   // What the step makes of the bond: the node comes with the impulse of contact, is given the trial impulse
   // where its bond holds, and heals.
   template <class Node>
@@ -216,10 +209,10 @@ struct postit::form : postit, friction_in_packs {
     if constexpr (Saturated) {
       const bool breaks = node.state.adhesion > 0.0 && !holds;
       const vector held = breaks ? held_part(node.earlier, trial, node.state.adhesion) * trial : vector{};
-      apply_contact_friction(node, contact(node, node.v_free + node.delassus.times(held)), friction);
+      apply_plain_contact(node, node.v_free + node.delassus.times(held), friction);
       node.impulse = node.impulse + held;
     } else {
-      apply_contact_friction(node, contact(node, node.v_free), friction);
+      apply_plain_contact(node, node.v_free, friction);
     }
     settle(node, trial, holds);
   }
@@ -228,7 +221,8 @@ struct postit::form : postit, friction_in_packs {
       requires(!Saturated && !has_transverse_delassus<Node>) {
     const vector trial = stopping_impulse(node);
     const bool holds = this->holds(node, trial);
-    const bool is_pressed = ask_friction(node, contact(node, node.v_free), friction, friction, true, open);
+    const bool is_pressed =
+        ask_friction(node, plain_contact(node, node.v_free), friction, friction, true, open);
     settle(node, trial, holds);
     return is_pressed & !holds;
   }

@@ -328,9 +328,13 @@ void apply_contact_friction(Node& node, const contact_problem<Vector>& contact, 
 
 // Contact and friction where the gap is closed and nothing rebounds: what is left of a bond.
 template <class Node, class Vector>
-void apply_plain_contact(Node& node, Vector v_free, double friction) {
+contact_problem<Vector> plain_contact(const Node& node, Vector v_free) {
   const contact_condition condition = contact_leaving_at(0.0, node.gap, v_free.n, node.v_previous.n);
-  apply_contact_friction(node, contact_problem_of(condition, v_free, node.v_previous), friction);
+  return contact_problem_of(condition, v_free, node.v_previous);
+}
+template <class Node, class Vector>
+void apply_plain_contact(Node& node, Vector v_free, double friction) {
+  apply_contact_friction(node, plain_contact(node, v_free), friction);
 }
 
 }  // namespace ilaw::kit

@@ -362,14 +362,13 @@ void run_block(const Laws& laws, const node_block<Law>& b) {
 
 // A block for a node that is looked at alone, after the block was run.
 template <class Law>
-struct block_of_one {
-  node_block<Law> block;
+struct block_of_one : node_block<Law> {
   detail::window_columns kept;
 
-  block_of_one(const Law& law, const node_block<Law>& b, int i) : block(b) {
+  block_of_one(const Law& law, const node_block<Law>& b, int i) : node_block<Law>(b) {
     if constexpr (has_window<Law>) {
       detail::read_window(law, b, i, kept);
-      detail::aim_at(kept, block, false);
+      detail::aim_at(kept, static_cast<node_block<Law>&>(*this), false);
     }
   }
 };
