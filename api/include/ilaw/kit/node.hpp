@@ -255,6 +255,7 @@ struct node {
   const scalar_input<Inputs, reads_gap> gap;  // offset already taken off
   const scalar_input<Inputs, reads_area> area;
   const const_history history;
+  const vector earlier = {};  // what the law's window sums up to before the step; zero unless it has one
 
   Vector impulse;
   State state;          // comes in as it was, leaves as it is

@@ -51,6 +51,8 @@ class batch_walk {
     block_.time = batch_.time;
     block_.velocity_step = batch_.velocity_step;
     block_.position_step = batch_.position_step;
+    for (const double*& sum : block_.earlier) sum = zeros.values;
+    block_.earlier_refused = zeros.values;
     gather_inputs();
     if (made_.frame == ILAW_FRAME_GLOBAL) gather_frame();
     if (made_.frame == ILAW_FRAME_GLOBAL && dimension_ == 2) pad_turned_delassus();

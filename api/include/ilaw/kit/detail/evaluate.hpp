@@ -177,7 +177,7 @@ const char* result_reason(const Node& n) {
 
 // Why a node was refused, from the same checks as step_node, in their order.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
-const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool tangent_given) {
+const char* refusal_reason(const Law& law, const block_of_one<Law>& b, int i, bool tangent_given) {
   const auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
   if (defect(Frame::template at<Layout>(b.axes, i).unit_defect()) != 0.0)
     return "the normal is not a unit vector";
@@ -253,7 +253,7 @@ struct evaluate_walk {
       const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
       found.add(walk.nodes().node(i), wrong ? wrong
                                             : refusal_reason<Law, Delassus, Frame, Layout, Scope>(
-                                                  own, walk.block(), i, made.tangent_given));
+                                                  own, {own, walk.block(), i}, i, made.tangent_given));
     }
   }
 };

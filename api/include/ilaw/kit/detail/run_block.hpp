@@ -58,7 +58,7 @@ void choose(Node& a, const Node& b, bool second) {
 
 }  // namespace detail
 
-// One node from end to end, with the same bits as in a pack.
+// One node, with the same bits as in a pack.
 template <class Form, class Node>
 void step_alone(const Form& law, Node& node) {
   if constexpr (asks_first<Form, Node>) {
@@ -87,6 +87,8 @@ struct one_law {
   const Form& at(int /*i*/) const { return law; }
   static constexpr bool is_valid(int /*i*/) { return true; }
 };
+template <class Laws>
+inline constexpr bool is_one_law = std::is_same_v<Laws, one_law<typename Laws::form>>;
 template <class Law>
 struct law_per_node {
   using form = Law;
@@ -257,7 +259,7 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
 }
 
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
-void run_block(const Laws& laws, const node_block<Law>& b) {
+void run_steps(const Laws& laws, const node_block<Law>& b) {
   using form = typename Laws::form;
   if constexpr (asks_first<form, node_in<Law, Delassus, Frame>>) {
     constexpr scope reads = Scope == scope::impulse ? scope::impulse : scope::with_previous;
@@ -278,5 +280,97 @@ void run_block(const Laws& laws, const node_block<Law>& b) {
     step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
   }
 }
+
+namespace detail {
+
+// What a block keeps between its windows and its steps.
+struct window_columns {
+  column earlier[3], earlier_refused, given[3], reached;
+};
+
+// The law's window at node i, in the step of a block.
+template <class Laws, class Law>
+window_in_step window_at(const Laws& laws, const node_block<Law>& b, int i) {
+  return laws.at(i).window_in(interval_of(b));
+}
+
+// The windows of laws that forget stay zero.
+template <class Law>
+void aim_at(window_columns& kept, node_block<Law>& b, bool forgets) {
+  for (int c = 0; c < 3; ++c) {
+    if (!forgets) b.earlier[c] = kept.earlier[c].values;
+    b.given[c] = kept.given[c].values;
+  }
+  if (!forgets) b.earlier_refused = kept.earlier_refused.values;
+  b.reached = kept.reached.values;
+}
+
+template <class Form, class Law>
+void read_window(const Form& law, const node_block<Law>& b, int i, window_columns& kept) {
+  const window_in_step::reading earlier =
+      law.window_in(interval_of(b)).before(const_history(b.history_of(i)));
+  kept.earlier[0].values[i] = earlier.sum.n;
+  kept.earlier[1].values[i] = earlier.sum.t1;
+  kept.earlier[2].values[i] = earlier.sum.t2;
+  kept.earlier_refused.values[i] = earlier.refused;
+}
+
+// The windows of a block before its steps. Parameters per node may give each node another window.
+template <class Law, class Laws>
+void read_windows(const Laws& laws, const node_block<Law>& b, window_columns& kept) {
+  const auto own = [&b](int i) { return const_history(b.history_of(i)); };
+  if constexpr (is_one_law<Laws>) {
+    window_at(laws, b, 0).before(b.count, own, kept.earlier, kept.earlier_refused);
+  } else {
+    for (int i = 0; i < b.count; ++i) read_window(laws.at(i), b, i, kept);
+  }
+}
+
+template <class Law, class Laws>
+void write_windows(const Laws& laws, const node_block<Law>& block, const window_columns& kept) {
+  const node_block<Law> b = block;  // a copy, so that no store can alias it
+  const window_in_step first = window_at(laws, b, 0);
+  for (int i = 0; i < b.count; ++i) {
+    if (b.refused[i] != 0.0) continue;
+    const stepped_impulse stepped{{kept.given[0].values[i], kept.given[1].values[i], kept.given[2].values[i]},
+                                  kept.reached.values[i]};
+    if constexpr (is_one_law<Laws>)
+      laws.law.record(stepped, first, b.history_of(i));
+    else
+      laws.law.record(stepped, window_at(laws, b, i), b.history_of(i));
+  }
+}
+
+}  // namespace detail
+
+// A window is read before the loops over a block and written after them, so that they need not work node by
+// node.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+void run_block(const Laws& laws, const node_block<Law>& b) {
+  if constexpr (has_window<Law>) {
+    detail::window_columns kept;
+    node_block<Law> own = b;
+    const bool forgets = is_one_law<Laws> && detail::window_at(laws, b, 0).forgets();
+    detail::aim_at(kept, own, forgets);
+    if (!forgets) detail::read_windows(laws, own, kept);
+    run_steps<Law, Delassus, Frame, Layout, Scope>(laws, own);
+    if (!forgets) detail::write_windows(laws, own, kept);
+  } else {
+    run_steps<Law, Delassus, Frame, Layout, Scope>(laws, b);
+  }
+}
+
+// A block for a node that is looked at alone, after the block was run.
+template <class Law>
+struct block_of_one : node_block<Law> {
+  detail::window_columns kept;
+
+  block_of_one(const Law& law, const node_block<Law>& b, int i) : node_block<Law>(b) {
+    if constexpr (has_window<Law>) {
+      detail::read_window(law, b, i, kept);
+      detail::aim_at(kept, static_cast<node_block<Law>&>(*this), false);
+    }
+  }
+};
 
 }  // namespace ilaw::kit
