@@ -24,11 +24,19 @@ std::int32_t create_at(const ilaw_setup* setup, ilaw_instance** result, char* te
   return code;
 }
 
-// What the law has under names besides, by its static member extension(const char*); null: nothing.
 template <class Law>
-constexpr auto extension_of() -> const void* (*)(const char*) {
-  if constexpr (requires { Law::extension(""); })
-    return Law::extension;
+inline constexpr ilaw_float_functions float_functions{.struct_size = sizeof(ilaw_float_functions),
+                                                      .reserved = 0,
+                                                      .initialise = initialise<Law>,
+                                                      .evaluate = evaluate<Law>};
+
+// What the law has under names besides: arrays of float, as all laws of the kit, and what its static member
+// extension(const char*) knows.
+template <class Law>
+const void* extension_of(const char* name) {
+  if (name && std::strcmp(name, ILAW_FLOAT) == 0) return &float_functions<Law>;
+  if constexpr (requires { Law::extension(name); })
+    return Law::extension(name);
   else
     return nullptr;
 }
@@ -55,7 +63,7 @@ inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .info = info<Law>,
                                   .initialise = initialise<Law>,
                                   .evaluate = evaluate<Law>,
-                                  .extension = extension_of<Law>()};
+                                  .extension = extension_of<Law>};
 
 // The description of a library with these laws; Checked: whether all of them are laws.
 template <bool Checked, class... Laws>

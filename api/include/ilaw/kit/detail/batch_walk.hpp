@@ -53,6 +53,7 @@ class batch_walk {
     block_.position_step = batch_.position_step;
     for (const double*& sum : block_.earlier) sum = zeros.values;
     block_.earlier_refused = zeros.values;
+    block_.impulse_guard = holds_floats(batch_) ? 0x1p898 : 4.0;
     gather_inputs();
     if (made_.frame == ILAW_FRAME_GLOBAL) gather_frame();
     if (made_.frame == ILAW_FRAME_GLOBAL && dimension_ == 2) pad_turned_delassus();
@@ -104,7 +105,7 @@ class batch_walk {
         batch_.status[nodes_.node(i) * batch_.status_stride] = static_cast<std::uint8_t>(block_.status[i]);
     for (int k = 0; k < states; ++k)
       if (const int entry = state_entry<Law>(k, dimension_); entry >= 0)
-        scatter(batch_.state_out, entry, nodes_, block_.state_out[k]);
+        scatter_doubles(batch_.state_out, entry, nodes_, block_.state_out[k]);
   }
 
   // The frame of an accepted step becomes the frame to carry on from.
@@ -124,8 +125,12 @@ class batch_walk {
  private:
   node_range range(std::int64_t first) const {
     const std::int64_t left = batch_.node_count - first;
-    return {batch_.index, batch_.index64, first, batch_.index_base,
-            static_cast<int>(left < block_size ? left : block_size)};
+    return {batch_.index,
+            batch_.index64,
+            first,
+            batch_.index_base,
+            static_cast<int>(left < block_size ? left : block_size),
+            holds_floats(batch_)};
   }
   static const double& at(const ilaw_input& a, std::int64_t node, std::int64_t c) {
     return a.values[node * a.node_stride + c * a.component_stride];
@@ -257,8 +262,9 @@ class batch_walk {
     if (batch_.state_in.values) {
       for (int k = 0; k < states; ++k) {
         const int entry = state_entry<Law>(k, dimension_);
-        block_.state_in[k] =
-            entry >= 0 ? gather(batch_.state_in, entry, nodes_, room_.state_in[k].values) : zeros.values;
+        block_.state_in[k] = entry >= 0
+                                 ? gather_doubles(batch_.state_in, entry, nodes_, room_.state_in[k].values)
+                                 : zeros.values;
       }
       copy_unnamed_state();
     } else {

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/float.h>
 #include <ilaw/kit/detail/batch_walk.hpp>
 #include <ilaw/kit/detail/node_parameters.hpp>
 
 #include <string>
+
+template <>
+inline constexpr std::uint32_t ilaw::sized::least<ilaw_float_batch> = ILAW_FLOAT_BATCH_SIZE_1;
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
@@ -102,7 +106,7 @@ inline std::int32_t refuse(ilaw_report* report, const char* reason,
 template <class Law>
 bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
   const auto is_interleaved = [](const auto& a) { return a.node_stride == 3 && a.component_stride == 1; };
-  return made.dimension == 3 && !b.index && !b.index64 && is_interleaved(b.v_free) &&
+  return made.dimension == 3 && !b.index && !b.index64 && !holds_floats(b) && is_interleaved(b.v_free) &&
          is_interleaved(b.impulse) && (made.frame == ILAW_FRAME_LOCAL || is_interleaved(b.normal));
 }
 
@@ -161,14 +165,14 @@ inline bool is_not_a_number(projected_vector r) {
 
 // What is wrong with what a step gave.
 template <class Law, class Node>
-const char* result_reason(const Node& n) {
+const char* result_reason(const Node& n, double impulse_guard) {
   if (n.refused == several_solutions)
     return "the law's equations have several solutions for this H and step: a smaller step is needed";
   if (n.refused == no_solution) return "the law's equations have no solution for this H";
   if (n.refused == impossible_state) return "the state is not one that the law can have written";
   if (n.refused == time_before_history) return "the time lies before what the state remembers";
   if (is_not_a_number(n.impulse)) return "the law gave an impulse that is not a number";
-  if (defect(4.0 * n.impulse) + detail::state_defect<Law>(n.state) != 0.0)
+  if (defect(impulse_guard * n.impulse) + detail::state_defect<Law>(n.state) != 0.0)
     return "the impulse or the state overflows";
   if (status_defect(n.status) != 0.0) return "the law gave a status that ilaw.h does not have";
   if (pull_defect<Law>(n) != 0.0) return "the law pulled, which needs ILAW_CAN_ADHERE in its card";
@@ -196,7 +200,7 @@ const char* refusal_reason(const Law& law, const block_of_one<Law>& b, int i, bo
   if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
   if (const char* wrong = out_of_range<Law>(n.state)) return wrong;
   const auto stepped = step_node<Law, Delassus, Frame, Layout, Scope>(stepping_alone(law), b, i).result;
-  return result_reason<Law>(stepped);
+  return result_reason<Law>(stepped, b.impulse_guard);
 }
 
 // The whole of a batch; Varying: with parameters per node.
@@ -339,20 +343,29 @@ inline std::int32_t give_report(ilaw_report* report, const tally& found) {
   return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
 
+// What is known of a batch. One of floats has the members of the other, and says in its flags that it is one.
+inline ilaw_batch known(const ilaw_batch& batch) { return batch; }
+inline ilaw_batch known(const ilaw_float_batch& batch) {
+  ilaw_batch same;
+  sized::copy(&same, sizeof same, &batch, sizeof batch);
+  same.flags = arrays_of_float;
+  return same;
+}
+
 // The beginning of evaluate and initialise: hands on the instance and what is known of the batch.
-template <class Law, class Run>
-std::int32_t with_batch(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report, Run run) {
+template <class Law, class Batch, class Run>
+std::int32_t with_batch(const ilaw_instance* opaque, const Batch* given, ilaw_report* report, Run run) {
   if (report && !sized::is_complete(report)) return ILAW_INVALID_ARGUMENT;
   if (!opaque || !given) return refuse(report, "instance or batch is null");
   if (!sized::is_complete(given)) return refuse(report, "struct_size of the batch is none of any version");
-  const ilaw_batch batch = sized::read(given);
+  const Batch batch = sized::read(given);
   if (batch.flags != 0) return refuse(report, "flags of the batch are not known", ILAW_UNSUPPORTED);
   const float_environment own;
-  return run(of<Law>(opaque), batch);
+  return run(of<Law>(opaque), known(batch));
 }
 
-template <class Law>
-std::int32_t evaluate(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
+template <class Law, class Batch>
+std::int32_t evaluate(const ilaw_instance* opaque, const Batch* given, ilaw_report* report) {
   return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
     if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
     tally found;
@@ -390,8 +403,8 @@ const char* wrong_initial(const instance<Law>& made, const ilaw_batch& b) {
   return colliding_state(made, b);
 }
 
-template <class Law>
-std::int32_t initialise(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
+template <class Law, class Batch>
+std::int32_t initialise(const ilaw_instance* opaque, const Batch* given, ilaw_report* report) {
   return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
     if (const char* wrong = wrong_initial(made, batch)) return refuse(report, wrong);
     return give_report(report, made.state_size > 0 ? initialise_nodes(made, batch) : tally{});

@@ -19,6 +19,7 @@ struct node_block {
 
   int count;
   double time, velocity_step, position_step;
+  double impulse_guard;   // an impulse that overflows when multiplied by it may do so as the host is given it
   const double* axes[9];  // normal, tangents; see frame.hpp
   const double* v_free[3];
   const double* v_previous[3];
@@ -268,7 +269,7 @@ stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int
   const state_t<Law> state_before = n.state;
   step(n);
   // In the host's axes a component may be as large as the whole vector: it must be a number there, too.
-  const double after = defect(4.0 * n.impulse) + detail::state_defect<Law>(n.state);
+  const double after = defect(b.impulse_guard * n.impulse) + detail::state_defect<Law>(n.state);
   const double kept = status_defect(n.status) + pull_defect<Law>(n) + distance_defect<Law>(n, state_before);
   return {n, before + after + kept + n.refused == 0.0};
 }
