@@ -7,6 +7,7 @@
 #endif
 #include <ilaw/kit/detail/checked.hpp>
 #include <ilaw/kit/detail/evaluate.hpp>
+#include <ilaw/profile.h>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
@@ -24,13 +25,29 @@ std::int32_t create_at(const ilaw_setup* setup, ilaw_instance** result, char* te
   return code;
 }
 
-// What the law has under names besides, by its static member extension(const char*); null: nothing.
-template <class Law>
-constexpr auto extension_of() -> const void* (*)(const char*) {
-  if constexpr (requires { Law::extension(""); })
-    return Law::extension;
-  else
-    return nullptr;
+// The level whose walks an instance uses.
+template <std::size_t Place, class Law>
+const char* instruction_set_at(const ilaw_instance* opaque) {
+  [[maybe_unused]] const ilaw_kit_walk walk = of<Law>(opaque).walk;
+#if defined(ILAW_KIT_OTHER_LEVELS)
+  if (walk && walk == ilaw_kit_walks_v4()[Place]) return "v4";
+  if (walk && walk == ilaw_kit_walks_v3()[Place]) return "v3";
+#endif
+  return "baseline";
+}
+
+template <std::size_t Place, class Law>
+inline constexpr ilaw_profile profile{.struct_size = sizeof(ilaw_profile),
+                                      .reserved = 0,
+                                      .instruction_set = instruction_set_at<Place, Law>,
+                                      .evaluate_counting = evaluate_counting<Law>};
+
+// What the law has under names besides: by its static member extension(const char*), too.
+template <std::size_t Place, class Law>
+const void* extension_at(const char* name) {
+  if (std::strcmp(name, ILAW_PROFILE) == 0) return &profile<Place, Law>;
+  if constexpr (requires { Law::extension(""); }) return Law::extension(name);
+  return nullptr;
 }
 
 template <std::size_t Place, class Law>
@@ -55,7 +72,7 @@ inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .info = info<Law>,
                                   .initialise = initialise<Law>,
                                   .evaluate = evaluate<Law>,
-                                  .extension = extension_of<Law>()};
+                                  .extension = extension_at<Place, Law>};
 
 // The description of a library with these laws; Checked: whether all of them are laws.
 template <bool Checked, class... Laws>
