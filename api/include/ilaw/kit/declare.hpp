@@ -16,7 +16,7 @@
 //                                                         at this node, whatever its state; see ilaw_report
 //   template <class Run> void in_form(Run) const;         a shorter step for these parameters, see below
 //   const char* conflict() const;                         why parameters do not go together, or null
-//   static const void* extension(const char* name);       see ilaw_law (default: it has none)
+//   static const void* extension(const char* name);       see ilaw_law (default: ilaw/profile.h alone)
 //   template <class Node> void initialise(Node&) const;   first state (default: zeros)
 //   static constexpr history_card history_variable;       declares a history, of
 //   std::int64_t history_size() const;                    doubles, which step reads as node.history and

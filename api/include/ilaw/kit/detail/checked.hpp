@@ -147,10 +147,11 @@ inline constexpr bool has_history_rightly = names_history_variable<Law> ? requir
                                     requires(const Law& law, const plain_node<Law>& n, history own) {
                                   law.record(n, own);
                                 }
-    || requires(const Law& law, const stepped_impulse& given, const window_in_step& sums, history own) {
-      requires has_window<Law>;
-      law.record(given, sums, own);
-    };
+                                || requires(const Law& law, const stepped_impulse& given,
+                                            const window_in_step& sums, history own) {
+                                  requires has_window<Law>;
+                                  law.record(given, sums, own);
+                                };
 
                                 // What needs no description yet: names.
                                 template <class Law>

@@ -112,7 +112,7 @@ bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
 
 // What a walk found.
 struct tally {
-  std::int64_t bad_count = 0, first_bad_node = -1;
+  std::int64_t bad_count = 0, first_bad_node = -1, one_by_one = 0;
   const char* reason = nullptr;
   double stable_velocity_step = infinity;
 
@@ -215,9 +215,10 @@ struct evaluate_walk {
     for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
       walk.open(first);
       if constexpr (Varying)
-        run_block<Law, Delassus, Frame, Layout, Scope>(parameters.of(walk.nodes()), walk.block());
+        found.one_by_one +=
+            run_block<Law, Delassus, Frame, Layout, Scope>(parameters.of(walk.nodes()), walk.block());
       else
-        run_form(law, walk.block());
+        found.one_by_one += run_form(law, walk.block());
       limit_step(made, law, batch, walk, found);
       const bool refused = walk.any_refused();
       if (refused) explain(made, law, batch, walk, found);
@@ -242,10 +243,12 @@ struct evaluate_walk {
     }
   }
 
-  static void run_form(const Law& law, const node_block<Law>& block) {
-    in_its_form(law, [&block]<class Form>(const Form& form) {
-      run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
+  static int run_form(const Law& law, const node_block<Law>& block) {
+    int one_by_one = 0;
+    in_its_form(law, [&block, &one_by_one]<class Form>(const Form& form) {
+      one_by_one = run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
     });
+    return one_by_one;
   }
 
   [[gnu::noinline, gnu::cold]] static void explain(const instance<Law>& made, const Law& law,
@@ -364,14 +367,22 @@ std::int32_t with_batch(const ilaw_instance* opaque, const Batch* given, ilaw_re
   return run(of<Law>(opaque), known(batch));
 }
 
+// one_by_one: as ilaw/profile.h counts them; may be null.
 template <class Law, class Batch>
-std::int32_t evaluate(const ilaw_instance* opaque, const Batch* given, ilaw_report* report) {
+std::int32_t evaluate_counting(const ilaw_instance* opaque, const Batch* given, ilaw_report* report,
+                               std::int64_t* one_by_one) {
   return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
     if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
     tally found;
     (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
+    if (one_by_one) *one_by_one = found.one_by_one;
     return give_report(report, found);
   });
+}
+
+template <class Law, class Batch>
+std::int32_t evaluate(const ilaw_instance* opaque, const Batch* given, ilaw_report* report) {
+  return evaluate_counting<Law>(opaque, given, report, nullptr);
 }
 
 // First state of the nodes of a batch.

@@ -187,12 +187,14 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
   for (int i = 0; i < own.count; ++i) keep_problem<Law, Delassus, Frame, Layout, Scope>(l, own, asked, i);
 }
 
-// Solves the problems of a block in packs. The last pack is filled up with its first problem.
+// Solves the problems of a block in packs. The last pack is filled up with its first problem. Returns how
+// many were left to be solved alone.
 template <class Form>
-[[gnu::noinline]] void solve_asked(const Form& law, asked_block<Form>& asked, int count) {
+[[gnu::noinline]] int solve_asked(const Form& law, asked_block<Form>& asked, int count) {
   using problem_type = typename Form::template problem<pack>;
   using answer_type = typename Form::template answer<pack>;
   using answer_packs = std::array<pack, asked_block<Form>::answers>;
+  int alone_count = 0;
   for (column& c : asked.problem)  // in place: none moves back
     for (int j = 0; j < count; ++j) c.values[j] = c.values[asked.nodes[j]];
   for (int first = 0; first < count; first += pack_size) {
@@ -213,6 +215,7 @@ template <class Form>
     }
     for (int j = 0; any(left) && j < lanes; ++j) {
       if (!left[j]) continue;
+      ++alone_count;
       answer_of_form<Form> alone{};
       law.solve_alone(
           from_columns<problem_of_form<Form>>(asked.problem, first + j, places<problem_of_form<Form>>),
@@ -220,6 +223,7 @@ template <class Form>
       to_columns(alone, asked.answer, asked.nodes[first + j], places<answer_of_form<Form>>);
     }
   }
+  return alone_count;
 }
 
 // A node whose problem, if it had one, is solved.
@@ -258,8 +262,9 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
   over_nodes<Law, typename Laws::form>(b, run);
 }
 
+// Returns how many nodes were solved one by one, as ilaw/profile.h counts them.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
-void run_steps(const Laws& laws, const node_block<Law>& b) {
+int run_steps(const Laws& laws, const node_block<Law>& b) {
   using form = typename Laws::form;
   if constexpr (asks_first<form, node_in<Law, Delassus, Frame>>) {
     constexpr scope reads = Scope == scope::impulse ? scope::impulse : scope::with_previous;
@@ -271,13 +276,16 @@ void run_steps(const Laws& laws, const node_block<Law>& b) {
       asked.nodes[count] = i;
       count += asked.open.values[i] != 0.0 ? 1 : 0;
     }
+    int alone_count = 0;
     if (count > 0) {
       detail::keep_problems<Law, Delassus, Frame, Layout, reads>(laws, b, asked);
-      detail::solve_asked(laws.law, asked, count);
+      alone_count = detail::solve_asked(laws.law, asked, count);
     }
     finish_block<Law, Delassus, Frame, Layout, Scope>(laws, b, asked);
+    return alone_count;
   } else {
     step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
+    return remembers<Law, form> ? b.count : 0;
   }
 }
 
@@ -346,17 +354,18 @@ void write_windows(const Laws& laws, const node_block<Law>& block, const window_
 // A window is read before the loops over a block and written after them, so that they need not work node by
 // node.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
-void run_block(const Laws& laws, const node_block<Law>& b) {
+int run_block(const Laws& laws, const node_block<Law>& b) {
   if constexpr (has_window<Law>) {
     detail::window_columns kept;
     node_block<Law> own = b;
     const bool forgets = is_one_law<Laws> && detail::window_at(laws, b, 0).forgets();
     detail::aim_at(kept, own, forgets);
     if (!forgets) detail::read_windows(laws, own, kept);
-    run_steps<Law, Delassus, Frame, Layout, Scope>(laws, own);
+    const int one_by_one = run_steps<Law, Delassus, Frame, Layout, Scope>(laws, own);
     if (!forgets) detail::write_windows(laws, own, kept);
+    return one_by_one;
   } else {
-    run_steps<Law, Delassus, Frame, Layout, Scope>(laws, b);
+    return run_steps<Law, Delassus, Frame, Layout, Scope>(laws, b);
   }
 }
 
