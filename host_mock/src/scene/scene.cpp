@@ -6,6 +6,7 @@
 #include "scene/read_interface.hpp"
 #include "scene/read_load.hpp"
 #include "scene/read_model.hpp"
+#include "scene/read_sets.hpp"
 #include "scene/read_time.hpp"
 #include "scene/selection.hpp"
 #include "scene/validation.hpp"
@@ -83,6 +84,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   scene.source = std::move(source);
   scene.title = scene.source.value("title", file.stem().string());
   scene.model = read_model(scene.source["model"]);
+  read_sets(scene.source.value("sets", json::object()), *scene.model);
   read_time(scene.source["time"], scene);
   const json loads = scene.source.value("loads", json::array());
   for (std::size_t i = 0; i < loads.size(); ++i)
