@@ -3,6 +3,7 @@
 
 #include "scene/json_text.hpp"
 #include "scene/read_forces.hpp"
+#include "scene/read_initial.hpp"
 #include "scene/read_interface.hpp"
 #include "scene/read_load.hpp"
 #include "scene/read_model.hpp"
@@ -85,6 +86,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   scene.title = scene.source.value("title", file.stem().string());
   scene.model = read_model(scene.source["model"]);
   read_sets(scene.source.value("sets", json::object()), *scene.model);
+  if (scene.source.contains("initial")) read_initial(scene.source["initial"], *scene.model);
   read_time(scene.source["time"], scene);
   const json loads = scene.source.value("loads", json::array());
   for (std::size_t i = 0; i < loads.size(); ++i)
