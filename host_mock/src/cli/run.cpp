@@ -42,6 +42,9 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// Beginning of the name of rows that an earlier part of the run wrote with other columns.
+constexpr const char* earlier_history = "history.until_step_";
+
 // A run and what it writes. The constructor throws WriteError where nothing can be written, and
 // other std::runtime_error where there is nothing to resume from.
 class Run {
@@ -75,7 +78,7 @@ class Run {
       }
       record.interrupted = integrator_.steps() < scene_.steps;
       check_results();
-      if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
+      if (options_.checkpoint_every > 0) write_checkpoint_now();  // also at the end, to go on to a later one
       history_->commit();
       if (events_) events_->commit();
     } catch (const std::exception& failure) {
@@ -108,6 +111,10 @@ class Run {
     for (const char* name :
          {"summary.json", "history.csv", "events.csv", "history.png", "history.svg", "history.gnuplot"})
       std::filesystem::remove(options_.folder / name);
+    std::vector<std::filesystem::path> earlier;
+    for (const auto& entry : std::filesystem::directory_iterator(options_.folder))
+      if (entry.path().filename().string().starts_with(earlier_history)) earlier.push_back(entry.path());
+    for (const std::filesystem::path& file : earlier) std::filesystem::remove(file);
     fields_.clear();
   }
 
@@ -117,12 +124,41 @@ class Run {
     if (!said.empty())
       complain(said + "; going on from the checkpoint before it, at step " +
                std::to_string(integrator_.steps()));
-    history_ = std::make_unique<History>(scene_, integrator_, options_.folder, checkpoint.history);
-    std::istringstream history(checkpoint.history_state), events(checkpoint.events_state);
-    history_->load(history);
-    if (scene_.output.events) events_.emplace(scene_, options_.folder, checkpoint.events).load(events);
     fields_.resume(checkpoint.fields);
     record.resumed_at = integrator_.steps();
+    const bool goes_on =
+        same_columns(checkpoint.output, scene_.source.value("output", nlohmann::json::object()));
+    resume_history(checkpoint, goes_on);
+    resume_events(checkpoint);
+    if (!goes_on) write_checkpoint_now();  // the one before it goes on from rows with other columns
+  }
+
+  // With other columns a history of its own begins, beside the one that there is.
+  void resume_history(const Checkpoint& checkpoint, bool goes_on) {
+    const std::filesystem::path file = options_.folder / "history.csv";
+    if (!goes_on) {
+      AtomicFile(file, checkpoint.history).commit();
+      std::filesystem::rename(
+          file, options_.folder / (earlier_history + std::to_string(integrator_.steps()) + ".csv"));
+      history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
+      return;
+    }
+    history_ = std::make_unique<History>(scene_, integrator_, options_.folder, checkpoint.history);
+    std::istringstream state(checkpoint.history_state);
+    history_->load(state);
+  }
+
+  // Those of before stay, whether more are asked for or not.
+  void resume_events(const Checkpoint& checkpoint) {
+    const bool had_events = checkpoint.events.size > 0;
+    if (had_events && scene_.output.events) {
+      std::istringstream state(checkpoint.events_state);
+      events_.emplace(scene_, options_.folder, checkpoint.events).load(state);
+    } else if (had_events) {
+      AtomicFile(options_.folder / "events.csv", checkpoint.events).commit();
+    } else if (scene_.output.events) {
+      events_.emplace(scene_, options_.folder);
+    }
   }
 
   void warn_of_penetration() {

@@ -122,6 +122,7 @@ void Interface::choose_active(const StepView& step) {
   const Counterpart& counterpart = *setup_.counterpart;
   obstacle_velocity_before_ = counterpart.velocity(step.time - step.dt, step.time);
   obstacle_velocity_ = counterpart.velocity(step.time, step.time + step.dt);
+  if (counterpart.turns()) rates_ = counterpart.rates(step.time, step.dt);
   const double moving = counterpart.partners().empty() ? 1.0 : 2.0;
   const double closing_before = moving * step.speed_before + obstacle_velocity_before_.norm(),
                closing_after = moving * step.speed_after + obstacle_velocity_.norm();
@@ -140,7 +141,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
   sums_ = {};
   if (active_.empty()) return;
   const BlockStep blocks{setup_, model_, law_, contacts_, step, obstacle_velocity_, obstacle_velocity_before_,
-                         v};
+                         rates_, v};
   outcomes_.resize(chunk_starts_.size() - 1);
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   for_each_chunk(static_cast<std::ptrdiff_t>(outcomes_.size()), 1, [&](std::ptrdiff_t c, auto, auto) {
@@ -161,12 +162,17 @@ void Interface::solve(const StepView& step, Dofs& v) {
 void Interface::open_step(const StepView& step) {
   choose_active(step);
   sums_ = {};
+  const bool turns = setup_.counterpart->turns();
+  if (turns) contacts_.turn.resize(contacts_.normal.size());
   for (const std::int32_t contact_index : active_) {
     const std::size_t k = at(contact_index);
     const ContactPoint point = setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);
     contacts_.gap[k] = point.gap - setup_.gap_offset;
     contacts_.vector(contacts_.normal, contact_index) = point.normal;
     contacts_.vector(contacts_.impulse, contact_index).setZero();
+    if (turns)
+      contacts_.vector(contacts_.turn, contact_index) = setup_.counterpart->unit_turn(
+          contacts_.node_index[k], step.u, step.time, {point.gap, point.normal});
     if (point.partner_count == 0) continue;
     contacts_.delassus[k] = point.delassus(model_, node_of(contact_index));
     contacts_.point[k] = point;
@@ -184,9 +190,10 @@ void Interface::gather(const ContactList& contacts, const Dofs& v, const StepVie
                    for (std::ptrdiff_t i = first; i < end; ++i) {
                      const std::int32_t k = contacts[static_cast<std::size_t>(i)];
                      contacts_.vector(contacts_.v_free, k) =
-                         relative(k, v) - obstacle_velocity_ - delassus(k) * impulse(k);
+                         relative(k, v) - surface_velocity(k) - delassus(k) * impulse(k);
                      contacts_.vector(contacts_.v_previous, k) =
-                         relative(k, step.v_before) - obstacle_velocity_before_;
+                         relative(k, step.v_before) -
+                         surface_velocity(k, obstacle_velocity_before_, rates_.before);
                      contacts_.vector(contacts_.previous_impulse, k) = impulse(k);
                    }
                  });
@@ -240,13 +247,14 @@ void Interface::start_from(int contact_index, const Vector& impulse) {
 
 void Interface::accept(const StepView& step, const Dofs& v) {
   Refusal unknown;
-  const Vector drift = obstacle_velocity_ + obstacle_velocity_before_;
+  const Vector velocity = obstacle_velocity_ + obstacle_velocity_before_;
   for (const std::int32_t contact_index : active_) {
     const std::size_t k = at(contact_index);
     unknown.add_unknown(&contacts_.status[k], &contact_index, 1);
     check(unknown);
     const Vector sum = relative(contact_index, step.v_before) + relative(contact_index, v);
     sums_.work += 0.5 * impulse(contact_index).dot(sum);
+    const Vector drift = surface_velocity(contact_index, velocity, rates_.before + rates_.after);
     sums_.relative_work += 0.5 * impulse(contact_index).dot(sum - drift);
     sums_.penetration = std::max(sums_.penetration, -gap(contact_index));
     ++sums_.statuses[contacts_.status[k]];
@@ -263,6 +271,11 @@ void Interface::accept(const StepView& step, const Dofs& v) {
             fault_of(impulse(contact_index).data(), dimension_,
                      &contacts_.energy[at(contact_index) * ILAW_ENERGY_COUNT], status(contact_index)))
       check({ILAW_BAD_LIBRARY, 0, contact_index, 0, fault});
+}
+
+Vector Interface::surface_velocity(int contact_index, const Vector& velocity, double rate) const {
+  if (contacts_.turn.empty()) return velocity;
+  return velocity + rate * contacts_.vector(contacts_.turn, contact_index);
 }
 
 // ---- the last step --------------------------------------------------------------------------------------

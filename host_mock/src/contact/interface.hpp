@@ -80,6 +80,10 @@ class Interface {
   Vector relative(int contact_index, const Dofs& v) const;
   const Vector& obstacle_velocity() const { return obstacle_velocity_; }
   const Vector& obstacle_velocity_before() const { return obstacle_velocity_before_; }
+  // Only where contacts share nodes: of the obstacle's surface where a contact is.
+  Vector surface_velocity(int contact_index) const {
+    return surface_velocity(contact_index, obstacle_velocity_, rates_.after);
+  }
   // Only where contacts share nodes.
   auto normal(int contact_index) const { return contacts_.vector(contacts_.normal, contact_index); }
   auto v_free(int contact_index) const { return contacts_.vector(contacts_.v_free, contact_index); }
@@ -101,6 +105,7 @@ class Interface {
 
  private:
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+  Vector surface_velocity(int contact_index, const Vector& velocity, double rate) const;
   bool may_skip() const;
   void choose_active(const StepView& step);
   void refresh_near(const StepView& step);
@@ -120,6 +125,7 @@ class Interface {
   ContactList near_, active_;
   std::vector<std::ptrdiff_t> chunk_starts_;  // in near_, and its end
   Vector obstacle_velocity_, obstacle_velocity_before_;
+  TurningRates rates_;
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
 };

@@ -58,6 +58,10 @@ class Model {
   const std::map<std::string, NodeSet>& sets() const { return nodes_.sets; }
   const Mesh& mesh() const { return mesh_; }
 
+  // Before anything refers to the model: another set, other displacements at the start.
+  void add_set(const std::string& name, NodeSet set) { nodes_.sets[name] = std::move(set); }
+  void displace(Dofs displacement) { nodes_.displacement = std::move(displacement); }
+
   virtual bool has_internal_forces() const { return false; }
   // Adds -f_int(u) to force.
   virtual void add_internal_forces(const Dofs& /*u*/, Dofs& /*force*/) const {}
