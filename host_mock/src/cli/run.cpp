@@ -14,6 +14,7 @@
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
 #include "results/fields.hpp"
+#include "results/gnuplot.hpp"
 #include "results/history.hpp"
 #include "results/summary.hpp"
 #include "scene/scene.hpp"
@@ -78,10 +79,11 @@ class Run {
       if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
       history_->commit();
       if (events_) events_->commit();
+    } catch (const Diverged& failure) {
+      keep_what_there_is(failure.what());
+      keep_diverged_state();
     } catch (const std::exception& failure) {
-      record.failure = failure.what();
-      history_->keep_rows();
-      if (events_) events_->keep_rows();
+      keep_what_there_is(failure.what());
     }
   }
 
@@ -105,9 +107,9 @@ class Run {
   // What an earlier run left in the folder, and pictures of it, would be taken for this one's.
   void clear() const {
     clear_checkpoints(options_.folder);
-    for (const char* name :
-         {"summary.json", "history.csv", "events.csv", "history.png", "history.svg", "history.gnuplot"})
+    for (const char* name : {"summary.json", "history.csv", "events.csv", "history.png", "history.svg"})
       std::filesystem::remove(options_.folder / name);
+    remove_pictures(options_.folder, "history|.*_over_.*");
     fields_.clear();
   }
 
@@ -123,6 +125,20 @@ class Run {
     if (scene_.output.events) events_.emplace(scene_, options_.folder, checkpoint.events).load(events);
     fields_.resume(checkpoint.fields);
     record.resumed_at = integrator_.steps();
+  }
+
+  void keep_what_there_is(const char* failure) {
+    record.failure = failure;
+    history_->keep_rows();
+    if (events_) events_->keep_rows();
+  }
+
+  void keep_diverged_state() {
+    try {
+      record.failure += "; that state is in " + fields_.write_diverged(integrator_).string();
+    } catch (const std::exception& failure) {
+      record.failure += std::string("; that state could not be written: ") + failure.what();
+    }
   }
 
   void warn_of_penetration() {
@@ -155,8 +171,7 @@ class Run {
 
   // Velocities are looked at in every step; what follows from them, where it is written.
   void check_motion() const {
-    if (!integrator_.displacement().allFinite())
-      throw std::runtime_error("the motion diverged: a displacement is not finite");
+    if (!integrator_.displacement().allFinite()) throw Diverged("a displacement is not finite");
   }
   void check_results() const {
     check_motion();
@@ -165,9 +180,7 @@ class Run {
          {std::pair{"kinetic energy", energy.kinetic}, std::pair{"internal energy", energy.internal},
           std::pair{"external work", energy.external_work},
           std::pair{"work of the interfaces", energy.interface_work}})
-      if (!std::isfinite(value))
-        throw std::runtime_error("the motion diverged: the " + std::string(name) + " is " +
-                                 std::to_string(value));
+      if (!std::isfinite(value)) throw Diverged("the " + std::string(name) + " is " + std::to_string(value));
   }
 
   void write_checkpoint_now() {
