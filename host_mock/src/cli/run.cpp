@@ -14,6 +14,7 @@
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
 #include "results/fields.hpp"
+#include "results/gnuplot.hpp"
 #include "results/history.hpp"
 #include "results/summary.hpp"
 #include "scene/scene.hpp"
@@ -81,10 +82,11 @@ class Run {
       if (options_.checkpoint_every > 0) write_checkpoint_now();  // also at the end, to go on to a later one
       history_->commit();
       if (events_) events_->commit();
+    } catch (const Diverged& failure) {
+      keep_what_there_is(failure.what());
+      keep_diverged_state();
     } catch (const std::exception& failure) {
-      record.failure = failure.what();
-      history_->keep_rows();
-      if (events_) events_->keep_rows();
+      keep_what_there_is(failure.what());
     }
   }
 
@@ -108,13 +110,13 @@ class Run {
   // What an earlier run left in the folder, and pictures of it, would be taken for this one's.
   void clear() const {
     clear_checkpoints(options_.folder);
-    for (const char* name :
-         {"summary.json", "history.csv", "events.csv", "history.png", "history.svg", "history.gnuplot"})
+    for (const char* name : {"summary.json", "history.csv", "events.csv", "history.png", "history.svg"})
       std::filesystem::remove(options_.folder / name);
     std::vector<std::filesystem::path> earlier;
     for (const auto& entry : std::filesystem::directory_iterator(options_.folder))
       if (entry.path().filename().string().starts_with(earlier_history)) earlier.push_back(entry.path());
     for (const std::filesystem::path& file : earlier) std::filesystem::remove(file);
+    remove_pictures(options_.folder, "history|.*_over_.*");
     fields_.clear();
   }
 
@@ -161,6 +163,20 @@ class Run {
     }
   }
 
+  void keep_what_there_is(const char* failure) {
+    record.failure = failure;
+    history_->keep_rows();
+    if (events_) events_->keep_rows();
+  }
+
+  void keep_diverged_state() {
+    try {
+      record.failure += "; that state is in " + fields_.write_diverged(integrator_).string();
+    } catch (const std::exception& failure) {
+      record.failure += std::string("; that state could not be written: ") + failure.what();
+    }
+  }
+
   void warn_of_penetration() {
     constexpr double much = 0.05;
     const double depth = integrator_.tally().penetration_max, part = depth / shortest_edge(*scene_.model);
@@ -191,8 +207,7 @@ class Run {
 
   // Velocities are looked at in every step; what follows from them, where it is written.
   void check_motion() const {
-    if (!integrator_.displacement().allFinite())
-      throw std::runtime_error("the motion diverged: a displacement is not finite");
+    if (!integrator_.displacement().allFinite()) throw Diverged("a displacement is not finite");
   }
   void check_results() const {
     check_motion();
@@ -201,9 +216,7 @@ class Run {
          {std::pair{"kinetic energy", energy.kinetic}, std::pair{"internal energy", energy.internal},
           std::pair{"external work", energy.external_work},
           std::pair{"work of the interfaces", energy.interface_work}})
-      if (!std::isfinite(value))
-        throw std::runtime_error("the motion diverged: the " + std::string(name) + " is " +
-                                 std::to_string(value));
+      if (!std::isfinite(value)) throw Diverged("the " + std::string(name) + " is " + std::to_string(value));
   }
 
   void write_checkpoint_now() {

@@ -90,6 +90,39 @@ std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
   return {first, first + static_cast<std::ptrdiff_t>(info().state_size)};
 }
 
+// The step has no size yet: at rest, no law's answer depends on it. A node that the law refuses is
+// told of by the first step.
+int Interface::status_at_start(int node_index, const Dofs& u) const {
+  if (setup_.birth > 0.0) return ILAW_FREE;
+  const ContactPoint point = setup_.counterpart->contact_point(node_index, u, 0.0);
+  const std::vector<double> parameters = parameters_of(node_index), state = first_state(node_index, u);
+  std::vector<ilaw_input> inputs;
+  inputs.reserve(parameters.size());
+  for (const double& value : parameters) inputs.push_back({&value, 1, 1});
+  const Vector rest = Vector::Zero(dimension_);
+  Vector impulse = rest;
+  std::vector<double> state_out = state;
+  const double gap = point.gap - setup_.gap_offset,
+               delassus = point.delassus(model_, nodes()[at(node_index)]);
+  const auto size = static_cast<std::int64_t>(state.size());
+  std::uint8_t status = ILAW_FREE;
+  ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
+  batch.node_count = 1;
+  batch.v_free = batch.v_previous = {rest.data(), dimension_, 1};
+  batch.delassus = {&delassus, 1, 1};
+  batch.gap = {&gap, 1, 1};
+  batch.area = {&setup_.areas[at(node_index)], 1, 1};
+  batch.normal = {point.normal.data(), dimension_, 1};
+  batch.per_node_parameters = inputs.data();
+  batch.state_in = {state.data(), size, 1};
+  batch.state_out = {state_out.data(), size, 1};
+  batch.impulse = {impulse.data(), dimension_, 1};
+  batch.status = &status;
+  batch.status_stride = 1;
+  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
+  return law_.evaluate(batch).code == ILAW_OK ? status : int{ILAW_FREE};
+}
+
 bool Interface::may_skip() const {
   if (setup_.keeps_all_active || (law_.acts_at_distance() && !law_.rests())) return false;
   return setup_.counterpart->keeps_normal() || !law_.carries_axes();

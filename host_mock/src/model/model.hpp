@@ -70,6 +70,8 @@ class Model {
   virtual bool is_linear() const { return true; }
   // Energy stored in the deformed body.
   virtual double potential(const Dofs& /*u*/) const { return 0.0; }
+  // Cauchy's stress of each cell of the mesh, its mean over the deformed cell; empty without a mesh.
+  virtual std::vector<Eigen::Matrix3d> stresses(const Dofs& /*u*/) const { return {}; }
   // A bound from below on the largest stable step of central difference (about the undeformed body
   // where the model is not linear); infinite without internal forces.
   virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }

@@ -137,9 +137,9 @@ void Integrator::check_motion(double speed, double time) const {
   v_.cwiseAbs().maxCoeff(&largest);
   while (dof < v_.size() && std::isfinite(v_[dof])) ++dof;
   if (dof == v_.size()) dof = largest;
-  throw std::runtime_error("the motion diverged: velocity " + std::to_string(v_[dof]) + " at node " +
-                           std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_ + 1) +
-                           ", time " + std::to_string(time) + advice_on_divergence(model_, u_, dt_));
+  throw Diverged("velocity " + std::to_string(v_[dof]) + " at node " +
+                 std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_ + 1) +
+                 ", time " + std::to_string(time) + advice_on_divergence(model_, u_, dt_));
 }
 
 }  // namespace ilaw::host
