@@ -12,11 +12,27 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.environ["ILAW_SOURCE"], "api/python/examples/dolfinx"))
-from block import MPI, Block, box  # noqa: E402
+from block import MPI, Block, box, mesh_of  # noqa: E402
+from dolfinx import io, mesh  # noqa: E402
 from throw import Fields, Throw, summary  # noqa: E402
 
 COMM = MPI.COMM_WORLD
 FLAT, TALL = ([2.0, 1.0, 0.5], [6, 4, 2]), ([0.5, 0.5, 3.0], [2, 2, 10])
+
+
+def unstructured(out):
+    """A file with a box of tetrahedra of which some edges, more of them at the plane, were cut."""
+    path = out / f"mesh{COMM.size}.xdmf"
+    if COMM.rank == 0:
+        coarse = mesh.create_box(MPI.COMM_SELF, [np.zeros(3), np.array(FLAT[0])], FLAT[1])
+        coarse.topology.create_entities(1)
+        edges = np.arange(coarse.topology.index_map(1).size_local, dtype=np.int32)
+        middles = mesh.compute_midpoints(coarse, 1, edges)
+        chosen = edges[middles[:, 2] + 0.2 * np.sin(1e3 * middles @ [1.0, 2.0, 3.0]) < 0.1]
+        with io.XDMFFile(MPI.COMM_SELF, str(path), "w") as file:
+            file.write_mesh(mesh.refine(coarse, chosen, redistribute=False))
+    COMM.barrier()
+    return mesh_of(path)
 
 
 def gathered(throw):
@@ -32,7 +48,8 @@ def gathered(throw):
 
 
 def run(law, shape, material, out, h, end, pull=0.0, fields=False, size=FLAT):
-    block = Block(box(*size, shape), material, cache=out / "compiled")
+    made = unstructured(out) if shape == "file" else box(*size, shape)
+    block = Block(made, material, cache=out / "compiled")
     throw = Throw(block, law, h, pull=pull)
     at_plane = COMM.allgather(len(throw.nodes))
     written = Fields(throw, out) if fields else None
@@ -52,7 +69,7 @@ def critical_step(shape, material, out):
 
 CASES = {
     "coulomb, hexahedra": dict(law="coulomb", shape="hexahedra", material="elastic", h=0.008, end=0.4),
-    "coulomb, tetrahedra": dict(law="coulomb", shape="tetrahedra", material="elastic", h=0.007, end=0.35),
+    "coulomb, a file": dict(law="coulomb", shape="file", material="elastic", h=0.004, end=0.24),
     "postit, tetrahedra": dict(
         law="postit", shape="tetrahedra", material="elastic", h=0.007, end=1.12, pull=10.0, fields=True
     ),

@@ -2,6 +2,7 @@
 """The block of api/python/examples/dolfinx on 1, 2 and 4 ranks of mpirun: identities, equal ranks, all runs end."""
 import json
 import os
+import re
 import subprocess
 import sys
 import xml.etree.ElementTree as xml
@@ -12,7 +13,7 @@ import pytest
 
 CASES = Path(__file__).with_name("cases.py")
 RANKS = (2, 1, 4)  # two ranks first, since forms are compiled in the first run
-NAMES = ["coulomb, hexahedra", "coulomb, tetrahedra", "postit, tetrahedra", "coulomb, neo-hookean", "postit, tall"]
+NAMES = ["coulomb, hexahedra", "coulomb, a file", "postit, tetrahedra", "coulomb, neo-hookean", "postit, tall"]
 
 
 def on_ranks(ranks, *arguments):
@@ -85,7 +86,10 @@ def test_the_step_does_not_depend_on_ranks(runs):
 
 
 def test_all_ranks_load_what_the_first_compiled(runs):
+    """No form was compiled a second time, under another name: names are numbers in hexadecimal digits."""
     assert runs[1][2] == runs[2][2] == runs[4][2] and len(runs[1][2]) > 5
+    texts = [re.sub("[0-9a-f]{8,}", "", file.read_text()) for file in runs["out"].glob("compiled/*.c")]
+    assert len(set(texts)) == len(texts)
 
 
 def test_fields_are_written_for_paraview(runs):

@@ -10,7 +10,7 @@ import traceback
 
 import numpy as np
 import ufl
-from dolfinx import fem, la, mesh
+from dolfinx import fem, io, la, mesh
 from mpi4py import MPI
 
 
@@ -34,6 +34,12 @@ def box(size, cells, shape="tetrahedra", **given):
     waves = np.array([[12.9898, 39.3461, 73.156], [78.233, 11.1352, 52.235], [37.719, 83.155, 9.151]])
     x[inside] += 0.15 * size / cells * np.sin(x[inside] @ waves)
     return made
+
+
+def mesh_of(path):
+    """The mesh of an XDMF file, as gmsh with meshio or dolfinx itself write it."""
+    with io.XDMFFile(MPI.COMM_WORLD, str(path), "r") as file:
+        return file.read_mesh(mesh.GhostMode.none)
 
 
 def fix_signatures(made):

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from block import MPI, Block, box
+from block import MPI, Block, box, mesh_of
 from dolfinx import fem, io
 
 import ilaw
@@ -180,7 +180,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--law", choices=PARAMETERS, default="postit")
     parser.add_argument("--material", choices=["elastic", "neo-hookean"], default="elastic")
-    parser.add_argument("--mesh", choices=["tetrahedra", "hexahedra"], default="tetrahedra")
+    parser.add_argument("--mesh", default="tetrahedra", help="of a box: tetrahedra or hexahedra; or an XDMF file")
     parser.add_argument("--cells", type=int, default=8, help="cells across the width")
     parser.add_argument("--gap", type=float, default=0.013, help="at the start")
     parser.add_argument("--end", type=float, default=1.2)
@@ -198,7 +198,8 @@ def main():
         given.out.mkdir(parents=True, exist_ok=True)
     MPI.COMM_WORLD.barrier()
     n = given.cells
-    mesh = box([2.0, 1.0, 0.5], [2 * n, n, max(n // 2, 1)], given.mesh)
+    of_box = given.mesh in ("tetrahedra", "hexahedra")
+    mesh = box([2.0, 1.0, 0.5], [2 * n, n, max(n // 2, 1)], given.mesh) if of_box else mesh_of(given.mesh)
     block = Block(mesh, given.material, cache=given.out / "compiled")
     h = given.dt or float(f"{0.9 * block.critical_step():.2g}")
     throw = Throw(block, given.law, h, given.gap, pull=given.pull if given.law == "postit" else 0.0)
