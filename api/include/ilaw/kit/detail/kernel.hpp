@@ -229,8 +229,8 @@ double input_defect(const Node& n) {
   return sum + detail::incoming_state_defect<Law>(n.state);
 }
 
-// NaN where a promise is broken. By its bits: a choice between constants, which a status is, would become a
-// branch.
+// Not zero where a promise is broken. By bits and products: choices, and comparisons of an impulse that was
+// chosen itself, would become branches.
 inline double defect_where(bool is_broken) {
   return kit::kept_if(is_broken, std::numeric_limits<double>::quiet_NaN());
 }
@@ -254,9 +254,8 @@ double distance_defect(const Node& n, const state_t<Law>& before) {
   if constexpr (may_act || !starts_at_zero || (Law::card.inputs & reads_gap) == 0) {
     return 0.0;
   } else {
-    const bool acts = (n.impulse.n != 0.0) | (tangential_product(n.impulse, n.impulse) != 0.0);
     const bool far = is_out_of_reach(n), fresh = detail::same_bits<Law>(before, {});
-    return defect_where(acts & far & fresh);
+    return kit::kept_if(far & fresh, absolute(n.impulse.n) + tangential_product(n.impulse, n.impulse));
   }
 }
 
