@@ -58,7 +58,7 @@ static int32_t info(const ilaw_instance* instance, ilaw_instance_info* out) {
   const ilaw_instance_info known = {
       .struct_size = out->struct_size, .inputs = instance->inputs, .capabilities = ILAW_CAN_REST};
   memset(out, 0, out->struct_size); /* what a later version appended is zero */
-  memcpy(out, &known, out->struct_size < sizeof known ? out->struct_size : sizeof known);
+  memcpy(out, &known, known.struct_size < sizeof known ? known.struct_size : sizeof known);
   return ILAW_OK;
 }
 
