@@ -77,16 +77,20 @@ TEST(Bench, CountsTheBytesThatALawMoves) {
                           {"--layout soa", rest + 8},
                           {"--frame global", rest + 8 + 24},
                           {"--outputs motion", rest + 8 + 24 + 1},
-                          {"--outputs all --frame global", rest + 8 + 24 + 24 + 1 + 32}};
+                          {"--outputs all --frame global", rest + 8 + 24 + 24 + 1 + 32},
+                          {"--delassus transverse", rest + 16},
+                          {"--float", 0.5 * (rest + 8)},
+                          {"--float --outputs all --frame global", 0.5 * (rest + 8 + 24 + 24 + 32) + 1}};
   for (const char* law : {"contact", "coulomb"})
     for (const Count& count : counts) {
       const json results = measured(std::string(law) + " --nodes 20 " + count.options);
       ASSERT_EQ(results.size(), 1U);
       EXPECT_EQ(results[0]["bytes_per_node"], count.bytes) << law << " " << count.options;
     }
-  // tie reads no gap unless it breaks, and remembers one number, which counts in and out. A parameter per node
-  // counts once.
+  // tie reads no gap unless it breaks, and remembers one number, which counts in and out. A parameter per
+  // node counts once.
   EXPECT_EQ(measured("tie --nodes 20")[0]["bytes_per_node"], rest - 8 + 8 + 16);
+  EXPECT_EQ(measured("tie --nodes 20 --float")[0]["bytes_per_node"], 0.5 * (rest - 8 + 8) + 16);
   const json per_node = measured(R"(coulomb --nodes 20 --parameters '{"friction": {"per_node": 0.3}}')");
   EXPECT_EQ(per_node[0]["bytes_per_node"], rest + 8 + 8);
 }
@@ -143,6 +147,7 @@ TEST(Bench, RefusesWhatCannotBeMeasured) {
       {"contact --nodes 0", "--nodes"},
       {"contact --touching 2", "--touching"},
       {"contact --nodes 1000000000000", "--nodes: found 1000000000000, whose arrays take"},
+      {ILAW_VISCOUS_C " --float", "it takes no arrays of float"},
       {"--cases nowhere.json", "nowhere.json: no such file"}};
   for (const auto& [arguments, said] : refusals) {
     const Outcome outcome = run_program(std::string("bench ") + arguments);

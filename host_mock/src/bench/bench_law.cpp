@@ -69,7 +69,9 @@ BenchLaw::BenchLaw(const ilaw::library& library, const BenchCase& bench_case)
   const ilaw_law* law = library.law(bench_case.law);
   if (!law) throw BenchRefusal("found no law '" + bench_case.law + "' in " + path_);
   check_form(*law, bench_case);
-  if (bench_case.floats)
+  if (bench_case.floats && law->extension)
+    floats_ = static_cast<const ilaw_float_functions*>(law->extension(ILAW_FLOAT));
+  if (bench_case.floats && !floats_)
     throw BenchRefusal("law '" + name_ + "': --float: it takes no arrays of float, expected double");
   dimension_ = dimension_of(*law);
   const Arguments arguments = arguments_of(bench_case);
@@ -115,6 +117,11 @@ void BenchLaw::initialise(const ilaw_batch& batch) const {
 
 void BenchLaw::evaluate(const ilaw_batch& batch) const {
   checked("evaluate", [&](ilaw_report* report) { return interface_->evaluate(batch, report); });
+}
+
+void BenchLaw::evaluate(const ilaw_float_batch& batch) const {
+  checked("evaluate",
+          [&](ilaw_report* report) { return floats_->evaluate(interface_->instance(), &batch, report); });
 }
 
 std::optional<std::string> BenchLaw::instruction_set() const {

@@ -32,8 +32,8 @@ std::uint32_t inputs_of(const BenchLaw& law, const BenchCase& bench_case) {
   return law.info().inputs | (gives_energy(bench_case) ? law.info().energy_inputs : 0U);
 }
 
-// Doubles of a node that evaluate reads or writes, but its state.
-std::int64_t doubles_of(const BenchLaw& law, const BenchCase& bench_case) {
+// Numbers of a node that evaluate reads or writes, but its state.
+std::int64_t numbers_of(const BenchLaw& law, const BenchCase& bench_case) {
   const std::int64_t d = law.dimension();
   const std::uint32_t inputs = inputs_of(law, bench_case);
   std::int64_t doubles = 2 * d + components_of(form_of(bench_case), d);  // v_free, impulse, H
@@ -68,13 +68,15 @@ std::array<Vector3, 3> frame_of(const std::vector<double>& normal) {
 }  // namespace
 
 double bytes_per_node(const BenchLaw& law, const BenchCase& bench_case) {
-  return 8.0 * static_cast<double>(doubles_of(law, bench_case)) + (gives_motion(bench_case) ? 1.0 : 0.0) +
+  const double size = bench_case.floats ? sizeof(float) : sizeof(double);
+  return size * static_cast<double>(numbers_of(law, bench_case)) + (gives_motion(bench_case) ? 1.0 : 0.0) +
          16.0 * static_cast<double>(law.info().state_size);
 }
 
 double memory_per_node(const BenchLaw& law, const BenchCase& bench_case) {
   const double d = law.dimension();  // v_previous, gap, area and axes, whether they are read or not
-  return bytes_per_node(law, bench_case) + 8.0 * (3.0 * d + 2.0);
+  const double doubles = bench_case.floats ? 8.0 * static_cast<double>(numbers_of(law, bench_case)) : 0.0;
+  return bytes_per_node(law, bench_case) + doubles + 8.0 * (3.0 * d + 2.0);
 }
 
 NodeArrays::NodeArrays(const BenchLaw& law, const BenchCase& bench_case, std::int64_t nodes)
@@ -106,6 +108,7 @@ NodeArrays::NodeArrays(const BenchLaw& law, const BenchCase& bench_case, std::in
   for (const double value : law.per_node_values()) per_node_.emplace_back(count, value);
   lay_out(bench_case);
   if (state_size_ > 0) reach_a_representative_state();
+  if (bench_case.floats) round_to_floats();
   evaluate();  // what the law refuses is seen before anything is timed
   restore();
 }
@@ -180,6 +183,43 @@ void NodeArrays::reach_a_representative_state() {
   batch_.v_free = v_free;
   batch_.time += step;
   first_state_ = state_;
+}
+
+// The state stays in doubles.
+void NodeArrays::round_to_floats() {
+  const auto copy = [this](const auto& given, const std::vector<double>& values) -> ilaw_float_output {
+    if (!given.values) return {};
+    return {floats_.emplace_back(values.begin(), values.end()).data(), given.node_stride,
+            given.component_stride};
+  };
+  const auto input = [&copy](const ilaw_input& given, const std::vector<double>& values) -> ilaw_float_input {
+    const ilaw_float_output made = copy(given, values);
+    return {made.values, made.node_stride, made.component_stride};
+  };
+  ilaw_float_batch& b = float_batch_;
+  b.struct_size = sizeof b;
+  b.node_count = batch_.node_count;
+  b.time = batch_.time;
+  b.velocity_step = batch_.velocity_step;
+  b.position_step = batch_.position_step;
+  b.v_free = input(batch_.v_free, v_free_);
+  b.delassus = input(batch_.delassus, delassus_);
+  b.gap = input(batch_.gap, gap_);
+  b.v_previous = input(batch_.v_previous, v_previous_);
+  b.area = input(batch_.area, area_);
+  b.normal = input(batch_.normal, normal_);
+  b.tangent = input(batch_.tangent, tangent_);
+  for (std::size_t k = 0; k < per_node_.size(); ++k)
+    per_node_floats_.push_back(input(per_node_inputs_[k], per_node_[k]));
+  b.per_node_parameters = per_node_floats_.data();
+  b.state_in = batch_.state_in;
+  b.state_out = batch_.state_out;
+  b.impulse = copy(batch_.impulse, impulse_);
+  b.velocity = copy(batch_.velocity, velocity_);
+  b.energy = copy(batch_.energy, energy_);
+  b.status = batch_.status;
+  b.status_stride = batch_.status_stride;
+  is_of_floats_ = true;
 }
 
 }  // namespace ilaw::host

@@ -24,17 +24,18 @@ class NodeArrays {
   NodeArrays& operator=(const NodeArrays&) = delete;
 
   // One step, the same at every call that follows restore().
-  void evaluate() const { law_.evaluate(batch_); }
+  void evaluate() const { is_of_floats_ ? law_.evaluate(float_batch_) : law_.evaluate(batch_); }
   // What evaluate has changed is as it was.
   void restore() { state_ = first_state_; }
   bool has_state() const { return !state_.empty(); }
-  const ilaw_batch& batch() const { return batch_; }
+  const ilaw_batch& batch() const { return batch_; }  // of doubles, in any case
 
  private:
   void draw_node(Draw& draw, const BenchCase& bench_case, std::int64_t i);
   void draw_delassus(Draw& draw, std::int64_t i);
   void lay_out(const BenchCase& bench_case);
   void reach_a_representative_state();
+  void round_to_floats();
 
   // Where component c of node i stands in an array of vectors.
   std::size_t place(std::int64_t i, std::int64_t c, std::int64_t components) const {
@@ -45,13 +46,16 @@ class NodeArrays {
 
   const BenchLaw& law_;
   std::int64_t nodes_, drawn_, dimension_, delassus_components_, state_size_;
-  bool is_global_, is_soa_;
+  bool is_global_, is_soa_, is_of_floats_ = false;
   std::vector<double> v_free_, v_previous_, delassus_, gap_, area_, normal_, tangent_;
   std::vector<double> impulse_, velocity_, energy_, state_, first_state_;
   std::vector<std::vector<double>> per_node_;
   std::vector<ilaw_input> per_node_inputs_;
   std::vector<std::uint8_t> status_;
   ilaw_batch batch_{};
+  std::vector<std::vector<float>> floats_;
+  std::vector<ilaw_float_input> per_node_floats_;
+  ilaw_float_batch float_batch_{};
 };
 
 }  // namespace ilaw::host
