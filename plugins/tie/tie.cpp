@@ -11,6 +11,7 @@ constexpr double at_the_limit = 1.0 + window_slack;
 
 struct tie {
   double strength;
+  double force;
   double duration;  // of the window
   double buckets;
 
@@ -18,7 +19,7 @@ struct tie {
                                  .title = "Bilateral bond, breakable (spot weld)",
                                  .doc =
                                      "Keeps the node at rest relative to the obstacle, in all directions and "
-                                     "for any H. Where a strength "
+                                     "for any H. Where a strength or a force "
                                      "is given, the bond breaks for good when the impulses of the last "
                                      "memory exceed it in pull and shear "
                                      "together; frictionless contact is left.",
@@ -36,6 +37,13 @@ struct tie {
        .doc = "Impulse per area, over the memory, that the bond can carry in pull and shear.",
        .default_value = infinity,
        .infinity_allowed = true},
+      {.member = &tie::force,
+       .name = "force",
+       .symbol = "F_Y",
+       .unit = "N",
+       .doc = "Mean force over the memory that the bond of one node can carry, whatever its area.",
+       .default_value = infinity,
+       .infinity_allowed = true},
       memory_parameter(&tie::duration),
       buckets_parameter(&tie::buckets)};
 
@@ -50,10 +58,20 @@ struct tie {
                                                                .whole = true}};
   static constexpr history_card history_variable = window_variable;
 
-  std::uint32_t inputs() const { return strength < infinity ? card.inputs : reads_v_previous; }
+  const char* conflict() const {
+    if (force == infinity) return nullptr;
+    if (strength < infinity) return "parameters 'strength' and 'force' are two limits, expected one of them";
+    return duration > 0.0 && duration < infinity
+               ? nullptr
+               : "parameter 'force' is a mean over 'memory', which must be above 0 and finite";
+  }
+  std::uint32_t inputs() const {
+    if (strength < infinity) return card.inputs;
+    return force < infinity ? reads_gap | reads_v_previous : reads_v_previous;
+  }
   std::int64_t history_size() const { return window::doubles(duration, buckets); }
 
-  // Without strength and memory: nothing to sum.
+  // Without a limit and memory: nothing to sum.
   struct unbreakable;
   template <class Run>
   void in_form(Run run) const;
@@ -61,7 +79,8 @@ struct tie {
   template <class Node>
   void step(Node& node) const {
     const vector trial = stopping_impulse(node);
-    const double limit = strength * node.area * at_the_limit;  // not a number: inf, and no area is read
+    // Not a number: inf, and no area is read.
+    const double limit = (force < infinity ? force * duration : strength * node.area) * at_the_limit;
     const bool overloads = load(node.earlier + trial) > limit;
     const bool bonded = node.state.broken == 0.0, holds = bonded & !overloads;
     touch(node);

@@ -30,6 +30,7 @@ class Sprung : public Model {
   void add_internal_forces(const Dofs& u, Dofs& force) const override;
   bool is_linear() const override { return false; }
   double potential(const Dofs& u) const override;
+  std::vector<Eigen::Matrix3d> stresses(const Dofs& u) const override { return body_->stresses(u); }
   double critical_step() const override { return critical_step_; }
   bool critical_step_is_exact() const override { return false; }
 

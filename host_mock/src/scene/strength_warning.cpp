@@ -62,7 +62,7 @@ std::optional<Drive> drive_of(const Scene& scene) {
     double largest = 0.0;
     for (const double time : knots_of(scene)) {
       Dofs force = none;
-      load->add_force(time, force);
+      load->add_force(time, none, force);
       largest = std::max(largest, sum_of_sizes(force, d));
     }
     Dofs impulse = none;

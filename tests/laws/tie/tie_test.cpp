@@ -97,6 +97,29 @@ TEST(Tie, ASingleShockBreaksIffItExceedsStrengthTimesArea) {
     }
 }
 
+// The force is that of a node, whatever its area: a pull P breaks it after F tau/P, one of F never does;
+// where F tau = R A, the bits are those of the strength R.
+TEST(Tie, ForceIsOfANode) {
+  constexpr double h = 1e-2, tau = 0.2, force = 1.45;
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> uniform(-0.05, 0.05);
+  for (const double area : {0.125, 1.0, 4.0}) {
+    const Parameters by_force{{{"force", force}, {"memory", tau}, {"buckets", 20}}, {}};
+    Tied holds(by_force, h), breaks(by_force, h), node(by_force, h),
+        same({{{"strength", force * tau / area}, {"memory", tau}, {"buckets", 20}}, {}}, h);
+    for (Tied* one : {&holds, &breaks, &node, &same}) one->area = area;
+    for (int n = 1; n <= 300; ++n) ASSERT_EQ(holds.push({0.6 * h * force, 0.8 * h * force, 0}), ILAW_BONDED);
+    for (int n = 1; n <= 14; ++n) ASSERT_EQ(breaks.push({0, h * 2.0, 0}), ILAW_BONDED) << n;
+    EXPECT_EQ(breaks.push({0, h * 2.0, 0}), ILAW_BROKEN);  // 15 h P = 0.3 > 0.29 at last
+    for (int n = 0; n < 500; ++n) {
+      const Vector push{uniform(random), uniform(random), uniform(random)};
+      ASSERT_EQ(node.push(push), same.push(push)) << "area " << area << ", step " << n;
+      ASSERT_EQ(node.r, same.r) << "area " << area << ", step " << n;
+    }
+    EXPECT_EQ(node.named("broken"), 1.0);
+  }
+}
+
 // After rupture: nothing holds it, and the bits of law contact are left.
 TEST(Tie, BrokenIsContact) {
   std::mt19937_64 random(2);
@@ -127,11 +150,18 @@ TEST(Tie, BreaksWhenTheExactIntegralPassesTheStrength) { expect_rupture_instants
 TEST(Tie, ShocksAddUpWithinTheWindow) { expect_double_shocks(bond); }
 
 TEST(Tie, RefusesBadParameters) {
-  for (const auto& [name, value] :
-       {std::pair{"strength", -1.0}, {"memory", -1e-3}, {"buckets", 0.0}, {"buckets", 2.5}}) {
+  for (const auto& [name, value] : {std::pair{"strength", -1.0},
+                                    {"force", -1.0},
+                                    {"force", 1.0},
+                                    {"memory", -1e-3},
+                                    {"buckets", 0.0},
+                                    {"buckets", 2.5}}) {
     const std::string refusal = refusal_of("tie", Parameters{{{name, value}}, {}});
     EXPECT_NE(refusal.find(name), std::string::npos) << name << " = " << value << ": " << refusal;
   }
+  const std::string both =
+      refusal_of("tie", Parameters{{{"force", 1.0}, {"strength", 1.0}, {"memory", 0.1}}, {}});
+  EXPECT_NE(both.find("'strength' and 'force' are two limits"), std::string::npos) << both;
 }
 
 // The interval of a step whose position step is short may begin a bucket before one that is open already:
