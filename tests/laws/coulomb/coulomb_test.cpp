@@ -153,5 +153,23 @@ TEST(Coulomb, TakesADiagonalHByTheSameClosedForm) {
   EXPECT_NEAR(node.r[2], -0.2, 1e-16);
 }
 
+// The second tangent has to be named where its coefficient is not known to be the first's for ever.
+TEST(Coulomb, NeedsATangentWhereTheCoefficientsMayDiffer) {
+  const auto refusal = [](const Parameters& parameters, bool tangent) {
+    return refusal_of("coulomb",
+                      SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, tangent),
+                      ILAW_UNSUPPORTED);
+  };
+  const Parameters table{{{"friction", 0.3}}, {}, {{"friction_2", {0.0, 0.3, 1.0, 0.4}}}, {}},
+      per_node{{{"friction", 0.3}}, {}, {}, {"friction_2"}},
+      other{{{"friction", 0.3}, {"friction_2", 0.4}}, {}}, same{{{"friction", 0.3}, {"friction_2", 0.3}}, {}},
+      one{{}, {}, {}, {"friction"}};
+  for (const Parameters* apart : {&table, &per_node, &other}) {
+    EXPECT_NE(refusal(*apart, false).find("expected a tangent per node"), std::string::npos);
+    EXPECT_EQ(refusal(*apart, true), "not refused");
+  }
+  for (const Parameters* alike : {&same, &one}) EXPECT_EQ(refusal(*alike, false), "not refused");
+}
+
 }  // namespace
 }  // namespace ilaw::testing
