@@ -171,5 +171,16 @@ TEST(Coulomb, NeedsATangentWhereTheCoefficientsMayDiffer) {
   for (const Parameters* alike : {&same, &one}) EXPECT_EQ(refusal(*alike, false), "not refused");
 }
 
+// A speed at rounding level of what was stopped is none: a contact that stuck has its static coefficient.
+TEST(Coulomb, RoundingOfAContactThatStuckIsNoSlip) {
+  for (const auto& [speed, status] : {std::pair{0.0, ILAW_STICK}, {1e-12, ILAW_STICK}, {1e-6, ILAW_SLIP}}) {
+    NodeRun node("coulomb", {{{"friction", 0.5}, {"kinetic_friction", 0.3}}, {}}, 1e-3);
+    node.v_previous = {0.0, speed, 0.0};
+    ASSERT_EQ(node.step({-1.0, 0.4, 0.0}), ILAW_OK);
+    EXPECT_EQ(node.status, status) << speed;
+    EXPECT_NEAR(node.r[1], status == ILAW_STICK ? -0.4 : -0.3, 1e-15) << speed;
+  }
+}
+
 }  // namespace
 }  // namespace ilaw::testing
