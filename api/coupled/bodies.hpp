@@ -36,6 +36,7 @@ class Bodies {
   std::int64_t count() const { return given_.count; }
   std::uint32_t dimension() const { return given_.dimension; }
   bool rotate() const { return given_.inverse_inertia.values != nullptr; }
+  bool are_spheres() const { return given_.inverse_inertia.component_stride == 0; }
   bool have_previous() const { return given_.v_previous.values != nullptr; }
 
   const std::vector<Motion>& free() const { return free_; }

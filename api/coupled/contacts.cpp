@@ -9,9 +9,22 @@
 namespace ilaw::coupled {
 namespace {
 
+// Largest part of an arm across the normal of a transverse H: arms that went through single precision pass.
+constexpr double along_tolerance = 1e-6;
+
+// What is no number is left to the law to refuse, at its contact.
+bool leads_aside(const Vector& arm, const Vector& normal) {
+  const Vector across = cross(arm, normal);
+  return dot(across, across) > along_tolerance * along_tolerance * dot(arm, arm) * dot(normal, normal);
+}
+
 // H of one node in dimension d, of that in three.
-void write_form(const Symmetric& h, std::uint32_t form, std::uint32_t dimension, double* out) {
-  if (form == ILAW_DELASSUS_SCALAR || dimension == 1) {
+void write_form(const Symmetric& h, const Vector& normal, std::uint32_t form, std::uint32_t dimension,
+                double* out) {
+  if (form == ILAW_DELASSUS_TRANSVERSE) {
+    out[0] = dot(normal, h * normal);
+    out[1] = 0.5 * (h[0] + h[1] + h[2] - out[0]);
+  } else if (form == ILAW_DELASSUS_SCALAR || dimension == 1) {
     out[0] = h[0];
   } else if (dimension == 2) {
     out[0] = h[0], out[1] = h[1], out[2] = h[3];
@@ -40,8 +53,9 @@ const char* Contacts::open(const ilaw_contacts& given, const Bodies& bodies) {
 
 const char* Contacts::complaint() const {
   if (!given_.law || !given_.instance) return "law or instance is null";
-  if (given_.delassus_form != ILAW_DELASSUS_SCALAR && given_.delassus_form != ILAW_DELASSUS_FULL)
-    return "delassus_form is neither scalar nor full";
+  if (given_.delassus_form != ILAW_DELASSUS_SCALAR && given_.delassus_form != ILAW_DELASSUS_TRANSVERSE &&
+      given_.delassus_form != ILAW_DELASSUS_FULL)
+    return "delassus_form is neither scalar, transverse nor full";
   if (theirs_.node_count < 0) return "node_count is negative";
   if (theirs_.index || theirs_.index64) return "contacts have no list of nodes";
   if (theirs_.node_count == 0) return nullptr;
@@ -69,22 +83,38 @@ const char* Contacts::complaint_of_law(const Bodies& bodies) {
 const char* Contacts::complaint_of_bodies(const Bodies& bodies) const {
   const std::int64_t count = given_.body && given_.counterpart ? theirs_.node_count : 0;
   if (bodies.rotate() && count > 0) {
-    if (given_.delassus_form != ILAW_DELASSUS_FULL) return "bodies rotate, so delassus_form has to be full";
+    if (given_.delassus_form == ILAW_DELASSUS_SCALAR)
+      return "bodies rotate, so delassus_form has to be transverse or full";
     if (!given_.arm.values || !given_.counterpart_arm.values) return "bodies rotate, and an arm is missing";
+    if (given_.delassus_form == ILAW_DELASSUS_TRANSVERSE && !bodies.are_spheres())
+      return "delassus_form is transverse, and bodies are no spheres";
   }
+  if (given_.delassus_form == ILAW_DELASSUS_TRANSVERSE && count > 0 && !theirs_.normal.values)
+    return "delassus_form is transverse, and the normal is missing";
   for (std::int64_t k = 0; k < count; ++k) {
     const std::int64_t body = std::int64_t{given_.body[k]} - theirs_.index_base;
     const std::int64_t counterpart = std::int64_t{given_.counterpart[k]} - theirs_.index_base;
     if (body < 0 || body >= bodies.count() || counterpart >= bodies.count())
       return "a contact names a body that is not there";
     if (body == counterpart) return "a contact of a body with itself";
+    if (given_.delassus_form == ILAW_DELASSUS_TRANSVERSE && bodies.rotate() && has_arm_aside(k))
+      return "delassus_form is transverse, and an arm is not along the normal";
   }
   return nullptr;
 }
 
+bool Contacts::has_arm_aside(std::int64_t k) const {
+  const Vector normal = vector(theirs_.normal, k, 3);
+  const bool is_wall = given_.counterpart[k] < theirs_.index_base;
+  return leads_aside(vector(given_.arm, k, 3), normal) ||
+         (!is_wall && leads_aside(vector(given_.counterpart_arm, k, 3), normal));
+}
+
 void Contacts::make_room() {
   const auto count = static_cast<std::size_t>(theirs_.node_count);
-  form_size_ = given_.delassus_form == ILAW_DELASSUS_SCALAR ? 1 : dimension_ * (dimension_ + 1) / 2;
+  form_size_ = given_.delassus_form == ILAW_DELASSUS_SCALAR       ? 1
+               : given_.delassus_form == ILAW_DELASSUS_TRANSVERSE ? 2
+                                                                  : dimension_ * (dimension_ + 1) / 2;
   contacts_.resize(count);
   for (std::vector<Vector>* vectors : {&answer_, &before_, &trial_, &v_free_, &v_previous_})
     vectors->resize(count);
@@ -101,6 +131,7 @@ void Contacts::read(const Bodies& bodies) {
     Contact& contact = contacts_[k];
     contact.body = std::int64_t{given_.body[i]} - theirs_.index_base;
     contact.counterpart = std::int64_t{given_.counterpart[i]} - theirs_.index_base;
+    contact.normal = vector(theirs_.normal, i, dimension_);
     contact.arm = vector(given_.arm, i, 3);
     contact.counterpart_arm = contact.counterpart < 0 ? Vector{} : vector(given_.counterpart_arm, i, 3);
     contact.wall = vector(given_.wall_velocity, i, dimension_);
@@ -179,13 +210,17 @@ void Contacts::split(const std::vector<double>& sums, const Bodies& bodies) {
     };
     const Symmetric h =
         share(contact.body) * contact.delassus + share(contact.counterpart) * contact.counterpart_delassus;
-    write_form(h, given_.delassus_form, dimension_, &delassus_[k * form_size_]);
+    write_form(h, contact.normal, given_.delassus_form, dimension_, &delassus_[k * form_size_]);
   }
 }
 
 Vector Contacts::split_response(std::size_t k, const Vector& impulse) const {
   const double* h = &delassus_[k * form_size_];
   if (form_size_ == 1) return h[0] * impulse;
+  if (form_size_ == 2) {
+    const Vector& normal = contacts_[k].normal;
+    return h[1] * impulse + ((h[0] - h[1]) * dot(normal, impulse)) * normal;
+  }
   if (form_size_ == 3) return Symmetric{h[0], h[1], 0.0, h[2], 0.0, 0.0} * impulse;
   return Symmetric{h[0], h[1], h[2], h[3], h[4], h[5]} * impulse;
 }

@@ -41,7 +41,7 @@ class Contacts {
  private:
   struct Contact {
     std::int64_t body, counterpart;  // below 0: a wall
-    Vector arm, counterpart_arm, wall, wall_previous;
+    Vector normal, arm, counterpart_arm, wall, wall_previous;
     Symmetric delassus, counterpart_delassus;  // of masses that are not split
     bool active;                               // had an impulse in this step
   };
@@ -49,6 +49,7 @@ class Contacts {
   const char* complaint() const;
   const char* complaint_of_bodies(const Bodies& bodies) const;
   const char* complaint_of_law(const Bodies& bodies);
+  bool has_arm_aside(std::int64_t k) const;
   void read(const Bodies& bodies);
   void make_room();
   void describe_batch();

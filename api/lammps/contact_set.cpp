@@ -47,7 +47,11 @@ ContactSet::ContactSet(const std::string& law, const std::vector<std::array<std:
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
   setup.dimension = 3;
-  setup.delassus_form = ILAW_DELASSUS_FULL;
+  // Spheres that touch: arms along the normal. A library that does not know this form is given the matrix.
+  setup.delassus_form = (description.delassus_forms & ILAW_DELASSUS_TRANSVERSE) != 0
+                            ? std::uint32_t{ILAW_DELASSUS_TRANSVERSE}
+                            : std::uint32_t{ILAW_DELASSUS_FULL};
+  delassus_form_ = setup.delassus_form;
   setup.frame = ILAW_FRAME_GLOBAL;
   setup.arguments = pointers.data();
   setup.argument_count = static_cast<std::uint32_t>(pointers.size());
@@ -114,7 +118,7 @@ const ilaw_contacts* ContactSet::describe(double time, double position_step) {
   initialise_new(batch_);
   described_ = {};
   described_.struct_size = sizeof described_;
-  described_.delassus_form = ILAW_DELASSUS_FULL;
+  described_.delassus_form = delassus_form_;
   described_.law = &interface_->law();
   described_.instance = interface_->instance();
   described_.batch = &batch_;

@@ -57,6 +57,7 @@ class ContactSet {
 
   std::unique_ptr<ilaw::interface> interface_;
   std::uint64_t state_size_ = 0;
+  std::uint32_t delassus_form_ = ILAW_DELASSUS_FULL;
   double velocity_step_ = 0.0;
   std::vector<Contact> contacts_;
   std::vector<std::int32_t> body_, counterpart_, new_;

@@ -1,5 +1,6 @@
 // Cohesive zones: a bond that softens, with contact, friction and bounded damage rate. See cohesive.md.
 #include "bond.hpp"
+#include "gathered.hpp"
 
 #include <ilaw/kit.hpp>
 
@@ -154,76 +155,59 @@ struct cohesive : bond {
     node.state.damage = bonds() ? 0.0 : 1.0;
   }
 
+  // Bonds that surely stand still and nodes that touch have closed forms; what is left is gathered.
+  struct in_phases;
+  template <class Run>
+  void in_form(Run run) const;
+
   template <class Node>
   void step(Node& node) const {
+    gathered<double> given;
+    gather(node, given);
+    solved<double> found;
+    solve_alone(given, found);
+    give(node, found);
+  }
+  [[gnu::noinline]] void solve_alone(const gathered<double>& given, solved<double>& found) const {
+    auto node = node_of<state>(given);
     if (!(node.state.damage < 1.0 && node.area > 0.0))
       touch(node);
     else if (!bonds())
       break_at_once(node);
     else if (!(stiffness == infinity && node.state.damage == 0.0 && stands_still(node)))
       step_bond(node);
+    leave(node, found);
   }
 
  private:
   // A rigid bond up to its strength: the same as a tie. Its traction is compared with the weight of the work
   // that it does.
+  static vector effective(vector r, double weight) {
+    return {positive_part(-r.n), r.t1 / weight, r.t2 / weight};
+  }
   template <class Node>
   bool stands_still(Node& node) const {
-    const vector r = stopping_impulse(node);
+    const vector r = stopping_impulse(node), pull = effective(r, weight());
     if (strength < infinity) {
-      const double capacity = node.velocity_step * node.area, w = weight();
-      const vector effective{positive_part(-r.n), r.t1 / w, r.t2 / w};
-      const double size = length(effective.n, effective.t1, effective.t2);
+      const double capacity = node.velocity_step * node.area, size = length(pull.n, pull.t1, pull.t2);
       const bool surely = size <= capacity * smaller(strength, shear_strength());
-      if (!surely && !(size <= capacity * softening_along(effective, size).strength)) return false;
+      if (!surely && !(size <= capacity * softening_along(pull, size).strength)) return false;
     }
     node.impulse = r;
     node.status = status::bonded;
     return true;
   }
+  // The traction that any rigid bond holds, whatever its direction.
+  double sure_strength() const {
+    return stiffness == infinity && bonds() ? smaller(strength, shear_strength()) : -1.0;
+  }
 
   template <class Node>
   void step_bond(Node& node) const {
-    if constexpr (!has_transverse_delassus<Node>)
-      if (is_anisotropic(node.delassus)) {
-        auto own = with_full_delassus(node);
-        solve_coupled(own);
-        take_over(node, own);
-        return;
-      }
-    solve_bond<isotropic_modes>(node);
-  }
-
-  // Once for all forms of node: too long to be compiled for each.
-  using coupled_node = ilaw::kit::node<full_delassus, state>;
-  [[gnu::noinline]] void solve_coupled(coupled_node& node) const { solve_bond<coupled_modes>(node); }
-
-  template <class Node>
-  static coupled_node with_full_delassus(const Node& node) {
-    local_coulomb same{};
-    fill(same, node.delassus);
-    return {.time = node.time,
-            .velocity_step = node.velocity_step,
-            .position_step = node.position_step,
-            .v_free = node.v_free,
-            .v_previous = node.v_previous,
-            .delassus = full_delassus::from(same.h),
-            .gap = node.gap,
-            .area = node.area,
-            .history = node.history,
-            .impulse = {},
-            .state = node.state};
-  }
-  template <class Node>
-  static void take_over(Node& node, const coupled_node& solved) {
-    node.impulse = solved.impulse;
-    node.state = solved.state;
-    node.stored = solved.stored;
-    node.normal_gain = solved.normal_gain;
-    node.tangential_gain = solved.tangential_gain;
-    node.rupture = solved.rupture;
-    node.status = solved.status;
-    node.refused = solved.refused;
+    if (is_anisotropic(node.delassus))
+      solve_bond<coupled_modes>(node);
+    else
+      solve_bond<isotropic_modes>(node);
   }
 
   // Where a bond is that has not been moved: it is made where the node is now. Its work r.(v^- + v)/2 and the
@@ -281,9 +265,12 @@ struct cohesive : bond {
 
   // No bond: contact and friction, by the gap. What the bond remembers stays as it was when it broke.
   template <class Node>
+  static auto contact(const Node& node) {
+    return contact_problem_of(contact_at(node, 0.0, predictive), node.v_free, node.v_previous);
+  }
+  template <class Node>
   void touch(Node& node) const {
-    const contact_condition contact = contact_at(node, 0.0, predictive);
-    apply_contact_friction(node, contact_problem_of(contact, node.v_free, node.v_previous), friction);
+    apply_contact_friction(node, contact(node), friction);
   }
 
   // Where the strength, given as a table, has come to nothing.
@@ -294,6 +281,46 @@ struct cohesive : bond {
     node.status = status::broken;
   }
 };
+
+struct cohesive::in_phases : cohesive {
+  double held, shear_weight;  // worked out once: sure_strength and weight
+
+  template <class V>
+  using problem = gathered<V>;
+  template <class V>
+  using answer = solved<V>;
+
+  template <class Node>
+  bool asks(Node& node, problem<double>& open) const {
+    gather(node, open);
+    const state& s = node.state;
+    const bool bonded = (s.damage < 1.0) & (node.area > 0.0);
+    const vector r = stopping_impulse(node), pull = effective(r, shear_weight);
+    const double capacity = node.velocity_step * node.area;
+    const bool surely = length(pull.n, pull.t1, pull.t2) <= capacity * held;
+    const bool holds = bonded & (s.damage == 0.0) & surely;
+    friction_problem<double> rubbing;
+    const bool rubs = ask_friction(node, contact(node), friction, friction, true, rubbing);
+    node.impulse = {holds ? r.n : node.impulse.n, holds ? r.t1 : node.impulse.t1,
+                    holds ? r.t2 : node.impulse.t2};
+    node.status = holds ? status::bonded : node.status;
+    return (bonded & !holds) | (!bonded & rubs);
+  }
+  // Its root is found one by one.
+  template <class V>
+  mask_of<V> solve(const problem<V>& /*p*/, answer<V>& /*a*/) const {
+    return mask_of<V>(true);
+  }
+  template <class Node>
+  void answered(Node& node, const answer<double>& a) const {
+    give(node, a);
+  }
+};
+
+template <class Run>
+void cohesive::in_form(Run run) const {
+  run(in_phases{*this, sure_strength(), weight()});
+}
 
 }  // namespace
 

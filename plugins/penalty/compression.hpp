@@ -7,6 +7,7 @@
 // of the way on which it is closed. The right-hand side never increases with r: one solution.
 #pragma once
 
+#include <ilaw/kit/node.hpp>
 #include <ilaw/kit/pack.hpp>
 
 #include <limits>
@@ -15,6 +16,13 @@
 namespace penalty_law {
 
 namespace kit = ilaw::kit;
+
+// Not below the largest inverse mass in the tangent plane, with what H couples to the normal.
+inline double largest_tangential(const kit::transverse_delassus& h) { return h.t; }
+inline double largest_tangential(const kit::diagonal_delassus& h) { return kit::larger(h.t1, h.t2); }
+inline double largest_tangential(const kit::full_delassus& h) {
+  return kit::larger(h.t11 + kit::absolute(h.n1), h.t22 + kit::absolute(h.n2)) + kit::absolute(h.t12);
+}
 
 // The damper's part of the critical one with which a linear spring that does not pull gives back the part e
 // of a velocity: -ln e = 2 zeta acos(zeta)/sqrt(1 - zeta^2) (Schwager and Poeschel 2007, eq. 17; beyond 1

@@ -1,5 +1,4 @@
-// Penalised contact with regularised friction, explicit and locally implicit. See penalty.md for the
-// equations.
+// Penalised contact with regularised friction, explicit and locally implicit. See penalty.md.
 #include "compression.hpp"
 
 #include <ilaw/kit.hpp>
@@ -34,8 +33,7 @@ struct penalty {
   static constexpr const char* references[] = {
       "H. Hertz, 1882, Ueber die Beruehrung fester elastischer Koerper",
       "P. Wriggers, T. Vu Van, E. Stein, 1990, Finite element formulation of large deformation "
-      "impact-contact "
-      "problems with friction",
+      "impact-contact problems with friction",
       "J. C. Simo, T. J. R. Hughes, 1998, Computational inelasticity: return mapping",
       "J. C. Simo, N. Tarnow, 1992, The discrete energy-momentum method",
       "T. Schwager, T. Poeschel, 2007, Coefficient of restitution and linear-dashpot model revisited"};
@@ -130,7 +128,8 @@ struct penalty {
     const double pace = square_root(tangent * normal), half_damper = 0.5 * damping * normal;
     const double closed = 2.0 / (length(pace, half_damper) + half_damper);
     if (!(friction > 0.0)) return closed;
-    return smaller(closed, 2.0 / square_root(tangential_stiffness * largest_tangential(node.delassus)));
+    return smaller(closed,
+                   2.0 / square_root(tangential_stiffness * penalty_law::largest_tangential(node.delassus)));
   }
 
   // Explicit or implicit, linear or not: loops without a power vectorise.
@@ -144,13 +143,6 @@ struct penalty {
   }
 
  private:
-  // Not below the largest inverse mass in the tangent plane, with what H couples to the normal.
-  static double largest_tangential(const transverse_delassus& h) { return h.t; }
-  static double largest_tangential(const diagonal_delassus& h) { return larger(h.t1, h.t2); }
-  static double largest_tangential(const full_delassus& h) {
-    return larger(h.t11 + absolute(h.n1), h.t22 + absolute(h.n2)) + absolute(h.t12);
-  }
-
   template <bool Linear>
   double spring_force(double penetration) const {
     if constexpr (Linear) return stiffness * penetration;
@@ -311,7 +303,7 @@ struct penalty {
     else if (acts)
       found.impulse = normal.impulse_where([&](double r) { return normal.given(tangents(r) + nn * r) - r; });
     normal.free = tangents(acts ? found.impulse : 0.0);
-    if (!finite(found.impulse)) node.refused = no_solution;
+    if (!is_finite(found.impulse)) node.refused = no_solution;
     found.opens = normal.travel(normal.free + nn * found.impulse) > normal.indentation ? 1.0 : 0.0;
     return found;
   }

@@ -119,28 +119,24 @@ struct postit {
     node.state.adhesion = initial_adhesion > 0.0 ? initial_adhesion * node.area : 0.0;
   }
 
+  // Brittle or saturated: what is left of a bond that breaks is one more root to find.
+  template <bool Saturated>
+  struct form;
+  template <class Run>
+  void in_form(Run run) const;
   template <class Node>
   void step(Node& node) const {
-    const window::reading earlier = sums().before(node.history, interval_of(node));
-    node.refused = earlier.refused;
-    if (node.refused != not_refused) return;
-    if (node.state.adhesion > 0.0)
-      step_bonded(node, earlier.sum);
-    else
-      step_unbonded(node);
-    heal(node, node.status == status::broken ? vector{} : earlier.sum);
+    in_form([&node](const auto& chosen) { step_alone(chosen, node); });
   }
 
+  window_in_step window_in(step_interval step) const { return {duration, buckets, step}; }
   // A rupture clears the window; what it then holds is the impulse of this step.
-  template <class Node>
-  void record(const Node& node, history own) const {
-    if (node.status == status::broken) sums().clear(own);
-    sums().add(own, interval_of(node), node.impulse);
+  static void record(const stepped_impulse& given, const window_in_step& sums, const history& own) {
+    if (given.status == status::broken) sums.clear(own);
+    sums.add(own, given.impulse);
   }
 
  private:
-  window sums() const { return {duration, buckets}; }
-
   // (<-S_N>/R_Y)^2 + (<|S_T| - mu <S_N>>/(lambda R_Y))^2, which exceeds 1 at rupture.
   double criterion(vector sum, double adhesion) const {
     const double pull = positive_part(-sum.n) / adhesion;
@@ -150,39 +146,10 @@ struct postit {
     return pull * pull + shear * shear;
   }
 
-  // Free: the next rupture counts.
   template <class Node>
-  void step_unbonded(Node& node) const {
-    touch(node, node.v_free, {});
-    if (node.status == status::free) node.state.grace = 0.0;
-  }
-
-  template <class Node>
-  void step_bonded(Node& node, vector earlier) const {
-    const vector trial = stopping_impulse(node);
-    if (criterion(earlier + trial, node.state.adhesion) <= at_the_limit) {
-      node.impulse = trial;
-      node.status = status::bonded;
-      node.state.grace = still_to_hold(node.state.grace, node.velocity_step);
-      return;
-    }
-    const vector held =
-        rupture == saturated ? held_part(earlier, trial, node.state.adhesion) * trial : vector{};
-    node.state.adhesion = 0.0;
-    count_rupture(node.state, node.velocity_step);
-    touch(node, node.v_free + node.delassus.times(held), held);
-    node.status = status::broken;
-  }
-
-  // Sliding under pressure bonds and breaks in every step. A rupture counts only if the node was free since
-  // the last one, or the bond held for the window, and for one step at least.
-  void count_rupture(state& s, double step) const {
-    if (s.grace == 0.0) s.ruptures += 1.0;
-    s.grace = smaller(larger(duration, step), std::numeric_limits<double>::max());
-  }
-  static double still_to_hold(double grace, double step) {
-    const double rest = grace - step;
-    return rest > window_slack * step ? rest : 0.0;
+  bool holds(const Node& node, vector trial) const {
+    const double adhesion = node.state.adhesion;
+    return (adhesion > 0.0) & (criterion(node.earlier + trial, adhesion) <= at_the_limit);
   }
 
   // The part of the trial impulse that takes the sum to the limit; bisection to the last bit.
@@ -194,26 +161,85 @@ struct postit {
     return holds;
   }
 
-  // Contact and friction, on top of what a breaking bond still gave.
+  // What the step makes of the bond: the node comes with the impulse of contact, is given the trial impulse
+  // where its bond holds, and heals.
   template <class Node>
-  void touch(Node& node, vector velocity, vector held) const {
-    apply_plain_contact(node, velocity, friction);
-    node.impulse = node.impulse + held;
+  void settle(Node& node, vector trial, bool holds) const {
+    const bool was_bonded = node.state.adhesion > 0.0, breaks = was_bonded & !holds;
+    const bool is_free = !(node.impulse.n > 0.0);
+    node.impulse = {holds ? trial.n : node.impulse.n, holds ? trial.t1 : node.impulse.t1,
+                    holds ? trial.t2 : node.impulse.t2};
+    node.status = holds ? status::bonded : (breaks ? status::broken : node.status);
+    count_rupture(node.state, node.velocity_step, breaks, holds, is_free);
+    node.state.adhesion = breaks ? 0.0 : node.state.adhesion;
+    heal(node, was_bonded, breaks);
   }
 
-  // Pressing bonds: R_Y = max(R_Y, min(eta(b) <S_N>, R_Y,max)).
+  // Sliding under pressure bonds and breaks in every step. A rupture counts only if the node was free since
+  // the last one, or the bond held for the window, and for one step at least.
+  void count_rupture(state& s, double step, bool breaks, bool holds, bool is_free) const {
+    const double whole = smaller(larger(duration, step), std::numeric_limits<double>::max());
+    const double rest = s.grace - step, left = rest > window_slack * step ? rest : 0.0;
+    s.ruptures = s.ruptures + (breaks & (s.grace == 0.0) ? 1.0 : 0.0);
+    const double held = holds ? left : (is_free ? 0.0 : s.grace);
+    s.grace = breaks ? whole : held;
+  }
+
+  // Pressing bonds: R_Y = max(R_Y, min(eta(b) <S_N>, R_Y,max)). A rupture has cleared the window.
   template <class Node>
-  void heal(Node& node, vector earlier) const {
-    if (!(node.impulse.n > 0.0)) return;
-    const double efficiency =
-        efficiency_decrease < infinity ? exp(-node.state.ruptures / efficiency_decrease) : 1.0;
-    const double limit = adhesion_limit < infinity ? adhesion_limit * node.area : infinity;
-    const double gained = smaller(efficiency * positive_part(earlier.n + node.impulse.n), limit);
-    const bool forms = node.state.adhesion == 0.0 && gained > 0.0 && node.status != status::broken;
-    node.state.adhesion = larger(node.state.adhesion, gained);
-    if (forms) node.status = status::healed;
+  void heal(Node& node, bool was_bonded, bool breaks) const {
+    const double efficiency = exp(-node.state.ruptures / efficiency_decrease);
+    const double limit = adhesion_limit * node.area;  // not a number: inf, and no area is read
+    const double summed = breaks ? 0.0 : node.earlier.n;
+    const double pressed = efficiency * positive_part(summed + node.impulse.n);
+    const double gained = limit < pressed ? limit : pressed;
+    const bool presses = node.impulse.n > 0.0, forms = !was_bonded & presses & (gained > 0.0);
+    node.state.adhesion = presses ? larger(node.state.adhesion, gained) : node.state.adhesion;
+    node.status = forms ? status::healed : node.status;
   }
 };
+
+// Nodes that touch are asked for their friction, for any H; a transverse H has a closed form.
+template <bool Saturated>
+struct postit::form : postit, friction_in_packs {
+  template <class Node>
+  void step(Node& node) const requires(Saturated || has_transverse_delassus<Node>) {
+    const vector trial = stopping_impulse(node);
+    const bool holds = this->holds(node, trial);
+    if constexpr (Saturated) {
+      const bool breaks = node.state.adhesion > 0.0 && !holds;
+      const vector held = breaks ? held_part(node.earlier, trial, node.state.adhesion) * trial : vector{};
+      apply_plain_contact(node, node.v_free + node.delassus.times(held), friction);
+      node.impulse = node.impulse + held;
+    } else {
+      apply_plain_contact(node, node.v_free, friction);
+    }
+    settle(node, trial, holds);
+  }
+  template <class Node>
+  bool asks(Node& node, friction_problem<double>& open) const
+      requires(!Saturated && !has_transverse_delassus<Node>) {
+    const vector trial = stopping_impulse(node);
+    const bool holds = this->holds(node, trial);
+    const bool is_pressed =
+        ask_friction(node, plain_contact(node, node.v_free), friction, friction, true, open);
+    settle(node, trial, holds);
+    return is_pressed & !holds;
+  }
+  template <class Node>
+  void answered(Node& node, const friction_answer<double>& a) const {
+    give_friction(node, a);
+    settle(node, {}, false);
+  }
+};
+
+template <class Run>
+void postit::in_form(Run run) const {
+  if (rupture == saturated)
+    run(form<true>{{*this}, {}});
+  else
+    run(form<false>{{*this}, {}});
+}
 
 }  // namespace
 

@@ -60,35 +60,24 @@ struct tie {
 
   template <class Node>
   void step(Node& node) const {
-    const window::reading earlier = sums().before(node.history, interval_of(node));
-    node.refused = earlier.refused;
-    if (node.refused != not_refused) return;
-    if (node.state.broken != 0.0) {
-      touch(node);
-      return;
-    }
     const vector trial = stopping_impulse(node);
-    const double limit = strength < infinity ? strength * node.area : infinity;
-    if (load(earlier.sum + trial) <= limit * at_the_limit) {
-      node.impulse = trial;
-      node.status = status::bonded;
-      return;
-    }
+    const double limit = strength * node.area * at_the_limit;  // not a number: inf, and no area is read
+    const bool overloads = load(node.earlier + trial) > limit;
+    const bool bonded = node.state.broken == 0.0, holds = bonded & !overloads;
     touch(node);
-    node.state.broken = 1.0;
-    node.status = status::broken;
+    hold(node, trial, holds);
+    node.status = bonded & overloads ? status::broken : node.status;
+    node.state.broken = holds ? 0.0 : 1.0;
   }
 
+  window_in_step window_in(step_interval step) const { return {duration, buckets, step}; }
   // A broken bond needs no window any more.
-  template <class Node>
-  void record(const Node& node, history own) const {
-    if (node.status == status::bonded) sums().add(own, interval_of(node), node.impulse);
-    if (node.status == status::broken) sums().clear(own);
+  static void record(const stepped_impulse& given, const window_in_step& sums, const history& own) {
+    if (given.status == status::bonded) sums.add(own, given.impulse);
+    if (given.status == status::broken) sums.clear(own);
   }
 
  private:
-  window sums() const { return {duration, buckets}; }
-
   // Pull and shear count alike, a press does not: nothing is torn by it.
   static double load(vector sum) { return length(positive_part(-sum.n), sum.t1, sum.t2); }
 
@@ -98,18 +87,20 @@ struct tie {
     node.impulse.n = contact.slack <= 0.0 ? positive_part(-contact.excess / node.delassus.normal()) : 0.0;
     node.status = node.impulse.n > 0.0 ? status::closed : status::free;
   }
+
+  template <class Node>
+  static void hold(Node& node, vector trial, bool holds) {
+    node.impulse = {holds ? trial.n : node.impulse.n, holds ? trial.t1 : 0.0, holds ? trial.t2 : 0.0};
+    node.status = holds ? status::bonded : node.status;
+  }
 };
 
 struct tie::unbreakable : tie {
-  static constexpr bool forgets = true;
-
   template <class Node>
   void step(Node& node) const {
     const vector trial = stopping_impulse(node);
     touch(node);  // if the state says broken, by a strength that there was
-    const bool holds = node.state.broken == 0.0;
-    node.impulse = {holds ? trial.n : node.impulse.n, holds ? trial.t1 : 0.0, holds ? trial.t2 : 0.0};
-    node.status = holds ? status::bonded : node.status;
+    hold(node, trial, node.state.broken == 0.0);
   }
 };
 

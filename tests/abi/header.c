@@ -1,4 +1,5 @@
 /* The header alone, under -pedantic-errors. */
+#include <ilaw/float.h>
 #include <ilaw/ilaw.h>
 #include <ilaw/loader.h>
 

@@ -9,6 +9,7 @@
 
 #include <omp.h>
 
+#include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDataArray.h>
 #include <vtkIdList.h>
@@ -77,7 +78,7 @@ TEST(Fields, HoldWhatTheIntegratorHolds) {
     expect_vectors(*grid, "v", integrator.velocity(), 3);
     expect_vectors(*grid, "r", integrator.interface_impulse(), 3);
     const Field gap(*grid, "gap", 1), status(*grid, "status", 1), adhesion(*grid, "adhesion", 1),
-        ruptures(*grid, "ruptures", 1);
+        ruptures(*grid, "ruptures", 1), traction(*grid, "traction", 3);
     std::vector<bool> belongs(static_cast<std::size_t>(scene.model->node_count()));
     for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
       const int node = interface.nodes()[k], node_index = static_cast<int>(k);
@@ -90,12 +91,17 @@ TEST(Fields, HoldWhatTheIntegratorHolds) {
                 interface.is_active(contact_index) ? interface.status(contact_index) : int{ILAW_FREE});
       ASSERT_EQ(adhesion.at(node), interface.state(contact_index, 0));
       ASSERT_EQ(ruptures.at(node), interface.state(contact_index, 1));
+      for (int c = 0; c < 3; ++c)
+        ASSERT_DOUBLE_EQ(traction.at(node, c) * interface.setup().areas[k] * scene.dt,
+                         integrator.interface_impulse()[3 * node + c]);
       bonded += status.at(node) == double{ILAW_BONDED};
       broken += ruptures.at(node) > 0.0;
     }
     for (int node = 0; node < scene.model->node_count(); ++node)
       if (!belongs[static_cast<std::size_t>(node)]) {
         ASSERT_TRUE(std::isnan(gap.at(node)));
+        ASSERT_TRUE(std::isnan(adhesion.at(node)));
+        ASSERT_TRUE(std::isnan(traction.at(node)));
         ASSERT_EQ(status.at(node), -1.0);
       }
   }
@@ -211,6 +217,196 @@ TEST(Fields, AreListedInASeries) {
   ASSERT_EQ(run_program("run " + (without / "scene.json").string() + " --out " + without.string()).code, 0);
   for (const auto& entry : std::filesystem::directory_iterator(without))
     EXPECT_EQ(entry.path().string().find(".vtu"), std::string::npos) << entry.path();
+}
+
+// ---- stress ---------------------------------------------------------------------------------------------
+
+std::string block_of(const std::string& material, const std::string& element = "full") {
+  return R"({"model": {"type": "blocks", "blocks": [{"name": "b", "corner": [0.3, -0.2, 0.1], "size": [0.2, 0.1, 0.3],
+      "elements": [2, 1, 3], "element": ")" +
+         element + R"(", "material": {"type": ")" + material +
+         R"(", "young": 2e6, "poisson": 0.3, "density": 1000}}]}, "time": {"cfl": 0.5, "end": 1e-3}, "interfaces": []})";
+}
+
+// Displacements u = (F - 1) x.
+Dofs affine(const Model& model, const Eigen::Matrix3d& F) {
+  Dofs u(model.position().size());
+  for (Eigen::Index i = 0; i < u.size(); i += 3)
+    u.segment<3>(i) = (F - Eigen::Matrix3d::Identity()) * model.position().segment<3>(i);
+  return u;
+}
+
+Eigen::Matrix3d some_gradient(double size) {
+  Eigen::Matrix3d F;
+  F << 0.3, -0.1, 0.2, 0.25, -0.35, 0.05, -0.15, 0.3, 0.1;
+  return Eigen::Matrix3d::Identity() + size * F;
+}
+
+// Hooke's law of the symmetric gradient; Cauchy's stress mu (b - 1) / J + lambda ln J / J (Bonet and Wood
+// 2008, eq. 6.29). Where every point has the same F, mean dilatation changes nothing.
+TEST(Stress, OfAHomogeneousDeformationIsTheClosedForm) {
+  const double mu = 0.5 * 2e6 / 1.3, lambda = 2e6 * 0.3 / (1.3 * 0.4);
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  for (const double size : {1e-3, 0.3, 1.0}) {
+    const Eigen::Matrix3d F = some_gradient(size), strain = 0.5 * (F + F.transpose()) - one;
+    const double J = F.determinant();
+    const Eigen::Matrix3d hooke = 2.0 * mu * strain + lambda * strain.trace() * one,
+                          cauchy = (mu * (F * F.transpose() - one) + lambda * std::log(J) * one) / J;
+    for (const char* element : {"full", "mean_dilatation"})
+      for (const auto& [material, expected] :
+           {std::pair{"linear", hooke}, std::pair{"neo_hookean", cauchy}}) {
+        const Scene scene = scene_of(block_of(material, element));
+        const auto stresses = scene.model->stresses(affine(*scene.model, F));
+        ASSERT_EQ(stresses.size(), 6U);
+        for (const Eigen::Matrix3d& stress : stresses)
+          EXPECT_LE((stress - expected).norm(), 1e-9 * expected.norm())
+              << material << ", " << element << ", size " << size;
+      }
+  }
+}
+
+// A rod's tension over its section; only along x.
+TEST(Stress, OfABarIsItsTension) {
+  const Scene scene =
+      scene_of(R"({"model": {"type": "bars", "bars": [{"length": 2, "elements": 4, "young": 3e6, "density": 1,
+      "section": 0.5, "initial_displacement": [0, 0.01]}]}, "time": {"cfl": 0.5, "end": 1e-3}, "interfaces": []})");
+  for (const Eigen::Matrix3d& stress : scene.model->stresses(scene.model->initial_displacement())) {
+    EXPECT_NEAR(stress(0, 0), 3e6 * 0.005, 1e-8);
+    EXPECT_EQ(stress.cwiseAbs().sum(), stress(0, 0));
+  }
+}
+
+vtkDataArray& cells_of(vtkUnstructuredGrid& grid, const char* name) {
+  vtkDataArray* array = grid.GetCellData()->GetArray(name);
+  if (!array) throw std::runtime_error(std::string("no array ") + name);
+  EXPECT_EQ(array->GetNumberOfTuples(), grid.GetNumberOfCells());
+  return *array;
+}
+
+// In the files: components in ParaView's order, and von Mises' stress of them.
+TEST(Stress, StandsInTheFields) {
+  const auto folder = fresh_folder();
+  Scene scene = scene_of(shipped("block_impact").dump());
+  Integrator integrator = integrator_of(scene);
+  while (integrator.time() < 0.005) integrator.step();
+  Fields(scene, folder).write(integrator);
+  const auto grid = grid_of(folder / "fields_000000.vtu");
+  vtkDataArray &tensor = cells_of(*grid, "stress"), &mises = cells_of(*grid, "von_mises");
+  const auto stresses = scene.model->stresses(integrator.displacement());
+  double largest = 0.0;
+  for (std::size_t k = 0; k < stresses.size(); ++k) {
+    const Eigen::Matrix3d& s = stresses[k];
+    const auto cell = static_cast<vtkIdType>(k);
+    const double expected[] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
+    for (int c = 0; c < 6; ++c) ASSERT_EQ(tensor.GetComponent(cell, c), expected[c]) << k << ", " << c;
+    // von Mises 1913, in components.
+    const double squares = std::pow(s(0, 0) - s(1, 1), 2) + std::pow(s(1, 1) - s(2, 2), 2) +
+                           std::pow(s(2, 2) - s(0, 0), 2),
+                 shears = s(0, 1) * s(0, 1) + s(1, 2) * s(1, 2) + s(0, 2) * s(0, 2);
+    ASSERT_NEAR(mises.GetComponent(cell, 0), std::sqrt(0.5 * squares + 3.0 * shears), 1e-6);
+    largest = std::max(largest, mises.GetComponent(cell, 0));
+  }
+  EXPECT_GT(largest, 1e4);
+}
+
+// ---- interfaces at the start, obstacles ------------------------------------------------------------------
+
+// Before any step: what the law says of a node at rest where it is.
+TEST(Fields, TellTheStatusAtTheStart) {
+  const auto status_of = [](const std::string& law, double height, const std::string& more = "") {
+    Scene scene = scene_of(
+        R"({"model": {"type": "points", "dimension": 3, "points": [{"mass": 1, "position": [0, 0, )" +
+        number(height) + R"(]}]}, "time": {"dt": 0.001, "end": 0.1}, "interfaces": [{"nodes": "all", )" +
+        more + law + R"(, "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
+    return static_cast<int>(Field(*first_grid(scene), "status", 1).at(0));
+  };
+  const std::string glue = R"("law": "cohesive", "parameters": {"strength": 1, "toughness": 1})";
+  EXPECT_EQ(status_of(R"("law": "tie")", 0.0), ILAW_BONDED);
+  EXPECT_EQ(status_of(glue, 0.0), ILAW_BONDED);
+  EXPECT_EQ(status_of(glue, 0.0, R"("birth": 0.05, )"), ILAW_FREE);
+  EXPECT_EQ(status_of(R"("law": "contact")", 0.0), ILAW_CLOSED);
+  EXPECT_EQ(status_of(R"("law": "contact")", 0.1), ILAW_FREE);
+  EXPECT_EQ(status_of(R"("law": "postit", "parameters": {"initial_adhesion": 2, "memory": 0.01})", 0.0),
+            ILAW_BONDED);
+}
+
+// A plane, a sphere and a cylinder that move: every point of theirs is on the surface.
+TEST(Fields, ShowObstaclesWhereTheyAre) {
+  const auto folder = fresh_folder();
+  json source = json::parse(block_of("linear"));
+  source["interfaces"] = json::parse(R"([
+    {"law": "contact", "nodes": "b.z_min", "obstacle": {"type": "plane", "point": [0, 0, -1], "normal": [0.6, 0, 0.8], "velocity": [0, 0, -10]}},
+    {"law": "contact", "nodes": "b.z_min", "obstacle": {"type": "sphere", "center": [1, 2, 3], "radius": 0.5, "path": [[0, 0, 0, 0], [1, 4, 0, 0]]}},
+    {"law": "contact", "nodes": "b.z_min", "obstacle": {"type": "cylinder", "point": [3, 0, 0], "axis": [0, 2, 0], "radius": 0.25}}])");
+  Scene scene = scene_of(source.dump());
+  Integrator integrator = integrator_of(scene);
+  Fields fields(scene, folder);
+  for (int k = 0; k < 3; ++k) {
+    fields.write(integrator);
+    integrator.step();
+  }
+  const double time = json::parse(text_of(folder / "obstacles.vtu.series"))["files"][2]["time"];
+  const auto grid = grid_of(folder / "obstacles_000002.vtu");
+  vtkDataArray& owner = cells_of(*grid, "interface");
+  std::array<int, 3> seen{};
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
+    ASSERT_EQ(grid->GetCellType(cell), VTK_QUAD);
+    const auto which = static_cast<std::size_t>(owner.GetComponent(cell, 0));
+    ++seen.at(which);
+    vtkNew<vtkIdList> nodes;
+    grid->GetCellPoints(cell, nodes);
+    for (vtkIdType k = 0; k < 4; ++k) {
+      Eigen::Vector3d x;
+      grid->GetPoint(nodes->GetId(k), x.data());
+      const double off[] = {(x - Eigen::Vector3d(0, 0, -1 - 10 * time)).dot(Eigen::Vector3d(0.6, 0, 0.8)),
+                            (x - Eigen::Vector3d(1 + 4 * time, 2, 3)).norm() - 0.5,
+                            std::hypot(x[0] - 3, x[2]) - 0.25};
+      ASSERT_NEAR(off[which], 0.0, 1e-12) << "interface " << which << ", cell " << cell;
+    }
+  }
+  EXPECT_EQ(seen[0], 1);
+  EXPECT_GT(seen[1], 100);
+  EXPECT_GT(seen[2], 20);
+}
+
+TEST(Fields, ShowObstaclesThatStandStillOnce) {
+  const auto folder = fresh_folder();
+  Scene scene = scene_of(shipped("block_impact").dump());
+  const Integrator integrator = integrator_of(scene);
+  Fields fields(scene, folder);
+  fields.write(integrator);
+  fields.write(integrator);
+  EXPECT_EQ(json::parse(text_of(folder / "obstacles.vtu.series"))["files"].size(), 1U);
+  EXPECT_EQ(json::parse(text_of(folder / "fields.vtu.series"))["files"].size(), 2U);
+  fields.clear();
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+// A rubber block thrown too hard for its step: the state in which it diverged, with what was turned inside
+// out.
+TEST(Diverged, StateIsWrittenAndNamed) {
+  const auto folder = fresh_folder();
+  json source = json::parse(block_of("neo_hookean"));
+  source["model"]["blocks"][0]["velocity"] = {0, 0, -120};
+  source["time"] = {{"cfl", 0.9}, {"end", 0.1}};
+  source["interfaces"] = json::parse(R"([{"law": "contact", "nodes": "b.z_min",
+    "obstacle": {"type": "plane", "point": [0, 0, 0.1], "normal": [0, 0, 1]}}])");
+  std::ofstream(folder / "scene.json") << source.dump();
+  const std::string run = "run " + (folder / "scene.json").string() + " --out " + folder.string();
+  const Outcome outcome = run_program(run);
+  ASSERT_EQ(outcome.code, 1) << outcome.output;
+  const auto file = folder / "diverged.vtu";
+  EXPECT_NE(outcome.output.find("; that state is in " + file.string()), std::string::npos) << outcome.output;
+  const std::size_t named = outcome.output.find("; element ");
+  ASSERT_NE(named, std::string::npos) << outcome.output;
+  const auto grid = grid_of(file);
+  EXPECT_EQ(cells_of(*grid, "inverted").GetComponent(std::stoi(outcome.output.substr(named + 10)), 0), 1.0);
+  // The next run does not leave it there.
+  source["model"]["blocks"][0]["velocity"] = {0, 0, -1};
+  source["time"]["end"] = 0.001;
+  std::ofstream(folder / "scene.json") << source.dump();
+  ASSERT_EQ(run_program(run).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   EXPECT_EQ(run_program("plot " + ball).output,
             "ilaw: " + ball + "/history.csv: found no such file" + wanted);
   for (const char* command :
-       {"", "run", "plot", "converge", "study", "list", "describe", "stress", "check"}) {
+       {"", "run", "plot", "converge", "study", "list", "describe", "stress", "check", "bench"}) {
     const Outcome help = run_program(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.output.find("Example: "), std::string::npos) << command;

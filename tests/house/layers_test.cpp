@@ -14,8 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // The folders of host_mock/src from the ground up: each may include itself and those before it.
-const std::vector<std::string> floors = {"base",  "check",   "model", "contact", "step",
-                                         "scene", "results", "study", "stress",  "cli"};
+const std::vector<std::string> floors = {"base",    "check", "model",  "contact", "step", "scene",
+                                         "results", "study", "stress", "bench",   "cli"};
 
 std::string first_folder(const std::string& path) { return path.substr(0, path.find('/')); }
 

@@ -3,6 +3,10 @@
 #include "support/numbers.hpp"
 #include "support/small_batch.hpp"
 
+#include <ilaw/profile.h>
+
+#include <set>
+
 namespace ilaw::testing {
 namespace {
 
@@ -154,7 +158,7 @@ TEST(Create, TakesValuesPerNode) {
   EXPECT_EQ(nodes.r[1][1], 0.0);
 }
 
-// Authors give their laws extensions by a member; a law without has none, which null says.
+// Authors give their laws extensions by a member, beside those of the kit.
 TEST(Extension, OfALawIsFoundByItsName) {
   const ilaw::library probe(ILAW_KIT_PROBE), coulomb(plugin_file("coulomb"));
   const auto extension = probe.law("kit_probe")->extension;
@@ -162,7 +166,31 @@ TEST(Extension, OfALawIsFoundByItsName) {
   ASSERT_NE(extension("tests.answer/1"), nullptr);
   EXPECT_EQ(*static_cast<const int*>(extension("tests.answer/1")), 42);
   EXPECT_EQ(extension("tests.answer/2"), nullptr);
-  EXPECT_EQ(coulomb.law("coulomb")->extension, nullptr);
+  EXPECT_EQ(coulomb.law("coulomb")->extension("tests.answer/1"), nullptr);
+  for (const auto* law : {probe.law("kit_probe"), coulomb.law("coulomb")}) {
+    const auto* profile = static_cast<const ilaw_profile*>(law->extension(ILAW_PROFILE));
+    ASSERT_NE(profile, nullptr) << law->id;
+    EXPECT_EQ(profile->struct_size, sizeof(ilaw_profile)) << law->id;
+  }
+}
+
+// A history is written node by node, and the count changes no bit.
+TEST(Extension, OfTheProfileCountsWhatIsSolvedOneByOne) {
+  const ilaw::library library(ILAW_KIT_PROBE);
+  const SetupBuilder setup({{{"viscosity", 2.0}}, {}});
+  const ilaw::interface law(library, "kit_probe", setup.setup);
+  const auto* profile = static_cast<const ilaw_profile*>(law.law().extension(ILAW_PROFILE));
+  const std::set<std::string> known = {"baseline", "v3", "v4"};
+  EXPECT_EQ(known.count(profile->instruction_set(law.instance())), 1U);
+  constexpr std::size_t count = 70;  // more than a block
+  SmallBatch nodes(count, {-1.0, 2.0, -3.0}, law.info().state_size);
+  SmallBatch again(count, {-1.0, 2.0, -3.0}, law.info().state_size);
+  ASSERT_EQ(law.evaluate(nodes.b), ILAW_OK);
+  std::int64_t one_by_one = -1;
+  ASSERT_EQ(profile->evaluate_counting(law.instance(), &again.b, nullptr, &one_by_one), ILAW_OK);
+  EXPECT_EQ(one_by_one, static_cast<std::int64_t>(count));
+  EXPECT_EQ(nodes.state, again.state);
+  EXPECT_EQ(nodes.r, again.r);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include <ilaw/kit/math.hpp>
+#include <ilaw/kit/pack.hpp>
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <random>
 
@@ -50,6 +52,24 @@ TEST(Log, HasItsLimits) {
   EXPECT_EQ(log(infinity), infinity);
   EXPECT_TRUE(std::isnan(log(-1.0)));
   EXPECT_TRUE(std::isnan(log(std::nan(""))));
+}
+
+TEST(Packs, GiveTheBitsOfADouble) {
+  using ilaw::kit::pack, ilaw::kit::pack_size;
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> uniform(-760.0, 720.0);
+  const double special[] = {0.0, -0.0, infinity, -infinity, std::nan(""), 1e-310, 5e-324, -1.0};
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  for (int i = 0; i < 20000; ++i) {
+    double x[pack_size], exps[pack_size], logs[pack_size];
+    for (double& one : x) one = i < 8 ? special[i] : i % 2 ? uniform(random) : exp(uniform(random));
+    exp(pack::load(x)).store(exps);
+    log(pack::load(x)).store(logs);
+    for (int lane = 0; lane < pack_size; ++lane) {
+      ASSERT_EQ(bits(exps[lane]), bits(exp(x[lane]))) << "seed 6, x = " << x[lane];
+      ASSERT_EQ(bits(logs[lane]), bits(log(x[lane]))) << "seed 6, x = " << x[lane];
+    }
+  }
 }
 
 // The relative error of exp is the absolute one of y ln x, of which half an ulp is lost.

@@ -116,5 +116,22 @@ TEST(StateVariables, HaveTheSizeOfTheirKind) {
   }
 }
 
+// Hosts find the variables in the order in which they are described: that of struct state, which is another
+// one in kit_probe, is the law's own affair.
+TEST(StateVariables, StandInTheOrderOfTheirEntries) {
+  const ilaw::interface law = make_probe();
+  Three nodes(law);
+  ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_OK);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double* state = &nodes.state[i * nodes.size];
+    const double* sum = state + offset_of(law.info(), "sum");
+    const double* slip = state + offset_of(law.info(), "slip");
+    EXPECT_EQ(state[offset_of(law.info(), "count")], 1.0) << i;
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(sum[c], nodes.r[i][c]) << i << ", " << c;
+    for (std::size_t c = 0; c < 2; ++c)
+      EXPECT_EQ(slip[c], 1e-3 * (nodes.v[c + 1] + nodes.r[i][c + 1])) << i << ", " << c;
+  }
+}
+
 }  // namespace
 }  // namespace ilaw::testing

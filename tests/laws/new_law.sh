@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A new law touches folders of its own alone: in a copy of the tree, template_law is copied by the very commands
 # of its page, and the copy builds, is described, run, tested and timed without another edit.
-# Usage: new_law.sh SOURCE CMAKE C++ PROGRAMS, the last being the folder of ilaw, kit_test, laws_test, ilaw_bench_laws.
+# Usage: new_law.sh SOURCE CMAKE C++ PROGRAMS, the last being the folder of ilaw, kit_test, laws_test.
 set -euo pipefail
 source=$1 cmake=$2 compiler=$3 programs=$4
 tree=$(mktemp -d)
@@ -33,4 +33,4 @@ for program in kit_test laws_test; do
   quietly "$programs/$program" --gtest_brief=1 --gtest_filter='*/my_law*:EveryLaw.*'
   echo "$program: $count tests of my_law"
 done
-"$programs/ilaw_bench_laws" --law my_law --nodes 1000 --repetitions 1 | grep my_law
+"$programs/ilaw" bench --cases tests/laws/my_law/cases.json --nodes 1000 --repetitions 1 | grep my_law

@@ -117,9 +117,12 @@ TEST_P(TransverseAlongNormals, GivesTheLocalResult) {
   ASSERT_EQ(local.evaluate(), ILAW_OK) << local.report.reason;
   ASSERT_EQ(turned.evaluate(), ILAW_OK) << turned.report.reason;
   for (std::size_t i = 0; i < nodes.count; ++i) {
-    const Vector r = turned.local(i, turned.r[i], 1.0);
-    for (std::size_t c = 0; c < 3; ++c)
-      ASSERT_NEAR(r[c], local.r[i][c], 64 * ulp * (0.01 + std::sqrt(dot(r, r)))) << "node " << i;
+    const Vector r = turned.local(i, turned.r[i], 1.0), v = turned.local(i, turned.v[i], 1.0);
+    const double tolerance = 64 * ulp * (0.01 + std::sqrt(dot(r, r)));
+    for (std::size_t c = 0; c < 3; ++c) {
+      ASSERT_NEAR(r[c], local.r[i][c], tolerance) << "node " << i;
+      ASSERT_NEAR(v[c], local.v[i][c], 64 * ulp + 2.0 * tolerance) << "node " << i;
+    }
   }
 }
 

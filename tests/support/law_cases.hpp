@@ -9,7 +9,7 @@
 //   options      tables in time and values per node: name as many parameters as go together (laws_test)
 //   properties   conditions, energy, units, axes (laws_test; its head explains the further keys)
 //   limits       parameters with which the law is another, bit for bit (laws_test)
-//   benchmarks   what ilaw_bench_laws times (its head explains the further keys)
+//   benchmarks   what ilaw bench --cases times (docs/benchmarks.md explains the keys)
 //
 // A case has "parameters" (numbers, "inf", choices; {} if left out) and, where a law has several, a "name".
 #pragma once

@@ -50,9 +50,10 @@ typedef struct ilaw_bodies {
 /* The contacts that have one law. */
 typedef struct ilaw_contacts {
   uint32_t struct_size;
-  uint32_t delassus_form; /* the instance was created with: ILAW_DELASSUS_SCALAR where nothing rotates, else
-                             ILAW_DELASSUS_FULL */
-  const ilaw_law* law;    /* ilaw_interface_law, ilaw_interface_instance of an interface that was */
+  uint32_t delassus_form;        /* the instance was created with: ILAW_DELASSUS_SCALAR where nothing rotates,
+                                    ILAW_DELASSUS_TRANSVERSE for spheres with arms along the normal, else
+                                    ILAW_DELASSUS_FULL */
+  const ilaw_law* law;           /* ilaw_interface_law, ilaw_interface_instance of an interface that was */
   const ilaw_instance* instance; /* created for ILAW_FRAME_GLOBAL */
   /* As for evaluate, but without v_free, delassus, v_previous, velocity and lists of nodes: contacts 0 to
    * node_count - 1. impulse is read, too: the sweeps begin with it. Leave there what the last step left

@@ -285,10 +285,11 @@ class Solver:
         self._handle = library().ilaw_coupled_create()
         if not self._handle:
             raise MemoryError
+        self._destroy = library().ilaw_coupled_destroy  # at the interpreter's end modules are empty
 
     def __del__(self) -> None:
         if getattr(self, "_handle", None):
-            library().ilaw_coupled_destroy(self._handle)
+            self._destroy(self._handle)
 
     def solve(
         self,

@@ -26,6 +26,7 @@ void add_list(CLI::App& app, Action& chosen);
 void add_describe(CLI::App& app, Action& chosen);
 void add_check(CLI::App& app, Action& chosen);
 void add_stress(CLI::App& app, Action& chosen);
+void add_bench(CLI::App& app, Action& chosen);
 
 // The option --threads, for commands that run scenes.
 void add_threads(CLI::App& command, int& threads);

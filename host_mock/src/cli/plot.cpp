@@ -24,7 +24,7 @@ namespace ilaw::host {
 namespace {
 
 struct Options {
-  std::vector<std::string> folders, y;
+  std::vector<std::string> folders, y, panels;
   std::string x = "time", out;
 };
 
@@ -51,6 +51,17 @@ Caption read_caption(const std::filesystem::path& folder) {
   return {value("/scene/title", folder.filename().string()), value("/scene/source/output/every", 1)};
 }
 
+// The first of the wanted panels that the history does not have, with those that it has; empty:
+// none.
+std::string unknown_panel(const std::vector<std::string>& wanted, const std::vector<std::string>& names) {
+  std::string known;
+  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+  for (const std::string& panel : wanted)
+    if (std::find(names.begin(), names.end(), panel) == names.end())
+      return "--panels: found '" + panel + "', expected some of " + known;
+  return "";
+}
+
 int refuse(const std::filesystem::path& history, const char* found) {
   complain(history.string() + ": found " + found +
            ", expected the history that `ilaw run` writes of watched nodes");
@@ -59,7 +70,7 @@ int refuse(const std::filesystem::path& history, const char* found) {
 
 // Reads history.csv and summary.json of a run's folder and writes history.png and history.svg
 // beside them.
-int plot_history(const std::filesystem::path& results) {
+int plot_history(const std::filesystem::path& results, const std::vector<std::string>& panels) {
   // gnuplot takes file names that begin with < or | for commands: an absolute path never does.
   const std::filesystem::path folder = std::filesystem::absolute(results).lexically_normal();
   const std::filesystem::path history = folder / "history.csv";
@@ -71,7 +82,13 @@ int plot_history(const std::filesystem::path& results) {
   const Columns columns = read_columns(history);
   if (columns.names.size() < 2) return refuse(history, "no column besides time");
 
-  const Caption caption = read_caption(folder);
+  Caption caption = read_caption(folder);
+  caption.panels = panels;
+  if (const std::string mistake = unknown_panel(panels, panel_names(columns, caption.every));
+      !mistake.empty()) {
+    complain(mistake);
+    return exit_bad_input;
+  }
   if (!draw_by_gnuplot(folder / "history.gnuplot",
                        [&](std::ostream& script) { write_picture(script, folder, columns, caption); }))
     return exit_failed;
@@ -131,7 +148,10 @@ int plot_columns(const Options& options) {
 
 int plot(const Options& options) {
   const bool history = options.folders.size() == 1 && options.y.empty() && options.x == "time";
-  return history ? plot_history(options.folders.front()) : plot_columns(options);
+  if (history) return plot_history(options.folders.front(), options.panels);
+  if (options.panels.empty()) return plot_columns(options);
+  complain("--panels: found with several folders or --x, expected one folder; --y chooses columns there");
+  return exit_bad_input;
 }
 
 }  // namespace
@@ -141,6 +161,10 @@ void add_plot(CLI::App& app, Action& chosen) {
   CLI::App* command =
       app.add_subcommand("plot", "Draw the history of a run, or several runs over each other: .png and .svg");
   command->add_option("folders", options->folders, "Folders that `ilaw run` wrote")->required();
+  command
+      ->add_option("--panels", options->panels,
+                   "Panels to draw of one run, by the names on their left: gap,velocity,status")
+      ->delimiter(',');
   command->add_option("--y", options->y, "Columns of history.csv, a panel each")->delimiter(',');
   command->add_option("--x", options->x, "Column to draw them over")->capture_default_str();
   command->add_option("--out", options->out,

@@ -14,6 +14,7 @@
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
 #include "results/fields.hpp"
+#include "results/gnuplot.hpp"
 #include "results/history.hpp"
 #include "results/summary.hpp"
 #include "scene/scene.hpp"
@@ -41,6 +42,9 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
+
+// Beginning of the name of rows that an earlier part of the run wrote with other columns.
+constexpr const char* earlier_history = "history.until_step_";
 
 // A run and what it writes. The constructor throws WriteError where nothing can be written, and
 // other std::runtime_error where there is nothing to resume from.
@@ -75,13 +79,14 @@ class Run {
       }
       record.interrupted = integrator_.steps() < scene_.steps;
       check_results();
-      if (record.interrupted && options_.checkpoint_every > 0) write_checkpoint_now();
+      if (options_.checkpoint_every > 0) write_checkpoint_now();  // also at the end, to go on to a later one
       history_->commit();
       if (events_) events_->commit();
+    } catch (const Diverged& failure) {
+      keep_what_there_is(failure.what());
+      keep_diverged_state();
     } catch (const std::exception& failure) {
-      record.failure = failure.what();
-      history_->keep_rows();
-      if (events_) events_->keep_rows();
+      keep_what_there_is(failure.what());
     }
   }
 
@@ -105,9 +110,13 @@ class Run {
   // What an earlier run left in the folder, and pictures of it, would be taken for this one's.
   void clear() const {
     clear_checkpoints(options_.folder);
-    for (const char* name :
-         {"summary.json", "history.csv", "events.csv", "history.png", "history.svg", "history.gnuplot"})
+    for (const char* name : {"summary.json", "history.csv", "events.csv", "history.png", "history.svg"})
       std::filesystem::remove(options_.folder / name);
+    std::vector<std::filesystem::path> earlier;
+    for (const auto& entry : std::filesystem::directory_iterator(options_.folder))
+      if (entry.path().filename().string().starts_with(earlier_history)) earlier.push_back(entry.path());
+    for (const std::filesystem::path& file : earlier) std::filesystem::remove(file);
+    remove_pictures(options_.folder, "history|.*_over_.*");
     fields_.clear();
   }
 
@@ -117,12 +126,55 @@ class Run {
     if (!said.empty())
       complain(said + "; going on from the checkpoint before it, at step " +
                std::to_string(integrator_.steps()));
-    history_ = std::make_unique<History>(scene_, integrator_, options_.folder, checkpoint.history);
-    std::istringstream history(checkpoint.history_state), events(checkpoint.events_state);
-    history_->load(history);
-    if (scene_.output.events) events_.emplace(scene_, options_.folder, checkpoint.events).load(events);
     fields_.resume(checkpoint.fields);
     record.resumed_at = integrator_.steps();
+    const bool goes_on =
+        same_columns(checkpoint.output, scene_.source.value("output", nlohmann::json::object()));
+    resume_history(checkpoint, goes_on);
+    resume_events(checkpoint);
+    if (!goes_on) write_checkpoint_now();  // the one before it goes on from rows with other columns
+  }
+
+  // With other columns a history of its own begins, beside the one that there is.
+  void resume_history(const Checkpoint& checkpoint, bool goes_on) {
+    const std::filesystem::path file = options_.folder / "history.csv";
+    if (!goes_on) {
+      AtomicFile(file, checkpoint.history).commit();
+      std::filesystem::rename(
+          file, options_.folder / (earlier_history + std::to_string(integrator_.steps()) + ".csv"));
+      history_ = std::make_unique<History>(scene_, integrator_, options_.folder);
+      return;
+    }
+    history_ = std::make_unique<History>(scene_, integrator_, options_.folder, checkpoint.history);
+    std::istringstream state(checkpoint.history_state);
+    history_->load(state);
+  }
+
+  // Those of before stay, whether more are asked for or not.
+  void resume_events(const Checkpoint& checkpoint) {
+    const bool had_events = checkpoint.events.size > 0;
+    if (had_events && scene_.output.events) {
+      std::istringstream state(checkpoint.events_state);
+      events_.emplace(scene_, options_.folder, checkpoint.events).load(state);
+    } else if (had_events) {
+      AtomicFile(options_.folder / "events.csv", checkpoint.events).commit();
+    } else if (scene_.output.events) {
+      events_.emplace(scene_, options_.folder);
+    }
+  }
+
+  void keep_what_there_is(const char* failure) {
+    record.failure = failure;
+    history_->keep_rows();
+    if (events_) events_->keep_rows();
+  }
+
+  void keep_diverged_state() {
+    try {
+      record.failure += "; that state is in " + fields_.write_diverged(integrator_).string();
+    } catch (const std::exception& failure) {
+      record.failure += std::string("; that state could not be written: ") + failure.what();
+    }
   }
 
   void warn_of_penetration() {
@@ -155,8 +207,7 @@ class Run {
 
   // Velocities are looked at in every step; what follows from them, where it is written.
   void check_motion() const {
-    if (!integrator_.displacement().allFinite())
-      throw std::runtime_error("the motion diverged: a displacement is not finite");
+    if (!integrator_.displacement().allFinite()) throw Diverged("a displacement is not finite");
   }
   void check_results() const {
     check_motion();
@@ -165,9 +216,7 @@ class Run {
          {std::pair{"kinetic energy", energy.kinetic}, std::pair{"internal energy", energy.internal},
           std::pair{"external work", energy.external_work},
           std::pair{"work of the interfaces", energy.interface_work}})
-      if (!std::isfinite(value))
-        throw std::runtime_error("the motion diverged: the " + std::string(name) + " is " +
-                                 std::to_string(value));
+      if (!std::isfinite(value)) throw Diverged("the " + std::string(name) + " is " + std::to_string(value));
   }
 
   void write_checkpoint_now() {

@@ -7,6 +7,7 @@
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
 #include "cli/terminal.hpp"
+#include "results/gnuplot.hpp"
 #include "results/run_table.hpp"
 #include "scene/validation.hpp"
 
@@ -188,6 +189,7 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
     return exit_bad_input;
   }
   const HeldFolder held(options.folder);
+  remove_pictures(options.folder, "comparison|.*_over_.*");  // of an earlier sweep
   set_threads(options.threads);
   run_all(variants, settings, source, options);
   write_table(variants, options.folder);

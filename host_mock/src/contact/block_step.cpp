@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 namespace ilaw::host {
@@ -21,8 +22,10 @@ bool follow_each_other(const std::int32_t* values, std::ptrdiff_t count) {
   return difference == 0;
 }
 
-// One block after the other, in D dimensions; Partnered: against other nodes.
-template <int D, bool Partnered>
+enum class Meets { obstacle, turning_obstacle, partners };
+
+// One block after the other, in D dimensions.
+template <int D, Meets What>
 class Blocks {
  public:
   explicit Blocks(const BlockStep& step) : step_(step), at_(step.contacts) {
@@ -51,6 +54,7 @@ class Blocks {
   }
 
  private:
+  static constexpr bool Partnered = What == Meets::partners, Turns = What == Meets::turning_obstacle;
   using Column = std::array<double, block_size>;
   using Vectors = std::array<double, D * block_size>;
   using Components = std::array<double, D>;
@@ -73,7 +77,18 @@ class Blocks {
     else
       step_.setup.counterpart->locate(node_index_.data(), count_, step_.step.u, step_.step.time,
                                       {gap_.data(), normal_.data()});
+    if constexpr (Turns) find_turns();
     for (std::ptrdiff_t i = 0; i < count_; ++i) gap_[i] -= step_.setup.gap_offset;
+  }
+
+  // Of the surface where it is touched: a gap offset is a body's own.
+  void find_turns() {
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      const RigidSurface there{gap_[i], Eigen::Map<const Vector>(&normal_[D * i], D)};
+      const Vector turn =
+          step_.setup.counterpart->unit_turn(node_index_[i], step_.step.u, step_.step.time, there);
+      std::copy_n(turn.data(), D, &turn_[D * i]);
+    }
   }
 
   void locate_partners() {
@@ -99,10 +114,13 @@ class Blocks {
     return value;
   }
 
-  const double* relative(const Dofs& v, const Components& obstacle, Vectors& room) const {
-    if (!Partnered && in_row_ && obstacle == Components{}) return &v[first_dof(0)];
+  // rate: at which the obstacle turns.
+  const double* relative(const Dofs& v, const Components& obstacle, double rate, Vectors& room) const {
+    if (What == Meets::obstacle && in_row_ && obstacle == Components{}) return &v[first_dof(0)];
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       for (int c = 0; c < D; ++c) room[D * i + c] = component(v.data(), i, c) - obstacle[c];
+    if constexpr (Turns)
+      for (std::ptrdiff_t k = 0; k < D * count_; ++k) room[k] -= rate * turn_[k];
     return room.data();
   }
 
@@ -126,9 +144,10 @@ class Blocks {
     status_ = in_row_ ? &at_.status[contact(0)] : status_room_.data();
     ilaw_batch batch = empty_batch(step_.setup, step_.step.time, step_.step.dt);
     batch.node_count = count_;
-    batch.v_free = {relative(step_.v, obstacle_, v_free_), D, 1};
+    batch.v_free = {relative(step_.v, obstacle_, step_.rates.after, v_free_), D, 1};
     if ((info.inputs | info.energy_inputs) & ILAW_INPUT_V_PREVIOUS)
-      batch.v_previous = {relative(step_.step.v_before, obstacle_before_, v_previous_), D, 1};
+      batch.v_previous = {relative(step_.step.v_before, obstacle_before_, step_.rates.before, v_previous_), D,
+                          1};
     batch.delassus = {delassus_, 1, 0};
     batch.gap = {gap_.data(), 1, 0};
     batch.normal = {normal_.data(), D, 1};
@@ -202,6 +221,8 @@ class Blocks {
         const double r = impulse_[D * i + c], sum = component(before, i, c) + component(v, i, c);
         product += r * sum;
         relative_product += r * (sum - (obstacle_[c] + obstacle_before_[c]));
+        if constexpr (Turns)
+          relative_product -= r * (step_.rates.before + step_.rates.after) * turn_[D * i + c];
       }
       work += 0.5 * product;
       relative_work += 0.5 * relative_product;
@@ -246,16 +267,17 @@ class Blocks {
   std::array<std::int32_t, block_size> node_index_, node_;
   Column gap_, delassus_room_, area_room_;
   Vectors v_free_, v_previous_, normal_, impulse_room_;
+  std::conditional_t<Turns, Vectors, std::array<double, 0>> turn_;  // velocities at rate 1
   std::array<double, ILAW_ENERGY_COUNT * block_size> energy_;
   std::array<std::uint8_t, block_size> status_room_;
   std::vector<double> state_, parameter_room_;
   std::vector<ilaw_input> parameters_;
 };
 
-template <int D, bool Partnered>
+template <int D, Meets What>
 ChunkOutcome solve_blocks(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count) {
   ChunkOutcome outcome;
-  Blocks<D, Partnered> blocks(step);
+  Blocks<D, What> blocks(step);
   for (std::ptrdiff_t first = 0; first < count; first += block_size)
     blocks.solve(contacts + first, std::min(block_size, count - first), outcome);
   return outcome;
@@ -263,8 +285,9 @@ ChunkOutcome solve_blocks(const BlockStep& step, const std::int32_t* contacts, s
 
 template <int D>
 ChunkOutcome solve_in(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count) {
-  return step.contacts.point.empty() ? solve_blocks<D, false>(step, contacts, count)
-                                     : solve_blocks<D, true>(step, contacts, count);
+  if (!step.contacts.point.empty()) return solve_blocks<D, Meets::partners>(step, contacts, count);
+  return step.setup.counterpart->turns() ? solve_blocks<D, Meets::turning_obstacle>(step, contacts, count)
+                                         : solve_blocks<D, Meets::obstacle>(step, contacts, count);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ struct BlockStep {
   ContactArrays& contacts;
   const StepView& step;
   const Vector &obstacle_velocity, &obstacle_velocity_before;
+  TurningRates rates;
   Dofs& v;  // v_free, then what the impulses make of it
 };
 

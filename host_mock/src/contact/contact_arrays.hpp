@@ -95,6 +95,7 @@ class ContactArrays {
   std::vector<std::uint8_t> status;
   // repeated
   std::vector<double> v_free, v_previous, normal, previous_impulse, gap, energy;
+  std::vector<double> turn;  // where an obstacle turns: the velocity of its surface at rate 1
 
  private:
   enum Mark : std::uint8_t {

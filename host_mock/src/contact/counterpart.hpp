@@ -34,6 +34,11 @@ struct ContactPoint {
   double delassus(const Model& model, int node) const;
 };
 
+// How fast a rigid counterpart turns before and after a time; means over the steps there.
+struct TurningRates {
+  double before = 0.0, after = 0.0;
+};
+
 // Gaps of some contacts, and normals, of as many components each as the model has dimensions.
 struct Located {
   double *gaps, *normals;
@@ -58,6 +63,14 @@ class Counterpart {
 
   // Mean velocity of a rigid counterpart between two times.
   virtual Vector velocity(double from, double to) const = 0;
+  // Whether it is rigid and its surface moves along itself, too; then how fast it turns, and the
+  // velocity of its surface at rate 1, where a node meets it.
+  virtual bool turns() const { return false; }
+  virtual TurningRates rates(double /*time*/, double /*dt*/) const { return {}; }
+  virtual Vector unit_turn(int /*node_index*/, const Dofs& /*u*/, double /*time*/,
+                           const RigidSurface& /*there*/) const {
+    return {};
+  }
   // Nodes that may be partners; empty for rigid counterparts.
   virtual const std::vector<int>& partners() const = 0;
   // Whether two contacts may have a partner in common.
@@ -74,6 +87,13 @@ class RigidCounterpart : public Counterpart {
               Located found) const override;
   double gap_bound(int node_index, const Dofs& u, double time) const override;
   Vector velocity(double from, double to) const override { return obstacle_->velocity(from, to); }
+  bool turns() const override { return obstacle_->turns(); }
+  TurningRates rates(double time, double dt) const override {
+    return {obstacle_->rate(time - dt, time), obstacle_->rate(time, time + dt)};
+  }
+  Vector unit_turn(int node_index, const Dofs& u, double time, const RigidSurface& there) const override {
+    return obstacle_->unit_velocity(position(node_index, u), there, time);
+  }
   const std::vector<int>& partners() const override { return none_; }
   bool keeps_normal() const override { return obstacle_->is_flat(); }
 

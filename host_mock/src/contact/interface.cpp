@@ -90,6 +90,39 @@ std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
   return {first, first + static_cast<std::ptrdiff_t>(info().state_size)};
 }
 
+// The step has no size yet: at rest, no law's answer depends on it. A node that the law refuses is
+// told of by the first step.
+int Interface::status_at_start(int node_index, const Dofs& u) const {
+  if (setup_.birth > 0.0) return ILAW_FREE;
+  const ContactPoint point = setup_.counterpart->contact_point(node_index, u, 0.0);
+  const std::vector<double> parameters = parameters_of(node_index), state = first_state(node_index, u);
+  std::vector<ilaw_input> inputs;
+  inputs.reserve(parameters.size());
+  for (const double& value : parameters) inputs.push_back({&value, 1, 1});
+  const Vector rest = Vector::Zero(dimension_);
+  Vector impulse = rest;
+  std::vector<double> state_out = state;
+  const double gap = point.gap - setup_.gap_offset,
+               delassus = point.delassus(model_, nodes()[at(node_index)]);
+  const auto size = static_cast<std::int64_t>(state.size());
+  std::uint8_t status = ILAW_FREE;
+  ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
+  batch.node_count = 1;
+  batch.v_free = batch.v_previous = {rest.data(), dimension_, 1};
+  batch.delassus = {&delassus, 1, 1};
+  batch.gap = {&gap, 1, 1};
+  batch.area = {&setup_.areas[at(node_index)], 1, 1};
+  batch.normal = {point.normal.data(), dimension_, 1};
+  batch.per_node_parameters = inputs.data();
+  batch.state_in = {state.data(), size, 1};
+  batch.state_out = {state_out.data(), size, 1};
+  batch.impulse = {impulse.data(), dimension_, 1};
+  batch.status = &status;
+  batch.status_stride = 1;
+  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
+  return law_.evaluate(batch).code == ILAW_OK ? status : int{ILAW_FREE};
+}
+
 bool Interface::may_skip() const {
   if (setup_.keeps_all_active || (law_.acts_at_distance() && !law_.rests())) return false;
   return setup_.counterpart->keeps_normal() || !law_.carries_axes();
@@ -122,6 +155,7 @@ void Interface::choose_active(const StepView& step) {
   const Counterpart& counterpart = *setup_.counterpart;
   obstacle_velocity_before_ = counterpart.velocity(step.time - step.dt, step.time);
   obstacle_velocity_ = counterpart.velocity(step.time, step.time + step.dt);
+  if (counterpart.turns()) rates_ = counterpart.rates(step.time, step.dt);
   const double moving = counterpart.partners().empty() ? 1.0 : 2.0;
   const double closing_before = moving * step.speed_before + obstacle_velocity_before_.norm(),
                closing_after = moving * step.speed_after + obstacle_velocity_.norm();
@@ -140,7 +174,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
   sums_ = {};
   if (active_.empty()) return;
   const BlockStep blocks{setup_, model_, law_, contacts_, step, obstacle_velocity_, obstacle_velocity_before_,
-                         v};
+                         rates_, v};
   outcomes_.resize(chunk_starts_.size() - 1);
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   for_each_chunk(static_cast<std::ptrdiff_t>(outcomes_.size()), 1, [&](std::ptrdiff_t c, auto, auto) {
@@ -161,12 +195,17 @@ void Interface::solve(const StepView& step, Dofs& v) {
 void Interface::open_step(const StepView& step) {
   choose_active(step);
   sums_ = {};
+  const bool turns = setup_.counterpart->turns();
+  if (turns) contacts_.turn.resize(contacts_.normal.size());
   for (const std::int32_t contact_index : active_) {
     const std::size_t k = at(contact_index);
     const ContactPoint point = setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);
     contacts_.gap[k] = point.gap - setup_.gap_offset;
     contacts_.vector(contacts_.normal, contact_index) = point.normal;
     contacts_.vector(contacts_.impulse, contact_index).setZero();
+    if (turns)
+      contacts_.vector(contacts_.turn, contact_index) = setup_.counterpart->unit_turn(
+          contacts_.node_index[k], step.u, step.time, {point.gap, point.normal});
     if (point.partner_count == 0) continue;
     contacts_.delassus[k] = point.delassus(model_, node_of(contact_index));
     contacts_.point[k] = point;
@@ -184,9 +223,10 @@ void Interface::gather(const ContactList& contacts, const Dofs& v, const StepVie
                    for (std::ptrdiff_t i = first; i < end; ++i) {
                      const std::int32_t k = contacts[static_cast<std::size_t>(i)];
                      contacts_.vector(contacts_.v_free, k) =
-                         relative(k, v) - obstacle_velocity_ - delassus(k) * impulse(k);
+                         relative(k, v) - surface_velocity(k) - delassus(k) * impulse(k);
                      contacts_.vector(contacts_.v_previous, k) =
-                         relative(k, step.v_before) - obstacle_velocity_before_;
+                         relative(k, step.v_before) -
+                         surface_velocity(k, obstacle_velocity_before_, rates_.before);
                      contacts_.vector(contacts_.previous_impulse, k) = impulse(k);
                    }
                  });
@@ -240,13 +280,14 @@ void Interface::start_from(int contact_index, const Vector& impulse) {
 
 void Interface::accept(const StepView& step, const Dofs& v) {
   Refusal unknown;
-  const Vector drift = obstacle_velocity_ + obstacle_velocity_before_;
+  const Vector velocity = obstacle_velocity_ + obstacle_velocity_before_;
   for (const std::int32_t contact_index : active_) {
     const std::size_t k = at(contact_index);
     unknown.add_unknown(&contacts_.status[k], &contact_index, 1);
     check(unknown);
     const Vector sum = relative(contact_index, step.v_before) + relative(contact_index, v);
     sums_.work += 0.5 * impulse(contact_index).dot(sum);
+    const Vector drift = surface_velocity(contact_index, velocity, rates_.before + rates_.after);
     sums_.relative_work += 0.5 * impulse(contact_index).dot(sum - drift);
     sums_.penetration = std::max(sums_.penetration, -gap(contact_index));
     ++sums_.statuses[contacts_.status[k]];
@@ -263,6 +304,11 @@ void Interface::accept(const StepView& step, const Dofs& v) {
             fault_of(impulse(contact_index).data(), dimension_,
                      &contacts_.energy[at(contact_index) * ILAW_ENERGY_COUNT], status(contact_index)))
       check({ILAW_BAD_LIBRARY, 0, contact_index, 0, fault});
+}
+
+Vector Interface::surface_velocity(int contact_index, const Vector& velocity, double rate) const {
+  if (contacts_.turn.empty()) return velocity;
+  return velocity + rate * contacts_.vector(contacts_.turn, contact_index);
 }
 
 // ---- the last step --------------------------------------------------------------------------------------

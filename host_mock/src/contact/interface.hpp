@@ -80,6 +80,10 @@ class Interface {
   Vector relative(int contact_index, const Dofs& v) const;
   const Vector& obstacle_velocity() const { return obstacle_velocity_; }
   const Vector& obstacle_velocity_before() const { return obstacle_velocity_before_; }
+  // Only where contacts share nodes: of the obstacle's surface where a contact is.
+  Vector surface_velocity(int contact_index) const {
+    return surface_velocity(contact_index, obstacle_velocity_, rates_.after);
+  }
   // Only where contacts share nodes.
   auto normal(int contact_index) const { return contacts_.vector(contacts_.normal, contact_index); }
   auto v_free(int contact_index) const { return contacts_.vector(contacts_.v_free, contact_index); }
@@ -92,6 +96,8 @@ class Interface {
   int contact_index_of(int node_index, const Dofs& u);  // makes a contact where there is none
   // The accepted state, without making a contact.
   std::vector<double> state_at(int node_index, const Dofs& u) const;
+  // What the law says of a node at rest where it starts, before any step.
+  int status_at_start(int node_index, const Dofs& u) const;
   std::size_t bytes_per_contact() const { return contacts_.bytes_per_contact(); }
   std::size_t contact_count() const { return contacts_.count(); }
 
@@ -101,6 +107,7 @@ class Interface {
 
  private:
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+  Vector surface_velocity(int contact_index, const Vector& velocity, double rate) const;
   bool may_skip() const;
   void choose_active(const StepView& step);
   void refresh_near(const StepView& step);
@@ -120,6 +127,7 @@ class Interface {
   ContactList near_, active_;
   std::vector<std::ptrdiff_t> chunk_starts_;  // in near_, and its end
   Vector obstacle_velocity_, obstacle_velocity_before_;
+  TurningRates rates_;
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
 };

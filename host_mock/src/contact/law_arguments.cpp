@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "contact/law_arguments.hpp"
+#include "contact/law_setup.hpp"
 
 #include <deque>
 
@@ -78,15 +78,9 @@ void try_create(const ilaw_law& law, const ilaw_setup& setup) {
 
 }  // namespace
 
-ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
-                           const ilaw::library& library, int dimension) {
+ilaw::interface create_law(const std::string& law, const Arguments& given, ilaw_setup setup,
+                           const ilaw::library& library) {
   ArgumentList arguments(given);
-  ilaw_setup setup{};
-  setup.struct_size = sizeof setup;
-  setup.dimension = static_cast<std::uint32_t>(dimension);
-  setup.delassus_form = ILAW_DELASSUS_SCALAR;
-  setup.frame = ILAW_FRAME_GLOBAL;
-  setup.tangent_given = tangent.size() > 0 ? 1 : 0;
   setup.arguments = arguments.pointers().data();
   setup.argument_count = static_cast<std::uint32_t>(arguments.pointers().size());
   std::optional<std::size_t> node_index;
@@ -101,6 +95,17 @@ ilaw::interface create_law(const std::string& law, const Arguments& given, const
     if (refusal.code() != ILAW_INVALID_PARAMETER) throw;
     throw ParameterError(refusal, arguments.pointer_from(refusal.what(), node_index), node_index);
   }
+}
+
+ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
+                           const ilaw::library& library, int dimension) {
+  ilaw_setup setup{};
+  setup.struct_size = sizeof setup;
+  setup.dimension = static_cast<std::uint32_t>(dimension);
+  setup.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.frame = ILAW_FRAME_GLOBAL;
+  setup.tangent_given = tangent.size() > 0 ? 1 : 0;
+  return create_law(law, given, setup, library);
 }
 
 }  // namespace ilaw::host

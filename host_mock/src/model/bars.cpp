@@ -51,7 +51,7 @@ Bars::Bars(const std::vector<BarSetup>& bars)
   int first = 0;
   for (const BarSetup& bar : bars) {
     const double element_length = bar.length / bar.elements;
-    runs_.push_back({first, bar.elements, bar.young * bar.section / element_length});
+    runs_.push_back({first, bar.elements, bar.young * bar.section / element_length, bar.section});
     critical_step_ = std::min(critical_step_, element_length * std::sqrt(bar.density / bar.young));
     for (int k = 0; k < bar.elements; ++k) {
       mesh_.cells.push_back(first + k);
@@ -76,6 +76,16 @@ double Bars::potential(const Dofs& u) const {
     for (int k = run.first; k < run.first + run.elements; ++k)
       energy += 0.5 * run.stiffness * (u[k + 1] - u[k]) * (u[k + 1] - u[k]);
   return energy;
+}
+
+std::vector<Eigen::Matrix3d> Bars::stresses(const Dofs& u) const {
+  std::vector<Eigen::Matrix3d> stresses;
+  for (const Run& run : runs_)
+    for (int k = run.first; k < run.first + run.elements; ++k) {
+      Eigen::Matrix3d& stress = stresses.emplace_back(Eigen::Matrix3d::Zero());
+      stress(0, 0) = run.stiffness * (u[k + 1] - u[k]) / run.section;
+    }
+  return stresses;
 }
 
 }  // namespace ilaw::host

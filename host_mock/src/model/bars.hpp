@@ -26,6 +26,7 @@ class Bars : public Model {
   bool has_internal_forces() const override { return true; }
   void add_internal_forces(const Dofs& u, Dofs& force) const override;
   double potential(const Dofs& u) const override;
+  std::vector<Eigen::Matrix3d> stresses(const Dofs& u) const override;
   // Element length over wave speed: with lumped mass exactly the limit 2/omega_max of the longest
   // mesh.
   double critical_step() const override { return critical_step_; }
@@ -34,6 +35,7 @@ class Bars : public Model {
   struct Run {
     int first, elements;
     double stiffness;  // of one element
+    double section;
   };
   std::vector<Run> runs_;  // one per bar
   double critical_step_;

@@ -238,6 +238,32 @@ double Blocks::Block::energy(const ElementVector& u) const {
   return sum;
 }
 
+// Cauchy's stress is P F^T / J; its mean over the deformed element weighs a point by its J.
+Eigen::Matrix3d Blocks::Block::mean_stress(const ElementVector& u) const {
+  const Deformation at = deformation(u);
+  const double mu = material.shear_modulus(), lambda = material.lame();
+  if (material.law == MaterialLaw::linear) {
+    Eigen::Matrix3d gradient = -Eigen::Matrix3d::Identity();
+    for (const Eigen::Matrix3d& F : at.gradients) gradient += 0.125 * F;
+    return lambda * gradient.trace() * Eigen::Matrix3d::Identity() + mu * (gradient + gradient.transpose());
+  }
+  double pressure = 0.0;
+  if (element == Element::mean_dilatation) {
+    double mean_distortion = 0.0;
+    for (std::size_t g = 0; g < 8; ++g) mean_distortion += 0.125 * at.distortion(g);
+    pressure = at.solid.pressure(mean_distortion);
+  }
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t g = 0; g < 8; ++g) {
+    const Eigen::Matrix3d& F = at.gradients[g];
+    const Eigen::Matrix3d P = element == Element::mean_dilatation
+                                  ? at.solid.stress(pressure, F, at.volumes[g], at.scales[g])
+                                  : neo_hookean_stress(mu, lambda, F);
+    sum += 0.125 * P * F.transpose();
+  }
+  return sum / at.solid.volume;
+}
+
 template <class Visit>
 void Blocks::Block::for_each_element(int layer, Visit visit) const {
   const auto axis = static_cast<std::size_t>(layer_axis);
@@ -316,6 +342,16 @@ void Blocks::add_internal_forces(const Dofs& u, Dofs& force) const {
         });
     }
   }
+}
+
+// In the order of the mesh's cells.
+std::vector<Eigen::Matrix3d> Blocks::stresses(const Dofs& u) const {
+  std::vector<Eigen::Matrix3d> stresses;
+  for (const Block& block : blocks_)
+    for (int layer = 0; layer < block.elements[static_cast<std::size_t>(block.layer_axis)]; ++layer)
+      block.for_each_element(
+          layer, [&](int element) { stresses.push_back(block.mean_stress(block.gather(u, element))); });
+  return stresses;
 }
 
 double Blocks::potential(const Dofs& u) const {

@@ -38,6 +38,7 @@ class Blocks : public Model {
   // thread.
   void add_internal_forces(const Dofs& u, Dofs& force) const override;
   double potential(const Dofs& u) const override;
+  std::vector<Eigen::Matrix3d> stresses(const Dofs& u) const override;
   // From the largest eigenvalue of one element, which bounds that of the whole (Irons and Treharne
   // 1971). Mean dilatation makes it no smaller: it lowers the energy of every motion (Jensen).
   double critical_step() const override { return critical_step_; }
@@ -76,6 +77,7 @@ class Blocks : public Model {
     double energy(const ElementVector& u) const;
     ElementVector mean_dilatation_force(const ElementVector& u) const;
     Deformation deformation(const ElementVector& u) const;
+    Eigen::Matrix3d mean_stress(const ElementVector& u) const;
     // Calls visit(first node) for the elements of a layer.
     template <class Visit>
     void for_each_element(int layer, Visit visit) const;

@@ -69,6 +69,14 @@ double shortest_edge(const Model& model) {
   return shortest;
 }
 
+std::vector<int> inverted_elements(const Model& model, const Dofs& u) {
+  std::vector<int> found;
+  for_each_cell(model, [&](const Cell& cell, std::size_t number) {
+    if (cell.is_inverted(u)) found.push_back(static_cast<int>(number));
+  });
+  return found;
+}
+
 InvertedElement first_inverted(const Model& model, const Dofs& u) {
   const auto corners = static_cast<std::size_t>(model.mesh().nodes_per_cell);
   const Dofs undeformed = Dofs::Zero(u.size());

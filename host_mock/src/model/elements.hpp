@@ -12,6 +12,9 @@ namespace ilaw::host {
 // Of the undeformed mesh; infinite without one.
 double shortest_edge(const Model& model);
 
+// Elements that are turned inside out at the displacements u, by number.
+std::vector<int> inverted_elements(const Model& model, const Dofs& u);
+
 // The first element that is turned inside out at the displacements u, and where it was; -1: none.
 struct InvertedElement {
   int number = -1;

@@ -13,7 +13,7 @@ const std::vector<int>& Load::prescribed_nodes() const {
 Gravity::Gravity(const Model& model, std::vector<int> nodes, Vector acceleration)
     : model_(model), nodes_(std::move(nodes)), acceleration_(std::move(acceleration)) {}
 
-void Gravity::add_force(double /*time*/, Dofs& force) const {
+void Gravity::add_force(double /*time*/, const Dofs& /*u*/, Dofs& force) const {
   const Eigen::Index d = acceleration_.size();
   for (int node : nodes_)
     force.segment(node * d, d) += model_.mass().segment(node * d, d).cwiseProduct(acceleration_);
@@ -25,7 +25,7 @@ Force::Force(std::vector<int> nodes, std::vector<double> shares, Vector directio
       direction_(std::move(direction)),
       history_(std::move(history)) {}
 
-void Force::add_force(double time, Dofs& force) const {
+void Force::add_force(double time, const Dofs& /*u*/, Dofs& force) const {
   const Eigen::Index d = direction_.size();
   const double size = history_.at(time)[0];
   for (std::size_t k = 0; k < nodes_.size(); ++k)
@@ -61,24 +61,24 @@ void PrescribedMotion::prescribe(StepTimes step, Dofs& v, Changed changed) const
     }
 }
 
-void PrescribedMotion::correct(StepTimes step, const Dofs& /*v_before*/, Dofs& v, Dofs& impulse) const {
+void PrescribedMotion::correct(StepTimes step, Motions /*before*/, Dofs& v, Dofs& impulse) const {
   prescribe(step, v, [&](Eigen::Index dof, double by) { impulse[dof] += model_.mass()[dof] * by; });
 }
 
-void PrescribedMotion::start(double dt, const Dofs& /*v_start*/, Dofs& v) const {
+void PrescribedMotion::start(double dt, Motions /*before*/, Dofs& v) const {
   prescribe({-dt, 0.0}, v, [](Eigen::Index, double) {});
 }
 
 Damping::Damping(const Model& model, std::vector<int> nodes, double rate)
     : model_(model), nodes_(std::move(nodes)), rate_(rate) {}
 
-void Damping::correct(StepTimes step, const Dofs& v_before, Dofs& v, Dofs& impulse) const {
-  damp(step.after - step.before, v_before, v,
+void Damping::correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const {
+  damp(step.after - step.before, before.v, v,
        [&](Eigen::Index dof, double by) { impulse[dof] += model_.mass()[dof] * by; });
 }
 
-void Damping::start(double dt, const Dofs& v_start, Dofs& v) const {
-  damp(0.5 * dt, v_start, v, [](Eigen::Index, double) {});
+void Damping::start(double dt, Motions before, Dofs& v) const {
+  damp(0.5 * dt, before.v, v, [](Eigen::Index, double) {});
 }
 
 // m (v' - v_before) = m (v - v_before) - rate h m (v_before + v')/2, solved for v'.

@@ -16,21 +16,28 @@ struct StepTimes {
   double before, after;
 };
 
+// Of all nodes: displacements at the end of the step, and velocities before it.
+struct Motions {
+  const Dofs &u, &v;
+};
+
 class Load {
  public:
   virtual ~Load() = default;
-  // Adds the force at a time.
-  virtual void add_force(double /*time*/, Dofs& /*force*/) const {}
+  // Adds the force at a time, on nodes that are displaced by u.
+  virtual void add_force(double /*time*/, const Dofs& /*u*/, Dofs& /*force*/) const {}
   // Adds the impulses that fall into a step.
   virtual void add_impulse(StepTimes /*step*/, Dofs& /*impulse*/) const {}
   // Changes the velocity that a step would leave with, without interfaces, and adds the impulse that
-  // this takes.
-  virtual void correct(StepTimes /*step*/, const Dofs& /*v_before*/, Dofs& /*v*/, Dofs& /*impulse*/) const {}
+  // this takes. before: what the step started with.
+  virtual void correct(StepTimes /*step*/, Motions /*before*/, Dofs& /*v*/, Dofs& /*impulse*/) const {}
   // The same for the half step that a run starts with, from V_0 to V_{1/2}.
-  virtual void start(double /*dt*/, const Dofs& /*v_start*/, Dofs& /*v*/) const {}
+  virtual void start(double /*dt*/, Motions /*before*/, Dofs& /*v*/) const {}
   virtual bool corrects() const { return false; }
   // Whether its work is that of damping.
   virtual bool damps() const { return false; }
+  // Whether it also acts on nodes that a motion drives.
+  virtual bool acts_on_driven() const { return true; }
   // Whether it is the same force at all times, and nothing else.
   virtual bool is_steady() const { return false; }
   // Nodes whose motion is prescribed.
@@ -42,7 +49,7 @@ using Loads = std::vector<std::unique_ptr<Load>>;
 class Gravity : public Load {
  public:
   Gravity(const Model& model, std::vector<int> nodes, Vector acceleration);
-  void add_force(double time, Dofs& force) const override;
+  void add_force(double time, const Dofs& u, Dofs& force) const override;
   bool is_steady() const override { return true; }
 
  private:
@@ -56,7 +63,7 @@ class Force : public Load {
  public:
   // The size times its share acts on each node.
   Force(std::vector<int> nodes, std::vector<double> shares, Vector direction, Table history);
-  void add_force(double time, Dofs& force) const override;
+  void add_force(double time, const Dofs& u, Dofs& force) const override;
 
  private:
   std::vector<int> nodes_;
@@ -81,10 +88,11 @@ class Shock : public Load {
 class Damping : public Load {
  public:
   Damping(const Model& model, std::vector<int> nodes, double rate);
-  void correct(StepTimes step, const Dofs& v_before, Dofs& v, Dofs& impulse) const override;
-  void start(double dt, const Dofs& v_start, Dofs& v) const override;
+  void correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const override;
+  void start(double dt, Motions before, Dofs& v) const override;
   bool corrects() const override { return true; }
   bool damps() const override { return true; }
+  bool acts_on_driven() const override { return false; }
 
  private:
   template <class Changed>
@@ -100,8 +108,8 @@ class PrescribedMotion : public Load {
  public:
   PrescribedMotion(const Model& model, std::vector<int> nodes, std::vector<int> axes, Motion motion);
   // The impulse is the reaction of what holds the nodes.
-  void correct(StepTimes step, const Dofs& v_before, Dofs& v, Dofs& impulse) const override;
-  void start(double dt, const Dofs& v_start, Dofs& v) const override;
+  void correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const override;
+  void start(double dt, Motions before, Dofs& v) const override;
   bool corrects() const override { return true; }
   const std::vector<int>& prescribed_nodes() const override { return nodes_; }
 

@@ -58,6 +58,10 @@ class Model {
   const std::map<std::string, NodeSet>& sets() const { return nodes_.sets; }
   const Mesh& mesh() const { return mesh_; }
 
+  // Before anything refers to the model: another set, other displacements at the start.
+  void add_set(const std::string& name, NodeSet set) { nodes_.sets[name] = std::move(set); }
+  void displace(Dofs displacement) { nodes_.displacement = std::move(displacement); }
+
   virtual bool has_internal_forces() const { return false; }
   // Adds -f_int(u) to force.
   virtual void add_internal_forces(const Dofs& /*u*/, Dofs& /*force*/) const {}
@@ -66,6 +70,8 @@ class Model {
   virtual bool is_linear() const { return true; }
   // Energy stored in the deformed body.
   virtual double potential(const Dofs& /*u*/) const { return 0.0; }
+  // Cauchy's stress of each cell of the mesh, its mean over the deformed cell; empty without a mesh.
+  virtual std::vector<Eigen::Matrix3d> stresses(const Dofs& /*u*/) const { return {}; }
   // A bound from below on the largest stable step of central difference (about the undeformed body
   // where the model is not linear); infinite without internal forces.
   virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/obstacle.hpp"
 
+#include <Eigen/Geometry>
+
 namespace ilaw::host {
 namespace {
 
@@ -22,20 +24,37 @@ Vector across(const Vector& axis) {
 
 }  // namespace
 
-Plane::Plane(Vector point, const Vector& normal, Motion motion)
-    : Obstacle(std::move(motion)), point_(std::move(point)), normal_(normal.normalized()) {}
+Vector Turning::unit_velocity(const Vector& arm) const {
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();
+  r.head(arm.size()) = arm;
+  return axis_.cross(r).head(arm.size());
+}
+
+Vector Obstacle::unit_velocity(const Vector& x, const RigidSurface& there, double time) const {
+  const Vector touched = x - there.gap * there.normal;
+  return turning_->unit_velocity(touched - motion_.displacement(time) - pivot());
+}
+
+Plane::Plane(Vector point, const Vector& normal, Motion motion, std::optional<Turning> turning)
+    : Obstacle(std::move(motion), std::move(turning)),
+      point_(std::move(point)),
+      normal_(normal.normalized()) {}
 
 RigidSurface Plane::shape_at(const Vector& x) const { return {(x - point_).dot(normal_), normal_}; }
 
-Sphere::Sphere(Vector center, double radius, Motion motion)
-    : Obstacle(std::move(motion)), center_(std::move(center)), radius_(radius) {}
+Sphere::Sphere(Vector center, double radius, Motion motion, std::optional<Turning> turning)
+    : Obstacle(std::move(motion), std::move(turning)), center_(std::move(center)), radius_(radius) {}
 
 RigidSurface Sphere::shape_at(const Vector& x) const {
   return round_surface(x - center_, radius_, Vector::Unit(x.size(), 0));
 }
 
-Cylinder::Cylinder(Vector point, const Vector& axis, double radius, Motion motion)
-    : Obstacle(std::move(motion)), point_(std::move(point)), axis_(axis.normalized()), radius_(radius) {}
+Cylinder::Cylinder(Vector point, const Vector& axis, double radius, Motion motion,
+                   std::optional<Turning> turning)
+    : Obstacle(std::move(motion), std::move(turning)),
+      point_(std::move(point)),
+      axis_(axis.normalized()),
+      radius_(radius) {}
 
 RigidSurface Cylinder::shape_at(const Vector& x) const {
   const Vector offset = x - point_;

@@ -1,4 +1,4 @@
-// obstacle.hpp - rigid surfaces that nodes touch. They may move along, but do not turn.
+// obstacle.hpp - rigid surfaces that nodes touch. They may move along, and turn so that their shape stays.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -29,6 +29,26 @@ class Motion {
   std::optional<Table> path_;
 };
 
+// How something rigid turns about an axis: at a constant rate, or through angles that are piecewise
+// linear in time.
+class Turning {
+ public:
+  Turning(const Eigen::Vector3d& axis, double rate) : axis_(axis.normalized()), rate_(rate) {}
+  Turning(const Eigen::Vector3d& axis, Table angles) : axis_(axis.normalized()), angles_(std::move(angles)) {}
+
+  // Mean, between two times.
+  double rate(double from, double to) const {
+    return angles_ ? (angles_->at(to)[0] - angles_->at(from)[0]) / (to - from) : rate_;
+  }
+  // The velocity at rate 1 of what is there, seen from the axis; in 2D the axis is across the plane.
+  Vector unit_velocity(const Vector& arm) const;
+
+ private:
+  Eigen::Vector3d axis_;
+  double rate_ = 0.0;
+  std::optional<Table> angles_;
+};
+
 struct RigidSurface {
   double gap;     // signed distance, > 0 outside
   Vector normal;  // unit, from obstacle to body
@@ -41,7 +61,8 @@ struct FlatSurface {
 
 class Obstacle {
  public:
-  explicit Obstacle(Motion motion) : motion_(std::move(motion)) {}
+  explicit Obstacle(Motion motion, std::optional<Turning> turning = {})
+      : motion_(std::move(motion)), turning_(std::move(turning)) {}
   virtual ~Obstacle() = default;
   Obstacle(const Obstacle&) = delete;
   Obstacle& operator=(const Obstacle&) = delete;
@@ -49,6 +70,11 @@ class Obstacle {
   RigidSurface at(const Vector& x, double time) const { return shape_at(x - motion_.displacement(time)); }
   // Mean, between two times.
   Vector velocity(double from, double to) const { return motion_.velocity(from, to); }
+  // Whether its surface moves along itself, beside that, and how fast; mean, between two times.
+  bool turns() const { return turning_.has_value(); }
+  double rate(double from, double to) const { return turning_->rate(from, to); }
+  // The velocity of its surface at rate 1, at the place with that gap and normal.
+  Vector unit_velocity(const Vector& x, const RigidSurface& there, double time) const;
   // Whether the normal is the same everywhere.
   virtual bool is_flat() const { return false; }
   // Where it is flat.
@@ -60,13 +86,17 @@ class Obstacle {
  private:
   // The obstacle where it is at time 0.
   virtual RigidSurface shape_at(const Vector& x) const = 0;
+  // A point of the axis that it turns about, at time 0.
+  virtual const Vector& pivot() const = 0;
 
   Motion motion_;
+  std::optional<Turning> turning_;
 };
 
 class Plane : public Obstacle {
  public:
-  Plane(Vector point, const Vector& normal, Motion motion);
+  // Turns about its normal.
+  Plane(Vector point, const Vector& normal, Motion motion, std::optional<Turning> turning = {});
   bool is_flat() const override { return true; }
   std::optional<FlatSurface> flat_at(double time) const override {
     return FlatSurface{motion().displacement(time), point_, normal_};
@@ -74,27 +104,31 @@ class Plane : public Obstacle {
 
  private:
   RigidSurface shape_at(const Vector& x) const override;
+  const Vector& pivot() const override { return point_; }
   Vector point_, normal_;
 };
 
 // A sphere in 3D, a disc in 2D.
 class Sphere : public Obstacle {
  public:
-  Sphere(Vector center, double radius, Motion motion);
+  Sphere(Vector center, double radius, Motion motion, std::optional<Turning> turning = {});
 
  private:
   RigidSurface shape_at(const Vector& x) const override;
+  const Vector& pivot() const override { return center_; }
   Vector center_;
   double radius_;
 };
 
-// An infinite cylinder (3D).
+// An infinite cylinder (3D). Turns about its axis.
 class Cylinder : public Obstacle {
  public:
-  Cylinder(Vector point, const Vector& axis, double radius, Motion motion);
+  Cylinder(Vector point, const Vector& axis, double radius, Motion motion,
+           std::optional<Turning> turning = {});
 
  private:
   RigidSurface shape_at(const Vector& x) const override;
+  const Vector& pivot() const override { return point_; }
   Vector point_, axis_;
   double radius_;
 };

@@ -53,13 +53,39 @@ json content_of(const std::string& file) {
   return json::from_cbor(bytes);
 }
 
+// What the steps of a scene follow from: not where they end, what is written of them and who reads it.
+json cause_of(json scene) {
+  for (const char* key : {"title", "doc", "output", "exact", "converge", "study"}) scene.erase(key);
+  scene.at("time").erase("end");
+  return scene;
+}
+
+// The pointer of the first value that is not the same in both.
+std::string first_difference(const json& a, const json& b, const std::string& pointer) {
+  if (a.is_object() && b.is_object()) {
+    for (const auto& [key, value] : a.items())
+      if (!b.contains(key) || value != b[key])
+        return b.contains(key) ? first_difference(value, b[key], pointer + "/" + key) : pointer + "/" + key;
+    for (const auto& [key, ignored] : b.items())
+      if (!a.contains(key)) return pointer + "/" + key;
+  }
+  if (a.is_array() && b.is_array() && a.size() == b.size())
+    for (std::size_t k = 0; k < a.size(); ++k)
+      if (a[k] != b[k]) return first_difference(a[k], b[k], pointer + "/" + std::to_string(k));
+  return pointer;
+}
+
 void check_identity(const json& found, const json& expected) {
   for (const auto& [part, other] :
        {std::pair{"format", "of another format"}, std::pair{"program", "of another version of the program"},
-        std::pair{"laws", "of other laws, or of other versions of them"},
-        std::pair{"scene", "of another scene"}})
+        std::pair{"laws", "of other laws, or of other versions of them"}})
     if (found.value(part, json()) != expected[part])
       throw std::runtime_error("is " + std::string(other) + ", expected the very run that is to be resumed");
+  const json was = cause_of(found.at("scene")), is = cause_of(expected.at("scene"));
+  if (was != is)
+    throw std::runtime_error("is of another scene: " + first_difference(was, is, "") +
+                             " differs, expected no difference but in 'title', 'doc', 'output' and the 'end' "
+                             "of 'time'");
 }
 
 constexpr const char *newest = "checkpoint.cbor", *previous = "checkpoint.previous.cbor";
@@ -90,12 +116,16 @@ Checkpoint read_generation(const Scene& scene, Integrator& integrator, const std
   }
   try {
     check_identity(content["identity"], identity_of(scene));
-    Checkpoint checkpoint{mark_of(content.at("history")), content.at("fields"),
-                          text_of(content.at("history_state")), mark_of(content.at("events")),
-                          text_of(content.at("events_state"))};
+    Checkpoint checkpoint{
+        mark_of(content.at("history")),       content.at("fields"),
+        text_of(content.at("history_state")), mark_of(content.at("events")),
+        text_of(content.at("events_state")),  content["identity"]["scene"].value("output", json::object())};
     check_files(checkpoint, path.parent_path());
     std::istringstream state(text_of(content.at("state")));
     integrator.load(state);
+    if (integrator.steps() > scene.steps)
+      throw std::runtime_error("is at time " + json(integrator.time()).dump() +
+                               " already, expected an 'end' of 'time' that is not before it");
     return checkpoint;
   } catch (const Damage&) {
     throw;

@@ -18,6 +18,7 @@ struct Checkpoint {
   std::string history_state = {};  // what its next row depends on
   FileMark events = {};            // what of events.csv belongs to it
   std::string events_state = {};   // what the next events depend on
+  nlohmann::json output = {};      // what the scene asked for, when it was written
 };
 
 // Makes folder/checkpoint.cbor, whole or not at all; the one before it stays as
@@ -27,7 +28,8 @@ void write_checkpoint(const Scene& scene, const Integrator& integrator, const Ch
 
 // Brings the integrator to where the checkpoint in folder stands: the newest of the two that is
 // whole, as are the files that it goes on from. Throws std::runtime_error where there is none, or
-// one of another scene or law. said: why the newest was left out, if it was.
+// one of another law or scene; what the scene writes and when it ends may be other than they were.
+// said: why the newest was left out, if it was.
 Checkpoint read_checkpoint(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
                            std::string& said);
 

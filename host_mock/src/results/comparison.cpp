@@ -16,7 +16,7 @@ namespace {
 
 // Sizes in pixels.
 constexpr double margin_left = 95, plot_width = 780, margin_above = 45, margin_below = 55, panel_gap = 18,
-                 panel_height = 150, letter = 7.5, legend_line = 18;
+                 panel_height = 150, letter = 7.5, letter_of_title = 9.5, legend_line = 18;
 
 // Colours that colour-blind readers tell apart (Okabe and Ito 2008).
 constexpr const char* run_colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
@@ -82,18 +82,20 @@ void write_comparison(std::ostream& script, const std::filesystem::path& picture
   const auto panels = static_cast<double>(setup.y.size());
   const double tall = setup.y.size() == 1 ? 2.0 * panel_height : panel_height;
   const double width = margin_left + plot_width + right;
-  const double height =
-      margin_above + margin_below + std::max(panels * (tall + panel_gap) - panel_gap, key_height);
+  double title_lines = 1.0;
+  const std::string title = in_lines(runs.front().summary["scene"].value("title", runs.front().name()),
+                                     static_cast<std::size_t>(width / letter_of_title), title_lines);
+  const double above = margin_above + 22.0 * (title_lines - 1.0);
+  const double height = above + margin_below + std::max(panels * (tall + panel_gap) - panel_gap, key_height);
   for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
     script << "reset\nset datafile separator comma\nset terminal " << terminal << " size " << width << ","
            << height << " font 'sans,11' rounded background rgb 'white'\nset output "
-           << drawn_name(picture.string() + kind) << "\nset multiplot title "
-           << in_quotes(runs.front().summary["scene"].value("title", runs.front().name()))
+           << drawn_name(picture.string() + kind) << "\nset multiplot title " << title
            << " font ',14' noenhanced\nset lmargin at screen " << margin_left / width
            << "\nset rmargin at screen " << 1.0 - right / width << "\nset border 3 linecolor rgb '#808080'\n"
            << "set tics nomirror textcolor rgb 'black'\nset grid linewidth 1 linecolor rgb '#d0d0d0'\n"
-           << "set format x ''\nset format y '%.4g'\nset ytics font ',10'\n";
-    double top = height - margin_above;
+           << "set xrange [*:*] noextend\nset format x ''\nset format y '%.4g'\nset ytics font ',10'\n";
+    double top = height - above;
     for (std::size_t p = 0; p < setup.y.size(); ++p) {
       const double bottom = top - tall;
       script << "set tmargin at screen " << top / height << "\nset bmargin at screen " << bottom / height

@@ -2,7 +2,10 @@
 #include "results/fields.hpp"
 
 #include "base/files.hpp"
+#include "model/elements.hpp"
+#include "results/obstacle_shapes.hpp"
 
+#include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
 #include <vtkIdList.h>
@@ -13,14 +16,19 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <regex>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace ilaw::host {
 namespace {
+
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 // VTK is 3D: missing components are zero.
 void add_vectors(vtkUnstructuredGrid& grid, const char* name, const Dofs& values, int dimension) {
@@ -68,6 +76,33 @@ void add_geometry(vtkUnstructuredGrid& grid, const Model& model) {
     add_cell(mesh.nodes_per_cell == 8 ? VTK_HEXAHEDRON : VTK_LINE, &mesh.cells[k], mesh.nodes_per_cell);
 }
 
+vtkDoubleArray* add_cell_array(vtkUnstructuredGrid& grid, const char* name, int components,
+                               std::size_t cells) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(cells));
+  grid.GetCellData()->AddArray(array);
+  return array;
+}
+
+// In ParaView's order of a symmetric tensor.
+void add_stresses(vtkUnstructuredGrid& grid, const Model& model, const Dofs& u) {
+  const std::vector<Eigen::Matrix3d> stresses = model.stresses(u);
+  if (stresses.empty()) return;
+  vtkDoubleArray* tensor = add_cell_array(grid, "stress", 6, stresses.size());
+  vtkDoubleArray* mises = add_cell_array(grid, "von_mises", 1, stresses.size());
+  const char* const names[] = {"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
+  for (int c = 0; c < 6; ++c) tensor->SetComponentName(c, names[c]);
+  for (std::size_t k = 0; k < stresses.size(); ++k) {
+    const Eigen::Matrix3d& s = stresses[k];
+    const double values[6] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
+    tensor->SetTuple(static_cast<vtkIdType>(k), values);
+    const Eigen::Matrix3d deviator = s - s.trace() / 3.0 * Eigen::Matrix3d::Identity();
+    mises->SetValue(static_cast<vtkIdType>(k), std::sqrt(1.5 * deviator.squaredNorm()));
+  }
+}
+
 // Where a state variable stands in the state of a node. Histories and what is internal mean nothing
 // outside their law.
 struct StateArray {
@@ -86,16 +121,31 @@ std::vector<StateArray> add_states(vtkUnstructuredGrid& grid, const ilaw_instanc
     const bool is_shown = (variable.flags & ILAW_VARIABLE_INTERNAL) == 0;
     if (is_shown && count > 0 && (vector || variable.kind == ILAW_STATE_SCALAR))
       states.push_back(
-          {add_array(grid, prefix + variable.name, node_count, vector ? 3 : 1, 0.0), entry, count});
+          {add_array(grid, prefix + variable.name, node_count, vector ? 3 : 1, no_value), entry, count});
     entry += count;
   }
   return states;
 }
 
+// Force per area on the interface's own nodes in the last step, in the scene's axes.
+void add_traction(vtkUnstructuredGrid& grid, const Interface& interface, const std::string& prefix,
+                  int node_count, double dt) {
+  vtkDoubleArray* traction = add_array(grid, prefix + "traction", node_count, 3, no_value);
+  const std::vector<double>& areas = interface.setup().areas;
+  for (std::size_t k = 0; k < areas.size(); ++k)
+    if (areas[k] > 0.0) traction->SetTuple3(interface.nodes()[k], 0.0, 0.0, 0.0);
+  for (const std::int32_t contact_index : interface.active()) {
+    const double area = areas[static_cast<std::size_t>(interface.node_index_of(contact_index))];
+    if (!(area > 0.0)) continue;
+    const auto impulse = interface.impulse(contact_index);
+    for (int c = 0; c < static_cast<int>(impulse.size()); ++c)
+      traction->SetComponent(interface.node_of(contact_index), c, impulse[c] / (dt * area));
+  }
+}
+
 void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const std::string& prefix,
                    int node_count, const Integrator& integrator) {
-  vtkDoubleArray* gap =
-      add_array(grid, prefix + "gap", node_count, 1, std::numeric_limits<double>::quiet_NaN());
+  vtkDoubleArray* gap = add_array(grid, prefix + "gap", node_count, 1, no_value);
   vtkNew<vtkIntArray> status;
   status->SetName((prefix + "status").c_str());
   status->SetNumberOfTuples(node_count);
@@ -105,13 +155,18 @@ void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const 
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
     const int node = interface.nodes()[k], node_index = static_cast<int>(k);
     gap->SetValue(node, interface.gap_at(node_index, integrator.displacement(), integrator.time()));
-    status->SetValue(node, ILAW_FREE);
+    status->SetValue(node, integrator.steps() > 0
+                               ? ILAW_FREE
+                               : interface.status_at_start(node_index, integrator.displacement()));
     if (states.empty()) continue;
     const std::vector<double> values = interface.state_at(node_index, integrator.displacement());
-    for (const StateArray& state : states)
+    for (const StateArray& state : states) {
+      for (int c = state.count; c < state.array->GetNumberOfComponents(); ++c)
+        state.array->SetComponent(node, c, 0.0);
       for (int c = 0; c < state.count; ++c)
         state.array->SetComponent(
             node, c, values[static_cast<std::size_t>(state.entry) + static_cast<std::size_t>(c)]);
+    }
   }
   for (const std::int32_t contact_index : interface.active())
     status->SetValue(interface.node_of(contact_index), interface.status(contact_index));
@@ -130,8 +185,9 @@ std::string text_of(vtkUnstructuredGrid& grid) {
 }  // namespace
 
 void Fields::clear() const {
-  std::filesystem::remove(folder_ / "fields.vtu.series");
-  const std::regex own("fields_[0-9]{6,}\\.vtu(\\.partial)?");
+  for (const char* name : {"fields.vtu.series", "obstacles.vtu.series", "diverged.vtu"})
+    std::filesystem::remove(folder_ / name);
+  const std::regex own("(fields|obstacles)_[0-9]{6,}\\.vtu(\\.partial)?");
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder_))
     if (std::regex_match(entry.path().filename().string(), own)) old.push_back(entry.path());
@@ -141,31 +197,76 @@ void Fields::clear() const {
 void Fields::write(const Integrator& integrator) {
   const Model& model = *scene_.model;
   vtkNew<vtkUnstructuredGrid> grid;
-  add_geometry(*grid, model);
-  add_vectors(*grid, "u", integrator.displacement(), model.dimension());
-  add_vectors(*grid, "v", integrator.velocity(), model.dimension());
+  add_body(*grid, integrator);
   add_vectors(*grid, "r", integrator.interface_impulse(), model.dimension());
-  for (const auto& interface : scene_.interfaces)
-    add_interface(*grid, *interface, scene_.interfaces.size() == 1 ? "" : interface->name() + ".",
-                  model.node_count(), integrator);
-
-  char name[40];
-  std::snprintf(name, sizeof name, "fields_%06zu.vtu", written_.size());
-  AtomicFile file(folder_ / name);
-  file.stream() << text_of(*grid);
-  const FileMark mark = file.commit();
-  written_.push_back(
-      {{"name", name}, {"time", integrator.time()}, {"size", mark.size}, {"checksum", mark.checksum}});
+  for (const auto& interface : scene_.interfaces) {
+    const std::string prefix = scene_.interfaces.size() == 1 ? "" : interface->name() + ".";
+    add_interface(*grid, *interface, prefix, model.node_count(), integrator);
+    add_traction(*grid, *interface, prefix, model.node_count(), scene_.dt);
+  }
+  write_next("fields", *grid, integrator.time());
+  const bool first = names_of("obstacles").empty();
+  if (has_obstacles(scene_) && (first || has_moving_obstacles(scene_))) {
+    vtkNew<vtkUnstructuredGrid> obstacles;
+    add_obstacles(*obstacles, scene_, integrator.time());
+    write_next("obstacles", *obstacles, integrator.time());
+  }
   write_series();
 }
 
-void Fields::write_series() const {
+// What interfaces hold means nothing there.
+std::filesystem::path Fields::write_diverged(const Integrator& integrator) const {
+  vtkNew<vtkUnstructuredGrid> grid;
+  add_body(*grid, integrator);
+  if (grid->GetCellData()->GetArray("stress")) {
+    vtkDoubleArray* inverted = add_cell_array(*grid, "inverted", 1, grid->GetNumberOfCells());
+    inverted->Fill(0.0);
+    for (const int element : inverted_elements(*scene_.model, integrator.displacement()))
+      inverted->SetValue(element, 1.0);
+  }
+  const std::filesystem::path path = folder_ / "diverged.vtu";
+  AtomicFile file(path);
+  file.stream() << text_of(*grid);
+  file.commit();
+  return path;
+}
+
+void Fields::add_body(vtkUnstructuredGrid& grid, const Integrator& integrator) const {
+  const Model& model = *scene_.model;
+  add_geometry(grid, model);
+  add_vectors(grid, "u", integrator.displacement(), model.dimension());
+  add_vectors(grid, "v", integrator.velocity(), model.dimension());
+  add_stresses(grid, model, integrator.displacement());
+}
+
+// Files with a number, and what is in them.
+void Fields::write_next(const std::string& kind, vtkUnstructuredGrid& grid, double time) {
+  std::array<char, 40> name{};
+  std::snprintf(name.data(), name.size(), "%s_%06zu.vtu", kind.c_str(), names_of(kind).size());
+  AtomicFile file(folder_ / name.data());
+  file.stream() << text_of(grid);
+  const FileMark mark = file.commit();
+  written_.push_back(
+      {{"name", name.data()}, {"time", time}, {"size", mark.size}, {"checksum", mark.checksum}});
+}
+
+// With their times, as ParaView's series has them.
+nlohmann::json Fields::names_of(const std::string& kind) const {
   nlohmann::json files = nlohmann::json::array();
   for (const nlohmann::json& field : written_)
-    files.push_back({{"name", field.at("name")}, {"time", field.at("time")}});
-  AtomicFile series(folder_ / "fields.vtu.series");
-  series.stream() << nlohmann::json{{"file-series-version", "1.0"}, {"files", files}}.dump(1) << '\n';
-  series.commit();
+    if (field.at("name").get<std::string>().starts_with(kind + "_"))
+      files.push_back({{"name", field.at("name")}, {"time", field.at("time")}});
+  return files;
+}
+
+void Fields::write_series() const {
+  for (const char* kind : {"fields", "obstacles"}) {
+    const nlohmann::json files = names_of(kind);
+    if (files.empty()) continue;
+    AtomicFile series(folder_ / (std::string(kind) + ".vtu.series"));
+    series.stream() << nlohmann::json{{"file-series-version", "1.0"}, {"files", files}}.dump(1) << '\n';
+    series.commit();
+  }
 }
 
 }  // namespace ilaw::host

@@ -9,6 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <string>
+
+class vtkUnstructuredGrid;
 
 namespace ilaw::host {
 
@@ -16,10 +19,14 @@ class Fields {
  public:
   Fields(const Scene& scene, std::filesystem::path folder) : scene_(scene), folder_(std::move(folder)) {}
 
-  // Writes one file: u, v, r per node, and per interface gap, status and state variables (vectors
-  // in the node's local frame, normal first). A node that an interface does not have gets gap NaN
-  // and status -1. With several interfaces, arrays are called <interface>.gap and so on.
+  // Writes one file: u, v, r per node, stress per cell, and per interface gap, status, traction and
+  // state variables (vectors in the node's local frame, normal first). A node that an interface does
+  // not have gets status -1 and NaN elsewhere. With several interfaces, arrays are called
+  // <interface>.gap and so on. Obstacles are a file of their own, one for all times if none moves.
   void write(const Integrator& integrator);
+
+  // Writes diverged.vtu, the bodies alone: u, v, stress, and which elements are turned inside out.
+  std::filesystem::path write_diverged(const Integrator& integrator) const;
 
   // Removes those of an earlier run in the folder, which this one would not replace.
   void clear() const;
@@ -32,6 +39,9 @@ class Fields {
   }
 
  private:
+  void add_body(vtkUnstructuredGrid& grid, const Integrator& integrator) const;
+  void write_next(const std::string& kind, vtkUnstructuredGrid& grid, double time);
+  nlohmann::json names_of(const std::string& kind) const;
   void write_series() const;
 
   const Scene& scene_;

@@ -10,6 +10,8 @@
 
 #include <cctype>
 #include <cstdio>
+#include <fstream>
+#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +21,7 @@ extern char** environ;
 namespace ilaw::host {
 namespace {
 
+constexpr const char* first_line = "if (!exists('suffix')) suffix = ''";
 constexpr const char* drawn = ".drawn";  // what a picture's name ends in until it is complete
 
 // -1 when it cannot be started.
@@ -78,12 +81,40 @@ std::string in_quotes(std::string_view text) {
   return out + "'";
 }
 
+std::string in_lines(const std::string& words, std::size_t most, double& line_count) {
+  std::string text, rest = words;
+  for (line_count = 1.0; rest.size() > most; line_count += 1.0) {
+    std::size_t cut = rest.rfind(' ', most);
+    if (cut == std::string::npos || cut == 0) cut = most;
+    while (cut > 1 && (static_cast<unsigned char>(rest[cut]) & 0xC0U) == 0x80U) --cut;  // within a letter
+    text += in_quotes(rest.substr(0, cut)) + ".\"\\n\".";
+    rest.erase(0, rest[cut] == ' ' ? cut + 1 : cut);
+  }
+  return text + in_quotes(rest);
+}
+
 bool draw_by_gnuplot(const std::filesystem::path& script, const std::function<void(std::ostream&)>& write) {
   AtomicFile file(script);
-  file.stream() << "if (!exists('suffix')) suffix = ''\n";
+  file.stream() << first_line << '\n';
   write(file.stream());
   file.commit();
   return run(script);
+}
+
+void remove_pictures(const std::filesystem::path& folder, const std::string& names) {
+  const std::regex own(names);
+  std::vector<std::filesystem::path> scripts;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".gnuplot" || !entry.is_regular_file() ||
+        !std::regex_match(entry.path().stem().string(), own))
+      continue;
+    std::ifstream stream(entry.path());
+    std::string line;
+    if (std::getline(stream, line) && line == first_line) scripts.push_back(entry.path());
+  }
+  for (std::filesystem::path file : scripts)
+    for (const char* ending : {".png", ".svg", ".gnuplot"})
+      std::filesystem::remove(file.replace_extension(ending));
 }
 
 std::string drawn_name(const std::filesystem::path& picture) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <ostream>
@@ -13,9 +14,17 @@ namespace ilaw::host {
 // In single quotes, where gnuplot substitutes nothing.
 std::string in_quotes(std::string_view text);
 
+// The same, broken between words where it is longer than a line of so many letters; gnuplot joins
+// the lines.
+std::string in_lines(const std::string& words, std::size_t most, double& line_count);
+
 // Runs the script that write gives, and keeps it under its name. Without a shell, and without
 // gnuplot's warnings (an axis of a constant, say). Says on stderr why it failed.
 bool draw_by_gnuplot(const std::filesystem::path& script, const std::function<void(std::ostream&)>& write);
+
+// Removes the pictures of a folder whose names, without ending, match a regular expression, and
+// their scripts; only what such a script stands beside.
+void remove_pictures(const std::filesystem::path& folder, const std::string& names);
 
 // What such a script sets its output to, for a picture that is to stand under its name only when it
 // is whole.

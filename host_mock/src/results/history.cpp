@@ -24,6 +24,12 @@ void for_each_state(const ilaw_instance_info& info, Visit visit) {
 
 }  // namespace
 
+bool same_columns(const nlohmann::json& one, const nlohmann::json& other) {
+  for (const char* key : {"watch", "forces", "balance"})
+    if (one.value(key, nlohmann::json()) != other.value(key, nlohmann::json())) return false;
+  return true;
+}
+
 History::History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder)
     : scene_(scene), file_(folder / "history.csv"), table_(file_.stream()), forces_(scene, integrator) {
   find_contacts(integrator);

@@ -14,6 +14,9 @@
 
 namespace ilaw::host {
 
+// Whether two "output" of a scene have the same columns.
+bool same_columns(const nlohmann::json& one, const nlohmann::json& other);
+
 // history.csv: a row per output instant, columns as in docs/scenes.md. Vectors are in the scene's
 // axes.
 class History {

@@ -40,9 +40,11 @@ constexpr Status statuses[] = {{"free", "#dcdcdc"},   {"closed", "#56B4E9"},   {
                                {"slip", "#E69F00"},   {"bonded", "#009E73"},   {"broken", "#D55E00"},
                                {"healed", "#CC79A7"}, {"bad_input", "#000000"}};
 
-// Sizes in pixels.
-constexpr double width = 1000, left = 95, right = 120, above = 45, below = 55, between = 18,
-                 curve_height = 120, row_height = 24, key_line = 18;
+// Sizes in pixels. A letter: of the key and of tics, of the title.
+constexpr double panel_width = 785, least_left = 95, least_right = 120, title_line = 22, below = 55,
+                 between = 18, curve_height = 120, row_height = 24, key_line = 18, key_letter = 8.0,
+                 title_letter = 9.5;
+constexpr std::size_t longest_label = 15;  // letters of a panel's name in a line
 
 bool is_component(std::string_view name) {
   return name.size() == 2 && std::string_view("uvr").find(name[0]) != std::string_view::npos &&
@@ -76,8 +78,9 @@ void add_balance(const std::string& name, std::size_t column, std::vector<Panel>
                             : quantity == "error"                      ? "balance error"
                             : quantity.starts_with("angular_momentum") ? "angular momentum"
                                                                        : "energy";
-  const std::string legend =
-      is_loss ? quantity.substr(dissipated.size()) : quantity.substr(0, quantity.find("_work"));
+  const std::string legend = is_loss                       ? quantity.substr(dissipated.size())
+                             : label == "angular momentum" ? "axis " + quantity.substr(quantity.size() - 1)
+                                                           : quantity.substr(0, quantity.find("_work"));
   panel_of(label, panels).curves.push_back({column, legend, legend, ""});
 }
 
@@ -122,6 +125,16 @@ std::vector<Panel> panels_of(const Columns& columns, int every) {
   return panels;
 }
 
+// Those of these names, in their order; all where there are none.
+std::vector<Panel> chosen(std::vector<Panel> panels, const std::vector<std::string>& names) {
+  if (names.empty()) return panels;
+  std::vector<Panel> found;
+  for (const std::string& name : names)
+    for (const Panel& panel : panels)
+      if (panel.label == name) found.push_back(panel);
+  return found;
+}
+
 std::size_t node_count(const Panel& panel) {
   std::set<std::string> nodes;
   for (const Curve& curve : panel.curves) nodes.insert(curve.node);
@@ -144,7 +157,7 @@ bool is_crowded(const Panel& panel) {
 bool has_split_key(const Panel& panel) { return node_count(panel) > 1 && component_count(panel) > 1; }
 
 std::string legend_of(const Panel& panel, const Curve& curve) {
-  if (panel.curves.size() == 1 || has_split_key(panel)) return "";
+  if (has_split_key(panel) || (panel.curves.size() == 1 && is_node(curve.node))) return "";
   return component_count(panel) > 1 ? curve.owner + "." + curve.component : curve.owner;
 }
 
@@ -297,22 +310,51 @@ void write_blocks(std::ostream& script, const std::filesystem::path& folder,
   for (const Envelope& envelope : envelopes) envelope.write(script);
 }
 
+// Room for the names of contacts on the left and for the key on the right, whatever their length.
+struct Margins {
+  double left = least_left, right = least_right;
+};
+
+Margins margins_of(const std::vector<Panel>& panels) {
+  Margins margins;
+  for (const Panel& panel : panels) {
+    if (panel.label.size() > longest_label) margins.left = std::max(margins.left, least_left + 17.0);
+    for (const Curve& curve : panel.curves) {
+      const std::string legend = has_split_key(panel) ? curve.node : legend_of(panel, curve);
+      if (is_crowded(panel)) continue;
+      if (panel.quantity == "status")
+        margins.left = std::max(margins.left, 45.0 + key_letter * static_cast<double>(curve.owner.size()));
+      else
+        margins.right = std::max(margins.right, 60.0 + key_letter * static_cast<double>(legend.size()));
+    }
+  }
+  return margins;
+}
+
 void draw(std::ostream& script, const std::string& terminal, const std::filesystem::path& file,
           const std::vector<Panel>& panels, const Columns& columns, const std::string& title) {
+  const auto [left, right] = margins_of(panels);
+  const double width = left + panel_width + right;
+  double title_lines = 1.0;
+  const std::string title_text = in_lines(title, static_cast<std::size_t>(width / title_letter), title_lines);
+  const double above = 23.0 + title_line * title_lines;
   double height = above + below - between;
   for (const Panel& panel : panels) height += height_of(panel, columns) + between;
   script << "set terminal " << terminal << " size " << width << "," << height
          << " font 'sans,11' rounded background rgb 'white'\nset output " << drawn_name(file)
-         << "\nset multiplot title " << in_quotes(title) << " font ',14' noenhanced\n"
+         << "\nset multiplot title " << title_text << " font ',14' noenhanced\n"
          << "set lmargin at screen " << left / width << "\nset rmargin at screen " << 1.0 - right / width
          << "\n";
   double top = height - above;
   for (const Panel& panel : panels) {
     const double bottom = top - height_of(panel, columns);
+    double label_lines = 1.0;
+    const std::string label = in_lines(panel.label, longest_label, label_lines);
     script << "set tmargin at screen " << top / height << "\nset bmargin at screen " << bottom / height
            << "\nset key at screen " << 1.0 - (right - 10.0) / width << "," << top / height
-           << " left top vertical maxcols 1 noenhanced samplen 2 Left reverse\nset label 1 "
-           << in_quotes(panel.label) << " noenhanced at screen 0.015," << 0.5 * (top + bottom) / height
+           << " left top vertical maxcols 1 noenhanced samplen 2 Left reverse\nset label 1 " << label
+           << (label_lines > 1.0 ? " font ',10'" : "") << " noenhanced at screen "
+           << (7.0 + 8.0 * label_lines) / width << "," << 0.5 * (top + bottom) / height
            << " center rotate by 90\n";
     if (&panel == &panels.back()) script << "set xlabel 'time'\nset format x '%g'\n";
     const bool crowded = is_crowded(panel);
@@ -327,9 +369,15 @@ void draw(std::ostream& script, const std::string& terminal, const std::filesyst
 
 }  // namespace
 
+std::vector<std::string> panel_names(const Columns& columns, int every) {
+  std::vector<std::string> names;
+  for (const Panel& panel : panels_of(columns, every)) names.push_back(panel.label);
+  return names;
+}
+
 void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,
                    const Caption& caption) {
-  const std::vector<Panel> panels = panels_of(columns, caption.every);
+  const std::vector<Panel> panels = chosen(panels_of(columns, caption.every), caption.panels);
   write_blocks(script, folder, panels);
   for (const auto& [terminal, kind] : {std::pair{"pngcairo", "png"}, std::pair{"svg", "svg"}}) {
     script << "reset\nset datafile separator comma\nhistory = "

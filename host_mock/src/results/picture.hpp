@@ -12,7 +12,8 @@ namespace ilaw::host {
 
 struct Caption {
   std::string title;
-  int every;  // steps per row; 0 when it is not known
+  int every;                             // steps per row; 0 when it is not known
+  std::vector<std::string> panels = {};  // to draw, by name and in this order; empty: all
 };
 
 // What history.csv holds.
@@ -29,5 +30,8 @@ struct Columns {
 // absolute.
 void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,
                    const Caption& caption);
+
+// The panels of such a picture from top to bottom, by the names on their left.
+std::vector<std::string> panel_names(const Columns& columns, int every);
 
 }  // namespace ilaw::host

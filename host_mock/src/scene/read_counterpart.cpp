@@ -7,27 +7,55 @@
 #include "scene/values.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace ilaw::host {
 namespace {
 
 using nlohmann::json;
 
+// The axis that an obstacle turns about: its own, or that of a sphere.
+Eigen::Vector3d read_axis(const json& obstacle, int d, const std::string& pointer) {
+  if (obstacle["type"] == "plane") return read_direction(obstacle["normal"], d, pointer + "/normal");
+  if (obstacle.contains("axis")) return read_direction(obstacle["axis"], d, pointer + "/axis");
+  if (d == 3) throw SceneError(pointer, "key 'axis' is missing, about which the sphere turns");
+  return Eigen::Vector3d::UnitZ();
+}
+
+// "rate", "angles" or neither.
+std::optional<Turning> read_turning(const json& obstacle, int d, const std::string& pointer) {
+  const bool has_rate = obstacle.contains("rate"), has_angles = obstacle.contains("angles");
+  const std::string key = pointer + (has_rate ? "/rate" : "/angles");
+  if (obstacle["type"] == "sphere" && obstacle.contains("axis") && (d < 3 || !(has_rate || has_angles)))
+    throw mistake(pointer + "/axis", obstacle["axis"].dump(),
+                  d < 3 ? "none: discs turn in their plane" : "'rate' or 'angles' beside it");
+  if (!has_rate && !has_angles) return {};
+  if (has_rate && has_angles) throw mistake(pointer, "both 'rate' and 'angles'", "at most one of them");
+  if (d == 1 || (d == 2 && obstacle["type"] == "plane"))
+    throw mistake(key, obstacle["type"].dump() + " in " + std::to_string(d) + "D",
+                  "none: it cannot turn and keep its shape");
+  const Eigen::Vector3d axis = read_axis(obstacle, d, pointer);
+  if (has_rate) return Turning(axis, obstacle["rate"].get<double>());
+  return Turning(axis, read_table(obstacle["angles"], 1, key));
+}
+
 std::unique_ptr<const Obstacle> read_obstacle(const json& obstacle, int d, const std::string& pointer) {
   const std::string type = obstacle["type"].get<std::string>();
   const Motion motion = read_motion(obstacle, d, pointer);
-  if (type == "plane")
-    return std::make_unique<Plane>(read_vector(obstacle["point"], d, pointer + "/point"),
-                                   read_direction(obstacle["normal"], d, pointer + "/normal"), motion);
-  if (type == "sphere")
-    return std::make_unique<Sphere>(read_vector(obstacle["center"], d, pointer + "/center"),
-                                    obstacle["radius"].get<double>(), motion);
-  if (d != 3)
+  if (type == "cylinder" && d != 3)
     throw mistake(pointer + "/type", "\"cylinder\" in " + std::to_string(d) + "D",
                   "a model in 3D (in 2D a sphere is a disc)");
+  const std::optional<Turning> turning = read_turning(obstacle, d, pointer);
+  if (type == "plane")
+    return std::make_unique<Plane>(read_vector(obstacle["point"], d, pointer + "/point"),
+                                   read_direction(obstacle["normal"], d, pointer + "/normal"), motion,
+                                   turning);
+  if (type == "sphere")
+    return std::make_unique<Sphere>(read_vector(obstacle["center"], d, pointer + "/center"),
+                                    obstacle["radius"].get<double>(), motion, turning);
   return std::make_unique<Cylinder>(read_vector(obstacle["point"], d, pointer + "/point"),
                                     read_direction(obstacle["axis"], d, pointer + "/axis"),
-                                    obstacle["radius"].get<double>(), motion);
+                                    obstacle["radius"].get<double>(), motion, turning);
 }
 
 std::unique_ptr<Counterpart> read_partners(const json& against, const NodeSet& own, const Model& model,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/read_load.hpp"
 
+#include "model/pressure.hpp"
 #include "scene/json_text.hpp"
 #include "scene/selection.hpp"
 #include "scene/values.hpp"
@@ -34,11 +35,18 @@ std::unique_ptr<Load> read_prescribed(const json& load, const Model& model, cons
   return std::make_unique<PrescribedMotion>(model, set.nodes, axes, read_motion(load, d, pointer));
 }
 
+std::unique_ptr<Load> read_pressure(const json& load, const Model& model, const std::string& pointer) {
+  return std::make_unique<Pressure>(
+      model, select_surface(load["surface"].get<std::string>(), model, pointer + "/surface").facets,
+      read_table(load["history"], 1, pointer + "/history"));
+}
+
 }  // namespace
 
 std::unique_ptr<Load> read_load(const json& load, const Model& model, const std::string& pointer) {
   const int d = model.dimension();
   const std::string type = load["type"].get<std::string>();
+  if (type == "pressure") return read_pressure(load, model, pointer);
   const NodeSet set = select_nodes(load.value("nodes", json("all")), model, pointer + "/nodes");
   if (type == "gravity")
     return std::make_unique<Gravity>(model, set.nodes,

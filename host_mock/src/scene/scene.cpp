@@ -3,9 +3,12 @@
 
 #include "scene/json_text.hpp"
 #include "scene/read_forces.hpp"
+#include "scene/read_initial.hpp"
 #include "scene/read_interface.hpp"
 #include "scene/read_load.hpp"
 #include "scene/read_model.hpp"
+#include "scene/read_sets.hpp"
+#include "scene/read_springs.hpp"
 #include "scene/read_time.hpp"
 #include "scene/selection.hpp"
 #include "scene/validation.hpp"
@@ -16,9 +19,11 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <set>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace ilaw::host {
 namespace {
@@ -83,17 +88,26 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   scene.source = std::move(source);
   scene.title = scene.source.value("title", file.stem().string());
   scene.model = read_model(scene.source["model"]);
+  read_sets(scene.source.value("sets", json::object()), *scene.model);
+  if (scene.source.contains("initial")) read_initial(scene.source["initial"], *scene.model);
+  const std::vector<Spring> springs =
+      read_springs(scene.source.value("springs", json::array()), *scene.model);
+  if (!springs.empty()) scene.model = std::make_unique<Sprung>(std::move(scene.model), springs);
   read_time(scene.source["time"], scene);
   const json loads = scene.source.value("loads", json::array());
   for (std::size_t i = 0; i < loads.size(); ++i)
     scene.loads.push_back(read_load(loads[i], *scene.model, at("/loads", i)));
+  if (std::any_of(springs.begin(), springs.end(), [](const Spring& spring) { return spring.damping > 0.0; }))
+    scene.loads.push_back(std::make_unique<Dampers>(*scene.model, springs));  // after those with a number
   for (std::size_t i = 0; i < scene.source["interfaces"].size(); ++i)
     scene.interfaces.push_back(read_interface(i, scene));
   check_names(scene);
   read_output(scene.source.value("output", json::object()), scene);
   warn_of_times(scene);
   warn_of_start(scene);
+  warn_of_partners(scene);
   warn_of_open_bonds(scene);
+  warn_of_strength(scene);
   warn_of_locking(scene);
   return scene;
 }

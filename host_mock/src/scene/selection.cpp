@@ -5,6 +5,8 @@
 #include "scene/suggestion.hpp"
 #include "scene/values.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 
 namespace ilaw::host {
@@ -28,13 +30,18 @@ const NodeSet& find_set(const std::string& name, const Model& model, bool with_f
   return found->second;
 }
 
-// The part of a set whose indices in it are given.
+// The part of a set whose indices in it are given, with the facets that it has all nodes of.
 NodeSet part_of(const NodeSet& set, const std::vector<std::size_t>& indices) {
   NodeSet part;
   for (const std::size_t index : indices) {
     part.nodes.push_back(set.nodes[index]);
     part.areas.push_back(set.areas[index]);
   }
+  if (set.facets.empty()) return part;
+  const std::set<int> own(part.nodes.begin(), part.nodes.end());
+  std::copy_if(set.facets.begin(), set.facets.end(), std::back_inserter(part.facets), [&](const auto& facet) {
+    return std::all_of(facet.begin(), facet.end(), [&](int node) { return own.count(node) > 0; });
+  });
   return part;
 }
 
@@ -44,30 +51,55 @@ int node_of(const json& number, const Model& model, const std::string& pointer) 
   throw mistake(pointer, "node " + number.dump(), "0 to " + std::to_string(model.node_count() - 1));
 }
 
-NodeSet listed(const json& numbers, const Model& model, const std::string& pointer) {
-  std::vector<std::size_t> indices;
-  std::set<int> seen;
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const std::string where = at(pointer, k);
-    const int node = node_of(numbers[k], model, where);
-    if (!seen.insert(node).second)
-      throw mistake(where, "node " + std::to_string(node) + " twice", "each node once");
-    indices.push_back(static_cast<std::size_t>(node));
+// Nodes in the order in which a scene names them.
+class Distinct {
+ public:
+  void add(int node, const std::string& pointer) {
+    if (!seen_.insert(node).second)
+      throw mistake(pointer, "node " + std::to_string(node) + " twice", "each node once");
+    indices_.push_back(static_cast<std::size_t>(node));
   }
-  return part_of(model.sets().at("all"), indices);
+  const std::vector<std::size_t>& indices() const { return indices_; }
+
+ private:
+  std::set<int> seen_;
+  std::vector<std::size_t> indices_;
+};
+
+NodeSet listed(const json& numbers, const Model& model, const std::string& pointer) {
+  Distinct nodes;
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    nodes.add(node_of(numbers[k], model, at(pointer, k)), at(pointer, k));
+  return part_of(model.sets().at("all"), nodes.indices());
 }
 
 Vector position_of(const Model& model, int node) {
   return model.position().segment(node * model.dimension(), model.dimension());
 }
 
-NodeSet nearest(const Vector& x, const Model& model) {
-  std::size_t best = 0;
-  for (std::size_t node = 1; node < static_cast<std::size_t>(model.node_count()); ++node)
-    if ((position_of(model, static_cast<int>(node)) - x).squaredNorm() <
-        (position_of(model, static_cast<int>(best)) - x).squaredNorm())
+int nearest(const Vector& x, const Model& model) {
+  int best = 0;
+  for (int node = 1; node < model.node_count(); ++node)
+    if ((position_of(model, node) - x).squaredNorm() < (position_of(model, best) - x).squaredNorm())
       best = node;
-  return part_of(model.sets().at("all"), {best});
+  return best;
+}
+
+// One place, or a list of them.
+NodeSet nearest_of(const json& places, const Model& model, const std::string& pointer) {
+  Distinct nodes;
+  const auto add = [&](const json& place, const std::string& where) {
+    nodes.add(nearest(read_vector(place, model.dimension(), where), model), where);
+  };
+  const auto numbers =
+      std::count_if(places.begin(), places.end(), [](const json& one) { return one.is_number(); });
+  if (numbers == static_cast<std::ptrdiff_t>(places.size())) {
+    add(places, pointer);
+  } else {
+    if (numbers > 0) throw mistake(pointer, places.dump(), "a place, or a list of places");
+    for (std::size_t k = 0; k < places.size(); ++k) add(places[k], at(pointer, k));
+  }
+  return part_of(model.sets().at("all"), nodes.indices());
 }
 
 NodeSet inside(const json& selection, const Model& model, const std::string& pointer) {
@@ -90,8 +122,7 @@ NodeSet select_nodes(const json& nodes, const Model& model, const std::string& p
   if (nodes.is_number())
     return part_of(model.sets().at("all"), {static_cast<std::size_t>(node_of(nodes, model, pointer))});
   if (nodes.is_array()) return listed(nodes, model, pointer);
-  if (nodes.contains("near"))
-    return nearest(read_vector(nodes["near"], model.dimension(), pointer + "/near"), model);
+  if (nodes.contains("near")) return nearest_of(nodes["near"], model, pointer + "/near");
   return inside(nodes, model, pointer);
 }
 

@@ -10,8 +10,8 @@
 
 namespace ilaw::host {
 
-// "all" or the name of a set; [0, 3]; {"near": [x, y, z]}, the nearest node; {"box": [[...],
-// [...]], "of": set}, those inside. Throws SceneError at the pointer.
+// "all" or the name of a set; [0, 3]; {"near": [x, y, z]}, the nearest node, or those nearest to a
+// list of places; {"box": [[...], [...]], "of": set}, those inside. Throws SceneError at the pointer.
 NodeSet select_nodes(const nlohmann::json& nodes, const Model& model, const std::string& pointer);
 
 // As above, for a set that must have facets.

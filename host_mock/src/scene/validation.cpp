@@ -45,9 +45,10 @@ const json& child(const json& part, const std::string& token, bool is_index) {
     for (const json& one : part["anyOf"])
       if (const json& found = child(resolved(one), token, is_index); !found.is_null()) return found;
   if (is_index) return part.contains("items") ? resolved(part["items"]) : nothing;
-  return part.contains("properties") && part["properties"].contains(token)
-             ? resolved(part["properties"][token])
-             : nothing;
+  if (part.contains("properties") && part["properties"].contains(token))
+    return resolved(part["properties"][token]);
+  const json others = part.value("additionalProperties", json());
+  return others.is_object() ? resolved(part["additionalProperties"]) : nothing;
 }
 
 // What the schema allows for a value, in words.
@@ -98,6 +99,12 @@ void explain(const json& value, const json& part, const std::string& pointer, co
             SceneError(pointer, "key '" + key.get<std::string>() + "' is missing, found " + shortened(value))
                 .what());
     if (part.contains("additionalProperties")) explain_keys(value, part, pointer, mistakes);
+  }
+  if (value.is_object() && part.contains("anyOf")) {
+    json either = {{"properties", json::object()}};
+    for (const json& one : part["anyOf"])
+      either["properties"].update(resolved(one).value("properties", json::object()));
+    explain_keys(value, either, pointer, mistakes);
   }
   if (mistakes.size() > before) return;
   if (part.is_null())

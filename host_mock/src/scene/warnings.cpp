@@ -9,7 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <set>
 #include <string>
+#include <vector>
 
 namespace ilaw::host {
 
@@ -97,6 +99,41 @@ void warn_of_start(Scene& scene) {
       scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(gaps.below) +
                                " node(s) start inside the " + (rigid ? "obstacle" : "other body") +
                                ", node " + std::to_string(gaps.deepest) + " by " + json(-gaps.least).dump());
+  }
+}
+
+// The n-th node meets the n-th partner: lists in different orders pair what is far from each other.
+void warn_of_partners(Scene& scene) {
+  constexpr double much = 0.5;
+  const Model& model = *scene.model;
+  const Eigen::Index d = model.dimension();
+  const double edge = shortest_edge(model);
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    const Interface& interface = *scene.interfaces[i];
+    const std::vector<int>& partners = interface.setup().counterpart->partners();
+    if (partners.empty() || interface.setup().counterpart->shares_partners()) continue;
+    const std::string pointer = at("/interfaces", i) + "/against/nodes: ";
+    std::set<int> seen(interface.nodes().begin(), interface.nodes().end());
+    const auto twice = std::find_if(partners.begin(), partners.end(),
+                                    [&](const int partner) { return !seen.insert(partner).second; });
+    if (twice != partners.end())
+      scene.warnings.push_back(pointer + "found node " + std::to_string(*twice) +
+                               " more than once in this list and 'nodes': its contacts are coupled");
+    for (std::size_t k = 0; d > 1 && k < partners.size(); ++k) {
+      const Vector x = model.position().segment(d * interface.nodes()[k], d) -
+                       model.position().segment(d * partners[k], d);
+      const Vector normal =
+          interface.setup()
+              .counterpart->contact_point(static_cast<int>(k), model.initial_displacement(), 0.0)
+              .normal;
+      const double aside = (x - x.dot(normal) * normal).norm();
+      if (!(aside > much * edge)) continue;
+      scene.warnings.push_back(pointer + "node " + std::to_string(interface.nodes()[k]) +
+                               " and its partner " + std::to_string(partners[k]) + " are " +
+                               json(aside).dump() +
+                               " apart along the interface: are both lists in the same order?");
+      break;
+    }
   }
 }
 

@@ -12,6 +12,10 @@ void warn_of_times(Scene& scene);
 void warn_of_start(Scene& scene);
 // Bonds across a gap, which pull from afar.
 void warn_of_open_bonds(Scene& scene);
+// Partners of nodes that stand twice in a list, or that do not face their nodes.
+void warn_of_partners(Scene& scene);
+// Bonds stronger than all that acts in the scene.
+void warn_of_strength(Scene& scene);
 // Blocks that can hardly bend: full elements close to incompressibility.
 void warn_of_locking(Scene& scene);
 

@@ -162,7 +162,7 @@ void CoupledContacts::for_each_acting(Visit visit) const {
 // Every impulse is what its law answered to some velocity of its contact: how far the contact is
 // from that velocity.
 Vector CoupledContacts::since_answer(const Interface& interface, std::int32_t contact, const Dofs& v) {
-  return interface.relative(contact, v) - interface.obstacle_velocity() -
+  return interface.relative(contact, v) - interface.surface_velocity(contact) -
          interface.delassus(contact) * interface.impulse(contact) - interface.v_free(contact);
 }
 

@@ -64,7 +64,7 @@ void Integrator::sum_forces(StepTimes step) {
       });
     };
     each([](double& impulse) { impulse = 0.0; });
-    for (const auto& load : loads_) load->add_force(step.after, external_impulse_);
+    for (const auto& load : loads_) load->add_force(step.after, u_, external_impulse_);
     each([h = dt_](double& impulse) { impulse *= h; });
     for (const auto& load : loads_) load->add_impulse(step, external_impulse_);
   }
@@ -94,8 +94,8 @@ double Integrator::kick(StepTimes step) {
   return largest_speed(v_, d);
 }
 
-// Damping works apart from the other loads, and leaves alone what a motion drives, which comes
-// after it: what holds a node has the whole reaction.
+// Damping works apart from the other loads. That by mass comes first and leaves alone what a motion
+// drives; the motion comes last: what holds a node has the whole reaction.
 void Integrator::correct(StepTimes step) {
   const Dofs undamped = damping_impulse_.size() == 0 ? Dofs() : v_;
   damping_impulse_.setZero();
@@ -103,8 +103,8 @@ void Integrator::correct(StepTimes step) {
     Dofs& sum = loads_[k]->damps() ? damping_impulse_ : external_impulse_;
     Dofs& kept = kept_load_impulses_[k];
     kept.setZero();
-    loads_[k]->correct(step, v_before_, v_, kept.size() == 0 ? sum : kept);
-    if (loads_[k]->damps())
+    loads_[k]->correct(step, {u_, v_before_}, v_, kept.size() == 0 ? sum : kept);
+    if (!loads_[k]->acts_on_driven())
       leave_driven_undamped(loads_, model_.dimension(), undamped, v_, kept.size() == 0 ? sum : kept);
     if (kept.size() != 0) sum += kept;
   }
@@ -137,9 +137,9 @@ void Integrator::check_motion(double speed, double time) const {
   v_.cwiseAbs().maxCoeff(&largest);
   while (dof < v_.size() && std::isfinite(v_[dof])) ++dof;
   if (dof == v_.size()) dof = largest;
-  throw std::runtime_error("the motion diverged: velocity " + std::to_string(v_[dof]) + " at node " +
-                           std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_ + 1) +
-                           ", time " + std::to_string(time) + advice_on_divergence(model_, u_, dt_));
+  throw Diverged("velocity " + std::to_string(v_[dof]) + " at node " +
+                 std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_ + 1) +
+                 ", time " + std::to_string(time) + advice_on_divergence(model_, u_, dt_));
 }
 
 }  // namespace ilaw::host

@@ -13,10 +13,17 @@
 
 #include <iosfwd>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace ilaw::host {
+
+// The motion, or what follows from it, is not finite.
+class Diverged : public std::runtime_error {
+ public:
+  explicit Diverged(const std::string& what) : std::runtime_error("the motion diverged: " + what) {}
+};
 
 // Wall-clock seconds spent in each phase.
 struct PhaseSeconds {
@@ -27,8 +34,7 @@ class Integrator {
  public:
   Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt);
 
-  // One step. Throws ilaw::error when a law refuses a node, std::runtime_error when the motion is
-  // not finite.
+  // One step. Throws ilaw::error when a law refuses a node, Diverged when the motion is not finite.
   void step();
 
   std::int64_t steps() const { return steps_; }

@@ -10,12 +10,16 @@ namespace ilaw::host {
 
 namespace {
 
-// Prescribed motions have the last word, so that positions follow them whatever else acts.
+// What leaves driven nodes alone comes first, for it takes back what was done to them. Prescribed
+// motions have the last word, so that positions follow them whatever else acts.
 std::vector<std::size_t> order_of_corrections(const Loads& loads) {
+  const auto rank = [](const Load& load) {
+    return load.acts_on_driven() ? (load.prescribed_nodes().empty() ? 1 : 2) : 0;
+  };
   std::vector<std::size_t> order;
-  for (const bool prescribed : {false, true})
+  for (const int wanted : {0, 1, 2})
     for (std::size_t k = 0; k < loads.size(); ++k)
-      if (loads[k]->corrects() && loads[k]->prescribed_nodes().empty() != prescribed) order.push_back(k);
+      if (loads[k]->corrects() && rank(*loads[k]) == wanted) order.push_back(k);
   return order;
 }
 
@@ -39,11 +43,11 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       inverse_mass_(model.mass().cwiseInverse()) {
   if (share_nodes(model_, interfaces_)) coupled_.emplace(model_, interfaces_);
   Dofs force = Dofs::Zero(u_.size());
-  for (const auto& load : loads_) load->add_force(0.0, force);
+  for (const auto& load : loads_) load->add_force(0.0, u_, force);
   if (loads_are_steady_ && !loads_.empty()) external_impulse_ = dt_ * force;
   model_.add_internal_forces(u_, force);
   v_ += 0.5 * dt_ * force.cwiseQuotient(model_.mass());
-  for (const std::size_t k : correcting_) loads_[k]->start(dt_, v_before_, v_);
+  for (const std::size_t k : correcting_) loads_[k]->start(dt_, {u_, v_before_}, v_);
   const bool damped =
       std::any_of(loads_.begin(), loads_.end(), [](const auto& load) { return load->damps(); });
   damping_impulse_ = Dofs::Zero(damped ? u_.size() : 0);
@@ -71,7 +75,7 @@ void Integrator::add_load_impulse(std::size_t load, Dofs& impulse) const {
     return;
   }
   Dofs force = Dofs::Zero(u_.size());
-  loads_[load]->add_force(time(), force);
+  loads_[load]->add_force(time(), u_, force);
   impulse += dt_ * force;
   loads_[load]->add_impulse({static_cast<double>(steps_ - 1) * dt_, time()}, impulse);
 }

@@ -153,7 +153,7 @@ std::vector<PostitPoint::Knot> pull_of(const Scene& scene, const json& loads) {
   std::vector<PostitPoint::Knot> knots;
   for (const double time : times) {
     Dofs force = Dofs::Zero(1);
-    for (const auto& load : scene.loads) load->add_force(time, force);
+    for (const auto& load : scene.loads) load->add_force(time, scene.model->initial_displacement(), force);
     knots.push_back({time, force[0]});
   }
   return knots;
@@ -207,6 +207,12 @@ ExactNode postit_point(const Scene& scene) {
 
 std::vector<ExactNode> exact_solution(const Scene& scene) {
   if (!scene.source.contains("exact")) return {};
+  for (const char* key : {"initial", "springs"})
+    require(!scene.source.contains(key), std::string("a scene without '") + key + "'");
+  for (const json& interface : scene.source["interfaces"])
+    for (const char* key : {"rate", "angles"})
+      require(!interface.contains("obstacle") || !interface["obstacle"].contains(key),
+              "obstacles that do not turn");
   const std::string type = scene.source["exact"]["type"].get<std::string>();
   if (type == "two_bars") return two_bars(scene);
   require(scene.output.watch.size() == 1, "one watched node, the one in contact");

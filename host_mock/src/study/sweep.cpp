@@ -34,7 +34,8 @@ void refuse_numbers_in(const json& part, const std::string& pointer) {
   for (const auto& [key, value] : part.items()) {
     const std::string inner = pointer + "/" + key;
     if (key == "per_node") refuse_number(inner, value);
-    if ((key == "nodes" || key == "watch") && value.is_array())
+    const bool names_nodes = key == "nodes" || key == "watch" || key == "to" || pointer == "/sets";
+    if (names_nodes && value.is_array())
       for (std::size_t i = 0; i < value.size(); ++i)
         if (value[i].is_number()) refuse_number(at(inner, i), value[i]);
     refuse_numbers_in(value, inner);

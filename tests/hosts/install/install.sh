@@ -29,7 +29,9 @@ echo "== files"
 for file in bin/ilaw lib/ilaw/contact.so include/ilaw/ilaw.h include/ilaw/kit/detail/evaluate.hpp lib/libilaw_loader.a \
             lib/libilaw_loader.so lib/libilaw_loader.so.1 \
             lib/libilaw_coupled.a lib/libilaw_coupled.so lib/libilaw_coupled.so.1 include/ilaw/coupled.h lib/cmake/ilaw/ilawConfig.cmake lib/pkgconfig/ilaw.pc \
-            share/ilaw/fortran/ilaw.f90 share/ilaw/python/pyproject.toml share/man/man1/ilaw.1 \
+            lib/pkgconfig/ilaw_coupled.pc share/ilaw/fortran/ilaw.f90 share/ilaw/fortran/ilaw_coupled.f90 \
+            share/ilaw/yade/ilaw_yade.py share/ilaw/python/examples/dolfinx/throw.py share/ilaw/python/ilaw/coupled.py \
+            share/ilaw/python/pyproject.toml share/man/man1/ilaw.1 \
             share/bash-completion/completions/ilaw; do
   [ -e "$prefix/$file" ] || { echo "missing: $file"; exit 1; }
 done
@@ -47,7 +49,8 @@ echo "== the program, from where it lies"
 "$prefix/bin/ilaw" run "$source/plugins/coulomb/sliding_block.json" --out results
 
 echo "== a project with CMake: hosts with the static and the shared loader"
-cp "$source/tests/hosts/blocks.c" "$source/tests/hosts/blocks.cpp" .
+cp "$source/tests/hosts/blocks.c" "$source/tests/hosts/blocks.cpp" \
+   "$source/tests/hosts/grains.c" .
 cat >CMakeLists.txt <<'EOF'
 cmake_minimum_required(VERSION 3.22)
 project(outside LANGUAGES C CXX)
@@ -57,18 +60,28 @@ add_executable(blocks_static blocks.c)
 target_link_libraries(blocks_static PRIVATE ilaw::loader)
 add_executable(blocks_shared blocks.c)
 target_link_libraries(blocks_shared PRIVATE ilaw::loader_shared)
+add_executable(grains_static grains.c)
+target_link_libraries(grains_static PRIVATE ilaw::coupled ilaw::loader m)
+add_executable(grains_shared grains.c)
+target_link_libraries(grains_shared PRIVATE ilaw::coupled_shared ilaw::loader_shared m)
 EOF
 { cmake -S . -B out -DCMAKE_BUILD_TYPE=Debug -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" \
     -DCMAKE_CXX_COMPILER="$cxx" && cmake --build out; } >build.log 2>&1 || { cat build.log; exit 1; }
 export ILAW_PATH=$prefix/lib/ilaw
 out/blocks_static coulomb >wanted
 out/blocks_shared coulomb | cmp - wanted
+out/grains_static coulomb 20 20 10 >wanted_grains
+grep -q "^overlap .* contacts [1-9]" wanted_grains
+out/grains_shared coulomb 20 20 10 | cmp - wanted_grains
 
 echo "== by hand, with pkg-config"
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 flags=($(pkg-config --cflags --libs ilaw))
 "$cc" -std=c99 blocks.c "${flags[@]}" -o by_hand
 LD_LIBRARY_PATH=$prefix/lib ./by_hand coulomb | cmp - wanted
+flags=($(pkg-config --cflags --libs ilaw_coupled))
+"$cc" -std=c99 grains.c "${flags[@]}" -lm -o grains_by_hand
+LD_LIBRARY_PATH=$prefix/lib ./grains_by_hand coulomb 20 20 10 | cmp - wanted_grains
 [ "$(pkg-config --modversion ilaw)" = "$(sed -n 's/^project(ilaw VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")" ]
 
 echo "== completion"

@@ -28,10 +28,14 @@ Messages expected_of(const std::string& file) {
   return expected;
 }
 
+std::string file_of(const std::string& name) { return std::string(ILAW_MISTAKES) + "/" + name; }
+
 std::vector<std::string> compiler_says(const std::string& file) {
-  const std::string command = "LC_ALL=C " ILAW_CXX
-                              " -std=c++20 -fsyntax-only -ftemplate-backtrace-limit=0 -I " ILAW_INCLUDE " " +
-                              file + " 2>&1";
+  const std::string command =
+      "LC_ALL=C " ILAW_CXX
+      " -std=c++20 -fsyntax-only -Wall -Wextra -fopenmp-simd -ftemplate-backtrace-limit=0 -I " ILAW_INCLUDE
+      " " +
+      file + " 2>&1";
   std::vector<std::string> lines;
   std::FILE* answer = popen(command.c_str(), "r");
   std::string line;
@@ -74,10 +78,14 @@ Messages messages_of(const std::string& file, const Messages& expected) {
 class Mistakes : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Mistakes, AreNamedByTheCompilerInOneLine) {
-  const std::string file = std::string(ILAW_MISTAKES) + "/" + GetParam();
+  const std::string file = file_of(GetParam());
   const Messages expected = expected_of(file), found = messages_of(file, expected);
   EXPECT_FALSE(expected.empty());
   EXPECT_EQ(found, expected);
+}
+
+TEST(RightLaw, GoesWithHeadersOfTheStandard) {
+  EXPECT_EQ(compiler_says(file_of("right_law.cpp")), std::vector<std::string>{});
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Mistakes, ::testing::Values("wrong_laws.cpp", "wrong_steps.cpp"),

@@ -259,7 +259,7 @@ template <class Node>
 void give_friction(Node& node, const friction_answer<double>& a) {
   node.impulse = {a.r[0], a.r[1], a.r[2]};
   node.status = a.status;
-  node.refused = a.refused;
+  node.refused = larger(node.refused, a.refused);
 }
 
 // What makes a law whose only problem is friction one in pack form: it has but to ask.
@@ -328,9 +328,13 @@ void apply_contact_friction(Node& node, const contact_problem<Vector>& contact, 
 
 // Contact and friction where the gap is closed and nothing rebounds: what is left of a bond.
 template <class Node, class Vector>
-void apply_plain_contact(Node& node, Vector v_free, double friction) {
+contact_problem<Vector> plain_contact(const Node& node, Vector v_free) {
   const contact_condition condition = contact_leaving_at(0.0, node.gap, v_free.n, node.v_previous.n);
-  apply_contact_friction(node, contact_problem_of(condition, v_free, node.v_previous), friction);
+  return contact_problem_of(condition, v_free, node.v_previous);
+}
+template <class Node, class Vector>
+void apply_plain_contact(Node& node, Vector v_free, double friction) {
+  apply_contact_friction(node, plain_contact(node, v_free), friction);
 }
 
 }  // namespace ilaw::kit

@@ -249,7 +249,7 @@ class cone_contact {
     const double cone = m_ * length(rho.x, rho.y), excess = vn / a_.nn;
     const pair k{p.x / cone + w.x, p.y / cone + w.y};
     const double change = -(excess + k.x * fixed.x + k.y * fixed.y) / (k.x * moving.x + k.y * moving.y);
-    const double by = sticks || !finite(change) ? 0.0 : change;
+    const double by = sticks || !is_finite(change) ? 0.0 : change;
     const pair dp{fixed.x + moving.x * by, fixed.y + moving.y * by}, drho = axes_.from(dp);
     const pair better{rho.x + drho.x, rho.y + drho.y};
     const double limit = length(better.x, better.y) / m_, held = r[0] - (excess + w.x * dp.x + w.y * dp.y);

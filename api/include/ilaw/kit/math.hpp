@@ -18,7 +18,7 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // IEEE operations, spelled so that they inline into vector code; exact or correctly rounded everywhere.
-constexpr bool finite(double x) { return x - x == 0.0; }
+constexpr bool is_finite(double x) { return x - x == 0.0; }
 constexpr double larger(double a, double b) { return a > b ? a : b; }
 constexpr double smaller(double a, double b) { return a < b ? a : b; }
 constexpr double positive_part(double x) { return x > 0.0 ? x : 0.0; }
@@ -68,17 +68,35 @@ inline double length(double a, double b, double c) {
   return 0.5 * square_root(a * a + b * b + c * c) * scale.up;
 }
 
+// `m ? a : b`, the same word for a double and for a pack of them (pack.hpp).
+inline double select(bool m, double a, double b) { return m ? a : b; }
+
+namespace detail {
+
+// A number as its bits and back, for a double and for a pack; of: the same bits in every lane.
+template <class V>
+struct bits_of;
+template <>
+struct bits_of<double> {
+  using type = std::uint64_t;
+  static type in(double x) { return std::bit_cast<type>(x); }
+  static type of(std::uint64_t all) { return all; }
+  static double number(type bits) { return std::bit_cast<double>(bits); }
+};
+
 // e^x to 1 ulp: x = k ln2 + s with |s| <= ln2/2 (Cody and Waite 1980), Taylor polynomial of degree 13 whose
 // remainder is below 5e-18, scaled by 2^k in two steps so that results below the normal range round once.
-inline double exp(double x) {
+template <class V>
+V exponential(V x) {
+  using bits = bits_of<V>;
   constexpr double log2e = 1.4426950408889634;
   constexpr double ln2_high = 6.93147180369123816490e-01;  // 32 bits: k * ln2_high is exact
   constexpr double ln2_low = 1.90821492927058770002e-10;
   constexpr double to_integer = 0x1.8p52;  // adding and subtracting it rounds to the nearest integer
-  const double clamped = smaller(larger(x, -746.0), 710.0);
-  const double k = (clamped * log2e + to_integer) - to_integer;
-  const double s = (clamped - k * ln2_high) - k * ln2_low;
-  double p = 1.0 / 6227020800.0;
+  const V clamped = smaller(larger(x, V(-746.0)), V(710.0));
+  const V k = (clamped * log2e + to_integer) - to_integer;
+  const V s = (clamped - k * ln2_high) - k * ln2_low;
+  V p = 1.0 / 6227020800.0;
   p = p * s + 1.0 / 479001600.0;
   p = p * s + 1.0 / 39916800.0;
   p = p * s + 1.0 / 3628800.0;
@@ -93,28 +111,28 @@ inline double exp(double x) {
   p = p * (s * s) + s;  // the small terms first, so that 1 is added last
   // 2^j from the bits of j + 1023 behind a 1 that is shifted out: no conversion, which few processors have in
   // vectors.
-  const auto power_of_two = [](double j) {
-    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(j + (0x1p52 + 1023.0)) << 52);
-  };
-  const double half = (k * 0.5 + to_integer) - to_integer;
-  const double first = power_of_two(half), second = power_of_two(k - half);
-  const double result = (1.0 + p) * first * second;
-  return x == x ? result : x;
+  const auto power_of_two = [](V j) { return bits::number(bits::in(j + (0x1p52 + 1023.0)) << 52); };
+  const V half = (k * 0.5 + to_integer) - to_integer;
+  const V first = power_of_two(half), second = power_of_two(k - half);
+  const V result = (1.0 + p) * first * second;
+  return select(x == x, result, x);
 }
 
 // ln x to 1 ulp: x = 2^k (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)), and ln(1 + f) = 2 artanh(s), s = f/(2 +
 // f), whose series to s^23 leaves less than 1e-18. Summed so that f, which is exact, is added last (after
 // FreeBSD's).
-inline double log(double x) {
+template <class V>
+V logarithm(V x) {
+  using bits = bits_of<V>;
   constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
   constexpr std::uint64_t one = 0x3FF0000000000000, root_half = 0x3FE6A09E00000000;
-  const bool tiny = x < std::numeric_limits<double>::min();
-  const std::uint64_t moved = std::bit_cast<std::uint64_t>(tiny ? x * 0x1p54 : x) + (one - root_half);
-  const double k =
-      std::bit_cast<double>((moved >> 52) | 0x4330000000000000) - (tiny ? 0x1p52 + 1077.0 : 0x1p52 + 1023.0);
-  const double f = std::bit_cast<double>((moved & 0x000FFFFFFFFFFFFF) + root_half) - 1.0;
-  const double s = f / (2.0 + f), z = s * s;
-  double p = 2.0 / 23.0;
+  const auto tiny = x < std::numeric_limits<double>::min();
+  const auto moved = bits::in(select(tiny, x * 0x1p54, x)) + bits::of(one - root_half);
+  const V k = bits::number((moved >> 52) | bits::of(0x4330000000000000)) -
+              select(tiny, V(0x1p52 + 1077.0), V(0x1p52 + 1023.0));
+  const V f = bits::number((moved & bits::of(0x000FFFFFFFFFFFFF)) + bits::of(root_half)) - 1.0;
+  const V s = f / (2.0 + f), z = s * s;
+  V p = 2.0 / 23.0;
   p = p * z + 2.0 / 21.0;
   p = p * z + 2.0 / 19.0;
   p = p * z + 2.0 / 17.0;
@@ -125,11 +143,17 @@ inline double log(double x) {
   p = p * z + 2.0 / 7.0;
   p = p * z + 2.0 / 5.0;
   p = p * z + 2.0 / 3.0;
-  const double half_square = 0.5 * f * f;
-  const double result = k * ln2_high - ((half_square - (s * (half_square + p * z) + k * ln2_low)) - f);
-  const double outside = x == 0.0 ? -infinity : (x > 0.0 ? x : std::numeric_limits<double>::quiet_NaN());
-  return x > 0.0 && x < infinity ? result : (x == x ? outside : x);
+  const V half_square = 0.5 * f * f;
+  const V result = k * ln2_high - ((half_square - (s * (half_square + p * z) + k * ln2_low)) - f);
+  const V nan = std::numeric_limits<double>::quiet_NaN();
+  const V outside = select(x == 0.0, V(-infinity), select(x > 0.0, x, nan));
+  return select((x > 0.0) & (x < infinity), result, select(x == x, outside, x));
 }
+
+}  // namespace detail
+
+inline double exp(double x) { return detail::exponential(x); }
+inline double log(double x) { return detail::logarithm(x); }
 
 // x^y for x >= 0, y > 0, within 1 + |y ln x| ulp; exact or correctly rounded where laws need it most.
 inline double power(double x, double y) {

@@ -73,11 +73,11 @@ struct transverse_delassus {
   double normal() const { return n; }
   double tangential() const { return t; }
   double anisotropy() const { return 0.0; }
-  // tr(H) tr(H^-1) = 5 + 2 (n/t + t/n) here.
+  // tr(H) tr(H^-1) = 5 + 2 (n/t + t/n) here. What is not finite leaves n - t so.
   double positive_defect() const {
     constexpr double largest_ratio = 0.5 * largest_condition;
-    return defect(n) + defect(t) + defect_unless((n >= smallest_delassus) & (t >= smallest_delassus)) +
-           defect_unless((n <= largest_ratio * t) & (t <= largest_ratio * n));
+    const double low = smaller(n, t), high = larger(n, t);
+    return defect(n - t) + defect_unless((low >= smallest_delassus) & (high <= largest_ratio * low));
   }
   vector times(vector r) const { return {n * r.n, t * r.t1, t * r.t2}; }
   projected_vector times(projected_vector r) const { return {n * r.n, t * r.x, t * r.y, t * r.z}; }
@@ -255,6 +255,7 @@ struct node {
   const scalar_input<Inputs, reads_gap> gap;  // offset already taken off
   const scalar_input<Inputs, reads_area> area;
   const const_history history;
+  const vector earlier = {};  // what the law's window sums up to before the step; zero unless it has one
 
   Vector impulse;
   State state;          // comes in as it was, leaves as it is

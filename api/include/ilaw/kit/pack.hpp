@@ -74,8 +74,7 @@ class pack {
   lanes v_;
 };
 
-// The same words for a double and for a pack. select is `m ? a : b`.
-inline double select(bool m, double a, double b) { return m ? a : b; }
+// The same words for a double (math.hpp) and for a pack.
 inline pack select(mask m, pack a, pack b) { return pack(m.values() ? a.values() : b.values()); }
 
 inline bool any(bool m) { return m; }
@@ -111,6 +110,21 @@ inline pack larger(pack a, pack b) { return select(a > b, a, b); }
 inline pack smaller(pack a, pack b) { return select(a < b, a, b); }
 inline pack positive_part(pack x) { return select(x > 0.0, x, 0.0); }
 inline pack halfway(pack low, pack high) { return pack(low.bits() + ((high.bits() - low.bits()) >> 1)); }
+
+namespace detail {
+
+template <>
+struct bits_of<pack> {
+  using type = pack::integers;
+  static type in(pack x) { return x.bits(); }
+  static type of(std::uint64_t all) { return all - type{}; }
+  static pack number(type bits) { return pack(bits); }
+};
+
+}  // namespace detail
+
+inline pack exp(pack x) { return detail::exponential(x); }
+inline pack log(pack x) { return detail::logarithm(x); }
 
 // What a comparison of V gives.
 template <class V>

@@ -5,6 +5,7 @@
 #ifndef ILAW_BUILDING_PLUGIN
 #define ILAW_BUILDING_PLUGIN
 #endif
+#include <ilaw/profile.h>
 #include <ilaw/kit/detail/checked.hpp>
 #include <ilaw/kit/detail/evaluate.hpp>
 
@@ -24,11 +25,37 @@ std::int32_t create_at(const ilaw_setup* setup, ilaw_instance** result, char* te
   return code;
 }
 
-// What the law has under names besides, by its static member extension(const char*); null: nothing.
 template <class Law>
-constexpr auto extension_of() -> const void* (*)(const char*) {
-  if constexpr (requires { Law::extension(""); })
-    return Law::extension;
+inline constexpr ilaw_float_functions float_functions{.struct_size = sizeof(ilaw_float_functions),
+                                                      .reserved = 0,
+                                                      .initialise = initialise<Law>,
+                                                      .evaluate = evaluate<Law>};
+
+// The level whose walks an instance uses.
+template <std::size_t Place, class Law>
+const char* instruction_set_at(const ilaw_instance* opaque) {
+  [[maybe_unused]] const ilaw_kit_walk walk = of<Law>(opaque).walk;
+#if defined(ILAW_KIT_OTHER_LEVELS)
+  if (walk && walk == ilaw_kit_walks_v4()[Place]) return "v4";
+  if (walk && walk == ilaw_kit_walks_v3()[Place]) return "v3";
+#endif
+  return "baseline";
+}
+
+template <std::size_t Place, class Law>
+inline constexpr ilaw_profile profile{.struct_size = sizeof(ilaw_profile),
+                                      .reserved = 0,
+                                      .instruction_set = instruction_set_at<Place, Law>,
+                                      .evaluate_counting = evaluate_counting<Law>};
+
+// What the law has under names besides: what all laws of the kit have, and what its static member
+// extension(const char*) knows.
+template <std::size_t Place, class Law>
+const void* extension_at(const char* name) {
+  if (name && std::strcmp(name, ILAW_FLOAT) == 0) return &float_functions<Law>;
+  if (name && std::strcmp(name, ILAW_PROFILE) == 0) return &profile<Place, Law>;
+  if constexpr (requires { Law::extension(name); })
+    return Law::extension(name);
   else
     return nullptr;
 }
@@ -55,7 +82,7 @@ inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .info = info<Law>,
                                   .initialise = initialise<Law>,
                                   .evaluate = evaluate<Law>,
-                                  .extension = extension_of<Law>()};
+                                  .extension = extension_at<Place, Law>};
 
 // The description of a library with these laws; Checked: whether all of them are laws.
 template <bool Checked, class... Laws>

@@ -23,8 +23,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/kit/detail/gather.hpp>
 #include <ilaw/kit/node.hpp>
 
+#include <concepts>
 #include <cstdint>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
@@ -48,17 +50,20 @@ step_interval interval_of(const Node& node) {
   return {node.time + 0.5 * node.position_step, node.velocity_step};
 }
 
-class window {
+// A window in one step. What is the same at all nodes is worked out once.
+class window_in_step {
  public:
-  // Doubles of history that a duration and a number of buckets B need, whatever the time step.
-  static std::int64_t doubles(double duration, double buckets) {
-    if (duration == 0.0) return 0;
-    if (duration == infinity) return 3;
-    return first_bucket + 3 * (static_cast<std::int64_t>(buckets) + 1);
-  }
-
-  window(double duration, double buckets)
-      : duration_(duration), per_width_(buckets / duration), buckets_(buckets) {}
+  window_in_step(double duration, double buckets, step_interval step)
+      : duration_(duration),
+        buckets_(buckets),
+        per_width_(buckets / duration),
+        end_(step.end * per_width_),
+        begin_(end_ - step.length * per_width_),
+        now_(on_grid(end_) ? floor_of(end_) : 0.0),
+        has_grid_(duration > 0.0 && duration < infinity && on_grid(end_)),
+        is_short_(step.length < duration),
+        place_(has_grid_ ? place_of(now_) : 0),
+        edge_(edge_at(now_)) {}
 
   // The sum of the impulses before the step, within tau of its end; or why there is none.
   struct reading {
@@ -66,39 +71,50 @@ class window {
     double refused = not_refused;
   };
   template <class History>
-  reading before(const History& own, step_interval step) const {
+  reading before(const History& own) const {
     if (duration_ == 0.0) return {};
     if (duration_ == infinity) return checked(read(own, 0));
-    const double stamp = own[0], end = step.end * per_width_;
+    const double stamp = own[0];
     if (!is_stamp(stamp)) return {{}, impossible_state};
-    if (stamp == empty || !on_grid(end)) return {};
-    const double newest = bucket_of(stamp), now = floor_of(end), k = larger(now, newest);
+    if (stamp == empty || !has_grid_) return {};
+    const double newest = bucket_of(stamp), k = larger(now_, newest);
     // A host whose position step is not the next one may fall back by a part of its last step.
-    if (now < newest - 1.0) return {{}, time_before_history};
-    if (step.length >= duration_ || k - newest > buckets_) return {};
-    const std::int64_t oldest = place_of(k - buckets_), latest = before_in_ring(oldest);
+    if (now_ < newest - 1.0) return {{}, time_before_history};
+    if (!is_short_ || k - newest > buckets_) return {};
+    const std::int64_t latest = place_of(k), oldest = after(latest);
     const vector middle = k == newest ? read(own, middle_sum) : sum_between(own, k, newest);
     const vector current = k == newest ? read(own, at(latest)) : vector{};
-    return checked((middle + current) + live_part(own, oldest, k - buckets_, end, step, newest));
+    const vector next = k - buckets_ + 1.0 <= newest ? read(own, at(after(oldest))) : vector{};
+    return checked(edge_at(k).sum(middle, current, read(own, at(oldest)), next));
+  }
+
+  // The same for the nodes of a block, whose histories own(i) gives. Most were written in the newest bucket
+  // as it is now: what is read of them stands at the same places, and is summed in vector code.
+  template <class OwnHistory>
+  void before(int count, OwnHistory own, column (&sum)[3], column& refused) const {
+    parts p;
+    const bool may_agree = has_grid_ && is_short_;
+    if (may_agree) {
+      gather(count, own, p);
+      sum_parts(count, p, edge_, sum, refused);
+    }
+    for (int i = 0; i < count; ++i) {
+      if (may_agree && p.stamp.values[i] == stamp_of(now_)) continue;
+      const reading alone = before(own(i));
+      sum[0].values[i] = alone.sum.n;
+      sum[1].values[i] = alone.sum.t1;
+      sum[2].values[i] = alone.sum.t2;
+      refused.values[i] = alone.refused;
+    }
   }
 
   // Takes the step's own impulse in. The history is one that before() did not refuse.
-  void add(const history& own, step_interval step, vector impulse) const {
+  void add(const history& own, vector impulse) const {
     if (duration_ == 0.0 || (impulse.n == 0.0 && impulse.t1 == 0.0 && impulse.t2 == 0.0)) return;
-    if (duration_ == infinity) return write(own, 0, read(own, 0) + impulse);
-    const double end = step.end * per_width_;
-    if (!on_grid(end)) return;
-    const double now = floor_of(end), begin = end - step.length * per_width_;
-    const double newest = own[0] == empty ? now - buckets_ - 1.0 : bucket_of(own[0]);
-    const double k = larger(now, newest);
-    if (k == newest && begin >= k) {
-      const std::int64_t current = at(place_of(k));
-      return write(own, current, read(own, current) + impulse);
-    }
-    clear_between(own, newest, k);
-    spread(own, impulse, begin, end, k);
-    write(own, middle_sum, sum_between(own, k, k));
-    own[0] = stamp_of(k);
+    if (has_grid_ && own[0] == stamp_of(now_) && begin_ >= now_)
+      write(own, at(place_), read(own, at(place_)) + impulse);
+    else
+      add_elsewhere(own, impulse);
   }
 
   // An empty window is one without a newest bucket; what else its history holds does not count.
@@ -107,8 +123,11 @@ class window {
     if (duration_ > 0.0 && duration_ < infinity) own[0] = empty;
   }
 
+  bool forgets() const { return duration_ == 0.0; }
+
  private:
   // The history: number of the newest bucket, sum of the middle ones, and a ring of B + 1 buckets.
+  friend class window;
   static constexpr std::int64_t middle_sum = 1, first_bucket = 4;
   // Numbers of buckets that a double and a cast hold with room to spare. A grid finer than that is finer than
   // the clock: no step lies within tau of another.
@@ -143,7 +162,6 @@ class window {
     return static_cast<std::int64_t>(place < 0.0 ? place + size : (place < size ? place : place - size));
   }
   std::int64_t after(std::int64_t place) const { return place + 1 < ring_size() ? place + 1 : 0; }
-  std::int64_t before_in_ring(std::int64_t place) const { return (place > 0 ? place : ring_size()) - 1; }
   static std::int64_t at(std::int64_t place) { return first_bucket + 3 * place; }
 
   // The sum of the buckets between the oldest and k, of which those after newest are not open yet: in two
@@ -168,29 +186,72 @@ class window {
     return k < end ? (even + read(own, k)) + odd : even + odd;
   }
 
-  // What of the oldest bucket tau still covers. A step may have begun within this bucket or the next, which
-  // are then filled up to there.
-  template <class History>
-  vector live_part(const History& own, std::int64_t place, double oldest, double end, step_interval step,
-                   double newest) const {
-    const vector bucket = read(own, at(place));
-    const double begin = end - step.length * per_width_, filled = smaller(oldest + 1.0, begin);
-    if (filled <= oldest) return {};
-    const double live = filled - (end - buckets_);
-    const double part = smaller(1.0, begin < oldest + 1.0 ? live / (filled - oldest) : live);
-    if (begin < oldest + 2.0) return part * bucket;
-    const vector next = oldest + 1.0 <= newest ? read(own, at(after(place))) : vector{};
-    return part * bucket + (0.5 * part * (1.0 - part)) * limited_difference(bucket, next);
+  // What counts of the oldest bucket: the part that tau still covers, and its correction by the slope.
+  struct edge {
+    double part, slope;
+
+    vector sum(vector middle, vector current, vector oldest, vector next) const {
+      return (middle + current) + (part * oldest + slope * limited_difference(oldest, next));
+    }
+  };
+  // A step may have begun within the oldest bucket or the next, which are then filled up to there.
+  edge edge_at(double k) const {
+    const double oldest = k - buckets_, filled = smaller(oldest + 1.0, begin_);
+    if (filled <= oldest) return {0.0, 0.0};
+    const double live = filled - (end_ - buckets_);
+    const double part = smaller(1.0, begin_ < oldest + 1.0 ? live / (filled - oldest) : live);
+    return {part, begin_ < oldest + 2.0 ? 0.0 : 0.5 * part * (1.0 - part)};
   }
   static vector limited_difference(vector bucket, vector next) {
-    vector difference = next - bucket;
+    const vector difference = next - bucket;
     const double most = 2.0 * absolute(bucket.n);
-    difference.n = smaller(larger(difference.n, -most), most);
-    const double larger_part = larger(absolute(bucket.t1), absolute(bucket.t2));
-    if (absolute(difference.t1) + absolute(difference.t2) <= 2.0 * larger_part) return difference;
     const double allowed = 2.0 * bucket.tangential_length(), found = difference.tangential_length();
     const double factor = found > allowed ? allowed / found : 1.0;
-    return {difference.n, factor * difference.t1, factor * difference.t2};
+    return {smaller(larger(difference.n, -most), most), factor * difference.t1, factor * difference.t2};
+  }
+
+  // What is read of the nodes of a block, as columns: the middle sum, the newest bucket and the two oldest.
+  struct parts {
+    column stamp, middle[3], current[3], oldest[3], next[3];
+  };
+  template <class OwnHistory>
+  void gather(int count, OwnHistory own, parts& p) const {
+    const std::int64_t latest = at(place_), oldest = at(after(place_)), next = at(after(after(place_)));
+    for (int i = 0; i < count; ++i) {
+      const auto h = own(i);
+      p.stamp.values[i] = h[0];
+      for (int c = 0; c < 3; ++c) {
+        p.middle[c].values[i] = h[middle_sum + c];
+        p.current[c].values[i] = h[latest + c];
+        p.oldest[c].values[i] = h[oldest + c];
+        p.next[c].values[i] = h[next + c];
+      }
+    }
+  }
+  static vector at(const column (&c)[3], int i) { return {c[0].values[i], c[1].values[i], c[2].values[i]}; }
+  [[gnu::noinline, gnu::flatten]] static void sum_parts(int count, const parts& p, edge given,
+                                                        column (&sum)[3], column& refused) {
+#pragma omp simd
+    for (int i = 0; i < count; ++i)
+      put(given.sum(at(p.middle, i), at(p.current, i), at(p.oldest, i), at(p.next, i)), i, sum, refused);
+  }
+  static void put(vector s, int i, column (&sum)[3], column& refused) {
+    sum[0].values[i] = s.n;
+    sum[1].values[i] = s.t1;
+    sum[2].values[i] = s.t2;
+    refused.values[i] = defect(s) == 0.0 ? not_refused : impossible_state;
+  }
+
+  // Where the step lies in other buckets than the newest, or in several.
+  [[gnu::noinline]] void add_elsewhere(const history& own, vector impulse) const {
+    if (duration_ == infinity) return write(own, 0, read(own, 0) + impulse);
+    if (!has_grid_) return;
+    const double newest = own[0] == empty ? now_ - buckets_ - 1.0 : bucket_of(own[0]);
+    const double k = larger(now_, newest);
+    clear_between(own, newest, k);
+    spread(own, impulse, k);
+    write(own, middle_sum, sum_between(own, k, k));
+    own[0] = stamp_of(k);
   }
 
   // Opens the buckets after newest up to k.
@@ -200,22 +261,63 @@ class window {
     for (double j = first; j <= k; j += 1.0, place = after(place)) write(own, at(place), {});
   }
 
-  // Over the buckets that [begin, end] covers, as far as tau reaches; the last takes what is left, so that
-  // the whole arrives. end may lie before bucket k.
-  void spread(const history& own, vector impulse, double begin, double end, double k) const {
-    const bool is_whole = begin >= k - buckets_;
-    const double first = is_whole ? floor_of(begin) : k - buckets_, last = floor_of(end);
+  // Over the buckets that the step covers, as far as tau reaches; the last takes what is left, so that the
+  // whole arrives. The step may end before bucket k.
+  void spread(const history& own, vector impulse, double k) const {
+    const bool is_whole = begin_ >= k - buckets_;
+    const double first = is_whole ? floor_of(begin_) : k - buckets_;
     vector left = impulse;
     std::int64_t place = place_of(first);
-    for (double j = first; j <= last; j += 1.0, place = after(place)) {
-      const double overlap = smaller(j + 1.0, end) - larger(j, begin);
-      const vector part = is_whole && j == last ? left : (overlap / (end - begin)) * impulse;
+    for (double j = first; j <= now_; j += 1.0, place = after(place)) {
+      const double overlap = smaller(j + 1.0, end_) - larger(j, begin_);
+      const vector part = is_whole && j == now_ ? left : (overlap / (end_ - begin_)) * impulse;
       left = left - part;
       write(own, at(place), read(own, at(place)) + part);
     }
   }
 
-  double duration_, per_width_, buckets_;
+  double duration_, buckets_, per_width_, end_, begin_, now_;
+  bool has_grid_, is_short_;
+  std::int64_t place_;  // of bucket now_
+  edge edge_;
+};
+
+class window {
+ public:
+  using reading = window_in_step::reading;
+
+  // Doubles of history that a duration and a number of buckets B need, whatever the time step.
+  static std::int64_t doubles(double duration, double buckets) {
+    if (duration == 0.0) return 0;
+    if (duration == infinity) return 3;
+    return window_in_step::first_bucket + 3 * (static_cast<std::int64_t>(buckets) + 1);
+  }
+
+  window(double duration, double buckets) : duration_(duration), buckets_(buckets) {}
+
+  window_in_step in(step_interval step) const { return {duration_, buckets_, step}; }
+
+  template <class History>
+  reading before(const History& own, step_interval step) const {
+    return in(step).before(own);
+  }
+  void add(const history& own, step_interval step, vector impulse) const { in(step).add(own, impulse); }
+
+ private:
+  double duration_, buckets_;
+};
+
+// Whether a law's history is a window: the kit reads it ahead of the steps of a block, as node.earlier, and has
+// the law record what they gave. So the steps themselves run in vector code.
+template <class Law>
+concept has_window = requires(const Law& law, step_interval step) {
+  { law.window_in(step) } -> std::same_as<window_in_step>;
+};
+
+// What a step gave a law's window to record.
+struct stepped_impulse {
+  vector impulse;
+  double status;
 };
 
 }  // namespace ilaw::kit

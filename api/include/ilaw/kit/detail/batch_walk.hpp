@@ -51,6 +51,9 @@ class batch_walk {
     block_.time = batch_.time;
     block_.velocity_step = batch_.velocity_step;
     block_.position_step = batch_.position_step;
+    for (const double*& sum : block_.earlier) sum = zeros.values;
+    block_.earlier_refused = zeros.values;
+    block_.impulse_guard = holds_floats(batch_) ? 0x1p898 : 4.0;
     gather_inputs();
     if (made_.frame == ILAW_FRAME_GLOBAL) gather_frame();
     if (made_.frame == ILAW_FRAME_GLOBAL && dimension_ == 2) pad_turned_delassus();
@@ -72,7 +75,7 @@ class batch_walk {
     for (std::int64_t c = 0; c < static_cast<std::int64_t>(made_.state_size); ++c)
       at(batch_.state_out, node, c) = 0.0;
     const double area = block_.area[i];
-    if (!finite(area) || area < 0.0) return "the area is not a finite number >= 0";
+    if (!is_finite(area) || area < 0.0) return "the area is not a finite number >= 0";
     if (made_.carries_frame && !unit(columns::get(block_.axes, i))) return "the normal is not a unit vector";
     initial_node<state_t<Law>, Law::card.inputs> fresh{
         .time = batch_.time, .area = detail::area_of<Law>(block_.area, i), .state = {}};
@@ -102,7 +105,7 @@ class batch_walk {
         batch_.status[nodes_.node(i) * batch_.status_stride] = static_cast<std::uint8_t>(block_.status[i]);
     for (int k = 0; k < states; ++k)
       if (const int entry = state_entry<Law>(k, dimension_); entry >= 0)
-        scatter(batch_.state_out, entry, nodes_, block_.state_out[k]);
+        scatter_doubles(batch_.state_out, entry, nodes_, block_.state_out[k]);
   }
 
   // The frame of an accepted step becomes the frame to carry on from.
@@ -122,8 +125,12 @@ class batch_walk {
  private:
   node_range range(std::int64_t first) const {
     const std::int64_t left = batch_.node_count - first;
-    return {batch_.index, batch_.index64, first, batch_.index_base,
-            static_cast<int>(left < block_size ? left : block_size)};
+    return {batch_.index,
+            batch_.index64,
+            first,
+            batch_.index_base,
+            static_cast<int>(left < block_size ? left : block_size),
+            holds_floats(batch_)};
   }
   static const double& at(const ilaw_input& a, std::int64_t node, std::int64_t c) {
     return a.values[node * a.node_stride + c * a.component_stride];
@@ -255,8 +262,9 @@ class batch_walk {
     if (batch_.state_in.values) {
       for (int k = 0; k < states; ++k) {
         const int entry = state_entry<Law>(k, dimension_);
-        block_.state_in[k] =
-            entry >= 0 ? gather(batch_.state_in, entry, nodes_, room_.state_in[k].values) : zeros.values;
+        block_.state_in[k] = entry >= 0
+                                 ? gather_doubles(batch_.state_in, entry, nodes_, room_.state_in[k].values)
+                                 : zeros.values;
       }
       copy_unnamed_state();
     } else {

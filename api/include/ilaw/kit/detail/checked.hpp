@@ -4,6 +4,7 @@
 #pragma once
 
 #include <ilaw/kit/declare.hpp>
+#include <ilaw/kit/window.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 namespace detail {
@@ -145,6 +146,11 @@ inline constexpr bool has_history_rightly = names_history_variable<Law> ? requir
                                     !names_history_variable<Law> ||
                                     requires(const Law& law, const plain_node<Law>& n, history own) {
                                   law.record(n, own);
+                                }
+                                || requires(const Law& law, const stepped_impulse& given,
+                                            const window_in_step& sums, history own) {
+                                  requires has_window<Law>;
+                                  law.record(given, sums, own);
                                 };
 
                                 // What needs no description yet: names.

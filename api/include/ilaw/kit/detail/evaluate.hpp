@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/float.h>
 #include <ilaw/kit/detail/batch_walk.hpp>
 #include <ilaw/kit/detail/node_parameters.hpp>
 
 #include <string>
+
+template <>
+inline constexpr std::uint32_t ilaw::sized::least<ilaw_float_batch> = ILAW_FLOAT_BATCH_SIZE_1;
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
@@ -44,7 +48,7 @@ inline const char* wrong_index(const ilaw_batch& b) {
 
 inline const char* wrong_scalars(const ilaw_batch& b) {
   if (b.node_count < 0) return "node_count is negative";
-  if (!finite(b.time)) return "time is not finite";
+  if (!is_finite(b.time)) return "time is not finite";
   return wrong_index(b);
 }
 
@@ -73,8 +77,10 @@ const char* colliding_output(const instance<Law>& made, const ilaw_batch& b) {
 template <class Law>
 const char* wrong_batch(const instance<Law>& made, const ilaw_batch& b) {
   if (const char* wrong = wrong_scalars(b)) return wrong;
-  if (!(b.velocity_step > 0.0) || !finite(b.velocity_step)) return "velocity_step is not a finite number > 0";
-  if (!(b.position_step > 0.0) || !finite(b.position_step)) return "position_step is not a finite number > 0";
+  if (!(b.velocity_step > 0.0) || !is_finite(b.velocity_step))
+    return "velocity_step is not a finite number > 0";
+  if (!(b.position_step > 0.0) || !is_finite(b.position_step))
+    return "position_step is not a finite number > 0";
   if (b.node_count == 0) return nullptr;
   if (!b.v_free.values) return "v_free is null";
   if (!b.delassus.values) return "delassus is null";
@@ -100,13 +106,13 @@ inline std::int32_t refuse(ilaw_report* report, const char* reason,
 template <class Law>
 bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
   const auto is_interleaved = [](const auto& a) { return a.node_stride == 3 && a.component_stride == 1; };
-  return made.dimension == 3 && !b.index && !b.index64 && is_interleaved(b.v_free) &&
+  return made.dimension == 3 && !b.index && !b.index64 && !holds_floats(b) && is_interleaved(b.v_free) &&
          is_interleaved(b.impulse) && (made.frame == ILAW_FRAME_LOCAL || is_interleaved(b.normal));
 }
 
 // What a walk found.
 struct tally {
-  std::int64_t bad_count = 0, first_bad_node = -1;
+  std::int64_t bad_count = 0, first_bad_node = -1, one_by_one = 0;
   const char* reason = nullptr;
   double stable_velocity_step = infinity;
 
@@ -159,14 +165,14 @@ inline bool is_not_a_number(projected_vector r) {
 
 // What is wrong with what a step gave.
 template <class Law, class Node>
-const char* result_reason(const Node& n) {
+const char* result_reason(const Node& n, double impulse_guard) {
   if (n.refused == several_solutions)
     return "the law's equations have several solutions for this H and step: a smaller step is needed";
   if (n.refused == no_solution) return "the law's equations have no solution for this H";
   if (n.refused == impossible_state) return "the state is not one that the law can have written";
   if (n.refused == time_before_history) return "the time lies before what the state remembers";
   if (is_not_a_number(n.impulse)) return "the law gave an impulse that is not a number";
-  if (defect(4.0 * n.impulse) + detail::state_defect<Law>(n.state) != 0.0)
+  if (defect(impulse_guard * n.impulse) + detail::state_defect<Law>(n.state) != 0.0)
     return "the impulse or the state overflows";
   if (status_defect(n.status) != 0.0) return "the law gave a status that ilaw.h does not have";
   if (pull_defect<Law>(n) != 0.0) return "the law pulled, which needs ILAW_CAN_ADHERE in its card";
@@ -175,7 +181,7 @@ const char* result_reason(const Node& n) {
 
 // Why a node was refused, from the same checks as step_node, in their order.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
-const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool tangent_given) {
+const char* refusal_reason(const Law& law, const block_of_one<Law>& b, int i, bool tangent_given) {
   const auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
   if (defect(Frame::template at<Layout>(b.axes, i).unit_defect()) != 0.0)
     return "the normal is not a unit vector";
@@ -189,12 +195,12 @@ const char* refusal_reason(const Law& law, const node_block<Law>& b, int i, bool
   if constexpr (reads_previous<Law>)
     if (framed && defect(n.v_previous) != 0.0) return "v_previous is not finite";
   if constexpr ((Law::card.inputs & reads_area) != 0)
-    if (!finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
+    if (!is_finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
   if (!framed) return "the state holds no frame: it is not one that the law can have written";
   if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
   if (const char* wrong = out_of_range<Law>(n.state)) return wrong;
   const auto stepped = step_node<Law, Delassus, Frame, Layout, Scope>(stepping_alone(law), b, i).result;
-  return result_reason<Law>(stepped);
+  return result_reason<Law>(stepped, b.impulse_guard);
 }
 
 // The whole of a batch; Varying: with parameters per node.
@@ -209,9 +215,10 @@ struct evaluate_walk {
     for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
       walk.open(first);
       if constexpr (Varying)
-        run_block<Law, Delassus, Frame, Layout, Scope>(parameters.of(walk.nodes()), walk.block());
+        found.one_by_one +=
+            run_block<Law, Delassus, Frame, Layout, Scope>(parameters.of(walk.nodes()), walk.block());
       else
-        run_form(law, walk.block());
+        found.one_by_one += run_form(law, walk.block());
       limit_step(made, law, batch, walk, found);
       const bool refused = walk.any_refused();
       if (refused) explain(made, law, batch, walk, found);
@@ -236,10 +243,12 @@ struct evaluate_walk {
     }
   }
 
-  static void run_form(const Law& law, const node_block<Law>& block) {
-    in_its_form(law, [&block]<class Form>(const Form& form) {
-      run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
+  static int run_form(const Law& law, const node_block<Law>& block) {
+    int one_by_one = 0;
+    in_its_form(law, [&block, &one_by_one]<class Form>(const Form& form) {
+      one_by_one = run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
     });
+    return one_by_one;
   }
 
   [[gnu::noinline, gnu::cold]] static void explain(const instance<Law>& made, const Law& law,
@@ -251,7 +260,7 @@ struct evaluate_walk {
       const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
       found.add(walk.nodes().node(i), wrong ? wrong
                                             : refusal_reason<Law, Delassus, Frame, Layout, Scope>(
-                                                  own, walk.block(), i, made.tangent_given));
+                                                  own, {own, walk.block(), i}, i, made.tangent_given));
     }
   }
 };
@@ -337,26 +346,43 @@ inline std::int32_t give_report(ilaw_report* report, const tally& found) {
   return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
 
+// What is known of a batch. One of floats has the members of the other, and says in its flags that it is one.
+inline ilaw_batch known(const ilaw_batch& batch) { return batch; }
+inline ilaw_batch known(const ilaw_float_batch& batch) {
+  ilaw_batch same;
+  sized::copy(&same, sizeof same, &batch, sizeof batch);
+  same.flags = arrays_of_float;
+  return same;
+}
+
 // The beginning of evaluate and initialise: hands on the instance and what is known of the batch.
-template <class Law, class Run>
-std::int32_t with_batch(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report, Run run) {
+template <class Law, class Batch, class Run>
+std::int32_t with_batch(const ilaw_instance* opaque, const Batch* given, ilaw_report* report, Run run) {
   if (report && !sized::is_complete(report)) return ILAW_INVALID_ARGUMENT;
   if (!opaque || !given) return refuse(report, "instance or batch is null");
   if (!sized::is_complete(given)) return refuse(report, "struct_size of the batch is none of any version");
-  const ilaw_batch batch = sized::read(given);
+  const Batch batch = sized::read(given);
   if (batch.flags != 0) return refuse(report, "flags of the batch are not known", ILAW_UNSUPPORTED);
   const float_environment own;
-  return run(of<Law>(opaque), batch);
+  return run(of<Law>(opaque), known(batch));
 }
 
-template <class Law>
-std::int32_t evaluate(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
+// one_by_one: as ilaw/profile.h counts them; may be null.
+template <class Law, class Batch>
+std::int32_t evaluate_counting(const ilaw_instance* opaque, const Batch* given, ilaw_report* report,
+                               std::int64_t* one_by_one) {
   return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
     if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
     tally found;
     (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
+    if (one_by_one) *one_by_one = found.one_by_one;
     return give_report(report, found);
   });
+}
+
+template <class Law, class Batch>
+std::int32_t evaluate(const ilaw_instance* opaque, const Batch* given, ilaw_report* report) {
+  return evaluate_counting<Law>(opaque, given, report, nullptr);
 }
 
 // First state of the nodes of a batch.
@@ -388,8 +414,8 @@ const char* wrong_initial(const instance<Law>& made, const ilaw_batch& b) {
   return colliding_state(made, b);
 }
 
-template <class Law>
-std::int32_t initialise(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
+template <class Law, class Batch>
+std::int32_t initialise(const ilaw_instance* opaque, const Batch* given, ilaw_report* report) {
   return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
     if (const char* wrong = wrong_initial(made, batch)) return refuse(report, wrong);
     return give_report(report, made.state_size > 0 ? initialise_nodes(made, batch) : tally{});

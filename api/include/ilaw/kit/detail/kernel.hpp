@@ -6,6 +6,7 @@
 #include <ilaw/kit/declare.hpp>
 #include <ilaw/kit/detail/frame.hpp>
 #include <ilaw/kit/detail/gather.hpp>
+#include <ilaw/kit/window.hpp>
 
 #include <bit>
 
@@ -18,6 +19,7 @@ struct node_block {
 
   int count;
   double time, velocity_step, position_step;
+  double impulse_guard;   // an impulse that overflows when multiplied by it may do so as the host is given it
   const double* axes[9];  // normal, tangents; see frame.hpp
   const double* v_free[3];
   const double* v_previous[3];
@@ -27,19 +29,24 @@ struct node_block {
   double* history_values;              // in state_out, of the block's first node (of node 0 with an index)
   std::int64_t history_node_stride, history_component_stride;
   const std::int64_t* history_nodes;  // null: consecutive
+  const double* earlier[3];           // of laws with a window: what it sums up to before the step,
+  const double* earlier_refused;      // and why it does not
 
   double* impulse[3];
   double* state_out[states + 1];
   double* velocity[3];
   double* energy[ILAW_ENERGY_COUNT];
   double* status;
-  double* refused;  // 1 where the input was bad, else 0
-  double* rests;    // 1 where a carried frame stays as it was, else 0
+  double* refused;   // 1 where the input was bad, else 0
+  double* rests;     // 1 where a carried frame stays as it was, else 0
+  double* given[3];  // of laws with a window: the impulse for it, in the local frame,
+  double* reached;   // and the status
   bool previous_for_energy_only;
 
   std::int64_t history_offset(int i) const {
     return (history_nodes ? history_nodes[i] : i) * history_node_stride;
   }
+  history history_of(int i) const { return {history_values + history_offset(i), history_component_stride}; }
 };
 
 // What a kernel computes besides impulse and state, so that what is not asked for costs nothing: nothing,
@@ -168,8 +175,18 @@ auto area_of(const double* areas, int i) {
 }
 template <class Law>
 const_history history_of(const node_block<Law>& b, int i) {
-  if constexpr (has_history<Law>) return {b.history_values + b.history_offset(i), b.history_component_stride};
+  if constexpr (has_history<Law>) return b.history_of(i);
   return {};
+}
+template <class Law>
+vector earlier_of(const node_block<Law>& b, int i) {
+  if constexpr (has_window<Law>) return {b.earlier[0][i], b.earlier[1][i], b.earlier[2][i]};
+  return {};
+}
+template <class Law>
+double refused_before(const node_block<Law>& b, int i) {
+  if constexpr (has_window<Law>) return b.earlier_refused[i];
+  return not_refused;
 }
 template <class Law>
 state_t<Law> incoming_state(const node_block<Law>& b, int i) {
@@ -197,8 +214,10 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
           .gap = detail::gap_of(b, i),
           .area = detail::area_of<Law>(b.area, i),
           .history = detail::history_of(b, i),
+          .earlier = detail::earlier_of(b, i),
           .impulse = {},
-          .state = detail::incoming_state(b, i)};
+          .state = detail::incoming_state(b, i),
+          .refused = detail::refused_before(b, i)};
 }
 
 template <class Law, scope Scope, class Node>
@@ -210,16 +229,23 @@ double input_defect(const Node& n) {
   return sum + detail::incoming_state_defect<Law>(n.state);
 }
 
+// NaN where a promise is broken. By its bits: a choice between constants, which a status is, would become a
+// branch.
+inline double defect_where(bool is_broken) {
+  return kit::kept_if(is_broken, std::numeric_limits<double>::quiet_NaN());
+}
+
 // What a law may not give: a status that ilaw.h does not have, a pull or an impulse out of reach that its
 // card does not announce. Who is out of reach is to be left alone while it is fresh: its state is zero.
 inline double status_defect(double s) {
   constexpr double to_integer = 0x1.8p52;
-  return defect_unless((s >= status::free) & (s <= status::healed) & ((s + to_integer) - to_integer == s));
+  const bool is_one = (s >= status::free) & (s <= status::healed) & ((s + to_integer) - to_integer == s);
+  return defect_where(!is_one);
 }
 template <class Law, class Node>
 double pull_defect(const Node& n) {
   if constexpr ((Law::card.capabilities & ILAW_CAN_ADHERE) != 0) return 0.0;
-  return defect_unless(!(n.impulse.n < 0.0));
+  return defect_where(n.impulse.n < 0.0);
 }
 template <class Law, class Node>
 double distance_defect(const Node& n, const state_t<Law>& before) {
@@ -230,7 +256,7 @@ double distance_defect(const Node& n, const state_t<Law>& before) {
   } else {
     const bool acts = (n.impulse.n != 0.0) | (tangential_product(n.impulse, n.impulse) != 0.0);
     const bool far = is_out_of_reach(n), fresh = detail::same_bits<Law>(before, {});
-    return defect_unless(!(acts & far & fresh));
+    return defect_where(acts & far & fresh);
   }
 }
 
@@ -243,7 +269,7 @@ stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int
   const state_t<Law> state_before = n.state;
   step(n);
   // In the host's axes a component may be as large as the whole vector: it must be a number there, too.
-  const double after = defect(4.0 * n.impulse) + detail::state_defect<Law>(n.state);
+  const double after = defect(b.impulse_guard * n.impulse) + detail::state_defect<Law>(n.state);
   const double kept = status_defect(n.status) + pull_defect<Law>(n) + distance_defect<Law>(n, state_before);
   return {n, before + after + kept + n.refused == 0.0};
 }
@@ -308,9 +334,10 @@ void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted
   b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
 }
 
-// Whether a form of a law works with the law's history. One that says it forgets runs in vector code.
+// Whether a form of a law works with the law's history in the step itself, which then runs node by node. One
+// that says it forgets runs in vector code.
 template <class Law, class Form>
-inline constexpr bool remembers = has_history<Law> && !requires {
+inline constexpr bool remembers = has_history<Law> && !has_window<Law> && !requires {
   Form::forgets;
 };
 
@@ -323,6 +350,14 @@ bool rests(const Node& n, const state_t<Law>& before) {
   return still && free && detail::same_bits<Law>(n.state, before);
 }
 
+template <class Law, class Node>
+void keep_for_window(const node_block<Law>& b, int i, const Node& n) {
+  b.given[0][i] = n.impulse.n;
+  b.given[1][i] = n.impulse.t1;
+  b.given[2][i] = n.impulse.t2;
+  b.reached[i] = n.status;
+}
+
 // Steps and writes node i; valid: what the caller knows of its parameters.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form, class Step>
 void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool valid = true) {
@@ -330,8 +365,10 @@ void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool 
   accepted = accepted & valid;
   Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
   if constexpr (Scope == scope::outputs) store_outputs<Law, Frame, Layout>(b, i, n, accepted);
-  if constexpr (remembers<Law, Form>)
-    if (accepted) law.record(n, history{b.history_values + b.history_offset(i), b.history_component_stride});
+  if constexpr (has_window<Law>)
+    keep_for_window(b, i, n);
+  else if constexpr (remembers<Law, Form>)
+    if (accepted) law.record(n, b.history_of(i));
   if constexpr (has_state<Law> || can_carry<Law, Frame>) {
     const state_t<Law> before = load_node<Law, Delassus, Frame, Layout, Scope>(b, i).state;
     if constexpr (can_carry<Law, Frame>) b.rests[i] = rests<Law>(n, before) ? 1.0 : 0.0;

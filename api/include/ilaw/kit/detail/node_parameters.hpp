@@ -16,7 +16,8 @@ const char* at_node(const instance<Law>& made, const ilaw_batch& batch, std::int
   Law own = law;
   for (std::uint32_t k = 0; k < made.per_node_count; ++k) {
     const ilaw_input& given = batch.per_node_parameters[k];
-    const double value = given.values[node * given.node_stride];
+    const std::int64_t at = node * given.node_stride;
+    const double value = holds_floats(batch) ? double{as_floats(given.values)[at]} : given.values[at];
     if (!in_range(*made.per_node[k], value)) return "a per-node parameter is out of range";
     own.*made.per_node_members[k] = value;
   }

@@ -162,7 +162,7 @@ inline std::int32_t check_table(const char* law, const ilaw_parameter& p, const 
   }
   for (std::uint64_t k = 0; k < a.count; ++k) {
     const double time = a.values[2 * k];
-    if (!finite(time) || (k > 0 && time <= a.values[2 * k - 2])) {
+    if (!is_finite(time) || (k > 0 && time <= a.values[2 * k - 2])) {
       text.add("law '%s': parameter '%s': time ", law, p.name);
       add_number(text, time);
       text.add(" of pair %llu of the table is not allowed: expected finite, increasing times",

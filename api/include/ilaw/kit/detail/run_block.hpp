@@ -58,7 +58,7 @@ void choose(Node& a, const Node& b, bool second) {
 
 }  // namespace detail
 
-// One node from end to end, with the same bits as in a pack.
+// One node, with the same bits as in a pack.
 template <class Form, class Node>
 void step_alone(const Form& law, Node& node) {
   if constexpr (asks_first<Form, Node>) {
@@ -87,6 +87,8 @@ struct one_law {
   const Form& at(int /*i*/) const { return law; }
   static constexpr bool is_valid(int /*i*/) { return true; }
 };
+template <class Laws>
+inline constexpr bool is_one_law = std::is_same_v<Laws, one_law<typename Laws::form>>;
 template <class Law>
 struct law_per_node {
   using form = Law;
@@ -185,12 +187,14 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
   for (int i = 0; i < own.count; ++i) keep_problem<Law, Delassus, Frame, Layout, Scope>(l, own, asked, i);
 }
 
-// Solves the problems of a block in packs. The last pack is filled up with its first problem.
+// Solves the problems of a block in packs. The last pack is filled up with its first problem. Returns how
+// many were left to be solved alone.
 template <class Form>
-[[gnu::noinline]] void solve_asked(const Form& law, asked_block<Form>& asked, int count) {
+[[gnu::noinline]] int solve_asked(const Form& law, asked_block<Form>& asked, int count) {
   using problem_type = typename Form::template problem<pack>;
   using answer_type = typename Form::template answer<pack>;
   using answer_packs = std::array<pack, asked_block<Form>::answers>;
+  int alone_count = 0;
   for (column& c : asked.problem)  // in place: none moves back
     for (int j = 0; j < count; ++j) c.values[j] = c.values[asked.nodes[j]];
   for (int first = 0; first < count; first += pack_size) {
@@ -211,6 +215,7 @@ template <class Form>
     }
     for (int j = 0; any(left) && j < lanes; ++j) {
       if (!left[j]) continue;
+      ++alone_count;
       answer_of_form<Form> alone{};
       law.solve_alone(
           from_columns<problem_of_form<Form>>(asked.problem, first + j, places<problem_of_form<Form>>),
@@ -218,6 +223,7 @@ template <class Form>
       to_columns(alone, asked.answer, asked.nodes[first + j], places<answer_of_form<Form>>);
     }
   }
+  return alone_count;
 }
 
 // A node whose problem, if it had one, is solved.
@@ -256,8 +262,9 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
   over_nodes<Law, typename Laws::form>(b, run);
 }
 
+// Returns how many nodes were solved one by one, as ilaw/profile.h counts them.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
-void run_block(const Laws& laws, const node_block<Law>& b) {
+int run_steps(const Laws& laws, const node_block<Law>& b) {
   using form = typename Laws::form;
   if constexpr (asks_first<form, node_in<Law, Delassus, Frame>>) {
     constexpr scope reads = Scope == scope::impulse ? scope::impulse : scope::with_previous;
@@ -269,14 +276,110 @@ void run_block(const Laws& laws, const node_block<Law>& b) {
       asked.nodes[count] = i;
       count += asked.open.values[i] != 0.0 ? 1 : 0;
     }
+    int alone_count = 0;
     if (count > 0) {
       detail::keep_problems<Law, Delassus, Frame, Layout, reads>(laws, b, asked);
-      detail::solve_asked(laws.law, asked, count);
+      alone_count = detail::solve_asked(laws.law, asked, count);
     }
     finish_block<Law, Delassus, Frame, Layout, Scope>(laws, b, asked);
+    return alone_count;
   } else {
     step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
+    return remembers<Law, form> ? b.count : 0;
   }
 }
+
+namespace detail {
+
+// What a block keeps between its windows and its steps.
+struct window_columns {
+  column earlier[3], earlier_refused, given[3], reached;
+};
+
+// The law's window at node i, in the step of a block.
+template <class Laws, class Law>
+window_in_step window_at(const Laws& laws, const node_block<Law>& b, int i) {
+  return laws.at(i).window_in(interval_of(b));
+}
+
+// The windows of laws that forget stay zero.
+template <class Law>
+void aim_at(window_columns& kept, node_block<Law>& b, bool forgets) {
+  for (int c = 0; c < 3; ++c) {
+    if (!forgets) b.earlier[c] = kept.earlier[c].values;
+    b.given[c] = kept.given[c].values;
+  }
+  if (!forgets) b.earlier_refused = kept.earlier_refused.values;
+  b.reached = kept.reached.values;
+}
+
+template <class Form, class Law>
+void read_window(const Form& law, const node_block<Law>& b, int i, window_columns& kept) {
+  const window_in_step::reading earlier =
+      law.window_in(interval_of(b)).before(const_history(b.history_of(i)));
+  kept.earlier[0].values[i] = earlier.sum.n;
+  kept.earlier[1].values[i] = earlier.sum.t1;
+  kept.earlier[2].values[i] = earlier.sum.t2;
+  kept.earlier_refused.values[i] = earlier.refused;
+}
+
+// The windows of a block before its steps. Parameters per node may give each node another window.
+template <class Law, class Laws>
+void read_windows(const Laws& laws, const node_block<Law>& b, window_columns& kept) {
+  const auto own = [&b](int i) { return const_history(b.history_of(i)); };
+  if constexpr (is_one_law<Laws>) {
+    window_at(laws, b, 0).before(b.count, own, kept.earlier, kept.earlier_refused);
+  } else {
+    for (int i = 0; i < b.count; ++i) read_window(laws.at(i), b, i, kept);
+  }
+}
+
+template <class Law, class Laws>
+void write_windows(const Laws& laws, const node_block<Law>& block, const window_columns& kept) {
+  const node_block<Law> b = block;  // a copy, so that no store can alias it
+  const window_in_step first = window_at(laws, b, 0);
+  for (int i = 0; i < b.count; ++i) {
+    if (b.refused[i] != 0.0) continue;
+    const stepped_impulse stepped{{kept.given[0].values[i], kept.given[1].values[i], kept.given[2].values[i]},
+                                  kept.reached.values[i]};
+    if constexpr (is_one_law<Laws>)
+      laws.law.record(stepped, first, b.history_of(i));
+    else
+      laws.law.record(stepped, window_at(laws, b, i), b.history_of(i));
+  }
+}
+
+}  // namespace detail
+
+// A window is read before the loops over a block and written after them, so that they need not work node by
+// node.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+int run_block(const Laws& laws, const node_block<Law>& b) {
+  if constexpr (has_window<Law>) {
+    detail::window_columns kept;
+    node_block<Law> own = b;
+    const bool forgets = is_one_law<Laws> && detail::window_at(laws, b, 0).forgets();
+    detail::aim_at(kept, own, forgets);
+    if (!forgets) detail::read_windows(laws, own, kept);
+    const int one_by_one = run_steps<Law, Delassus, Frame, Layout, Scope>(laws, own);
+    if (!forgets) detail::write_windows(laws, own, kept);
+    return one_by_one;
+  } else {
+    return run_steps<Law, Delassus, Frame, Layout, Scope>(laws, b);
+  }
+}
+
+// A block for a node that is looked at alone, after the block was run.
+template <class Law>
+struct block_of_one : node_block<Law> {
+  detail::window_columns kept;
+
+  block_of_one(const Law& law, const node_block<Law>& b, int i) : node_block<Law>(b) {
+    if constexpr (has_window<Law>) {
+      detail::read_window(law, b, i, kept);
+      detail::aim_at(kept, static_cast<node_block<Law>&>(*this), false);
+    }
+  }
+};
 
 }  // namespace ilaw::kit

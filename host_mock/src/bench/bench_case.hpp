@@ -1,0 +1,53 @@
+// bench_case.hpp - what is measured: a law with its parameters, and how its batches look.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/ilaw.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+// What cannot be measured as it was asked for, found before anything is timed.
+class BenchRefusal : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct BenchCase {
+  std::string library, law;  // library: name or path; law empty: every law of the library
+  std::string what;          // in words; empty: the parameters say it
+  // As in a scene; {"per_node": value} gives all nodes that value, one each.
+  nlohmann::json parameters = nlohmann::json::object();
+  // Words of bench_words below.
+  std::string delassus = "scalar", frame = "local", layout = "aos", outputs = "none";
+  double touching = 0.5;  // share of the nodes whose gap is closed
+  double pressed = 0.5;   // share of those that approach
+  bool floats = false;    // arrays of float
+};
+
+// The words of an option and of a key of a file of cases, the default first.
+struct BenchWords {
+  const char* key;
+  std::string BenchCase::*member;
+  std::vector<std::string> words;
+};
+const std::vector<BenchWords>& bench_words();
+
+std::uint32_t form_of(const BenchCase& bench_case);
+// What distinguishes a case from others of its law.
+std::string text_of(const BenchCase& bench_case);
+
+// One case per combination of words, each of which may be a list; throws BenchRefusal.
+std::vector<BenchCase> combinations(const BenchCase& base,
+                                    const std::vector<std::vector<std::string>>& words_of_options);
+// The section "benchmarks" of a JSON file. An entry without "law" is of the law that the file's folder is
+// named after. Throws BenchRefusal.
+std::vector<BenchCase> read_bench_cases(const std::filesystem::path& file);
+
+}  // namespace ilaw::host

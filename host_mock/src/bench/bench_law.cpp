@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/bench_law.hpp"
+
+#include "base/running_law.hpp"
+#include "base/scene_error.hpp"
+#include "contact/law_setup.hpp"
+#include "scene/arguments.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+json plain_value(const ilaw_parameter& p) {
+  if (p.kind == ILAW_PARAMETER_CHOICE) return p.choices[0];
+  if (p.kind == ILAW_PARAMETER_COUNT) return std::max(1.0, std::ceil(p.minimum));
+  const double usual = std::string(p.unit) == "1" ? 0.3 : 1.0;
+  if (usual > p.minimum && usual <= p.maximum) return usual;
+  return p.minimum_excluded != 0 ? 0.5 * (p.minimum + p.maximum) : p.minimum;
+}
+
+// {"per_node": value} is one value here, of which the arrays of all nodes are made.
+Arguments arguments_of(const BenchCase& bench_case) {
+  json parameters = bench_case.parameters;
+  for (auto& [name, value] : parameters.items())
+    if (value.is_object() && value.contains("per_node") && !value["per_node"].is_array())
+      value["per_node"] = json::array({value["per_node"]});
+  try {
+    return read_arguments(parameters, 1, "parameters");
+  } catch (const SceneError& error) {
+    throw BenchRefusal(error.what());
+  }
+}
+
+int dimension_of(const ilaw_law& law) {
+  for (const int d : {3, 2})
+    if (law.dimensions & (1U << d)) return d;
+  return 1;
+}
+
+void check_form(const ilaw_law& law, const BenchCase& bench_case) {
+  if (law.delassus_forms & form_of(bench_case)) return;
+  std::string served;
+  for (const std::string& word : bench_words().front().words) {
+    BenchCase other;
+    other.delassus = word;
+    if (law.delassus_forms & form_of(other)) served += (served.empty() ? "" : ", ") + word;
+  }
+  throw BenchRefusal("law '" + std::string(law.id) + "': found H " + bench_case.delassus +
+                     ", which it does not serve; expected one of " + served);
+}
+
+}  // namespace
+
+BenchCase with_required_parameters(BenchCase bench_case, const ilaw_law& law) {
+  for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
+    const ilaw_parameter& p = *law.parameters[k];
+    if (p.required != 0 && !bench_case.parameters.contains(p.name))
+      bench_case.parameters[p.name] = plain_value(p);
+  }
+  return bench_case;
+}
+
+BenchLaw::BenchLaw(const ilaw::library& library, const BenchCase& bench_case)
+    : name_(bench_case.law), path_(library.path()) {
+  const ilaw_law* law = library.law(bench_case.law);
+  if (!law) throw BenchRefusal("found no law '" + bench_case.law + "' in " + path_);
+  check_form(*law, bench_case);
+  if (bench_case.floats)
+    throw BenchRefusal("law '" + name_ + "': --float: it takes no arrays of float, expected double");
+  dimension_ = dimension_of(*law);
+  const Arguments arguments = arguments_of(bench_case);
+  ilaw_setup setup{};
+  setup.struct_size = sizeof setup;
+  setup.dimension = static_cast<std::uint32_t>(dimension_);
+  setup.delassus_form = form_of(bench_case);
+  setup.frame = bench_case.frame == "global" ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL;
+  const RunningLaw running(name_.c_str(), path_.c_str(), nullptr);
+  try {
+    interface_.emplace(create_law(name_, arguments, setup, library));
+  } catch (const ilaw::error& refusal) {
+    // A law that tells its tangents apart wants them from the host.
+    if (refusal.code() != ILAW_UNSUPPORTED || setup.frame == ILAW_FRAME_LOCAL || dimension_ < 3) throw;
+    setup.tangent_given = 1;
+    takes_tangents_ = true;
+    interface_.emplace(create_law(name_, arguments, setup, library));
+  }
+  info_ = interface_->info();
+  for (std::uint32_t k = 0; k < info_.per_node_parameter_count; ++k)
+    per_node_values_.push_back(arguments.per_node.at(info_.per_node_parameters[k]).front());
+  const auto extension = interface_->law().extension;
+  const auto* profile = extension ? static_cast<const ilaw_profile*>(extension(ILAW_PROFILE)) : nullptr;
+  if (profile && profile->struct_size >= sizeof(ilaw_profile)) profile_ = profile;
+}
+
+template <class Call>
+void BenchLaw::checked(const char* call, Call make) const {
+  ilaw_report report{};
+  report.struct_size = sizeof report;
+  const RunningLaw running(name_.c_str(), path_.c_str(), nullptr);
+  const std::int32_t code = make(&report);
+  if (code == ILAW_OK) return;
+  throw std::runtime_error("law '" + name_ + "': " + call + " refuses " +
+                           (code == ILAW_BAD_NODES ? "node " + std::to_string(report.first_bad_node)
+                                                   : "the batch with code " + std::to_string(code)) +
+                           ": " + (report.reason ? report.reason : "no reason given"));
+}
+
+void BenchLaw::initialise(const ilaw_batch& batch) const {
+  checked("initialise", [&](ilaw_report* report) { return interface_->initialise(batch, report); });
+}
+
+void BenchLaw::evaluate(const ilaw_batch& batch) const {
+  checked("evaluate", [&](ilaw_report* report) { return interface_->evaluate(batch, report); });
+}
+
+std::optional<std::string> BenchLaw::instruction_set() const {
+  if (!profile_) return {};
+  return profile_->instruction_set(interface_->instance());
+}
+
+std::optional<double> BenchLaw::scalar_share(const ilaw_batch& batch) const {
+  if (!profile_) return {};
+  std::int64_t one_by_one = 0;
+  checked("evaluate", [&](ilaw_report* report) {
+    return profile_->evaluate_counting(interface_->instance(), &batch, report, &one_by_one);
+  });
+  return static_cast<double>(one_by_one) / static_cast<double>(batch.node_count);
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,203 @@
+// `ilaw bench`: what a law costs per node, beside what its bytes cost.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/commands.hpp"
+
+#include "base/exit_code.hpp"
+#include "base/files.hpp"
+#include "base/running_law.hpp"
+#include "bench/bench_files.hpp"
+#include "bench/bench_law.hpp"
+#include "bench/measure.hpp"
+#include "cli/guard.hpp"
+#include "cli/terminal.hpp"
+
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+struct BenchOptions {
+  std::vector<std::string> laws, case_files;
+  std::string parameters = "{}", folder;
+  std::vector<std::int64_t> nodes = {1000, 10000000};
+  std::vector<std::vector<std::string>> words{bench_words().size()};  // of bench_words, in their order
+  BenchCase base;
+  int repetitions = 7;
+  bool as_json = false;
+};
+
+// Libraries of this run, opened once.
+class Libraries {
+ public:
+  const ilaw::library& open(const std::string& name_or_path) {
+    const RunningLaw running("", name_or_path.c_str(), nullptr);
+    return opened_.try_emplace(name_or_path, name_or_path).first->second;
+  }
+
+ private:
+  std::map<std::string, ilaw::library> opened_;
+};
+
+json parameters_of(const BenchOptions& options) {
+  json parameters = json::parse(options.parameters, nullptr, false);
+  if (parameters.is_object()) return parameters;
+  throw BenchRefusal("--parameters: found '" + options.parameters +
+                     R"(', expected an object in JSON, as {"friction": 0.3})");
+}
+
+// Of a library or of the one law in it that is asked for.
+std::vector<std::string> laws_of(const ilaw::library& library, const std::string& wanted) {
+  std::vector<std::string> laws;
+  for (std::uint32_t k = 0; k < library.plugin().law_count; ++k) {
+    const std::string id = library.plugin().laws[k]->id;
+    if (wanted.empty() || id == wanted) laws.push_back(id);
+  }
+  if (laws.empty()) throw BenchRefusal("--law: found '" + wanted + "', which is not in " + library.path());
+  return laws;
+}
+
+std::vector<BenchCase> cases_of(const BenchOptions& options, Libraries& libraries) {
+  std::vector<BenchCase> cases;
+  BenchCase base = options.base;
+  base.parameters = parameters_of(options);
+  for (const std::string& name : options.laws) {
+    base.library = name;
+    for (const std::string& law : laws_of(libraries.open(name), options.base.law)) {
+      base.law = law;
+      const std::vector<BenchCase> more = combinations(base, options.words);
+      cases.insert(cases.end(), more.begin(), more.end());
+    }
+  }
+  for (const std::string& file : options.case_files)
+    for (const BenchCase& one : read_bench_cases(file))
+      if (options.base.law.empty() || one.law == options.base.law) cases.push_back(one);
+  if (cases.empty()) throw BenchRefusal("found nothing to measure, expected a law, a library or --cases");
+  for (BenchCase& one : cases)
+    if (const ilaw_law* law = libraries.open(one.library).law(one.law))
+      one = with_required_parameters(one, *law);
+  return cases;
+}
+
+void print_header() {
+  std::printf("%9s  %-60s %9s %10s %6s %6s %9s %7s\n", "nodes", "case", "ns/node", "bytes/node", "GB/s",
+              "ratio", "isa", "scalar");
+}
+
+void print_result(const BenchResult& result) {
+  const std::string shown = printable(result.bench_case.law + " " + text_of(result.bench_case));
+  std::printf("%9lld  %-60s %9.2f %10.0f %6.1f %6.2f %9s %7s\n", static_cast<long long>(result.nodes),
+              shown.c_str(), result.ns_per_node, result.bytes_per_node, result.triad_gb_per_s, result.ratio,
+              printable(result.isa.value_or("-")).c_str(),
+              result.scalar_share ? text_of("%.4f", *result.scalar_share).c_str() : "-");
+  std::fflush(stdout);
+}
+
+std::vector<BenchResult> measure_all(const std::vector<BenchCase>& cases, const BenchOptions& options,
+                                     Libraries& libraries) {
+  std::vector<BenchResult> results;
+  if (!options.as_json) print_header();
+  for (const std::int64_t nodes : options.nodes)
+    for (const BenchCase& one : cases) {
+      results.push_back(run_bench(libraries.open(one.library), one, nodes, options.repetitions));
+      if (!options.as_json) print_result(results.back());
+    }
+  return results;
+}
+
+int bench(const BenchOptions& options) {
+  warn_of_search_path();
+  guard_against_laws();
+  Libraries libraries;
+  std::vector<BenchCase> cases;
+  std::optional<HeldFolder> held;
+  std::filesystem::path folder;
+  try {
+    cases = cases_of(options, libraries);
+    for (const BenchCase& one : cases)
+      for (const std::int64_t nodes : options.nodes) check_bench(libraries.open(one.library), one, nodes);
+  } catch (const BenchRefusal& refusal) {
+    complain(refusal.what());
+    return exit_bad_input;
+  } catch (const ilaw::error& refusal) {
+    complain(refusal.what());
+    return exit_bad_input;
+  }
+  if (!options.folder.empty()) {
+    folder = std::filesystem::absolute(options.folder).lexically_normal();
+    held.emplace(folder);
+  }
+  const std::vector<BenchResult> results = measure_all(cases, options, libraries);
+  if (options.as_json) {
+    json array = json::array();
+    for (const BenchResult& result : results) array.push_back(json_of(result));
+    std::printf("%s\n", array.dump(2, ' ', false, json::error_handler_t::replace).c_str());
+  }
+  if (!held) return exit_done;
+  write_bench(results, folder);
+  return draw_bench(results, folder) ? exit_done : exit_failed;
+}
+
+void add_words(CLI::App& command, BenchOptions& options) {
+  const char* docs[] = {"Form of H", "Axes of vectors and H", "Components of a vector side by side, or apart",
+                        "Optional outputs: none, motion (velocity and status) or all (energies, too)"};
+  for (std::size_t k = 0; k < bench_words().size(); ++k) {
+    const BenchWords& option = bench_words()[k];
+    std::string words;
+    for (const std::string& word : option.words) words += (words.empty() ? "" : "|") + word;
+    command
+        .add_option(std::string("--") + option.key, options.words[k],
+                    std::string(docs[k]) + "; several with commas between them")
+        ->delimiter(',')
+        ->take_all()
+        ->allow_extra_args(false)
+        ->type_name(words);
+  }
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Action& chosen) {
+  const auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = app.add_subcommand(
+      "bench", "Measure what a law costs per node, beside a triad of arrays in the same run");
+  command->add_option("laws", options->laws, "Names of laws, or paths of libraries");
+  command->add_option("--law", options->base.law, "This law of the libraries alone");
+  command->add_option("--nodes", options->nodes, "Nodes of a batch: each is measured")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
+      ->delimiter(',')
+      ->capture_default_str();
+  add_words(*command, *options);
+  command->add_option("--touching", options->base.touching, "Share of the nodes whose gap is closed")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--pressed", options->base.pressed, "Share of those that approach")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--parameters", options->parameters,
+                      "In JSON, as in a scene; {\"per_node\": value} gives it per node. Where one is missing "
+                      "that the law requires, a plain value of its range is taken");
+  command->add_option(
+      "--cases", options->case_files,
+      "Files of cases: what their section \"benchmarks\" lists, instead of the options above");
+  command->add_flag("--float", options->base.floats, "Arrays of float");
+  command->add_option("--repetitions", options->repetitions, "Medians are over so many")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--json", options->as_json, "Print an array of objects, one for each case");
+  command->add_option("--out", options->folder, "Folder for bench.csv, bench.png and bench.svg");
+  command->footer(
+      "ratio: the time over what the bytes cost at the triad's bandwidth. scalar: share of nodes solved one by\n"
+      "one. -: the law cannot say. ILAW_ISA=baseline, v3 or v4 caps the instruction set.\n"
+      "Exit codes: 0 done; 1 the law refused a node, or failed; 2 bad usage, or a case that it does not "
+      "serve.\n"
+      "Example: ilaw bench coulomb --parameters '{\"friction\": 0.3}' --delassus scalar,full --nodes 1000");
+  command->callback([options, &chosen] { chosen = [options] { return bench(*options); }; });
+}
+
+}  // namespace ilaw::host

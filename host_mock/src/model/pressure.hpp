@@ -1,0 +1,28 @@
+// pressure.hpp - a pressure on the surface of a body, which follows the surface as it moves.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "model/load.hpp"
+
+#include <array>
+#include <vector>
+
+namespace ilaw::host {
+
+// On facets of four nodes, counter-clockwise seen from outside. A node a takes
+//   -p int N_a (dx/dxi x dx/deta) dxi deta
+// of the deformed facet (Hibbitt 1979): the force is p times the derivative of the volume that a closed
+// surface encloses, so that its work is that of p on the volume.
+class Pressure : public Load {
+ public:
+  using Facet = std::array<int, 4>;
+  Pressure(const Model& model, std::vector<Facet> facets, Table history);
+  void add_force(double time, const Dofs& u, Dofs& force) const override;
+
+ private:
+  const Model& model_;
+  std::vector<Facet> facets_;
+  Table history_;
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/read_springs.hpp"
+
+#include "scene/json_text.hpp"
+#include "scene/selection.hpp"
+#include "scene/values.hpp"
+
+#include <cstddef>
+#include <string>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+// As many other ends as there are nodes, or a fixed point for all.
+std::vector<int> read_other_ends(const json& spring, const std::vector<int>& nodes, const Model& model,
+                                 const std::string& pointer) {
+  if (spring.contains("anchor")) return std::vector<int>(nodes.size(), -1);
+  const std::string where = pointer + "/to";
+  std::vector<int> partners = select_nodes(spring["to"], model, where).nodes;
+  if (partners.size() != nodes.size())
+    throw mistake(where, std::to_string(partners.size()) + " nodes",
+                  "one for each of the " + std::to_string(nodes.size()) + " nodes of 'nodes'");
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    if (nodes[k] == partners[k])
+      throw mistake(where, "node " + std::to_string(nodes[k]) + " at both ends", "another node");
+  return partners;
+}
+
+// Without load, where the scene does not say: the distance of the ends before any displacement.
+double read_length(const json& spring, const Spring& ends, const Model& model) {
+  if (spring.contains("length")) return spring["length"].get<double>();
+  const Eigen::Index d = model.dimension();
+  const auto position = [&](int node) -> Vector { return model.position().segment(node * d, d); };
+  return ((ends.partner < 0 ? ends.anchor : position(ends.partner)) - position(ends.node)).norm();
+}
+
+}  // namespace
+
+std::vector<Spring> read_springs(const json& springs, const Model& model) {
+  std::vector<Spring> found;
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    const json& spring = springs[i];
+    const std::string pointer = at("/springs", i);
+    require_one_of(spring, "to", "anchor", "'to' (nodes) and 'anchor' (a fixed point)", pointer);
+    const double stiffness = spring.value("stiffness", 0.0), damping = spring.value("damping", 0.0);
+    if (stiffness == 0.0 && damping == 0.0)
+      throw mistake(pointer, spring.dump(), "'stiffness', 'damping' or both above 0");
+    const std::vector<int> nodes = select_nodes(spring["nodes"], model, pointer + "/nodes").nodes;
+    const std::vector<int> partners = read_other_ends(spring, nodes, model, pointer);
+    const Vector anchor = read_vector_or_zero(spring, "anchor", model.dimension(), pointer);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      Spring made{nodes[k], partners[k], anchor, stiffness, damping, 0.0};
+      made.length = read_length(spring, made, model);
+      found.push_back(std::move(made));
+    }
+  }
+  return found;
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,323 @@
+// Scenes as an analyst writes them: each runs without a warning, is drawn, and gives what can be derived by
+// hand.
+#include "run_result.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+std::filesystem::path file_of(const std::string& name) {
+  return std::filesystem::path(ILAW_SOURCE) / "tests/host/analyst_scenes" / (name + ".json");
+}
+
+json scene_named(const std::string& name) { return read_scene_source(file_of(name)); }
+
+double damping_rate(const json& scene) {
+  for (const json& load : scene["loads"])
+    if (load["type"] == "damping") return load["rate"];
+  return 0.0;
+}
+
+// At rest an interface takes the impulse that damping leaves of h f: v + (c h/2) v = h f/m, stopped.
+double at_rest(const Ran& run, const json& scene) {
+  return 1.0 + 0.5 * damping_rate(scene) * run.summary["dt"].get<double>();
+}
+
+std::map<std::string, double> times_of(const std::string& events, const std::string& event) {
+  std::map<std::string, double> times;
+  std::istringstream lines(events);
+  for (std::string line; std::getline(lines, line);) {
+    const std::vector<std::string> cells = csv_cells(line);
+    if (cells[3] == event && !times.contains(cells[2])) times[cells[2]] = std::stod(cells[0]);
+  }
+  return times;
+}
+
+TEST(AnalystScenes, RunWithoutWarningAndCloseTheirBalance) {
+  int count = 0;
+  for (const auto& file : scene_files::below("tests/host/analyst_scenes")) {
+    ++count;
+    json scene = read_scene_source(file);
+    scene["time"]["end"] = 0.05 * scene["time"]["end"].get<double>();
+    const Ran run = ran(scene);
+    EXPECT_EQ(run.summary["warnings"], json::array()) << file;
+    EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-11) << file;
+  }
+  EXPECT_EQ(count, 11);
+}
+
+// At an angle theta a tape gives way by F (1 - cos theta) = G b (Rivlin 1944): at 90 degrees F = G b = 0.06.
+// The grip that goes up and back at c does the work (F2 - F0) c per time, which the glue and the air take and
+// which the arm stores: so F2 is G b, and a fifteenth more while the arm leans and swings. The glue
+// dissipates G on the area of each node that it lets go.
+TEST(AnalystScenes, TapePeelsWithItsToughnessTimesItsWidth) {
+  const Ran run = ran(scene_named("tape_peeled"));
+  const double force = run.mean_after(0.044, "grip.F2"), along = run.mean_after(0.044, "grip.F0"),
+               speed = 0.3, toughness = 6.0, width = 0.01;
+  EXPECT_NEAR(force, toughness * width, 0.1 * toughness * width);
+  EXPECT_LT(std::abs(along), 0.1 * force);  // upright
+  const auto gained = [&](const std::string& energy, std::size_t from, std::size_t to) {
+    return run.history.at("balance." + energy)[to] - run.history.at("balance." + energy)[from];
+  };
+  const std::vector<double>& time = run.history.at("time");
+  const auto row = [&](double at) {
+    return static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), at) - time.begin());
+  };
+  const std::size_t from = row(0.044), to = row(0.0635);
+  double work = 0.0;
+  for (std::size_t k = from + 1; k <= to; ++k)
+    work += (run.history.at("grip.F2")[k] - run.history.at("grip.F0")[k]) * speed * (time[k] - time[k - 1]);
+  EXPECT_NEAR(work, gained("external_work", from, to), 1e-9 * work);
+  const double rest = gained("kinetic", from, to) + gained("internal", from, to) +
+                      gained("stored", from, to) - gained("damping_work", from, to);
+  EXPECT_NEAR(work, gained("dissipated_rupture", from, to) + rest, 1e-6 * work);
+  EXPECT_NEAR(gained("dissipated_rupture", from, to), toughness * width * speed * (time[to] - time[from]),
+              0.05 * work);
+  EXPECT_LT(std::abs(rest), 0.1 * work);
+  std::map<int, double> peeled;
+  std::istringstream lines(run.events);
+  for (std::string line; std::getline(lines, line);)
+    if (const auto cells = csv_cells(line); cells[3] == "rupture") ++peeled[std::stoi(cells[1])];
+  const double least = toughness * 0.5 * width * 1e-3 * (static_cast<double>(peeled.size()) - 1.0);
+  const double dissipated = run.last("balance.dissipated_rupture");
+  EXPECT_GE(peeled.size(), 20U);
+  EXPECT_GE(dissipated, least);
+  EXPECT_LE(dissipated, 1.3 * least);  // and some of those that still hold
+}
+
+// Compressed by l along z and stretched by a across: mu (a^2 - 1) + lambda ln(a^2 l) = 0; the force is
+// A (mu l + (lambda ln(a^2 l) - mu) / l) (Bonet and Wood 2008, eq. 6.28).
+TEST(AnalystScenes, RubberBlockIsPressedAsInTheClosedForm) {
+  const json scene = scene_named("rubber_block");
+  const Ran run = ran(scene);
+  const double mu = 0.5e6 / 1.3, lambda = 1e6 * 0.3 / (1.3 * 0.4);
+  const double l = 1.0 + (run.last("n63.u2") - run.last("n0.u2")) / 0.1;
+  double a = 1.0;
+  for (int k = 0; k < 50; ++k)
+    a -= (mu * (a * a - 1.0) + lambda * std::log(a * a * l)) / (2.0 * mu * a + 2.0 * lambda / a);
+  const double force = -0.01 * (mu * l + (lambda * std::log(a * a * l) - mu) / l);
+  EXPECT_NEAR(l, 0.8, 0.005);
+  EXPECT_NEAR(run.last("n63.u0") - run.last("n0.u0"), 0.1 * (a - 1.0), 1e-3 * 0.1 * (a - 1.0));
+  EXPECT_NEAR(run.last("floor.F2") * at_rest(run, scene), force, 1e-3 * force);
+  EXPECT_NEAR(run.last("press.F2") * at_rest(run, scene), -force, 1e-3 * force);
+}
+
+// 8, 4 and 1 kg under 10 m/s2.
+TEST(AnalystScenes, StackWeighsOnEachInterface) {
+  const json scene = scene_named("stack");
+  const Ran run = ran(scene);
+  for (const auto& [name, weight] :
+       std::map<std::string, double>{{"floor", 130}, {"lower", 50}, {"upper", 10}})
+    EXPECT_NEAR(run.last(name + ".F2") * at_rest(run, scene), weight, 1e-3 * weight) << name;
+}
+
+// 10 kN on 1 cm2 are 100 MPa, and 150 MPa break the joint when the pull reaches 15 kN, the waves that it
+// makes apart; what breaks dissipates G A.
+TEST(AnalystScenes, BondedBarsBreakAtTheStrengthOfTheJoint) {
+  const json scene = scene_named("bonded_bars");
+  const Ran run = ran(scene);
+  const std::vector<double>&time = run.history.at("time"), &joint = run.history.at("joint.F0");
+  const auto at = static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), 0.0029) - time.begin());
+  EXPECT_NEAR(-joint[at] / 1e-4, 1e8, 1e-2 * 1e8);
+  EXPECT_NEAR(times_of(run.events, "rupture").at("joint"), 0.0035, 5e-5);
+  EXPECT_NEAR(run.last("balance.dissipated_rupture"), 500.0 * 1e-4, 1e-9);
+  EXPECT_LE(run.summary["forces"]["joint"]["largest"].get<double>(), 1.5e8 * 1e-4 * (1.0 + 1e-9));
+}
+
+TEST(AnalystScenes, WeldsTearOneAfterTheOther) {
+  const Ran run = ran(scene_named("welds_torn"));
+  const auto torn = times_of(run.events, "rupture");
+  ASSERT_EQ(torn.size(), 3U) << run.events;
+  EXPECT_LT(torn.at("outer_weld") + 0.01, torn.at("middle_weld"));
+  EXPECT_LT(torn.at("middle_weld") + 0.01, torn.at("inner_weld"));
+}
+
+// Without inertia, what holds the back is what the ball does; its moment about the ball's centre comes from
+// friction alone, and friction is at most 0.8 of the pressing force.
+TEST(AnalystScenes, TreadIsDraggedWithAtMostItsFriction) {
+  const Ran run = ran(scene_named("tread_on_ball"));
+  const double down = run.last("ball.F2"), along = run.last("ball.F0");
+  EXPECT_NEAR(run.last("tyre.F2"), -down, 0.02 * down);
+  EXPECT_GT(-along, 0.3 * down);
+  EXPECT_NEAR(run.last("ball.F1"), 0.0, 1e-6 * down);
+  EXPECT_GT(run.summary["energy"]["dissipated_friction"].get<double>(), 0.5);
+  // At the radius, and against what drags it.
+  EXPECT_LT(std::abs(run.last("ball.M1")), 0.03 * std::hypot(down, along));
+  EXPECT_LT(run.last("ball.M1"), 0.0);
+}
+
+TEST(AnalystScenes, BrakePadDragsByFrictionTimesPressingForce) {
+  const json scene = scene_named("brake_pad");
+  const Ran run = ran(scene);
+  EXPECT_NEAR(run.mean_after(0.007, "disc.F2") * at_rest(run, scene), 100.0, 0.5);
+  EXPECT_NEAR(run.mean_after(0.007, "disc.F0"), 0.4 * run.mean_after(0.007, "disc.F2"), 1e-3);
+  EXPECT_NEAR(run.mean_after(0.007, "caliper.F0"), -40.0, 1.0);
+}
+
+// All of the glue carries its strength at once at most, and dissipates its toughness in the end.
+TEST(AnalystScenes, LapJointDissipatesItsToughness) {
+  const Ran run = ran(scene_named("lap_joint"));
+  const double area = 22.5e-3 * 10e-3;
+  EXPECT_NEAR(run.summary["energy"]["dissipated_rupture"].get<double>(), 50.0 * area, 0.02 * 50.0 * area);
+  EXPECT_LE(run.summary["forces"]["glue"]["largest"].get<double>(), 5e5 * area);
+  EXPECT_GT(run.summary["forces"]["glue"]["largest"].get<double>(), 0.9 * 5e5 * area);
+}
+
+// Slides all over its face: the drag is the friction of the pressing force, turned by the slope of the dent.
+TEST(AnalystScenes, RollerAndTableHoldEachOther) {
+  const Ran run = ran(scene_named("roller"));
+  for (const char* axis : {".F0", ".F2"})
+    EXPECT_NEAR(run.mean_after(0.05, std::string("roller") + axis),
+                -run.mean_after(0.05, std::string("table") + axis),
+                0.05 * std::abs(run.mean_after(0.05, "roller.F2")))
+        << axis;
+  EXPECT_GT(run.mean_after(0.05, "roller.F0"), 0.1 * std::abs(run.mean_after(0.05, "roller.F2")));
+}
+
+// A pull that grows by 50 N/s breaks a bond of R A over the memory tau at the mean over tau: R A / tau.
+TEST(AnalystScenes, StickyNoteComesOffTwice) {
+  const Ran run = ran(scene_named("sticky_note"));
+  const double holds = 20.0 * 4e-4 / 0.01;  // [N]
+  const double first = times_of(run.events, "rupture").at("paper");
+  EXPECT_NEAR(50.0 * (first - 0.03 - 0.005), holds, 0.05 * holds);
+  EXPECT_EQ(run.last("n4.ruptures"), 2.0);
+}
+
+// What falls from rest is stopped in the end by an impulse of its weight times the time.
+TEST(AnalystScenes, HailGivesItsWeightToTheSlope) {
+  const json scene = scene_named("hail");
+  const Ran run = ran(scene);
+  double momentum = 0.0;
+  for (int k = 0; k < 45; ++k) momentum += run.last("n" + std::to_string(k) + ".v1");
+  EXPECT_NEAR(run.impulse("slope.F1") + run.impulse("weight.F1") - momentum, 45 * 10 * 0.0005, 1e-9);
+}
+
+// ---- pictures -------------------------------------------------------------------------------------------
+
+double number_after(const std::string& text, const std::string& mark) {
+  const std::size_t found = text.find(mark);
+  return found == std::string::npos ? std::nan("") : std::stod(text.substr(found + mark.size()));
+}
+
+// Long names: the picture has room for them, as gnuplot sets them in its svg.
+TEST(Picture, HasRoomForLongNames) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "history.csv")
+      << "time,n1234.u0,n1234.a_long_interface.gap,n1234.a_long_interface.status,"
+         "n1234.another_interface.gap,n1234.another_interface.status,a_long_interface.F0,"
+         "another_interface.F0,balance.angular_momentum0,balance.angular_momentum1\n"
+         "0.1,0,1,0,4,0,0,0,1,2\n0.2,1,1,0,0,1,2,3,1,3\n";
+  std::string title;
+  for (int k = 0; k < 30; ++k) title += "wordy ";
+  std::ofstream(folder / "summary.json") << json{{"scene", {{"title", title}}}}.dump();
+  ASSERT_EQ(run_program("plot " + folder.string()).code, 0);
+  const std::string svg = text_of(folder / "history.svg"), script = text_of(folder / "history.gnuplot");
+  const double width = number_after(svg, "viewBox=\"0 0 ");
+  const auto rows = static_cast<double>(std::string("n1234.a_long_interface").size());
+  EXPECT_GT(number_after(script, "set lmargin at screen ") * width, 7.0 * rows + 30.0);
+  EXPECT_GT((1.0 - number_after(script, "set rmargin at screen ")) * width, 7.0 * rows + 50.0);
+  EXPECT_NE(script.find("'.\"\\n\".'"), std::string::npos);  // the title in two lines
+  EXPECT_NE(script.find("'angular'.\"\\n\".'momentum'"), std::string::npos);
+}
+
+TEST(Picture, ShowsThePanelsThatAreAskedFor) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "history.csv")
+      << "time,n3.u0,n3.v0,n3.r0,n3.gap,n3.status,n3.damage\n0.1,0,1,0,4,0,0\n"
+         "0.2,1,1,0.1,0,0,1\n";
+  const std::string plot = "plot " + folder.string() + " --panels ";
+  ASSERT_EQ(run_program(plot + "damage,displacement").code, 0);
+  const std::string script = text_of(folder / "history.gnuplot");
+  const std::size_t damage = script.find("set label 1 'damage'"),
+                    motion = script.find("set label 1 'displacement'");
+  ASSERT_NE(damage, std::string::npos);
+  ASSERT_NE(motion, std::string::npos);
+  EXPECT_LT(damage, motion);
+  EXPECT_EQ(script.find("set label 1 'velocity'"), std::string::npos);
+  const Outcome unknown = run_program(plot + "gap,glue");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(
+      unknown.output.find("--panels: found 'glue', expected some of gap, displacement, velocity, impulse"),
+      std::string::npos)
+      << unknown.output;
+  EXPECT_EQ(run_program(plot + "gap --x n3.u0").code, 2);
+}
+
+// Every run's own pictures, and nobody else's.
+TEST(Picture, OfColumnsIsRemovedByANewRun) {
+  const auto folder = fresh_folder();
+  const std::string run = "run " + file_of("bonded_bars").string() + " --out " + folder.string();
+  ASSERT_EQ(run_program(run).code, 0);
+  ASSERT_EQ(run_program("plot " + folder.string() + " --y joint.F0").code, 0);
+  ASSERT_TRUE(std::filesystem::exists(folder / "joint.F0_over_time.png"));
+  std::ofstream(folder / "my_over_all.png") << "mine";
+  std::ofstream(folder / "my_over_all.gnuplot") << "plot sin(x)";
+  ASSERT_EQ(run_program(run).code, 0);
+  for (const char* ending : {".png", ".svg", ".gnuplot"})
+    EXPECT_FALSE(std::filesystem::exists(folder / ("joint.F0_over_time" + std::string(ending)))) << ending;
+  EXPECT_TRUE(std::filesystem::exists(folder / "my_over_all.png"));
+}
+
+// ---- warnings -------------------------------------------------------------------------------------------
+
+std::string warnings_of(const json& scene) {
+  std::string text;
+  for (const std::string& warning : scene_of(scene.dump()).warnings) text += warning + "\n";
+  return text;
+}
+
+TEST(Warnings, TellOfAWeldThatNothingCanBreak) {
+  json scene = json::parse(
+      R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0], "area": 1e-4}]},
+    "time": {"dt": 1e-3, "end": 1}, "loads": [{"type": "force", "nodes": [0], "direction": [1], "history": [[0, 0], [1, 50]]}],
+    "interfaces": [{"law": "tie", "parameters": {"strength": 1e6, "memory": 0.01}, "nodes": "all",
+      "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
+  // It holds 100 N.s; 50 N over 0.01 are 0.5 N.s.
+  const std::string said = warnings_of(scene);
+  EXPECT_EQ(said.find("/interfaces/0/parameters/strength: found 1000000.0"), 0U) << said;
+  EXPECT_NE(said.find("an impulse of 100.0"), std::string::npos) << said;
+  json& parameters = scene["interfaces"][0]["parameters"];
+  parameters["strength"] = 4e4;  // 4 N.s: waves may do it
+  EXPECT_EQ(warnings_of(scene), "");
+  parameters["strength"] = 1e6;
+  json driven = scene;  // a shock of 20 N.s
+  driven["loads"].push_back(json::parse(R"({"type": "shock", "nodes": [0], "time": 0.5, "impulse": [20]})"));
+  EXPECT_EQ(warnings_of(driven), "");
+  driven = scene;  // thrown
+  driven["model"]["points"][0]["velocity"] = {20};
+  EXPECT_EQ(warnings_of(driven), "");
+  driven = scene;  // what moves along may pull as hard as it likes
+  driven["interfaces"][0]["obstacle"]["velocity"] = {-1};
+  EXPECT_EQ(warnings_of(driven), "");
+  scene["interfaces"][0]["law"] = "cohesive";
+  scene["interfaces"][0]["parameters"] = {{"strength", 1e8}, {"toughness", 1e3}};
+  EXPECT_NE(warnings_of(scene).find("a force of 10000.0"), std::string::npos) << warnings_of(scene);
+  scene["interfaces"][0]["parameters"]["strength"] = 4e6;
+  EXPECT_EQ(warnings_of(scene), "");
+}
+
+TEST(Warnings, TellOfPartnersThatDoNotFaceTheirNodes) {
+  json scene = scene_named("lap_joint");
+  scene["interfaces"][0]["nodes"] = {36, 37};
+  scene["interfaces"][0]["against"] = {{"nodes", {22, 23}}, {"normal", {0, 0, 1}}};
+  EXPECT_EQ(warnings_of(scene), "");
+  scene["interfaces"][0]["against"]["nodes"] = {23, 22};
+  EXPECT_NE(
+      warnings_of(scene).find("/interfaces/0/against/nodes: node 36 and its partner 23 are 0.005 apart"),
+      std::string::npos)
+      << warnings_of(scene);
+  scene["interfaces"][0]["against"]["nodes"] = {22, 22};
+  EXPECT_NE(warnings_of(scene).find("/interfaces/0/against/nodes: found node 22 more than once"),
+            std::string::npos)
+      << warnings_of(scene);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing

@@ -1,0 +1,100 @@
+// Displacements at the start, against motions that are known.
+#include "host_runner.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+json block(const char* material, double poisson) {
+  json scene = json::parse(R"({"model": {"type": "blocks", "blocks": [{"name": "b", "corner": [1, 2, 3],
+      "size": [1, 0.5, 0.5], "elements": [3, 2, 1], "material": {"young": 2, "density": 1}}]},
+    "time": {"cfl": 0.8, "end": 1}, "interfaces": []})");
+  scene["model"]["blocks"][0]["material"]["type"] = material;
+  scene["model"]["blocks"][0]["material"]["poisson"] = poisson;
+  return scene;
+}
+
+// Central difference gives a cos(W n h) exactly, sin(W h/2) = w h/2.
+TEST(Initial, DisplacementOfASpringSwingsAsACosine) {
+  json scene = json::parse(R"({"model": {"type": "points", "dimension": 2, "points": [
+      {"mass": 2, "position": [0, 0], "stiffness": [8, 18]}, {"mass": 1, "position": [1, 0]}]},
+    "time": {"end": 3}, "initial": [{"nodes": [0], "displacement": [0.1, 0.2]},
+                                    {"nodes": [0], "displacement": [0, 0.1]}], "interfaces": []})");
+  for (const double h : {0.07, 0.11, 0.13}) {
+    scene["time"]["dt"] = h;
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    while (integrator.steps() < read.steps) {
+      integrator.step();
+      const double n = static_cast<double>(integrator.steps());
+      EXPECT_NEAR(integrator.displacement()[0], 0.1 * std::cos(2.0 * std::asin(h) * n), 1e-13) << h;
+      EXPECT_NEAR(integrator.displacement()[1], 0.3 * std::cos(2.0 * std::asin(1.5 * h) * n), 1e-13) << h;
+    }
+    EXPECT_EQ(integrator.displacement()[2], 0.0);
+    EXPECT_LT(integrator.energy().balance_error, 1e-13);
+  }
+}
+
+// A rotation strains nothing, about whatever point: a body with large displacements stays as it is.
+TEST(Initial, RotationLeavesALargeBodyAtRest) {
+  json scene = block("neo_hookean", 0.3);
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  scene["initial"] = {
+      {{"gradient", {{c - 1, -s, 0}, {s, c - 1, 0}, {0, 0, 0}}}, {"displacement", {1, 0, 2}}}};
+  Scene read = scene_of(scene.dump());
+  Integrator integrator = integrator_of(read);
+  const Dofs start = integrator.displacement();
+  EXPECT_NEAR(start[0], c * 1.0 - s * 2.0 - 1.0 + 1.0, 1e-15);
+  EXPECT_NEAR(start[1], s * 1.0 + c * 2.0 - 2.0, 1e-15);
+  while (integrator.steps() < read.steps) integrator.step();
+  EXPECT_LT((integrator.displacement() - start).cwiseAbs().maxCoeff(), 1e-13);
+}
+
+// A stretch stores E eps^2/2 per volume where nothing contracts; a bar's own key says the same.
+TEST(Initial, StretchStoresWhatAnElasticBodyDoes) {
+  json scene = block("linear", 0.0);
+  scene["initial"] = {{{"nodes", "b"}, {"gradient", {{0.01, 0, 0}, {0, 0, 0}, {0, 0, 0}}}}};
+  Scene read = scene_of(scene.dump());
+  EXPECT_NEAR(read.model->potential(read.model->initial_displacement()), 0.5 * 2.0 * 1e-4 * 0.25, 1e-17);
+  json bar = json::parse(R"({"model": {"type": "bars", "bars": [{"start": 1, "length": 2, "elements": 7,
+      "young": 1, "density": 1}]}, "time": {"cfl": 0.9, "end": 1}, "interfaces": []})");
+  json own = bar;
+  own["model"]["bars"][0]["initial_displacement"] = {0.1, 0.4};
+  bar["initial"] = {{{"gradient", {{0.15}}}, {"displacement", {-0.05}}}};
+  EXPECT_LT((scene_of(bar.dump()).model->initial_displacement() -
+             scene_of(own.dump()).model->initial_displacement())
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-15);
+}
+
+TEST(Initial, IsRefusedWithPointerFoundAndAllowed) {
+  const auto with = [](const char* initial) {
+    json scene = block("linear", 0.0);
+    scene["initial"] = json::parse(initial);
+    try {
+      scene_of(scene.dump());
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string("not refused");
+  };
+  EXPECT_EQ(with(R"([{"nodes": "b"}])"),
+            "/initial/0: found {\"nodes\":\"b\"}, expected 'displacement', 'gradient' or both");
+  EXPECT_EQ(with(R"([{"displacement": [1, 0]}])"),
+            "/initial/0/displacement: found 2 components, expected 3, the dimension of the model");
+  EXPECT_EQ(with(R"([{"gradient": [[1, 0, 0]]}])"),
+            "/initial/0/gradient: found 1 rows, expected 3, the dimension of the model");
+  EXPECT_EQ(
+      with(R"([{"displacment": [1, 0, 0]}])"),
+      "/initial/0/displacment: unknown key, expected one of: displacement, gradient, nodes (did you mean "
+      "'displacement'?)");
+  EXPECT_EQ(with(R"([{"gradient": [[-1, 0, 0], [0, 0, 0], [0, 0, 0]]}])"),
+            "/initial: element 0 is turned inside out at the start, expected smaller displacements");
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing

@@ -1,0 +1,138 @@
+// Nodes by name, by place and by box: what a scene may say of nodes, wherever it names some.
+#include "host_runner.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+std::string refusal_of(const json& scene) {
+  try {
+    scene_of(scene.dump());
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+// A cube of 4 x 4 x 2 elements, pulled at one corner region, held at another, dropped on a plane.
+json cube() {
+  return json::parse(R"({"model": {"type": "blocks", "blocks": [{"name": "cube", "size": [1, 1, 0.5],
+      "elements": [4, 4, 2], "material": {"type": "linear", "young": 1, "poisson": 0.3, "density": 1}}]},
+    "time": {"cfl": 0.8, "end": 1}, "interfaces": []})");
+}
+
+Dofs motion_of(const json& source) {
+  Scene scene = scene_of(source.dump());
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) integrator.step();
+  return integrator.velocity();
+}
+
+// A name means what it stands for, in every key that takes nodes.
+TEST(NamedSets, StandWhereverNodesAreGiven) {
+  const json grip = {{"box", {{-1, -1, -1}, {0.1, 2, 0.1}}}}, tab = {{"box", {{0.4, 0.4, 0.4}, {2, 2, 2}}}},
+             pads = {{"box", {{0.2, 0.2, -1}, {0.8, 0.8, 0.1}}}, {"of", "cube.z_min"}}, pulled = {30, 31};
+  const auto scene_with = [](const json& a, const json& b, const json& c, const json& d) {
+    json scene = cube();
+    scene["loads"] = {{{"type", "motion"}, {"nodes", a}},
+                      {{"type", "force"}, {"nodes", b}, {"direction", {0, 0, -1}}, {"history", {{0, 0.01}}}},
+                      {{"type", "gravity"}, {"nodes", d}, {"acceleration", {0.1, 0, 0}}}};
+    scene["interfaces"] = {{{"law", "coulomb"},
+                            {"nodes", c},
+                            {"parameters", {{"friction", 0.3}}},
+                            {"obstacle", {{"type", "plane"}, {"point", {0, 0, 0}}, {"normal", {0, 0, 1}}}}}};
+    return scene;
+  };
+  json named = scene_with("grip", "tab", "pads", "pulled");
+  named["sets"] = {{"grip", grip}, {"tab", tab}, {"pads", pads}, {"pulled", pulled}};
+  named["output"] = {{"watch", {"pads"}}, {"forces", {"grip"}}};
+  EXPECT_EQ(motion_of(named), motion_of(scene_with(grip, tab, pads, pulled)));
+  const Scene scene = scene_of(named.dump());
+  EXPECT_EQ(scene.output.watch, scene.model->sets().at("pads").nodes);
+  EXPECT_EQ(scene.output.watch.size(), 9U);
+  ASSERT_EQ(scene.output.forces.size(), 1U);
+  EXPECT_EQ(scene.output.forces[0].nodes, scene.model->sets().at("grip").nodes);
+}
+
+// Of a part of a face, the facets that lie in it: a surface for pressure and for other bodies.
+TEST(NamedSets, KeepTheFacetsThatLieInThem) {
+  json scene = cube();
+  scene["sets"] = {{"patch", {{"box", {{0.2, 0.2, -1}, {0.8, 0.8, 0.1}}}, {"of", "cube.z_min"}}},
+                   {"same", "cube.z_min"},
+                   {"line", {{"box", {{-1, 0.2, -1}, {2, 0.3, 0.1}}}, {"of", "cube.z_min"}}}};
+  const Scene read = scene_of(scene.dump());
+  EXPECT_EQ(read.model->sets().at("patch").facets.size(), 4U);
+  EXPECT_EQ(read.model->sets().at("same").facets.size(), 16U);
+  EXPECT_EQ(read.model->sets().at("line").nodes.size(), 5U);
+  EXPECT_TRUE(read.model->sets().at("line").facets.empty());
+}
+
+TEST(Near, TakesAListOfPlaces) {
+  json scene = cube();
+  scene["output"]["watch"] = {{{"near", {{0.9, 0.1, 0.6}, {0.0, 0.3, 0.1}, {0.5, 0.5, 0.2}}}}};
+  const Scene read = scene_of(scene.dump());
+  EXPECT_EQ(read.output.watch, (std::vector<int>{50 + 4, 5, 25 + 12}));
+}
+
+TEST(Watch, TakesABox) {
+  json scene = cube();
+  scene["output"]["watch"] = {0, {{"box", {{-0.1, -0.1, -0.1}, {0.3, 0.1, 0.1}}}}};
+  EXPECT_EQ(scene_of(scene.dump()).output.watch, (std::vector<int>{0, 1}));
+}
+
+TEST(NodesOfAScene, AreRefusedWithPointerFoundAndAllowed) {
+  const auto with = [](const char* pointer, const char* value) {
+    json scene = cube();
+    scene["sets"]["tip"] = {0, 1};
+    scene[json::json_pointer(pointer)] = json::parse(value);
+    return refusal_of(scene);
+  };
+  EXPECT_EQ(with("/sets/a b", "[0]"),
+            "/sets/a b: found the name 'a b', expected a letter, then letters, digits and _");
+  EXPECT_EQ(with("/sets/cube", "[0]"),
+            "/sets/cube: found 'cube', which the model has, expected a name of its own");
+  EXPECT_EQ(with("/sets/tips", "\"tip\"").find("/sets/tips: found \"tip\", expected one of all, cube, "), 0U);
+  EXPECT_EQ(with("/sets/all", "[0]").find("/sets/all: found 'all', which the model has"), 0U);
+  EXPECT_EQ(with("/sets/far", "[75]"), "/sets/far/0: found node 75, expected 0 to 74");
+  EXPECT_EQ(with("/sets/far", "7").find("/sets/far: found 7, expected string or array of integers"), 0U);
+  EXPECT_EQ(with("/sets/far", R"({"bx": [[0, 0, 0], [1, 1, 1]]})").find("/sets/far/bx: unknown key"), 0U)
+      << with("/sets/far", R"({"bx": [[0, 0, 0], [1, 1, 1]]})");
+  EXPECT_NE(with("/loads", R"([{"type": "gravity", "nodes": "tib", "acceleration": [0, 0, 1]}])")
+                .find("(did you mean 'tip'?)"),
+            std::string::npos);
+  EXPECT_EQ(with("/output/watch", R"([{"near": [[0, 0, 0], [0.01, 0, 0]]}])"),
+            "/output/watch/0/near/1: found node 0 twice, expected each node once");
+  EXPECT_EQ(with("/output/watch", R"([{"near": [0, [0.01, 0, 0]]}])"),
+            "/output/watch/0/near: found [0,[0.01,0,0]], expected a place, or a list of places");
+  EXPECT_EQ(with("/output/watch", R"([{"near": [[0, 0, "x"]]}])"),
+            "/output/watch/0/near/0/2: found \"x\", expected number");
+  EXPECT_EQ(with("/output/watch", R"([{"neer": [0, 0, 0]}])"),
+            "/output/watch/0/neer: unknown key, expected one of: box, near, of (did you mean 'near'?)");
+  EXPECT_EQ(with("/output/watch", R"([{"near": [[0, 0, 0], [0.01, 0]]}])"),
+            "/output/watch/0/near/1: found 2 components, expected 3, the dimension of the model");
+}
+
+// The scene that docs/scenes.md begins with, and what the page says of it.
+TEST(ScenesPage, BeginsWithASceneThatDoesWhatItSays) {
+  std::ostringstream page;
+  page << std::ifstream(std::filesystem::path(ILAW_SOURCE) / "docs/scenes.md").rdbuf();
+  const std::string text = page.str(), fence = "```json\n";
+  const std::size_t first = text.find(fence) + fence.size();
+  Scene scene = scene_of(text.substr(first, text.find("```", first) - first));
+  EXPECT_TRUE(scene.warnings.empty());
+  Integrator integrator = integrator_of(scene);
+  while (integrator.displacement()[1] > -0.45 + 1e-9) integrator.step();
+  EXPECT_NEAR(integrator.time(), 0.3, 2e-3);
+  while (integrator.time() < 0.302) integrator.step();
+  EXPECT_NEAR(integrator.velocity()[0], 3.1, 0.02);
+  while (integrator.velocity()[0] > 1e-12) integrator.step();
+  EXPECT_NEAR(integrator.time(), 1.333, 5e-3);
+  EXPECT_NEAR(integrator.displacement()[0], 2.80, 5e-3);
+  EXPECT_LT(integrator.time(), 1.5);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing

@@ -1,0 +1,242 @@
+// Springs and dampers between nodes, against closed forms of central difference and of two bodies.
+#include "host_runner.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <Eigen/Eigenvalues>
+
+#include <random>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+json two_masses(double stiffness, double damping) {
+  json scene = json::parse(R"({"model": {"type": "points", "dimension": 1, "points": [
+      {"mass": 1, "position": [0], "velocity": [0.3]}, {"mass": 3, "position": [2], "velocity": [-0.1]}]},
+    "time": {"end": 4}, "springs": [{"nodes": [0], "to": [1], "length": 1.5}], "interfaces": []})");
+  scene["springs"][0]["stiffness"] = stiffness;
+  scene["springs"][0]["damping"] = damping;
+  return scene;
+}
+
+constexpr double reduced_mass = 0.75;
+
+// About its rest length the distance is a cos(W n h) + b sin(W n h), sin(W h/2) = w h/2; the centre of
+// mass is at rest, for the momentum is 0.
+TEST(Spring, SwingsAboutItsRestLength) {
+  constexpr double k = 3.0, stretch = 0.5, speed = -0.4;
+  for (const double h : {0.07, 0.11, 0.13}) {
+    json source = two_masses(k, 0.0);
+    source["time"]["dt"] = h;
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    const double W = 2.0 * std::asin(0.5 * h * std::sqrt(k / reduced_mass));
+    const double b = h * speed / std::sin(W);
+    EXPECT_NEAR(integrator.energy().potential, 0.5 * k * stretch * stretch, 1e-15);
+    while (integrator.steps() < scene.steps) {
+      integrator.step();
+      const double phase = W * static_cast<double>(integrator.steps());
+      const Dofs& u = integrator.displacement();
+      ASSERT_NEAR(2.0 + u[1] - u[0], 1.5 + stretch * std::cos(phase) + b * std::sin(phase), 1e-13) << h;
+      ASSERT_NEAR(u[0] + 3.0 * u[1], 0.0, 1e-14) << h;
+    }
+    EXPECT_LT(integrator.energy().balance_error, 1e-13);
+  }
+}
+
+// exp(-c t/m), to the first order of the step; what is lost is the work of damping.
+TEST(Damper, SlowsDownExponentially) {
+  constexpr double c = 0.5, end = 1.2;
+  std::vector<double> steps, errors;
+  for (const double h : {0.04, 0.03, 0.007}) {
+    json source = two_masses(0.0, c);
+    source["time"] = {{"dt", h}, {"end", end}};
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    const double before = integrator.energy().kinetic;
+    while (integrator.steps() < scene.steps) integrator.step();
+    const Dofs& v = integrator.velocity();
+    const double time = integrator.time() + 0.5 * h;
+    steps.push_back(h);
+    errors.push_back(std::abs(v[1] - v[0] + 0.4 * std::exp(-c * time / reduced_mass)));
+    EXPECT_NEAR(v[0] + 3.0 * v[1], 0.0, 1e-15);
+    EXPECT_NEAR(integrator.energy().damping_work, integrator.energy().kinetic - before, 1e-15);
+    EXPECT_LT(integrator.energy().balance_error, 1e-13);
+    EXPECT_EQ(integrator.energy().external_work, 0.0);
+  }
+  EXPECT_LT(errors[0], 0.4 * steps[0]);
+  EXPECT_NEAR(order(steps, errors), 1.0, 0.1);
+}
+
+// One end drives, the other is dragged along: the reaction of what drives is what the damper gives to
+// the mass, whatever else damps.
+TEST(Damper, DragsFromAnEndThatIsDriven) {
+  json source = two_masses(0.0, 0.5);
+  source["loads"] =
+      json::parse(R"([{"type": "damping", "rate": 0}, {"type": "motion", "nodes": [0], "velocity": [0.2]}])");
+  for (const double h : {0.04, 0.03, 0.007}) {
+    source["time"] = {{"dt", h}, {"end", 40}};
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    integrator.keep_load_impulse(1);
+    double before = integrator.velocity()[1];
+    while (integrator.steps() < scene.steps) {
+      integrator.step();
+      Dofs reaction = Dofs::Zero(2);
+      integrator.add_load_impulse(1, reaction);
+      ASSERT_NEAR(reaction[0], 3.0 * (integrator.velocity()[1] - before), 1e-15) << integrator.steps();
+      before = integrator.velocity()[1];
+    }
+    EXPECT_NEAR(integrator.velocity()[1], 0.2, 1e-2 * 0.3);
+    EXPECT_LT(integrator.energy().balance_error, 1e-12);
+  }
+}
+
+// In the plane a spring is a pendulum: the force is central, so that the angular momentum stays to rounding,
+// and the energy that it stores is what it works.
+TEST(Spring, TurnsWithItsEnds) {
+  json source = json::parse(R"({"model": {"type": "points", "dimension": 2, "points": [
+      {"mass": 1, "position": [1, 0], "velocity": [0, 1.5]}, {"mass": 2, "position": [3, 1], "velocity": [-0.5, 2]}]},
+    "time": {"end": 6}, "interfaces": [],
+    "springs": [{"nodes": [0, 1], "anchor": [0, 0], "stiffness": 2, "length": 1.5},
+                {"nodes": [0], "to": [1], "stiffness": 1}]})");
+  std::vector<double> steps, errors;
+  for (const double h : {0.05, 0.035, 0.011}) {
+    source["time"]["dt"] = h;
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    const double momentum = integrator.angular_momentum()[0];
+    // Work is booked from half step to half step.
+    const auto potential_ahead = [&] {
+      return scene.model->potential(integrator.displacement() + 0.5 * h * integrator.velocity());
+    };
+    const double since_start = potential_ahead() - integrator.energy().potential;
+    double error = 0.0;
+    while (integrator.steps() < scene.steps) {
+      integrator.step();
+      ASSERT_NEAR(integrator.angular_momentum()[0], momentum, 1e-13) << h;
+      error = std::max(error, std::abs(integrator.energy().internal + since_start - potential_ahead()));
+    }
+    steps.push_back(h);
+    errors.push_back(error);
+    EXPECT_LT(integrator.energy().balance_error, 1e-13);
+    EXPECT_LT(error, 0.6 * h * h) << h;
+  }
+  EXPECT_NEAR(order(steps, errors), 2.0, 0.1);
+}
+
+// ---- the critical step ----------------------------------------------------------------------------------
+
+double growth_at(json source, double h) {
+  source["time"] = {{"dt", h}, {"end", 400.0 * h}};
+  Scene scene = scene_of(source.dump());
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) integrator.step();
+  const Dofs& u = integrator.displacement();
+  return std::abs(u[1] - u[0]);
+}
+
+// One spring and damper: 2 (sqrt(1 + z^2) - z)/w, and it is the limit.
+TEST(SpringsCriticalStep, IsTheLimitOfOneSpring) {
+  for (const double z : {0.0, 0.2, 1.0, 3.0}) {
+    const double k = 3.0, w = std::sqrt(k / reduced_mass), c = 2.0 * z * w * reduced_mass;
+    json source = two_masses(k, c);
+    source["springs"][0]["length"] = 0.0;  // linear, also where the ends pass each other
+    source["time"] = {{"cfl", 1.0}, {"end", 1.0}};
+    const double critical = scene_of(source.dump()).dt;
+    EXPECT_NEAR(critical, 2.0 * (std::sqrt(1.0 + z * z) - z) / w, 1e-14) << z;
+    EXPECT_LT(growth_at(source, 0.999 * critical), 100.0) << z;
+    EXPECT_GT(growth_at(source, 1.05 * critical), 1e10) << z;
+  }
+  json source = two_masses(0.0, 2.0);
+  source["time"] = {{"cfl", 1.0}, {"end", 1.0}};
+  EXPECT_NEAR(scene_of(source.dump()).dt, 2.0 / (2.0 / reduced_mass), 1e-14);
+}
+
+// A chain of equal masses: hardly anything is given away; networks at random: no step is too large.
+TEST(SpringsCriticalStep, IsABoundFromBelow) {
+  std::mt19937 engine(14);
+  std::uniform_real_distribution<double> draw(0.1, 10.0);
+  for (int round = 0; round < 40; ++round) {
+    const int n = 12;
+    const bool is_chain = round == 0;
+    json source = json::parse(
+        R"({"model": {"type": "points", "dimension": 1}, "time": {"cfl": 1, "end": 100}, "interfaces": []})");
+    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd mass(n);
+    for (int i = 0; i < n; ++i) {
+      mass[i] = is_chain ? 1.0 : draw(engine);
+      source["model"]["points"].push_back({{"mass", mass[i]}, {"position", {1.0 * i}}});
+    }
+    for (int s = 0; s + 1 < (is_chain ? n : 2 * n); ++s) {
+      const int i = is_chain ? s : static_cast<int>(engine() % n);
+      const int j = is_chain ? s + 1 : (i + 1 + static_cast<int>(engine() % (n - 1))) % n;
+      const double k = is_chain ? 1.0 : draw(engine);
+      source["springs"].push_back({{"nodes", {i}}, {"to", {j}}, {"stiffness", k}});
+      for (const int end : {i, j}) stiffness(end, end) += k;
+      stiffness(i, j) -= k;
+      stiffness(j, i) -= k;
+    }
+    const Eigen::VectorXd root = mass.cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = root.asDiagonal() * stiffness * root.asDiagonal();
+    const double limit =
+        2.0 / std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled).eigenvalues().maxCoeff());
+    const double found = scene_of(source.dump()).dt;
+    ASSERT_LE(found, limit * (1.0 + 1e-12)) << "round " << round;
+    ASSERT_GE(found, (is_chain ? 0.98 : 0.6) * limit) << "round " << round;
+  }
+}
+
+// Beside a body's own stiffness: a bar whose end is held by a spring.
+TEST(SpringsCriticalStep, CountsTheBody) {
+  json source = json::parse(R"({"model": {"type": "bars", "bars": [{"length": 1, "elements": 10, "young": 1,
+      "density": 1}]}, "time": {"cfl": 1, "end": 5}, "interfaces": [],
+    "springs": [{"nodes": "bar0.right", "anchor": [1.5], "stiffness": 30, "damping": 0.2}],
+    "initial": [{"gradient": [[0.1]]}]})");
+  Scene scene = scene_of(source.dump());
+  EXPECT_NEAR(scene.dt, 4.0 / (4.0 + std::sqrt(16.0 + 4.0 * (400.0 + 600.0))), 1e-15);
+  Integrator integrator = integrator_of(scene);
+  const double start = integrator.energy().scale;
+  while (integrator.steps() < scene.steps) integrator.step();
+  EXPECT_LT(integrator.energy().balance_error, 1e-12);
+  EXPECT_LT(integrator.energy().damping_work, 0.0);
+  EXPECT_LE(integrator.energy().scale, start * (1.0 + 1e-12));
+}
+
+TEST(Springs, AreRefusedWithPointerFoundAndAllowed) {
+  const auto with = [](const char* spring) {
+    json scene = two_masses(1.0, 0.0);
+    scene["time"]["dt"] = 0.1;
+    scene["springs"] = {json::parse(spring)};
+    try {
+      scene_of(scene.dump());
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string("not refused");
+  };
+  EXPECT_EQ(with(R"({"nodes": [0], "to": [0], "stiffness": 1})"),
+            "/springs/0/to: found node 0 at both ends, expected another node");
+  EXPECT_EQ(with(R"({"nodes": [0, 1], "to": [0], "stiffness": 1})"),
+            "/springs/0/to: found 1 nodes, expected one for each of the 2 nodes of 'nodes'");
+  EXPECT_EQ(with(R"({"nodes": [0], "stiffness": 1})").find("/springs/0: found neither, expected one of 'to'"),
+            0U)
+      << with(R"({"nodes": [0], "stiffness": 1})");
+  EXPECT_EQ(with(R"({"nodes": [0], "to": [1]})")
+                .find("/springs/0: found {\"nodes\":[0],\"to\":[1]}, expected "
+                      "'stiffness', 'damping' or both above 0"),
+            0U);
+  EXPECT_EQ(with(R"({"nodes": [0], "to": [1], "stiffnes": 1})")
+                .find("/springs/0/stiffnes: unknown key, expected one of: anchor, damping, length, nodes, "
+                      "stiffness, to (did you mean 'stiffness'?)"),
+            0U);
+  EXPECT_EQ(with(R"({"nodes": [0], "to": [1], "stiffness": -1})"),
+            "/springs/0/stiffness: found -1, expected number >= 0");
+  EXPECT_EQ(with(R"({"nodes": [0], "anchor": [0, 1], "stiffness": 1})"),
+            "/springs/0/anchor: found 2 components, expected 1, the dimension of the model");
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing

@@ -1,0 +1,207 @@
+// Obstacles that turn: the surface that a node meets has a velocity of its own.
+#include "host_runner.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <random>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+// A wheel of radius 0.5 about (1, 2), or a sphere or a table there, turning so that its top moves by speed
+// along x.
+json wheel(const std::string& type, double speed) {
+  constexpr double radius = 0.5;
+  if (type == "disc")
+    return {{"type", "sphere"}, {"center", {1, 2}}, {"radius", radius}, {"rate", -speed / radius}};
+  if (type == "table")  // seen from its normal y, at a radius of 0.5 towards z
+    return {{"type", "plane"}, {"point", {1, 2.5, -0.5}}, {"normal", {0, 3, 0}}, {"rate", speed / 0.5}};
+  json round = {{"type", type}, {"radius", radius}, {"axis", {0, 0, -2}}, {"rate", speed / radius}};
+  round[type == "sphere" ? "center" : "point"] = {1, 2, type == "sphere" ? 0 : 7};
+  return round;
+}
+
+// A point that falls on the top of it.
+json dropped(const json& obstacle, int dimension, double friction, double restitution) {
+  json scene = {{"model", {{"type", "points"}, {"dimension", dimension}}}, {"time", {{"end", 1.0}}}};
+  json position = {1, 2.7}, velocity = {0, -2};
+  if (dimension == 3) {
+    position.push_back(0);
+    velocity.push_back(0);
+  }
+  scene["model"]["points"] = {{{"mass", 3}, {"position", position}, {"velocity", velocity}}};
+  scene["interfaces"] = {
+      {{"law", "coulomb"},
+       {"nodes", "all"},
+       {"obstacle", obstacle},
+       {"parameters", {{"friction", friction}, {"restitution", restitution}, {"activation", "moreau"}}}}};
+  return scene;
+}
+
+Integrator after_impact(Scene& scene) {
+  Integrator integrator = integrator_of(scene);
+  while (integrator.velocity()[1] < 0.0 && integrator.steps() < scene.steps) integrator.step();
+  return integrator;
+}
+
+// An impact at speed w gives mu (1 + e) w along the surface, and no more than the speed of the surface; what
+// friction takes is what the wheel has given and the point has not got.
+TEST(TurningObstacle, GivesAnImpactItsSpin) {
+  constexpr double w = 2.0, mu = 0.3, e = 0.5, kick = mu * (1.0 + e) * w;
+  for (const std::string type : {"disc", "cylinder", "sphere", "table"})
+    for (const double speed : {0.4, 5.0, -0.7, -3.0})
+      for (const double h : {0.01, 0.013, 0.0037}) {
+        json source = dropped(wheel(type, speed), type == "disc" ? 2 : 3, mu, e);
+        source["time"]["dt"] = h;
+        Scene scene = scene_of(source.dump());
+        const Integrator integrator = after_impact(scene);
+        const Dofs& v = integrator.velocity();
+        const double expected = std::copysign(std::min(kick, std::abs(speed)), speed);
+        const std::string where = type + ", surface at " + number(speed) + ", h " + number(h);
+        ASSERT_NEAR(v[0], expected, 1e-14) << where;
+        ASSERT_NEAR(v[1], e * w, 1e-14) << where;
+        const EnergyReport energy = integrator.energy();
+        const double slid = std::abs(speed) - 0.5 * std::abs(expected);  // mean over the impact
+        ASSERT_NEAR(energy.by_law[ILAW_ENERGY_FRICTION], 3.0 * std::abs(expected) * slid, 1e-13) << where;
+        ASSERT_NEAR(energy.reaction_work, 0.0, 1e-13) << where;
+        ASSERT_LT(energy.balance_error, 1e-14) << where;
+      }
+}
+
+// The same where contacts share nodes, which takes another path through the program.
+TEST(TurningObstacle, IsTheSameForContactsThatShareNodes) {
+  for (const std::string type : {"disc", "sphere", "table"}) {
+    const int d = type == "disc" ? 2 : 3;
+    json source = dropped(wheel(type, 0.6), d, 0.3, 0.5);
+    source["time"]["dt"] = 0.01;
+    Scene alone = scene_of(source.dump());
+    json far = {{"type", "plane"}, {"point", {0, -100}}, {"normal", {0, 1}}};
+    if (d == 3) far = {{"type", "plane"}, {"point", {0, -100, 0}}, {"normal", {0, 1, 0}}};
+    source["interfaces"].push_back(source["interfaces"][0]);
+    source["interfaces"][1]["obstacle"] = far;
+    Scene shared = scene_of(source.dump());
+    const Integrator one = after_impact(alone), other = after_impact(shared);
+    EXPECT_LT((one.velocity() - other.velocity()).cwiseAbs().maxCoeff(), 1e-14) << type;
+    EXPECT_NEAR(other.energy().reaction_work, 0.0, 1e-13) << type;
+    EXPECT_NEAR(one.energy().by_law[ILAW_ENERGY_FRICTION], other.energy().by_law[ILAW_ENERGY_FRICTION],
+                1e-13);
+  }
+}
+
+// A wheel that rolls has no velocity where it touches the ground: what it meets there is not dragged
+// along, but for the order of the step, in which the wheel rolls on.
+TEST(TurningObstacle, RollsWithoutSliding) {
+  constexpr double forwards = 2.0, radius = 0.5;
+  const auto dragged = [&](double rate, double h) {
+    json source = dropped({{"type", "sphere"},
+                           {"center", {0, 1}},
+                           {"radius", radius},
+                           {"velocity", {forwards, 0}},
+                           {"rate", rate}},
+                          2, 0.3, 0.0);
+    source["model"]["points"][0]["position"] = {1, 0};
+    source["model"]["points"][0]["velocity"] = {0, 1};
+    source["time"]["dt"] = h;
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    while (integrator.energy().interface_work == 0.0) integrator.step();
+    return integrator.velocity()[0];
+  };
+  for (const double h : {0.01, 0.013, 0.0037}) {
+    EXPECT_NEAR(dragged(-forwards / radius, h), 0.0, 8.0 * h) << h;  // clockwise, as it rolls along x
+    EXPECT_NEAR(dragged(0.0, h), 0.3, 8.0 * h) << h;
+    EXPECT_NEAR(dragged(forwards / radius, h), 0.3, 8.0 * h) << h;
+  }
+}
+
+// Rough enough, a turntable carries a point around. Its velocity in a step is that of the table where the
+// step begins, so that r^2 grows by 1 + (w h)^2 from step to step: a circle to the first order.
+TEST(TurningObstacle, CarriesAPointAround) {
+  constexpr double w = 1.5, r = 0.8;
+  for (const double h : {0.01, 0.013, 0.0037}) {
+    json source = json::parse(R"({"model": {"type": "points", "dimension": 3, "points": [
+        {"mass": 1, "position": [1.8, 2, 0], "velocity": [0, 1.2, 0]}]}, "time": {"end": 2},
+      "loads": [{"type": "gravity", "acceleration": [0, 0, -10]}],
+      "interfaces": [{"law": "coulomb", "nodes": "all", "parameters": {"friction": 2},
+        "obstacle": {"type": "plane", "point": [1, 2, 0], "normal": [0, 0, 1], "angles": [[-1, 0], [9, 15]]}}]})");
+    source["time"]["dt"] = h;
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    integrator.step();
+    const auto arm = [&] {
+      return Eigen::Vector2d((scene.model->position() + integrator.displacement()).head<2>() -
+                             Eigen::Vector2d(1, 2));
+    };
+    const double start = arm().squaredNorm();
+    EXPECT_NEAR(start, r * r, 2.0 * h);
+    while (integrator.steps() < scene.steps) {
+      const double n = static_cast<double>(integrator.steps() - 1);
+      ASSERT_NEAR(arm().squaredNorm(), start * std::pow(1.0 + w * w * h * h, n), 1e-12) << h << ", " << n;
+      integrator.step();
+    }
+    const double angle = w * integrator.time();
+    EXPECT_NEAR((arm() - r * Eigen::Vector2d(std::cos(angle), std::sin(angle))).norm(), 0.0, 3.0 * h) << h;
+  }
+}
+
+// Thrown at a turning cylinder from anywhere, with gravity: nothing is gained but what the wheel works.
+TEST(TurningObstacle, DissipatesRelativeToItsSurface) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> draw(-1.0, 1.0);
+  json source = json::parse(R"({"model": {"type": "points", "dimension": 3}, "time": {"dt": 0.003, "end": 1},
+      "loads": [{"type": "gravity", "acceleration": [0, -10, 0]}],
+      "interfaces": [{"law": "coulomb", "nodes": "all", "parameters": {"friction": 0.4},
+        "obstacle": {"type": "cylinder", "point": [0, 0, 0], "axis": [0.2, 0.1, 1], "radius": 0.5,
+                     "angles": [[0, 0], [0.3, 2], [0.5, -1]], "velocity": [0, 0.5, 0]}}]})");
+  for (int k = 0; k < 30; ++k)
+    source["model"]["points"].push_back(
+        {{"mass", 1.0 + 0.5 * draw(engine)},
+         {"position", {0.3 * draw(engine), 0.8 + 0.1 * draw(engine), draw(engine)}},
+         {"velocity", {draw(engine), draw(engine) - 1.0, draw(engine)}}});
+  Scene scene = scene_of(source.dump());
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) integrator.step();
+  const EnergyReport energy = integrator.energy();
+  EXPECT_GT(energy.by_law[ILAW_ENERGY_FRICTION], 1.0);
+  EXPECT_NEAR(energy.reaction_work, 0.0, 1e-12 * energy.scale);
+  EXPECT_GE(energy.least_dissipation, 0.0);
+  EXPECT_LT(energy.balance_error, 1e-13);
+}
+
+TEST(TurningObstacle, IsRefusedWithPointerFoundAndAllowed) {
+  const auto with = [](const json& change, int dimension = 3) {
+    json source = dropped(wheel(dimension == 2 ? "disc" : "sphere", 1.0), dimension, 0.3, 0.5);
+    source["time"]["dt"] = 0.01;
+    source["interfaces"][0]["obstacle"].merge_patch(change);
+    try {
+      scene_of(source.dump());
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string("not refused");
+  };
+  const std::string obstacle = "/interfaces/0/obstacle";
+  EXPECT_EQ(with(json::object()), "not refused");
+  EXPECT_EQ(with({{"angles", {{0, 1}}}}),
+            obstacle + ": found both 'rate' and 'angles', expected at most one of them");
+  EXPECT_EQ(with({{"axis", nullptr}}), obstacle + ": key 'axis' is missing, about which the sphere turns");
+  EXPECT_EQ(with({{"rate", nullptr}}),
+            obstacle + "/axis: found [0,0,-2], expected 'rate' or 'angles' beside it");
+  EXPECT_EQ(with({{"axis", {0, 0, 1}}}, 2),
+            obstacle + "/axis: found [0,0,1], expected none: discs turn in their plane");
+  EXPECT_EQ(with({{"rat", 1}}).find(obstacle + "/rat: unknown key, expected one of: angles, axis, "), 0U);
+  EXPECT_NE(with({{"rat", 1}}).find("(did you mean 'rate'?)"), std::string::npos);
+  EXPECT_EQ(with({{"rate", "fast"}}), obstacle + "/rate: found \"fast\", expected number");
+  EXPECT_EQ(with({{"rate", nullptr}, {"angles", {{0, 1}, {0, 2}}}}),
+            obstacle + "/angles/1: found time 0, expected one after 0");
+  json line =
+      json::parse(R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [1]}]},
+    "time": {"dt": 0.1, "end": 1}, "interfaces": [{"law": "contact", "nodes": "all",
+      "obstacle": {"type": "sphere", "center": [0], "radius": 0.5, "rate": 1}}]})");
+  EXPECT_THROW(scene_of(line.dump()), SceneError);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The engine of api/yade in the system's Yade, headless: closed forms, refusals, runs that go on, the example."""
+import json
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+YADE = Path(os.environ["ILAW_SOURCE"]) / "api/yade"
+
+
+def yade(folder, *command):
+    """What a script prints. Yade ends with 0 whatever a script raises, so that is looked for."""
+    done = subprocess.run(["yade", "-n", "-x", *map(str, command)], cwd=folder, text=True, timeout=300,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)  # fmt: skip
+    assert done.returncode == 0 and "Traceback" not in done.stdout, done.stdout[-3000:]
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def figures(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("yade")
+    yade(folder, Path(__file__).with_name("cases.py"), folder / "figures.json")
+    return json.loads((folder / "figures.json").read_text())
+
+
+def test_a_sphere_leaves_a_wall_with_e_times_its_speed(figures):
+    for name, found in figures["bounces"].items():
+        e = float(name.split()[0])
+        np.testing.assert_allclose(found["v"], [0.3, 0, e], atol=1e-14, err_msg=name)
+        assert found["lowest"] > -1e-14, name
+        assert found["lost"] == pytest.approx(0.5 * found["mass"] * (1 - e**2), abs=1e-14), name
+
+
+def test_two_spheres_keep_momentum_and_e(figures):
+    for e, found in figures["collisions"].items():
+        (m1, m2), (v1, v2) = found["m"], found["v"]
+        assert m1 * v1 + m2 * v2 == pytest.approx(-m2, rel=1e-13), e
+        assert v2 - v1 == pytest.approx(float(e), abs=1e-13), e
+
+
+def test_sliding_becomes_rolling(figures):
+    begins = 2 * 2.0 / (7 * 0.1 * 10)
+    for dt, found in figures["rolls"].items():
+        assert found["v"] == pytest.approx(2.0 * 5 / 7, rel=1e-12), dt
+        assert 0 <= found["from"] - begins <= 2 * float(dt), dt
+        assert found["height"] == pytest.approx(0.5, abs=1e-14), dt
+
+
+def test_a_slope_is_rolled_or_slid_down(figures):
+    rolled, slid = figures["rolling slope"], figures["sliding slope"]
+    assert rolled["a"] == pytest.approx(5 / 7 * rolled["g"] * np.sin(rolled["angle"]), rel=1e-9)
+    assert slid["a"] == pytest.approx(slid["g"] * (np.sin(slid["angle"]) - 0.1 * np.cos(slid["angle"])), rel=1e-9)
+
+
+def test_a_column_stays(figures):
+    found = figures["column"]
+    assert found["moved"] < 1e-13
+    assert found["carried"] == pytest.approx(5.0, rel=1e-10)
+
+
+def test_memory_goes_on_to_the_same_bits(figures):
+    whole, parts = figures["goes on"]
+    assert whole == parts and np.abs(whole).max() > 0.01
+
+
+@pytest.mark.parametrize("k, reason", enumerate(["damping=0", "body 1: single spheres and walls", "blockedDOFs 'z'"]))
+def test_what_is_not_served_is_refused(figures, k, reason):
+    assert reason in figures["refused"][k]
+
+
+@pytest.mark.parametrize("which", ["ilaw", "own"])
+def test_the_example_settles(tmp_path, which):
+    said = yade(tmp_path, YADE / "examples/settle.py", which, 8, 2e-3 if which == "ilaw" else 0, 0.4)
+    found = json.loads(re.search(r"^settled (.*)$", said, re.M)[1])
+    assert found["overlap_over_diameter"] < (0.01 if which == "own" else 1e-3)
+    assert 0.049 < found["height"] < 0.08

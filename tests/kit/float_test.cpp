@@ -1,0 +1,231 @@
+// Arrays of float: the results of evaluate for the same numbers, rounded once, in any layout.
+#include "batch_runner.hpp"
+#include "kit_probe.hpp"
+
+#include "support/law_cases.hpp"
+#include "support/numbers.hpp"
+
+#include <ilaw/float.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace ilaw::testing {
+namespace {
+
+const ilaw_float_functions& floats_of(const ilaw::interface& law) {
+  return *static_cast<const ilaw_float_functions*>(law.law().extension(ILAW_FLOAT));
+}
+
+void round_to_floats(std::vector<double>& values) {
+  for (double& value : values) value = static_cast<float>(value);
+}
+
+// The arrays of a batch of doubles in floats, place by place; those of the state are left in doubles.
+class FloatBatch {
+ public:
+  FloatBatch(const ilaw_batch& of, std::int64_t nodes, std::int64_t d, std::int64_t of_delassus)
+      : nodes_(nodes) {
+    b.struct_size = sizeof b;
+    b.index_base = of.index_base;
+    b.node_count = of.node_count;
+    b.index = of.index;
+    b.index64 = of.index64;
+    b.time = of.time;
+    b.velocity_step = of.velocity_step;
+    b.position_step = of.position_step;
+    b.v_free = input(of.v_free, d);
+    b.delassus = input(of.delassus, of_delassus);
+    b.gap = input(of.gap, 1);
+    b.v_previous = input(of.v_previous, d);
+    b.area = input(of.area, 1);
+    b.normal = input(of.normal, d);
+    b.state_in = of.state_in;
+    b.state_out = of.state_out;
+    b.impulse = output(of.impulse, d, impulse_);
+    b.velocity = output(of.velocity, d, velocity_);
+    b.energy = output(of.energy, 4, energy_);
+    b.status = of.status;
+    b.status_stride = of.status_stride;
+  }
+  FloatBatch(const FloatBatch&) = delete;
+
+  // Where an output is not that of a batch of doubles, rounded; what lies between the nodes counts as well.
+  std::string difference_from(const ilaw_batch& doubles) const {
+    return difference("impulse", impulse_, doubles.impulse) +
+           difference("velocity", velocity_, doubles.velocity) +
+           difference("energy", energy_, doubles.energy);
+  }
+
+  ilaw_float_batch b{};
+
+ private:
+  static std::string difference(const char* name, const std::vector<float>& floats,
+                                const ilaw_output& doubles) {
+    for (std::size_t k = 0; k < floats.size(); ++k)
+      if (floats[k] != static_cast<float>(doubles.values[k]))
+        return std::string(name) + " at " + std::to_string(k) + ": " + std::to_string(floats[k]) + " for " +
+               std::to_string(doubles.values[k]) + "\n";
+    return "";
+  }
+
+  std::vector<float> copy(const ilaw_input& a, std::int64_t count) const {
+    if (!a.values) return {};
+    const std::int64_t size = (nodes_ - 1) * a.node_stride + (count - 1) * a.component_stride + 1;
+    return {a.values, a.values + size};
+  }
+  ilaw_float_input input(const ilaw_input& a, std::int64_t count) {
+    return {inputs_.emplace_back(copy(a, count)).data(), a.node_stride, a.component_stride};
+  }
+  ilaw_float_output output(const ilaw_output& a, std::int64_t count, std::vector<float>& own) const {
+    own = copy({a.values, a.node_stride, a.component_stride}, count);
+    return {own.data(), a.node_stride, a.component_stride};
+  }
+
+  std::int64_t nodes_;
+  std::deque<std::vector<float>> inputs_;
+  std::vector<float> impulse_, velocity_, energy_;
+};
+
+class Floats : public ::testing::TestWithParam<LawCase> {
+ protected:
+  // Some steps in doubles and in floats, each with a state of its own.
+  static void expect_doubles_rounded(const ilaw::interface& law, Nodes nodes, const Layout& layout,
+                                     bool global) {
+    for (auto* values :
+         {&nodes.v_free, &nodes.v_previous, &nodes.gap, &nodes.area, &nodes.normal, &nodes.delassus})
+      round_to_floats(*values);
+    const auto state_size = static_cast<std::int64_t>(law.info().state_size);
+    Arrays doubles(nodes, state_size, layout, global), floats(nodes, state_size, layout, global);
+    const ilaw_float_functions& of_floats = floats_of(law);
+    const FloatBatch first(floats.first_batch(), nodes.count, nodes.d, nodes.hc);
+    ASSERT_EQ(of_floats.initialise(law.instance(), &first.b, nullptr), law.initialise(doubles.first_batch()));
+    std::vector<double> v_free = nodes.v_free;
+    for (int step = 1; step <= 3; ++step) {
+      ASSERT_EQ(doubles.state.get(), floats.state.get()) << "step " << step;
+      const ilaw_batch batch = doubles.batch(v_free, step * 1e-3);
+      const FloatBatch mirrored(floats.batch(v_free, step * 1e-3), nodes.count, nodes.d, nodes.hc);
+      ASSERT_EQ(of_floats.evaluate(law.instance(), &mirrored.b, nullptr), law.evaluate(batch));
+      ASSERT_EQ(mirrored.difference_from(batch), "") << "step " << step;
+      ASSERT_EQ(doubles.status, floats.status) << "step " << step;
+      if (layout.separate_state) std::swap(doubles.state, doubles.next);
+      if (layout.separate_state) std::swap(floats.state, floats.next);
+      for (double& value : v_free) value *= 0.5;
+    }
+    EXPECT_TRUE(floats.state.guarded());
+  }
+};
+
+TEST_P(Floats, AreTheDoublesRounded) {
+  std::vector<std::int32_t> order(130);
+  std::iota(order.begin(), order.end(), 1);
+  std::shuffle(order.begin(), order.end(), std::mt19937(7));
+  for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
+    for (const auto& [d, form, components] : {std::tuple{3, ILAW_DELASSUS_SCALAR, 1},
+                                              {2, ILAW_DELASSUS_TRANSVERSE, 2},
+                                              {3, ILAW_DELASSUS_FULL, 6}}) {
+      SCOPED_TRACE(::testing::Message() << d << "D, form " << form << ", frame " << frame);
+      const ilaw::interface law =
+          make_tested_law(GetParam().law, SetupBuilder(GetParam().parameters, static_cast<std::uint32_t>(d),
+                                                       static_cast<std::uint32_t>(form), frame));
+      const Nodes nodes(130, d, components);
+      const bool global = frame == ILAW_FRAME_GLOBAL;
+      for (const Layout& layout :
+           {Layout{}, Layout{.soa = true, .separate_state = true}, Layout{.node_stride = 2, .outputs = false},
+            Layout{.order = order, .index_base = 1},
+            Layout{.soa = true, .order = order, .index_base = 1, .wide_index = true}})
+        expect_doubles_rounded(law, nodes, layout, global);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, Floats, ::testing::ValuesIn(law_cases("contract")), name_of_case);
+
+// One closed node of coulomb, friction per node.
+struct FloatNode {
+  FloatNode() : law(make_law("coulomb", SetupBuilder({{}, {}, {}, {"friction"}}))) {
+    b.struct_size = sizeof b;
+    b.node_count = 1;
+    b.velocity_step = b.position_step = 1e-3;
+    b.v_free = b.v_previous = {v.data(), 3, 1};
+    b.delassus = {&h, 1, 1};
+    b.gap = {&gap, 1, 1};
+    b.per_node_parameters = &parameter;
+    b.impulse = {r.data(), 3, 1};
+    b.velocity = {after.data(), 3, 1};
+    b.status = &status;
+    b.status_stride = 1;
+    report.struct_size = sizeof report;
+  }
+  std::int32_t evaluate() { return floats_of(law).evaluate(law.instance(), &b, &report); }
+
+  ilaw::interface law;
+  std::array<float, 3> v{-1.0F, 0.25F, 0.0F}, r{}, after{};
+  float h = 0.5F, gap = 0.0F, friction = 0.5F;
+  ilaw_float_input parameter{&friction, 1, 1};
+  std::uint8_t status = 99;
+  ilaw_float_batch b{};
+  ilaw_report report{};
+};
+
+TEST(FloatArrays, HaveParametersPerNode) {
+  FloatNode node;
+  ASSERT_EQ(node.evaluate(), ILAW_OK);
+  EXPECT_EQ(node.r, (std::array{2.0F, -0.5F, 0.0F}));
+  node.friction = 0.125F;
+  ASSERT_EQ(node.evaluate(), ILAW_OK);
+  EXPECT_EQ(node.r, (std::array{2.0F, -0.25F, 0.0F}));
+  node.friction = -1.0F;
+  ASSERT_EQ(node.evaluate(), ILAW_BAD_NODES);
+  EXPECT_STREQ(node.report.reason, "a per-node parameter is out of range");
+}
+
+// Twice an impulse that is accepted is a number, along any axis.
+TEST(FloatArrays, RefuseImpulsesThatOverflowAFloat) {
+  FloatNode node;
+  node.h = 0x1p-125F;
+  ASSERT_EQ(node.evaluate(), ILAW_OK);
+  EXPECT_EQ(node.r[0], 0x1p125F);
+  node.h = 0x1p-126F;
+  ASSERT_EQ(node.evaluate(), ILAW_BAD_NODES);
+  EXPECT_EQ(node.r, (std::array<float, 3>{}));
+  EXPECT_EQ(node.after, node.v);
+  EXPECT_EQ(node.status, ILAW_BAD_INPUT);
+  EXPECT_EQ(node.report.first_bad_node, 0);
+  EXPECT_STREQ(node.report.reason, "the impulse or the state overflows");
+}
+
+TEST(FloatArrays, RefuseWhatIsNoNumber) {
+  for (float FloatNode::*member : {&FloatNode::h, &FloatNode::gap, &FloatNode::friction})
+    for (const double bad : {nan_value, inf_value, -inf_value}) {
+      FloatNode node;
+      if (member == &FloatNode::friction && bad > 0.0) continue;  // infinite friction is some
+      node.*member = static_cast<float>(bad);
+      EXPECT_EQ(node.evaluate(), ILAW_BAD_NODES) << bad;
+    }
+}
+
+// As batches of doubles: sizes of any version, and no flag. Nor may one of doubles say that it holds floats.
+TEST(FloatArrays, GrowAsOtherStructsDo) {
+  FloatNode node;
+  struct {
+    ilaw_float_batch known;
+    double later = 1.0;
+  } grown{node.b};
+  grown.known.struct_size = sizeof grown;
+  const ilaw_float_functions& floats = floats_of(node.law);
+  EXPECT_GE(floats.struct_size, ILAW_FLOAT_FUNCTIONS_SIZE_1);
+  EXPECT_EQ(floats.evaluate(node.law.instance(), &grown.known, nullptr), ILAW_OK);
+  node.b.struct_size = sizeof node.b - 1;
+  EXPECT_EQ(node.evaluate(), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(floats.evaluate(node.law.instance(), nullptr, nullptr), ILAW_INVALID_ARGUMENT);
+  node.b.struct_size = sizeof node.b;
+  node.b.flags = 1;
+  EXPECT_EQ(node.evaluate(), ILAW_UNSUPPORTED);
+  ilaw_batch doubles{};
+  doubles.struct_size = sizeof doubles;
+  doubles.flags = 1;
+  EXPECT_EQ(node.law.evaluate(doubles, nullptr), ILAW_UNSUPPORTED);
+}
+
+}  // namespace
+}  // namespace ilaw::testing
