@@ -85,6 +85,19 @@ TEST(BarOnWall, IsNearBelowTheCriticalStep) {
 
 // ---- two bars -------------------------------------------------------------------------------------------
 
+// A bar that is stretched and moves at the start: its energy is that of u_0 and u_1, as in every step after.
+TEST(ElasticBar, ClosesItsBalanceFromAStretchedStart) {
+  const BarSetup setup{"b", 0.0, 1.0, 10, 1.0, 1.0, 1.0, 0.3, {0.0, 0.1}};
+  const Bars bar({setup});
+  for (const double h : {0.09, 0.031, 0.0073}) {
+    const Loads loads;
+    Interfaces none;
+    Integrator integrator(bar, loads, none, h);
+    for (int k = 0; k < 50; ++k) integrator.step();
+    EXPECT_LE(integrator.energy().balance_error, 1e-13) << "h " << h;
+  }
+}
+
 // Every node of a bar offers its section.
 TEST(ElasticBar, OffersItsSectionEverywhere) {
   const Bars bar({{"b", 0.0, 1.0, 4, 1.0, 1.0, 0.3, 0.0, {}}});

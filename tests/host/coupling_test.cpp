@@ -1,6 +1,8 @@
 // Contacts that share degrees of freedom: block Gauss-Seidel over the laws ends where every law holds.
 #include "host_runner.hpp"
+
 #include "program_runner.hpp"
+#include "step/anderson.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -268,6 +270,18 @@ TEST(RunWarnings, AreSaidByTheProgram) {
   EXPECT_NE(outcome.output.find(", with warnings; results in"), std::string::npos) << outcome.output;
   const auto summary = nlohmann::json::parse(text_of(folder / "out" / "summary.json"));
   EXPECT_NE(summary.at("warnings").dump().find("are not solved in"), std::string::npos);
+}
+
+// Where the last correction made the residual larger nothing of before counts: the next one is zero, and the
+// one after that knows a single difference.
+TEST(Acceleration, BeginsAnewWhereItMadeThingsWorse) {
+  const auto two = [](double a, double b) { return Dofs(Eigen::Vector2d(a, b)); };
+  Anderson acceleration;
+  EXPECT_EQ(acceleration.correction(two(1, 0), two(1, 0)).norm(), 0.0);
+  EXPECT_GT(acceleration.correction(two(1, 1), two(0.5, 0.1)).norm(), 0.0);
+  EXPECT_EQ(acceleration.correction(two(3, 2), two(2, 1)).norm(), 0.0);
+  // Images moved by (1, 0) while residuals moved by (-1, 0): of (1, 1) the first component can be taken off.
+  EXPECT_NEAR((acceleration.correction(two(4, 2), two(1, 1)) - two(1, 0)).norm(), 0.0, 1e-14);
 }
 
 }  // namespace

@@ -152,6 +152,20 @@ TEST(MovingPlane, CarriesItsPoint) {
   }
 }
 
+// Over all nodes and steps, not the last of them.
+TEST(Penetration, IsTheLargestOfAll) {
+  Scene scene = scene_of(
+      R"({"model": {"type": "points", "dimension": 1,
+                    "points": [{"mass": 1, "position": [0.1], "velocity": [-3.1]}, {"mass": 1, "position": [-0.3]},
+                               {"mass": 1, "position": [5]}, {"mass": 1, "position": [-0.1]}]},
+      "time": {"dt": 0.1, "end": 0.5},
+      "interfaces": [{"law": "contact", "nodes": [0, 1, 2, 3], "parameters": {"activation": "moreau"},
+                      "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) integrator.step();
+  EXPECT_NEAR(integrator.tally().penetration_max, 0.3, 1e-15);
+}
+
 // A plane that starts to recede at the instant of the impact: it approached at v^- - 0, and leaves with v = w
 // - e v^- for the plane's velocity w in the step to come.
 TEST(MovingPlane, CountsWithItsVelocityBeforeAndAfterAKink) {

@@ -67,6 +67,17 @@ struct TwoSliding : SmallBatch {
   TwoSliding() : SmallBatch(2, {-1.0, 5.0, 0.0}) {}
 };
 
+// Two values at one time are none.
+TEST(Create, RefusesTablesWhoseTimesDoNotIncrease) {
+  for (const double second : {1.0, 0.5, inf_value, nan_value}) {
+    const std::string said =
+        refusal_of("coulomb", tables_of({{"friction", {1.0, 0.1, second, 0.2, 3.0, 0.3}}}));
+    EXPECT_NE(said.find("of pair 1 of the table is not allowed: expected finite, increasing times"),
+              std::string::npos)
+        << second << ": " << said;
+  }
+}
+
 // A table in time is read at the time of the batch.
 TEST(Create, TakesTables) {
   const Parameters table = tables_of({{"friction", {0.0, 0.0, 1.0, 0.8}}});

@@ -153,5 +153,34 @@ TEST(Coulomb, TakesADiagonalHByTheSameClosedForm) {
   EXPECT_NEAR(node.r[2], -0.2, 1e-16);
 }
 
+// The second tangent has to be named where its coefficient is not known to be the first's for ever.
+TEST(Coulomb, NeedsATangentWhereTheCoefficientsMayDiffer) {
+  const auto refusal = [](const Parameters& parameters, bool tangent) {
+    return refusal_of("coulomb",
+                      SetupBuilder(parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, tangent),
+                      ILAW_UNSUPPORTED);
+  };
+  const Parameters table{{{"friction", 0.3}}, {}, {{"friction_2", {0.0, 0.3, 1.0, 0.4}}}, {}},
+      per_node{{{"friction", 0.3}}, {}, {}, {"friction_2"}},
+      other{{{"friction", 0.3}, {"friction_2", 0.4}}, {}}, same{{{"friction", 0.3}, {"friction_2", 0.3}}, {}},
+      one{{}, {}, {}, {"friction"}};
+  for (const Parameters* apart : {&table, &per_node, &other}) {
+    EXPECT_NE(refusal(*apart, false).find("expected a tangent per node"), std::string::npos);
+    EXPECT_EQ(refusal(*apart, true), "not refused");
+  }
+  for (const Parameters* alike : {&same, &one}) EXPECT_EQ(refusal(*alike, false), "not refused");
+}
+
+// A speed at rounding level of what was stopped is none: a contact that stuck has its static coefficient.
+TEST(Coulomb, RoundingOfAContactThatStuckIsNoSlip) {
+  for (const auto& [speed, status] : {std::pair{0.0, ILAW_STICK}, {1e-12, ILAW_STICK}, {1e-6, ILAW_SLIP}}) {
+    NodeRun node("coulomb", {{{"friction", 0.5}, {"kinetic_friction", 0.3}}, {}}, 1e-3);
+    node.v_previous = {0.0, speed, 0.0};
+    ASSERT_EQ(node.step({-1.0, 0.4, 0.0}), ILAW_OK);
+    EXPECT_EQ(node.status, status) << speed;
+    EXPECT_NEAR(node.r[1], status == ILAW_STICK ? -0.4 : -0.3, 1e-15) << speed;
+  }
+}
+
 }  // namespace
 }  // namespace ilaw::testing

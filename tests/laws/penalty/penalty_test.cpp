@@ -346,5 +346,15 @@ TEST(Penalty, RefusesBadParameters) {
   }
 }
 
+// A damper slows down what leaves, up to the spring's own push, and never holds it.
+TEST(Penalty, AnExplicitDamperDoesNotPull) {
+  NodeRun node("penalty", {{{"stiffness", 2.0}, {"damping", 100.0}}, {{"integration", "explicit"}}}, 1e-3);
+  node.gap = -0.01;
+  node.v_previous = {1.0, 0.0, 0.0};
+  ASSERT_EQ(node.step({1.0, 0.0, 0.0}), ILAW_OK);
+  EXPECT_EQ(node.r[0], 0.0);
+  EXPECT_EQ(node.status, ILAW_FREE);
+}
+
 }  // namespace
 }  // namespace ilaw::testing

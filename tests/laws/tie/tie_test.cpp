@@ -181,5 +181,17 @@ TEST(Tie, AStepThatBeginsInTheBucketBeforeSpreadsOverBoth) {
   EXPECT_EQ(pull(0.25, 6.01, 0.01, 0.1), ILAW_BROKEN);
 }
 
+// A clock may fall back by a part of a step, into the bucket before the newest, and not further.
+TEST(Tie, AClockFallsBackByOneBucketAtMost) {
+  for (const auto& [time, code] : {std::pair{1.05, ILAW_OK}, {0.95, ILAW_BAD_NODES}}) {
+    NodeRun node("tie", {{{"strength", 1.0}, {"memory", 4.0}, {"buckets", 4.0}}, {}}, 0.2);
+    node.position_dt = 0.0625;
+    node.time = 2.125;
+    ASSERT_EQ(node.step({0.1, 0.0, 0.0}), ILAW_OK);
+    node.time = time - 0.03125;
+    EXPECT_EQ(node.step({0.1, 0.0, 0.0}), code) << time;
+  }
+}
+
 }  // namespace
 }  // namespace ilaw::testing
