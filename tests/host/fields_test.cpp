@@ -324,7 +324,7 @@ TEST(Fields, TellTheStatusAtTheStart) {
   EXPECT_EQ(status_of(R"("law": "tie")", 0.0), ILAW_BONDED);
   EXPECT_EQ(status_of(glue, 0.0), ILAW_BONDED);
   EXPECT_EQ(status_of(glue, 0.0, R"("birth": 0.05, )"), ILAW_FREE);
-  EXPECT_EQ(status_of(R"("law": "contact")", 0.0), ILAW_CLOSED);
+  EXPECT_EQ(status_of(R"("law": "penalty", "parameters": {"stiffness": 10})", -0.1), ILAW_CLOSED);
   EXPECT_EQ(status_of(R"("law": "contact")", 0.1), ILAW_FREE);
   EXPECT_EQ(status_of(R"("law": "postit", "parameters": {"initial_adhesion": 2, "memory": 0.01})", 0.0),
             ILAW_BONDED);

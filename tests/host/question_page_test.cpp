@@ -1,4 +1,4 @@
-// Pages of analysts: their commands and scenes run, and draw the pictures that they show.
+// docs/from_question_to_picture.md: its commands run, and draw the pictures that it shows.
 #include "program_runner.hpp"
 
 #include <gtest/gtest.h>
@@ -31,22 +31,6 @@ TEST(QuestionPage, DrawsWhatItShows) {
     EXPECT_EQ(text_of(root / "docs/img" / name).substr(1, 3), "PNG") << name;
     EXPECT_LT(std::filesystem::file_size(root / "docs/img" / name), 61440U) << name;
   }
-  std::filesystem::remove_all(folder);
-}
-
-// The scene that docs/scenes.md opens with can be pasted, and does what the page says.
-TEST(ScenesPage, OpensWithASceneThatRuns) {
-  const std::string page = text_of(root / "docs/scenes.md"), fence = "```json\n";
-  const std::size_t first = page.find(fence) + fence.size();
-  const auto folder = std::filesystem::temp_directory_path() / ("ilaw_pasted_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "scene.json") << page.substr(first, page.find("```", first) - first);
-  const Outcome run =
-      run_program("run " + (folder / "scene.json").string() + " --out " + (folder / "out").string());
-  ASSERT_EQ(run.code, 0) << run.output;
-  const Outcome table = run_program("table " + (folder / "out").string() + " --csv --columns n0.u0");
-  EXPECT_NEAR(std::stod(table.output.substr(table.output.rfind(',') + 1)), 0.5, 0.002) << table.output;
-  ASSERT_EQ(run_program("plot " + (folder / "out").string()).code, 0);
   std::filesystem::remove_all(folder);
 }
 
