@@ -204,20 +204,23 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
   const auto frame = Frame::template at<Layout>(b.axes, i);
   auto v_free = frame.to_local(Layout::get(b.v_free, i));
   v_free.n += frame.unit_defect();
-  return {.time = b.time,
-          .velocity_step = b.velocity_step,
-          .position_step = b.position_step,
-          .v_free = v_free,
-          .v_previous = detail::previous_of<Law, Scope>(b, i, frame),
-          .delassus = frame.to_local(
-              detail::delassus_at<Delassus>(b.delassus, i, std::make_index_sequence<Delassus::components>{})),
-          .gap = detail::gap_of(b, i),
-          .area = detail::area_of<Law>(b.area, i),
-          .history = detail::history_of(b, i),
-          .earlier = detail::earlier_of(b, i),
-          .impulse = {},
-          .state = detail::incoming_state(b, i),
-          .refused = detail::refused_before(b, i)};
+  node_in<Law, Delassus, Frame> n{.time = b.time,
+                                  .velocity_step = b.velocity_step,
+                                  .position_step = b.position_step,
+                                  .v_free = v_free,
+                                  .v_previous = detail::previous_of<Law, Scope>(b, i, frame),
+                                  .delassus = frame.to_local(detail::delassus_at<Delassus>(
+                                      b.delassus, i, std::make_index_sequence<Delassus::components>{})),
+                                  .gap = detail::gap_of(b, i),
+                                  .area = detail::area_of<Law>(b.area, i),
+                                  .history = detail::history_of(b, i),
+                                  .earlier = detail::earlier_of(b, i),
+                                  .impulse = {},
+                                  .state = {},
+                                  .refused = detail::refused_before(b, i)};
+  // Assigned, not initialised: then GCC takes the struct apart, as vector code needs.
+  if constexpr (has_state<Law>) n.state = detail::incoming_state(b, i);
+  return n;
 }
 
 template <class Law, scope Scope, class Node>
@@ -236,11 +239,14 @@ inline double defect_where(bool is_broken) {
 }
 
 // What a law may not give: a status that ilaw.h does not have, a pull or an impulse out of reach that its
-// card does not announce. Who is out of reach is to be left alone while it is fresh: its state is zero.
+// card does not announce. Who is out of reach is to be left alone while it is fresh, as nodes without a state
+// always are.
+// Without a comparison, which GCC would take into the choices of a step: a choice between truths does not
+// vectorise. The product is zero at the statuses, and large where it is not.
 inline double status_defect(double s) {
-  constexpr double to_integer = 0x1.8p52;
-  const bool is_one = (s >= status::free) & (s <= status::healed) & ((s + to_integer) - to_integer == s);
-  return defect_where(!is_one);
+  static_assert(status::free == 0.0 && status::healed == 6.0);
+  const double product = s * (s - 1.0) * (s - 2.0) * (s - 3.0) * (s - 4.0) * (s - 5.0) * (s - 6.0);
+  return defect(product * 0x1p1000 * 0x1p1000);
 }
 template <class Law, class Node>
 double pull_defect(const Node& n) {
@@ -248,29 +254,28 @@ double pull_defect(const Node& n) {
   return defect_where(n.impulse.n < 0.0);
 }
 template <class Law, class Node>
-double distance_defect(const Node& n, const state_t<Law>& before) {
+double distance_defect(const Node& n) {
   constexpr bool may_act = (Law::card.capabilities & ILAW_CAN_ACT_AT_DISTANCE) != 0;
-  constexpr bool starts_at_zero = !has_history<Law> && !initialises<Law>;
-  if constexpr (may_act || !starts_at_zero || (Law::card.inputs & reads_gap) == 0) {
+  if constexpr (may_act || has_history<Law> || has_state<Law> || (Law::card.inputs & reads_gap) == 0)
     return 0.0;
-  } else {
-    const bool far = is_out_of_reach(n), fresh = detail::same_bits<Law>(before, {});
-    return kit::kept_if(far & fresh, absolute(n.impulse.n) + tangential_product(n.impulse, n.impulse));
-  }
+  else
+    return kit::kept_if(is_out_of_reach(n), absolute(n.impulse.n) + tangential_product(n.impulse, n.impulse));
 }
 
 // Steps one node, and says whether its input was good and its result one that a law may give and a double
 // can hold.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Step>
 stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int i) {
-  auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
+  // In place: a copy of a node is one that GCC may not take apart.
+  stepped<Law, Delassus, Frame> s{load_node<Law, Delassus, Frame, Layout, Scope>(b, i), false};
+  auto& n = s.result;
   const double before = input_defect<Law, Scope>(n);
-  const state_t<Law> state_before = n.state;
   step(n);
   // In the host's axes a component may be as large as the whole vector: it must be a number there, too.
   const double after = defect(b.impulse_guard * n.impulse) + detail::state_defect<Law>(n.state);
-  const double kept = status_defect(n.status) + pull_defect<Law>(n) + distance_defect<Law>(n, state_before);
-  return {n, before + after + kept + n.refused == 0.0};
+  const double kept = status_defect(n.status) + pull_defect<Law>(n) + distance_defect<Law>(n);
+  s.accepted = before + after + kept + n.refused == 0.0;
+  return s;
 }
 
 // Energy split of ilaw.h from the work of the impulse, -r.(v^- + v)/2 less what was stored of it, normal and
