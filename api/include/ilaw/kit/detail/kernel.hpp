@@ -217,7 +217,8 @@ inline double defect_where(bool is_broken) {
 }
 
 // What a law may not give: a status that ilaw.h does not have, a pull or an impulse out of reach that its
-// card does not announce. Who is out of reach is to be left alone while it is fresh: its state is zero.
+// card does not announce. Who is out of reach is to be left alone while it is fresh, as nodes without a state
+// always are.
 inline double status_defect(double s) {
   constexpr double to_integer = 0x1.8p52;
   const bool is_one = (s >= status::free) & (s <= status::healed) & ((s + to_integer) - to_integer == s);
@@ -229,15 +230,12 @@ double pull_defect(const Node& n) {
   return defect_where(n.impulse.n < 0.0);
 }
 template <class Law, class Node>
-double distance_defect(const Node& n, const state_t<Law>& before) {
+double distance_defect(const Node& n) {
   constexpr bool may_act = (Law::card.capabilities & ILAW_CAN_ACT_AT_DISTANCE) != 0;
-  constexpr bool starts_at_zero = !has_history<Law> && !initialises<Law>;
-  if constexpr (may_act || !starts_at_zero || (Law::card.inputs & reads_gap) == 0) {
+  if constexpr (may_act || has_history<Law> || has_state<Law> || (Law::card.inputs & reads_gap) == 0)
     return 0.0;
-  } else {
-    const bool far = is_out_of_reach(n), fresh = detail::same_bits<Law>(before, {});
-    return kit::kept_if(far & fresh, absolute(n.impulse.n) + tangential_product(n.impulse, n.impulse));
-  }
+  else
+    return kit::kept_if(is_out_of_reach(n), absolute(n.impulse.n) + tangential_product(n.impulse, n.impulse));
 }
 
 // Steps one node, and says whether its input was good and its result one that a law may give and a double
@@ -246,11 +244,10 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
 stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int i) {
   auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
   const double before = input_defect<Law, Scope>(n);
-  const state_t<Law> state_before = n.state;
   step(n);
   // In the host's axes a component may be as large as the whole vector: it must be a number there, too.
   const double after = defect(4.0 * n.impulse) + detail::state_defect<Law>(n.state);
-  const double kept = status_defect(n.status) + pull_defect<Law>(n) + distance_defect<Law>(n, state_before);
+  const double kept = status_defect(n.status) + pull_defect<Law>(n) + distance_defect<Law>(n);
   return {n, before + after + kept + n.refused == 0.0};
 }
 
