@@ -20,16 +20,6 @@ struct promise_breaker {
                                                                .doc = "Which promise.",
                                                                .choices = breaks_choices,
                                                                .choice_count = 6}};
-  struct state {
-    double touched;
-  };
-  static constexpr state_variable<state> state_variables[] = {{.member = &state::touched,
-                                                               .name = "touched",
-                                                               .doc = "1 once it was closed.",
-                                                               .minimum = 0.0,
-                                                               .maximum = 1.0,
-                                                               .whole = true}};
-
   template <class Node>
   void step(Node& node) const {
     static_assert(has_transverse_delassus<Node>, "what the card does not serve is not compiled");
@@ -40,7 +30,6 @@ struct promise_breaker {
     node.status = closed ? status::closed : status::free;
     if (closed && breaks == 1.0) node.status = 42.0;
     if (closed && breaks == 2.0) node.status = 1.5;
-    if (closed) node.state.touched = 1.0;
   }
 };
 

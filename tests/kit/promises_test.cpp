@@ -47,17 +47,5 @@ TEST(Promises, ThatALawBreaksAreRefusedAtTheirNode) {
     }
 }
 
-// What a law remembers may act at any distance without a word: the promise is of fresh nodes.
-TEST(Promises, OfFreshNodesAreNoneOfOthers) {
-  const double gap[] = {1.0, 1.0};
-  const ilaw::interface law = breaker_of("far");
-  SmallBatch nodes(2, {0.0, 0.0, 0.0}, law.info().state_size);
-  nodes.b.gap = {gap, 1, 1};
-  nodes.state[1] = 1.0;
-  EXPECT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_BAD_NODES);
-  EXPECT_EQ(nodes.report.bad_count, 1);
-  EXPECT_EQ(nodes.report.first_bad_node, 0);
-}
-
 }  // namespace
 }  // namespace ilaw::testing
