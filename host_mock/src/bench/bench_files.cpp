@@ -33,9 +33,10 @@ std::string quoted(const std::string& text) {
 
 // A panel per number of nodes: the ratios as bars, upwards from the last case.
 void write_panels(const std::vector<BenchResult>& results, const std::string& csv, std::ostream& script) {
-  script << "set style fill solid 0.8\nset boxwidth 0.8\nset grid xtics\nset border 1\nset tics nomirror\nset xrange [0:*]\n"
-            "set key off\nset xlabel 'time over that of the bytes at the triad''s bandwidth'\n"
-            "set arrow from 1, graph 0 to 1, graph 1 nohead dashtype 2\n";
+  script
+      << "set style fill solid 0.8\nset boxwidth 0.8\nset grid xtics\nset border 1\nset tics nomirror\nset xrange [0:*]\n"
+         "set key off\nset xlabel 'time over that of the bytes at the triad''s bandwidth'\n"
+         "set arrow from 1, graph 0 to 1, graph 1 nohead dashtype 2\n";
   for (const std::int64_t nodes : sizes_of(results)) {
     const auto rows = std::count_if(results.begin(), results.end(),
                                     [&](const BenchResult& result) { return result.nodes == nodes; });

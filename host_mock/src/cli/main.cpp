@@ -50,9 +50,8 @@ int run_command(int argc, char** argv) {
       "anything ran.\nExample: ilaw run scene.json --out results && ilaw plot results");
 
   Action chosen;
-  for (const auto add :
-       {add_run, add_plot, add_table, add_converge, add_study, add_stress, add_list, add_describe, add_check,
-        add_bench})
+  for (const auto add : {add_run, add_plot, add_table, add_converge, add_study, add_stress, add_list,
+                         add_describe, add_check, add_bench})
     add(app, chosen);
   try {
     app.parse(argc, argv);

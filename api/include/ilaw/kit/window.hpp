@@ -307,8 +307,8 @@ class window {
   double duration_, buckets_;
 };
 
-// Whether a law's history is a window: the kit reads it ahead of the steps of a block, as node.earlier, and has
-// the law record what they gave. So the steps themselves run in vector code.
+// Whether a law's history is a window: the kit reads it ahead of the steps of a block, as node.earlier, and
+// has the law record what they gave. So the steps themselves run in vector code.
 template <class Law>
 concept has_window = requires(const Law& law, step_interval step) {
   { law.window_in(step) } -> std::same_as<window_in_step>;
