@@ -3,7 +3,9 @@
 import os
 import pathlib
 import re
+import signal
 import subprocess
+import time
 
 import pytest
 
@@ -46,16 +48,20 @@ def state(name):
 COLUMNS = "id x y z vx vy vz omegax omegay omegaz"
 
 
-def lammps(tmp_path, text, ranks=1):
-    """What a script prints; raises with it where LAMMPS refuses."""
+ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", OMPI_MCA_mpi_yield_when_idle="1", OMPI_ALLOW_RUN_AS_ROOT="1",
+                   OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+
+
+def command(tmp_path, text):
     script = tmp_path / f"in.{len(list(tmp_path.iterdir()))}"
     script.write_text(text)
-    command = ["lmp", "-in", script.name, "-log", "none", "-nocite"]
-    if ranks > 1:
-        command = ["mpirun", "--oversubscribe", "-n", str(ranks), *command]
-    environment = dict(os.environ, OMP_NUM_THREADS="1", OMPI_MCA_mpi_yield_when_idle="1",
-                       OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    done = subprocess.run(command, cwd=tmp_path, env=environment, text=True, timeout=300,
+    return ["lmp", "-in", script.name, "-log", "none", "-nocite"]
+
+
+def lammps(tmp_path, text, ranks=1):
+    """What a script prints; raises with it where LAMMPS refuses."""
+    launcher = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+    done = subprocess.run(launcher + command(tmp_path, text), cwd=tmp_path, env=ENVIRONMENT, text=True, timeout=300,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if done.returncode != 0 or "ERROR" in done.stdout:
         raise RuntimeError(done.stdout[-2000:])
@@ -152,9 +158,9 @@ def test_a_bond_goes_with_its_grains_to_another_rank(tmp_path, ranks):
     assert_bonded(read(tmp_path, "bonded"))
 
 
-def restarted():
+def restarted(step=100):
     return BEGIN.replace("atom_style sphere\n", "").replace("boundary f f f\n", "").replace(
-        "newton off\natom_modify map array", "newton off\nread_restart half.100")
+        "newton off\natom_modify map array", f"newton off\nread_restart half.{step}")
 
 
 @pytest.mark.parametrize("begin, fixes, steps", [
@@ -166,6 +172,35 @@ def test_a_restart_goes_on_as_if_nothing_had_been(tmp_path, begin, fixes, steps)
     assert difference(read(tmp_path, "on"), read(tmp_path, "again")) < 1e-12
     if steps == 500:
         assert_bonded(read(tmp_path, "again"))
+
+
+def last_whole_restart(tmp_path, running):
+    """Step of the last restart file but one, once a pile has grains in contact: the last may be half written."""
+    end = time.monotonic() + 120
+    while time.monotonic() < end and running.poll() is None:
+        steps = sorted(int(file.suffix[1:]) for file in tmp_path.glob("half.*"))
+        if len(steps) > 1 and steps[-2] >= 200:
+            return steps[-2]
+        time.sleep(0.002)
+    raise RuntimeError(f"no restart file, and LAMMPS returned {running.poll()}")
+
+
+def test_a_run_that_was_killed_goes_on_as_if_nothing_had_been(tmp_path):
+    fixes = INTEGRATE + WALLS + "fix p all ilaw/pair coulomb friction 0.3\nrestart 20 half\n"
+    begin = BEGIN + BOX + grains(1.05) + MASS + fixes
+    with subprocess.Popen(command(tmp_path, begin + "run 100000000\n"), cwd=tmp_path, env=ENVIRONMENT,
+                          stdout=subprocess.DEVNULL) as running:
+        try:
+            step = last_whole_restart(tmp_path, running)
+        finally:
+            running.kill()
+    assert running.returncode == -signal.SIGKILL
+    steps = step + 200
+    lammps(tmp_path, restarted(step) + fixes + f"run {steps - step}\n" + state("again"))
+    lammps(tmp_path, begin + f"run {steps}\n" + state("on"))
+    on = read(tmp_path, "on")
+    assert max(abs(row[6]) for row in on) > 1e-3, "nothing happened"
+    assert difference(on, read(tmp_path, "again")) < 1e-12, f"killed after step {step}"
 
 
 def test_tied_grains_move_as_one(tmp_path):
