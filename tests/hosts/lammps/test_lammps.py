@@ -5,6 +5,7 @@ import pathlib
 import re
 import signal
 import subprocess
+import sys
 import time
 
 import pytest
@@ -247,3 +248,16 @@ def test_examples_run(tmp_path, example):
     shorter = re.sub(r"^run .*", "run 50", text, flags=re.M)
     rows = thermo(lammps(tmp_path, f"variable ilaw string {STYLES}\n" + shorter))
     assert rows[-1][0] >= 50
+
+
+def test_the_comparison_with_pair_granular_runs(tmp_path):
+    script = EXAMPLES[0].parent / "compare.py"
+    options = ("--across 4 --layers 4 --settling 0.03 --shearing 0.004 --steps 1e-4 2e-4 --own-steps 2e-5 4e-5 "
+               "--bound 1").split()
+    done = subprocess.run([sys.executable, script, "--ilaw", STYLES, *options], cwd=tmp_path, env=ENVIRONMENT,
+                          text=True, timeout=300, stdout=subprocess.PIPE, check=True)
+    rows = [line.split("|")[2:-1] for line in done.stdout.splitlines() if line.startswith("| ")][2:]
+    assert [float(row[0]) for row in rows] == [100, 200, 20, 40]
+    # Both models have the same grains fall the same height onto the same floor.
+    assert all(0.0 < float(row[4].rstrip("% ")) < 5.0 for row in rows), rows
+    assert "over coulomb: step 0.2, CPU" in done.stdout
