@@ -1,5 +1,5 @@
 // The window of impulses against the exact integral of the force over the last tau.
-#include <ilaw/kit/window.hpp>
+#include "window_in_test.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,49 +26,8 @@ using ilaw::kit::window;
 constexpr double ratios[] = {1.5, 8.5, 33.7, 100.5, 1000.3};  // tau/h
 constexpr double bucket_counts[] = {4, 8, 16, 64};
 
-// A window with a history of its own, which is told impulses by the interval over which they act.
-class Window {
- public:
-  Window(double duration, double buckets, double begin)
-      : end(begin),
-        window_(duration, buckets),
-        history(static_cast<std::size_t>(window::doubles(duration, buckets))) {}
-
-  // The sum with the impulse of a step of length h.
-  vector step(double h, vector impulse) {
-    end += h;
-    return step_to(end, h, impulse);
-  }
-  vector step_to(double time, double h, vector impulse) {
-    end = time;
-    const window::reading earlier = before(h);
-    EXPECT_EQ(earlier.refused, not_refused) << "end " << end;
-    window_.add(own(), {end, h}, impulse);
-    return earlier.sum + impulse;
-  }
-  window::reading before(double h) { return window_.before(own(), {end, h}); }
-  ilaw::kit::history own() { return {history.data(), 1}; }
-
-  double end;
-
- private:
-  window window_;
-
- public:
-  std::vector<double> history;
-};
-
-// Steps of size h, or of size h +- 50 % at random.
-class Steps {
- public:
-  Steps(double h, bool varies) : h_(h), varies_(varies) {}
-  double next() { return varies_ ? h_ * (0.5 + static_cast<double>(random_() >> 11) * 0x1p-53) : h_; }
-
- private:
-  double h_;
-  bool varies_;
-  std::mt19937_64 random_{7};
-};
+using window_in_test::Steps;
+using window_in_test::Window;
 
 // A force by its integral, from which every step gets the exact impulse: what is off is the window.
 using Integral = std::function<double(double)>;

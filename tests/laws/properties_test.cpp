@@ -221,13 +221,11 @@ INSTANTIATE_TEST_SUITE_P(Laws, AnyLaw,
 
 // A law without cases would be left out of all this, and of the tests of the kit.
 TEST(EveryLaw, BringsItsCases) {
-  for (const char* section :
-       {"contract", "bad_input", "environment", "reach", "options", "properties", "benchmarks"}) {
-    std::set<std::string> served;
-    for (const LawCase& given : law_cases(section)) served.insert(given.law);
-    for (const std::string& law : laws_of_tree())
-      EXPECT_TRUE(served.contains(law)) << "tests/laws/" << law << "/cases.json has no section " << section;
-  }
+  for (const std::string& law : laws_of_tree())
+    for (const char* section :
+         {"contract", "bad_input", "environment", "reach", "options", "properties", "benchmarks"})
+      EXPECT_FALSE(section_of(law, section).empty())
+          << "tests/laws/" << law << "/cases.json has no section " << section;
 }
 
 }  // namespace

@@ -144,8 +144,8 @@ concept chooses_inputs = requires(const Law& law) {
 
 namespace detail {
 
-// Inputs as the law's card has them. Where parameters make a law read no v_previous it is zero, whatever the
-// energies need.
+// Inputs as the law's card has them. Where parameters make a law read no v_previous it is there for energies
+// alone, a number always: what a law says of them may need it, its motion may not.
 template <class Law, scope Scope, class Basis>
 auto previous_of(const node_block<Law>& b, int i, const Basis& frame) {
   using vector_type = decltype(frame.to_local(axis{}));
@@ -155,7 +155,8 @@ auto previous_of(const node_block<Law>& b, int i, const Basis& frame) {
     return vector_type{};
   } else {
     const vector_type v = frame.to_local(columns::get(b.v_previous, i));
-    if constexpr (chooses_inputs<Law>) return kept_if(!b.previous_for_energy_only, v);
+    if constexpr (chooses_inputs<Law>)
+      if (b.previous_for_energy_only) return zero_unless_finite(v);
     return v;
   }
 }
