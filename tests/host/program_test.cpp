@@ -130,7 +130,7 @@ TEST(Program, NamesWhatItDoesNotKnow) {
   EXPECT_EQ(
       first_line("rnu"),
       "ilaw: found 'rnu', expected one of run, plot, table, converge, study, stress, list, describe, check, "
-      "--help, --version");
+      "bench, --help, --version");
   EXPECT_EQ(
       first_line("run " + ball + " --outt here"),
       "ilaw: found '--outt', expected one of --help, --out, --checkpoint-every, --resume, --threads, --set");

@@ -79,7 +79,8 @@ class Run {
       }
       record.interrupted = integrator_.steps() < scene_.steps;
       check_results();
-      if (options_.checkpoint_every > 0) write_checkpoint_now();  // also at the end, to go on to a later one
+      // Also at the end, to go on to a later one; two of one step would be one generation.
+      if (options_.checkpoint_every > 0 && checkpoint_step_ != integrator_.steps()) write_checkpoint_now();
       history_->commit();
       if (events_) events_->commit();
     } catch (const Diverged& failure) {
@@ -127,7 +128,7 @@ class Run {
       complain(said + "; going on from the checkpoint before it, at step " +
                std::to_string(integrator_.steps()));
     fields_.resume(checkpoint.fields);
-    record.resumed_at = integrator_.steps();
+    record.resumed_at = checkpoint_step_ = integrator_.steps();
     const bool goes_on =
         same_columns(checkpoint.output, scene_.source.value("output", nlohmann::json::object()));
     resume_history(checkpoint, goes_on);
@@ -227,12 +228,14 @@ class Run {
                      {history_->flush(), fields_.written(), history.str(),
                       events_ ? events_->flush() : FileMark{}, events.str()},
                      options_.folder);
+    checkpoint_step_ = integrator_.steps();
   }
 
   Scene& scene_;
   const RunOptions& options_;
   Integrator integrator_;
   Fields fields_;
+  std::int64_t checkpoint_step_ = -1;  // of the newest one
   std::unique_ptr<History> history_;
   std::optional<Events> events_;
 };
