@@ -32,8 +32,8 @@ struct penalty {
 
   static constexpr const char* references[] = {
       "H. Hertz, 1882, Ueber die Beruehrung fester elastischer Koerper",
-      "P. Wriggers, T. Vu Van, E. Stein, 1990, Finite element formulation of large deformation "
-      "impact-contact problems with friction",
+      ("P. Wriggers, T. Vu Van, E. Stein, 1990, Finite element formulation of large deformation "
+       "impact-contact problems with friction"),
       "J. C. Simo, T. J. R. Hughes, 1998, Computational inelasticity: return mapping",
       "J. C. Simo, N. Tarnow, 1992, The discrete energy-momentum method",
       "T. Schwager, T. Poeschel, 2007, Coefficient of restitution and linear-dashpot model revisited"};

@@ -180,7 +180,7 @@ struct postit {
   void count_rupture(state& s, double step, bool breaks, bool holds, bool is_free) const {
     const double whole = smaller(larger(duration, step), std::numeric_limits<double>::max());
     const double rest = s.grace - step, left = rest > window_slack * step ? rest : 0.0;
-    s.ruptures = s.ruptures + (breaks & (s.grace == 0.0) ? 1.0 : 0.0);
+    s.ruptures = s.ruptures + ((breaks & (s.grace == 0.0)) ? 1.0 : 0.0);
     const double held = holds ? left : (is_free ? 0.0 : s.grace);
     s.grace = breaks ? whole : held;
   }

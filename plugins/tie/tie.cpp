@@ -85,7 +85,7 @@ struct tie {
     const bool bonded = node.state.broken == 0.0, holds = bonded & !overloads;
     touch(node);
     hold(node, trial, holds);
-    node.status = bonded & overloads ? status::broken : node.status;
+    node.status = (bonded & overloads) ? status::broken : node.status;
     node.state.broken = holds ? 0.0 : 1.0;
   }
 
