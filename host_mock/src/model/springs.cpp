@@ -96,7 +96,7 @@ double Sprung::potential(const Dofs& u) const {
   return energy;
 }
 
-void Dampers::add_impulse(double duration, Motions at, Dofs& impulse) const {
+void Dampers::damp(double duration, Motions at, Dofs& impulse) const {
   const Eigen::Index d = model_.dimension();
   for (const Spring& spring : springs_) {
     if (spring.damping == 0.0) continue;
@@ -110,14 +110,14 @@ void Dampers::add_impulse(double duration, Motions at, Dofs& impulse) const {
 
 void Dampers::correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const {
   Dofs own = Dofs::Zero(v.size());
-  add_impulse(step.after - step.before, before, own);
+  damp(step.after - step.before, before, own);
   v += own.cwiseQuotient(model_.mass());
   impulse += own;
 }
 
 void Dampers::start(double dt, Motions before, Dofs& v) const {
   Dofs own = Dofs::Zero(v.size());
-  add_impulse(0.5 * dt, before, own);
+  damp(0.5 * dt, before, own);
   v += own.cwiseQuotient(model_.mass());
 }
 

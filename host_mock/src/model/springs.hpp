@@ -50,7 +50,7 @@ class Dampers : public Load {
   bool damps() const override { return true; }
 
  private:
-  void add_impulse(double duration, Motions at, Dofs& impulse) const;
+  void damp(double duration, Motions at, Dofs& impulse) const;
 
   const Model& model_;
   std::vector<Spring> springs_;
