@@ -16,9 +16,13 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(SOURCE / "tests" / "support"))
+import marked_part  # noqa: E402
+
 BUILD = SOURCE / "build" / "coverage"
 PAGE = SOURCE / "docs" / "reliability.md"
 AREAS = ("api", "plugins", "host_mock")
@@ -105,12 +109,6 @@ def table(counts):
     return "\n".join(rows)
 
 
-def write_table(text):
-    begin, end = "<!-- coverage -->\n", "<!-- end of the coverage -->"
-    before, _, rest = PAGE.read_text().partition(begin)
-    PAGE.write_text(before + begin + "\n" + text + "\n\n" + end + rest.partition(end)[2])
-
-
 def main():
     options = arguments()
     run_tests(options.programs, options.jobs)
@@ -119,7 +117,7 @@ def main():
     for name, lines in counts.unreached()[:options.files]:
         print(f"{len(lines):5}  {name}: {' '.join(map(str, sorted(lines)[:30]))}")
     if options.table:
-        write_table(table(counts))
+        marked_part.write(PAGE, "<!-- coverage -->", "<!-- end of the coverage -->", table(counts))
 
 
 if __name__ == "__main__":

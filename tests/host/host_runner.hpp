@@ -8,6 +8,7 @@
 #include "step/integrator.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -34,6 +35,17 @@ inline Scene scene_of(const std::string& text) {
   std::filesystem::remove_all(folder);
   return scene;
 }
+
+// What a scene is refused with.
+inline std::string refusal_of_text(const std::string& text) {
+  try {
+    scene_of(text);
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+inline std::string refusal_of_scene(const nlohmann::json& scene) { return refusal_of_text(scene.dump()); }
 
 inline Integrator integrator_of(Scene& scene) {
   return Integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);

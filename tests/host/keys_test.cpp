@@ -37,15 +37,6 @@ Dofs velocity_after(const json& source, double time) {
   return integrator.velocity();
 }
 
-std::string refusal_of(const json& scene) {
-  try {
-    scene_of(scene.dump());
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
-
 // ---- tangent --------------------------------------------------------------------------------------------
 
 // Along one tangent a point slows down at mu_1 g, along the other at mu_2 g; the first tangent is turned by
@@ -73,15 +64,16 @@ TEST(Tangent, IsRefusedWhereItCannotBe) {
   json scene =
       points_on_plane({point({0, 0, 0}, {1, 0, 0})},
                       {{"law", "coulomb"}, {"parameters", {{"friction", 0.1}, {"friction_2", 0.4}}}});
-  EXPECT_NE(refusal_of(scene).find("tangent"), std::string::npos) << refusal_of(scene);
+  EXPECT_NE(refusal_of_scene(scene).find("tangent"), std::string::npos) << refusal_of_scene(scene);
   scene["interfaces"][0]["tangent"] = {0.0, 0.0, 1.0};
-  EXPECT_EQ(refusal_of(scene),
+  EXPECT_EQ(refusal_of_scene(scene),
             "/interfaces/0/tangent: found [0.0,0.0,1.0], expected a direction across the normal");
   scene["interfaces"][0]["tangent"] = {0.0, 0.0, 0.0};
-  EXPECT_EQ(refusal_of(scene), "/interfaces/0/tangent: found a vector of length 0, expected a direction");
+  EXPECT_EQ(refusal_of_scene(scene),
+            "/interfaces/0/tangent: found a vector of length 0, expected a direction");
   scene["interfaces"][0]["tangent"] = {1.0, 0.0, 0.0};
   scene["interfaces"][0]["obstacle"] = {{"type", "sphere"}, {"center", {0.0, 0.0, -1.0}}, {"radius", 1.0}};
-  EXPECT_EQ(refusal_of(scene),
+  EXPECT_EQ(refusal_of_scene(scene),
             "/interfaces/0/tangent: found a tangent, expected none: the normal of the counterpart turns");
 }
 
@@ -212,7 +204,7 @@ TEST(PerNode, FollowsTheOrderOfTheInterface) {
 // not count.
 TEST(PerNode, IsJudgedNodeByNode) {
   const auto refusal = [](const json& law) {
-    return refusal_of(points_on_plane({point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0})}, law));
+    return refusal_of_scene(points_on_plane({point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0})}, law));
   };
   const auto cohesive = [&](const json& toughness) {
     return refusal({{"law", "cohesive"},
@@ -234,7 +226,7 @@ TEST(PerNode, IsJudgedNodeByNode) {
 
 // The place is that in the list, the node that of the model.
 TEST(PerNode, IsRefusedWithThePlaceOfTheValueAndTheNode) {
-  EXPECT_EQ(refusal_of(points_on_plane(
+  EXPECT_EQ(refusal_of_scene(points_on_plane(
                 {point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0}), point({2, 0, 0}, {0, 0, 0})},
                 {{"law", "coulomb"},
                  {"nodes", {2, 0}},
@@ -259,14 +251,14 @@ TEST(PerNode, TakesNoLongerTogetherThanOneByOne) {
   const json scene =
       points_on_plane(points, {{"law", "coulomb"}, {"parameters", parameters}, {"tangent", {1, 0, 0}}});
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(refusal_of(scene), "not refused");
+  EXPECT_EQ(refusal_of_scene(scene), "not refused");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
 }
 
 TEST(VaryingParameters, AreRefusedWhereTheyCannotBe) {
   const auto refusal = [](const json& friction) {
-    return refusal_of(points_on_plane({point({0, 0, 0}, {1, 0, 0})},
-                                      {{"law", "coulomb"}, {"parameters", {{"friction", friction}}}}));
+    return refusal_of_scene(points_on_plane({point({0, 0, 0}, {1, 0, 0})},
+                                            {{"law", "coulomb"}, {"parameters", {{"friction", friction}}}}));
   };
   EXPECT_EQ(refusal({{"per_node", {0.1, 0.2}}}),
             "/interfaces/0/parameters/friction/per_node: found 2 values, expected 1, one per node of the "
@@ -284,7 +276,7 @@ TEST(VaryingParameters, AreRefusedWhereTheyCannotBe) {
     EXPECT_NE(message.find("friction"), std::string::npos) << message;
   }
   EXPECT_NE(refusal({{"per_node", {-0.1}}}).find("'friction' = -0.1"), std::string::npos);
-  const std::string message = refusal_of(points_on_plane(
+  const std::string message = refusal_of_scene(points_on_plane(
       {point({0, 0, 0}, {1, 0, 0})},
       {{"law", "coulomb"}, {"parameters", {{"friction", 0.1}, {"activation", {{"table", {{0.0, 1.0}}}}}}}}));
   EXPECT_NE(message.find("activation"), std::string::npos) << message;

@@ -8,15 +8,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string refusal_of(const json& scene) {
-  try {
-    scene_of(scene.dump());
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
-
 // A cube of 4 x 4 x 2 elements, pulled at one corner region, held at another, dropped on a plane.
 json cube() {
   return json::parse(R"({"model": {"type": "blocks", "blocks": [{"name": "cube", "size": [1, 1, 0.5],
@@ -88,7 +79,7 @@ TEST(NodesOfAScene, AreRefusedWithPointerFoundAndAllowed) {
     json scene = cube();
     scene["sets"]["tip"] = {0, 1};
     scene[json::json_pointer(pointer)] = json::parse(value);
-    return refusal_of(scene);
+    return refusal_of_scene(scene);
   };
   EXPECT_EQ(with("/sets/a b", "[0]"),
             "/sets/a b: found the name 'a b', expected a letter, then letters, digits and _");

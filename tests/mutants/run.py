@@ -23,6 +23,9 @@ import sys
 import time
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE / "tests" / "support"))
+import marked_part  # noqa: E402
+
 MUTANTS = pathlib.Path(__file__).with_name("mutants.json")
 PAGE = SOURCE / "docs" / "reliability.md"
 TREE = SOURCE / "build" / "mutants"
@@ -144,12 +147,6 @@ def table(score):
     return "\n".join(rows + [f"| all | {len(everything)} | {sum(everything)} |"])
 
 
-def write_table(text):
-    begin, end = "<!-- score of the mutants -->\n", "<!-- end of the score -->"
-    before, _, rest = PAGE.read_text().partition(begin)
-    PAGE.write_text(before + begin + "\n" + text + "\n\n" + end + rest.partition(end)[2])
-
-
 def main():
     options = arguments()
     everything = json.loads(MUTANTS.read_text())
@@ -183,7 +180,7 @@ def main():
                   + (f"  ({test})" if test else ""), flush=True)
     print(table(score))
     if options.table:
-        write_table(table(score))
+        marked_part.write(PAGE, "<!-- score of the mutants -->", "<!-- end of the score -->", table(score))
     return 0 if all(sum(caught) >= GOAL * len(caught) for caught in score.values()) else 1
 
 

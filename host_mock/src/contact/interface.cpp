@@ -11,6 +11,17 @@
 #include <utility>
 
 namespace ilaw::host {
+namespace {
+
+// Parameters of one node, as a batch takes them.
+std::vector<ilaw_input> inputs_of(const std::vector<double>& parameters) {
+  std::vector<ilaw_input> inputs;
+  inputs.reserve(parameters.size());
+  for (const double& value : parameters) inputs.push_back({&value, 1, 1});
+  return inputs;
+}
+
+}  // namespace
 
 Interface::Interface(InterfaceSetup setup, const Model& model)
     : setup_(std::move(setup)),
@@ -48,7 +59,7 @@ int Interface::contact_index_of(int node_index, const Dofs& u) {
   if (const int found = contacts_.index_of(k); found >= 0) return found;
   contacts_.add({node_index, 1.0 / model_.mass()[setup_.nodes[k] * dimension_], setup_.areas[k],
                  parameters_of(node_index), first_state(node_index, u), law_.acts_at_distance(),
-                 law_.carries_axes() && !setup_.counterpart->keeps_normal()});
+                 axes_turn()});
   return contacts_.index_of(k);
 }
 
@@ -66,9 +77,7 @@ std::vector<double> Interface::first_state(int node_index, const Dofs& u) const 
   std::vector<double> state(info().state_size);
   if (state.empty()) return state;
   const std::vector<double> parameters = parameters_of(node_index);
-  std::vector<ilaw_input> inputs;
-  inputs.reserve(parameters.size());
-  for (const double& value : parameters) inputs.push_back({&value, 1, 1});
+  const std::vector<ilaw_input> inputs = inputs_of(parameters);
   const Vector normal = setup_.counterpart->contact_point(node_index, u, 0.0).normal;
   ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
   batch.node_count = 1;
@@ -96,9 +105,7 @@ int Interface::status_at_start(int node_index, const Dofs& u) const {
   if (setup_.birth > 0.0) return ILAW_FREE;
   const ContactPoint point = setup_.counterpart->contact_point(node_index, u, 0.0);
   const std::vector<double> parameters = parameters_of(node_index), state = first_state(node_index, u);
-  std::vector<ilaw_input> inputs;
-  inputs.reserve(parameters.size());
-  for (const double& value : parameters) inputs.push_back({&value, 1, 1});
+  const std::vector<ilaw_input> inputs = inputs_of(parameters);
   const Vector rest = Vector::Zero(dimension_);
   Vector impulse = rest;
   std::vector<double> state_out = state;
@@ -123,9 +130,11 @@ int Interface::status_at_start(int node_index, const Dofs& u) const {
   return law_.evaluate(batch).code == ILAW_OK ? status : int{ILAW_FREE};
 }
 
+bool Interface::axes_turn() const { return law_.carries_axes() && !setup_.counterpart->keeps_normal(); }
+
 bool Interface::may_skip() const {
   if (setup_.keeps_all_active || (law_.acts_at_distance() && !law_.rests())) return false;
-  return setup_.counterpart->keeps_normal() || !law_.carries_axes();
+  return !axes_turn();
 }
 
 // Touched contacts stay near: only fresh ones, and those at rest, are known to do nothing at a

@@ -108,6 +108,8 @@ class Interface {
  private:
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
   Vector surface_velocity(int contact_index, const Vector& velocity, double rate) const;
+  // Whether the state of a contact that is out of reach changes: axes follow the normal.
+  bool axes_turn() const;
   bool may_skip() const;
   void choose_active(const StepView& step);
   void refresh_near(const StepView& step);

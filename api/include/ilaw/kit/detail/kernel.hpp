@@ -112,13 +112,6 @@ bool same_bits(const state_t<Law>& a, const state_t<Law>& b) {
   return different == 0;
 }
 
-inline vector kept_if(bool condition, vector a) {
-  return {kit::kept_if(condition, a.n), kit::kept_if(condition, a.t1), kit::kept_if(condition, a.t2)};
-}
-inline projected_vector kept_if(bool condition, projected_vector a) {
-  return {kit::kept_if(condition, a.n), kit::kept_if(condition, a.x), kit::kept_if(condition, a.y),
-          kit::kept_if(condition, a.z)};
-}
 inline vector zero_unless_finite(vector a) {
   const bool good = defect(a) == 0.0;
   return {good ? a.n : 0.0, good ? a.t1 : 0.0, good ? a.t2 : 0.0};
@@ -314,11 +307,10 @@ axis outgoing(const double* const* axes, int i, typename Frame::vector_type a, b
   return {accepted ? out.x : otherwise.x, accepted ? out.y : otherwise.y, accepted ? out.z : otherwise.z};
 }
 
-// The velocity before the step of a node whose law may not read it: asking for energies must not change the
-// motion.
+// The velocity before the step, of a node whose law may never read it.
 template <class Law, class Frame, class Layout, class Node>
 auto previous_for_energy(const node_block<Law>& b, int i, const Node& n) {
-  if constexpr (reads_previous<Law> && !chooses_inputs<Law>) {
+  if constexpr (reads_previous<Law>) {
     return n.v_previous;
   } else {
     const auto frame = Frame::template at<Layout>(b.axes, i);
