@@ -6,7 +6,7 @@
 
 namespace {
 
-using namespace ilaw::kit;
+using namespace ilaw::kit::detail;
 
 // Each required bit alone taken away refuses the level.
 void expect_every_bit_needed(const processor& level, int count) {

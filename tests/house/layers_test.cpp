@@ -93,6 +93,20 @@ TEST(Layers, EveryFolderOfTheHostIsAFloor) {
     EXPECT_NE(floor_of(entry.path().filename()), floors.end()) << entry.path();
 }
 
+// `using namespace ilaw::kit` brings in nothing of the machinery.
+TEST(Layers, MachineryOfTheKitHasANamespaceOfItsOwn) {
+  int namespaces = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(ILAW_SOURCE) / "api/include/ilaw/kit/detail")) {
+    std::ifstream stream(entry.path());
+    for (std::string line; std::getline(stream, line);) {
+      if (!line.starts_with("namespace ")) continue;
+      ++namespaces;
+      EXPECT_EQ(line, "namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {") << entry.path();
+    }
+  }
+  EXPECT_GT(namespaces, 10);
+}
+
 // The test itself: what it must refuse, and what not.
 TEST(Layers, IncludesThatRunUpAreSeen) {
   const std::vector<std::tuple<std::string, std::string, bool, bool>> cases = {

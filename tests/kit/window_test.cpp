@@ -349,8 +349,8 @@ TEST(Window, RefusesASumThatIsNotFinite) {
 
 // The kit reads the windows of a block together, where most stand alike: nobody notices, to the last bit.
 TEST(Window, ABlockReadsWhatEachNodeReads) {
-  using ilaw::kit::column;
-  constexpr int nodes = ilaw::kit::block_size;
+  using ilaw::kit::detail::column;
+  constexpr int nodes = ilaw::kit::detail::block_size;
   constexpr double duration = 1.0, buckets = 8.0;
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

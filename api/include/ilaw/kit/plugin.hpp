@@ -11,6 +11,13 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
+// One node by a form of the law, with the same bits as in a pack: for a step that chooses its form.
+using detail::step_alone;
+
+}  // namespace ilaw::kit
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
 // The walks of this level, in the order of the laws.
 template <class... Laws>
 inline constexpr ilaw_kit_walk walks[] = {walk_batch<Laws>...};
@@ -71,11 +78,11 @@ inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .title = Law::card.title,
                                   .doc = Law::card.doc,
                                   .references = Law::references,
-                                  .parameters = detail::description<Law>::parameter_pointers.data(),
-                                  .state_variables = detail::description<Law>::state_variable_pointers.data(),
+                                  .parameters = description<Law>::parameter_pointers.data(),
+                                  .state_variables = description<Law>::state_variable_pointers.data(),
                                   .reference_count = std::size(Law::references),
-                                  .parameter_count = detail::parameter_count<Law>,
-                                  .state_variable_count = detail::state_variable_count<Law>,
+                                  .parameter_count = parameter_count<Law>,
+                                  .state_variable_count = state_variable_count<Law>,
                                   .reserved = 0,
                                   .create = create_at<Place, Law>,
                                   .destroy = destroy<Law>,
@@ -120,16 +127,16 @@ class library<false, Laws...> {
 template <class... Laws>
 using library_of = library<(checked<Laws>() && ...), Laws...>;
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail
 
 // ILAW_PLUGIN(name, version, vendor, licence, Law...) makes the one exported symbol of a law library; at the
 // other levels, the hidden one that gives their walks.
 #if defined(ILAW_KIT_WALKS)
 #define ILAW_PLUGIN(name, version, vendor, licence, ...) \
-  extern "C" const ilaw_kit_walk* ILAW_KIT_WALKS() { return ilaw::kit::walks<__VA_ARGS__>; }
+  extern "C" const ilaw_kit_walk* ILAW_KIT_WALKS() { return ilaw::kit::detail::walks<__VA_ARGS__>; }
 #else
 #define ILAW_PLUGIN(name, version, vendor, licence, ...)                                 \
   extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {                           \
-    return ilaw::kit::library_of<__VA_ARGS__>::describe(name, version, vendor, licence); \
+    return ilaw::kit::detail::library_of<__VA_ARGS__>::describe(name, version, vendor, licence); \
   }
 #endif

@@ -91,7 +91,7 @@ class window_in_step {
   // The same for the nodes of a block, whose histories own(i) gives. Most were written in the newest bucket
   // as it is now: what is read of them stands at the same places, and is summed in vector code.
   template <class OwnHistory>
-  void before(int count, OwnHistory own, column (&sum)[3], column& refused) const {
+  void before(int count, OwnHistory own, detail::column (&sum)[3], detail::column& refused) const {
     parts p;
     const bool may_agree = has_grid_ && is_short_;
     if (may_agree) {
@@ -212,7 +212,7 @@ class window_in_step {
 
   // What is read of the nodes of a block, as columns: the middle sum, the newest bucket and the two oldest.
   struct parts {
-    column stamp, middle[3], current[3], oldest[3], next[3];
+    detail::column stamp, middle[3], current[3], oldest[3], next[3];
   };
   template <class OwnHistory>
   void gather(int count, OwnHistory own, parts& p) const {
@@ -228,15 +228,17 @@ class window_in_step {
       }
     }
   }
-  static vector at(const column (&c)[3], int i) { return {c[0].values[i], c[1].values[i], c[2].values[i]}; }
+  static vector at(const detail::column (&c)[3], int i) {
+    return {c[0].values[i], c[1].values[i], c[2].values[i]};
+  }
   // The parts are not const: GCC 12 thinks of a block without nodes, and warns that they are not initialised.
-  [[gnu::noinline, gnu::flatten]] static void sum_parts(int count, parts& p, edge given, column (&sum)[3],
-                                                        column& refused) {
+  [[gnu::noinline, gnu::flatten]] static void sum_parts(int count, parts& p, edge given,
+                                                        detail::column (&sum)[3], detail::column& refused) {
 #pragma omp simd
     for (int i = 0; i < count; ++i)
       put(given.sum(at(p.middle, i), at(p.current, i), at(p.oldest, i), at(p.next, i)), i, sum, refused);
   }
-  static void put(vector s, int i, column (&sum)[3], column& refused) {
+  static void put(vector s, int i, detail::column (&sum)[3], detail::column& refused) {
     sum[0].values[i] = s.n;
     sum[1].values[i] = s.t1;
     sum[2].values[i] = s.t2;

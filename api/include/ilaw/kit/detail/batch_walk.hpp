@@ -6,7 +6,7 @@
 #include <ilaw/kit/detail/instance.hpp>
 #include <ilaw/kit/detail/kernel.hpp>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // Columns of a block that are copies: where the host's arrays are not consecutive, or are turned to the local
 // frame.
@@ -27,7 +27,7 @@ int state_entry(int k, int dimension) {
   if constexpr (has_state<Law>)
     for (std::size_t v = 0; v < std::size(Law::state_variables); ++v) {
       const auto& member = Law::state_variables[v].member;
-      const int component = k - detail::state_places<Law>[v];
+      const int component = k - state_places<Law>[v];
       if (component >= 0 && component < member.doubles())
         return component < member.components(dimension) ? entry + component : -1;
       entry += member.components(dimension);
@@ -78,9 +78,9 @@ class batch_walk {
     if (!is_finite(area) || area < 0.0) return "the area is not a finite number >= 0";
     if (made_.carries_frame && !unit(columns::get(block_.axes, i))) return "the normal is not a unit vector";
     initial_node<state_t<Law>, Law::card.inputs> fresh{
-        .time = batch_.time, .area = detail::area_of<Law>(block_.area, i), .state = {}};
+        .time = batch_.time, .area = area_of<Law>(block_.area, i), .state = {}};
     if constexpr (initialises<Law>) law.initialise(fresh);
-    if (detail::state_defect<Law>(fresh.state) != 0.0) return "the state overflows";
+    if (state_defect<Law>(fresh.state) != 0.0) return "the state overflows";
     if constexpr (has_state<Law>) {
       const auto doubles = std::bit_cast<std::array<double, states>>(fresh.state);
       for (int k = 0; k < states; ++k)
@@ -320,4 +320,4 @@ class batch_walk {
   node_block<Law> block_;
 };
 
-}  // namespace ilaw::kit::inline ILAW_KIT_LEVEL
+}  // namespace ilaw::kit::detail

@@ -6,9 +6,7 @@
 #include <ilaw/kit/declare.hpp>
 #include <ilaw/kit/window.hpp>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
-namespace detail {
-
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 // Whether a law has a member of a name, whatever it is: two of a name are ambiguous.
 #define ILAW_KIT_NAME(name)                        \
   struct other_##name {                            \
@@ -277,15 +275,13 @@ inline constexpr bool has_history_rightly = names_history_variable<Law> ? requir
 #undef ILAW_KIT_SPELLING
                                 };
 
-                                }  // namespace detail
-
                                 // Whether a struct is a law; an error, of one line, where it is not.
                                 template <class Law>
                                 constexpr bool checked() {
-                                  if constexpr (detail::checked_names<Law>::passes)
-                                    if constexpr (detail::checked_members<Law>::passes)
-                                      return detail::checked_places<Law>::passes;
+                                  if constexpr (checked_names<Law>::passes)
+                                    if constexpr (checked_members<Law>::passes)
+                                      return checked_places<Law>::passes;
                                   return false;
                                 }
 
-                                }  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

@@ -19,7 +19,7 @@ extern "C" const ilaw_kit_walk* ilaw_kit_walks_v3();
 extern "C" const ilaw_kit_walk* ilaw_kit_walks_v4();
 #endif
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // The walks of the best level that was compiled, that the processor has and the environment allows; null: the
 // baseline's own.
@@ -36,4 +36,4 @@ inline const ilaw_kit_walk* best_walks() {
   return nullptr;
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

@@ -12,7 +12,7 @@
 template <>
 inline constexpr std::uint32_t ilaw::sized::least<ilaw_float_batch> = ILAW_FLOAT_BATCH_SIZE_1;
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 inline std::int32_t refuse(ilaw_report* report, const char* reason,
                            std::int32_t code = ILAW_INVALID_ARGUMENT) {
@@ -70,7 +70,7 @@ const char* out_of_range(const state_t<Law>& state) {
     if constexpr (V < std::size(Law::state_variables)) {
       constexpr const auto& v = Law::state_variables[V];
       const auto doubles = std::bit_cast<std::array<double, state_doubles<Law>>>(state);
-      if (v.has_range() && !v.may_be(doubles[detail::state_places<Law>[V]]))
+      if (v.has_range() && !v.may_be(doubles[state_places<Law>[V]]))
         return range_reason<Law, V>::text.data();
       return out_of_range<Law, V + 1>(state);
     }
@@ -96,7 +96,7 @@ const char* result_reason(const Node& n, double impulse_guard) {
   if (n.refused == impossible_state) return "the state is not one that the law can have written";
   if (n.refused == time_before_history) return "the time lies before what the state remembers";
   if (is_not_a_number(n.impulse)) return "the law gave an impulse that is not a number";
-  if (defect(impulse_guard * n.impulse) + detail::state_defect<Law>(n.state) != 0.0)
+  if (defect(impulse_guard * n.impulse) + state_defect<Law>(n.state) != 0.0)
     return "the impulse or the state overflows";
   if (status_defect(n.status) != 0.0) return "the law gave a status that ilaw.h does not have";
   if (pull_defect<Law>(n) != 0.0) return "the law pulled, which needs ILAW_CAN_ADHERE in its card";
@@ -121,7 +121,7 @@ const char* refusal_reason(const Law& law, const block_of_one<Law>& b, int i, bo
   if constexpr ((Law::card.inputs & reads_area) != 0)
     if (!is_finite(n.area) || n.area < 0.0) return "the area is not a finite number >= 0";
   if (!framed) return "the state holds no frame: it is not one that the law can have written";
-  if (detail::state_defect<Law>(n.state) != 0.0) return "the state is not finite";
+  if (state_defect<Law>(n.state) != 0.0) return "the state is not finite";
   if (const char* wrong = out_of_range<Law>(n.state)) return wrong;
   const auto stepped = step_node<Law, Delassus, Frame, Layout, Scope>(stepping_alone(law), b, i).result;
   return result_reason<Law>(stepped, b.impulse_guard);
@@ -208,7 +208,7 @@ template <class Law>
 inline constexpr bool in_space = (Law::card.dimensions & ILAW_DIMENSION_3) != 0;
 template <class Law>
 inline constexpr bool has_varying_parameters = [] {
-  for (const ilaw_parameter& p : detail::description<Law>::parameters)
+  for (const ilaw_parameter& p : description<Law>::parameters)
     if (p.may_be & ILAW_MAY_BE_PER_NODE) return true;
   return false;
 }();
@@ -346,4 +346,4 @@ std::int32_t initialise(const ilaw_instance* opaque, const Batch* given, ilaw_re
   });
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

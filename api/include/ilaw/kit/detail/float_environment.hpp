@@ -8,7 +8,7 @@
 #include <cfenv>
 #endif
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // As long as it lives: round to nearest, subnormal numbers, no traps. Then the host's environment again, with
 // the exception flags as they were. Written only where it differs: reading it costs a cycle or two, writing
@@ -53,4 +53,4 @@ class float_environment {
 };
 #endif
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

@@ -5,7 +5,7 @@
 
 #include <ilaw/kit/node.hpp>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // Largest | |n|^2 - 1 | accepted: normals that went through single precision pass.
 inline constexpr double unit_tolerance = 1e-6;
@@ -13,6 +13,7 @@ inline constexpr double unit_tolerance = 1e-6;
 struct axis {
   double x, y, z;
 };
+using kit::defect;  // beside which this one stands
 constexpr double defect(axis a) { return defect(a.x) + defect(a.y) + defect(a.z); }
 constexpr double dot(axis a, axis b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 constexpr axis cross(axis a, axis b) {
@@ -131,4 +132,4 @@ struct stored_frame {
   }
 };
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

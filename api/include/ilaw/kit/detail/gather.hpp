@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <type_traits>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // Nodes worked on together: enough to fill vectors and hide loop overhead, few enough to stay in the first
 // cache.
@@ -175,4 +175,4 @@ inline void scatter_vector(const ilaw_output& output, int dimension, const node_
   for (int k = 0; k < dimension; ++k) scatter(output, k, nodes, components[k]);
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

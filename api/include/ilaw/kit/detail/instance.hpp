@@ -9,7 +9,7 @@
 
 #include <new>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // The local frame is carried along in the state where a law remembers vectors and the host gives only
 // normals.
@@ -189,7 +189,7 @@ class instance_builder {
       return ILAW_INVALID_PARAMETER;
     }
     given_[i] = true;
-    const ilaw_parameter& p = detail::description<Law>::parameters[i];
+    const ilaw_parameter& p = description<Law>::parameters[i];
     double Law::*member = Law::parameters[i].member;
     if (p.kind == ILAW_PARAMETER_CHOICE) return read_choice(id, p, a, made_.law.*member, text_);
     if (a.kind == ILAW_VALUE_TABLE && (p.may_be & ILAW_MAY_BE_TABLE)) return keep_table(p, member, a);
@@ -221,7 +221,7 @@ class instance_builder {
   std::int32_t require_arguments() {
     for (std::size_t i = 0; i < parameter_count; ++i)
       if (Law::parameters[i].required && !given_[i]) {
-        const ilaw_parameter& p = detail::description<Law>::parameters[i];
+        const ilaw_parameter& p = description<Law>::parameters[i];
         text_.add("law '%s': parameter '%s' is missing: expected ", id, p.name);
         if (p.kind == ILAW_PARAMETER_CHOICE) {
           text_.add("one of ");
@@ -293,7 +293,7 @@ class instance_builder {
   void add_values_named_in(const char* text, const Law& law) {
     const char* separator = "; found ";
     for (std::size_t i = 0; i < parameter_count; ++i) {
-      const ilaw_parameter& p = detail::description<Law>::parameters[i];
+      const ilaw_parameter& p = description<Law>::parameters[i];
       char quoted[80];
       std::snprintf(quoted, sizeof quoted, "'%s'", p.name);
       if (!std::strstr(text, quoted)) continue;
@@ -316,12 +316,12 @@ class instance_builder {
   std::int32_t lay_out_state() {
     if constexpr (has_history<Law>) made_.history_size = made_.law.history_size();
     const auto declared =
-        detail::abi_state_variables<Law>(static_cast<int>(made_.dimension), made_.history_size);
+        abi_state_variables<Law>(static_cast<int>(made_.dimension), made_.history_size);
     for (const ilaw_state_variable& v : declared) append(v);
     made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.tangent_given &&
                           (made_.history_size > 0 || has_vector_state<Law>());
     if (made_.carries_frame)
-      for (const history_card& v : frame_variables) append(detail::abi_state_variable(v, ILAW_STATE_AXIS, 3));
+      for (const history_card& v : frame_variables) append(abi_state_variable(v, ILAW_STATE_AXIS, 3));
     return ILAW_OK;
   }
 
@@ -393,4 +393,4 @@ std::int32_t info(const ilaw_instance* opaque, ilaw_instance_info* out) {
   return ILAW_OK;
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

@@ -10,7 +10,7 @@
 
 #include <bit>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // A block of nodes as columns. Pointers may lead into the host's arrays.
 template <class Law>
@@ -61,8 +61,6 @@ struct stepped {
   node_in<Law, Delassus, Frame> result;
   bool accepted;
 };
-
-namespace detail {
 
 template <class Delassus, std::size_t... K>
 Delassus delassus_at(const double* const* columns, int i, std::index_sequence<K...>) {
@@ -121,8 +119,6 @@ inline projected_vector zero_unless_finite(projected_vector a) {
   return {good ? a.n : 0.0, good ? a.x : 0.0, good ? a.y : 0.0, good ? a.z : 0.0};
 }
 
-}  // namespace detail
-
 // Whether a law's instances may carry a frame in this kind of frame.
 template <class Law, class Frame>
 inline constexpr bool can_carry = std::is_same_v<Frame, stored_frame> &&
@@ -134,8 +130,6 @@ template <class Law>
 concept chooses_inputs = requires(const Law& law) {
   law.inputs();
 };
-
-namespace detail {
 
 // Inputs as the law's card has them. Where parameters make a law read no v_previous it is there for energies
 // alone, a number always: what a law says of them may need it, its motion may not.
@@ -190,8 +184,6 @@ state_t<Law> incoming_state(const node_block<Law>& b, int i) {
     return {};
 }
 
-}  // namespace detail
-
 // A node as it comes in, in its local frame. A normal that is no unit vector makes v_free a defect.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
 node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
@@ -202,18 +194,18 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
                                   .velocity_step = b.velocity_step,
                                   .position_step = b.position_step,
                                   .v_free = v_free,
-                                  .v_previous = detail::previous_of<Law, Scope>(b, i, frame),
-                                  .delassus = frame.to_local(detail::delassus_at<Delassus>(
+                                  .v_previous = previous_of<Law, Scope>(b, i, frame),
+                                  .delassus = frame.to_local(delassus_at<Delassus>(
                                       b.delassus, i, std::make_index_sequence<Delassus::components>{})),
-                                  .gap = detail::gap_of(b, i),
-                                  .area = detail::area_of<Law>(b.area, i),
-                                  .history = detail::history_of(b, i),
-                                  .earlier = detail::earlier_of(b, i),
+                                  .gap = gap_of(b, i),
+                                  .area = area_of<Law>(b.area, i),
+                                  .history = history_of(b, i),
+                                  .earlier = earlier_of(b, i),
                                   .impulse = {},
                                   .state = {},
-                                  .refused = detail::refused_before(b, i)};
+                                  .refused = refused_before(b, i)};
   // Assigned, not initialised: then GCC takes the struct apart, as vector code needs.
-  if constexpr (has_state<Law>) n.state = detail::incoming_state(b, i);
+  if constexpr (has_state<Law>) n.state = incoming_state(b, i);
   return n;
 }
 
@@ -223,7 +215,7 @@ double input_defect(const Node& n) {
   if constexpr ((Law::card.inputs & reads_gap) != 0) sum += defect(n.gap);
   if constexpr (reads_previous<Law> && Scope != scope::impulse) sum += defect(n.v_previous);
   if constexpr ((Law::card.inputs & reads_area) != 0) sum += defect(n.area) + defect_unless(n.area >= 0.0);
-  return sum + detail::incoming_state_defect<Law>(n.state);
+  return sum + incoming_state_defect<Law>(n.state);
 }
 
 // Not zero where a promise is broken. By bits and products: choices, and comparisons of an impulse that was
@@ -266,7 +258,7 @@ stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int
   const double before = input_defect<Law, Scope>(n);
   step(n);
   // In the host's axes a component may be as large as the whole vector: it must be a number there, too.
-  const double after = defect(b.impulse_guard * n.impulse) + detail::state_defect<Law>(n.state);
+  const double after = defect(b.impulse_guard * n.impulse) + state_defect<Law>(n.state);
   const double kept = status_defect(n.status) + pull_defect<Law>(n) + distance_defect<Law>(n);
   s.accepted = before + after + kept + n.refused == 0.0;
   return s;
@@ -314,7 +306,7 @@ auto previous_for_energy(const node_block<Law>& b, int i, const Node& n) {
     return n.v_previous;
   } else {
     const auto frame = Frame::template at<Layout>(b.axes, i);
-    return detail::zero_unless_finite(frame.to_local(columns::get(b.v_previous, i)));
+    return zero_unless_finite(frame.to_local(columns::get(b.v_previous, i)));
   }
 }
 
@@ -344,7 +336,7 @@ template <class Law, class Node>
 bool rests(const Node& n, const state_t<Law>& before) {
   const bool still = (n.impulse.n == 0.0) & (n.impulse.t1 == 0.0) & (n.impulse.t2 == 0.0);
   const bool free = is_out_of_reach(n) & (n.status == status::free);
-  return still && free && detail::same_bits<Law>(n.state, before);
+  return still && free && same_bits<Law>(n.state, before);
 }
 
 template <class Law, class Node>
@@ -384,4 +376,4 @@ void in_its_form(const Law& law, Run run) {
     run(law);
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

@@ -7,7 +7,7 @@
 #include <ilaw/kit/detail/instance.hpp>
 #include <ilaw/kit/detail/run_block.hpp>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // The parameters of one node; says what is wrong with them, null where nothing is. Then law stays as it was:
 // no step need stand what no parameter may be.
@@ -36,7 +36,7 @@ struct same_parameters {
 template <class Law>
 class node_parameters {
  public:
-  static constexpr int count = static_cast<int>(detail::parameter_count<Law>);
+  static constexpr int count = static_cast<int>(parameter_count<Law>);
 
   node_parameters(const instance<Law>& made, const Law& law, const ilaw_batch& batch)
       : made_(made), law_(law), batch_(batch) {
@@ -84,4 +84,4 @@ class node_parameters {
   column values_[count + 1], valid_;  // one more than needed: no array of length zero
 };
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // One line for the caller of create; text that does not fit is cut.
 class message {
@@ -175,4 +175,4 @@ inline std::int32_t check_table(const char* law, const ilaw_parameter& p, const 
   return ILAW_OK;
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

@@ -13,7 +13,7 @@
 #include <cpuid.h>
 #endif
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // What the instruction CPUID says, and which registers the operating system keeps (XCR0).
 struct processor {
@@ -53,4 +53,4 @@ inline processor this_processor() {
   return p;
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

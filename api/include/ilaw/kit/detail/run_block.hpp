@@ -8,7 +8,7 @@
 #include <ilaw/kit/detail/kernel.hpp>
 #include <ilaw/kit/pack.hpp>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 template <class Form>
 using problem_of_form = typename Form::template problem<double>;
@@ -20,8 +20,6 @@ template <class Form, class Node>
 concept asks_first = requires(const Form& law, Node& node, problem_of_form<Form>& problem) {
   law.asks(node, problem);
 };
-
-namespace detail {
 
 inline void choose(double& a, double b, bool second) { a = second ? b : a; }
 inline void choose(vector& a, vector b, bool second) {
@@ -56,8 +54,6 @@ void choose(Node& a, const Node& b, bool second) {
   }
 }
 
-}  // namespace detail
-
 // One node, with the same bits as in a pack.
 template <class Form, class Node>
 void step_alone(const Form& law, Node& node) {
@@ -68,7 +64,7 @@ void step_alone(const Form& law, Node& node) {
     answer_of_form<Form> answer{};
     if (law.solve(problem, answer)) law.solve_alone(problem, answer);
     law.answered(solved, answer);
-    detail::choose(node, solved, true);
+    choose(node, solved, true);
   } else {
     law.step(node);
   }
@@ -96,7 +92,7 @@ struct law_per_node {
   const column* parameters;
   const double* valid;  // 1 or 0
 
-  Law at(int i) const { return with(i, std::make_index_sequence<detail::parameter_count<Law>>{}); }
+  Law at(int i) const { return with(i, std::make_index_sequence<parameter_count<Law>>{}); }
   bool is_valid(int i) const { return valid[i] != 0.0; }
 
  private:
@@ -119,8 +115,6 @@ void over_nodes(const node_block<Law>& b, Step step) {
     for (int i = 0; i < own.count; ++i) step(own, i);
   }
 }
-
-namespace detail {
 
 template <class Struct>
 inline constexpr int doubles_in = static_cast<int>(sizeof(Struct) / sizeof(double));
@@ -236,8 +230,6 @@ void step_answered(const Form& law, const asked_block<Form>& asked, int i, Node&
   choose(node, solved, asked.open.values[i] != 0.0);
 }
 
-}  // namespace detail
-
 // GCC vectorises these loops only where each stands alone. Copies, so that no store can alias a parameter or
 // a time step.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
@@ -252,11 +244,11 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
 
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 [[gnu::noinline, gnu::flatten]] void finish_block(const Laws& laws, const node_block<Law>& b,
-                                                  const detail::asked_block<typename Laws::form>& asked) {
+                                                  const asked_block<typename Laws::form>& asked) {
   const Laws l = laws;
   const auto run = [&l, &asked](const node_block<Law>& own, int i) {
     const auto& law = l.at(i);
-    const auto step = [&law, &asked, i](auto& node) { detail::step_answered<Law>(law, asked, i, node); };
+    const auto step = [&law, &asked, i](auto& node) { step_answered<Law>(law, asked, i, node); };
     run_node<Law, Delassus, Frame, Layout, Scope>(law, own, i, step, l.is_valid(i));
   };
   over_nodes<Law, typename Laws::form>(b, run);
@@ -268,9 +260,9 @@ int run_steps(const Laws& laws, const node_block<Law>& b) {
   using form = typename Laws::form;
   if constexpr (asks_first<form, node_in<Law, Delassus, Frame>>) {
     constexpr scope reads = Scope == scope::impulse ? scope::impulse : scope::with_previous;
-    detail::asked_block<form> asked;
+    asked_block<form> asked;
     for (column& c : asked.answer) c = zeros;
-    detail::mark_block<Law, Delassus, Frame, Layout, reads>(laws, b, asked);
+    mark_block<Law, Delassus, Frame, Layout, reads>(laws, b, asked);
     int count = 0;
     for (int i = 0; i < b.count; ++i) {
       asked.nodes[count] = i;
@@ -278,8 +270,8 @@ int run_steps(const Laws& laws, const node_block<Law>& b) {
     }
     int alone_count = 0;
     if (count > 0) {
-      detail::keep_problems<Law, Delassus, Frame, Layout, reads>(laws, b, asked);
-      alone_count = detail::solve_asked(laws.law, asked, count);
+      keep_problems<Law, Delassus, Frame, Layout, reads>(laws, b, asked);
+      alone_count = solve_asked(laws.law, asked, count);
     }
     finish_block<Law, Delassus, Frame, Layout, Scope>(laws, b, asked);
     return alone_count;
@@ -288,8 +280,6 @@ int run_steps(const Laws& laws, const node_block<Law>& b) {
     return remembers<Law, form> ? b.count : 0;
   }
 }
-
-namespace detail {
 
 // What a block keeps between its windows and its steps.
 struct window_columns {
@@ -349,20 +339,18 @@ void write_windows(const Laws& laws, const node_block<Law>& block, const window_
   }
 }
 
-}  // namespace detail
-
 // A window is read before the loops over a block and written after them, so that they need not work node by
 // node.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 int run_block(const Laws& laws, const node_block<Law>& b) {
   if constexpr (has_window<Law>) {
-    detail::window_columns kept;
+    window_columns kept;
     node_block<Law> own = b;
-    const bool forgets = is_one_law<Laws> && detail::window_at(laws, b, 0).forgets();
-    detail::aim_at(kept, own, forgets);
-    if (!forgets) detail::read_windows(laws, own, kept);
+    const bool forgets = is_one_law<Laws> && window_at(laws, b, 0).forgets();
+    aim_at(kept, own, forgets);
+    if (!forgets) read_windows(laws, own, kept);
     const int one_by_one = run_steps<Law, Delassus, Frame, Layout, Scope>(laws, own);
-    if (!forgets) detail::write_windows(laws, own, kept);
+    if (!forgets) write_windows(laws, own, kept);
     return one_by_one;
   } else {
     return run_steps<Law, Delassus, Frame, Layout, Scope>(laws, b);
@@ -372,14 +360,14 @@ int run_block(const Laws& laws, const node_block<Law>& b) {
 // A block for a node that is looked at alone, after the block was run.
 template <class Law>
 struct block_of_one : node_block<Law> {
-  detail::window_columns kept;
+  window_columns kept;
 
   block_of_one(const Law& law, const node_block<Law>& b, int i) : node_block<Law>(b) {
     if constexpr (has_window<Law>) {
-      detail::read_window(law, b, i, kept);
-      detail::aim_at(kept, static_cast<node_block<Law>&>(*this), false);
+      read_window(law, b, i, kept);
+      aim_at(kept, static_cast<node_block<Law>&>(*this), false);
     }
   }
 };
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

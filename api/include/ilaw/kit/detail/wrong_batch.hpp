@@ -4,7 +4,7 @@
 
 #include <ilaw/kit/detail/batch_walk.hpp>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // What is wrong with the arrays that evaluate or initialise needs; null when nothing is.
 template <class Law>
@@ -83,4 +83,4 @@ const char* wrong_batch(const instance<Law>& made, const ilaw_batch& b) {
   return missing_input(made, b, made.inputs() | (b.energy.values ? made.energy_inputs() : 0U));
 }
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail

@@ -5,7 +5,7 @@
 
 #include <ilaw/kit/detail/level.hpp>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 class float_environment {
  public:
@@ -13,4 +13,4 @@ class float_environment {
   ~float_environment() {}
 };
 
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail
