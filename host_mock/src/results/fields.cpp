@@ -224,7 +224,7 @@ std::filesystem::path Fields::write_diverged(const Integrator& integrator) const
     for (const int element : inverted_elements(*scene_.model, integrator.displacement()))
       inverted->SetValue(element, 1.0);
   }
-  const std::filesystem::path path = folder_ / "diverged.vtu";
+  std::filesystem::path path = folder_ / "diverged.vtu";
   AtomicFile file(path);
   file.stream() << text_of(*grid);
   file.commit();

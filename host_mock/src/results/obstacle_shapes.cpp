@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -112,7 +113,7 @@ class Shapes {
   vtkIdType add_circle(const Point& centre, double radius, const Point& first, const Point& second) {
     const vtkIdType start = points_->GetNumberOfPoints();
     for (int k = 0; k < round_parts; ++k) {
-      const double angle = 2.0 * EIGEN_PI * k / round_parts;
+      const double angle = 2.0 * std::numbers::pi * k / round_parts;
       point(centre + radius * (std::cos(angle) * first + std::sin(angle) * second));
     }
     return start;
@@ -139,7 +140,7 @@ class Shapes {
     constexpr int bands = round_parts / 2;
     vtkIdType below = 0;
     for (int k = 0; k <= bands; ++k) {
-      const double angle = EIGEN_PI * k / bands;
+      const double angle = std::numbers::pi * k / bands;
       const vtkIdType circle = add_circle(centre - radius * std::cos(angle) * Point::UnitZ(),
                                           radius * std::sin(angle), Point::UnitX(), Point::UnitY());
       if (k > 0) join(below, circle);
