@@ -201,7 +201,7 @@ struct history_without_size {
 };
 
 // The compiler looks at each.
-#define SEEN(law) auto* const seen_##law = &library_of<law>::describe
+#define SEEN(law) auto* const seen_##law = &detail::library_of<law>::describe
 SEEN(larger_state);
 SEEN(state_with_int);
 SEEN(described_int);

@@ -62,7 +62,7 @@ struct writes_v_free {
 };
 
 // The compiler looks at each.
-#define SEEN(law) auto* const seen_##law = &library_of<law>::describe
+#define SEEN(law) auto* const seen_##law = &detail::library_of<law>::describe
 SEEN(gap_not_declared);
 SEEN(area_not_declared);
 SEEN(contact_without_v_previous);
