@@ -9,7 +9,6 @@
 namespace ilaw::check {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 const double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t spoilt = 5;
 
@@ -111,8 +110,6 @@ void reported_in_lists(const Subject& subject) {
     return true;
   });
 }
-
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 void at_the_node(const Subject& subject) {
   for_bad_inputs(subject, [](const Spoilt& s) {

@@ -7,12 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 namespace ilaw::check {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Plain motions and gaps, also large and tiny ones.
 void returns(const Subject& subject) {

@@ -3,14 +3,12 @@
 #include "check/rule.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace ilaw::check {
 namespace {
 
-constexpr double ulp = std::numeric_limits<double>::epsilon();
 constexpr double least = 1e-300;  // energies below are rounded as subnormal numbers
-constexpr std::size_t nodes = 24, flights = 3, steps = 12;
+constexpr std::size_t point_count = 24, flights = 3, steps = 12;
 
 struct Step {
   const Inputs& in;
@@ -54,20 +52,21 @@ void fly(const Subject& subject, Look look) {
         if (!trial.writes(ILAW_OUTPUT_ENERGY) && trial.can(ILAW_CAN_STORE_ENERGY)) return false;
         const double dt = 0x1p-10;
         for (std::size_t flight = 0; flight < flights; ++flight) {
-          Inputs in = draw_script(trial, draw, {nodes, 1}, true)[0];
+          Inputs in = draw_script(trial, draw, {point_count, 1}, true)[0];
           in.velocity_step = in.position_step = dt;
-          for (std::size_t i = 0; i < nodes; ++i) in.gap[i] = in.gap_offset[i] + draw.within(0.0, 3.0) * dt;
+          for (std::size_t i = 0; i < point_count; ++i)
+            in.gap[i] = in.gap_offset[i] + draw.within(0.0, 3.0) * dt;
           Heap heap;
           Arrays arrays(trial, in, {}, heap);
           arrays.initialise(in);
-          std::vector<double> stored(nodes), terms(nodes);
+          std::vector<double> stored(point_count), terms(point_count);
           for (std::size_t k = 0; k < steps; ++k) {
             in.v_previous = in.v_free;
             const Results found = arrays.evaluate(in);
             if (found.code != ILAW_OK) break;
             if (std::isfinite(found.report.stable_velocity_step) && found.report.stable_velocity_step > 0.0)
               return false;
-            for (std::size_t i = 0; i < nodes; ++i) {
+            for (std::size_t i = 0; i < point_count; ++i) {
               look(trial, step_of(in, found, i, stored[i], terms[i]));
               stored[i] = stored_of(found, i);
               terms[i] = velocity_terms(in, found, i);

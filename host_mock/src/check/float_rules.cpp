@@ -24,7 +24,7 @@ Script hostile(const Trial& trial, Draw& draw) {
                            -1e300,
                            1e300,
                            std::numeric_limits<double>::quiet_NaN(),
-                           -std::numeric_limits<double>::infinity()};
+                           -infinity};
   Script script = draw_script(trial, draw, {40, 2});
   for (Inputs& in : script)
     for (std::size_t k = 0; k < odd.size(); ++k) {

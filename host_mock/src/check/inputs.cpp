@@ -37,10 +37,6 @@ Matrix from_axes(const Matrix& m, const Matrix& axes) {
   return out;
 }
 
-Matrix transposed(const Matrix& m) {
-  return {Vector{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
-}
-
 Vector unit(const Vector& a) {
   const double size = length(a);
   return {a[0] / size, a[1] / size, a[2] / size};
@@ -112,6 +108,10 @@ void draw_motion(Inputs& in, bool isotropic, bool without_force, Draw& draw) {
 }
 
 }  // namespace
+
+Matrix transposed(const Matrix& m) {
+  return {Vector{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
+}
 
 Vector times(const Matrix& m, const Vector& a) { return {dot(m[0], a), dot(m[1], a), dot(m[2], a)}; }
 double length(const Vector& a) { return std::sqrt(dot(a, a)); }

@@ -16,6 +16,7 @@ using Matrix = std::array<Vector, 3>;  // rows
 
 inline double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vector times(const Matrix& m, const Vector& a);
+Matrix transposed(const Matrix& m);
 double length(const Vector& a);
 
 // Of each node in turn: d components of a vector, as many of H as its form has, one of the others.

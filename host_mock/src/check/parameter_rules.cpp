@@ -6,12 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ilaw::check {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // create refuses the values with ILAW_INVALID_PARAMETER, no instance and a message.
 void expect_refused(const Trial& trial, const Values& values) {
@@ -252,14 +249,14 @@ void table_shape(const Subject& subject) {
     const double good = number_of(trial.law, trial.values, p.name), below = p.minimum - 1.0;
     const double value =
         in_range(p, good) && std::isfinite(good) ? good : std::nextafter(p.minimum, infinity);
-    const double nan = std::nan("");
+    const double not_a_number = std::nan("");
     for (const std::vector<double>& table : {std::vector<double>{},
                                              {0.0, value, 0.0, value},
                                              {1.0, value, 0.0, value},
-                                             {nan, value},
+                                             {not_a_number, value},
                                              {0.0, value, infinity, value},
                                              {0.0, value, 1.0, below},
-                                             {0.0, nan}})
+                                             {0.0, not_a_number}})
       expect_refused(trial, with(trial.values, {p.name, ILAW_VALUE_TABLE, 0.0, {}, table}));
     return true;
   });

@@ -77,6 +77,7 @@ void threads(const Subject& subject) {
     std::vector<std::vector<Results>> found(count);
     {
       std::vector<std::jthread> workers;
+      workers.reserve(count);
       for (std::vector<Results>& own : found)
         workers.emplace_back([&trial, &script, &own] { own = run(trial, script); });
     }

@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ilaw::check {
 namespace {
-
-constexpr double ulp = std::numeric_limits<double>::epsilon();
 
 // Calls look with the results of every good node of every step.
 template <class Look>

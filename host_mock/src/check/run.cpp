@@ -15,8 +15,6 @@ namespace {
 constexpr double sentinel = 123456.75;
 constexpr std::uint8_t status_sentinel = 99;
 
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
 std::optional<Difference> difference(const char* name, const std::vector<double>& a,
                                      const std::vector<double>& b, std::size_t nodes) {
   for (std::size_t k = 0; k < a.size() && k < b.size(); ++k) {

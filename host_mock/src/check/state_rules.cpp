@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 namespace ilaw::check {
 namespace {
@@ -135,7 +134,6 @@ void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, cons
 }
 
 void foreign_state(const Subject& subject) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   for_trials(
       subject,
       [](const Trial& trial, Draw& draw) {

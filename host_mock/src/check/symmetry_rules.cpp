@@ -94,10 +94,6 @@ std::vector<double> turned_state(const Trial& trial, std::vector<double> state, 
   return state;
 }
 
-Matrix transposed(const Matrix& m) {
-  return {Vector{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
-}
-
 void turned_whole(const Subject& subject) {
   for_trials(
       subject,

@@ -182,7 +182,7 @@ const ilaw_parameter* parameter_of(const ilaw_law& law, const std::string& name)
 }
 
 bool in_range(const ilaw_parameter& p, double value) {
-  if (value == std::numeric_limits<double>::infinity()) return p.infinity_allowed != 0;
+  if (value == infinity) return p.infinity_allowed != 0;
   return value <= p.maximum && (p.minimum_excluded ? value > p.minimum : value >= p.minimum);
 }
 
@@ -214,7 +214,7 @@ Value draw_value(const ilaw_parameter& p, Draw& draw) {
     return value;
   }
   if (p.infinity_allowed && draw.one_in(8)) {
-    value.number = std::numeric_limits<double>::infinity();
+    value.number = infinity;
     return value;
   }
   const bool whole = p.kind == ILAW_PARAMETER_COUNT;

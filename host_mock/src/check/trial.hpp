@@ -8,13 +8,21 @@
 
 #include <ilaw/ilaw.h>
 
+#include <bit>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace ilaw::check {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double ulp = std::numeric_limits<double>::epsilon();
+inline bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
 
 // A value of a parameter, with what its ilaw_argument points to.
 struct Value {

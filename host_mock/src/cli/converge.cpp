@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Options {
+struct ConvergeOptions {
   std::filesystem::path scene, folder;
   SweepOptions sweep;
   int threads = 1;
@@ -46,7 +46,7 @@ void print_table(const ErrorTable& table) {
   std::printf("\n");
 }
 
-int converge(const Options& options) {
+int converge(const ConvergeOptions& options) {
   set_threads(options.threads);
   guard_against_laws();
   ErrorTable table;
@@ -72,7 +72,7 @@ int converge(const Options& options) {
 }  // namespace
 
 void add_converge(CLI::App& app, Action& chosen) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConvergeOptions>();
   CLI::App* command = app.add_subcommand(
       "converge", "Run a scene with ever smaller steps (and meshes) and measure its errors and their order");
   command->add_option("scene", options->scene, "Scene file (JSON)")->required();

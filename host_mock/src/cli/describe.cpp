@@ -108,33 +108,35 @@ json describe_library(const ilaw::library& library) {
   return out;
 }
 
-std::string text_of(const json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+std::string unquoted(const json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
 
 std::string joined(const json& values) {
   std::string text;
-  for (const json& value : values) text += (text.empty() ? "" : ", ") + text_of(value);
+  for (const json& value : values) text += (text.empty() ? "" : ", ") + unquoted(value);
   return text;
 }
 
 std::string range_of(const json& p) {
   if (p.contains("choices")) return "one of " + joined(p["choices"]);
   const bool closed = p["infinity_allowed"].get<bool>() || p["maximum"] != "inf";
-  return std::string(p["minimum_excluded"].get<bool>() ? "(" : "[") + text_of(p["minimum"]) + ", " +
-         text_of(p["infinity_allowed"].get<bool>() ? json("inf") : p["maximum"]) + (closed ? "]" : ")");
+  return std::string(p["minimum_excluded"].get<bool>() ? "(" : "[") + unquoted(p["minimum"]) + ", " +
+         unquoted(p["infinity_allowed"].get<bool>() ? json("inf") : p["maximum"]) + (closed ? "]" : ")");
 }
 
 Row row_of_parameter(const json& p) {
-  return {text_of(p["name"]),
-          text_of(p["unit"]),
+  return {unquoted(p["name"]),
+          unquoted(p["unit"]),
           range_of(p),
-          p["required"].get<bool>() ? "required" : "default " + text_of(p["default"]),
+          p["required"].get<bool>() ? "required" : "default " + unquoted(p["default"]),
           p["may_be"].empty() ? "constant" : "or " + joined(p["may_be"]),
-          text_of(p["doc"])};
+          unquoted(p["doc"])};
 }
 
 void print_law(const json& law) {
-  std::printf("\n%s - %s\n  %s\n", text_of(law["id"]).c_str(), text_of(law["title"]).c_str(),
-              text_of(law["doc"]).c_str());
+  std::printf("\n%s - %s\n  %s\n", unquoted(law["id"]).c_str(), unquoted(law["title"]).c_str(),
+              unquoted(law["doc"]).c_str());
   std::printf("  dimensions: %s; H: %s; may read: %s\n", joined(law["dimensions"]).c_str(),
               joined(law["delassus_forms"]).c_str(), joined(law["inputs"]).c_str());
   if (!law["capabilities"].empty()) std::printf("  can: %s\n", joined(law["capabilities"]).c_str());
@@ -144,12 +146,13 @@ void print_law(const json& law) {
   print_rows(rows, "    ");
   rows.clear();
   for (const json& v : law["state"])
-    rows.push_back({text_of(v["name"]), text_of(v["unit"]),
-                    text_of(v["kind"]) + (v["internal"].get<bool>() ? ", internal" : ""), text_of(v["doc"])});
+    rows.push_back({unquoted(v["name"]), unquoted(v["unit"]),
+                    unquoted(v["kind"]) + (v["internal"].get<bool>() ? ", internal" : ""),
+                    unquoted(v["doc"])});
   if (!rows.empty()) std::printf("  state:\n");
   print_rows(rows, "    ");
   std::printf("  references:\n");
-  for (const json& reference : law["references"]) std::printf("    %s\n", text_of(reference).c_str());
+  for (const json& reference : law["references"]) std::printf("    %s\n", unquoted(reference).c_str());
 }
 
 int describe(const std::string& law_or_file, bool as_json) {
@@ -161,7 +164,7 @@ int describe(const std::string& law_or_file, bool as_json) {
       std::printf("%s\n", description.dump(2).c_str());
       return exit_done;
     }
-    const auto text = [&](const char* key) { return text_of(description[key]); };
+    const auto text = [&](const char* key) { return unquoted(description[key]); };
     std::printf("%s %s (%s, %s), ABI %s.%s\n%s\n", text("name").c_str(), text("version").c_str(),
                 text("vendor").c_str(), text("licence").c_str(), description["abi"][0].dump().c_str(),
                 description["abi"][1].dump().c_str(), printable(text("file")).c_str());

@@ -23,7 +23,7 @@
 namespace ilaw::host {
 namespace {
 
-struct Options {
+struct PlotOptions {
   std::vector<std::string> folders, y, panels;
   std::string x = "time", out;
 };
@@ -109,14 +109,14 @@ void check_columns(const std::vector<RunFolder>& runs, const std::vector<std::st
 }
 
 // What the picture is called: comparison, or its columns.
-std::string picture_name(const Options& options) {
+std::string picture_name(const PlotOptions& options) {
   if (options.y.empty()) return "comparison";
   std::string name;
   for (const std::string& column : options.y) name += (name.empty() ? "" : "_") + column;
   return name + "_over_" + options.x;
 }
 
-int plot_columns(const Options& options) {
+int plot_columns(const PlotOptions& options) {
   std::vector<RunFolder> runs;
   ComparisonSetup setup{options.x, options.y};
   try {
@@ -146,7 +146,7 @@ int plot_columns(const Options& options) {
   return exit_done;
 }
 
-int plot(const Options& options) {
+int plot(const PlotOptions& options) {
   const bool history = options.folders.size() == 1 && options.y.empty() && options.x == "time";
   if (history) return plot_history(options.folders.front(), options.panels);
   if (options.panels.empty()) return plot_columns(options);
@@ -157,7 +157,7 @@ int plot(const Options& options) {
 }  // namespace
 
 void add_plot(CLI::App& app, Action& chosen) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PlotOptions>();
   CLI::App* command =
       app.add_subcommand("plot", "Draw the history of a run, or several runs over each other: .png and .svg");
   command->add_option("folders", options->folders, "Folders that `ilaw run` wrote")->required();

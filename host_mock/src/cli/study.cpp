@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Options {
+struct StudyOptions {
   std::vector<std::filesystem::path> scenes;
   std::filesystem::path folder;
   std::vector<std::string> laws;
@@ -33,7 +33,7 @@ struct Options {
   int threads = 1;
 };
 
-StudySetup setup_of(json& source, const Options& options) {
+StudySetup setup_of(json& source, const StudyOptions& options) {
   StudySetup setup = read_study(source, options.laws);
   setup.sweep = options.sweep.over(setup.sweep);
   setup.repetitions = options.repetitions.value_or(setup.repetitions);
@@ -78,7 +78,7 @@ void print_costs(const Study& study) {
 }
 
 int study_scene(const std::filesystem::path& file, const std::filesystem::path& folder,
-                const Options& options) {
+                const StudyOptions& options) {
   Study study;
   std::string title;
   std::optional<HeldFolder> held;
@@ -101,7 +101,7 @@ int study_scene(const std::filesystem::path& file, const std::filesystem::path& 
   return draw_study(study, title, folder) ? exit_done : exit_failed;
 }
 
-int study(const Options& options) {
+int study(const StudyOptions& options) {
   set_threads(options.threads);
   guard_against_laws();
   const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
@@ -122,7 +122,7 @@ int study(const Options& options) {
 }  // namespace
 
 void add_study(CLI::App& app, Action& chosen) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<StudyOptions>();
   CLI::App* command =
       app.add_subcommand("study", "Compare laws in a scene: what error they reach with how many steps");
   command->add_option("scenes", options->scenes, "Scene files (JSON)")->required();

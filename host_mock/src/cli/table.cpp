@@ -13,7 +13,7 @@
 namespace ilaw::host {
 namespace {
 
-struct Options {
+struct TableOptions {
   std::vector<std::string> folders, columns;
   bool csv = false;
 };
@@ -26,7 +26,7 @@ Rows transposed(const Rows& rows) {
   return columns;
 }
 
-int table(const Options& options) {
+int table(const TableOptions& options) {
   try {
     std::vector<RunFolder> runs;
     for (const std::string& folder : options.folders) runs.push_back(open_run(folder));
@@ -45,7 +45,7 @@ int table(const Options& options) {
 }  // namespace
 
 void add_table(CLI::App& app, Action& chosen) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TableOptions>();
   CLI::App* command = app.add_subcommand("table", "Runs side by side: a row each, with what differs");
   command->add_option("folders", options->folders, "Folders that `ilaw run` wrote")->required();
   command
