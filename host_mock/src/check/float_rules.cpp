@@ -16,14 +16,8 @@ namespace {
 
 // Zeros, tiny, huge and infinite numbers besides those drawn.
 Script hostile(const Trial& trial, Draw& draw) {
-  constexpr std::array odd{0.0,
-                           -0.0,
-                           5e-324,
-                           -1e-310,
-                           -3e-308,
-                           -1e300,
-                           1e300,
-                           std::numeric_limits<double>::quiet_NaN(),
+  constexpr std::array odd{0.0,      -0.0,   5e-324, -1e-310,
+                           -3e-308,  -1e300, 1e300,  std::numeric_limits<double>::quiet_NaN(),
                            -infinity};
   Script script = draw_script(trial, draw, {40, 2});
   for (Inputs& in : script)
