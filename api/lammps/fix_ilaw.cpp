@@ -12,12 +12,15 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 namespace LAMMPS_NS {
 namespace {
 
 constexpr int motion_size = 12;  // v_free, spin_free, v_previous, spin_previous
 constexpr double inertia = 0.4;  // of a sphere, over m R^2
+constexpr std::uint32_t default_sweeps = 20;
+constexpr double default_tolerance = 1e-8;
 enum { CLOSED, SWEEPS, RESIDUAL, OVERLAP, APPROACH, FRICTION, IMPACT, RUPTURE, STORED, OUTPUTS };
 
 }  // namespace
@@ -108,6 +111,19 @@ void FixIlaw::check_run() {
       refuse("has to come after all fixes that add forces, gravity included, but fix " +
              std::string(modify->fix[i]->id) + " comes later");
   }
+}
+
+// The most exact of what fixes ask for; those that say nothing leave it to the others.
+ilaw_coupled_options FixIlaw::options() const {
+  double sweeps = 0.0, tolerance = std::numeric_limits<double>::infinity();
+  for (const FixIlaw* fix : all_) {
+    sweeps = std::max(sweeps, fix->most_sweeps_);
+    if (fix->tolerance_ > 0.0) tolerance = std::min(tolerance, fix->tolerance_);
+  }
+  ilaw_coupled_options options{};
+  options.most_sweeps = sweeps > 0.0 ? static_cast<std::uint32_t>(sweeps) : default_sweeps;
+  options.tolerance = std::isfinite(tolerance) ? tolerance : default_tolerance;
+  return options;
 }
 
 // Forces of a time that was evaluated already, when a run goes on: another evaluate would lose a bounce and
@@ -206,17 +222,10 @@ void FixIlaw::solve() {
     MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(n), MPI_DOUBLE, MPI_SUM,
                   static_cast<FixIlaw*>(context)->world);
   };
-  ilaw_coupled_options options{};
+  ilaw_coupled_options options = this->options();
   options.exchange = &exchange;
-  options.tolerance = tolerance_;
-  double sweeps = most_sweeps_;
   std::vector<const ilaw_contacts*> groups;
-  for (FixIlaw* fix : all_) {
-    sweeps = std::max(sweeps, fix->most_sweeps_);
-    options.tolerance = std::min(options.tolerance, fix->tolerance_);
-    groups.push_back(fix->contacts_->describe(clock_, update->dt));
-  }
-  options.most_sweeps = static_cast<std::uint32_t>(sweeps);
+  for (FixIlaw* fix : all_) groups.push_back(fix->contacts_->describe(clock_, update->dt));
   std::string why;
   try {
     report_ = solver_.solve(bodies, groups, options);

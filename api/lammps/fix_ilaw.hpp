@@ -65,6 +65,7 @@ class FixIlaw : public Fix {
   bool leads() const { return all_.back() == this; }
   void check_run();
   void evaluate(double velocity_step);
+  ilaw_coupled_options options() const;
   void gather_bodies(double velocity_step);
   void solve();
   void add_forces(double velocity_step);
@@ -83,7 +84,7 @@ class FixIlaw : public Fix {
   std::vector<Kept> kept_;
   bool evaluated_ = false;  // these positions, by this fix for all
   double clock_ = 0.0;      // of the laws
-  double most_sweeps_ = 20.0, tolerance_ = 1e-8;
+  double most_sweeps_ = 0.0, tolerance_ = 0.0;  // 0: left to the other fixes
 
   ilaw::coupled solver_;
   std::vector<double> motion_, inverse_mass_, inverse_inertia_, after_, total_;

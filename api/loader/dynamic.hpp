@@ -15,5 +15,6 @@
 __asm__(".symver dlopen,dlopen@" ILAW_FIRST_VERSION);
 __asm__(".symver dlsym,dlsym@" ILAW_FIRST_VERSION);
 __asm__(".symver dlclose,dlclose@" ILAW_FIRST_VERSION);
+__asm__(".symver dladdr,dladdr@" ILAW_FIRST_VERSION);
 __asm__(".symver dlerror,dlerror@" ILAW_FIRST_VERSION);
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search.hpp"
 
+#include "dynamic.hpp"
 #include "file.hpp"
 #include "refusal.hpp"
 
@@ -57,6 +58,14 @@ void add_beside_program(search_path& path) {
   add_once(path, std::string(program, static_cast<std::size_t>(length)) + "/../../lib/ilaw");
 }
 
+// The library that the loader is, or is part of: whoever calls it may lie elsewhere, as Python does.
+void add_beside_library(search_path& path) {
+  Dl_info where;
+  if (getauxval(AT_SECURE) != 0 || dladdr(ILAW_INSTALLED_FOLDER, &where) == 0 || where.dli_fname[0] != '/')
+    return;
+  add_once(path, std::string(where.dli_fname) + "/../../lib/ilaw");
+}
+
 bool ends_in_so(std::string_view name) { return name.size() > 3 && name.substr(name.size() - 3) == ".so"; }
 
 bool is_name(const std::string& text) {
@@ -79,6 +88,7 @@ search_path folders_searched() {
   search_path path;
   add_environment(path);
   add_beside_program(path);
+  add_beside_library(path);
   add_once(path, ILAW_INSTALLED_FOLDER);
   return path;
 }

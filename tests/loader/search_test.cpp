@@ -112,6 +112,17 @@ TEST_F(Searched, SharedLoaderSearchesTheSame) {
   EXPECT_EQ(output_of(ILAW_HOSTS "/search_host_shared here"), "0\n");
 }
 
+// An archive may be unpacked anywhere: its laws are found by a program that lies elsewhere, too.
+TEST_F(Searched, SharedLoaderLooksBesideItself) {
+  fs::create_directory(folder / "lib");
+  fs::copy_file(ILAW_HOSTS "/../lib/libilaw_loader.so.1", folder / "lib" / "libilaw_loader.so.1");
+  const std::string preload = "LD_PRELOAD=" + (folder / "lib" / "libilaw_loader.so.1").string();
+  const std::string wanted = (folder / "lib" / "ilaw").string();
+  EXPECT_NE(output_of(preload + " " ILAW_HOSTS "/search_host_shared").find(wanted), std::string::npos)
+      << output_of(preload + " " ILAW_HOSTS "/search_host_shared");
+  EXPECT_EQ(output_of(ILAW_HOSTS "/search_host_shared").find(wanted), std::string::npos);
+}
+
 // Its interface outlives main, and with it whatever the loader has. Freed memory reads as rubbish.
 TEST(LateHost, EndsWell) {
   EXPECT_EQ(output_of("MALLOC_PERTURB_=165 " ILAW_HOSTS "/late_host " ILAW_TEST_PLUGINS

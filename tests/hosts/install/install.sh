@@ -21,6 +21,9 @@ case $way in
     cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/made" >cpack.log 2>&1 || { cat cpack.log; exit 1; }
     for package in made/*.deb; do dpkg-deb -x "$package" root; done
     dpkg-deb --field made/ilaw_*.deb Depends | grep -q libstdc++6
+    if [ -e "$build/lib/libilaw_lammps.so" ]; then
+      dpkg-deb --field made/ilaw-lammps_*.deb Depends | grep -q 'ilaw (= .*lammps'
+    fi
     dpkg-deb --field made/libilaw-dev_*.deb Depends | grep -q '^ilaw (= '
     prefix=$work/root/usr ;;
 esac
@@ -39,7 +42,7 @@ done
 if [ "$way" != install ]; then
   cmake --install "$build" --prefix "$work/installed" >/dev/null
   for folder in include lib/cmake lib/pkgconfig share; do
-    diff -r -x lammps "$work/installed/$folder" "$prefix/$folder"  # its file names the folder
+    diff -r "$work/installed/$folder" "$prefix/$folder"
   done
   [ "$(ls "$work/installed/lib/ilaw")" = "$(ls "$prefix/lib/ilaw")" ]
 fi
@@ -47,6 +50,15 @@ fi
 echo "== the program, from where it lies"
 "$prefix/bin/ilaw" list | grep -q "^coulomb .*$prefix/lib/ilaw/coulomb.so"
 "$prefix/bin/ilaw" run "$source/plugins/coulomb/sliding_block.json" --out results
+
+if [ -e "$build/lib/libilaw_lammps.so" ]; then
+  echo "== the fixes in LAMMPS"
+  [ -e "$prefix/lib/libilaw_lammps.so" ]
+  ! grep -rqF "$build" "$prefix/share/ilaw/lammps"
+  sed 's/^run .*/run 2/' "$prefix/share/ilaw/lammps/examples/in.settle" >in.settle
+  ILAW_PATH=$prefix/lib/ilaw lmp -in in.settle -var ilaw "$prefix/share/ilaw/lammps/ilaw.lmp" -log none >lammps.log ||
+    { tail lammps.log; exit 1; }
+fi
 
 echo "== a project with CMake: hosts with the static and the shared loader"
 cp "$source/tests/hosts/blocks.c" "$source/tests/hosts/blocks.cpp" \

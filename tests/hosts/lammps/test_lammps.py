@@ -112,6 +112,14 @@ def test_a_pile_settles_and_its_outputs_say_so(tmp_path):
     assert friction > 0
 
 
+# The walls of this pile say nothing of sweeps and tol: their defaults must not stand for what the pairs ask for.
+def test_sweeps_and_tol_of_one_fix_hold_for_all(tmp_path):
+    output = "thermo_style custom step f_p[2] f_w[2] f_p[3]\nthermo 300\nrun 600\n"
+    _, sweeps, of_walls, residual = thermo(lammps(tmp_path, pile(sweeps="sweeps 50 tol 1e-2") + output))[-1]
+    assert sweeps == of_walls < 50 and 1e-8 < residual <= 1e-2
+    assert thermo(lammps(tmp_path, pile(sweeps="sweeps 3 tol 1e-12") + output))[-1][1] == 3
+
+
 def test_ten_runs_are_one_run(tmp_path):
     lammps(tmp_path, pile() + "run 300\n" + state("one"))
     lammps(tmp_path, pile() + "run 30\n" * 10 + state("ten"))
