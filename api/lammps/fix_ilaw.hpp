@@ -82,8 +82,8 @@ class FixIlaw : public Fix {
   std::vector<std::string> words_;
   std::vector<ilaw::lammps::Row> rows_;
   std::vector<Kept> kept_;
-  bool evaluated_ = false;  // these positions, by this fix for all
-  double clock_ = 0.0;      // of the laws
+  bool evaluated_ = false;                      // these positions, by this fix for all
+  double clock_ = 0.0;                          // of the laws
   double most_sweeps_ = 0.0, tolerance_ = 0.0;  // 0: left to the other fixes
 
   ilaw::coupled solver_;

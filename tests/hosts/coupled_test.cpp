@@ -273,16 +273,21 @@ TEST(Coupled, NamesContactsWithBadInputAndSolvesTheOthers) {
   EXPECT_EQ(scene.impulse[15], 0.0);
 }
 
-// tests/hosts/grains.c, a host in C: a thousand grains fall into a box. With 100000 grains, in the release
-// build: grains_c coulomb 100000 600 30
+// tests/hosts/grains.c, a host in C: a thousand grains fall into a box. docs/comparisons.md has larger ones.
 TEST(Coupled, PileSettlesWithoutSinkingIntoItself) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  FILE* pipe = popen(ILAW_grains_c " coulomb 1000 250 15", "r");
-  double overlap = 1.0, kinetic = 1.0, residual = 1.0;
-  ASSERT_EQ(std::fscanf(pipe, "overlap %lf kinetic %lf residual %lf", &overlap, &kinetic, &residual), 3);
+  FILE* pipe = popen(ILAW_grains_c " coulomb 1000 250 15 5e-3 10", "r");
+  double overlap = 1.0, kinetic = 1.0, residual = 1.0, sweeps = 0.0, step = 0.0;
+  int contacts = 0;
+  ASSERT_EQ(std::fscanf(pipe, "overlap %lf kinetic %lf residual %lf sweeps %lf contacts %d", &overlap,
+                        &kinetic, &residual, &sweeps, &contacts),
+            5);
+  EXPECT_EQ(std::fscanf(pipe, " cpu [s] %*f, a step [ms] %lf,", &step), 1);
   pclose(pipe);
   EXPECT_LE(overlap, 0.01) << "of a diameter";
   EXPECT_LE(kinetic, 0.01) << "of the energy of the fall";
+  EXPECT_GE(contacts, 3000) << "a grain in a pile has some three of its own";
+  EXPECT_LE(sweeps, 15.0);
 }
 
 }  // namespace

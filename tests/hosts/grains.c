@@ -1,8 +1,9 @@
 /* grains.c - a small discrete-element code in C99: spheres that fall into a box, with rotation, friction and
  * pair contacts that are solved together.
  *
- * Usage: grains_c LIBRARY GRAINS STEPS SWEEPS. Prints the largest overlap over the diameter, the kinetic
- * energy over what the fall could have given, the worst residual, and sweeps per step.
+ * Usage: grains_c LIBRARY GRAINS STEPS SWEEPS [STEP [LAYERS]]. Prints the largest overlap over the diameter,
+ * the kinetic energy over what the fall could have given, the worst residual, and sweeps per step. Given a
+ * STEP (5e-3) it also says what that took; LAYERS lie on each other at the start, in a box as wide as needed.
  *
  * SPDX-License-Identifier: BSD-3-Clause
  */
@@ -13,13 +14,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 enum { PARTNERS = 24, FACES = 5 }; /* of a grain; of the box, which is open above */
 
-static const double h = 5e-3, gravity = 10.0, radius = 0.5, mass = 1.0, skin = 0.1, spacing = 1.15;
+static const double gravity = 10.0, radius = 0.5, mass = 1.0, skin = 0.1, spacing = 1.15;
 
-static int grains, per_side, cells, cells_above;
-static double side;
+static int grains, per_side, layers, cells, cells_above;
+static double h = 5e-3, side, height;
 static double (*x)[3], (*v)[3], (*w)[3], (*v_previous)[3], (*w_previous)[3];
 static int *cell_head, *cell_next;
 
@@ -52,7 +54,7 @@ static ilaw_interface* create_interface(const char* library_name) {
   const ilaw_argument* const arguments[] = {&friction};
   const ilaw_setup setup = {.struct_size = sizeof setup,
                             .dimension = 3,
-                            .delassus_form = ILAW_DELASSUS_FULL, /* grains rotate */
+                            .delassus_form = ILAW_DELASSUS_TRANSVERSE, /* spheres that rotate */
                             .frame = ILAW_FRAME_GLOBAL,
                             .arguments = arguments,
                             .argument_count = 1};
@@ -208,7 +210,7 @@ static ilaw_coupled_report step(const ilaw_interface* interface, ilaw_coupled* s
                               .velocity = {&v[0][0], 3, 1},
                               .spin = {&w[0][0], 3, 1}};
   const ilaw_contacts contacts = {.struct_size = sizeof contacts,
-                                  .delassus_form = ILAW_DELASSUS_FULL,
+                                  .delassus_form = ILAW_DELASSUS_TRANSVERSE,
                                   .law = ilaw_interface_law(interface),
                                   .instance = ilaw_interface_instance(interface),
                                   .batch = &batch,
@@ -225,10 +227,11 @@ static ilaw_coupled_report step(const ilaw_interface* interface, ilaw_coupled* s
 }
 
 static void make_room(void) {
-  per_side = (int)ceil(cbrt(grains));
+  per_side = layers ? (int)ceil(sqrt((double)grains / layers)) : (int)ceil(cbrt(grains));
   side = per_side * spacing;
+  height = ceil((double)grains / (per_side * per_side)) * spacing;
   cells = (int)(side / (2 * radius + skin)) + 1;
-  cells_above = cells + 1;
+  cells_above = (int)(height / (2 * radius + skin)) + 2;
   x = array(grains, sizeof *x), v = array(grains, sizeof *v), w = array(grains, sizeof *w);
   v_previous = array(grains, sizeof *v), w_previous = array(grains, sizeof *w);
   cell_head = array((size_t)cells * cells * cells_above, sizeof *cell_head);
@@ -244,9 +247,19 @@ static void make_room(void) {
   state = array(room * state_size, sizeof *state);
 }
 
+static void print_costs(int steps, double contact_sweeps) {
+  struct rusage used;
+  getrusage(RUSAGE_SELF, &used);
+  const double seconds = used.ru_utime.tv_sec + 1e-6 * used.ru_utime.tv_usec;
+  printf("cpu [s] %.1f, a step [ms] %.2f, a sweep of a contact [ns] %.0f, memory of a contact [kB] %.2f\n",
+         seconds, 1e3 * seconds / steps, 1e9 * seconds / contact_sweeps, (double)used.ru_maxrss / count);
+}
+
 int main(int argc, char** argv) {
-  if (argc != 5) fail("usage", "grains_c LIBRARY GRAINS STEPS SWEEPS");
+  if (argc < 5 || argc > 7) fail("usage", "grains_c LIBRARY GRAINS STEPS SWEEPS [STEP [LAYERS]]");
   grains = atoi(argv[2]);
+  if (argc > 5) h = atof(argv[5]);
+  if (argc > 6) layers = atoi(argv[6]);
   const int steps = atoi(argv[3]);
   ilaw_interface* interface = create_interface(argv[1]);
   ilaw_instance_info info = {.struct_size = sizeof info};
@@ -259,10 +272,11 @@ int main(int argc, char** argv) {
   if (!solver) fail("solver", "out of memory");
   const ilaw_coupled_options options = {
       .struct_size = sizeof options, .most_sweeps = (uint32_t)atoi(argv[4]), .tolerance = 1e-8};
-  double overlap = 0.0, residual = 0.0, sweeps = 0.0, kinetic = 0.0;
+  double overlap = 0.0, residual = 0.0, sweeps = 0.0, contact_sweeps = 0.0, kinetic = 0.0;
   for (int n = 0; n < steps; ++n) {
     const ilaw_coupled_report report = step(interface, solver, n, &options);
     sweeps += report.sweeps;
+    contact_sweeps += (double)report.sweeps * count;
     residual = fmax(residual, report.residual);
     for (int k = 0; k < count; ++k) overlap = fmax(overlap, -gap[k]);
   }
@@ -270,7 +284,8 @@ int main(int argc, char** argv) {
     for (int c = 0; c < 3; ++c)
       kinetic += 0.5 * mass * (v[i][c] * v[i][c] + 0.4 * radius * radius * w[i][c] * w[i][c]);
   printf("overlap %.3e kinetic %.3e residual %.1e sweeps %.1f contacts %d\n", overlap / (2 * radius),
-         kinetic / (grains * mass * gravity * side), residual, sweeps / steps, count);
+         kinetic / (grains * mass * gravity * height), residual, sweeps / steps, count);
+  if (argc > 5) print_costs(steps, contact_sweeps);
   ilaw_coupled_destroy(solver);
   ilaw_interface_destroy(interface);
   return 0;

@@ -62,13 +62,19 @@ def touching():
     return np.array([(i.id1, i.id2) for i in O.interactions if i.phys.normalForce.norm() > 0]).reshape(-1, 2)
 
 
-worst, sweeps, seconds = 0.0, [], 0.0
+def mean_height():
+    return float(np.mean([O.bodies[k].state.pos[2] for k in range(count)]))
+
+
+worst, sweeps, seconds, looked_at, heights = 0.0, [], 0.0, 0, []
 steps = round(end / O.dt)
 for begun in range(0, steps, 10):
     began = time.process_time()
     O.run(10, True)
     seconds += time.process_time() - began
     worst = max(worst, overlap())
+    heights.append((O.time, mean_height()))
+    looked_at += 10 * (len(contacts.pairs) if which == "ilaw" else O.interactions.countReal())
     if which == "ilaw":
         sweeps.append(contacts.sweeps)
 spheres = [b for b in O.bodies if isinstance(b.shape, Sphere)]
@@ -84,7 +90,9 @@ said = {
     "overlap_over_diameter": worst / (2 * radius),
     "kinetic": kinetic,
     "coordination": float(np.count_nonzero(pairs < count) / count),
-    "height": float(np.mean([b.state.pos[2] for b in spheres])),
+    "height": mean_height(),
+    "heights": heights[:: max(1, len(heights) // 100)],
+    "microseconds_per_contact": 1e6 * seconds / looked_at,
     "sweeps": float(np.mean(sweeps)) if sweeps else None,
 }
 print("settled " + json.dumps(said), flush=True)

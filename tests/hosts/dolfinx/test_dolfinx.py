@@ -16,11 +16,11 @@ RANKS = (2, 1, 4)  # two ranks first, since forms are compiled in the first run
 NAMES = ["coulomb, hexahedra", "coulomb, a file", "postit, tetrahedra", "coulomb, neo-hookean", "postit, tall"]
 
 
-def on_ranks(ranks, *arguments):
+def on_ranks(ranks, *arguments, script=CASES):
     """A run without a home folder. One that does not end fails."""
     environment = {**os.environ, "HOME": "/nonexistent", "OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1",
                    "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}  # fmt: skip
-    command = ["mpirun", "--oversubscribe", "-n", str(ranks), sys.executable, str(CASES), *map(str, arguments)]
+    command = ["mpirun", "--oversubscribe", "-n", str(ranks), sys.executable, str(script), *map(str, arguments)]
     return subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, text=True, timeout=200,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)  # fmt: skip
 
@@ -101,6 +101,23 @@ def test_fields_are_written_for_paraview(runs):
     assert times.keys() == {"displacement", "status", "adhesion"}
     assert times["status"] == times["adhesion"] and len(times["status"]) == 4
     assert (runs["out"] / "block.h5").stat().st_size > 10_000
+
+
+def test_the_comparison_with_a_penalty_runs(runs):
+    """Its nodes sink in, and its step is shorter the stiffer it is; the law's do not, at the step of the block."""
+    script = Path(os.environ["ILAW_SOURCE"]) / "api/python/examples/dolfinx/compare.py"
+    options = ["--cells", 3, "--fine", 6, "--stiffness", 1, 100, "--bounds", 0.5, "--cache", runs["out"] / "compiled"]
+    done = on_ranks(1, *options, script=script)
+    assert done.returncode == 0, done.stdout[-3000:]
+    lines = [line.split("|")[1:-1] for line in done.stdout.splitlines() if line.startswith("| ")][2:]
+    rows = [(line[0].strip(), *(float(text.strip("- %") or "nan") for text in line[1:])) for line in lines]
+    laws, penalties = ([row for row in rows if row[0].startswith(kind)] for kind in ("coulomb", "penalty"))
+    assert len(laws) == 3 and len(penalties) == 3
+    assert all(row[5] == 0 for row in laws) and all(row[5] > 1 for row in penalties)
+    soft, stiff = penalties[1:]
+    assert stiff[2] < 0.5 * soft[2] <= 0.5 * laws[1][2] and stiff[5] < 0.5 * soft[5]
+    assert all(row[4] < 40 for row in (*laws[1:], *penalties)), rows
+    assert "penalty over coulomb: step" in done.stdout
 
 
 def test_an_error_on_one_rank_ends_all(tmp_path):

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -78,3 +79,22 @@ def test_the_example_settles(tmp_path, which):
     found = json.loads(re.search(r"^settled (.*)$", said, re.M)[1])
     assert found["overlap_over_diameter"] < (0.01 if which == "own" else 1e-3)
     assert 0.049 < found["height"] < 0.08
+
+
+def test_the_comparison_with_yades_own_law_runs(tmp_path):
+    options = ["--count", "8", "--end", "0.3", "--steps", "2e-3", "3e-3", "--own-steps", "5e-5", "8e-5"]
+    done = subprocess.run([sys.executable, YADE / "examples/compare.py", *options], cwd=tmp_path, text=True,
+                          timeout=200, stdout=subprocess.PIPE, check=True)  # fmt: skip
+    rows = [line.split("|")[1:-1] for line in done.stdout.splitlines() if line.startswith("| ")][2:]
+    assert [row[0].strip() for row in rows] == ["coulomb"] * 2 + ["Mindlin"] * 2
+    assert [float(row[1]) for row in rows] == [2, 3, 0.05, 0.08]
+    # At the end the spheres lie on the floor, by whichever law.
+    assert all(0 <= float(row[3].strip("- %")) < 5 for row in rows[1::2]), rows
+    assert all(0 <= float(row[5].strip(" %")) < 1 for row in rows), rows
+
+
+@pytest.mark.parametrize("which", ["ilaw", "own"])
+def test_the_memory_of_a_contact_is_measured(tmp_path, which):
+    said = yade(tmp_path, YADE / "examples/memory.py", which, 8)
+    count, each = map(int, re.search(rf"^{which}: (\d+) contacts, (\d+) bytes each$", said, re.M).groups())
+    assert count >= 3 * 8 * 8 * 7 and each < 4000

@@ -135,13 +135,17 @@ class Block:
         area = self._assembled(self._form(ufl.dot(ufl.as_vector([1.0, 1.0, 1.0]), test) * side))[:, 0].copy()
         return np.flatnonzero(area > 0), area
 
-    def critical_step(self):
-        """2/omega of the fastest oscillation at rest, by the power method; the same on any number of ranks."""
+    def critical_step(self, springs=0.0):
+        """2/omega of the fastest oscillation at rest, by the power method; the same on any number of ranks.
+
+        springs: stiffness [N/m] of a spring along z at each owned node, if there are any.
+        """
         tiny = 1e-7
         w = np.sin(1e3 * self.x + [0.0, 1.0, 2.0])
         for _ in range(60):
             self.u[:] = tiny * w
             w = self.forces() / (tiny * self.mass[:, None])
+            w[:, 2] += springs * self.u[:, 2] / (tiny * self.mass)
             square = np.sqrt(self.sum(np.vdot(w, w))[0])
             w /= square
         self.u[:] = 0.0
