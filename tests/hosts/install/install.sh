@@ -51,7 +51,7 @@ echo "== the program, from where it lies"
 "$prefix/bin/ilaw" list | grep -q "^coulomb .*$prefix/lib/ilaw/coulomb.so"
 "$prefix/bin/ilaw" run "$source/plugins/coulomb/sliding_block.json" --out results
 
-if [ -e "$build/lib/libilaw_lammps.so" ]; then
+if [ -e "$build/lib/libilaw_lammps.so" ] && [ -x "$(command -v lmp)" ]; then
   echo "== the fixes in LAMMPS"
   [ -e "$prefix/lib/libilaw_lammps.so" ]
   ! grep -rqF "$build" "$prefix/share/ilaw/lammps"

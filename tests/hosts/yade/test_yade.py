@@ -73,24 +73,15 @@ def test_what_is_not_served_is_refused(figures, k, reason):
     assert reason in figures["refused"][k]
 
 
-@pytest.mark.parametrize("which", ["ilaw", "own"])
-def test_the_example_settles(tmp_path, which):
-    said = yade(tmp_path, YADE / "examples/settle.py", which, 8, 2e-3 if which == "ilaw" else 0, 0.4)
-    found = json.loads(re.search(r"^settled (.*)$", said, re.M)[1])
-    assert found["overlap_over_diameter"] < (0.01 if which == "own" else 1e-3)
-    assert 0.049 < found["height"] < 0.08
-
-
-def test_the_comparison_with_yades_own_law_runs(tmp_path):
-    options = ["--count", "8", "--end", "0.3", "--steps", "2e-3", "3e-3", "--own-steps", "5e-5", "8e-5"]
+def test_the_example_settles_beside_yades_own_law(tmp_path):
+    options = ["--count", "8", "--end", "0.3", "--steps", "2e-3", "3e-3", "--own-steps", "8e-5"]
     done = subprocess.run([sys.executable, YADE / "examples/compare.py", *options], cwd=tmp_path, text=True,
                           timeout=200, stdout=subprocess.PIPE, check=True)  # fmt: skip
     rows = [line.split("|")[1:-1] for line in done.stdout.splitlines() if line.startswith("| ")][2:]
-    assert [row[0].strip() for row in rows] == ["coulomb"] * 2 + ["Mindlin"] * 2
-    assert [float(row[1]) for row in rows] == [2, 3, 0.05, 0.08]
-    # At the end the spheres lie on the floor, by whichever law.
-    assert all(0 <= float(row[3].strip("- %")) < 5 for row in rows[1::2]), rows
-    assert all(0 <= float(row[5].strip(" %")) < 1 for row in rows), rows
+    assert [row[0].strip() for row in rows] == ["coulomb"] * 2 + ["Mindlin"]
+    assert [float(row[1]) for row in rows] == [2, 3, 0.08]
+    assert 0 < float(rows[1][3].strip(" %")) < 5, rows
+    assert all(float(row[5].strip(" %")) < bound for row, bound in zip(rows, (0.1, 0.1, 1))), rows
 
 
 @pytest.mark.parametrize("which", ["ilaw", "own"])
