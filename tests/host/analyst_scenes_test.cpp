@@ -250,6 +250,25 @@ TEST(Picture, ShowsThePanelsThatAreAskedFor) {
   EXPECT_EQ(run_program(plot + "gap --x n3.u0").code, 2);
 }
 
+// One step of stick between steps of slip, and a rupture that only events.csv has.
+TEST(Picture, ShowsWhatIsRareOnTopAndNoImpulsesThatStayZero) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "history.csv") << "time,n3.u0,n3.r0,n3.gap,n3.status\n0.1,0,0,0,3\n0.2,1,0,0,3\n"
+                                           "0.3,1,0,0,2\n0.4,2,0,0,3\n0.5,2,0,0,3\n";
+  const std::string plot = "plot " + folder.string();
+  ASSERT_EQ(run_program(plot).code, 0);
+  std::string script = text_of(folder / "history.gnuplot");
+  EXPECT_LT(script.find("now == 3"), script.find("now == 2"));
+  EXPECT_LT(script.find("title 'stick'"), script.find("title 'slip'"));
+  EXPECT_EQ(script.find("'broken'"), std::string::npos);
+  EXPECT_EQ(script.find("'impulse'"), std::string::npos);
+  std::ofstream(folder / "events.csv") << "time,node,interface,event,r0\n0.17,3,glue,rupture,0\n";
+  ASSERT_EQ(run_program(plot).code, 0);
+  script = text_of(folder / "history.gnuplot");
+  EXPECT_NE(script.find("\n0.17,1\n"), std::string::npos);
+  EXPECT_LT(script.find("title 'slip'"), script.find("title 'broken'"));
+}
+
 // Every run's own pictures, and nobody else's.
 TEST(Picture, OfColumnsIsRemovedByANewRun) {
   const auto folder = fresh_folder();
