@@ -1,6 +1,6 @@
-// Shipped scenes with closed forms: an impact oscillator, stick-slip, a peeled double cantilever and a bond
-// in mixed mode.
-#include "host_runner.hpp"
+// Shipped scenes with closed forms: an impact oscillator, stick-slip, a peeled double cantilever, a bond in
+// mixed mode, a landing gear, a seal and a rolling wheel.
+#include "run_result.hpp"
 
 namespace ilaw::host::testing {
 namespace {
@@ -142,6 +142,95 @@ TEST(MixedModeBar, SoftensAndBreaksAsMixedTractionSays) {
   }
   EXPECT_LE(largest, 0.01 * strength);
   EXPECT_NEAR(integrator.energy().by_law[ILAW_ENERGY_RUPTURE], toughness * area, 1e-12 * toughness * area);
+}
+
+// ---- landing gear ----
+// A mass m on a strut lands at w = 2: its strut shortens by s with m s'' = m g - k s - c s' from s = 0, s' =
+// w, omega = 10 with half the critical damping.
+struct Strut {
+  double s, speed;
+};
+Strut exact_strut(double t) {
+  const double omega = 10.0, zeta = 0.5, turning = omega * std::sqrt(1.0 - zeta * zeta), rest = 0.1;
+  const double b = (2.0 - zeta * omega * rest) / turning;
+  const double cosine = std::cos(turning * t), sine = std::sin(turning * t),
+               fade = std::exp(-zeta * omega * t);
+  const double swing = b * sine - rest * cosine;
+  return {rest + fade * swing, fade * (turning * (b * cosine + rest * sine) - zeta * omega * swing)};
+}
+
+// It lands up to a step late, with the speed 2 and the slowing down 20: s is late by 2 h, the force by k 2 h
+// + c 20 h. While the foot stands, the floor carries it and what the strut does to the mass.
+TEST(LandingGear, SwingsAsADampedOscillatorOnAFootThatStands) {
+  for (const double h : {1e-3, 7.3e-4, 1.1e-4}) {
+    nlohmann::json source = read_scene_source(scene_files::named("landing_gear.json"));
+    source["time"]["dt"] = h;
+    source["output"]["every"] = 1;
+    const Ran run = ran(source);
+    const auto at = [&](const char* column, std::size_t k) { return run.history.at(column)[k]; };
+    double largest = 0.0;
+    for (std::size_t k = 0; k < run.history.at("time").size(); ++k) {
+      const double t = at("time", k) - 0.2;
+      const std::string where = "h " + number(h) + ", time " + number(t + 0.2);
+      if (t < 2.0 * h) continue;
+      const Strut exact = exact_strut(t);
+      ASSERT_NEAR(at("n0.u0", k) - at("n1.u0", k), exact.s, 2.0 * h) << where;
+      ASSERT_NEAR(at("strut.F0", k), 1e4 * exact.s + 1e3 * exact.speed, 4e4 * h) << where;
+      ASSERT_NEAR(at("floor.F0", k), at("strut.F0", k) + 50.0, 1e-9) << where;
+      largest = std::max(largest, at("floor.F0", k));
+    }
+    EXPECT_NEAR(largest, 2330.0, 4e4 * h + 1.0) << h;
+    EXPECT_NEAR(run.last("floor.F0"), 1050.0, 1e3 * 1.2 * std::exp(-5.0) + 4e4 * h);
+  }
+}
+
+// ---- seal ----
+// Squeezed by e between lid and groove, and kept from widening, it presses with E e/(1 - nu^2); a pressure
+// p, which has the part 1 - e of the front to push on, adds nu/(1 - nu) of what it pushes with (Hooke's law
+// with two strains given and one stress). Ramps of 200 times the lowest mode's omega^-1 leave it ringing by a
+// part in 200 of the force, whose mean over ten periods is a tenth of that.
+TEST(Seal, PressesWithItsSqueezeAndPartOfThePressure) {
+  const double young = 5e6, nu = 0.45, squeeze = 0.1, area = 1e-4, pressure = 2e6;
+  for (const double cfl : {0.7, 0.53, 0.41}) {
+    nlohmann::json source = read_scene_source(scene_files::named("seal.json"));
+    source["time"]["cfl"] = cfl;
+    const Ran run = ran(source);
+    const double undamped = 1.0 + 0.5 * 400.0 * run.summary["dt"].get<double>();  // of a reaction
+    const double pushed = (1.0 - squeeze) * pressure * area;
+    const double held = area * young * squeeze / (1.0 - nu * nu) + nu / (1.0 - nu) * pushed;
+    EXPECT_NEAR(run.mean_after(0.019, "fluid.F0"), pushed, 1e-3 * pushed) << cfl;
+    EXPECT_NEAR(run.mean_after(0.019, "back.F0") * undamped, -pushed, 1e-3 * pushed) << cfl;
+    EXPECT_NEAR(run.mean_after(0.019, "lid.F2") * undamped, -held, 1e-3 * held) << cfl;
+    EXPECT_GT(held, pressure * area);  // it seals
+  }
+}
+
+// ---- rolling wheel ----
+// The brush model (Pacejka 2012, ch. 3): over a patch of half length a = sqrt(2 R d) bristles are pressed by
+// k xi (2 a - xi)/(2 R), xi from where they enter, and drawn along by slip times xi, up to friction. Per
+// spacing that is F_N = 2 k a^3/(3 R) and F_T = mu F_N (1 - (1 - q)^3), q = slip R/(mu a) <= 1, with the
+// slip of the wheel's effective radius R - d/3.
+//
+// Left out, of F_T: the surface of the wheel slows down by s^2/(2 R^2) at the place s, of which d/(3 R) is
+// the mean, k a^4/(24 R^2) at most; and of F_N what is of the order of m V^2/R over k d, of the spacing over
+// a squared, and of V h/a, 1 % together.
+TEST(RollingWheel, PullsAsTheBrushModel) {
+  const double R = 0.5, d = 9e-4, a = 0.03, k = 1000.0 / 0.002, mu = 0.5;
+  const double normal = 2.0 * k * a * a * a / (3.0 * R);
+  for (const double h : {1e-4, 1.3e-4, 7e-5})
+    for (const double slip : {0.0, 0.015, 0.03}) {
+      nlohmann::json source = read_scene_source(scene_files::named("rolling_wheel.json"));
+      source["time"]["dt"] = h;
+      source["interfaces"][0]["obstacle"]["rate"] = -(1.0 + slip) / (R - d / 3.0);
+      const Ran run = ran(source);
+      const double q = std::min(1.0, slip * R / (mu * a));
+      const double pull = mu * normal * (1.0 - (1.0 - q) * (1.0 - q) * (1.0 - q));
+      EXPECT_NEAR(run.mean_after(0.066, "wheel.F0"), -pull,
+                  k * a * a * a * a / (24.0 * R * R) + 0.01 * mu * normal)
+          << "slip " << slip << ", h " << h;
+      EXPECT_NEAR(run.mean_after(0.066, "wheel.F1"), -normal, 0.01 * normal)
+          << "slip " << slip << ", h " << h;
+    }
 }
 
 }  // namespace

@@ -104,6 +104,39 @@ TEST(Forces, AreTheStressOfAJointAndTheReactionOfAGrip) {
   EXPECT_NEAR(run.last("n10.r0"), force * h, 1e-4 * force * h);
 }
 
+// A spring and a damper between two thrown masses, and one to a wall: what they do to their own nodes is
+// what changes their momentum, and turns them about the wall's end by nothing.
+TEST(Forces, OfSpringsAreTheChangeOfMomentumOfTheirNodes) {
+  json scene = json::parse(R"({
+    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [1, 0], "velocity": [0, 0.7]},
+      {"mass": 3, "position": [1, 1.5], "velocity": [0.4, -0.2]}, {"mass": 1, "position": [0.5, 0.5], "velocity": [1, 0]}]},
+    "springs": [{"name": "strut", "nodes": [0, 2], "to": [1, 0], "stiffness": 5, "damping": 0.8, "length": 1.1},
+      {"name": "rope", "nodes": [1], "anchor": [-1, 2], "stiffness": 3, "damping": 0.2}],
+    "time": {"end": 1.5}, "interfaces": [],
+    "output": {"every": 7, "watch": [0, 1, 2], "forces": ["strut", {"of": "rope", "about": [-1, 2]}]}})");
+  for (const double h : {0.013, 0.007, 0.0023}) {
+    scene["time"]["dt"] = h;
+    const Ran run = ran(scene);
+    Scene same = scene_of(scene.dump());
+    const Dofs start = integrator_of(same).velocity();
+    for (int axis = 0; axis < 2; ++axis) {
+      const std::string a = std::to_string(axis);
+      const auto gained = [&](int node) {
+        return same.model->mass()[2 * node] *
+               (run.last("n" + std::to_string(node) + ".v" + a) - start[2 * node + axis]);
+      };
+      const double strut = run.impulse("strut.F" + a), rope = run.impulse("rope.F" + a);
+      EXPECT_NEAR(gained(0) + gained(1) + gained(2), rope, 1e-13) << "axis " << axis << ", h " << h;
+      // Springs 0-1 and 2-0 act on 0 and 2 as on their own: of the second, 0 has the opposite.
+      EXPECT_NEAR(gained(1), rope - (strut - gained(2)), 1e-13) << "axis " << axis << ", h " << h;
+      EXPECT_NEAR(run.summary["forces"]["strut"]["impulse"][static_cast<std::size_t>(axis)].get<double>(),
+                  strut, 1e-13);
+      EXPECT_GT(std::abs(strut) + std::abs(rope), 0.1);
+    }
+    for (const double moment : run.history.at("rope.M0")) ASSERT_NEAR(moment, 0.0, 1e-14) << h;
+  }
+}
+
 // Positions follow a path, though damping is listed after it.
 TEST(Forces, OfDampingDoNotReachAGrip) {
   json scene = shaken_block();
@@ -211,6 +244,10 @@ TEST(Forces, OfWhatIsNotThereAreRefusedByPointer) {
   EXPECT_EQ(refusal("/output/forces/1", {{"of", "grip"}, {"about", {0, 0}}}).find("/output/forces/1/about"),
             0U);
   EXPECT_EQ(refusal("/loads/1/name", "grip").find("/loads/1/name: found 'grip' twice"), 0U);
+  const json spring = json::parse(R"([{"name": "grip", "nodes": [0], "anchor": [0, 0, 0], "stiffness": 1}])");
+  EXPECT_EQ(refusal("/springs", spring).find("/springs/0/name: found 'grip' twice, expected a name that no"),
+            0U)
+      << refusal("/springs", spring);
   EXPECT_EQ(refusal("/interfaces/0/name", "grip").find("/loads/0/name: found 'grip' twice"), 0U);
 }
 

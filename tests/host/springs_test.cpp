@@ -223,10 +223,11 @@ TEST(Springs, AreRefusedWithPointerFoundAndAllowed) {
                 .find("/springs/0: found {\"nodes\":[0],\"to\":[1]}, expected "
                       "'stiffness', 'damping' or both above 0"),
             0U);
-  EXPECT_EQ(with(R"({"nodes": [0], "to": [1], "stiffnes": 1})")
-                .find("/springs/0/stiffnes: unknown key, expected one of: anchor, damping, length, nodes, "
-                      "stiffness, to (did you mean 'stiffness'?)"),
-            0U);
+  EXPECT_EQ(
+      with(R"({"nodes": [0], "to": [1], "stiffnes": 1})")
+          .find("/springs/0/stiffnes: unknown key, expected one of: anchor, damping, length, name, nodes, "
+                "stiffness, to (did you mean 'stiffness'?)"),
+      0U);
   EXPECT_EQ(with(R"({"nodes": [0], "to": [1], "stiffness": -1})"),
             "/springs/0/stiffness: found -1, expected number >= 0");
   EXPECT_EQ(with(R"({"nodes": [0], "anchor": [0, 1], "stiffness": 1})"),

@@ -35,7 +35,7 @@ Columns read_columns(const std::filesystem::path& file) {
   for (std::vector<double> row; history.next(row);)
     for (std::size_t k = 0; k < row.size(); ++k) {
       if (row[k] != 0.0) columns.all_zero[k] = false;
-      if (columns.names[k].ends_with(".status")) columns.statuses.insert(static_cast<int>(row[k]));
+      if (columns.names[k].ends_with(".status")) ++columns.statuses[static_cast<int>(row[k])];
     }
   return columns;
 }

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -41,7 +42,15 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
-void complain(std::string_view text) { std::fprintf(stderr, "ilaw: %s\n", printable(text).c_str()); }
+// No line but the first begins at the margin, whoever wrote it: none looks like another complaint.
+void complain(std::string_view text) {
+  std::string shown = "ilaw: ";
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    shown += printable(text.substr(0, end)) + "\n  ";
+    text.remove_prefix(std::min(text.find_first_not_of(' ', end + 1), text.size()));
+  }
+  std::fprintf(stderr, "%s\n", (shown + printable(text)).c_str());
+}
 
 void warn_of_search_path() {
   const char* path = std::getenv("ILAW_PATH");

@@ -15,7 +15,7 @@ void open_standard_streams();
 // Control characters as \x1b, so that a terminal shows them.
 std::string printable(std::string_view text);
 
-// A line on stderr, after the program's name.
+// On stderr, after the program's name; the lines after the first are indented.
 void complain(std::string_view text);
 
 // Of folders in ILAW_PATH that the loader leaves out.

@@ -25,6 +25,13 @@ Line line_of(const Model& model, const Spring& spring, const Dofs& u) {
   return {length, length > 0.0 ? Vector(apart / length) : Vector::Zero(d)};
 }
 
+double stretch_rate(const Model& model, const Spring& spring, const Vector& direction, const Dofs& v) {
+  const Eigen::Index d = model.dimension();
+  Vector apart = -v.segment(spring.node * d, d);
+  if (spring.partner >= 0) apart += v.segment(spring.partner * d, d);
+  return apart.dot(direction);
+}
+
 // A pull along the line, on both ends.
 void add_pull(const Spring& spring, const Vector& pull, Dofs& sum) {
   const Eigen::Index d = pull.size();
@@ -71,6 +78,12 @@ Nodes nodes_of(const Model& model) {
 
 }  // namespace
 
+Vector pull_of(const Model& model, const Spring& spring, Motions at) {
+  const Line line = line_of(model, spring, at.u);
+  const double rate = stretch_rate(model, spring, line.direction, at.v);
+  return (spring.stiffness * (line.length - spring.length) + spring.damping * rate) * line.direction;
+}
+
 Sprung::Sprung(std::unique_ptr<const Model> body, std::vector<Spring> springs)
     : Model(nodes_of(*body)),
       body_(std::move(body)),
@@ -97,13 +110,10 @@ double Sprung::potential(const Dofs& u) const {
 }
 
 void Dampers::damp(double duration, Motions at, Dofs& impulse) const {
-  const Eigen::Index d = model_.dimension();
   for (const Spring& spring : springs_) {
     if (spring.damping == 0.0) continue;
     const Line line = line_of(model_, spring, at.u);
-    Vector apart = -at.v.segment(spring.node * d, d);
-    if (spring.partner >= 0) apart += at.v.segment(spring.partner * d, d);
-    const double rate = apart.dot(line.direction);
+    const double rate = stretch_rate(model_, spring, line.direction, at.v);
     add_pull(spring, duration * spring.damping * rate * line.direction, impulse);
   }
 }

@@ -33,6 +33,13 @@ void Forces::add(const ForceSetup& force, Resultant& sum, const Integrator& inte
       add_at(interface.node_of(contact), interface.impulse(contact).data(), force, sum, u);
     return;
   }
+  if (!force.springs.empty()) {
+    for (const Spring& spring : force.springs) {
+      const Vector impulse = scene_.dt * pull_of(*scene_.model, spring, {u, integrator.velocity_before()});
+      add_at(spring.node, impulse.data(), force, sum, u);
+    }
+    return;
+  }
   of_load_.setZero();
   for (const std::size_t load : force.loads) integrator.add_load_impulse(load, of_load_);
   const Eigen::Index d = scene_.model->dimension();

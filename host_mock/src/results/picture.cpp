@@ -4,12 +4,15 @@
 #include "results/envelope.hpp"
 #include "results/gnuplot.hpp"
 #include "results/history_file.hpp"
+#include "results/status_panel.hpp"
+
+#include <ilaw/ilaw.h>
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <iterator>
 #include <map>
+#include <set>
 #include <string_view>
 
 namespace ilaw::host {
@@ -28,17 +31,9 @@ struct Panel {
   bool summed = false;  // over time
 };
 
-struct Status {
-  const char* name;
-  const char* colour;
-};
-
 // Colours that colour-blind readers tell apart (Okabe and Ito 2008).
 constexpr const char* palette[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                    "#E69F00", "#56B4E9", "#000000"};
-constexpr Status statuses[] = {{"free", "#dcdcdc"},   {"closed", "#56B4E9"},   {"stick", "#0072B2"},
-                               {"slip", "#E69F00"},   {"bonded", "#009E73"},   {"broken", "#D55E00"},
-                               {"healed", "#CC79A7"}, {"bad_input", "#000000"}};
 
 // Sizes in pixels. A letter: of the key and of tics, of the title.
 constexpr double panel_width = 785, least_left = 95, least_right = 120, title_line = 22, below = 55,
@@ -85,7 +80,7 @@ void add_balance(const std::string& name, std::size_t column, std::vector<Panel>
 }
 
 bool is_motion(const Panel& panel) {
-  return panel.quantity == "gap" || panel.quantity == "u" || panel.quantity == "v" || panel.quantity == "r";
+  return panel.quantity == "gap" || panel.quantity == "u" || panel.quantity == "v";
 }
 
 // The panels from top to bottom; those that stay empty go.
@@ -115,7 +110,7 @@ std::vector<Panel> panels_of(const Columns& columns, int every) {
   }
   // A force is hardly seen beside a shock, but its sum is. A sum needs every step.
   if (every == 1) panels.insert(panels.begin() + 4, {"r", "summed impulse", panels[3].curves, true});
-  // States that the scene does not use stay zero.
+  // States that the scene does not use stay zero, and impulses of nodes that meet nothing.
   const auto is_zero = [&](const Curve& curve) { return columns.all_zero[curve.column - 1]; };
   std::erase_if(panels, [&](const Panel& panel) {
     return !is_motion(panel) && std::all_of(panel.curves.begin(), panel.curves.end(), is_zero);
@@ -157,7 +152,9 @@ bool is_crowded(const Panel& panel) {
 bool has_split_key(const Panel& panel) { return node_count(panel) > 1 && component_count(panel) > 1; }
 
 std::string legend_of(const Panel& panel, const Curve& curve) {
-  if (has_split_key(panel) || (panel.curves.size() == 1 && is_node(curve.node))) return "";
+  const bool says_it_all =
+      is_node(curve.node) || panel.label == "balance error" || panel.label == "angular momentum";  // in 2D
+  if (has_split_key(panel) || (panel.curves.size() == 1 && says_it_all)) return "";
   return component_count(panel) > 1 ? curve.owner + "." + curve.component : curve.owner;
 }
 
@@ -234,67 +231,21 @@ void draw_envelope(std::ostream& script, const Panel& panel) {
          << in_quotes(std::to_string(node_count(panel)) + " nodes") << "\n";
 }
 
-// How many contacts have each status, one upon the other.
-void draw_counts(std::ostream& script, const Panel& panel, const Columns& columns) {
-  script << "set yrange [0:" << panel.curves.size() << "] noextend\nset ytics autofreq\n";
-  const std::string block = block_of(panel, "");
-  const char* separator = "plot ";
-  for (std::size_t k = 0; k < std::size(statuses); ++k) {
-    if (!columns.statuses.contains(static_cast<int>(k))) continue;
-    script << separator << block << " using 1:(" << (k == 0 ? "0" : "$" + std::to_string(k + 1))
-           << "):" << k + 2 << " with filledcurves fillcolor rgb " << in_quotes(statuses[k].colour)
-           << " fillstyle solid noborder title " << in_quotes(statuses[k].name);
-    separator = ", ";
-  }
-  script << "\n";
+StatusRows rows_of(const Panel& panel) {
+  StatusRows rows;
+  for (const Curve& curve : panel.curves) rows.push_back({curve.owner, curve.column});
+  return rows;
 }
 
-// A row per contact. A status that lasts one step is a dot, thanks to round caps, and lies on top.
-void draw_status(std::ostream& script, const Panel& panel, const Columns& columns) {
-  const std::size_t rows = panel.curves.size();
-  script << "set yrange [" << static_cast<double>(rows) + 0.5 << ":0.5]\nset ytics (";
-  for (std::size_t row = 0; row < rows; ++row)
-    script << (row ? ", " : "") << in_quotes(panel.curves[row].owner) << " " << row + 1;
-  script << ") scale 0\n";
-  const char* separator = "plot ";
-  for (std::size_t k = 0; k < std::size(statuses); ++k) {
-    if (!columns.statuses.contains(static_cast<int>(k))) continue;
-    for (std::size_t row = 0; row < rows; ++row) {
-      script << separator << "before = -1, history using 1:(now = $" << panel.curves[row].column
-             << ", drawn = now == " << k << " || before == " << k << ", before = now, drawn ? " << row + 1
-             << " : NaN) with lines linewidth 7 linecolor rgb " << in_quotes(statuses[k].colour) << " title "
-             << in_quotes(row == 0 ? statuses[k].name : "");
-      separator = ", ";
-    }
-  }
-  script << ", $ruptures using 1:2 with points pointtype 1 pointsize 0.8 linewidth 1.6 linecolor rgb "
-         << in_quotes(statuses[ILAW_BROKEN].colour) << " title ''\n";
-}
-
-// Ruptures that events.csv has of watched nodes, which may lie between rows: time and row in the
-// panel. A block without lines is an error for gnuplot.
-void write_ruptures(std::ostream& script, const std::filesystem::path& folder, const Panel& panel) {
-  std::map<std::string, std::size_t> rows;
-  for (std::size_t k = 0; k < panel.curves.size(); ++k) rows[panel.curves[k].owner] = k + 1;
-  script << "$ruptures << EOD\nNaN,NaN\n";
-  std::ifstream events(folder / "events.csv");
-  for (std::string line; std::getline(events, line);) {
-    const std::vector<std::string> cells = csv_cells(line);
-    if (cells.size() < 4 || cells[3] != "rupture") continue;
-    auto found = rows.find("n" + cells[1]);
-    if (found == rows.end()) found = rows.find("n" + cells[1] + "." + cells[2]);
-    if (found != rows.end()) script << cells[0] << "," << found->second << "\n";
-  }
-  script << "EOD\n";
-}
-
-// The data blocks of what is drawn of many nodes, for one pass through the history.
-void write_blocks(std::ostream& script, const std::filesystem::path& folder,
+// The data blocks of what is drawn of many nodes, for one pass through the history, and of ruptures.
+// Returns whether there are any of the latter.
+bool write_blocks(std::ostream& script, const std::filesystem::path& folder,
                   const std::vector<Panel>& panels) {
+  bool has_ruptures = false;
   std::vector<Envelope> envelopes;
   for (const Panel& panel : panels) {
     if (!is_crowded(panel)) {
-      if (panel.quantity == "status") write_ruptures(script, folder, panel);
+      if (panel.quantity == "status") has_ruptures = write_ruptures(script, folder, rows_of(panel));
       continue;
     }
     std::map<std::string, std::vector<std::size_t>> columns;
@@ -303,11 +254,12 @@ void write_blocks(std::ostream& script, const std::filesystem::path& folder,
       envelopes.emplace_back(
           EnvelopeSetup{block_of(panel, component), own, panel.summed, panel.quantity == "status"});
   }
-  if (envelopes.empty()) return;
+  if (envelopes.empty()) return has_ruptures;
   HistoryFile history(folder / "history.csv");
   for (std::vector<double> row; history.next(row);)
     for (Envelope& envelope : envelopes) envelope.add(row);
   for (const Envelope& envelope : envelopes) envelope.write(script);
+  return has_ruptures;
 }
 
 // Room for the names of contacts on the left and for the key on the right, whatever their length.
@@ -359,7 +311,8 @@ void draw(std::ostream& script, const std::string& terminal, const std::filesyst
     if (&panel == &panels.back()) script << "set xlabel 'time'\nset format x '%g'\n";
     const bool crowded = is_crowded(panel);
     if (panel.quantity == "status")
-      crowded ? draw_counts(script, panel, columns) : draw_status(script, panel, columns);
+      crowded ? draw_counts(script, block_of(panel, ""), panel.curves.size(), columns.statuses)
+              : draw_status(script, rows_of(panel), columns.statuses);
     else
       crowded ? draw_envelope(script, panel) : draw_curves(script, panel);
     top = bottom - between;
@@ -375,10 +328,12 @@ std::vector<std::string> panel_names(const Columns& columns, int every) {
   return names;
 }
 
-void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,
+void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& found,
                    const Caption& caption) {
+  Columns columns = found;
   const std::vector<Panel> panels = chosen(panels_of(columns, caption.every), caption.panels);
-  write_blocks(script, folder, panels);
+  // Ruptures between rows belong into the key, too.
+  if (write_blocks(script, folder, panels)) columns.statuses.try_emplace(ILAW_BROKEN, 0);
   for (const auto& [terminal, kind] : {std::pair{"pngcairo", "png"}, std::pair{"svg", "svg"}}) {
     script << "reset\nset datafile separator comma\nhistory = "
            << in_quotes((folder / "history.csv").string())

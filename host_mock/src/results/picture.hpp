@@ -3,8 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <ostream>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -19,13 +19,13 @@ struct Caption {
 // What history.csv holds.
 struct Columns {
   std::vector<std::string> names;
-  std::vector<bool> all_zero;  // per column
-  std::set<int> statuses;      // those that occur in a row
+  std::vector<bool> all_zero;   // per column
+  std::map<int, int> statuses;  // of those that occur, in how many rows and columns
 };
 
 // A script that draws folder/history.csv as folder/history.png and .svg: panels over a common time
-// for gap, displacement, velocity, impulse and its running sum, each state variable of the laws that
-// is not zero throughout, resultants, energies, and the status as a band per node. Of more than six
+// for gap, displacement, velocity, impulse and its running sum, each state variable of the laws, as far
+// as these are not zero throughout, resultants, energies, and the status as a band per node. Of more than six
 // nodes their least, median and largest values are drawn, and how many have which status. folder is
 // absolute.
 void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,

@@ -2,6 +2,7 @@
 #include "scene/read_forces.hpp"
 
 #include "scene/json_text.hpp"
+#include "scene/read_springs.hpp"
 #include "scene/suggestion.hpp"
 #include "scene/values.hpp"
 
@@ -23,6 +24,9 @@ class Named {
     const json loads = scene.source.value("loads", json::array());
     for (std::size_t i = 0; i < loads.size(); ++i)
       if (loads[i].contains("name")) add_load(loads[i]["name"].get<std::string>(), i);
+    const json springs = scene.source.value("springs", json::array());
+    for (std::size_t i = 0; i < springs.size(); ++i)
+      if (springs[i].contains("name")) add_springs(springs[i], at("/springs", i));
     for (const auto& [name, set] : scene.model->sets()) add_driven(name, set);
   }
 
@@ -31,7 +35,8 @@ class Named {
     const auto found = std::find_if(all_.begin(), all_.end(), is_named);
     if (found == all_.end())
       throw mistake(pointer, "\"" + name + "\"",
-                    "the name of an interface, of a load, or of a set that a motion drives: " + known(name));
+                    "the name of an interface, of a load, of springs, or of a set that a motion drives: " +
+                        known(name));
     if (std::find_if(found + 1, all_.end(), is_named) != all_.end())
       throw mistake(pointer, "\"" + name + "\", which means several things", "a name for one of them alone");
     return *found;
@@ -39,16 +44,25 @@ class Named {
 
  private:
   ForceSetup& add(const std::string& name) {
-    all_.push_back({name, -1, {}, {}, {}});
+    all_.push_back({name, -1, {}, {}, {}, {}});
     return all_.back();
   }
 
-  void add_load(const std::string& name, std::size_t load) {
+  ForceSetup& add_once(const std::string& name, const std::string& pointer) {
     for (const ForceSetup& one : all_)
       if (one.name == name)
-        throw mistake(at("/loads", load) + "/name", "'" + name + "' twice",
-                      "a name that no other load and no interface has");
-    add(name).loads = {load};
+        throw mistake(pointer + "/name", "'" + name + "' twice",
+                      "a name that no interface, no load and no other springs have");
+    return add(name);
+  }
+
+  void add_load(const std::string& name, std::size_t load) {
+    add_once(name, at("/loads", load)).loads = {load};
+  }
+
+  void add_springs(const json& springs, const std::string& pointer) {
+    add_once(springs["name"].get<std::string>(), pointer).springs =
+        read_springs(json::array({springs}), *scene_.model);
   }
 
   // The reaction of what holds or moves nodes of a set.

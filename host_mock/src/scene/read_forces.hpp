@@ -8,8 +8,8 @@
 
 namespace ilaw::host {
 
-// "/output/forces": names of interfaces, of loads, or of sets that motions drive. The rest of the
-// scene has been read. Throws SceneError.
+// "/output/forces": names of interfaces, of loads, of springs, or of sets that motions drive. The
+// rest of the scene has been read. Throws SceneError.
 std::vector<ForceSetup> read_forces(const nlohmann::json& forces, const Scene& scene);
 
 }  // namespace ilaw::host

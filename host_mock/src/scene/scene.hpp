@@ -5,6 +5,7 @@
 #include "contact/interface.hpp"
 #include "model/load.hpp"
 #include "model/model.hpp"
+#include "model/springs.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -17,12 +18,13 @@
 
 namespace ilaw::host {
 
-// A resultant that the history shows: of an interface, or of loads.
+// A resultant that the history shows: of an interface, of loads, or of springs.
 struct ForceSetup {
   std::string name;
-  int interface = -1;              // -1: of loads
+  int interface = -1;              // -1: of loads or springs
   std::vector<std::size_t> loads;  // by number
   std::vector<int> nodes;          // of the loads' nodes, those that count; empty: all
+  std::vector<Spring> springs;     // on their own nodes; empty: of loads
   std::optional<Vector> about;     // the point that a moment is asked for about
 };
 

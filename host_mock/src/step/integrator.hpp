@@ -41,6 +41,8 @@ class Integrator {
   double time() const { return static_cast<double>(steps_) * dt_; }
   const Dofs& displacement() const { return u_; }  // at time()
   const Dofs& velocity() const { return v_; }      // at the half step after time()
+  // At the half step before time(), once a step has been made.
+  const Dofs& velocity_before() const { return v_before_; }
   // Impulse of the interfaces in the last step, per degree of freedom.
   Dofs interface_impulse() const;
   // The impulse of one load in the last step, added to those per degree of freedom. Of a load that
