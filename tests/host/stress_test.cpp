@@ -52,8 +52,23 @@ TEST(CoupledContacts, AreSolvedAtAMassRatioOf1e5) {
   Integrator integrator = integrator_of(scene);
   while (integrator.steps() < 200) integrator.step();
   EXPECT_EQ(integrator.tally().unconverged, 0);
-  EXPECT_GT(integrator.tally().sweeps_max, 20);
+  EXPECT_GT(integrator.tally().sweeps_max, 20);  // so that it is accelerated
   EXPECT_LE(integrator.tally().coupling_residual_max, CoupledContacts::tolerance);
+}
+
+// Three nodes that have nothing to do with each other, each between a bond and a floor that pulls it off:
+// their impulses climb from kink to kink, which takes the search along the way. Solved together they ended
+// as a contradiction, though each alone was solved.
+TEST(CoupledContacts, AreSolvedWhateverNodesElsewhereDo) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  Scene scene = read_scene(scene_that_failed("bonds_and_a_rising_floor"), "scene.json");
+  Integrator integrator = integrator_of(scene);
+  while (integrator.steps() < scene.steps) integrator.step();
+  EXPECT_EQ(integrator.tally().unconverged, 0);
+  EXPECT_GT(integrator.tally().sweeps_max, 300) << "sweeps from which on the search begins";
+  EXPECT_LE(integrator.tally().coupling_residual_max, CoupledContacts::tolerance);
+  const EnergyReport energy = integrator.energy();
+  EXPECT_LE(std::abs(energy.reaction_work), 1e-8 * energy.scale);
 }
 
 class LawsThatContradict : public ::testing::TestWithParam<const char*> {};
@@ -72,13 +87,14 @@ TEST_P(LawsThatContradict, EndTheRunWithTheReason) {
   EXPECT_NE(reason.find("find no velocity that suits them all"), std::string::npos) << reason;
   EXPECT_NE(reason.find("contradict each other"), std::string::npos) << reason;
   const EnergyReport energy = integrator.energy();
-  // What moving obstacles put in goes through the interfaces, too.
-  EXPECT_LE(energy.by_law[ILAW_ENERGY_FRICTION] + energy.by_law[ILAW_ENERGY_IMPACT], 10.0 * energy.scale);
+  const double dissipated = energy.by_law[ILAW_ENERGY_FRICTION] + energy.by_law[ILAW_ENERGY_IMPACT];
+  EXPECT_LE(std::abs(energy.reaction_work), 1e-4 * energy.scale);
+  EXPECT_LE(dissipated, energy.scale + std::abs(energy.reaction_work));
 }
 
 INSTANTIATE_TEST_SUITE_P(Stress, LawsThatContradict,
-                         ::testing::Values("rough_wedge", "bond_that_leaves_a_floor",
-                                           "plane_against_a_bond"));
+                         ::testing::Values("rough_wedge", "bond_that_leaves_a_floor", "plane_against_a_bond",
+                                           "brittle_bond_against_a_rigid_one"));
 
 // Shear is weighed by the ratio of strengths, which two infinite ones do not have: it was found in the first
 // step, by an overflow.
@@ -192,7 +208,7 @@ TEST(Stress, RandomScenesFulfilTheInvariants) {
   }
   EXPECT_GT(node_steps, 10'000'000);
   EXPECT_GT(ran, 60);
-  for (const StressFailure& failure : report.failures)
+  for (const StressFinding& failure : report.failures)
     ADD_FAILURE() << failure.law << ", seed " << failure.seed << ": " << failure.reason;
 }
 
