@@ -57,9 +57,9 @@ TEST(CoupledContacts, AreSolvedAtAMassRatioOf1e5) {
   EXPECT_LE(integrator.tally().coupling_residual_max, CoupledContacts::tolerance);
 }
 
-// Three nodes that have nothing to do with each other, each between a bond and a floor that pulls it off:
-// their impulses climb from kink to kink, which takes the search along the way. Solved together they ended
-// as a contradiction, though each alone was solved.
+// Three nodes that have nothing to do with each other, each between a bond and a floor that pulls it
+// off: their impulses climb from kink to kink, which takes the search along the way. Solved together
+// they ended as a contradiction, though each alone was solved.
 TEST(CoupledContacts, AreSolvedWhateverNodesElsewhereDo) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   Scene scene = read_scene(scene_that_failed("bonds_and_a_rising_floor"), "scene.json");

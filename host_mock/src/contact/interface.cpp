@@ -13,8 +13,8 @@
 namespace ilaw::host {
 namespace {
 
-// The largest speed is that of the largest square, which is 0 for smaller ones: nodes that come to rest on
-// a spring have them, at gaps as small.
+// The largest speed is that of the largest square, which is 0 for smaller ones: nodes that come to
+// rest on a spring have them, at gaps as small.
 constexpr double least_speed = 0x1p-500;
 
 // Parameters of one node, as a batch takes them.

@@ -66,9 +66,9 @@ void CoupledContacts::open(const StepView& step) {
   }
 }
 
-// Sweeps to the tolerance. Few are enough for most contacts; the others are taken island by island: the
-// acceleration would else learn from contacts that have nothing to do with each other, and a single one
-// that is hard to solve would keep all at work.
+// Sweeps to the tolerance. Few are enough for most contacts; the others are taken island by island:
+// the acceleration would else learn from contacts that have nothing to do with each other, and a
+// single one that is hard to solve would keep all at work.
 void CoupledContacts::iterate(const StepView& step, double speed, Dofs& v, Outcome& outcome) {
   const Sweeping all{acting_, step, speed, v};
   outcome = {0, 1.0, 0.0};
@@ -217,9 +217,9 @@ CoupledContacts::Disagreement CoupledContacts::disagreement(const Dofs& v) const
   return all;
 }
 
-// Where laws contradict each other they push each other up, to far more than any mass ratio asks for; or
-// they go on until one of them breaks, and begin anew. A long column, which more sweeps would solve, does
-// neither: it is told by its length.
+// Where laws contradict each other they push each other up, to far more than any mass ratio asks
+// for; or they go on until one of them breaks, and begin anew. A long column, which more sweeps
+// would solve, does neither: it is told by its length.
 std::string CoupledContacts::explain(const Dofs& v, const Outcome& outcome) const {
   constexpr double run_away = 1e6;
   const Disagreement found = disagreement(v);

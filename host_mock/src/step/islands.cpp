@@ -7,7 +7,8 @@
 namespace ilaw::host {
 namespace {
 
-// Nodes that contacts join, as a forest: each points to one that it is joined to, roots to themselves.
+// Nodes that contacts join, as a forest: each points to one that it is joined to, roots to
+// themselves.
 class JoinedNodes {
  public:
   explicit JoinedNodes(int node_count) : joined_to_(static_cast<std::size_t>(node_count)) {
