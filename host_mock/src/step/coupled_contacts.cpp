@@ -221,11 +221,12 @@ CoupledContacts::Disagreement CoupledContacts::disagreement(const Dofs& v) const
 // for; or they go on until one of them breaks, and begin anew. A long column, which more sweeps
 // would solve, does neither: it is told by its length.
 std::string CoupledContacts::explain(const Dofs& v, const Outcome& outcome) const {
-  constexpr double run_away = 1e6;
+  constexpr double run_away = 1e6, beyond_rounding = 1e-6;
+  const double speed = out_of_reach_ / most_growth;  // of the first sweep
   const Disagreement found = disagreement(v);
   if (!found.interface) return "";
-  const bool ran_away = residual(acting_, 0.0, v).size > run_away * (out_of_reach_ / most_growth);
-  const bool is_stuck = outcome.residual > tolerance && contacts_joined_to(found.node) <= few;
+  const bool ran_away = residual(acting_, 0.0, v).size > run_away * speed;
+  const bool is_stuck = found.velocity > beyond_rounding * speed && contacts_joined_to(found.node) <= few;
   if (!ran_away && !is_stuck) return "";
   std::array<char, 400> text{};
   std::snprintf(text.data(), text.size(),
