@@ -234,6 +234,28 @@ TEST(Study, OfTheObliqueImpactIsOfFirstOrderInAllNorms) {
   }
 }
 
+// The scene's own list, shortened: contact's velocities converge over three periods, those of a spring
+// of ten elements do not.
+TEST(Study, OfTheHeldRodTellsContactFromAStiffSpring) {
+  json scene = read_scene_source(scene_files::named("held_rod.json"));
+  const json laws = scene["study"]["laws"];
+  scene["study"]["laws"] = {laws[0], laws[4]};
+  const Result study = study_of(scene, "--levels 7");
+  ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+  std::map<std::string, std::map<std::string, std::vector<double>>> table;
+  for (auto& row : rows_of(study.folder / "study.csv"))
+    for (const char* column : {"dt", "u_L2", "v_L1", "penetration"})
+      table[row["law"]][column].push_back(std::stod(row[column]));
+  ASSERT_EQ(table.size(), 2U);
+  auto& contact = table["contact predictive"];
+  auto& spring = table["explicit 20"];
+  EXPECT_NEAR(order(contact["dt"], contact["u_L2"]), 0.85, 0.15);
+  EXPECT_LT(contact["v_L1"].back(), 0.5 * contact["v_L1"].front());
+  EXPECT_GT(spring["v_L1"].back(), 0.4);
+  EXPECT_LT(contact["penetration"].back(), 1e-15);
+  EXPECT_GT(spring["penetration"].back(), 1e-3);
+}
+
 // Without exact solution and without a list: the usual laws, against the first one's finest run.
 TEST(Study, TakesTheUsualLawsWhereTheSceneListsNone) {
   json scene = ball();

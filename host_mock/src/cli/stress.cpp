@@ -33,6 +33,12 @@ void print_table(const StressReport& report) {
   print_rows(rows, "");
 }
 
+void print_finding(const char* ending, const StressFinding& finding) {
+  std::printf("seed %llu (%s) %s: %s%s%s\n", static_cast<unsigned long long>(finding.seed),
+              finding.law.c_str(), ending, finding.reason.c_str(), finding.file.empty() ? "" : "; ",
+              finding.file.c_str());
+}
+
 int run_stress(const StressSetup& setup) {
   std::optional<HeldFolder> held;
   if (!setup.keep.empty()) held.emplace(setup.keep);
@@ -50,10 +56,8 @@ int run_stress(const StressSetup& setup) {
     return exit_bad_input;
   }
   print_table(report);
-  for (const StressFailure& failure : report.failures)
-    std::printf("seed %llu (%s): %s%s%s\n", static_cast<unsigned long long>(failure.seed),
-                failure.law.c_str(), failure.reason.c_str(), failure.file.empty() ? "" : "; ",
-                failure.file.c_str());
+  for (const StressFinding& stop : report.stops) print_finding("stopped", stop);
+  for (const StressFinding& failure : report.failures) print_finding("failed", failure);
   return report.failures.empty() ? exit_done : exit_failed;
 }
 

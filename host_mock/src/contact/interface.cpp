@@ -13,6 +13,10 @@
 namespace ilaw::host {
 namespace {
 
+// The largest speed is that of the largest square, which is 0 for smaller ones: nodes that come to
+// rest on a spring have them, at gaps as small.
+constexpr double least_speed = 0x1p-500;
+
 // Parameters of one node, as a batch takes them.
 std::vector<ilaw_input> inputs_of(const std::vector<double>& parameters) {
   std::vector<ilaw_input> inputs;
@@ -166,8 +170,9 @@ void Interface::choose_active(const StepView& step) {
   obstacle_velocity_ = counterpart.velocity(step.time, step.time + step.dt);
   if (counterpart.turns()) rates_ = counterpart.rates(step.time, step.dt);
   const double moving = counterpart.partners().empty() ? 1.0 : 2.0;
-  const double closing_before = moving * step.speed_before + obstacle_velocity_before_.norm(),
-               closing_after = moving * step.speed_after + obstacle_velocity_.norm();
+  const double closing_before =
+                   moving * std::max(step.speed_before, least_speed) + obstacle_velocity_before_.norm(),
+               closing_after = moving * std::max(step.speed_after, least_speed) + obstacle_velocity_.norm();
   closing_ = step.dt * closing_after;
   const bool due = proximity_.refresh_due(step.dt, closing_before, closing_after, counterpart.validity());
   if (step.time < setup_.birth || step.time >= setup_.death) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace ilaw::host {
 
@@ -27,6 +28,7 @@ bool share_nodes(const Model& model, const Interfaces& interfaces) {
 CoupledContacts::CoupledContacts(const Model& model, Interfaces& interfaces)
     : interfaces_(interfaces),
       dimension_(model.dimension()),
+      node_count_(model.node_count()),
       colours_(interfaces.size(), Colours(model.node_count())) {
   for (const auto& interface : interfaces_) interface->evaluate_repeatedly();
 }
@@ -54,42 +56,69 @@ CoupledContacts::Outcome CoupledContacts::solve(StepView step, Dofs& v) {
 }
 
 void CoupledContacts::open(const StepView& step) {
+  acting_.clear();
   for (std::size_t i = 0; i < interfaces_.size(); ++i) {
     interfaces_[i]->open_step(step);
     colours_[i].assign(*interfaces_[i]);
+    colours_[i].for_each_acting([&](const ContactList& contacts) {
+      acting_.push_back({interfaces_[i].get(), contacts});
+    });
   }
 }
 
-// Sweeps to the tolerance.
+// Sweeps to the tolerance. Few are enough for most contacts; the others are taken island by island:
+// the acceleration would else learn from contacts that have nothing to do with each other, and a
+// single one that is hard to solve would keep all at work.
 void CoupledContacts::iterate(const StepView& step, double speed, Dofs& v, Outcome& outcome) {
-  Anderson anderson;
-  Dofs impulses_before;
+  const Sweeping all{acting_, step, speed, v};
   outcome = {0, 1.0, 0.0};
-  const auto sweep_once = [&] {
-    sweep(step, v);
-    const Residual found = residual(speed, v);
-    if (outcome.sweeps == 0) out_of_reach_ = most_growth * found.size;
-    outcome.residual = found.size > 0.0 ? found.change / found.size : 0.0;
-    ++outcome.sweeps;
-  };
-  const auto try_from = [&](const Dofs& scaled) {
-    if (!is_in_reach(scaled)) return false;
-    move_to(scaled, v);
-    return true;
-  };
-  while (outcome.residual > tolerance && outcome.sweeps < most_sweeps) {
+  out_of_reach_ = std::numeric_limits<double>::infinity();
+  while (outcome.residual > tolerance && outcome.sweeps < patience) {
+    const Residual found = sweep(all, outcome);
+    if (outcome.sweeps == 1) out_of_reach_ = most_growth * found.size;
+    if (found.size > out_of_reach_) return;
+  }
+  if (!(outcome.residual > tolerance)) return;
+  outcome.residual = 0.0;
+  int most = outcome.sweeps;
+  for (const ContactGroup& island : islands_of(acting_, node_count_)) {
+    Outcome found{outcome.sweeps, residual(island, speed, v).relative(), 0.0};
+    accelerate({island, step, speed, v}, found);
+    most = std::max(most, found.sweeps);
+    outcome.residual = std::max(outcome.residual, found.residual);
+  }
+  outcome.sweeps = most;
+}
+
+CoupledContacts::Residual CoupledContacts::sweep(const Sweeping& on, Outcome& outcome) {
+  for (const auto& [interface, contacts] : on.group) answer(*interface, contacts, on.step, on.v);
+  const Residual found = residual(on.group, on.speed, on.v);
+  outcome.residual = found.relative();
+  ++outcome.sweeps;
+  return found;
+}
+
+void CoupledContacts::accelerate(const Sweeping& on, Outcome& outcome) {
+  Anderson anderson;
+  Dofs impulses_before = scaled_impulses(on.group);
+  for (const int first = outcome.sweeps; outcome.residual > tolerance && outcome.sweeps < most_sweeps;) {
     if (outcome.sweeps >= long_patience) {
-      search(sweep_once, try_from, outcome);
+      search(on, outcome);
       continue;
     }
-    if (outcome.sweeps == patience) impulses_before = scaled_impulses();
-    if (outcome.sweeps > patience && outcome.sweeps % 2 == 0) {
-      const Dofs image = scaled_impulses();
+    if (outcome.sweeps > first && outcome.sweeps % 2 == 0) {
+      const Dofs image = scaled_impulses(on.group);
       const Dofs next = image + anderson.correction(image, image - impulses_before);
-      impulses_before = try_from(next) ? next : image;
+      impulses_before = try_from(on, next) ? next : image;
     }
-    sweep_once();
+    if (sweep(on, outcome).size > out_of_reach_) return;
   }
+}
+
+bool CoupledContacts::try_from(const Sweeping& on, const Dofs& scaled) {
+  if (!is_in_reach(on.group, scaled)) return false;
+  move_to(on.group, scaled, on.v);
+  return true;
 }
 
 // Along the way that a sweep takes, to where the next one would go back. Sweeps of dissipative laws
@@ -97,24 +126,23 @@ void CoupledContacts::iterate(const StepView& step, double speed, Dofs& v, Outco
 // steps, then found by the Illinois method (Dowell and Jarratt 1971). This ends where the
 // acceleration runs in circles: it knows no kinks, and mass ratios of 1e5 make the way from one to
 // the next long.
-template <class Sweep, class Try>
-void CoupledContacts::search(Sweep sweep_once, Try try_from, const Outcome& outcome) {
+void CoupledContacts::search(const Sweeping& on, Outcome& outcome) {
   constexpr double longer = 8.0, near = 1e-3;
-  const Dofs start = scaled_impulses();
-  sweep_once();
-  const Dofs image = scaled_impulses(), way = image - start;
+  const Dofs start = scaled_impulses(on.group);
+  sweep(on, outcome);
+  const Dofs image = scaled_impulses(on.group), way = image - start;
   const auto is_over = [&] { return !(outcome.residual > tolerance && outcome.sweeps < most_sweeps); };
   double left = 1.0;  // of a sweep from start + t way, along the way
   const auto sweep_from = [&](double t) {
     const Dofs from = start + t * way;
-    if (!try_from(from)) return false;
-    sweep_once();
-    left = (scaled_impulses() - from).dot(way) / way.squaredNorm();
+    if (!try_from(on, from)) return false;
+    sweep(on, outcome);
+    left = (scaled_impulses(on.group) - from).dot(way) / way.squaredNorm();
     return true;
   };
   double low = 0.0, left_low = 1.0, high = longer;
   for (; !is_over(); high *= longer) {
-    if (!sweep_from(high)) return void(try_from(image));
+    if (!sweep_from(high)) return void(try_from(on, image));
     if (!(left > 0.0)) break;
     low = high;
     left_low = left;
@@ -137,26 +165,12 @@ void CoupledContacts::search(Sweep sweep_once, Try try_from, const Outcome& outc
   }
 }
 
-// Evaluates every contact that may act once, each against the impulses of the others.
-void CoupledContacts::sweep(const StepView& step, Dofs& v) {
-  for (std::size_t i = 0; i < interfaces_.size(); ++i)
-    colours_[i].for_each_acting(
-        [&](const ContactList& contacts) { answer(*interfaces_[i], contacts, step, v); });
-}
-
 // What a law makes of v, for contacts that share no node.
 void CoupledContacts::answer(Interface& interface, const ContactList& contacts, const StepView& step,
                              Dofs& v) {
   interface.gather(contacts, v, step);
   interface.evaluate(contacts, step);
   interface.apply(contacts, v);
-}
-
-// Calls visit(interface, contacts) with what may be solved at once, in a fixed order.
-template <class Visit>
-void CoupledContacts::for_each_acting(Visit visit) const {
-  for (std::size_t i = 0; i < interfaces_.size(); ++i)
-    colours_[i].for_each_acting([&](const ContactList& contacts) { visit(*interfaces_[i], contacts); });
 }
 
 // Every impulse is what its law answered to some velocity of its contact: how far the contact is
@@ -168,15 +182,14 @@ Vector CoupledContacts::since_answer(const Interface& interface, std::int32_t co
 
 // That, beside the largest velocity there is, or that an impulse makes. Zero where all laws hold. Of
 // contacts that may act: what the idle ones were evaluated with must not matter.
-CoupledContacts::Residual CoupledContacts::residual(double speed, const Dofs& v) const {
+CoupledContacts::Residual CoupledContacts::residual(const ContactGroup& group, double speed, const Dofs& v) {
   Residual found{0.0, speed};
-  for_each_acting([&](const Interface& interface, const ContactList& contacts) {
+  for (const auto& [interface, contacts] : group)
     for (const std::int32_t contact : contacts) {
-      const double own = interface.delassus(contact) * interface.impulse(contact).cwiseAbs().maxCoeff();
-      found.change = std::max(found.change, since_answer(interface, contact, v).cwiseAbs().maxCoeff());
+      const double own = interface->delassus(contact) * interface->impulse(contact).cwiseAbs().maxCoeff();
+      found.change = std::max(found.change, since_answer(*interface, contact, v).cwiseAbs().maxCoeff());
       found.size = std::max(found.size, own);
     }
-  });
   return found;
 }
 
@@ -185,27 +198,36 @@ CoupledContacts::Residual CoupledContacts::residual(double speed, const Dofs& v)
 CoupledContacts::Disagreement CoupledContacts::disagreement(const Dofs& v) const {
   Disagreement all{};
   double worst = 0.0;
-  for_each_acting([&](const Interface& interface, const ContactList& contacts) {
+  for (const auto& [interface, contacts] : acting_)
     for (const std::int32_t contact : contacts) {
-      const Vector off = since_answer(interface, contact, v);
-      const double energy = 0.5 * std::abs(interface.impulse(contact).dot(off));
+      const Vector off = since_answer(*interface, contact, v);
+      double work = 0.0, square = 0.0;
+      for (Eigen::Index c = 0; c < off.size(); ++c) {
+        work += interface->impulse(contact)[c] * off[c];
+        square += off[c] * off[c];
+      }
+      const double energy = 0.5 * std::abs(work);
       all.energy += energy;
       if (!(energy > worst)) continue;
       worst = energy;
-      all.interface = &interface;
-      all.node = interface.node_of(contact);
-      all.velocity = off.norm();
+      all.interface = interface;
+      all.node = interface->node_of(contact);
+      all.velocity = std::sqrt(square);
     }
-  });
   return all;
 }
 
-// Where laws contradict each other they push each other up, to far more than any mass ratio asks for.
-// Long columns, which more sweeps would solve, do not.
+// Where laws contradict each other they push each other up, to far more than any mass ratio asks
+// for; or they go on until one of them breaks, and begin anew. A long column, which more sweeps
+// would solve, does neither: it is told by its length.
 std::string CoupledContacts::explain(const Dofs& v, const Outcome& outcome) const {
-  constexpr double run_away = 1e6;
+  constexpr double run_away = 1e6, beyond_rounding = 1e-6;
+  const double speed = out_of_reach_ / most_growth;  // of the first sweep
   const Disagreement found = disagreement(v);
-  if (!found.interface || !(residual(0.0, v).size > run_away * (out_of_reach_ / most_growth))) return "";
+  if (!found.interface) return "";
+  const bool ran_away = residual(acting_, 0.0, v).size > run_away * speed;
+  const bool is_stuck = found.velocity > beyond_rounding * speed && contacts_joined_to(found.node) <= few;
+  if (!ran_away && !is_stuck) return "";
   std::array<char, 400> text{};
   std::snprintf(text.data(), text.size(),
                 "contacts that share node %d find no velocity that suits them all: after %d sweeps '%s' (law "
@@ -215,44 +237,58 @@ std::string CoupledContacts::explain(const Dofs& v, const Outcome& outcome) cons
   return text.data();
 }
 
+std::size_t CoupledContacts::contacts_joined_to(int node) const {
+  for (const ContactGroup& island : islands_of(acting_, node_count_)) {
+    std::size_t count = 0;
+    bool has_node = false;
+    for (const auto& [interface, contacts] : island)
+      for (const std::int32_t contact : contacts) {
+        ++count;
+        has_node = has_node || interface->node_of(contact) == node;
+      }
+    if (has_node) return count;
+  }
+  return 0;
+}
+
 // Times the root of their delassus: a norm in energy.
-Dofs CoupledContacts::scaled_impulses() const {
+Dofs CoupledContacts::scaled_impulses(const ContactGroup& group) {
   std::vector<double> scaled;
-  for_each_acting([&](const Interface& interface, const ContactList& contacts) {
+  for (const auto& [interface, contacts] : group)
     for (const std::int32_t contact : contacts)
-      for (const double component : interface.impulse(contact))
-        scaled.push_back(std::sqrt(interface.delassus(contact)) * component);
-  });
+      for (const double component : interface->impulse(contact))
+        scaled.push_back(std::sqrt(interface->delassus(contact)) * component);
   return Eigen::Map<const Dofs>(scaled.data(), static_cast<Eigen::Index>(scaled.size()));
 }
 
 // Whether what impulses make of velocities is worth more than its rounding.
-bool CoupledContacts::is_in_reach(const Dofs& scaled) const {
+bool CoupledContacts::is_in_reach(const ContactGroup& group, const Dofs& scaled) const {
   Eigen::Index next = 0;
-  double fastest = 0.0;
-  for_each_acting([&](const Interface& interface, const ContactList& contacts) {
+  for (const auto& [interface, contacts] : group)
     for (const std::int32_t contact : contacts) {
-      const Eigen::Index d = interface.impulse(contact).size();
-      const double root = std::sqrt(interface.delassus(contact));
-      fastest = std::max(fastest, root * scaled.segment(next, d).cwiseAbs().maxCoeff());
-      next += d;
+      const double root = std::sqrt(interface->delassus(contact));
+      for (const Eigen::Index end = next + dimension_; next < end; ++next)
+        if (!(root * std::abs(scaled[next]) <= out_of_reach_)) return false;  // nor is what is no number
     }
-  });
-  return fastest <= out_of_reach_;  // false for NaN
+  return true;
 }
 
 // From v_free anew: what large impulses would leave of each other is rounding.
-void CoupledContacts::move_to(const Dofs& scaled, Dofs& v) {
+void CoupledContacts::move_to(const ContactGroup& group, const Dofs& scaled, Dofs& v) const {
+  const Eigen::Index d = dimension_;
+  for (const auto& [interface, contacts] : group)
+    for (const std::int32_t contact : contacts)
+      interface->point(contact).for_each_node(interface->node_of(contact), [&](int node, double) {
+        v.segment(node * d, d) = v_free_.segment(node * d, d);
+      });
   Eigen::Index next = 0;
-  v = v_free_;
-  for_each_acting([&](Interface& interface, const ContactList& contacts) {
+  for (const auto& [interface, contacts] : group) {
     for (const std::int32_t contact : contacts) {
-      const Eigen::Index d = interface.impulse(contact).size();
-      interface.start_from(contact, scaled.segment(next, d) / std::sqrt(interface.delassus(contact)));
+      interface->start_from(contact, scaled.segment(next, d) / std::sqrt(interface->delassus(contact)));
       next += d;
     }
-    interface.apply(contacts, v);
-  });
+    interface->apply(contacts, v);
+  }
 }
 
 }  // namespace ilaw::host

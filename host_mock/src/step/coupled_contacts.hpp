@@ -6,6 +6,7 @@
 #include "contact/interface.hpp"
 #include "step/anderson.hpp"
 #include "step/colours.hpp"
+#include "step/islands.hpp"
 
 #include <string>
 #include <vector>
@@ -42,8 +43,19 @@ class CoupledContacts {
   // No impulse may make a speed larger than that many times the first: it would be all rounding.
   static constexpr double most_growth = 0x1p50;
 
+  // So few contacts are solved by the sweeps there are, if they can be.
+  static constexpr std::size_t few = 50;
+
   struct Residual {
     double change, size;
+    double relative() const { return size > 0.0 ? change / size : 0.0; }
+  };
+  // What sweeps go over, and the velocities that they change.
+  struct Sweeping {
+    const ContactGroup& group;
+    const StepView& step;
+    double speed;
+    Dofs& v;
   };
   struct Disagreement {
     double energy;               // of all contacts
@@ -54,22 +66,24 @@ class CoupledContacts {
 
   void open(const StepView& step);
   void iterate(const StepView& step, double speed, Dofs& v, Outcome& outcome);
-  void sweep(const StepView& step, Dofs& v);
+  void accelerate(const Sweeping& on, Outcome& outcome);
+  void search(const Sweeping& on, Outcome& outcome);
+  // Evaluates every contact once, each against the impulses of the others.
+  static Residual sweep(const Sweeping& on, Outcome& outcome);
+  bool try_from(const Sweeping& on, const Dofs& scaled);
   static void answer(Interface& interface, const ContactList& contacts, const StepView& step, Dofs& v);
-  Residual residual(double speed, const Dofs& v) const;
-  template <class Sweep, class Try>
-  void search(Sweep sweep_once, Try try_from, const Outcome& outcome);
-  bool is_in_reach(const Dofs& scaled) const;
+  static Residual residual(const ContactGroup& group, double speed, const Dofs& v);
+  bool is_in_reach(const ContactGroup& group, const Dofs& scaled) const;
   static Vector since_answer(const Interface& interface, std::int32_t contact, const Dofs& v);
   Disagreement disagreement(const Dofs& v) const;
-  Dofs scaled_impulses() const;
-  void move_to(const Dofs& scaled, Dofs& v);
-  template <class Visit>
-  void for_each_acting(Visit visit) const;
+  std::size_t contacts_joined_to(int node) const;
+  static Dofs scaled_impulses(const ContactGroup& group);
+  void move_to(const ContactGroup& group, const Dofs& scaled, Dofs& v) const;
 
   Interfaces& interfaces_;
-  int dimension_;
+  int dimension_, node_count_;
   std::vector<Colours> colours_;  // one per interface
+  ContactGroup acting_;           // of the step, all of them
   Dofs v_free_;
   double out_of_reach_ = 0.0;
 };

@@ -6,8 +6,11 @@
 #include "model/elements.hpp"
 #include "step/dof_loops.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
+#include <string>
 
 namespace ilaw::host {
 namespace {
@@ -137,7 +140,9 @@ void Integrator::check_motion(double speed, double time) const {
   v_.cwiseAbs().maxCoeff(&largest);
   while (dof < v_.size() && std::isfinite(v_[dof])) ++dof;
   if (dof == v_.size()) dof = largest;
-  throw Diverged("velocity " + std::to_string(v_[dof]) + " at node " +
+  std::array<char, 32> velocity{};  // with an exponent: it may have 300 digits
+  std::snprintf(velocity.data(), velocity.size(), "%g", v_[dof]);
+  throw Diverged("velocity " + std::string(velocity.data()) + " at node " +
                  std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_ + 1) +
                  ", time " + std::to_string(time) + advice_on_divergence(model_, u_, dt_));
 }

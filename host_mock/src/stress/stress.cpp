@@ -60,8 +60,10 @@ StressReport stress(const StressSetup& setup, const std::function<void(std::int6
     const json scene = random_scene(laws, laws.all()[which], seed, setup.size);
     const StressVerdict verdict = stress_scene(scene);
     add(report.rows[which], verdict);
+    if (verdict.ending == StressEnding::stopped)
+      report.stops.push_back({seed, report.rows[which].law, verdict.reason, {}});
     if (verdict.ending == StressEnding::failed) {
-      StressFailure failure{seed, report.rows[which].law, verdict.reason, {}};
+      StressFinding failure{seed, report.rows[which].law, verdict.reason, {}};
       if (!setup.keep.empty() && report.failures.size() < most_kept)
         failure.file = keep(scene, verdict, failure.law + "_" + std::to_string(seed), setup.keep);
       report.failures.push_back(std::move(failure));

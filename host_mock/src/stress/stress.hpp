@@ -28,7 +28,8 @@ struct StressRow {
   StressFigures worst;  // sums of steps, largest of the others
 };
 
-struct StressFailure {
+// A scene that did not come to its end, or not as it must.
+struct StressFinding {
   std::uint64_t seed;
   std::string law, reason;
   std::filesystem::path file;  // empty: not kept
@@ -36,7 +37,7 @@ struct StressFailure {
 
 struct StressReport {
   std::vector<StressRow> rows;
-  std::vector<StressFailure> failures;
+  std::vector<StressFinding> failures, stops;
 };
 
 // The laws take turns. progress is told the number of scenes done. Throws ilaw::error where a library
