@@ -63,8 +63,8 @@ class tangent_columns {
   [[gnu::noinline, gnu::flatten]] void keep(int count, const double* const* normals,
                                             const double* const* tangents) const {
     const tangent_columns own = *this;
-    const double *const n[] = {normals[0], normals[1], normals[2]},
-                        *const t[] = {tangents[0], tangents[1], tangents[2]};
+    const double *const n[] = {normals[0], normals[1], normals[2]}, *const t[] = {tangents[0], tangents[1],
+                                                                                  tangents[2]};
 #pragma omp simd
     for (int i = 0; i < count; ++i) own.keep_at(i, n, t);
   }

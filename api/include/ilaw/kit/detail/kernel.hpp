@@ -22,8 +22,8 @@ struct node_block {
   double impulse_guard;   // an impulse that overflows when multiplied by it may do so as the host is given it
   const double* axes[9];  // normal, tangents; see frame.hpp
   const double* v_free[3];
-  const double* v_previous[3];           // as the law may read it, see batch_walk.hpp
-  const double* v_previous_of_energy[3]; // as the host gave it
+  const double* v_previous[3];            // as the law may read it, see batch_walk.hpp
+  const double* v_previous_of_energy[3];  // as the host gave it
   const double* delassus[6];
   const double *gap, *gap_offset, *area;
   const double* state_in[states + 1];  // one more than needed: no array of length zero
