@@ -9,7 +9,6 @@ using namespace ilaw::kit;
 
 constexpr const char* integration_choices[] = {"explicit", "implicit"};
 constexpr double implicitly = 1.0;
-
 enum class spring_kind { linear, hertz, any };
 
 struct penalty {
@@ -377,10 +376,7 @@ struct penalty::form : penalty {
     if constexpr (std::is_same_v<V, double>) return false;
     return p.exponent != 1.5;
   }
-  static void solve_alone(const problem<double>& p, answer<double>& a) {
-    const auto found = p.power_law();
-    a = {found.impulse, found.opens};
-  }
+  static void solve_alone(const problem<double>& p, answer<double>& a) { solve(p, a); }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {
     give<Kind>(node, compression_of(node, damping_ratio), {a.impulse, a.opens}, acts_on(node));
@@ -389,21 +385,13 @@ struct penalty::form : penalty {
 
 template <class Run>
 void penalty::in_form(Run run) const {
-  const bool is_implicit = integration == implicitly;
-  const bool is_linear = exponent == 1.0 || stiffness == infinity;
   const double ratio = penalty_law::damping_ratio(restitution);
   const auto run_kind = [&]<spring_kind Kind>() {
-    if (is_implicit)
-      run(form<true, Kind>{*this, ratio});
-    else
-      run(form<false, Kind>{*this, ratio});
+    integration == implicitly ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
   };
-  if (is_linear)
-    run_kind.template operator()<spring_kind::linear>();
-  else if (exponent == 1.5)
-    run_kind.template operator()<spring_kind::hertz>();
-  else
-    run_kind.template operator()<spring_kind::any>();
+  if (exponent == 1.0 || stiffness == infinity) return run_kind.template operator()<spring_kind::linear>();
+  if (exponent == 1.5) return run_kind.template operator()<spring_kind::hertz>();
+  run_kind.template operator()<spring_kind::any>();
 }
 
 }  // namespace
