@@ -9,6 +9,7 @@ using namespace ilaw::kit;
 
 constexpr const char* integration_choices[] = {"explicit", "implicit"};
 constexpr double implicitly = 1.0;
+enum class spring_kind { linear, hertz, any };
 
 struct penalty {
   double stiffness;
@@ -132,8 +133,8 @@ struct penalty {
                    2.0 / square_root(tangential_stiffness * penalty_law::largest_tangential(node.delassus)));
   }
 
-  // Explicit or implicit, linear or not: loops without a power vectorise.
-  template <bool Implicit, bool Linear>
+  // Explicit or implicit, and the kind of spring: loops without a choice of powers vectorise.
+  template <bool Implicit, spring_kind Kind>
   struct form;
   template <class Run>
   void in_form(Run run) const;
@@ -143,20 +144,21 @@ struct penalty {
   }
 
  private:
-  template <bool Linear>
+  template <spring_kind Kind>
   double spring_force(double penetration) const {
-    if constexpr (Linear) return stiffness * penetration;
+    if constexpr (Kind == spring_kind::linear) return stiffness * penetration;
+    if constexpr (Kind == spring_kind::hertz) return stiffness * (penetration * square_root(penetration));
     return stiffness * power(penetration, exponent);
   }
   // Energy of the normal spring; none when it is rigid.
-  template <bool Linear>
+  template <spring_kind Kind>
   double potential(double penetration) const {
-    const double spring = spring_force<Linear>(penetration) * penetration / (exponent + 1.0);
-    return stiffness < infinity ? spring : 0.0;
+    const double energy = spring_force<Kind>(penetration) * penetration / (exponent + 1.0);
+    return kept_if(stiffness < infinity, energy);
   }
   double tangential_potential(vector slip, vector other) const {
-    return tangential_stiffness < infinity ? 0.5 * tangential_stiffness * tangential_product(slip, other)
-                                           : 0.0;
+    return kept_if(tangential_stiffness < infinity,
+                   0.5 * tangential_stiffness * tangential_product(slip, other));
   }
 
   // Gives the node a normal impulse that is known already, and the tangential one -q/softness within the
@@ -175,15 +177,15 @@ struct penalty {
 
   // The mean over the step of forces that the step ends with, so that springs give back what they took: see
   // penalty.md.
-  template <bool Linear, class Node>
+  template <spring_kind Kind, class Node>
   void step_implicitly(Node& node, double damping_ratio) const {
     penalty_law::compression normal = compression_of(node, damping_ratio);
     const bool acts = acts_on(node);
     if (friction > 0.0 && node.delassus.anisotropy() != 0.0) {
-      const auto found = rub_any<Linear>(node, acts, normal, sliding_velocity(node), softness_of(node));
-      strain<Linear>(node, acts ? normal.next(found) : 0.0, node.status != status::stick);
+      const auto found = rub_any<Kind>(node, acts, normal, sliding_velocity(node), softness_of(node));
+      strain<Kind>(node, acts ? normal.next(found) : 0.0, node.status != status::stick);
     } else {
-      give<Linear>(node, normal, Linear ? normal.linear() : normal.power_law(), acts);
+      give<Kind>(node, normal, Kind == spring_kind::linear ? normal.linear() : normal.power_law(), acts);
     }
   }
 
@@ -205,18 +207,18 @@ struct penalty {
   }
 
   // Gives the node what its normal spring gives, and what friction makes of it.
-  template <bool Linear, class Node>
+  template <spring_kind Kind, class Node>
   void give(Node& node, const penalty_law::compression& normal, penalty_law::compression::solution found,
             bool acts) const {
     found.impulse = acts ? found.impulse : 0.0;
     const double softness = 0.5 * node.delassus.tangential() + softness_of(node);
     const bool slides = rub(node, found.impulse, sliding_velocity(node), softness);
-    strain<Linear>(node, acts ? normal.next(found) : 0.0, slides);
+    strain<Kind>(node, acts ? normal.next(found) : 0.0, slides);
   }
 
   // What the step leaves in the springs. One that sticks moves along; one that slides keeps no more than its
   // force holds, in the direction of its end.
-  template <bool Linear, class Node>
+  template <spring_kind Kind, class Node>
   void strain(Node& node, double indentation, bool slides) const {
     const double h = node.velocity_step, per_impulse = 1.0 / (h * tangential_stiffness);
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2}, r = node.impulse;
@@ -231,9 +233,9 @@ struct penalty {
       return kept_if(holds, end) + 0.0;  // never -0: a node at rest keeps its bits
     };
     const vector strained{0.0, next(spring.t1, moved.t1, r.t1), next(spring.t2, moved.t2, r.t2)};
-    const double stored_normal = potential<Linear>(indentation);
+    const double stored_normal = potential<Kind>(indentation);
     const double stored_tangential = tangential_potential(strained, strained);
-    node.normal_gain = stored_normal - potential<Linear>(node.state.indentation);
+    node.normal_gain = stored_normal - potential<Kind>(node.state.indentation);
     node.tangential_gain = stored_tangential - tangential_potential(spring, spring);
     node.stored = stored_normal + stored_tangential;
     node.state = {indentation, strained};
@@ -270,7 +272,7 @@ struct penalty {
   // The same for any H. Tangents with a normal impulse that is known are Coulomb's local problem without
   // coupling, the tangential spring an inverse mass beside H; what their impulse does to the normal leaves
   // one equation for one unknown. A rigid spring has none to find: Coulomb's local problem as it is.
-  template <bool Linear, class Node>
+  template <spring_kind Kind, class Node>
   penalty_law::compression::solution rub_any(Node& node, bool acts, penalty_law::compression& normal,
                                              vector q, double softness) const {
     local_coulomb problem{};
@@ -299,7 +301,7 @@ struct penalty {
     };
     penalty_law::compression::solution found{0.0, 0.0};
     if (acts && coupling_1 == 0.0 && coupling_2 == 0.0)
-      found = Linear ? normal.linear() : normal.power_law();
+      found = Kind == spring_kind::linear ? normal.linear() : normal.power_law();
     else if (acts)
       found.impulse = normal.impulse_where([&](double r) { return normal.given(tangents(r) + nn * r) - r; });
     normal.free = tangents(acts ? found.impulse : 0.0);
@@ -310,10 +312,10 @@ struct penalty {
 
   // Forces of the configuration and the half step before: the stiffness eats the critical time step. The
   // spring is kept as the motion of this step will strain it, so that the next step finds it ready.
-  template <bool Linear, class Node>
+  template <spring_kind Kind, class Node>
   void step_explicitly(Node& node) const {
     const double penetration = positive_part(-node.gap), h = node.velocity_step;
-    const double elastic = h * spring_force<Linear>(penetration);
+    const double elastic = h * spring_force<Kind>(penetration);
     const double viscous = penetration > 0.0 ? h * damping * node.v_previous.n : 0.0;
     const double shear = friction > 0.0 ? h * tangential_stiffness : 0.0;
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2};
@@ -330,14 +332,14 @@ struct penalty {
 
     // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
     const vector mean = node.v_previous + v;
-    const double normal = potential<Linear>(penetration) - 0.5 * elastic / h * node.position_step * v.n;
+    const double normal = potential<Kind>(penetration) - 0.5 * elastic / h * node.position_step * v.n;
     node.stored = positive_part(normal + tangential_potential(kept, next));
     node.normal_gain = -0.5 * elastic * mean.n;
     node.tangential_gain = tangential_product(node.impulse, (1.0 / h) * (spring - kept) - 0.5 * mean);
   }
 };
 
-template <bool Implicit, bool Linear>
+template <bool Implicit, spring_kind Kind>
 struct penalty::form : penalty {
   double damping_ratio;
 
@@ -348,50 +350,48 @@ struct penalty::form : penalty {
   struct answer {
     V impulse, opens;
   };
+  static constexpr bool answers_every_node = true, is_linear = Kind == spring_kind::linear;
   template <class Node>
-  static constexpr bool finds_roots = Implicit && !Linear && has_transverse_delassus<Node>;
+  static constexpr bool finds_roots = !is_linear && Implicit && has_transverse_delassus<Node>;
 
   template <class Node>
   void step(Node& node) const requires(!finds_roots<Node>) {
     if constexpr (Implicit)
-      step_implicitly<Linear>(node, damping_ratio);
+      step_implicitly<Kind>(node, damping_ratio);
     else
-      step_explicitly<Linear>(node);
+      step_explicitly<Kind>(node);
   }
 
   template <class Node>
   bool asks(Node& node, problem<double>& open) const requires finds_roots<Node> {
     open = compression_of(node, damping_ratio);
     const bool acts = acts_on(node);
-    give<Linear>(node, open, {0.0, 0.0}, false);
+    answered(node, {0.0, 0.0});
     return acts;
   }
   template <class V>
-  mask_of<V> solve(const problem<V>& p, answer<V>& a) const {
+  static mask_of<V> solve(const problem<V>& p, answer<V>& a) {
     const auto found = p.power_law();
     a = {found.impulse, found.opens};
     if constexpr (std::is_same_v<V, double>) return false;
     return p.exponent != 1.5;
   }
-  void solve_alone(const problem<double>& p, answer<double>& a) const {
-    const auto found = p.power_law();
-    a = {found.impulse, found.opens};
-  }
+  static void solve_alone(const problem<double>& p, answer<double>& a) { solve(p, a); }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {
-    give<Linear>(node, compression_of(node, damping_ratio), {a.impulse, a.opens}, true);
+    give<Kind>(node, compression_of(node, damping_ratio), {a.impulse, a.opens}, acts_on(node));
   }
 };
 
 template <class Run>
 void penalty::in_form(Run run) const {
-  const bool is_implicit = integration == implicitly;
-  const bool is_linear = exponent == 1.0 || stiffness == infinity;
   const double ratio = penalty_law::damping_ratio(restitution);
-  if (is_implicit && is_linear) run(form<true, true>{*this, ratio});
-  if (is_implicit && !is_linear) run(form<true, false>{*this, ratio});
-  if (!is_implicit && is_linear) run(form<false, true>{*this, ratio});
-  if (!is_implicit && !is_linear) run(form<false, false>{*this, ratio});
+  const auto run_kind = [&]<spring_kind Kind>() {
+    integration == implicitly ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
+  };
+  if (exponent == 1.0 || stiffness == infinity) return run_kind.template operator()<spring_kind::linear>();
+  if (exponent == 1.5) return run_kind.template operator()<spring_kind::hertz>();
+  run_kind.template operator()<spring_kind::any>();
 }
 
 }  // namespace

@@ -349,36 +349,46 @@ TEST(Window, RefusesASumThatIsNotFinite) {
 
 // The kit reads the windows of a block together, where most stand alike: nobody notices, to the last bit.
 TEST(Window, ABlockReadsWhatEachNodeReads) {
-  using ilaw::kit::detail::column;
   constexpr int nodes = ilaw::kit::detail::block_size;
   constexpr double duration = 1.0, buckets = 8.0;
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto size = static_cast<std::size_t>(window::doubles(duration, buckets));
-  std::vector<double> values(size * nodes);
-  const auto own = [&](int i) {
-    return ilaw::kit::history{values.data() + static_cast<std::ptrdiff_t>(size) * i, 1};
+  std::vector<double> values(size * nodes), values_alone(size * nodes);
+  const auto at = [size](std::vector<double>& all, int i) {
+    return ilaw::kit::history{all.data() + static_cast<std::ptrdiff_t>(size) * i, 1};
   };
+  const auto own = [&](int i) { return at(values, i); };
   const window alone(duration, buckets);
   double end = -3.0;
   int together = 0;
   for (int step = 0; step < 3000; ++step) {
     const double h = step % 50 == 0 ? 0.3 : 0.01 * (1.0 + 0.5 * uniform(random));
     end += h;
-    const ilaw::kit::window_in_step block = alone.in({end, h});
-    column sum[3], refused;
+    ilaw::kit::window_in_step block = alone.in({end, h});
+    ilaw::kit::window_in_step::block_reading read;
     block.before(
-        nodes, [&](int i) { return ilaw::kit::const_history(own(i)); }, sum, refused);
+        nodes, [&](int i) { return ilaw::kit::const_history(own(i)); }, read);
     for (int i = 0; i < nodes; ++i) {
       const window::reading expected = alone.before(own(i), {end, h});
-      const double found[4] = {sum[0].values[i], sum[1].values[i], sum[2].values[i], refused.values[i]};
+      const double found[4] = {read.sum[0].values[i], read.sum[1].values[i], read.sum[2].values[i],
+                               read.refused.values[i]};
       const double each[4] = {expected.sum.n, expected.sum.t1, expected.sum.t2, expected.refused};
       ASSERT_EQ(std::memcmp(found, each, sizeof found), 0) << "step " << step << ", node " << i;
       together += found[0] != 0.0 ? 1 : 0;
-      if (i % 3 == 0 || uniform(random) > 0.5)  // others lag behind, or are empty
-        block.add(own(i), {uniform(random), uniform(random), uniform(random)});
-      if (i % 7 == 6 && step % 100 == i) block.clear(own(i));
+      if (i % 3 == 0 || uniform(random) > 0.5) {  // others lag behind, or are empty
+        const vector impulse{uniform(random), uniform(random), uniform(random)};
+        block.recall(read, i);
+        block.add(own(i), impulse);
+        alone.add(at(values_alone, i), {end, h}, impulse);
+      }
+      if (i % 7 == 6 && step % 100 == i) {
+        block.clear(own(i));
+        block.clear(at(values_alone, i));
+      }
     }
+    ASSERT_EQ(std::memcmp(values.data(), values_alone.data(), values.size() * sizeof(double)), 0)
+        << "step " << step;
   }
   EXPECT_GT(together, 100000);
 }

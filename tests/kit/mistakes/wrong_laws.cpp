@@ -200,6 +200,33 @@ struct history_without_size {
   void record(const Node&, history) const {}
 };
 
+// solve and solve_alone must be static, and their problem carry the parameters: they may come per node
+struct solve_with_a_parameter {
+  double a;
+  CARD;
+  PARAMETER(solve_with_a_parameter);
+  template <class V>
+  struct problem {
+    V x;
+  };
+  template <class V>
+  struct answer {
+    V y;
+  };
+  template <class Node>
+  bool asks(Node&, problem<double>&) const {
+    return true;
+  }
+  template <class V>
+  mask_of<V> solve(const problem<V>& p, answer<V>& found) const {
+    found.y = a * p.x;
+    return mask_of<V>(false);
+  }
+  void solve_alone(const problem<double>&, answer<double>&) const {}
+  template <class Node>
+  void answered(Node&, const answer<double>&) const {}
+};
+
 // The compiler looks at each.
 #define SEEN(law) auto* const seen_##law = &detail::library_of<law>::describe
 SEEN(larger_state);
@@ -220,3 +247,4 @@ SEEN(mutable_initialise);
 SEEN(mutable_step);
 SEEN(no_step);
 SEEN(history_without_size);
+SEEN(solve_with_a_parameter);

@@ -270,10 +270,10 @@ struct friction_in_packs {
   using answer = friction_answer<V>;
 
   template <class V>
-  mask_of<V> solve(const friction_problem<V>& p, friction_answer<V>& a) const {
+  static mask_of<V> solve(const friction_problem<V>& p, friction_answer<V>& a) {
     return solve_friction(p, a);
   }
-  void solve_alone(const friction_problem<double>& p, friction_answer<double>& a) const {
+  static void solve_alone(const friction_problem<double>& p, friction_answer<double>& a) {
     solve_friction_alone(p, a);
   }
   template <class Node>

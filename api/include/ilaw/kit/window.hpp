@@ -24,6 +24,7 @@
 #pragma once
 
 #include <ilaw/kit/detail/gather.hpp>
+#include <ilaw/kit/detail/window_grid.hpp>
 #include <ilaw/kit/node.hpp>
 
 #include <concepts>
@@ -35,35 +36,10 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 // does a clock that adds up its steps.
 inline constexpr double window_slack = 1e-9;
 
-// The largest whole number up to x, for |x| < 2^63.
-inline double floor_of(double x) {
-  const auto cut = static_cast<double>(static_cast<std::int64_t>(x));
-  return cut > x ? cut - 1.0 : cut;
-}
-
-// The time over which a step's impulse acts: from half step to half step.
-struct step_interval {
-  double end, length;
-};
-template <class Node>
-step_interval interval_of(const Node& node) {
-  return {node.time + 0.5 * node.position_step, node.velocity_step};
-}
-
 // A window in one step. What is the same at all nodes is worked out once.
-class window_in_step {
+class window_in_step : detail::window_grid {
  public:
-  window_in_step(double duration, double buckets, step_interval step)
-      : duration_(duration),
-        buckets_(buckets),
-        per_width_(buckets / duration),
-        end_(step.end * per_width_),
-        begin_(end_ - step.length * per_width_),
-        now_(on_grid(end_) ? floor_of(end_) : 0.0),
-        has_grid_(duration > 0.0 && duration < infinity && on_grid(end_)),
-        is_short_(step.length < duration),
-        place_(has_grid_ ? place_of(now_) : 0),
-        edge_(edge_at(now_)) {}
+  using window_grid::window_grid;
 
   // The sum of the impulses before the step, within tau of its end; or why there is none.
   struct reading {
@@ -88,31 +64,66 @@ class window_in_step {
     return checked(edge_at(k).sum(middle, current, read(own, at(oldest)), next));
   }
 
-  // The same for the nodes of a block, whose histories own(i) gives. Most were written in the newest bucket
-  // as it is now: what is read of them stands at the same places, and is summed in vector code.
+  // The same for the nodes of a block, whose histories own(i) gives, and what of it add() needs again. What
+  // was written in the newest bucket or before it is summed in vector code.
+  struct block_reading {
+    detail::column sum[3], refused, stamp, middle[3];
+  };
   template <class OwnHistory>
-  void before(int count, OwnHistory own, detail::column (&sum)[3], detail::column& refused) const {
+  void before(int count, OwnHistory own, block_reading& r) const {
+    const auto in_row = [&own](int i) { return neighbours<const double>{own(i).values}; };
+    if (count > 0 && own(0).stride == 1)
+      before_in(count, in_row, r);
+    else
+      before_in(count, own, r);
+  }
+
+ private:
+  template <class OwnHistory>
+  void before_in(int count, OwnHistory own, block_reading& r) const {
     parts p;
-    const bool may_agree = has_grid_ && is_short_;
-    if (may_agree) {
-      gather(count, own, p);
-      sum_parts(count, p, edge_, sum, refused);
+    int others[detail::block_size], other_count = 0;
+    if (has_grid_ && is_short_) {
+      const std::int64_t latest = at(place_), oldest = at(after(place_)), next = at(after(after(place_)));
+      for (int i = 0; i < count; ++i) {
+        const auto h = own(i);
+        r.stamp.values[i] = h[0];
+        put(read(h, middle_sum), i, r.middle);
+        put(read(h, latest), i, p.current);
+        put(read(h, oldest), i, p.oldest);
+        put(read(h, next), i, p.next);
+        others[other_count] = i;
+        other_count += h[0] == stamp_ ? 0 : 1;
+      }
+      other_count = read_older(others, other_count, own, r, p);
+      sum_parts(count, r, p, edge_);
+    } else {
+      for (; other_count < count; ++other_count) others[other_count] = other_count;
     }
-    for (int i = 0; i < count; ++i) {
-      if (may_agree && p.stamp.values[i] == stamp_of(now_)) continue;
+    for (int k = 0; k < other_count; ++k) {
+      const int i = others[k];
       const reading alone = before(own(i));
-      sum[0].values[i] = alone.sum.n;
-      sum[1].values[i] = alone.sum.t1;
-      sum[2].values[i] = alone.sum.t2;
-      refused.values[i] = alone.refused;
+      r.stamp.values[i] = empty;
+      put(alone.sum, i, r.sum);
+      r.refused.values[i] = alone.refused;
     }
+  }
+
+ public:
+  // Tells add() what before() read of node i, whose turn it is.
+  void recall(const block_reading& r, int i) {
+    read_ = &r;
+    node_ = i;
   }
 
   // Takes the step's own impulse in. The history is one that before() did not refuse.
   void add(const history& own, vector impulse) const {
     if (duration_ == 0.0 || (impulse.n == 0.0 && impulse.t1 == 0.0 && impulse.t2 == 0.0)) return;
-    if (has_grid_ && own[0] == stamp_of(now_) && begin_ >= now_)
+    if (has_grid_ && own[0] == stamp_ && begin_ >= now_)
       write(own, at(place_), read(own, at(place_)) + impulse);
+    else if (const double turns = has_grid_ ? turns_since(own[0]) : -1.0; turns > 0.0)
+      own.stride == 1 ? open_and_add(neighbours<double>{own.values}, impulse, turns)
+                      : open_and_add(own, impulse, turns);
     else
       add_elsewhere(own, impulse);
   }
@@ -128,123 +139,89 @@ class window_in_step {
  private:
   // The history: number of the newest bucket, sum of the middle ones, and a ring of B + 1 buckets.
   friend class window;
-  static constexpr std::int64_t middle_sum = 1, first_bucket = 4;
-  // Numbers of buckets that a double and a cast hold with room to spare. A grid finer than that is finer than
-  // the clock: no step lies within tau of another.
-  static constexpr double largest_number = 0x1p51;
-
-  // The newest bucket is kept as a number other than zero, so that zeros are an empty window.
-  static constexpr double empty = 0.0;
-  static double stamp_of(double bucket) { return bucket >= 0.0 ? bucket + 1.0 : bucket; }
-  static double bucket_of(double stamp) { return stamp > 0.0 ? stamp - 1.0 : stamp; }
-  static bool on_grid(double x) { return absolute(x) < largest_number; }
-  static bool is_stamp(double stamp) {
-    return absolute(stamp) <= largest_number && floor_of(stamp) == stamp;  // false for NaN
-  }
-
-  template <class History>
-  static vector read(const History& own, std::int64_t k) {
-    return {own[k], own[k + 1], own[k + 2]};
-  }
-  static void write(const history& own, std::int64_t k, vector sum) {
-    own[k] = sum.n;
-    own[k + 1] = sum.t1;
-    own[k + 2] = sum.t2;
-  }
   static reading checked(vector sum) { return {sum, defect(sum) == 0.0 ? not_refused : impossible_state}; }
 
-  // Places in the ring: bucket j stands at j modulo B + 1, so that the next bucket to open takes that of the
-  // oldest.
-  std::int64_t ring_size() const { return static_cast<std::int64_t>(buckets_) + 1; }
-  std::int64_t place_of(double bucket) const {
-    const double size = buckets_ + 1.0;
-    const double place = bucket - floor_of(bucket * (1.0 / size)) * size;  // the quotient may be one off
-    return static_cast<std::int64_t>(place < 0.0 ? place + size : (place < size ? place : place - size));
-  }
-  std::int64_t after(std::int64_t place) const { return place + 1 < ring_size() ? place + 1 : 0; }
-  static std::int64_t at(std::int64_t place) { return first_bucket + 3 * place; }
-
-  // The sum of the buckets between the oldest and k, of which those after newest are not open yet: in two
-  // runs of neighbours.
-  template <class History>
-  vector sum_between(const History& own, double k, double newest) const {
-    const double first = (k - buckets_) + 1.0;
-    const auto count = static_cast<std::int64_t>(smaller(k - 1.0, newest) - first) + 1;
-    const std::int64_t place = place_of(first), room = ring_size() - place;
-    const std::int64_t before_end = count < room ? count : room;
-    return sum_of(own, place, before_end) + sum_of(own, 0, count - before_end);
-  }
-  template <class History>
-  static vector sum_of(const History& own, std::int64_t place, std::int64_t count) {
-    vector even, odd;  // two sums that do not wait for each other
-    const std::int64_t end = at(place + count);
-    std::int64_t k = at(place);
-    for (; k + 3 < end; k += 6) {
-      even = even + read(own, k);
-      odd = odd + read(own, k + 3);
-    }
-    return k < end ? (even + read(own, k)) + odd : even + odd;
+  // By how many buckets the newest one lies before that of this step, up to B, for which the rest of a
+  // history counts; B + 1 where it is empty, -1 where it is something else.
+  double turns_since(double stamp) const {
+    if (stamp == empty) return buckets_ + 1.0;
+    const double turns = now_ - bucket_of(stamp);
+    const bool counts = (turns >= 0.0) & (turns <= buckets_);  // false for NaN
+    return counts && floor_of(turns) == turns ? turns : -1.0;
   }
 
-  // What counts of the oldest bucket: the part that tau still covers, and its correction by the slope.
-  struct edge {
-    double part, slope;
-
-    vector sum(vector middle, vector current, vector oldest, vector next) const {
-      return (middle + current) + (part * oldest + slope * limited_difference(oldest, next));
-    }
-  };
-  // A step may have begun within the oldest bucket or the next, which are then filled up to there.
-  edge edge_at(double k) const {
-    const double oldest = k - buckets_, filled = smaller(oldest + 1.0, begin_);
-    if (filled <= oldest) return {0.0, 0.0};
-    const double live = filled - (end_ - buckets_);
-    const double part = smaller(1.0, begin_ < oldest + 1.0 ? live / (filled - oldest) : live);
-    return {part, begin_ < oldest + 2.0 ? 0.0 : 0.5 * part * (1.0 - part)};
-  }
-  static vector limited_difference(vector bucket, vector next) {
-    const vector difference = next - bucket;
-    const double most = 2.0 * absolute(bucket.n);
-    const double allowed = 2.0 * bucket.tangential_length(), found = difference.tangential_length();
-    const double factor = found > allowed ? allowed / found : 1.0;
-    return {smaller(larger(difference.n, -most), most), factor * difference.t1, factor * difference.t2};
-  }
-
-  // What is read of the nodes of a block, as columns: the middle sum, the newest bucket and the two oldest.
+  // What is read of the nodes of a block beside their middle sums, as columns.
   struct parts {
-    detail::column stamp, middle[3], current[3], oldest[3], next[3];
+    detail::column current[3], oldest[3], next[3];
   };
+  // Mends what was read of nodes whose newest bucket lies further back. Returns how many are left in the
+  // list, which are to be read alone.
   template <class OwnHistory>
-  void gather(int count, OwnHistory own, parts& p) const {
-    const std::int64_t latest = at(place_), oldest = at(after(place_)), next = at(after(after(place_)));
-    for (int i = 0; i < count; ++i) {
-      const auto h = own(i);
-      p.stamp.values[i] = h[0];
-      for (int c = 0; c < 3; ++c) {
-        p.middle[c].values[i] = h[middle_sum + c];
-        p.current[c].values[i] = h[latest + c];
-        p.oldest[c].values[i] = h[oldest + c];
-        p.next[c].values[i] = h[next + c];
-      }
+  int read_older(int* nodes, int node_count, OwnHistory own, block_reading& r, parts& p) const {
+    const std::int64_t next = after(after(place_));
+    int left = 0;
+    for (int k = 0; k < node_count; ++k) {
+      const int i = nodes[k];
+      const double turns = turns_since(r.stamp.values[i]);
+      nodes[left] = i;
+      left += turns < 0.0 ? 1 : 0;
+      const bool counts = (turns > 0.0) & (turns <= buckets_);
+      const auto middle_count = static_cast<std::int64_t>(buckets_ - turns);
+      put(counts ? sum_from(own(i), next, middle_count) : vector{}, i, r.middle);
+      put({}, i, p.current);
+      if (!counts) put({}, i, p.oldest);
+      if (!counts || turns == buckets_) put({}, i, p.next);
     }
+    return left;
   }
-  static vector at(const detail::column (&c)[3], int i) {
+  static vector vector_at(const detail::column (&c)[3], int i) {
     return {c[0].values[i], c[1].values[i], c[2].values[i]};
   }
+  static void put(vector a, int i, detail::column (&c)[3]) {
+    c[0].values[i] = a.n;
+    c[1].values[i] = a.t1;
+    c[2].values[i] = a.t2;
+  }
   // The parts are not const: GCC 12 thinks of a block without nodes, and warns that they are not initialised.
-  [[gnu::noinline, gnu::flatten]] static void sum_parts(int count, parts& p, edge given,
-                                                        detail::column (&sum)[3], detail::column& refused) {
+  [[gnu::noinline, gnu::flatten]] static void sum_parts(int count, block_reading& r, parts& p, edge given) {
 #pragma omp simd
     for (int i = 0; i < count; ++i)
-      put(given.sum(at(p.middle, i), at(p.current, i), at(p.oldest, i), at(p.next, i)), i, sum, refused);
+      put_sum(r, i, given, vector_at(p.current, i), vector_at(p.oldest, i), vector_at(p.next, i));
   }
-  static void put(vector s, int i, detail::column (&sum)[3], detail::column& refused) {
-    sum[0].values[i] = s.n;
-    sum[1].values[i] = s.t1;
-    sum[2].values[i] = s.t2;
-    refused.values[i] = defect(s) == 0.0 ? not_refused : impossible_state;
+  static void put_sum(block_reading& r, int i, edge given, vector current, vector oldest, vector next) {
+    const vector s = given.sum(vector_at(r.middle, i), current, oldest, next);
+    put(s, i, r.sum);
+    r.refused.values[i] = defect(s) == 0.0 ? not_refused : impossible_state;
   }
 
+  template <class History>
+  vector opened_middle(const History& own, double turns) const {
+    if (turns > buckets_) return {};
+    return sum_from(own, after(after(place_)), static_cast<std::int64_t>(buckets_ - turns));
+  }
+
+  // Where the newest bucket lies `turns` before that of the step, which is opened with those between.
+  template <class History>
+  [[gnu::noinline]] void open_and_add(const History& own, vector impulse, double turns) const {
+    const bool is_known = read_ && own[0] == read_->stamp.values[node_] && turns <= buckets_;
+    const auto opened = static_cast<std::int64_t>(turns), oldest = after(place_);
+    vector middle = is_known ? vector_at(read_->middle, node_) : opened_middle(own, turns);
+    for (std::int64_t j = 0, place = place_; j < opened; ++j, place = previous(place))
+      write(own, at(place), {});
+    vector left = impulse;
+    std::int64_t place = place_ - static_cast<std::int64_t>(now_ - shares_.first);
+    place = place < 0 ? place + ring_size() : place;
+    for (double j = shares_.first; j < now_; j += 1.0, place = after(place)) {
+      const vector part = (j == shares_.first ? shares_.of_first : shares_.of_others) * impulse;
+      left = left - part;
+      write(own, at(place), read(own, at(place)) + part);
+      if (place != oldest) middle = middle + part;
+    }
+    const vector last = shares_.is_whole ? left : shares_.of_last * impulse;
+    write(own, at(place_), read(own, at(place_)) + last);
+    write(own, middle_sum, middle);
+    own[0] = stamp_;
+  }
   // Where the step lies in other buckets than the newest, or in several.
   [[gnu::noinline]] void add_elsewhere(const history& own, vector impulse) const {
     if (duration_ == infinity) return write(own, 0, read(own, 0) + impulse);
@@ -279,10 +256,8 @@ class window_in_step {
     }
   }
 
-  double duration_, buckets_, per_width_, end_, begin_, now_;
-  bool has_grid_, is_short_;
-  std::int64_t place_;  // of bucket now_
-  edge edge_;
+  const block_reading* read_ = nullptr;
+  int node_ = 0;
 };
 
 class window {

@@ -14,9 +14,9 @@ template <class Law>
 struct block_room {
   static constexpr int states = state_doubles<Law>;
   column v_free[3], v_previous[3], delassus[6], gap, gap_offset, area, normal[3], tangent[3];
-  column impulse[3], velocity[3], energy[ILAW_ENERGY_COUNT], status, refused, rests;
+  column impulse[3], velocity[3], energy[ILAW_ENERGY_COUNT], status, refused, stirs;
   column state_in[states + 1], state_out[states + 1];
-  column first_tangent[3], second_tangent[3];
+  column first_tangent[3], second_tangent[3], frame_before[6], finite_previous[3];
   std::int64_t nodes[has_history<Law> ? block_size : 1];  // where history is, of listed nodes
 };
 
@@ -34,6 +34,63 @@ int state_entry(int k, int dimension) {
     }
   return -1;
 }
+
+// Tangents of a block's nodes, as columns to be written. Each loop stands alone, as vector code.
+class tangent_columns {
+ public:
+  tangent_columns(column* first, column* second) {
+    for (int c = 0; c < 3; ++c) {
+      first_[c] = first[c].values;
+      second_[c] = second[c].values;
+    }
+  }
+
+  // A tangent that is none makes the second one NaN, and so the node's vectors.
+  void put(int i, axis n, axis t1, bool is_tangent) const {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const axis t2 = cross(n, t1);
+    columns::put(first_, i, t1);
+    columns::put(second_, i, {is_tangent ? t2.x : none, is_tangent ? t2.y : none, is_tangent ? t2.z : none});
+  }
+
+  [[gnu::noinline, gnu::flatten]] void choose(int count, const double* const* normals) const {
+    const tangent_columns own = *this;
+    const double* const n[] = {normals[0], normals[1], normals[2]};
+#pragma omp simd
+    for (int i = 0; i < count; ++i) own.put(i, columns::get(n, i), any_tangent(columns::get(n, i)), true);
+  }
+
+  [[gnu::noinline, gnu::flatten]] void keep(int count, const double* const* normals,
+                                            const double* const* tangents) const {
+    const tangent_columns own = *this;
+    const double *const n[] = {normals[0], normals[1], normals[2]}, *const t[] = {tangents[0], tangents[1],
+                                                                                  tangents[2]};
+#pragma omp simd
+    for (int i = 0; i < count; ++i) own.keep_at(i, n, t);
+  }
+
+  // From the frames of the step before: three columns of the normal, three of the tangent.
+  [[gnu::noinline, gnu::flatten]] void transport(int count, const double* const* normals,
+                                                 const double* const* before) const {
+    const tangent_columns own = *this;
+    const double* const n[] = {normals[0], normals[1], normals[2]};
+    const double* const f[] = {before[0], before[1], before[2], before[3], before[4], before[5]};
+#pragma omp simd
+    for (int i = 0; i < count; ++i) own.transport_at(i, n, f);
+  }
+
+ private:
+  void keep_at(int i, const double* const* normals, const double* const* tangents) const {
+    const axis n = columns::get(normals, i), t = columns::get(tangents, i);
+    put(i, n, t, unit(t) & orthogonal(n, t));
+  }
+  void transport_at(int i, const double* const* normals, const double* const* before) const {
+    const axis n = columns::get(before, i), t = columns::get(before + 3, i), now = columns::get(normals, i);
+    put(i, now, transported_tangent(n, t, now), unit(n) & unit(t) & orthogonal(n, t));
+  }
+
+  double *first_[3], *second_[3];
+};
 
 template <class Law, class Layout>
 class batch_walk {
@@ -113,7 +170,7 @@ class batch_walk {
     if (!made_.carries_frame) return;
     const bool history_moves = has_history<Law> && !(made_.capabilities() & ILAW_CAN_REST);
     for (int i = 0; i < nodes_.count; ++i)
-      if (block_.refused[i] == 0.0 && (history_moves || block_.rests[i] == 0.0)) keep_frame(i);
+      if (block_.refused[i] == 0.0 && (history_moves || block_.stirs[i] != 0.0)) keep_frame(i);
   }
 
   bool any_refused() const {
@@ -163,16 +220,31 @@ class batch_walk {
     const std::uint32_t reads = made_.inputs();
     const bool previous =
         batch_.v_previous.values && ((reads & ILAW_INPUT_V_PREVIOUS) || batch_.energy.values);
-    block_.previous_for_energy_only = !(reads & ILAW_INPUT_V_PREVIOUS);
     gather_in_layout(batch_.v_free, room_.v_free, block_.v_free);
     if (previous)
       gather_vector(batch_.v_previous, dimension_, nodes_, room_.v_previous, block_.v_previous);
     else
       for (const double*& component : block_.v_previous) component = zeros.values;
+    for (int c = 0; c < 3; ++c) block_.v_previous_of_energy[c] = block_.v_previous[c];
+    if (previous && reads_previous<Law> && !(reads & ILAW_INPUT_V_PREVIOUS)) keep_from_motion();
     block_.gap = optional(batch_.gap, reads & ILAW_INPUT_GAP, room_.gap);
     block_.gap_offset = optional(batch_.gap_offset, reads & ILAW_INPUT_GAP, room_.gap_offset);
     block_.area = optional(batch_.area, reads & ILAW_INPUT_AREA, room_.area);
     gather_delassus();
+  }
+
+  // Where parameters make a law read no v_previous it is there for energies alone, a number always, turned or
+  // not: what a law says of them may need it, its motion may not.
+  void keep_from_motion() {
+    constexpr double guard = 4.0;
+    double* const room[] = {room_.finite_previous[0].values, room_.finite_previous[1].values,
+                            room_.finite_previous[2].values};
+    for (int i = 0; i < nodes_.count; ++i) {
+      const axis v = columns::get(block_.v_previous, i);
+      const bool good = defect(guard * v.x) + defect(guard * v.y) + defect(guard * v.z) == 0.0;
+      columns::put(room, i, {good ? v.x : 0.0, good ? v.y : 0.0, good ? v.z : 0.0});
+    }
+    for (int c = 0; c < 3; ++c) block_.v_previous[c] = room_.finite_previous[c].values;
   }
 
   // Missing dimensions are padded so that H stays positive definite; see delassus orders in ilaw.h.
@@ -214,48 +286,24 @@ class batch_walk {
       block_.axes[3 + c] = room_.first_tangent[c].values;
       block_.axes[6 + c] = room_.second_tangent[c].values;
     }
-    if (made_.tangent_given && dimension_ == 3)
+    const tangent_columns tangents(room_.first_tangent, room_.second_tangent);
+    const bool in_space = dimension_ == 3;
+    if (in_space && made_.tangent_given) {
       gather_vector(batch_.tangent, dimension_, nodes_, room_.tangent, block_.axes + 3);
-    for (int i = 0; i < nodes_.count; ++i) set_tangents(i);
-  }
-
-  // A tangent that is none makes the second one NaN, and so the node's vectors.
-  void set_tangents(int i) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    const axis n = columns::get(block_.axes, i), t1 = first_tangent(i);
-    const axis t2 = has_tangent(i) ? cross(n, t1) : axis{none, none, none};
-    const double first[] = {t1.x, t1.y, t1.z}, second[] = {t2.x, t2.y, t2.z};
-    for (int c = 0; c < 3; ++c) {
-      if (block_.axes[3 + c] == room_.first_tangent[c].values) room_.first_tangent[c].values[i] = first[c];
-      room_.second_tangent[c].values[i] = second[c];
+      tangents.keep(nodes_.count, block_.axes, block_.axes + 3);
+    } else if (in_space && made_.carries_frame && !is_initial_) {
+      const double* before[6];
+      for (int k = 0; k < 6; ++k)
+        before[k] = gather_doubles(batch_.state_in, static_cast<int>(made_.frame_offset()) + k, nodes_,
+                                   room_.frame_before[k].values);
+      tangents.transport(nodes_.count, block_.axes, before);
+    } else if (in_space) {
+      tangents.choose(nodes_.count, block_.axes);
+    } else {
+      for (int i = 0; i < nodes_.count; ++i)
+        tangents.put(i, columns::get(block_.axes, i), plane_tangent(dimension_, columns::get(block_.axes, i)),
+                     true);
     }
-  }
-
-  axis first_tangent(int i) const {
-    const axis n = columns::get(block_.axes, i);
-    if (dimension_ < 3) return plane_tangent(dimension_, n);
-    if (made_.tangent_given) return columns::get(block_.axes + 3, i);
-    return carries_on() ? transported_tangent(stored_axis(i, 0), stored_axis(i, 3), n) : any_tangent(n);
-  }
-
-  // Whether there is a frame of the step before.
-  bool carries_on() const { return made_.carries_frame && !is_initial_; }
-
-  bool has_tangent(int i) const {
-    if (dimension_ < 3) return true;
-    if (made_.tangent_given) {
-      const axis t = columns::get(block_.axes + 3, i);
-      return unit(t) && orthogonal(t, columns::get(block_.axes, i));
-    }
-    if (!carries_on()) return true;
-    const axis n = stored_axis(i, 0), t = stored_axis(i, 3);
-    return unit(n) && unit(t) && orthogonal(n, t);
-  }
-
-  axis stored_axis(int i, int offset) const {
-    const ilaw_input& s = batch_.state_in;
-    const double* in = &at(s, nodes_.node(i), made_.frame_offset() + offset);
-    return {in[0], in[s.component_stride], in[2 * s.component_stride]};
   }
 
   void open_state() {
@@ -300,7 +348,7 @@ class batch_walk {
       block_.energy[k] = aim(batch_.energy, k, true, room_.energy[k]);
     block_.status = room_.status.values;
     block_.refused = room_.refused.values;
-    block_.rests = room_.rests.values;
+    block_.stirs = room_.stirs.values;
     for (int k = 0; k < states; ++k) {
       const int entry = state_entry<Law>(k, dimension_);
       block_.state_out[k] = aim(batch_.state_out, entry, entry >= 0, room_.state_out[k]);

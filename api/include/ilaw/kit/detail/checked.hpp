@@ -114,6 +114,16 @@ constexpr bool steps_as_const() {
     return requires(const Law& law, node_type& n) { law.step(n); };
   return true;
 }
+// With parameters per node there is no law that a pack of nodes could ask.
+template <class Law>
+constexpr bool solves_rightly() {
+  if constexpr (names_asks<Law>)
+    return requires(const typename Law::template problem<double>& p, typename Law::template answer<double>& a) {
+      Law::solve(p, a);
+      Law::solve_alone(p, a);
+    };
+  return true;
+}
 template <class Law>
 inline constexpr bool initialises_rightly = !names_initialise<Law> || initialises<Law>;
 template <class Law>
@@ -235,6 +245,10 @@ inline constexpr bool has_history_rightly = names_history_variable<Law> ? requir
                                       steps_const, steps_as_const<Law>(),
                                       "step must be const: template <class Node> void step(Node& node) const")
                                   ILAW_KIT_CHECK(
+                                      has_solve, solves_rightly<Law>(),
+                                      "solve and solve_alone must be static, and their problem carry the parameters: "
+                                      "they may come per node")
+                                  ILAW_KIT_CHECK(
                                       has_initialise, initialises_rightly<Law>,
                                       "initialise must be template <class Node> void initialise(Node& node) const")
                                   ILAW_KIT_CHECK(has_inputs, has_inputs_rightly<Law>,
@@ -261,7 +275,7 @@ inline constexpr bool has_history_rightly = names_history_variable<Law> ? requir
                                   static constexpr bool passes =
                                       has_texts && reads_known_inputs && serves_something && gives_members &&
                                       has_one_each && describes_all && gives_state_members &&
-                                      describes_state && steps_const && has_initialise && has_inputs &&
+                                      describes_state && steps_const && has_solve && has_initialise && has_inputs &&
                                       has_capabilities && has_conflict && has_form && has_stable_step &&
                                       has_history && has_record;
                                 };

@@ -22,7 +22,8 @@ struct node_block {
   double impulse_guard;   // an impulse that overflows when multiplied by it may do so as the host is given it
   const double* axes[9];  // normal, tangents; see frame.hpp
   const double* v_free[3];
-  const double* v_previous[3];
+  const double* v_previous[3];            // as the law may read it, see batch_walk.hpp
+  const double* v_previous_of_energy[3];  // as the host gave it
   const double* delassus[6];
   const double *gap, *gap_offset, *area;
   const double* state_in[states + 1];  // one more than needed: no array of length zero
@@ -38,10 +39,9 @@ struct node_block {
   double* energy[ILAW_ENERGY_COUNT];
   double* status;
   double* refused;   // 1 where the input was bad, else 0
-  double* rests;     // 1 where a carried frame stays as it was, else 0
+  double* stirs;     // 0 where a carried frame stays as it was
   double* given[3];  // of laws with a window: the impulse for it, in the local frame,
   double* reached;   // and the status
-  bool previous_for_energy_only;
 
   std::int64_t history_offset(int i) const {
     return (history_nodes ? history_nodes[i] : i) * history_node_stride;
@@ -126,13 +126,8 @@ inline constexpr bool can_carry = std::is_same_v<Frame, stored_frame> &&
 
 template <class Law>
 inline constexpr bool reads_previous = (Law::card.inputs & reads_v_previous) != 0;
-template <class Law>
-concept chooses_inputs = requires(const Law& law) {
-  law.inputs();
-};
 
-// Inputs as the law's card has them. Where parameters make a law read no v_previous it is there for energies
-// alone, a number always: what a law says of them may need it, its motion may not.
+// Inputs as the law's card has them.
 template <class Law, scope Scope, class Basis>
 auto previous_of(const node_block<Law>& b, int i, const Basis& frame) {
   using vector_type = decltype(frame.to_local(axis{}));
@@ -141,10 +136,7 @@ auto previous_of(const node_block<Law>& b, int i, const Basis& frame) {
   } else if constexpr (Scope == scope::impulse) {
     return vector_type{};
   } else {
-    const vector_type v = frame.to_local(columns::get(b.v_previous, i));
-    if constexpr (chooses_inputs<Law>)
-      if (b.previous_for_energy_only) return zero_unless_finite(v);
-    return v;
+    return frame.to_local(columns::get(b.v_previous, i));
   }
 }
 template <class Law>
@@ -315,7 +307,7 @@ void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted
   const auto v = n.v_free + n.delassus.times(n.impulse);
   columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, Layout::get(b.v_free, i)));
   const energy_split e = split_energy(n, previous_for_energy<Law, Frame, Layout>(b, i, n), v);
-  const bool known = accepted & (defect(columns::get(b.v_previous, i)) == 0.0);
+  const bool known = accepted & (defect(columns::get(b.v_previous_of_energy, i)) == 0.0);
   b.energy[ILAW_ENERGY_FRICTION][i] = known ? e.friction : 0.0;
   b.energy[ILAW_ENERGY_IMPACT][i] = known ? e.impact : 0.0;
   b.energy[ILAW_ENERGY_RUPTURE][i] = known ? e.rupture : 0.0;
@@ -330,13 +322,15 @@ inline constexpr bool remembers = has_history<Law> && !has_window<Law> && !requi
   Form::forgets;
 };
 
-// Whether the step left all as it was: a frame that moved on alone would make skipping such a node, which its
-// host may do out of reach, another motion.
+// Zero where the step left all as it was: a frame that moved on alone would make skipping such a node, which
+// its host may do out of reach, another motion. Summed, as comparisons of what was chosen would become
+// branches.
 template <class Law, class Node>
-bool rests(const Node& n, const state_t<Law>& before) {
-  const bool still = (n.impulse.n == 0.0) & (n.impulse.t1 == 0.0) & (n.impulse.t2 == 0.0);
-  const bool free = is_out_of_reach(n) & (n.status == status::free);
-  return still && free && same_bits<Law>(n.state, before);
+double stirring(const Node& n, const state_t<Law>& before) {
+  static_assert(status::free == 0.0);
+  const double acts = absolute(n.impulse.n) + (absolute(n.impulse.t1) + absolute(n.impulse.t2)) + n.status;
+  const double changes = kept_if(!same_bits<Law>(n.state, before), 1.0);
+  return acts + changes + kept_if(!is_out_of_reach(n), 1.0);
 }
 
 template <class Law, class Node>
@@ -360,7 +354,7 @@ void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool 
     if (accepted) law.record(n, b.history_of(i));
   if constexpr (has_state<Law> || can_carry<Law, Frame>) {
     const state_t<Law> before = load_node<Law, Delassus, Frame, Layout, Scope>(b, i).state;
-    if constexpr (can_carry<Law, Frame>) b.rests[i] = rests<Law>(n, before) ? 1.0 : 0.0;
+    if constexpr (can_carry<Law, Frame>) b.stirs[i] = stirring<Law>(n, before);
     if constexpr (has_state<Law>)
       store_state<Law>(b, i, n.state, before, accepted, std::make_index_sequence<state_doubles<Law>>{});
   }

@@ -220,14 +220,23 @@ template <class Form>
   return alone_count;
 }
 
+// Whether a form's answered() is also what nodes without a problem need, from an answer of zeros.
+template <class Form>
+concept answers_every_node = Form::answers_every_node;
+
 // A node whose problem, if it had one, is solved.
 template <class Law, class Form, class Node>
 void step_answered(const Form& law, const asked_block<Form>& asked, int i, Node& node) {
-  problem_of_form<Form> problem{};
-  Node solved = node;
-  law.asks(node, problem);
-  law.answered(solved, from_columns<answer_of_form<Form>>(asked.answer, i, places<answer_of_form<Form>>));
-  choose(node, solved, asked.open.values[i] != 0.0);
+  const auto answer = from_columns<answer_of_form<Form>>(asked.answer, i, places<answer_of_form<Form>>);
+  if constexpr (answers_every_node<Form>) {
+    law.answered(node, answer);
+  } else {
+    problem_of_form<Form> problem{};
+    Node solved = node;
+    law.asks(node, problem);
+    law.answered(solved, answer);
+    choose(node, solved, asked.open.values[i] != 0.0);
+  }
 }
 
 // GCC vectorises these loops only where each stands alone. Copies, so that no store can alias a parameter or
@@ -283,7 +292,8 @@ int run_steps(const Laws& laws, const node_block<Law>& b) {
 
 // What a block keeps between its windows and its steps.
 struct window_columns {
-  column earlier[3], earlier_refused, given[3], reached;
+  window_in_step::block_reading earlier;
+  column given[3], reached;
 };
 
 // The law's window at node i, in the step of a block.
@@ -296,10 +306,10 @@ window_in_step window_at(const Laws& laws, const node_block<Law>& b, int i) {
 template <class Law>
 void aim_at(window_columns& kept, node_block<Law>& b, bool forgets) {
   for (int c = 0; c < 3; ++c) {
-    if (!forgets) b.earlier[c] = kept.earlier[c].values;
+    if (!forgets) b.earlier[c] = kept.earlier.sum[c].values;
     b.given[c] = kept.given[c].values;
   }
-  if (!forgets) b.earlier_refused = kept.earlier_refused.values;
+  if (!forgets) b.earlier_refused = kept.earlier.refused.values;
   b.reached = kept.reached.values;
 }
 
@@ -307,10 +317,10 @@ template <class Form, class Law>
 void read_window(const Form& law, const node_block<Law>& b, int i, window_columns& kept) {
   const window_in_step::reading earlier =
       law.window_in(interval_of(b)).before(const_history(b.history_of(i)));
-  kept.earlier[0].values[i] = earlier.sum.n;
-  kept.earlier[1].values[i] = earlier.sum.t1;
-  kept.earlier[2].values[i] = earlier.sum.t2;
-  kept.earlier_refused.values[i] = earlier.refused;
+  kept.earlier.sum[0].values[i] = earlier.sum.n;
+  kept.earlier.sum[1].values[i] = earlier.sum.t1;
+  kept.earlier.sum[2].values[i] = earlier.sum.t2;
+  kept.earlier.refused.values[i] = earlier.refused;
 }
 
 // The windows of a block before its steps. Parameters per node may give each node another window.
@@ -318,7 +328,7 @@ template <class Law, class Laws>
 void read_windows(const Laws& laws, const node_block<Law>& b, window_columns& kept) {
   const auto own = [&b](int i) { return const_history(b.history_of(i)); };
   if constexpr (is_one_law<Laws>) {
-    window_at(laws, b, 0).before(b.count, own, kept.earlier, kept.earlier_refused);
+    window_at(laws, b, 0).before(b.count, own, kept.earlier);
   } else {
     for (int i = 0; i < b.count; ++i) read_window(laws.at(i), b, i, kept);
   }
@@ -327,15 +337,17 @@ void read_windows(const Laws& laws, const node_block<Law>& b, window_columns& ke
 template <class Law, class Laws>
 void write_windows(const Laws& laws, const node_block<Law>& block, const window_columns& kept) {
   const node_block<Law> b = block;  // a copy, so that no store can alias it
-  const window_in_step first = window_at(laws, b, 0);
+  window_in_step first = window_at(laws, b, 0);
   for (int i = 0; i < b.count; ++i) {
     if (b.refused[i] != 0.0) continue;
     const stepped_impulse stepped{{kept.given[0].values[i], kept.given[1].values[i], kept.given[2].values[i]},
                                   kept.reached.values[i]};
-    if constexpr (is_one_law<Laws>)
+    if constexpr (is_one_law<Laws>) {
+      first.recall(kept.earlier, i);
       laws.law.record(stepped, first, b.history_of(i));
-    else
+    } else {
       laws.law.record(stepped, window_at(laws, b, i), b.history_of(i));
+    }
   }
 }
 
