@@ -4,7 +4,8 @@
 #   tests/run.sh                 everything
 #   tests/run.sh -R postit       builds and runs only programs with a test of this name (a regular expression, as
 #                                ctest -R reads it), told from the programs' names and the tests in their sources;
-#                                everything where no name fits, as with parameters that programs make up
+#                                everything where no name fits, as with parameters that programs make up;
+#                                ctest then has an entry per test (ILAW_TEST_CASES), else one per program
 #   tests/run.sh --without-hosts ...   goes without the solvers that the laws are tried in (LAMMPS, dolfinx, Yade)
 #   tests/run.sh --help          this text
 set -euo pipefail
@@ -63,6 +64,7 @@ cmake --preset release -DILAW_TESTS=ON -DILAW_LAMMPS=$hosts -DILAW_SOLVERS=$host
       -DILAW_WERROR="${ILAW_WERROR:-OFF}" -DILAW_UNITY="${ILAW_UNITY:-OFF}" >/dev/null
 targets=()
 if [ -n "$expression" ]; then
+  export ILAW_TEST_CASES=1
   mapfile -t targets < <(targets_of "$expression" | tr ' ' '\n' | sort -u)
   if [ ${#targets[@]} -gt 0 ]; then
     echo "builds only: ${targets[*]}"

@@ -301,8 +301,12 @@ struct cohesive::in_phases : cohesive {
     const bool holds = bonded & (s.damage == 0.0) & surely;
     friction_problem<double> rubbing;
     const bool rubs = ask_friction(node, contact(node), friction, friction, true, rubbing);
-    node.impulse = {holds ? r.n : node.impulse.n, holds ? r.t1 : node.impulse.t1,
-                    holds ? r.t2 : node.impulse.t2};
+    // A free node has no -0, as where it is solved alone.
+    const bool pushes = node.impulse.n > 0.0;
+    const vector contact_part{pushes ? node.impulse.n : 0.0, pushes ? node.impulse.t1 : 0.0,
+                              pushes ? node.impulse.t2 : 0.0};
+    node.impulse = {holds ? r.n : contact_part.n, holds ? r.t1 : contact_part.t1,
+                    holds ? r.t2 : contact_part.t2};
     node.status = holds ? status::bonded : node.status;
     return (bonded & !holds) | (!bonded & rubs);
   }

@@ -89,14 +89,17 @@ struct softening {
     return opening;
   }
 
-  // Mean traction on the way from one opening to another, of a bond that had this secant at the first.
+  // Mean traction on the way from one opening to another, either of them the larger, of a bond that had this
+  // secant at the first. Where modes change, it may have had more there than this curve allows.
   double mean_traction_on_path(secant s, double from, double to) const {
-    const double reached = larger(meets(s), from);
-    if (to <= reached) return s.soft > 0.0 ? 0.5 * s.stiff / s.soft * (from + to) : strength;
-    const double soft_work = mean_traction(reached, to) * (to - reached);
+    const double low = smaller(from, to), high = larger(from, to), met = meets(s);
+    if (high <= met) return s.soft > 0.0 ? 0.5 * s.stiff / s.soft * (from + to) : strength;
+    const double reached = larger(met, low);
+    if (!(high > reached)) return traction(high);
+    const double soft_work = mean_traction(reached, high) * (high - reached);
     const double elastic_work =
-        reached > from ? 0.5 * s.stiff / s.soft * (from + reached) * (reached - from) : 0.0;
-    return (elastic_work + soft_work) / (to - from);
+        reached > low ? 0.5 * s.stiff / s.soft * (low + reached) * (reached - low) : 0.0;
+    return (elastic_work + soft_work) / (high - low);
   }
 
  private:

@@ -9,8 +9,9 @@ namespace {
 constexpr int most_nodes = 8;
 
 // An array of room nodes with strides of any sort; only the elements of the nodes in use may be touched.
-Array make_array(Draw& draw, Arena& arena, std::size_t components, std::int64_t room,
-                 const std::vector<std::int64_t>& used, bool may_share) {
+template <class Number>
+Array make_array(Draw& draw, Region<Number>& region, Number* Array::*values, std::size_t components,
+                 std::int64_t room, const std::vector<std::int64_t>& used, bool may_share) {
   Array made;
   const auto width = static_cast<std::int64_t>(components > 0 ? components : 1);
   const auto gap = static_cast<std::int64_t>(draw.below(3));
@@ -22,26 +23,20 @@ Array make_array(Draw& draw, Arena& arena, std::size_t components, std::int64_t 
     made.component_stride = room * (1 + gap) + static_cast<std::int64_t>(draw.below(3));
   }
   const std::int64_t span = (room - 1) * made.node_stride + (width - 1) * made.component_stride + 1;
-  made.values = arena.span(static_cast<std::size_t>(span));
+  made.*values = region.span(static_cast<std::size_t>(span));
   if (draw.one_in(4)) {  // backwards
-    made.values += (room - 1) * made.node_stride;
+    made.*values += (room - 1) * made.node_stride;
     made.node_stride = -made.node_stride;
   }
   if (draw.one_in(4)) {
-    made.values += (width - 1) * made.component_stride;
+    made.*values += (width - 1) * made.component_stride;
     made.component_stride = -made.component_stride;
   }
   if (may_share && draw.one_in(4)) made.node_stride = 0;
   for (const std::int64_t node : used)
     for (std::size_t c = 0; c < components; ++c)
-      ASAN_UNPOISON_MEMORY_REGION(&made.at(node, c), sizeof(double));
+      ASAN_UNPOISON_MEMORY_REGION(made.*values + made.at(node, c), sizeof(Number));
   return made;
-}
-
-void fill(Draw& draw, const Array& a, const std::vector<std::int64_t>& used, std::size_t components,
-          const Temper& temper, double low, double high) {
-  for (const std::int64_t node : used)
-    for (std::size_t c = 0; c < components; ++c) a.at(node, c) = temper.number(draw, low, high);
 }
 
 double value(Draw& draw, const ilaw_parameter& p) {
@@ -78,15 +73,6 @@ ilaw_argument argument(Draw& draw, const ilaw_parameter& p, std::array<double, 6
   }
   return a;
 }
-
-// By their bits, since -ffast-math would have no number be infinite or NaN.
-std::uint64_t bits_of(double value) {
-  std::uint64_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-bool is_finite(double value) { return (bits_of(value) >> 52 & 0x7FF) != 0x7FF; }
-bool is_nan(double value) { return (bits_of(value) & ~(std::uint64_t{1} << 63)) > 0x7FF0000000000000; }
 
 }  // namespace
 
@@ -147,13 +133,26 @@ void Runner::draw_nodes() {
   if (list == 2) batch_.index64 = index64_.data();
 }
 
+// The components from one to another.
+void Runner::fill(const Array& a, std::size_t begin, std::size_t end, double low, double high) {
+  for (const std::int64_t node : nodes_)
+    for (std::size_t c = begin; c < end; ++c)
+      if (temper_.is_odd(draw_))
+        a.put_any(node, c, draw_);
+      else
+        a.put(node, c, draw_.within(low, high));
+}
+
 void Runner::draw_arrays() {
   const std::size_t d = drawn_.dimension();
-  const auto in = [this](std::size_t components) {
-    return make_array(draw_, arena_, components, room_, nodes_, true);
+  const auto make = [this](std::size_t components, bool may_share) {
+    return floats_ ? make_array(draw_, arena_.floats, &Array::floats, components, room_, nodes_, may_share)
+                   : make_array(draw_, arena_.doubles, &Array::values, components, room_, nodes_, may_share);
   };
-  const auto out = [this](std::size_t components) {
-    return make_array(draw_, arena_, components, room_, nodes_, false);
+  const auto in = [&](std::size_t components) { return make(components, true); };
+  const auto out = [&](std::size_t components) { return make(components, false); };
+  const auto state = [this] {
+    return make_array(draw_, arena_.doubles, &Array::values, drawn_.info().state_size, room_, nodes_, false);
   };
   v_free_ = in(d);
   delassus_ = in(form_width());
@@ -165,8 +164,8 @@ void Runner::draw_arrays() {
   if (drawn_.tangent()) tangent_ = in(d);
   for (std::uint32_t k = 0; k < drawn_.info().per_node_parameter_count; ++k) per_node_.push_back(in(1));
   in_place_ = draw_.one_in(2);
-  state_in_ = out(drawn_.info().state_size);
-  state_out_ = in_place_ ? state_in_ : out(drawn_.info().state_size);
+  state_in_ = state();
+  state_out_ = in_place_ ? state_in_ : state();
   impulse_ = out(d);
   if (draw_.one_in(2)) velocity_ = out(d);
   if (draw_.one_in(2)) energy_ = out(ILAW_ENERGY_COUNT);
@@ -181,7 +180,10 @@ void Runner::describe() {
   batch_.area = area_.input();
   batch_.normal = normal_.input();
   batch_.tangent = tangent_.input();
-  for (const Array& a : per_node_) per_node_inputs_.push_back(a.input());
+  for (const Array& a : per_node_) {
+    per_node_inputs_.push_back(a.input());
+    per_node_float_inputs_.push_back(a.float_input());
+  }
   batch_.per_node_parameters = per_node_inputs_.empty() ? nullptr : per_node_inputs_.data();
   batch_.state_in = state_in_.input();
   batch_.state_out = state_out_.output();
@@ -195,10 +197,40 @@ void Runner::describe() {
   batch_.velocity_step = batch_.position_step = 1e-3;
   for (const std::int64_t node : nodes_)
     for (std::size_t c = 0; c < drawn_.info().state_size; ++c)
-      state_in_.at(node, c) = state_out_.at(node, c) = 0.0;
+      for (const Array& state : {state_in_, state_out_}) state.put(node, c, 0.0);
   fill_frames();
-  fill(draw_, area_, nodes_, 1, temper_, 0.5, 2.0);
-  for (const Array& a : per_node_) fill(draw_, a, nodes_, 1, temper_, 0.0, 1.0);
+  fill(area_, 0, 1, 0.5, 2.0);
+  for (const Array& a : per_node_) fill(a, 0, 1, 0.0, 1.0);
+}
+
+// The same batch in arrays of floats.
+ilaw_float_batch Runner::float_batch() const {
+  ilaw_float_batch made{};
+  made.struct_size = sizeof made;
+  made.index_base = batch_.index_base;
+  made.node_count = batch_.node_count;
+  made.index = batch_.index;
+  made.index64 = batch_.index64;
+  made.time = batch_.time;
+  made.velocity_step = batch_.velocity_step;
+  made.position_step = batch_.position_step;
+  made.v_free = v_free_.float_input();
+  made.delassus = delassus_.float_input();
+  made.gap = gap_.float_input();
+  made.gap_offset = offset_.float_input();
+  made.v_previous = previous_.float_input();
+  made.area = area_.float_input();
+  made.normal = normal_.float_input();
+  made.tangent = tangent_.float_input();
+  made.per_node_parameters = per_node_float_inputs_.empty() ? nullptr : per_node_float_inputs_.data();
+  made.state_in = batch_.state_in;
+  made.state_out = batch_.state_out;
+  made.impulse = impulse_.float_output();
+  made.velocity = velocity_.float_output();
+  made.energy = energy_.float_output();
+  made.status = batch_.status;
+  made.status_stride = batch_.status_stride;
+  return made;
 }
 
 // Unit normals of any direction, by Cayley's map of two numbers; the tangent is square to it.
@@ -211,24 +243,22 @@ void Runner::fill_frames() {
     const double flat[2] = {(1.0 - a * a) / (1.0 + a * a), 2.0 * a / (1.0 + a * a)};
     const double t[3] = {-2.0 * a / s, 1.0 - 2.0 * a * a / s, -2.0 * a * b / s};
     for (std::size_t c = 0; c < d; ++c) {
-      normal_.at(node, c) = d == 3 ? n[c] : d == 2 ? flat[c] : 1.0;
-      if (drawn_.tangent())
-        tangent_.at(node, c) = d == 3 ? t[c] : d == 2 ? (c == 0 ? -flat[1] : flat[0]) : 0.0;
-      if (temper_.odd != 0 && draw_.one_in(8 * temper_.odd)) normal_.at(node, c) = any_double(draw_);
-      if (drawn_.tangent() && temper_.odd != 0 && draw_.one_in(8 * temper_.odd))
-        tangent_.at(node, c) = any_double(draw_);
+      const Temper rarer{8 * temper_.odd};
+      normal_.put(node, c, d == 3 ? n[c] : d == 2 ? flat[c] : 1.0);
+      if (rarer.is_odd(draw_)) normal_.put_any(node, c, draw_);
+      if (!drawn_.tangent()) continue;
+      tangent_.put(node, c, d == 3 ? t[c] : d == 2 ? (c == 0 ? -flat[1] : flat[0]) : 0.0);
+      if (rarer.is_odd(draw_)) tangent_.put_any(node, c, draw_);
     }
   }
 }
 
 void Runner::fill_delassus() {
-  const std::size_t d = drawn_.dimension();
+  const std::size_t d = drawn_.dimension(), width = form_width();
   const double scale = draw_.one_in(4) ? 1e6 : 1.0;
-  fill(draw_, delassus_, nodes_, form_width(), temper_, 0.5 * scale, 2.0 * scale);
-  if (drawn_.form() == ILAW_DELASSUS_FULL)
-    for (const std::int64_t node : nodes_)
-      for (std::size_t c = d; c < form_width(); ++c)
-        delassus_.at(node, c) = temper_.number(draw_, -0.24 * scale, 0.24 * scale);
+  const std::size_t diagonal = drawn_.form() == ILAW_DELASSUS_FULL ? d : width;
+  fill(delassus_, 0, diagonal, 0.5 * scale, 2.0 * scale);
+  fill(delassus_, diagonal, width, -0.24 * scale, 0.24 * scale);
 }
 
 void Runner::fill_step(int n) {
@@ -240,11 +270,11 @@ void Runner::fill_step(int n) {
   if (temper_.odd != 0 && draw_.one_in(50)) batch_.velocity_step = any_double(draw_);
   if (temper_.odd != 0 && draw_.one_in(50)) batch_.position_step = any_double(draw_);
   const double speed = draw_.one_in(3) ? 100.0 : 1.0;
-  fill(draw_, v_free_, nodes_, d, temper_, -speed, speed);
-  fill(draw_, previous_, nodes_, d, temper_, -speed, speed);
+  fill(v_free_, 0, d, -speed, speed);
+  fill(previous_, 0, d, -speed, speed);
   const double depth = draw_.one_in(2) ? 1e-3 : 0.2;
-  fill(draw_, gap_, nodes_, 1, temper_, -depth, depth);
-  if (offset_.values) fill(draw_, offset_, nodes_, 1, temper_, 0.0, 1e-3);
+  fill(gap_, 0, 1, -depth, depth);
+  if (offset_.is_given()) fill(offset_, 0, 1, 0.0, 1e-3);
   fill_delassus();
   if (draw_.one_in(4)) fill_frames();
   fill_state();
@@ -257,27 +287,33 @@ void Runner::fill_state() {
   for (const std::int64_t node : nodes_) {
     const bool stale = draw_.one_in(4);
     for (std::size_t c = 0; !in_place_ && c < size; ++c)
-      if (!stale || draw_.one_in(2)) state_in_.at(node, c) = state_out_.at(node, c);
+      if (!stale || draw_.one_in(2)) state_in_.put(node, c, state_out_.get(node, c));
     if (temper_.odd == 0 || draw_.below(4 * temper_.odd) >= size) continue;
-    for (std::uint64_t k = draw_.below(3) + 1; k > 0; --k)
-      state_in_.at(node, draw_.below(size)) = any_double(draw_);
+    for (std::uint64_t k = draw_.below(3) + 1; k > 0; --k) state_in_.put_any(node, draw_.below(size), draw_);
   }
 }
 
-void Runner::call(Call function, Tally& tally) {
+std::int32_t Runner::answer(bool evaluates, ilaw_report& report) const {
+  const ilaw::interface& law = drawn_.interface();
+  if (!floats_) return evaluates ? law.evaluate(batch_, &report) : law.initialise(batch_, &report);
+  const ilaw_float_batch batch = float_batch();
+  return (evaluates ? floats_->evaluate : floats_->initialise)(law.instance(), &batch, &report);
+}
+
+void Runner::call(bool evaluates, Tally& tally) {
   ilaw_report report{};
   report.struct_size = sizeof report;
-  const bool evaluated = function == &ilaw::interface::evaluate;
   if (before) before();
-  const std::int32_t code = (drawn_.interface().*function)(batch_, &report);
+  const std::int32_t code = answer(evaluates, report);
   if (after) after();
-  if (evaluated) ++tally.batches;
-  check(code, report, evaluated, tally);
+  if (evaluates) ++tally.batches;
+  if (evaluates && floats_) ++tally.of_floats;
+  check(code, report, evaluates, tally);
   tally.add(static_cast<std::uint64_t>(code));
   if (code < 0) return;
   for (const std::int64_t node : nodes_) {
-    for (std::size_t c = 0; c < drawn_.info().state_size; ++c) tally.add(state_out_.at(node, c));
-    for (std::size_t c = 0; evaluated && c < drawn_.dimension(); ++c) tally.add(impulse_.at(node, c));
+    for (std::size_t c = 0; c < drawn_.info().state_size; ++c) tally.add(state_out_.bits(node, c));
+    for (std::size_t c = 0; evaluates && c < drawn_.dimension(); ++c) tally.add(impulse_.bits(node, c));
   }
 }
 
@@ -286,8 +322,8 @@ void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated,
     if (!tally.wrong.empty()) return;
     tally.wrong = std::string(drawn_.interface().law().id) + " (dimension " +
                   std::to_string(drawn_.dimension()) + ", form of H " + std::to_string(drawn_.form()) +
-                  (drawn_.global() ? ", global" : ", local") + "): batch " + std::to_string(tally.batches) +
-                  ": " + what;
+                  (drawn_.global() ? ", global" : ", local") + (floats_ ? ", floats" : "") + "): batch " +
+                  std::to_string(tally.batches) + ": " + what;
   };
   if (code < 0) {
     ++tally.refused;
@@ -299,22 +335,28 @@ void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated,
   if (report.bad_count > 0 && !report.reason) refuse("a bad node without a reason");
   tally.nodes += nodes_.size();
   tally.bad += static_cast<std::uint64_t>(report.bad_count);
-  if (!evaluated) return;
   for (const std::int64_t node : nodes_) {
-    bool zero = true;
-    for (std::size_t c = 0; c < drawn_.dimension(); ++c) {
-      if (!is_finite(impulse_.at(node, c)))
-        refuse("an impulse of " + std::to_string(impulse_.at(node, c)) + " at node " + std::to_string(node));
-      zero = zero && impulse_.at(node, c) == 0.0;
-    }
-    if (node == report.first_bad_node && report.bad_count > 0 && !zero) refuse("a bad node with an impulse");
-    if (batch_.status && status_[static_cast<std::size_t>(node * batch_.status_stride)] >= ILAW_STATUS_COUNT)
-      refuse("a status that is none");
-    for (std::size_t c = 0; energy_.values && c < ILAW_ENERGY_STORED; ++c)
-      if (!(energy_.at(node, c) >= 0.0))  // infinite where its terms are beyond the largest double
-        refuse("a dissipated energy of " + std::to_string(energy_.at(node, c)));
-    if (energy_.values && is_nan(energy_.at(node, ILAW_ENERGY_STORED))) refuse("a stored energy of NaN");
+    const std::string wrong =
+        evaluated ? wrong_at(node, report.bad_count > 0 && node == report.first_bad_node) : "";
+    if (!wrong.empty()) refuse(wrong + " at node " + std::to_string(node));
   }
+}
+
+// What an evaluated node may not have, empty where it has none of it.
+std::string Runner::wrong_at(std::int64_t node, bool is_bad) const {
+  bool zero = true;
+  for (std::size_t c = 0; c < drawn_.dimension(); ++c) {
+    if (!impulse_.is_finite(node, c)) return "an impulse of " + std::to_string(impulse_.get(node, c));
+    zero = zero && impulse_.get(node, c) == 0.0;
+  }
+  if (is_bad && !zero) return "bad input and an impulse";
+  if (batch_.status && status_[static_cast<std::size_t>(node * batch_.status_stride)] >= ILAW_STATUS_COUNT)
+    return "a status that is none";
+  if (!energy_.is_given()) return "";
+  for (std::size_t c = 0; c < ILAW_ENERGY_STORED; ++c)
+    if (!(energy_.get(node, c) >= 0.0))  // infinite where its terms are beyond the largest number
+      return "a dissipated energy of " + std::to_string(energy_.get(node, c));
+  return energy_.is_nan(node, ILAW_ENERGY_STORED) ? "a stored energy of NaN" : "";
 }
 
 }  // namespace random_batches

@@ -3,18 +3,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/float.h>
 #include <ilaw/loader.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#if defined(__SANITIZE_ADDRESS__)
+// Its macros do nothing without the address sanitizer; compilers differ in how they say that it is on.
+#if __has_include(<sanitizer/asan_interface.h>)
 #include <sanitizer/asan_interface.h>
 #else
 #define ASAN_POISON_MEMORY_REGION(address, size) ((void)(address), (void)(size))
@@ -49,6 +52,16 @@ inline double of_bits(std::uint64_t bits) {
   std::memcpy(&value, &bits, sizeof value);
   return value;
 }
+inline std::uint64_t bits_of(double value) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+inline std::uint32_t bits_of(float value) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
 
 // Any double: of a class each, or any bits at all.
 inline double any_double(Draw& draw) {
@@ -60,51 +73,104 @@ inline double any_double(Draw& draw) {
   return draw.one_in(3) ? of_bits(draw.bits()) : of_bits(classes[draw.below(std::size(classes))]);
 }
 
+// The bits of any float, drawn likewise. Never by way of a double, since hosts may trap or flush what that
+// would round.
+inline std::uint32_t any_float(Draw& draw) {
+  constexpr std::uint32_t classes[] = {0x00000000, 0x80000000, 0x00000001, 0x007FFFFF, 0x00800000,
+                                       0x7F7FFFFF, 0xFF7FFFFF, 0x7F800000, 0xFF800000, 0x7FC00000,
+                                       0x7F800001, 0xFFC0BEEF, 0x3F800000, 0x3F800001, 0x3F7FFFFF,
+                                       0xBF800000, 0x4B000000, 0x5F000000, 0x34000000, 0x0D2F3788};
+  return draw.one_in(3) ? static_cast<std::uint32_t>(draw.bits()) : classes[draw.below(std::size(classes))];
+}
+
 // How wild the numbers of a batch are.
 struct Temper {
-  std::uint64_t odd = 0;  // one number in so many is any double; 0: none
-  double number(Draw& draw, double low, double high) const {
-    return odd != 0 && draw.one_in(odd) ? any_double(draw) : draw.within(low, high);
-  }
+  std::uint64_t odd = 0;  // one number in so many is any double or float; 0: none
+  bool is_odd(Draw& draw) const { return odd != 0 && draw.one_in(odd); }
 };
 
-// Doubles that a batch may touch: each array between others that it may not, which the address sanitizer
-// minds.
-class Arena {
+// Numbers that a batch may touch: each array between others that it may not, which the address sanitizer
+// minds, of floats by pairs.
+template <class Number>
+class Region {
  public:
   static constexpr std::size_t capacity = std::size_t{1} << 18;
-  Arena() : doubles_(capacity, of_bits(0x7FF4000000000000)) {
-    ASAN_POISON_MEMORY_REGION(doubles_.data(), capacity * sizeof(double));
+  explicit Region(Number unused) : numbers_(capacity, unused) {
+    ASAN_POISON_MEMORY_REGION(numbers_.data(), capacity * sizeof(Number));
   }
-  ~Arena() { ASAN_UNPOISON_MEMORY_REGION(doubles_.data(), capacity * sizeof(double)); }
-  Arena(const Arena&) = delete;
-  Arena& operator=(const Arena&) = delete;
+  ~Region() { ASAN_UNPOISON_MEMORY_REGION(numbers_.data(), capacity * sizeof(Number)); }
+  Region(const Region&) = delete;
+  Region& operator=(const Region&) = delete;
 
   void empty() {
-    ASAN_POISON_MEMORY_REGION(doubles_.data(), used_ * sizeof(double));
+    ASAN_POISON_MEMORY_REGION(numbers_.data(), used_ * sizeof(Number));
     used_ = 0;
   }
-  double* span(std::size_t count) {
-    used_ += 2;
-    double* first = doubles_.data() + used_;
-    used_ += count + 2;
+  Number* span(std::size_t count) {
+    used_ += between;
+    Number* first = numbers_.data() + used_;
+    used_ += count + between;
     if (used_ > capacity) throw std::length_error("a batch larger than the arena");
     return first;
   }
 
  private:
-  std::vector<double> doubles_;
+  static constexpr std::size_t between = 2 * sizeof(double) / sizeof(Number);
+  std::vector<Number> numbers_;
   std::size_t used_ = 0;
 };
 
-// An array as a batch has it, and where its values stand.
+struct Arena {
+  Region<double> doubles{of_bits(0x7FF4000000000000)};
+  Region<float> floats{std::numeric_limits<float>::quiet_NaN()};
+  void empty() {
+    doubles.empty();
+    floats.empty();
+  }
+};
+
+// An array as a batch has it, of doubles or of floats, and where its values stand.
 struct Array {
   double* values = nullptr;
+  float* floats = nullptr;
   std::int64_t node_stride = 0, component_stride = 0;
   ilaw_input input() const { return {values, node_stride, component_stride}; }
   ilaw_output output() const { return {values, node_stride, component_stride}; }
-  double& at(std::int64_t node, std::size_t component) const {
-    return values[node * node_stride + static_cast<std::int64_t>(component) * component_stride];
+  ilaw_float_input float_input() const { return {floats, node_stride, component_stride}; }
+  ilaw_float_output float_output() const { return {floats, node_stride, component_stride}; }
+
+  bool is_given() const { return values || floats; }
+  double get(std::int64_t node, std::size_t c) const {
+    return floats ? double{floats[at(node, c)]} : values[at(node, c)];
+  }
+  std::uint64_t bits(std::int64_t node, std::size_t c) const {
+    return floats ? bits_of(floats[at(node, c)]) : bits_of(values[at(node, c)]);
+  }
+  // By their bits, since -ffast-math would have no number be infinite or NaN.
+  bool is_finite(std::int64_t node, std::size_t c) const {
+    return floats ? (bits(node, c) >> 23 & 0xFF) != 0xFF : (bits(node, c) >> 52 & 0x7FF) != 0x7FF;
+  }
+  bool is_nan(std::int64_t node, std::size_t c) const {
+    return (bits(node, c) & ~(std::uint64_t{1} << (floats ? 31 : 63))) >
+           (floats ? 0x7F800000 : 0x7FF0000000000000);
+  }
+  void put(std::int64_t node, std::size_t c, double value) const {
+    if (floats)
+      floats[at(node, c)] = static_cast<float>(value);
+    else
+      values[at(node, c)] = value;
+  }
+  void put_any(std::int64_t node, std::size_t c, Draw& draw) const {
+    if (!floats) {
+      values[at(node, c)] = any_double(draw);
+      return;
+    }
+    const std::uint32_t drawn = any_float(draw);
+    std::memcpy(&floats[at(node, c)], &drawn, sizeof drawn);
+  }
+
+  std::int64_t at(std::int64_t node, std::size_t component) const {
+    return node * node_stride + static_cast<std::int64_t>(component) * component_stride;
   }
 };
 
@@ -120,6 +186,11 @@ class Drawn {
   bool global() const { return setup_.frame == ILAW_FRAME_GLOBAL; }
   bool tangent() const { return setup_.tangent_given != 0; }
   std::uint32_t form() const { return setup_.delassus_form; }
+  // Null where the law has none.
+  const ilaw_float_functions* floats() const {
+    const auto& extension = interface_->law().extension;
+    return static_cast<const ilaw_float_functions*>(extension ? extension(ILAW_FLOAT) : nullptr);
+  }
 
  private:
   std::optional<ilaw::interface> interface_;
@@ -129,16 +200,11 @@ class Drawn {
 
 // What a run of batches saw.
 struct Tally {
-  std::uint64_t batches = 0, nodes = 0, bad = 0, refused = 0;
+  std::uint64_t batches = 0, of_floats = 0, nodes = 0, bad = 0, refused = 0;
   std::uint64_t digest = 0xCBF29CE484222325;  // of all outputs: FNV-1a (Fowler, Noll, Vo), by words
   std::string wrong;                          // the first promise broken, empty where none
 
   void add(std::uint64_t word) { digest = (digest ^ word ^ word >> 32) * 0x100000001B3; }
-  void add(double value) {
-    std::uint64_t word;
-    std::memcpy(&word, &value, sizeof word);
-    add(word);
-  }
 };
 
 // Runs batches of one instance, one step after another from the state that it wrote, and checks what it
@@ -146,7 +212,11 @@ struct Tally {
 class Runner {
  public:
   Runner(const Drawn& drawn, Draw& draw, const Temper& temper, Arena& arena)
-      : drawn_(drawn), draw_(draw), temper_(temper), arena_(arena) {}
+      : drawn_(drawn),
+        draw_(draw),
+        temper_(temper),
+        arena_(arena),
+        floats_(draw.one_in(3) ? drawn.floats() : nullptr) {}
 
   // Before and after each call of the law: a host's floating-point settings.
   void (*before)() = nullptr;
@@ -157,16 +227,14 @@ class Runner {
     draw_nodes();
     draw_arrays();
     describe();
-    call(&ilaw::interface::initialise, tally);
+    call(false, tally);
     for (int n = 0; n < steps && tally.wrong.empty(); ++n) {
       fill_step(n);
-      call(&ilaw::interface::evaluate, tally);
+      call(true, tally);
     }
   }
 
  private:
-  using Call = std::int32_t (ilaw::interface::*)(const ilaw_batch&, ilaw_report*) const;
-
   void draw_nodes();
   void draw_arrays();
   void describe();
@@ -174,15 +242,20 @@ class Runner {
   void fill_frames();
   void fill_delassus();
   void fill_state();
-  void call(Call function, Tally& tally);
+  void call(bool evaluates, Tally& tally);
+  std::int32_t answer(bool evaluates, ilaw_report& report) const;
+  ilaw_float_batch float_batch() const;
   void check(std::int32_t code, const ilaw_report& report, bool evaluated, Tally& tally);
+  std::string wrong_at(std::int64_t node, bool is_bad) const;
+  void fill(const Array& a, std::size_t begin, std::size_t end, double low, double high);
   std::size_t form_width() const;
 
   const Drawn& drawn_;
   Draw& draw_;
   Temper temper_;
   Arena& arena_;
-  std::vector<std::int64_t> nodes_;  // in use, in the order of the batch
+  const ilaw_float_functions* floats_;  // of batches of floats; null where they are of doubles
+  std::vector<std::int64_t> nodes_;     // in use, in the order of the batch
   std::int64_t room_ = 0;
   std::vector<std::int32_t> index_;
   std::vector<std::int64_t> index64_;
@@ -190,6 +263,7 @@ class Runner {
       impulse_, velocity_, energy_;
   std::vector<Array> per_node_;
   std::vector<ilaw_input> per_node_inputs_;
+  std::vector<ilaw_float_input> per_node_float_inputs_;
   std::array<std::uint8_t, 64> status_{};
   ilaw_batch batch_{};
   bool in_place_ = false;

@@ -50,10 +50,11 @@ int run_all(const Options& options) {
   Tally tally;
   std::uint64_t seed = options.seed;
   for (; tally.batches < options.batches && tally.wrong.empty(); ++seed) run(libraries, seed, arena, tally);
-  std::printf("%llu batches, %llu nodes, %llu of them bad, %llu calls refused, digest %016llx\n",
-              static_cast<unsigned long long>(tally.batches), static_cast<unsigned long long>(tally.nodes),
-              static_cast<unsigned long long>(tally.bad), static_cast<unsigned long long>(tally.refused),
-              static_cast<unsigned long long>(tally.digest));
+  std::printf(
+      "%llu batches, %llu of floats, %llu nodes, %llu of them bad, %llu calls refused, digest %016llx\n",
+      static_cast<unsigned long long>(tally.batches), static_cast<unsigned long long>(tally.of_floats),
+      static_cast<unsigned long long>(tally.nodes), static_cast<unsigned long long>(tally.bad),
+      static_cast<unsigned long long>(tally.refused), static_cast<unsigned long long>(tally.digest));
   if (tally.wrong.empty()) return 0;
   std::fprintf(stderr, "random_batches: %s; repeat with --batches 1 --seed %llu\n", tally.wrong.c_str(),
                static_cast<unsigned long long>(seed - 1));

@@ -11,6 +11,9 @@ subjects=(elf description scene)
 fuzz() {
   local subject=$1 words=()
   mkdir -p "build/fuzz/corpus/$subject"
+  if [[ -f tests/fuzz/corpus/$subject.tar.gz ]]; then  # what long runs found, the least that reaches as much
+    tar -xzf "tests/fuzz/corpus/$subject.tar.gz" -C "build/fuzz/corpus/$subject"
+  fi
   if [[ -f tests/fuzz/$subject.dict ]]; then words=(-dict="tests/fuzz/$subject.dict"); fi
   "build/fuzz/bin/${subject}_fuzz" -max_total_time="$seconds" -max_len=65536 -timeout=10 -rss_limit_mb=2048 \
     "${words[@]}" -artifact_prefix=build/fuzz/found/ "build/fuzz/corpus/$subject" "tests/fuzz/corpus/$subject" \

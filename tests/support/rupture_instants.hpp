@@ -3,6 +3,7 @@
 #pragma once
 
 #include "support/law_runner.hpp"
+#include "support/sizes.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -101,7 +102,7 @@ inline void expect_rupture_instants(const BondLaw& law) {
         std::printf("  B = %2.0f:", buckets);
         for (const double ratio : {1.5, 8.5, 33.7, 100.5, 1000.3}) {
           double largest = 0.0;
-          const unsigned draws = ratio > 500.0 ? 16 : 40;
+          const auto draws = static_cast<unsigned>(part_of(ratio > 500.0 ? 16 : 40));
           for (unsigned draw = 0; draw < draws; ++draw) {
             const double exact = load.first + (load.last - load.first) * (draw + 0.37) / draws;
             BondRun run(law, load.sum_at(exact), buckets, 1.0 / ratio, varies, draw + 1);
@@ -124,7 +125,7 @@ inline void expect_double_shocks(const BondLaw& law) {
   for (const double buckets : {4.0, 16.0, 64.0})
     for (const double ratio : {8.5, 33.7, 100.5, 1000.3}) {
       double shortest_that_holds = 1e9, longest_that_breaks = 0.0;
-      for (unsigned draw = 0; draw < (ratio > 500.0 ? 20U : 200U); ++draw) {
+      for (unsigned draw = 0; draw < static_cast<unsigned>(part_of(ratio > 500.0 ? 20 : 200)); ++draw) {
         BondRun run(law, 1.0, buckets, 1.0 / ratio, false, draw + 1);
         const auto steps = static_cast<int>(ratio * (1.0 + (1.8 * run.uniform() - 1.2) / buckets));
         run.step(0.6);

@@ -46,7 +46,7 @@ void frame_indifference(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw& draw) {
         const Setup& own = trial.setup;
-        if (own.global() || own.form == ILAW_DELASSUS_TRANSVERSE) return false;
+        if (own.global()) return false;
         const std::uint32_t form =
             own.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL} : own.form;
         const Setup host{own.dimension, form, ILAW_FRAME_GLOBAL, own.dimension == 3 ? 1U : 0U};
@@ -153,7 +153,8 @@ void isotropy(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw& draw) {
         const Setup& own = trial.setup;
-        if (own.global() || own.dimension != 3 || own.form != ILAW_DELASSUS_SCALAR) return false;
+        if (own.global() || own.dimension != 3) return false;
+        if (own.form != ILAW_DELASSUS_SCALAR && own.form != ILAW_DELASSUS_TRANSVERSE) return false;
         if (!create(trial.law, {3, own.form, ILAW_FRAME_GLOBAL, 0}, trial.values)) return false;
         const double angle = draw.within(0.2, 1.3), c = std::cos(angle), s = std::sin(angle);
         const Matrix spin{Vector{1.0, 0.0, 0.0}, {0.0, c, s}, {0.0, -s, c}},

@@ -96,8 +96,8 @@ struct Curve {
   }
 
   // Mean of min(k y, T(y)) between two openings: Gauss's rule between the kinks.
-  double mean(const Mode& m, double k, double from, double to) const {
-    if (to <= from) return 0.5 * k * (from + to);  // back along the secant
+  double mean(const Mode& m, double k, double start, double end) const {
+    const double from = std::min(start, end), to = std::max(start, end);
     const auto pull = [&](double y) { return std::min(k * y, traction(m, y)); };
     if (to - from < 1e-9 * to) return pull(0.5 * (from + to));
     double low = 0.0, high = m.onset + m.width;  // where the secant meets the curve
@@ -134,6 +134,20 @@ struct Curve {
     return std::clamp(std::isfinite(grown) ? grown : damage + step / delay, damage, 1.0);
   }
 
+  // Where the secant meets the curve of mode I: what the bond has been opened to at least once.
+  double meets(double damage) const {
+    const Mode m = mode(0.0);
+    double low = 0.0, high = m.onset + m.width;
+    for (int n = 0; n < 100; ++n)
+      (secant(damage) * 0.5 * (low + high) < traction(m, 0.5 * (low + high)) ? low : high) =
+          0.5 * (low + high);
+    return low;
+  }
+  // Whether the bond holds there without more damage.
+  bool holds(double damage, const Vector& w) const {
+    return delay == 0.0 && secant(damage) * size(w) <= traction(mode(shear(w)), size(w));
+  }
+
   // Mean stiffness of the step that leads from one opening to another.
   double stiffness(double damage, double step, const Vector& before, const Vector& after) const {
     if (delay > 0.0) return 0.5 * (secant(damage) + secant(delayed(damage, step, after)));
@@ -152,13 +166,8 @@ struct Problem {
     const double last = draw.between(0.0, 1.0) < 0.3 ? draw.between(0.7, 1.4) * step : step;
     velocity_step = 0.5 * (last + step);
     damage = draw.between(0.05, 0.95);
-    const Curve::Mode m = curve.mode(0.0);
-    // Where the secant meets the curve of mode I: what the bond has been opened to at least once.
-    double low = 0.0, high = m.onset + m.width;
-    for (int n = 0; n < 100; ++n)
-      (curve.secant(damage) * 0.5 * (low + high) < curve.traction(m, 0.5 * (low + high)) ? low : high) =
-          0.5 * (low + high);
-    const double reach = 0.6 * low * std::min(curve.s2 / curve.s1, 1.0) / std::max(curve.weight, 1.0);
+    const double reach =
+        0.6 * curve.meets(damage) * std::min(curve.s2 / curve.s1, 1.0) / std::max(curve.weight, 1.0);
     opening = draw.vector(reach);
     opening[0] = std::abs(opening[0]);
     if (draw.between(0.0, 1.0) < 0.3) opening[0] = 0.0;

@@ -17,7 +17,8 @@ std::optional<std::string> judge(const Problem& p, const NodeRun& node, bool& pr
     after[c] = p.position[c] + 0.5 * p.step * v[c];
     sum[c] = after[c] + p.opening[c];
   }
-  const double k = p.curve.stiffness(p.damage, p.step, p.opening, after);
+  const double k = p.curve.holds(p.damage, after) ? p.curve.secant(p.damage)
+                                                  : p.curve.stiffness(p.damage, p.step, p.opening, after);
   for (std::size_t c = 0; c < 3; ++c) {
     const double weight = c == 0 ? 1.0 : p.curve.weight * p.curve.weight;
     bond[c] = -0.5 * p.velocity_step * k * weight * sum[c];
@@ -67,6 +68,40 @@ void keep_energy(const Problem& p, const NodeRun& node, int k) {
     scale += norm(node.r) * (std::abs(p.v_previous[c]) + std::abs(p.v_free[c]) + norm(h_r));
   }
   ASSERT_LE(std::abs(balance), 64 * ulp * p.inertia.condition * scale) << "problem " << k;
+}
+
+// A bond that was pulled open and is now sheared, in which it is weaker, has more than the curve of shear
+// allows also where it is unloaded.
+TEST(CohesiveAnyInertia, SolvesThemWhereItTurnsToShear) {
+  Draw draw(31);
+  int softened = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double strength = draw.between(0.5, 2.0), toughness = draw.between(0.5, 2.0);
+    const Parameters parameters{{{"strength", strength},
+                                 {"strength_2", strength * draw.power_of_ten(-3.0, -0.5)},
+                                 {"toughness", toughness},
+                                 {"mixing_exponent", draw.power_of_ten(-0.5, 0.5)}},
+                                {{"shape", k % 2 ? "bilinear" : "exponential"}}};
+    const Curve curve(parameters);
+    Problem p(draw, curve, 0.0);
+    const double opened = draw.between(0.3, 0.9) * curve.meets(p.damage), toward = 2.0 / p.step * opened;
+    p.opening = {opened, 0.0, 0.0};
+    p.position = {draw.between(0.0, 1.0) * opened, 0.0, 0.0};
+    p.v_previous = {2.0 * (p.position[0] - opened) / p.step, 0.0, 0.0};
+    p.v_free = {-0.5 * toward, draw.between(0.2, 0.9) * toward, 0.0};
+    const double c = 0.25 * p.step * p.velocity_step * p.inertia.h[0][0];
+    const double times = draw.power_of_ten(-3.0, -1.0) / (c * curve.secant(p.damage));
+    for (Vector& row : p.inertia.h)
+      for (double& entry : row) entry *= times;
+    NodeRun node("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
+    ASSERT_EQ(p.solve(node), ILAW_OK) << k << ": " << node.report.reason;
+    bool pressed = false;
+    const std::optional<std::string> wrong = judge(p, node, pressed);
+    ASSERT_FALSE(wrong) << "seed 31, step " << k << ", strengths " << curve.s1 << " and " << curve.s2
+                        << ", exponent " << curve.eta << ": " << *wrong;
+    softened += node.named("damage") > p.damage;
+  }
+  EXPECT_GT(softened, 30);
 }
 
 // All shapes and delay, H of a condition of up to a million, turned and scaled: the traction is that of the

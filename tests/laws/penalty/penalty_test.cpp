@@ -1,6 +1,7 @@
 // Regularised friction, limits, and bad parameters of the penalty law.
 #include "support/law_runner.hpp"
 #include "support/numbers.hpp"
+#include "support/sizes.hpp"
 
 #include <limits>
 #include <random>
@@ -285,13 +286,14 @@ TEST(Penalty, PerNodeStiffnessGivesTheSameBits) {
     }
 }
 
-// A million random steps of nodes with memory: r_N pushes, |r_T| <= mu r_N, a power of ten in stiffness at a
-// time; no energy counts as negative.
+// Up to a million random steps of nodes with memory: r_N pushes, |r_T| <= mu r_N, a power of ten in stiffness
+// at a time; no energy counts as negative.
 TEST(Penalty, RandomHistoriesKeepTheCone) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0), decades(-4.0, 8.0), stable(-4.0, 3.0);
+  const int histories = part_of(1000);
   int slipping = 0, sticking = 0;
-  for (int history = 0; history < 1000 && !::testing::Test::HasFailure(); ++history) {
+  for (int history = 0; history < histories && !::testing::Test::HasFailure(); ++history) {
     const bool implicit = history % 2 == 0;
     const double h = 1e-2, friction = history % 7 == 0 ? inf_value : 0.3;
     const double stiffness = std::pow(10.0, implicit ? decades(random) : stable(random));
@@ -320,8 +322,8 @@ TEST(Penalty, RandomHistoriesKeepTheCone) {
       sticking += node.status == ILAW_STICK;
     }
   }
-  EXPECT_GT(slipping, 100000);
-  EXPECT_GT(sticking, 10000);
+  EXPECT_GT(slipping, 100 * histories);
+  EXPECT_GT(sticking, 10 * histories);
 }
 
 TEST(Penalty, RefusesBadParameters) {

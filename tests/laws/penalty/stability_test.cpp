@@ -1,6 +1,7 @@
 // The implicit penalty keeps the limit of the central-difference scheme, whatever its stiffness.
 #include "support/law_runner.hpp"
 #include "support/numbers.hpp"
+#include "support/sizes.hpp"
 
 #include <algorithm>
 
@@ -71,7 +72,8 @@ TEST(Stability, ImplicitEnergyNeverGrows) {
         for (const double e : {1.0, 0.5, 0.0})
           for (const double stop : {0.0, -0.3, 0.3}) {
             const double h = part * (nodes == 1 ? 2.0 : 1.0), exponent = e == 1.0 && stop < 0.0 ? 1.5 : 1.0;
-            const Energies found = run({implicit_penalty(stiffness, exponent, e), nodes, h, stop}, 4000);
+            const Energies found =
+                run({implicit_penalty(stiffness, exponent, e), nodes, h, stop}, part_of(4000));
             EXPECT_LE(std::max(found.early, found.late), found.start * (1.0 + 1e-11))
                 << nodes << " nodes, " << part << " of the limit, stiffness " << stiffness << ", e " << e;
             if (e == 1.0) {
