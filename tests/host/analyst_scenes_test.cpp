@@ -153,8 +153,9 @@ TEST(AnalystScenes, TreadIsDraggedWithAtMostItsFriction) {
   EXPECT_LT(run.last("ball.M1"), 0.0);
 }
 
-// Every node slides, in the direction of the disc relative to it. So the drag is 0.4 of the pressing force
-// but for the cosine of what the pad widens with across the disc, 0.03 to 5 at most: 2e-5 of 40 N.
+// Every node slides, in the direction of the disc relative to it. So the drag is 0.4 of the
+// pressing force but for the cosine of what the pad widens with across the disc, 0.03 to 5 at most:
+// 2e-5 of 40 N.
 TEST(AnalystScenes, BrakePadDragsByFrictionTimesPressingForce) {
   json scene = scene_named("brake_pad");
   scene["output"]["every"] = 1;

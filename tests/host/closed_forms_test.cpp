@@ -1,5 +1,5 @@
-// Shipped scenes with closed forms: an impact oscillator, stick-slip, a peeled double cantilever, a bond in
-// mixed mode, a landing gear, a seal and a rolling wheel.
+// Shipped scenes with closed forms: an impact oscillator, stick-slip, a peeled double cantilever, a
+// bond in mixed mode, a landing gear, a seal and a rolling wheel.
 #include "run_result.hpp"
 
 namespace ilaw::host::testing {
@@ -145,8 +145,8 @@ TEST(MixedModeBar, SoftensAndBreaksAsMixedTractionSays) {
 }
 
 // ---- landing gear ----
-// A mass m on a strut lands at w = 2: its strut shortens by s with m s'' = m g - k s - c s' from s = 0, s' =
-// w, omega = 10 with half the critical damping.
+// A mass m on a strut lands at w = 2: its strut shortens by s with m s'' = m g - k s - c s' from s
+// = 0, s' = w, omega = 10 with half the critical damping.
 struct Strut {
   double s, speed;
 };
@@ -159,8 +159,9 @@ Strut exact_strut(double t) {
   return {rest + fade * swing, fade * (turning * (b * cosine + rest * sine) - zeta * omega * swing)};
 }
 
-// It lands up to a step late, with the speed 2 and the slowing down 20: s is late by 2 h, the force by k 2 h
-// + c 20 h. While the foot stands, the floor carries it and what the strut does to the mass.
+// It lands up to a step late, with the speed 2 and the slowing down 20: s is late by 2 h, the force
+// by k 2 h + c 20 h. While the foot stands, the floor carries it and what the strut does to the
+// mass.
 TEST(LandingGear, SwingsAsADampedOscillatorOnAFootThatStands) {
   for (const double h : {1e-3, 7.3e-4, 1.1e-4}) {
     nlohmann::json source = read_scene_source(scene_files::named("landing_gear.json"));
@@ -185,10 +186,11 @@ TEST(LandingGear, SwingsAsADampedOscillatorOnAFootThatStands) {
 }
 
 // ---- seal ----
-// Squeezed by e between lid and groove, and kept from widening, it presses with E e/(1 - nu^2); a pressure
-// p, which has the part 1 - e of the front to push on, adds nu/(1 - nu) of what it pushes with (Hooke's law
-// with two strains given and one stress). Ramps of 200 times the lowest mode's omega^-1 leave it ringing by a
-// part in 200 of the force, whose mean over ten periods is a tenth of that.
+// Squeezed by e between lid and groove, and kept from widening, it presses with E e/(1 - nu^2); a
+// pressure p, which has the part 1 - e of the front to push on, adds nu/(1 - nu) of what it pushes
+// with (Hooke's law with two strains given and one stress). Ramps of 200 times the lowest mode's
+// omega^-1 leave it ringing by a part in 200 of the force, whose mean over ten periods is a tenth
+// of that.
 TEST(Seal, PressesWithItsSqueezeAndPartOfThePressure) {
   const double young = 5e6, nu = 0.45, squeeze = 0.1, area = 1e-4, pressure = 2e6;
   for (const double cfl : {0.7, 0.53, 0.41}) {
@@ -206,14 +208,14 @@ TEST(Seal, PressesWithItsSqueezeAndPartOfThePressure) {
 }
 
 // ---- rolling wheel ----
-// The brush model (Pacejka 2012, ch. 3): over a patch of half length a = sqrt(2 R d) bristles are pressed by
-// k xi (2 a - xi)/(2 R), xi from where they enter, and drawn along by slip times xi, up to friction. Per
-// spacing that is F_N = 2 k a^3/(3 R) and F_T = mu F_N (1 - (1 - q)^3), q = slip R/(mu a) <= 1, with the
-// slip of the wheel's effective radius R - d/3.
+// The brush model (Pacejka 2012, ch. 3): over a patch of half length a = sqrt(2 R d) bristles are
+// pressed by k xi (2 a - xi)/(2 R), xi from where they enter, and drawn along by slip times xi, up
+// to friction. Per spacing that is F_N = 2 k a^3/(3 R) and F_T = mu F_N (1 - (1 - q)^3), q = slip
+// R/(mu a) <= 1, with the slip of the wheel's effective radius R - d/3.
 //
-// Left out, of F_T: the surface of the wheel slows down by s^2/(2 R^2) at the place s, of which d/(3 R) is
-// the mean, k a^4/(24 R^2) at most; and of F_N what is of the order of m V^2/R over k d, of the spacing over
-// a squared, and of V h/a, 1 % together.
+// Left out, of F_T: the surface of the wheel slows down by s^2/(2 R^2) at the place s, of which
+// d/(3 R) is the mean, k a^4/(24 R^2) at most; and of F_N what is of the order of m V^2/R over k d,
+// of the spacing over a squared, and of V h/a, 1 % together.
 TEST(RollingWheel, PullsAsTheBrushModel) {
   const double R = 0.5, d = 9e-4, a = 0.03, k = 1000.0 / 0.002, mu = 0.5;
   const double normal = 2.0 * k * a * a * a / (3.0 * R);

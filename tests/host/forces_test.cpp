@@ -104,8 +104,8 @@ TEST(Forces, AreTheStressOfAJointAndTheReactionOfAGrip) {
   EXPECT_NEAR(run.last("n10.r0"), force * h, 1e-4 * force * h);
 }
 
-// A spring and a damper between two thrown masses, and one to a wall: what they do to their own nodes is
-// what changes their momentum, and turns them about the wall's end by nothing.
+// A spring and a damper between two thrown masses, and one to a wall: what they do to their own
+// nodes is what changes their momentum, and turns them about the wall's end by nothing.
 TEST(Forces, OfSpringsAreTheChangeOfMomentumOfTheirNodes) {
   json scene = json::parse(R"({
     "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [1, 0], "velocity": [0, 0.7]},

@@ -14,8 +14,8 @@ constexpr double toughness = 6.0, width = 0.01, edge = 1e-3, stiffness = 10.0;  
 constexpr double line_mass = 0.04, air = 10.0, speed = 0.02;
 constexpr int bonded = 17, free_edges = 9;
 
-// Glued along x but for its end, which stands off at an angle. What comes off in the time of one edge adds
-// that edge to the free end: so its tip moves by (cos - 1, sin) times the speed.
+// Glued along x but for its end, which stands off at an angle. What comes off in the time of one
+// edge adds that edge to the free end: so its tip moves by (cos - 1, sin) times the speed.
 json peeled(double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   json scene = json::parse(R"({"model": {"type": "points", "dimension": 2, "points": []},
@@ -39,9 +39,9 @@ json peeled(double angle) {
   return scene;
 }
 
-// Where a tape comes off at an angle, |F| - F_x is released per length, F_x along what still holds (Rivlin
-// 1944), and F^2/(2 E A) by the tape that is stretched (Kendall 1975): together G b. The free end moves at 2
-// (1 - cos) times the speed squared, against the air.
+// Where a tape comes off at an angle, |F| - F_x is released per length, F_x along what still holds
+// (Rivlin 1944), and F^2/(2 E A) by the tape that is stretched (Kendall 1975): together G b. The
+// free end moves at 2 (1 - cos) times the speed squared, against the air.
 TEST(PeelForce, IsToughnessTimesWidthOverOneLessTheCosine) {
   const std::vector<std::pair<double, double>> angles_and_steps = {{60, 6e-5}, {90, 4.7e-5}, {120, 3.1e-5}};
   for (const auto& [degrees, h] : angles_and_steps) {

@@ -237,8 +237,8 @@ StatusRows rows_of(const Panel& panel) {
   return rows;
 }
 
-// The data blocks of what is drawn of many nodes, for one pass through the history, and of ruptures.
-// Returns whether there are any of the latter.
+// The data blocks of what is drawn of many nodes, for one pass through the history, and of
+// ruptures. Returns whether there are any of the latter.
 bool write_blocks(std::ostream& script, const std::filesystem::path& folder,
                   const std::vector<Panel>& panels) {
   bool has_ruptures = false;

@@ -24,10 +24,10 @@ struct Columns {
 };
 
 // A script that draws folder/history.csv as folder/history.png and .svg: panels over a common time
-// for gap, displacement, velocity, impulse and its running sum, each state variable of the laws, as far
-// as these are not zero throughout, resultants, energies, and the status as a band per node. Of more than six
-// nodes their least, median and largest values are drawn, and how many have which status. folder is
-// absolute.
+// for gap, displacement, velocity, impulse and its running sum, each state variable of the laws, as
+// far as these are not zero throughout, resultants, energies, and the status as a band per node. Of
+// more than six nodes their least, median and largest values are drawn, and how many have which
+// status. folder is absolute.
 void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,
                    const Caption& caption);
 

@@ -1,5 +1,5 @@
-// status_panel.hpp - the panel of a picture that shows which status the contacts have: a band each or,
-// of many, how many have which.
+// status_panel.hpp - the panel of a picture that shows which status the contacts have: a band each
+// or, of many, how many have which.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
