@@ -15,7 +15,6 @@ namespace {
 using nlohmann::json;
 
 // Points that fall on a plane, each at its own time: enough for packed text and several chunks.
-// chunks.
 json falling_points(std::size_t count) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -39,12 +38,23 @@ struct Result {
   EnergyReport energy;
 };
 
-Result result_of(Scene scene, int threads) {
+Result result_of(Scene scene, int threads, bool asks_energies = true) {
   omp_set_num_threads(threads);
+  for (const auto& interface : scene.interfaces) interface->ask_energies(asks_energies);
   Integrator integrator = integrator_of(scene);
   while (integrator.steps() < scene.steps) integrator.step();
   omp_set_num_threads(1);
   return {integrator.displacement(), integrator.velocity(), integrator.energy()};
+}
+
+TEST(LargeScene, MovesTheSameWhetherEnergiesAreAskedForOrNot) {
+  const std::string points = falling_points(3000).dump();
+  const Result asked = result_of(scene_of(points), 1), not_asked = result_of(scene_of(points), 1, false);
+  EXPECT_EQ(asked.u, not_asked.u);
+  EXPECT_EQ(asked.v, not_asked.v);
+  EXPECT_EQ(asked.energy.interface_work, not_asked.energy.interface_work);
+  EXPECT_GT(asked.energy.by_law[ILAW_ENERGY_IMPACT], 0.0);
+  for (const double energy : not_asked.energy.by_law) EXPECT_EQ(energy, 0.0);
 }
 
 TEST(LargeScene, GivesTheSameBitsInAnyOrderOfNodesAndNumberOfThreads) {

@@ -1,5 +1,5 @@
-// stopwatch.hpp - adds the wall-clock time of a scope to a sum. The system's clock takes as long as
-// a step of a small scene, so that x86 processors count ticks instead.
+// stopwatch.hpp - adds wall-clock times of one phase after the other to sums. The system's clock
+// takes as long as a step of a small scene, so that x86 processors count ticks instead.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -34,16 +34,24 @@ class TickLength {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-class Stopwatch {
+// Phases that follow each other: a reading ends one and begins the next.
+class Laps {
  public:
-  explicit Stopwatch(std::int64_t& ticks) : ticks_(ticks), start_(ticks_now()) {}
-  ~Stopwatch() { ticks_ += ticks_now() - start_; }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
+  // weight: rounds that this one stands for; 0: it is not timed. A phase far longer than those of
+  // rounds that are worth a weight was interrupted, and stands for itself.
+  explicit Laps(int weight) : weight_(weight), last_(weight > 0 ? ticks_now() : 0) {}
+  void add_to(std::int64_t& ticks) {
+    if (weight_ == 0) return;
+    const std::int64_t now = ticks_now();
+    ticks += (now - last_ > longest ? 1 : weight_) * (now - last_);
+    last_ = now;
+  }
 
  private:
-  std::int64_t& ticks_;
-  std::int64_t start_;
+  static constexpr std::int64_t longest = 1 << 18;
+
+  int weight_;
+  std::int64_t last_;
 };
 
 }  // namespace ilaw::host

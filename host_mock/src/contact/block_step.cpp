@@ -33,10 +33,10 @@ class Blocks {
       obstacle_[c] = step.obstacle_velocity[c];
       obstacle_before_[c] = step.obstacle_velocity_before[c];
     }
+    stands_still_ = !Turns && obstacle_ == Components{} && obstacle_before_ == Components{};
+    if constexpr (What == Meets::obstacle) flat_ = step.setup.counterpart->flat_at(step.step.time);
     // What a law does not give is what it was.
-    const ilaw_law* law = step.law.library().law(step.setup.law);
-    if (!(law->outputs & ILAW_OUTPUT_ENERGY)) energy_.fill(0.0);
-    if (!(law->outputs & ILAW_OUTPUT_STATUS)) status_room_.fill(ILAW_FREE);
+    if (!(step.law.outputs() & ILAW_OUTPUT_STATUS)) status_room_.fill(ILAW_FREE);
   }
 
   void solve(const std::int32_t* contacts, std::ptrdiff_t count, ChunkOutcome& outcome) {
@@ -50,7 +50,7 @@ class Blocks {
     apply();
     add_up(outcome.sums);
     if (show_fault(outcome.sums)) find_fault(outcome.refusal);
-    if (!in_row_) scatter(batch);
+    if (!contacts_in_row_) scatter(batch);
   }
 
  private:
@@ -68,17 +68,27 @@ class Blocks {
     for (std::ptrdiff_t i = 0; i < count_; ++i) node_index_[i] = at_.node_index[contact(i)];
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       node_[i] = step_.setup.nodes[static_cast<std::size_t>(node_index_[i])];
-    in_row_ = follow_each_other(contacts_, count_) && follow_each_other(node_.data(), count_);
+    contacts_in_row_ = follow_each_other(contacts_, count_);
+    nodes_in_row_ = follow_each_other(node_.data(), count_);
   }
 
   void locate() {
     if constexpr (Partnered)
       locate_partners();
+    else if (flat_)
+      locate_at_plane();
     else
       step_.setup.counterpart->locate(node_index_.data(), count_, step_.step.u, step_.step.time,
                                       {gap_.data(), normal_.data()});
     if constexpr (Turns) find_turns();
     for (std::ptrdiff_t i = 0; i < count_; ++i) gap_[i] -= step_.setup.gap_offset;
+  }
+
+  // All nodes have the plane's normal: it is written once.
+  void locate_at_plane() {
+    flat_gaps<D>(step_.model, node_.data(), count_, step_.step.u, *flat_, gap_.data());
+    for (; normals_ < count_; ++normals_)
+      for (int c = 0; c < D; ++c) normal_[D * normals_ + c] = flat_->normal[c];
   }
 
   // Of the surface where it is touched: a gap offset is a body's own.
@@ -116,7 +126,7 @@ class Blocks {
 
   // rate: at which the obstacle turns.
   const double* relative(const Dofs& v, const Components& obstacle, double rate, Vectors& room) const {
-    if (What == Meets::obstacle && in_row_ && obstacle == Components{}) return &v[first_dof(0)];
+    if (What == Meets::obstacle && nodes_in_row_ && obstacle == Components{}) return &v[first_dof(0)];
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       for (int c = 0; c < D; ++c) room[D * i + c] = component(v.data(), i, c) - obstacle[c];
     if constexpr (Turns)
@@ -128,7 +138,7 @@ class Blocks {
   // is empty.
   double* column(std::vector<double>& all, std::size_t width, double* room) const {
     if (all.empty()) return nullptr;
-    if (in_row_) return &all[contact(0) * width];
+    if (contacts_in_row_) return &all[contact(0) * width];
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       std::copy_n(&all[contact(i) * width], width, room + static_cast<std::size_t>(i) * width);
     return room;
@@ -137,15 +147,15 @@ class Blocks {
   ilaw_batch make_batch() {
     const ilaw_instance_info& info = step_.law.info();
     const auto size = static_cast<std::int64_t>(info.state_size);
-    if (!in_row_) state_.resize(info.state_size * block_size);
+    if (!contacts_in_row_) state_.resize(info.state_size * block_size);
     double* const state = column(at_.state, info.state_size, state_.data());
     delassus_ = column(at_.delassus, 1, delassus_room_.data());
-    impulse_ = in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
-    status_ = in_row_ ? &at_.status[contact(0)] : status_room_.data();
+    impulse_ = contacts_in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
+    status_ = contacts_in_row_ ? &at_.status[contact(0)] : status_room_.data();
     ilaw_batch batch = empty_batch(step_.setup, step_.step.time, step_.step.dt);
     batch.node_count = count_;
     batch.v_free = {relative(step_.v, obstacle_, step_.rates.after, v_free_), D, 1};
-    if ((info.inputs | info.energy_inputs) & ILAW_INPUT_V_PREVIOUS)
+    if ((info.inputs | (step_.gets_energies ? info.energy_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)
       batch.v_previous = {relative(step_.step.v_before, obstacle_before_, step_.rates.before, v_previous_), D,
                           1};
     batch.delassus = {delassus_, 1, 0};
@@ -155,7 +165,7 @@ class Blocks {
     batch.state_in = {state, size, 1};
     batch.state_out = {state, size, 1};
     batch.impulse = {impulse_, D, 1};
-    batch.energy = {energy_.data(), ILAW_ENERGY_COUNT, 1};
+    if (step_.gets_energies) batch.energy = {energy_.data(), 1, block_size};
     batch.status = status_;
     batch.status_stride = 1;
     add_parameters(batch);
@@ -164,7 +174,7 @@ class Blocks {
 
   void add_parameters(ilaw_batch& batch) {
     const std::size_t count = at_.parameters.size();
-    if (!in_row_) parameter_room_.resize(count * block_size);
+    if (!contacts_in_row_) parameter_room_.resize(count * block_size);
     parameters_.resize(count);
     for (std::size_t p = 0; p < count; ++p)
       parameters_[p] = {column(at_.parameters[p], 1, parameter_room_.data() + p * block_size), 1, 0};
@@ -175,7 +185,7 @@ class Blocks {
 
   bool evaluate(const ilaw_batch& batch, ChunkOutcome& outcome) {
     std::optional<InputCopy> inputs;
-    if (is_watched_) inputs.emplace(batch, D, at_.parameters.size());
+    if (step_.is_watched) inputs.emplace(batch, D, at_.parameters.size());
     const Answer answer = step_.law.evaluate(batch);
     outcome.refusal.add(answer, static_cast<std::size_t>(count_), contacts_);
     if (const char* changed = inputs ? inputs->changed() : nullptr) outcome.refusal.add(overwriting(changed));
@@ -195,11 +205,13 @@ class Blocks {
 
   void apply() {
     double* const v = step_.v.data();
+    acts_ = false;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       const double* const r = impulse_ + D * i;
       bool acts = false;
       for (int c = 0; c < D; ++c) acts = acts || r[c] != 0.0;
       if (!acts) continue;
+      acts_ = true;
       if constexpr (Partnered)
         at_.point[contact(i)].for_each_node(node_[i], [&](int node, double weight) {
           const double scale = weight / step_.model.mass()[Eigen::Index{D} * node];
@@ -210,37 +222,51 @@ class Blocks {
     }
   }
 
-  // The work over the step is r . (v_before + v)/2.
   void add_up(ContactSums& sums) const {
-    const double *const v = step_.v.data(), *const before = step_.step.v_before.data();
-    double work = sums.work, relative_work = sums.relative_work, penetration = sums.penetration;
+    add_work(sums);
     std::uint64_t statuses = 0;  // a byte each
+    double penetration = sums.penetration;
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      statuses += std::uint64_t{1} << (8 * status_[i]);
+      penetration = -gap_[i] > penetration ? -gap_[i] : penetration;
+    }
+    sums.penetration = penetration;
+    for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k)
+      sums.statuses[k] += static_cast<std::int64_t>((statuses >> (8 * k)) & 0xff);
+    for (std::size_t k = 0; step_.gets_energies && k < ILAW_ENERGY_COUNT; ++k)
+      sums.add_energies(k, &energy_[k * block_size], count_);
+  }
+
+  // Over the step it is r . (v_before + v)/2.
+  void add_work(ContactSums& sums) const {
+    if (!acts_) return;
+    const double *const v = step_.v.data(), *const before = step_.step.v_before.data();
+    double work = sums.work, relative_work = sums.relative_work;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       double product = 0.0, relative_product = 0.0;
       for (int c = 0; c < D; ++c) {
         const double r = impulse_[D * i + c], sum = component(before, i, c) + component(v, i, c);
         product += r * sum;
+        if (stands_still_) continue;
         relative_product += r * (sum - (obstacle_[c] + obstacle_before_[c]));
         if constexpr (Turns)
           relative_product -= r * (step_.rates.before + step_.rates.after) * turn_[D * i + c];
       }
       work += 0.5 * product;
-      relative_work += 0.5 * relative_product;
-      penetration = -gap_[i] > penetration ? -gap_[i] : penetration;
-      statuses += std::uint64_t{1} << (8 * status_[i]);
+      relative_work += 0.5 * (stands_still_ ? product : relative_product);
     }
     sums.work = work;
     sums.relative_work = relative_work;
-    sums.penetration = penetration;
-    for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k)
-      sums.statuses[k] += static_cast<std::int64_t>((statuses >> (8 * k)) & 0xff);
-    for (std::ptrdiff_t i = 0; i < count_; ++i) sums.add_energy(&energy_[ILAW_ENERGY_COUNT * i]);
   }
 
   void find_fault(Refusal& refusal) const {
-    for (std::ptrdiff_t i = 0; i < count_; ++i)
-      if (const char* fault = fault_of(impulse_ + D * i, D, &energy_[ILAW_ENERGY_COUNT * i], status_[i]))
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      std::array<double, ILAW_ENERGY_COUNT> energy{};
+      for (std::size_t k = 0; step_.gets_energies && k < energy.size(); ++k)
+        energy[k] = energy_[k * block_size + static_cast<std::size_t>(i)];
+      if (const char* fault = fault_of(impulse_ + D * i, D, energy.data(), status_[i]))
         return refusal.add({ILAW_BAD_LIBRARY, 0, contacts_[i], 0, fault});
+    }
   }
 
   void scatter(const ilaw_batch& batch) {
@@ -258,8 +284,11 @@ class Blocks {
   ContactArrays& at_;
   const std::int32_t* contacts_ = nullptr;
   std::ptrdiff_t count_ = 0;
-  bool in_row_ = false;
-  const bool is_watched_ = InputCopy::is_due(step_.step.time, step_.step.dt);
+  bool contacts_in_row_ = false, nodes_in_row_ = false;
+  bool acts_ = false;         // an impulse of the block is not zero
+  bool stands_still_ = true;  // the obstacle
+  std::optional<FlatSurface> flat_;
+  std::ptrdiff_t normals_ = 0;  // nodes whose normal is already that of the plane
   Components obstacle_, obstacle_before_;
   // What this block works on: in the host's arrays or the rooms below.
   double *delassus_ = nullptr, *impulse_ = nullptr;
@@ -268,7 +297,7 @@ class Blocks {
   Column gap_, delassus_room_, area_room_;
   Vectors v_free_, v_previous_, normal_, impulse_room_;
   std::conditional_t<Turns, Vectors, std::array<double, 0>> turn_;  // velocities at rate 1
-  std::array<double, ILAW_ENERGY_COUNT * block_size> energy_;
+  std::array<double, ILAW_ENERGY_COUNT * block_size> energy_;       // part by part
   std::array<std::uint8_t, block_size> status_room_;
   std::vector<double> state_, parameter_room_;
   std::vector<ilaw_input> parameters_;

@@ -25,6 +25,8 @@ struct BlockStep {
   const Vector &obstacle_velocity, &obstacle_velocity_before;
   TurningRates rates;
   Dofs& v;  // v_free, then what the impulses make of it
+  bool gets_energies;
+  bool is_watched;  // whether the law writes to its inputs
 };
 
 // What became of the contacts of a chunk.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
 namespace ilaw::host {
@@ -33,6 +32,10 @@ void Counterpart::locate(const std::int32_t* node_indices, std::ptrdiff_t count,
   }
 }
 
+void Counterpart::gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const {
+  for (int i = 0; i < count; ++i) bounds[i] = gap_bound(first + i, u, time);
+}
+
 RigidCounterpart::RigidCounterpart(const Model& model, std::vector<int> nodes,
                                    std::unique_ptr<const Obstacle> obstacle)
     : model_(model), nodes_(std::move(nodes)), obstacle_(std::move(obstacle)) {}
@@ -54,21 +57,26 @@ void RigidCounterpart::locate(const std::int32_t* node_indices, std::ptrdiff_t c
                               double time, Located found) const {
   const std::optional<FlatSurface> flat = obstacle_->flat_at(time);
   if (!flat) return Counterpart::locate(node_indices, count, u, time, found);
-  const auto in = [&]<int D>(std::integral_constant<int, D>) {
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const Eigen::Index first = Eigen::Index{D} * nodes_[static_cast<std::size_t>(node_indices[i])];
-      double gap = 0.0;
-      for (int c = 0; c < D; ++c) {
-        const double x = model_.position()[first + c] + u[first + c];
-        gap += (x - flat->displacement[c] - flat->point[c]) * flat->normal[c];
-        found.normals[D * i + c] = flat->normal[c];
-      }
-      found.gaps[i] = gap;
-    }
-  };
+  const Eigen::Index d = model_.dimension();
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const int node = nodes_[static_cast<std::size_t>(node_indices[i])];
+    gaps_to(*flat, &node, 1, u, found.gaps + i);
+    std::copy_n(flat->normal.data(), d, found.normals + d * i);
+  }
+}
+
+void RigidCounterpart::gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const {
+  const std::optional<FlatSurface> flat = obstacle_->flat_at(time);
+  if (!flat) return Counterpart::gap_bounds(first, count, u, time, bounds);
+  gaps_to(*flat, &nodes_[static_cast<std::size_t>(first)], count, u, bounds);
+}
+
+void RigidCounterpart::gaps_to(const FlatSurface& flat, const std::int32_t* nodes, std::ptrdiff_t count,
+                               const Dofs& u, double* gaps) const {
   const int d = model_.dimension();
-  if (d == 1) return in(std::integral_constant<int, 1>());
-  return d == 2 ? in(std::integral_constant<int, 2>()) : in(std::integral_constant<int, 3>());
+  if (d == 1) return flat_gaps<1>(model_, nodes, count, u, flat, gaps);
+  return d == 2 ? flat_gaps<2>(model_, nodes, count, u, flat, gaps)
+                : flat_gaps<3>(model_, nodes, count, u, flat, gaps);
 }
 
 NodeCounterpart::NodeCounterpart(const Model& model, std::vector<int> nodes, std::vector<int> partners,

@@ -9,7 +9,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace ilaw::host {
@@ -44,6 +46,27 @@ struct Located {
   double *gaps, *normals;
 };
 
+// Gaps of some nodes to a plane, in the order of operations of Plane.
+template <int D>
+void flat_gaps(const Model& model, const std::int32_t* nodes, std::ptrdiff_t count, const Dofs& u,
+               const FlatSurface& flat, double* gaps) {
+  const double *const start = model.position().data(), *const moved = u.data();
+  std::array<double, D> displacement, point, normal;
+  for (std::size_t c = 0; c < D; ++c) {
+    const auto k = static_cast<Eigen::Index>(c);
+    displacement[c] = flat.displacement[k];
+    point[c] = flat.point[k];
+    normal[c] = flat.normal[k];
+  }
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const std::size_t first = D * static_cast<std::size_t>(nodes[i]);
+    double gap = 0.0;
+    for (std::size_t c = 0; c < D; ++c)
+      gap += (start[first + c] + moved[first + c] - displacement[c] - point[c]) * normal[c];
+    gaps[i] = gap;
+  }
+}
+
 class Counterpart {
  public:
   virtual ~Counterpart() = default;
@@ -56,6 +79,10 @@ class Counterpart {
   // A bound from below on the gap, cheap, that relative motion by a distance lowers by no more than
   // the distance.
   virtual double gap_bound(int node_index, const Dofs& u, double time) const = 0;
+  // The same of count nodes from the first on; several threads may ask at once.
+  virtual void gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const;
+  // A rigid counterpart that is flat.
+  virtual std::optional<FlatSurface> flat_at(double /*time*/) const { return {}; }
   // Called before the gap bounds of all nodes are taken anew.
   virtual void refresh(const Dofs& /*u*/) {}
   // How far nodes and counterpart may approach before the next refresh.
@@ -86,6 +113,8 @@ class RigidCounterpart : public Counterpart {
   void locate(const std::int32_t* node_indices, std::ptrdiff_t count, const Dofs& u, double time,
               Located found) const override;
   double gap_bound(int node_index, const Dofs& u, double time) const override;
+  void gap_bounds(int first, int count, const Dofs& u, double time, double* bounds) const override;
+  std::optional<FlatSurface> flat_at(double time) const override { return obstacle_->flat_at(time); }
   Vector velocity(double from, double to) const override { return obstacle_->velocity(from, to); }
   bool turns() const override { return obstacle_->turns(); }
   TurningRates rates(double time, double dt) const override {
@@ -99,6 +128,8 @@ class RigidCounterpart : public Counterpart {
 
  private:
   Vector position(int node_index, const Dofs& u) const;
+  void gaps_to(const FlatSurface& flat, const std::int32_t* nodes, std::ptrdiff_t count, const Dofs& u,
+               double* gaps) const;
 
   const Model& model_;
   std::vector<int> nodes_, none_;

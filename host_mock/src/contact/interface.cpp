@@ -7,6 +7,8 @@
 #include "contact/law_faults.hpp"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -60,6 +62,7 @@ int Interface::contact_index_of(int node_index, const Dofs& u) {
   contacts_.add({node_index, 1.0 / model_.mass()[setup_.nodes[k] * dimension_], setup_.areas[k],
                  parameters_of(node_index), first_state(node_index, u), law_.acts_at_distance(),
                  axes_turn()});
+  if (const std::size_t chunk = k / contact_chunk; chunk < far_.size()) far_[chunk] = {};
   return contacts_.index_of(k);
 }
 
@@ -137,30 +140,59 @@ bool Interface::may_skip() const {
   return !axes_turn();
 }
 
-// Touched contacts stay near: only fresh ones, and those at rest, are known to do nothing at a
-// distance. Chunks are cut by the nodes, so that sums do not depend on which of them are near.
+// Chunks are cut by the nodes, so that sums do not depend on which of them are near. Of those whose
+// nodes are all far, only what may have come closer is looked at.
 void Interface::refresh_near(const StepView& step) {
+  setup_.counterpart->refresh(step.u);
+  const auto count = static_cast<std::ptrdiff_t>(setup_.nodes.size());
+  is_near_.resize(setup_.nodes.size());
+  far_.resize(static_cast<std::size_t>(chunks_of(count, contact_chunk)));
+  for_each_chunk(static_cast<std::ptrdiff_t>(far_.size()), 1, [&](std::ptrdiff_t c, auto, auto) {
+    const auto chunk = static_cast<std::size_t>(c);
+    if (proximity_.may_touch(far_[chunk])) look_at(chunk, step);
+  });
   near_.clear();
   chunk_starts_.clear();
-  setup_.counterpart->refresh(step.u);
-  const bool skips = may_skip();
-  for (std::size_t k = 0; k < setup_.nodes.size(); ++k) {
-    if (k % contact_chunk == 0) chunk_starts_.push_back(static_cast<std::ptrdiff_t>(near_.size()));
-    const int node_index = static_cast<int>(k), contact_index = contacts_.index_of(k);
-    const bool awake =
-        contact_index >= 0 ? contacts_.must_be_evaluated(at(contact_index)) : law_.acts_at_distance();
-    if (awake || !skips ||
-        proximity_.may_touch(setup_.counterpart->gap_bound(node_index, step.u, step.time) -
-                             setup_.gap_offset))
-      near_.push_back(contact_index_of(node_index, step.u));
+  for (std::size_t c = 0; c < far_.size(); ++c) {
+    chunk_starts_.push_back(static_cast<std::ptrdiff_t>(near_.size()));
+    if (far_[c].gap_bound > 0.0) continue;
+    const std::size_t first = c * contact_chunk, end = std::min(first + contact_chunk, is_near_.size());
+    for (std::size_t k = first; k < end; ++k)
+      if (is_near_[k]) near_.push_back(contact_index_of(static_cast<int>(k), step.u));
   }
   chunk_starts_.push_back(static_cast<std::ptrdiff_t>(near_.size()));
+}
+
+// Touched contacts stay near: only fresh ones, and those at rest, are known to do nothing at a
+// distance.
+void Interface::look_at(std::size_t chunk, const StepView& step) {
+  const std::size_t first = chunk * contact_chunk,
+                    count = std::min<std::size_t>(contact_chunk, is_near_.size() - first);
+  const bool skips = may_skip(), may_be_awake = info().state_size > 0 || law_.acts_at_distance();
+  std::array<double, contact_chunk> bounds;
+  if (skips)
+    setup_.counterpart->gap_bounds(static_cast<int>(first), static_cast<int>(count), step.u, step.time,
+                                   bounds.data());
+  std::size_t near = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < count; ++i) {
+    const int contact_index = may_be_awake ? contacts_.index_of(first + i) : -1;
+    const bool awake =
+        contact_index >= 0 ? contacts_.must_be_evaluated(at(contact_index)) : law_.acts_at_distance();
+    const double gap = skips ? bounds[i] - setup_.gap_offset : 0.0;
+    const bool is_near = awake || !skips || proximity_.may_touch(gap);
+    is_near_[first + i] = is_near ? 1 : 0;
+    near += is_near ? 1 : 0;
+    least = gap < least ? gap : least;
+  }
+  far_[chunk] = near > 0 || setup_.counterpart->validity() < std::numeric_limits<double>::infinity()
+                    ? FarNodes{}
+                    : FarNodes{least, proximity_.way()};
 }
 
 // ---- a step ---------------------------------------------------------------------------------------------
 
 void Interface::choose_active(const StepView& step) {
-  active_.clear();
   const Counterpart& counterpart = *setup_.counterpart;
   obstacle_velocity_before_ = counterpart.velocity(step.time - step.dt, step.time);
   obstacle_velocity_ = counterpart.velocity(step.time, step.time + step.dt);
@@ -170,26 +202,29 @@ void Interface::choose_active(const StepView& step) {
                closing_after = moving * step.speed_after + obstacle_velocity_.norm();
   closing_ = step.dt * closing_after;
   const bool due = proximity_.refresh_due(step.dt, closing_before, closing_after, counterpart.validity());
-  if (step.time < setup_.birth || step.time >= setup_.death) {
+  acts_ = !(step.time < setup_.birth || step.time >= setup_.death);
+  if (!acts_)
     proximity_.invalidate();
-    return;
-  }
-  if (due) refresh_near(step);
-  active_ = near_;
+  else if (due)
+    refresh_near(step);
 }
 
 void Interface::solve(const StepView& step, Dofs& v) {
   choose_active(step);
   sums_ = {};
-  if (active_.empty()) return;
-  const BlockStep blocks{setup_, model_, law_, contacts_, step, obstacle_velocity_, obstacle_velocity_before_,
-                         rates_, v};
+  if (active().empty()) return;
+  const bool energies = asks_energies_ && (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0,
+             watched = InputCopy::is_due(step.time, step.dt);
+  const BlockStep blocks{
+      setup_, model_, law_,     contacts_, step, obstacle_velocity_, obstacle_velocity_before_,
+      rates_, v,      energies, watched};
   outcomes_.resize(chunk_starts_.size() - 1);
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   for_each_chunk(static_cast<std::ptrdiff_t>(outcomes_.size()), 1, [&](std::ptrdiff_t c, auto, auto) {
     const std::ptrdiff_t* const range = &chunk_starts_[static_cast<std::size_t>(c)];
-    outcomes_[static_cast<std::size_t>(c)] =
-        solve_chunk(blocks, active_.data() + range[0], range[1] - range[0]);
+    ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
+    outcome = {};
+    if (range[1] > range[0]) outcome = solve_chunk(blocks, near_.data() + range[0], range[1] - range[0]);
   });
   Refusal refusal;
   for (const ChunkOutcome& outcome : outcomes_) {
@@ -206,7 +241,7 @@ void Interface::open_step(const StepView& step) {
   sums_ = {};
   const bool turns = setup_.counterpart->turns();
   if (turns) contacts_.turn.resize(contacts_.normal.size());
-  for (const std::int32_t contact_index : active_) {
+  for (const std::int32_t contact_index : active()) {
     const std::size_t k = at(contact_index);
     const ContactPoint point = setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);
     contacts_.gap[k] = point.gap - setup_.gap_offset;
@@ -242,7 +277,8 @@ void Interface::gather(const ContactList& contacts, const Dofs& v, const StepVie
 }
 
 void Interface::evaluate(const ContactList& contacts, const StepView& step) {
-  const ilaw_batch batch = contacts_.repeated_batch(setup_, step.time, step.dt);
+  ilaw_batch batch = contacts_.repeated_batch(setup_, step.time, step.dt);
+  if (!asks_energies_) batch.energy = {};
   const auto count = static_cast<std::ptrdiff_t>(contacts.size());
   outcomes_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), {});
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
@@ -290,7 +326,7 @@ void Interface::start_from(int contact_index, const Vector& impulse) {
 void Interface::accept(const StepView& step, const Dofs& v) {
   Refusal unknown;
   const Vector velocity = obstacle_velocity_ + obstacle_velocity_before_;
-  for (const std::int32_t contact_index : active_) {
+  for (const std::int32_t contact_index : active()) {
     const std::size_t k = at(contact_index);
     unknown.add_unknown(&contacts_.status[k], &contact_index, 1);
     check(unknown);
@@ -308,7 +344,7 @@ void Interface::accept(const StepView& step, const Dofs& v) {
     contacts_.accept_state(contact_index);
   }
   if (!show_fault(sums_)) return;
-  for (const std::int32_t contact_index : active_)
+  for (const std::int32_t contact_index : active())
     if (const char* fault =
             fault_of(impulse(contact_index).data(), dimension_,
                      &contacts_.energy[at(contact_index) * ILAW_ENERGY_COUNT], status(contact_index)))
@@ -323,7 +359,7 @@ Vector Interface::surface_velocity(int contact_index, const Vector& velocity, do
 // ---- the last step --------------------------------------------------------------------------------------
 
 bool Interface::is_active(int contact_index) const {
-  return std::find(active_.begin(), active_.end(), contact_index) != active_.end();
+  return std::find(active().begin(), active().end(), contact_index) != active().end();
 }
 
 const ContactPoint& Interface::point(int contact_index) const {
@@ -352,6 +388,7 @@ void Interface::load(std::istream& in, const Dofs& u) {
   for (const int node_index : nodes) contact_index_of(node_index, u);
   if (contacts_.node_index != nodes) refuse_damaged();
   contacts_.load_state(in);
+  far_.clear();
   proximity_.invalidate();
 }
 

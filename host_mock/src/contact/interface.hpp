@@ -33,6 +33,10 @@ class Interface {
   const ilaw_instance_info& info() const { return law_.info(); }
   const std::vector<int>& nodes() const { return setup_.nodes; }
 
+  // Whether laws are asked for what contacts dissipate and store, which takes them as long again as
+  // the impulse, and changes no bit of it. They are, where nobody says that it is not wanted.
+  void ask_energies(bool asks) { asks_energies_ = asks; }
+
   // ---- a step where no two contacts share a node ----
   // Chooses the active contacts, finds gaps, normals and delassus, asks the law for impulse, state,
   // energies and status, and takes v from v_free to v_free + r/m. Throws ilaw::error on bad nodes.
@@ -59,7 +63,7 @@ class Interface {
   void accept(const StepView& step, const Dofs& v);
 
   // ---- the last step ----
-  const ContactList& active() const { return active_; }
+  const ContactList& active() const { return acts_ ? near_ : none_; }
   const ContactSums& sums() const { return sums_; }
   // By contact_index.
   bool is_active(int contact_index) const;
@@ -113,6 +117,7 @@ class Interface {
   bool may_skip() const;
   void choose_active(const StepView& step);
   void refresh_near(const StepView& step);
+  void look_at(std::size_t chunk, const StepView& step);
   std::vector<double> parameters_of(int node_index) const;
   std::vector<double> first_state(int node_index, const Dofs& u) const;
   // Throws what a law refused; node: the first, empty where it is none in particular.
@@ -126,12 +131,17 @@ class Interface {
   ContactArrays contacts_;
   ProximityFilter proximity_;
   double closing_ = 0.0;  // how far a gap may close in the coming step
-  ContactList near_, active_;
+  bool acts_ = false;     // between birth and death
+  ContactList near_;
+  const ContactList none_;
   std::vector<std::ptrdiff_t> chunk_starts_;  // in near_, and its end
+  std::vector<std::uint8_t> is_near_;         // by node_index, at the last refresh
+  std::vector<FarNodes> far_;                 // by chunk of nodes; no bound where some are near
   Vector obstacle_velocity_, obstacle_velocity_before_;
   TurningRates rates_;
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
+  bool asks_energies_ = true;
 };
 
 using Interfaces = std::vector<std::unique_ptr<Interface>>;

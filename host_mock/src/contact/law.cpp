@@ -73,7 +73,8 @@ Law::Law(const std::string& library, const std::string& law, const Arguments& ar
          const Vector& tangent, int dimension)
     : library_(open_library(library, law)),
       interface_(create_named(law, arguments, tangent, library_, dimension)),
-      info_(interface_.info()) {}
+      info_(interface_.info()),
+      outputs_(library_.law(law)->outputs) {}
 
 bool Law::carries_axes() const {
   for (std::uint32_t i = 0; i < info_.state_variable_count; ++i)

@@ -21,6 +21,8 @@ class Law {
 
   const ilaw::library& library() const { return library_; }
   const ilaw_instance_info& info() const { return info_; }
+  // ILAW_OUTPUT_*: what it gives.
+  std::uint32_t outputs() const { return outputs_; }
   bool acts_at_distance() const { return (info_.capabilities & ILAW_CAN_ACT_AT_DISTANCE) != 0; }
   // Whether a contact whose last status was ILAW_FREE does nothing out of reach (ilaw.h,
   // ILAW_CAN_REST).
@@ -35,6 +37,7 @@ class Law {
   ilaw::library library_;
   ilaw::interface interface_;
   ilaw_instance_info info_;
+  std::uint32_t outputs_;
 };
 
 }  // namespace ilaw::host

@@ -38,8 +38,8 @@ Refusal overwriting(const char* input) {
 }
 
 bool InputCopy::is_due(double time, double dt) {
-  constexpr double every = 1000.0;
-  return std::fmod(std::round(time / dt), every) == 1.0;
+  constexpr std::int64_t every = 1000;
+  return std::llround(time / dt) % every == 1;
 }
 
 InputCopy::InputCopy(const ilaw_batch& batch, std::size_t dimension, std::size_t parameter_count) {

@@ -15,8 +15,14 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 namespace ilaw::host {
+
+// The least gap bound of some nodes that were all far, and the way (below) when it was taken.
+struct FarNodes {
+  double gap_bound = -std::numeric_limits<double>::infinity(), way = 0.0;
+};
 
 class ProximityFilter {
  public:
@@ -24,6 +30,7 @@ class ProximityFilter {
   // led here and of the coming one; validity bounds the horizon.
   bool refresh_due(double dt, double speed_before, double speed_after, double validity) {
     approached_ += rounding * dt * speed_before;
+    way_ += rounding * dt * speed_before;
     const double ahead = rounding * dt * speed_after;
     if (valid_ && approached_ + ahead < horizon_) return false;
     approached_ = 0.0;
@@ -34,6 +41,12 @@ class ProximityFilter {
   }
   // Whether a contact may touch before the next refresh.
   bool may_touch(double gap_bound) const { return !(gap_bound > horizon_); }
+  // How far nodes and counterpart have approached since the start, at most. Half of a bound is kept
+  // for the rounding of long sums.
+  double way() const { return way_; }
+  bool may_touch(const FarNodes& nodes) const {
+    return !(nodes.gap_bound > 2.0 * (way_ - nodes.way + horizon_));
+  }
   // The next step needs a refresh, whatever moved.
   void invalidate() { valid_ = false; }
 
@@ -42,7 +55,7 @@ class ProximityFilter {
   static constexpr double rounding = 1.0 + 1e-9;  // sums and gaps are rounded: a bound must not be
 
   bool valid_ = false;
-  double approached_ = 0.0, horizon_ = 0.0;
+  double approached_ = 0.0, horizon_ = 0.0, way_ = 0.0;
 };
 
 }  // namespace ilaw::host

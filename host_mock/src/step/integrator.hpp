@@ -64,6 +64,8 @@ class Integrator {
   void load(std::istream& in);
 
  private:
+  // How many steps the time of the coming one stands for.
+  int timed_steps() const;
   void move();
   void sum_forces(StepTimes step);
   double kick(StepTimes step);

@@ -112,6 +112,11 @@ void add_impulses(const Interfaces& interfaces, Dofs& sums) {
       sums.segment(static_cast<Eigen::Index>(i) * d, d) += interfaces[i]->impulse(contact_index);
 }
 
+// Errors are of motions, impulses and their work.
+void ask_no_energies(const Interfaces& interfaces) {
+  for (const auto& interface : interfaces) interface->ask_energies(false);
+}
+
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -122,6 +127,7 @@ double processor_seconds() {
 
 Trace trace_of(Scene& scene) {
   const double start = processor_seconds();
+  ask_no_energies(scene.interfaces);
   Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
   const std::vector<WatchedContact> contacts = watched_contacts(scene, integrator.displacement());
   Trace trace;
@@ -146,6 +152,7 @@ Trace trace_of(Scene& scene) {
 }
 
 double seconds_of(Scene& scene) {
+  ask_no_energies(scene.interfaces);
   Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
   const double start = processor_seconds();
   while (integrator.steps() < scene.steps) integrator.step();
