@@ -135,8 +135,8 @@ using library_of = library<(checked<Laws>() && ...), Laws...>;
 #define ILAW_PLUGIN(name, version, vendor, licence, ...) \
   extern "C" const ilaw_kit_walk* ILAW_KIT_WALKS() { return ilaw::kit::detail::walks<__VA_ARGS__>; }
 #else
-#define ILAW_PLUGIN(name, version, vendor, licence, ...)                                 \
-  extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {                           \
+#define ILAW_PLUGIN(name, version, vendor, licence, ...)                                         \
+  extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {                                   \
     return ilaw::kit::detail::library_of<__VA_ARGS__>::describe(name, version, vendor, licence); \
   }
 #endif

@@ -82,11 +82,13 @@ class tangent_columns {
  private:
   void keep_at(int i, const double* const* normals, const double* const* tangents) const {
     const axis n = columns::get(normals, i), t = columns::get(tangents, i);
-    put(i, n, t, unit(t) & orthogonal(n, t));
+    const bool is_unit = unit(t), is_across = orthogonal(n, t);
+    put(i, n, t, is_unit & is_across);
   }
   void transport_at(int i, const double* const* normals, const double* const* before) const {
     const axis n = columns::get(before, i), t = columns::get(before + 3, i), now = columns::get(normals, i);
-    put(i, now, transported_tangent(n, t, now), unit(n) & unit(t) & orthogonal(n, t));
+    const bool was_unit = unit(n), is_unit = unit(t), is_across = orthogonal(n, t);
+    put(i, now, transported_tangent(n, t, now), was_unit & is_unit & is_across);
   }
 
   double *first_[3], *second_[3];

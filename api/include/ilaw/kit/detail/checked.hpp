@@ -17,38 +17,38 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
   template <class Law>                             \
   inline constexpr bool names_##name = !requires { \
     &with_##name<Law>::name;                       \
-  };
+  }
 
-ILAW_KIT_NAME(card)
-ILAW_KIT_NAME(references)
-ILAW_KIT_NAME(parameters)
-ILAW_KIT_NAME(state)
-ILAW_KIT_NAME(state_variables)
-ILAW_KIT_NAME(history_variable)
-ILAW_KIT_NAME(history_size)
-ILAW_KIT_NAME(record)
-ILAW_KIT_NAME(step)
-ILAW_KIT_NAME(asks)
-ILAW_KIT_NAME(initialise)
-ILAW_KIT_NAME(inputs)
-ILAW_KIT_NAME(capabilities)
-ILAW_KIT_NAME(conflict)
-ILAW_KIT_NAME(in_form)
-ILAW_KIT_NAME(stable_velocity_step)
+ILAW_KIT_NAME(card);
+ILAW_KIT_NAME(references);
+ILAW_KIT_NAME(parameters);
+ILAW_KIT_NAME(state);
+ILAW_KIT_NAME(state_variables);
+ILAW_KIT_NAME(history_variable);
+ILAW_KIT_NAME(history_size);
+ILAW_KIT_NAME(record);
+ILAW_KIT_NAME(step);
+ILAW_KIT_NAME(asks);
+ILAW_KIT_NAME(initialise);
+ILAW_KIT_NAME(inputs);
+ILAW_KIT_NAME(capabilities);
+ILAW_KIT_NAME(conflict);
+ILAW_KIT_NAME(in_form);
+ILAW_KIT_NAME(stable_velocity_step);
 // Names that are written for one of these.
-ILAW_KIT_NAME(initialize)
-ILAW_KIT_NAME(init)
-ILAW_KIT_NAME(input)
-ILAW_KIT_NAME(capabilites)
-ILAW_KIT_NAME(capability)
-ILAW_KIT_NAME(conflicts)
-ILAW_KIT_NAME(in_forms)
-ILAW_KIT_NAME(records)
-ILAW_KIT_NAME(stable_step)
-ILAW_KIT_NAME(reference)
-ILAW_KIT_NAME(variables)
-ILAW_KIT_NAME(history)
-ILAW_KIT_NAME(extensions)
+ILAW_KIT_NAME(initialize);
+ILAW_KIT_NAME(init);
+ILAW_KIT_NAME(input);
+ILAW_KIT_NAME(capabilites);
+ILAW_KIT_NAME(capability);
+ILAW_KIT_NAME(conflicts);
+ILAW_KIT_NAME(in_forms);
+ILAW_KIT_NAME(records);
+ILAW_KIT_NAME(stable_step);
+ILAW_KIT_NAME(reference);
+ILAW_KIT_NAME(variables);
+ILAW_KIT_NAME(history);
+ILAW_KIT_NAME(extensions);
 #undef ILAW_KIT_NAME
 
 struct any_run {
@@ -118,7 +118,8 @@ constexpr bool steps_as_const() {
 template <class Law>
 constexpr bool solves_rightly() {
   if constexpr (names_asks<Law>)
-    return requires(const typename Law::template problem<double>& p, typename Law::template answer<double>& a) {
+    return requires(const typename Law::template problem<double>& p,
+                    typename Law::template answer<double>& a) {
       Law::solve(p, a);
       Law::solve_alone(p, a);
     };
@@ -166,39 +167,39 @@ inline constexpr bool has_history_rightly = names_history_variable<Law> ? requir
                                 struct checked_names {
 #define ILAW_KIT_CHECK(what, condition, text) \
   static constexpr bool what = (condition);   \
-  static_assert(what, text);
+  static_assert(what, text)
 #define ILAW_KIT_SPELLING(wrong, right)                       \
   static constexpr bool spells_##wrong = !names_##wrong<Law>; \
-  static_assert(spells_##wrong, "the kit calls no '" #wrong "': write '" #right "'");
+  static_assert(spells_##wrong, "the kit calls no '" #wrong "': write '" #right "'")
 
                                   ILAW_KIT_CHECK(
                                       has_own_card, has_card<Law>(),
-                                      "a law needs static constexpr law_card card{.id = ..., .title = ..., .doc = ...}")
+                                      "a law needs static constexpr law_card card{.id = ..., .title = ..., .doc = ...}");
                                   ILAW_KIT_CHECK(
                                       has_references, names_references<Law>,
-                                      "a law needs static constexpr const char* references[] = {...}: where its equations are from")
+                                      "a law needs static constexpr const char* references[] = {...}: where its equations are from");
                                   ILAW_KIT_CHECK(
                                       has_parameters, names_parameters<Law>,
-                                      "a law needs static constexpr parameter<Law> parameters[] = {{.member = &Law::name, ...}}")
+                                      "a law needs static constexpr parameter<Law> parameters[] = {{.member = &Law::name, ...}}");
                                   ILAW_KIT_CHECK(
                                       has_step, names_step<Law> || names_asks<Law>,
-                                      "a law needs template <class Node> void step(Node& node) const")
+                                      "a law needs template <class Node> void step(Node& node) const");
                                   ILAW_KIT_CHECK(
                                       has_both_of_state, names_state<Law> == names_state_variables<Law>,
-                                      "a memory is struct state and static constexpr state_variable<state> state_variables[]")
-                                  ILAW_KIT_SPELLING(initialize, initialise)
-                                  ILAW_KIT_SPELLING(init, initialise)
-                                  ILAW_KIT_SPELLING(input, inputs)
-                                  ILAW_KIT_SPELLING(capabilites, capabilities)
-                                  ILAW_KIT_SPELLING(capability, capabilities)
-                                  ILAW_KIT_SPELLING(conflicts, conflict)
-                                  ILAW_KIT_SPELLING(in_forms, in_form)
-                                  ILAW_KIT_SPELLING(records, record)
-                                  ILAW_KIT_SPELLING(stable_step, stable_velocity_step)
-                                  ILAW_KIT_SPELLING(reference, references)
-                                  ILAW_KIT_SPELLING(variables, state_variables)
-                                  ILAW_KIT_SPELLING(history, history_variable)
-                                  ILAW_KIT_SPELLING(extensions, extension)
+                                      "a memory is struct state and static constexpr state_variable<state> state_variables[]");
+                                  ILAW_KIT_SPELLING(initialize, initialise);
+                                  ILAW_KIT_SPELLING(init, initialise);
+                                  ILAW_KIT_SPELLING(input, inputs);
+                                  ILAW_KIT_SPELLING(capabilites, capabilities);
+                                  ILAW_KIT_SPELLING(capability, capabilities);
+                                  ILAW_KIT_SPELLING(conflicts, conflict);
+                                  ILAW_KIT_SPELLING(in_forms, in_form);
+                                  ILAW_KIT_SPELLING(records, record);
+                                  ILAW_KIT_SPELLING(stable_step, stable_velocity_step);
+                                  ILAW_KIT_SPELLING(reference, references);
+                                  ILAW_KIT_SPELLING(variables, state_variables);
+                                  ILAW_KIT_SPELLING(history, history_variable);
+                                  ILAW_KIT_SPELLING(extensions, extension);
 
                                   static constexpr bool passes =
                                       has_own_card && has_references && has_parameters && has_step &&
@@ -216,75 +217,75 @@ inline constexpr bool has_history_rightly = names_history_variable<Law> ? requir
                                       reads_gap | reads_v_previous | reads_area;
 
                                   ILAW_KIT_CHECK(has_texts, Law::card.id&& Law::card.title&& Law::card.doc,
-                                                 "the card of a law needs .id, .title and .doc")
+                                                 "the card of a law needs .id, .title and .doc");
                                   ILAW_KIT_CHECK(
                                       reads_known_inputs, (Law::card.inputs & ~inputs) == 0,
-                                      ".inputs of the card are reads_gap, reads_v_previous and reads_area, joined by |")
+                                      ".inputs of the card are reads_gap, reads_v_previous and reads_area, joined by |");
                                   ILAW_KIT_CHECK(
                                       serves_something,
                                       Law::card.dimensions != 0 && Law::card.delassus_forms != 0,
-                                      "the card of a law serves at least one dimension and one form of H")
+                                      "the card of a law serves at least one dimension and one form of H");
                                   ILAW_KIT_CHECK(
                                       gives_members, members_are_given<Law>(),
-                                      "a parameter needs .member = &Law::name and .name = \"name\"")
+                                      "a parameter needs .member = &Law::name and .name = \"name\"");
                                   ILAW_KIT_CHECK(
                                       has_one_each, members_differ<Law>(),
-                                      "two parameters have the same .member: each needs one of its own")
+                                      "two parameters have the same .member: each needs one of its own");
                                   ILAW_KIT_CHECK(
                                       describes_all,
                                       sizeof(Law) == sizeof(double) * std::size(Law::parameters),
-                                      "a law's members are its parameters, all double: each needs an entry of parameters[]")
+                                      "a law's members are its parameters, all double: each needs an entry of parameters[]");
                                   ILAW_KIT_CHECK(
                                       gives_state_members, state_is_given<Law>(),
-                                      "a state variable needs .member = &state::name and .name = \"name\"")
+                                      "a state variable needs .member = &state::name and .name = \"name\"");
                                   ILAW_KIT_CHECK(
                                       describes_state, state_is_covered<Law>(),
                                       "every member of struct state needs an entry of state_variables[]; members are double, "
-                                      "vector or tangential_vector")
+                                      "vector or tangential_vector");
                                   ILAW_KIT_CHECK(
                                       steps_const, steps_as_const<Law>(),
-                                      "step must be const: template <class Node> void step(Node& node) const")
+                                      "step must be const: template <class Node> void step(Node& node) const");
                                   ILAW_KIT_CHECK(
                                       has_solve, solves_rightly<Law>(),
                                       "solve and solve_alone must be static, and their problem carry the parameters: "
-                                      "they may come per node")
+                                      "they may come per node");
                                   ILAW_KIT_CHECK(
                                       has_initialise, initialises_rightly<Law>,
-                                      "initialise must be template <class Node> void initialise(Node& node) const")
+                                      "initialise must be template <class Node> void initialise(Node& node) const");
                                   ILAW_KIT_CHECK(has_inputs, has_inputs_rightly<Law>,
-                                                 "inputs must be std::uint32_t inputs() const")
+                                                 "inputs must be std::uint32_t inputs() const");
                                   ILAW_KIT_CHECK(has_capabilities, has_capabilities_rightly<Law>,
-                                                 "capabilities must be std::uint32_t capabilities() const")
+                                                 "capabilities must be std::uint32_t capabilities() const");
                                   ILAW_KIT_CHECK(has_conflict, has_conflict_rightly<Law>,
-                                                 "conflict must be const char* conflict() const")
+                                                 "conflict must be const char* conflict() const");
                                   ILAW_KIT_CHECK(
                                       has_form, has_form_rightly<Law>,
-                                      "in_form must be template <class Run> void in_form(Run run) const")
+                                      "in_form must be template <class Run> void in_form(Run run) const");
                                   ILAW_KIT_CHECK(
                                       has_stable_step, limits_step_rightly<Law>,
                                       "stable_velocity_step must be template <class Node> double stable_velocity_step(const Node& "
-                                      "node) const")
+                                      "node) const");
                                   ILAW_KIT_CHECK(
                                       has_history, has_history_rightly<Law>,
                                       "a history is static constexpr history_card history_variable, std::int64_t history_size() "
-                                      "const and record")
+                                      "const and record");
                                   ILAW_KIT_CHECK(
                                       has_record, records_rightly<Law>,
-                                      "record must be template <class Node> void record(const Node& node, history own) const")
+                                      "record must be template <class Node> void record(const Node& node, history own) const");
 
                                   static constexpr bool passes =
                                       has_texts && reads_known_inputs && serves_something && gives_members &&
                                       has_one_each && describes_all && gives_state_members &&
-                                      describes_state && steps_const && has_solve && has_initialise && has_inputs &&
-                                      has_capabilities && has_conflict && has_form && has_stable_step &&
-                                      has_history && has_record;
+                                      describes_state && steps_const && has_solve && has_initialise &&
+                                      has_inputs && has_capabilities && has_conflict && has_form &&
+                                      has_stable_step && has_history && has_record;
                                 };
 
                                 template <class Law>
                                 struct checked_places {
                                   ILAW_KIT_CHECK(
                                       passes, state_is_apart<Law>(),
-                                      "two state variables have the same .member: each needs one of its own")
+                                      "two state variables have the same .member: each needs one of its own");
 #undef ILAW_KIT_CHECK
 #undef ILAW_KIT_SPELLING
                                 };
@@ -298,4 +299,4 @@ inline constexpr bool has_history_rightly = names_history_variable<Law> ? requir
                                   return false;
                                 }
 
-}  // namespace ilaw::kit::detail
+                                }  // namespace ilaw::kit::detail

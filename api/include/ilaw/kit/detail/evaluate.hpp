@@ -70,8 +70,7 @@ const char* out_of_range(const state_t<Law>& state) {
     if constexpr (V < std::size(Law::state_variables)) {
       constexpr const auto& v = Law::state_variables[V];
       const auto doubles = std::bit_cast<std::array<double, state_doubles<Law>>>(state);
-      if (v.has_range() && !v.may_be(doubles[state_places<Law>[V]]))
-        return range_reason<Law, V>::text.data();
+      if (v.has_range() && !v.may_be(doubles[state_places<Law>[V]])) return range_reason<Law, V>::text.data();
       return out_of_range<Law, V + 1>(state);
     }
   return nullptr;

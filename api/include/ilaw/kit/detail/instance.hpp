@@ -315,8 +315,7 @@ class instance_builder {
 
   std::int32_t lay_out_state() {
     if constexpr (has_history<Law>) made_.history_size = made_.law.history_size();
-    const auto declared =
-        abi_state_variables<Law>(static_cast<int>(made_.dimension), made_.history_size);
+    const auto declared = abi_state_variables<Law>(static_cast<int>(made_.dimension), made_.history_size);
     for (const ilaw_state_variable& v : declared) append(v);
     made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.tangent_given &&
                           (made_.history_size > 0 || has_vector_state<Law>());
