@@ -1,5 +1,5 @@
 // sizes.hpp - how many random cases a test runs through: all of them with ILAW_TEST_WHOLE in the environment,
-// else a quarter, which is where tests that were broken on purpose still failed.
+// else a quarter, so that the suite stays short.
 #pragma once
 
 #include <cstdlib>
