@@ -27,6 +27,11 @@ inline bool is_whole(double x) {
   constexpr double to_integer = 0x1.8p52;
   return ((x + to_integer) - to_integer == x) | (__builtin_fabs(x) >= 0x1p51);
 }
+// The largest whole number up to x, for |x| < 2^63.
+inline double floor_of(double x) {
+  const auto cut = static_cast<double>(static_cast<std::int64_t>(x));
+  return cut > x ? cut - 1.0 : cut;
+}
 inline double absolute(double x) { return __builtin_fabs(x); }
 // x or 0. By its bits, since GCC vectorises no choice by a condition that is the same at all nodes.
 inline double kept_if(bool condition, double x) {

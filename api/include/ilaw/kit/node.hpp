@@ -276,6 +276,15 @@ struct initial_node {
   State state;
 };
 
+// The time over which a step's impulse acts: from half step to half step.
+struct step_interval {
+  double end, length;
+};
+template <class Node>
+step_interval interval_of(const Node& node) {
+  return {node.time + 0.5 * node.position_step, node.velocity_step};
+}
+
 // Kinds of nodes that laws tell apart when they are compiled: whether closed forms for H = diag(h_N, h_T,
 // h_T) hold at all of them, and whether their vectors have tangential components with names.
 template <class Node>

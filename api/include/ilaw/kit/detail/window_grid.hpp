@@ -7,24 +7,7 @@
 
 #include <cstdint>
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
-
-// The largest whole number up to x, for |x| < 2^63.
-inline double floor_of(double x) {
-  const auto cut = static_cast<double>(static_cast<std::int64_t>(x));
-  return cut > x ? cut - 1.0 : cut;
-}
-
-// The time over which a step's impulse acts: from half step to half step.
-struct step_interval {
-  double end, length;
-};
-template <class Node>
-step_interval interval_of(const Node& node) {
-  return {node.time + 0.5 * node.position_step, node.velocity_step};
-}
-
-namespace detail {
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // What is the same at all nodes is worked out once.
 class window_grid {
@@ -180,5 +163,4 @@ class window_grid {
   double stamp_;  // of bucket now_
 };
 
-}  // namespace detail
-}  // namespace ilaw::kit
+}  // namespace ilaw::kit::detail
