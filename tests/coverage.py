@@ -39,7 +39,7 @@ def arguments():
 
 def run_tests(programs, jobs):
     launcher = ["-DCMAKE_C_COMPILER_LAUNCHER=", "-DCMAKE_CXX_COMPILER_LAUNCHER="]  # no cache: it keeps no .gcno
-    subprocess.run(["cmake", "--preset", "coverage", "-DILAW_TESTS=ON", *launcher], cwd=SOURCE, check=True,
+    subprocess.run(["cmake", "--preset", "coverage", "-DILAW_TESTS=ON", "-DILAW_UNITY=ON", *launcher], cwd=SOURCE, check=True,
                    stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", BUILD, "-j", str(jobs), *(["--target", *programs] if programs else []), "--",
                     "--quiet"], check=True)
