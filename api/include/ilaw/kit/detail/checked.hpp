@@ -7,6 +7,7 @@
 #include <ilaw/kit/window.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
 // Whether a law has a member of a name, whatever it is: two of a name are ambiguous.
 #define ILAW_KIT_NAME(name)                        \
   struct other_##name {                            \
@@ -146,25 +147,28 @@ inline constexpr bool has_form_rightly = !names_in_form<Law> || requires(const L
 template <class Law>
 inline constexpr bool limits_step_rightly = !names_stable_velocity_step<Law> || limits_step<Law>;
 template <class Law>
-inline constexpr bool has_history_rightly = names_history_variable<Law> ? requires(const Law& law) {
+concept gives_history_size = requires(const Law& law) {
   { law.history_size() } -> std::same_as<std::int64_t>;
-}
-                                : !names_history_size<Law> && !names_record<Law>;
-                                template <class Law>
-                                inline constexpr bool records_rightly =
-                                    !names_history_variable<Law> ||
-                                    requires(const Law& law, const plain_node<Law>& n, history own) {
-                                  law.record(n, own);
-                                }
-                                || requires(const Law& law, const stepped_impulse& given,
-                                            const window_in_step& sums, history own) {
-                                  requires has_window<Law>;
-                                  law.record(given, sums, own);
-                                };
+};
+template <class Law>
+inline constexpr bool has_history_rightly =
+    names_history_variable<Law> ? gives_history_size<Law> : !names_history_size<Law> && !names_record<Law>;
+template <class Law>
+concept records_a_node = requires(const Law& law, const plain_node<Law>& n, history own) {
+  law.record(n, own);
+};
+template <class Law>
+concept records_sums = has_window<Law> &&
+    requires(const Law& law, const stepped_impulse& given, const window_in_step& sums, history own) {
+  law.record(given, sums, own);
+};
+template <class Law>
+inline constexpr bool records_rightly =
+    !names_history_variable<Law> || records_a_node<Law> || records_sums<Law>;
 
-                                // What needs no description yet: names.
-                                template <class Law>
-                                struct checked_names {
+// What needs no description yet: names.
+template <class Law>
+struct checked_names {
 #define ILAW_KIT_CHECK(what, condition, text) \
   static constexpr bool what = (condition);   \
   static_assert(what, text)
@@ -172,131 +176,102 @@ inline constexpr bool has_history_rightly = names_history_variable<Law> ? requir
   static constexpr bool spells_##wrong = !names_##wrong<Law>; \
   static_assert(spells_##wrong, "the kit calls no '" #wrong "': write '" #right "'")
 
-                                  ILAW_KIT_CHECK(
-                                      has_own_card, has_card<Law>(),
-                                      "a law needs static constexpr law_card card{.id = ..., .title = ..., .doc = ...}");
-                                  ILAW_KIT_CHECK(
-                                      has_references, names_references<Law>,
-                                      "a law needs static constexpr const char* references[] = {...}: where its equations are from");
-                                  ILAW_KIT_CHECK(
-                                      has_parameters, names_parameters<Law>,
-                                      "a law needs static constexpr parameter<Law> parameters[] = {{.member = &Law::name, ...}}");
-                                  ILAW_KIT_CHECK(
-                                      has_step, names_step<Law> || names_asks<Law>,
-                                      "a law needs template <class Node> void step(Node& node) const");
-                                  ILAW_KIT_CHECK(
-                                      has_both_of_state, names_state<Law> == names_state_variables<Law>,
-                                      "a memory is struct state and static constexpr state_variable<state> state_variables[]");
-                                  ILAW_KIT_SPELLING(initialize, initialise);
-                                  ILAW_KIT_SPELLING(init, initialise);
-                                  ILAW_KIT_SPELLING(input, inputs);
-                                  ILAW_KIT_SPELLING(capabilites, capabilities);
-                                  ILAW_KIT_SPELLING(capability, capabilities);
-                                  ILAW_KIT_SPELLING(conflicts, conflict);
-                                  ILAW_KIT_SPELLING(in_forms, in_form);
-                                  ILAW_KIT_SPELLING(records, record);
-                                  ILAW_KIT_SPELLING(stable_step, stable_velocity_step);
-                                  ILAW_KIT_SPELLING(reference, references);
-                                  ILAW_KIT_SPELLING(variables, state_variables);
-                                  ILAW_KIT_SPELLING(history, history_variable);
-                                  ILAW_KIT_SPELLING(extensions, extension);
+  ILAW_KIT_CHECK(has_own_card, has_card<Law>(),
+                 "a law needs static constexpr law_card card{.id = ..., .title = ..., .doc = ...}");
+  ILAW_KIT_CHECK(
+      has_references, names_references<Law>,
+      "a law needs static constexpr const char* references[] = {...}: where its equations are from");
+  ILAW_KIT_CHECK(has_parameters, names_parameters<Law>,
+                 "a law needs static constexpr parameter<Law> parameters[] = {{.member = &Law::name, ...}}");
+  ILAW_KIT_CHECK(has_step, names_step<Law> || names_asks<Law>,
+                 "a law needs template <class Node> void step(Node& node) const");
+  ILAW_KIT_CHECK(has_both_of_state, names_state<Law> == names_state_variables<Law>,
+                 "a memory is struct state and static constexpr state_variable<state> state_variables[]");
+  ILAW_KIT_SPELLING(initialize, initialise);
+  ILAW_KIT_SPELLING(init, initialise);
+  ILAW_KIT_SPELLING(input, inputs);
+  ILAW_KIT_SPELLING(capabilites, capabilities);
+  ILAW_KIT_SPELLING(capability, capabilities);
+  ILAW_KIT_SPELLING(conflicts, conflict);
+  ILAW_KIT_SPELLING(in_forms, in_form);
+  ILAW_KIT_SPELLING(records, record);
+  ILAW_KIT_SPELLING(stable_step, stable_velocity_step);
+  ILAW_KIT_SPELLING(reference, references);
+  ILAW_KIT_SPELLING(variables, state_variables);
+  ILAW_KIT_SPELLING(history, history_variable);
+  ILAW_KIT_SPELLING(extensions, extension);
 
-                                  static constexpr bool passes =
-                                      has_own_card && has_references && has_parameters && has_step &&
-                                      has_both_of_state && spells_initialize && spells_init && spells_input &&
-                                      spells_capabilites && spells_capability && spells_conflicts &&
-                                      spells_in_forms && spells_records && spells_stable_step &&
-                                      spells_reference && spells_variables && spells_history &&
-                                      spells_extensions;
-                                };
+  static constexpr bool passes = has_own_card && has_references && has_parameters && has_step &&
+                                 has_both_of_state && spells_initialize && spells_init && spells_input &&
+                                 spells_capabilites && spells_capability && spells_conflicts &&
+                                 spells_in_forms && spells_records && spells_stable_step &&
+                                 spells_reference && spells_variables && spells_history && spells_extensions;
+};
 
-                                // What its names stand for.
-                                template <class Law>
-                                struct checked_members {
-                                  static constexpr std::uint32_t inputs =
-                                      reads_gap | reads_v_previous | reads_area;
+// What its names stand for.
+template <class Law>
+struct checked_members {
+  static constexpr std::uint32_t inputs = reads_gap | reads_v_previous | reads_area;
 
-                                  ILAW_KIT_CHECK(has_texts, Law::card.id&& Law::card.title&& Law::card.doc,
-                                                 "the card of a law needs .id, .title and .doc");
-                                  ILAW_KIT_CHECK(
-                                      reads_known_inputs, (Law::card.inputs & ~inputs) == 0,
-                                      ".inputs of the card are reads_gap, reads_v_previous and reads_area, joined by |");
-                                  ILAW_KIT_CHECK(
-                                      serves_something,
-                                      Law::card.dimensions != 0 && Law::card.delassus_forms != 0,
-                                      "the card of a law serves at least one dimension and one form of H");
-                                  ILAW_KIT_CHECK(
-                                      gives_members, members_are_given<Law>(),
-                                      "a parameter needs .member = &Law::name and .name = \"name\"");
-                                  ILAW_KIT_CHECK(
-                                      has_one_each, members_differ<Law>(),
-                                      "two parameters have the same .member: each needs one of its own");
-                                  ILAW_KIT_CHECK(
-                                      describes_all,
-                                      sizeof(Law) == sizeof(double) * std::size(Law::parameters),
-                                      "a law's members are its parameters, all double: each needs an entry of parameters[]");
-                                  ILAW_KIT_CHECK(
-                                      gives_state_members, state_is_given<Law>(),
-                                      "a state variable needs .member = &state::name and .name = \"name\"");
-                                  ILAW_KIT_CHECK(
-                                      describes_state, state_is_covered<Law>(),
-                                      "every member of struct state needs an entry of state_variables[]; members are double, "
-                                      "vector or tangential_vector");
-                                  ILAW_KIT_CHECK(
-                                      steps_const, steps_as_const<Law>(),
-                                      "step must be const: template <class Node> void step(Node& node) const");
-                                  ILAW_KIT_CHECK(
-                                      has_solve, solves_rightly<Law>(),
-                                      "solve and solve_alone must be static, and their problem carry the parameters: "
-                                      "they may come per node");
-                                  ILAW_KIT_CHECK(
-                                      has_initialise, initialises_rightly<Law>,
-                                      "initialise must be template <class Node> void initialise(Node& node) const");
-                                  ILAW_KIT_CHECK(has_inputs, has_inputs_rightly<Law>,
-                                                 "inputs must be std::uint32_t inputs() const");
-                                  ILAW_KIT_CHECK(has_capabilities, has_capabilities_rightly<Law>,
-                                                 "capabilities must be std::uint32_t capabilities() const");
-                                  ILAW_KIT_CHECK(has_conflict, has_conflict_rightly<Law>,
-                                                 "conflict must be const char* conflict() const");
-                                  ILAW_KIT_CHECK(
-                                      has_form, has_form_rightly<Law>,
-                                      "in_form must be template <class Run> void in_form(Run run) const");
-                                  ILAW_KIT_CHECK(
-                                      has_stable_step, limits_step_rightly<Law>,
-                                      "stable_velocity_step must be template <class Node> double stable_velocity_step(const Node& "
-                                      "node) const");
-                                  ILAW_KIT_CHECK(
-                                      has_history, has_history_rightly<Law>,
-                                      "a history is static constexpr history_card history_variable, std::int64_t history_size() "
-                                      "const and record");
-                                  ILAW_KIT_CHECK(
-                                      has_record, records_rightly<Law>,
-                                      "record must be template <class Node> void record(const Node& node, history own) const");
+  ILAW_KIT_CHECK(has_texts, Law::card.id&& Law::card.title&& Law::card.doc,
+                 "the card of a law needs .id, .title and .doc");
+  ILAW_KIT_CHECK(reads_known_inputs, (Law::card.inputs & ~inputs) == 0,
+                 ".inputs of the card are reads_gap, reads_v_previous and reads_area, joined by |");
+  ILAW_KIT_CHECK(serves_something, Law::card.dimensions != 0 && Law::card.delassus_forms != 0,
+                 "the card of a law serves at least one dimension and one form of H");
+  ILAW_KIT_CHECK(gives_members, members_are_given<Law>(),
+                 "a parameter needs .member = &Law::name and .name = \"name\"");
+  ILAW_KIT_CHECK(has_one_each, members_differ<Law>(),
+                 "two parameters have the same .member: each needs one of its own");
+  ILAW_KIT_CHECK(describes_all, sizeof(Law) == sizeof(double) * std::size(Law::parameters),
+                 "a law's members are its parameters, all double: each needs an entry of parameters[]");
+  ILAW_KIT_CHECK(gives_state_members, state_is_given<Law>(),
+                 "a state variable needs .member = &state::name and .name = \"name\"");
+  ILAW_KIT_CHECK(describes_state, state_is_covered<Law>(),
+                 "every member of struct state needs an entry of state_variables[]; members are double, "
+                 "vector or tangential_vector");
+  ILAW_KIT_CHECK(steps_const, steps_as_const<Law>(),
+                 "step must be const: template <class Node> void step(Node& node) const");
+  ILAW_KIT_CHECK(has_solve, solves_rightly<Law>(),
+                 "solve and solve_alone must be static, and their problem carry the parameters: "
+                 "they may come per node");
+  ILAW_KIT_CHECK(has_initialise, initialises_rightly<Law>,
+                 "initialise must be template <class Node> void initialise(Node& node) const");
+  ILAW_KIT_CHECK(has_inputs, has_inputs_rightly<Law>, "inputs must be std::uint32_t inputs() const");
+  ILAW_KIT_CHECK(has_capabilities, has_capabilities_rightly<Law>,
+                 "capabilities must be std::uint32_t capabilities() const");
+  ILAW_KIT_CHECK(has_conflict, has_conflict_rightly<Law>, "conflict must be const char* conflict() const");
+  ILAW_KIT_CHECK(has_form, has_form_rightly<Law>,
+                 "in_form must be template <class Run> void in_form(Run run) const");
+  ILAW_KIT_CHECK(has_stable_step, limits_step_rightly<Law>,
+                 "stable_velocity_step must be template <class Node> double stable_velocity_step(const Node& "
+                 "node) const");
+  ILAW_KIT_CHECK(has_history, has_history_rightly<Law>,
+                 "a history is static constexpr history_card history_variable, std::int64_t history_size() "
+                 "const and record");
+  ILAW_KIT_CHECK(has_record, records_rightly<Law>,
+                 "record must be template <class Node> void record(const Node& node, history own) const");
 
-                                  static constexpr bool passes =
-                                      has_texts && reads_known_inputs && serves_something && gives_members &&
-                                      has_one_each && describes_all && gives_state_members &&
-                                      describes_state && steps_const && has_solve && has_initialise &&
-                                      has_inputs && has_capabilities && has_conflict && has_form &&
-                                      has_stable_step && has_history && has_record;
-                                };
+  static constexpr bool passes =
+      has_texts && reads_known_inputs && serves_something && gives_members && has_one_each && describes_all &&
+      gives_state_members && describes_state && steps_const && has_solve && has_initialise && has_inputs &&
+      has_capabilities && has_conflict && has_form && has_stable_step && has_history && has_record;
+};
 
-                                template <class Law>
-                                struct checked_places {
-                                  ILAW_KIT_CHECK(
-                                      passes, state_is_apart<Law>(),
-                                      "two state variables have the same .member: each needs one of its own");
+template <class Law>
+struct checked_places {
+  ILAW_KIT_CHECK(passes, state_is_apart<Law>(),
+                 "two state variables have the same .member: each needs one of its own");
 #undef ILAW_KIT_CHECK
 #undef ILAW_KIT_SPELLING
-                                };
+};
 
-                                // Whether a struct is a law; an error, of one line, where it is not.
-                                template <class Law>
-                                constexpr bool checked() {
-                                  if constexpr (checked_names<Law>::passes)
-                                    if constexpr (checked_members<Law>::passes)
-                                      return checked_places<Law>::passes;
-                                  return false;
-                                }
+// Whether a struct is a law; an error, of one line, where it is not.
+template <class Law>
+constexpr bool checked() {
+  if constexpr (checked_names<Law>::passes)
+    if constexpr (checked_members<Law>::passes) return checked_places<Law>::passes;
+  return false;
+}
 
-                                }  // namespace ilaw::kit::detail
+}  // namespace ilaw::kit::detail
