@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "batch_source.hpp"
 
+#include "support/float_batch.hpp"
+
 #include <utility>
 
 namespace random_batches {
@@ -205,15 +207,7 @@ void Runner::describe() {
 
 // The same batch in arrays of floats.
 ilaw_float_batch Runner::float_batch() const {
-  ilaw_float_batch made{};
-  made.struct_size = sizeof made;
-  made.index_base = batch_.index_base;
-  made.node_count = batch_.node_count;
-  made.index = batch_.index;
-  made.index64 = batch_.index64;
-  made.time = batch_.time;
-  made.velocity_step = batch_.velocity_step;
-  made.position_step = batch_.position_step;
+  ilaw_float_batch made = ilaw::testing::float_batch_like(batch_);
   made.v_free = v_free_.float_input();
   made.delassus = delassus_.float_input();
   made.gap = gap_.float_input();
@@ -223,13 +217,9 @@ ilaw_float_batch Runner::float_batch() const {
   made.normal = normal_.float_input();
   made.tangent = tangent_.float_input();
   made.per_node_parameters = per_node_float_inputs_.empty() ? nullptr : per_node_float_inputs_.data();
-  made.state_in = batch_.state_in;
-  made.state_out = batch_.state_out;
   made.impulse = impulse_.float_output();
   made.velocity = velocity_.float_output();
   made.energy = energy_.float_output();
-  made.status = batch_.status;
-  made.status_stride = batch_.status_stride;
   return made;
 }
 

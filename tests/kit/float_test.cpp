@@ -2,10 +2,9 @@
 #include "batch_runner.hpp"
 #include "kit_probe.hpp"
 
+#include "support/float_batch.hpp"
 #include "support/law_cases.hpp"
 #include "support/numbers.hpp"
-
-#include <ilaw/float.h>
 
 #include <algorithm>
 #include <numeric>
@@ -25,28 +24,16 @@ void round_to_floats(std::vector<double>& values) {
 class FloatBatch {
  public:
   FloatBatch(const ilaw_batch& of, std::int64_t nodes, std::int64_t d, std::int64_t of_delassus)
-      : nodes_(nodes) {
-    b.struct_size = sizeof b;
-    b.index_base = of.index_base;
-    b.node_count = of.node_count;
-    b.index = of.index;
-    b.index64 = of.index64;
-    b.time = of.time;
-    b.velocity_step = of.velocity_step;
-    b.position_step = of.position_step;
+      : b(float_batch_like(of)), nodes_(nodes) {
     b.v_free = input(of.v_free, d);
     b.delassus = input(of.delassus, of_delassus);
     b.gap = input(of.gap, 1);
     b.v_previous = input(of.v_previous, d);
     b.area = input(of.area, 1);
     b.normal = input(of.normal, d);
-    b.state_in = of.state_in;
-    b.state_out = of.state_out;
     b.impulse = output(of.impulse, d, impulse_);
     b.velocity = output(of.velocity, d, velocity_);
     b.energy = output(of.energy, 4, energy_);
-    b.status = of.status;
-    b.status_stride = of.status_stride;
   }
   FloatBatch(const FloatBatch&) = delete;
 
@@ -57,7 +44,7 @@ class FloatBatch {
            difference("energy", energy_, doubles.energy);
   }
 
-  ilaw_float_batch b{};
+  ilaw_float_batch b;
 
  private:
   static std::string difference(const char* name, const std::vector<float>& floats,
