@@ -34,7 +34,8 @@ for file in bin/ilaw lib/ilaw/contact.so include/ilaw/ilaw.h include/ilaw/kit/de
             lib/libilaw_coupled.a lib/libilaw_coupled.so lib/libilaw_coupled.so.1 include/ilaw/coupled.h lib/cmake/ilaw/ilawConfig.cmake lib/pkgconfig/ilaw.pc \
             lib/pkgconfig/ilaw_coupled.pc share/ilaw/fortran/ilaw.f90 share/ilaw/fortran/ilaw_coupled.f90 \
             share/ilaw/yade/ilaw_yade.py share/ilaw/python/examples/dolfinx/throw.py share/ilaw/python/ilaw/coupled.py \
-            share/ilaw/python/pyproject.toml share/man/man1/ilaw.1 \
+            share/ilaw/python/pyproject.toml share/man/man1/ilaw.1 share/doc/ilaw/copyright share/doc/libilaw-dev/copyright \
+            share/ilaw/scenes/two_bars.json share/ilaw/scenes/bouncing_ball.json \
             share/bash-completion/completions/ilaw; do
   [ -e "$prefix/$file" ] || { echo "missing: $file"; exit 1; }
 done
@@ -50,7 +51,7 @@ fi
 
 echo "== the program, from where it lies"
 "$prefix/bin/ilaw" list | grep -q "^coulomb .*$prefix/lib/ilaw/coulomb.so"
-"$prefix/bin/ilaw" run "$source/plugins/coulomb/sliding_block.json" --out results
+"$prefix/bin/ilaw" run "$prefix/share/ilaw/scenes/sliding_block.json" --out results
 
 if [ -e "$build/lib/libilaw_lammps.so" ] && [ -x "$(command -v lmp)" ]; then
   echo "== the fixes in LAMMPS"
