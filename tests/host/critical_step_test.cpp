@@ -31,6 +31,9 @@ const std::vector<Case> cases = {
     {"postit_saturated",
      R"("law": "postit", "parameters": {"rupture": "saturated", "efficiency_decrease": 5.0})"},
     {"postit_bonded", R"("law": "postit", "parameters": {"initial_adhesion": 0.01})", 0.0, 1.0},
+    {"penalty_implicit", R"("law": "penalty", "parameters": {"stiffness": 1e3, "integration": "implicit"})"},
+    {"penalty_implicit_05",
+     R"("law": "penalty", "parameters": {"stiffness": 1e6, "integration": "implicit", "restitution": 0.5})"},
     {"tie", R"("law": "tie")", 0.0, 1.0},
     {"tie_broken", R"("law": "tie", "parameters": {"strength": 1e-9})"},
     {"cohesive_broken", R"("law": "cohesive", "parameters": {"strength": 1.0, "toughness": 0.0})"},
@@ -69,17 +72,22 @@ TEST_P(CriticalStep, InterfacesPutNoEnergyIn) {
     Integrator integrator = integrator_of(scene);
     const EnergyReport first = integrator.energy();
     const double initial = first.kinetic + first.internal;
-    double most = 0.0;
+    // At the critical step itself the bar's fastest mode grows in proportion to time, without energy: what
+    // rounding leaves is of the kinetic energy of then.
+    double most = 0.0, largest = initial;
     for (int k = 0; k < steps && most < 1.0; ++k) {
       integrator.step();
-      most = std::max(most, integrator.energy().interface_work / initial);
+      const EnergyReport energy = integrator.energy();
+      most = std::max(most, energy.interface_work / initial);
+      largest = std::max(largest, energy.kinetic);
     }
     if (given)
-      std::printf("%s, cfl %g, %lld steps: %.1e\n", GetParam().name, cfl,
-                  static_cast<long long>(integrator.steps()), most);
+      std::printf("%s, cfl %g, %lld steps: %.1e, kinetic %.1e\n", GetParam().name, cfl,
+                  static_cast<long long>(integrator.steps()), most, largest / initial);
     EXPECT_LE(most, 1e-10) << "of the energy put in at cfl " << cfl << " within " << integrator.steps()
                            << " steps";
-    EXPECT_LE(integrator.energy().reaction_work, 1e-10 * initial) << "cfl " << cfl;
+    EXPECT_LE(integrator.energy().reaction_work, 1e-10 * largest)
+        << "cfl " << cfl << ", largest kinetic energy " << largest / initial << " of the first";
   }
 }
 
