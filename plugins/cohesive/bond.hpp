@@ -45,31 +45,43 @@ struct bond {
   bool mixes() const {
     return shape != camacho_ortiz && (shear_strength() != strength || shear_toughness() != toughness);
   }
-  softening softening_at(double shear) const {
-    const double part = shear > 0.0 ? power(shear, mixing_exponent) : 0.0;
-    const double energy = toughness + part * (shear_toughness() - toughness);
+  template <class V>
+  softening<V> softening_at(V shear) const {
+    const V part = select(shear > 0.0, power_of(shear), 0.0);
+    const V energy = toughness + part * (shear_toughness() - toughness);
     const double s1 = strength, s2 = shear_strength();
-    const double peak = part > 0.0 ? square_root(s1 * s1 + part * (s2 * s2 - s1 * s1)) : s1;
-    const double full = softening::fullness(shape == exponential);
-    const double width = positive_part(energy / peak - 0.5 * peak * flexibility()) / full;
+    const V peak = select(part > 0.0, square_root(s1 * s1 + part * (s2 * s2 - s1 * s1)), s1);
+    const double full = softening<V>::fullness(shape == exponential);
+    const V width = positive_part(energy / peak - 0.5 * peak * flexibility()) / full;
     return {peak, peak * flexibility(), width, shape == exponential};
   }
+  // The kit's power, whose exponent is the same in all lanes here.
+  template <class V>
+  V power_of(V shear) const {
+    const double y = mixing_exponent;
+    if (y == 1.0) return shear;
+    if (y == 1.5) return shear * square_root(shear);
+    return y == 2.0 ? shear * shear : exp(y * log(shear));
+  }
 
-  softening softening_along(vector w, double size) const {
+  softening<double> softening_along(vector w, double size) const {
     return softening_at(mixes() ? shear_share(w, size) : 0.0);
   }
 
   // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
   double softness_scale() const { return softening_at(0.0).width / strength; }
-  secant secant_of(double damage) const {
-    return {1.0 - damage, flexibility() + (strength < infinity ? damage * softness_scale() : 0.0)};
+  template <class V>
+  secant<V> secant_of(V damage) const {
+    return {1.0 - damage, flexibility() + (strength < infinity ? damage * softness_scale() : V(0.0))};
   }
-  double damage_of(double opening, double traction) const {
+  template <class V>
+  V damage_of(V opening, V traction) const {
     return (opening - flexibility() * traction) / (opening + softness_scale() * traction);
   }
 
-  double energy_of(secant s, double size) const {
-    return s.soft > 0.0 ? 0.5 * s.stiff / s.soft * size * size : 0.0;
+  template <class V>
+  V energy_of(secant<V> s, V size) const {
+    return select(s.soft > 0.0, 0.5 * s.stiff / s.soft * size * size, 0.0);
   }
 
   struct outcome {
@@ -81,14 +93,14 @@ struct bond {
   // Without delay: elastic where that stays below the softening.
   template <class Zone>
   outcome at_once(double damage, const Zone& z) const {
-    const secant now = secant_of(damage);
+    const secant<double> now = secant_of(damage);
     const share stiffest = z.of(now);
     if (strength == infinity || holds(z, now, stiffest)) return {stiffest, damage};
     return softened(damage, now, {stiffest.taken, larger(stiffest.left, almost_nothing)}, z);
   }
 
   template <class Zone>
-  bool holds(const Zone& z, secant now, share elastic) const {
+  bool holds(const Zone& z, secant<double> now, share elastic) const {
     if (!(now.soft > 0.0)) return false;  // see stands_still
     const motion m = z.at(elastic);
     const double pull = now.stiff * m.size;
@@ -99,16 +111,17 @@ struct bond {
   // Else the mean traction on the way from w^- to w^+. Like `delayed` too long to be compiled for each form
   // of node.
   template <class Zone>
-  [[gnu::noinline]] outcome softened(double damage_before, secant now, share stiffest, const Zone& z) const {
+  [[gnu::noinline]] outcome softened(double damage_before, secant<double> now, share stiffest, const Zone& z) const {
     const double from = z.size(z.opening);
     const auto excess = [&](share trial) {
       const motion m = z.at(trial);
-      const double traction = softening_along(m.opening, m.size).mean_traction_on_path(now, from, m.size);
+      const softening<double> s = softening_along(m.opening, m.size);
+      const double traction = s.mean_traction_on_path(now, s.meets(now), from, m.size);
       return trial.stiffness() * (m.size + from) - 2.0 * z.compliance_scale * traction;
     };
     const share found = balance(stiffest, excess);
     const motion m = z.at(found);
-    const softening s = softening_along(m.opening, m.size);
+    const softening<double> s = softening_along(m.opening, m.size);
     const double damage = m.size > s.onset ? damage_of(m.size, s.traction(m.size)) : 0.0;
     return {found, larger(damage_before, damage), ambiguity(z, stiffest, excess)};
   }
@@ -116,10 +129,10 @@ struct bond {
   // With delay: the stiffness is the mean of those before and after.
   template <class Zone>
   [[gnu::noinline]] outcome delayed(double damage, double position_step, const Zone& z) const {
-    const secant before = secant_of(damage);
+    const secant<double> before = secant_of(damage);
     const double stiffness_before = before.stiff / before.soft;
     const auto excess = [&](share trial) {
-      const secant after = secant_of(delayed_damage(damage, position_step, z.at(trial)));
+      const secant<double> after = secant_of(delayed_damage(damage, position_step, z.at(trial)));
       const double mean = 0.5 * (stiffness_before + after.stiff / after.soft);
       return trial.stiffness() - z.compliance_scale * mean;
     };
@@ -129,14 +142,18 @@ struct bond {
     return {found, delayed_damage(damage, position_step, z.at(found)), ambiguity(z, stiffest, excess)};
   }
 
+  // Of all mode mixes.
+  double steepest() const {
+    const double opened = softening_at(0.0).steepest();
+    return mixes() ? larger(opened, softening_at(1.0).steepest()) : opened;
+  }
+
   // There is one solution where the softening is not steeper than the node gives way, c tr(H W) |T'| <= 1.
   // Beyond, the sign changes of the excess are counted as the node is left ever more of its free motion.
   // Several are a snap-back, and nothing says how much of it this step is to do.
   template <class Zone, class Excess>
   double ambiguity(const Zone& z, share stiffest, Excess excess) const {
-    const double opened = softening_at(0.0).steepest();
-    const double slope = mixes() ? larger(opened, softening_at(1.0).steepest()) : opened;
-    if (!(z.compliance_scale * z.modes.trace_ratio() * slope > 1.0)) return not_refused;
+    if (!(z.compliance_scale * z.modes.trace_ratio() * steepest() > 1.0)) return not_refused;
     // By what is left in the direction that gives way most: the others have had most of theirs by then.
     const double ratio = z.modes.largest_ratio(), first = stiffest.times(ratio).left;
     const auto at = [&](double part) {
@@ -151,7 +168,7 @@ struct bond {
   // a stiff bond of great toughness is soft already at a damage of 1e-16. Where q is large, the same is f -
   // ln(1 + (exp(a z) - 1) exp(-a h/tau_c))/a.
   double delayed_damage(double damage, double position_step, const motion& m) const {
-    const softening s = softening_along(m.opening, m.size);
+    const softening<double> s = softening_along(m.opening, m.size);
     const double progress = s.progress(m.size);
     const double target = progress < 1.0 && progress > 0.0 ? damage_of(m.size, s.traction(m.size)) : progress;
     const double distance = target - damage;

@@ -1,6 +1,8 @@
 // Cohesive zones: a bond that softens, with contact, friction and bounded damage rate. See cohesive.md.
 #include "bond.hpp"
 #include "gathered.hpp"
+#include "isotropic.hpp"
+#include "touching.hpp"
 
 #include <ilaw/kit.hpp>
 
@@ -161,13 +163,7 @@ struct cohesive : bond {
   void in_form(Run run) const;
 
   template <class Node>
-  void step(Node& node) const {
-    gathered<double> given;
-    gather(node, given);
-    solved<double> found;
-    solve_alone(given, found);
-    give(node, found);
-  }
+  void step(Node& node) const;
   [[gnu::noinline]] void solve_alone(const gathered<double>& given, solved<double>& found) const {
     auto node = node_of<state>(given);
     if (!(node.state.damage < 1.0 && node.area > 0.0))
@@ -283,47 +279,105 @@ struct cohesive : bond {
 };
 
 struct cohesive::in_phases : cohesive {
-  double held, shear_weight;  // worked out once: sure_strength and weight
+  of_all_nodes all;
+  double surely_held, per_weight;  // squared: sure_strength, 1/weight
+
+  explicit in_phases(const cohesive& law)
+      : cohesive(law),
+        all(law),
+        surely_held(positive_part(law.sure_strength()) * positive_part(law.sure_strength())),
+        per_weight(1.0 / (all.weight * all.weight)) {}
 
   template <class V>
   using problem = gathered<V>;
   template <class V>
   using answer = solved<V>;
 
+  // Bonds that surely stand still, at which their impulse does no positive work, and nodes that are free are
+  // done.
   template <class Node>
   bool asks(Node& node, problem<double>& open) const {
     gather(node, open);
     const state& s = node.state;
     const bool bonded = (s.damage < 1.0) & (node.area > 0.0);
-    const vector r = stopping_impulse(node), pull = effective(r, shear_weight);
-    const double capacity = node.velocity_step * node.area;
-    const bool surely = length(pull.n, pull.t1, pull.t2) <= capacity * held;
-    const bool holds = bonded & (s.damage == 0.0) & surely;
-    friction_problem<double> rubbing;
-    const bool rubs = ask_friction(node, contact(node), friction, friction, true, rubbing);
-    // A free node has no -0, as where it is solved alone.
-    const bool pushes = node.impulse.n > 0.0;
-    const vector contact_part{pushes ? node.impulse.n : 0.0, pushes ? node.impulse.t1 : 0.0,
-                              pushes ? node.impulse.t2 : 0.0};
-    node.impulse = {holds ? r.n : contact_part.n, holds ? r.t1 : contact_part.t1,
-                    holds ? r.t2 : contact_part.t2};
-    node.status = holds ? status::bonded : node.status;
+    const vector r = -node.delassus.solve(node.v_free);
+    const bool gains = normal_product(r, node.v_previous) + tangential_product(r, node.v_previous) > 0.0;
+    const double pull = positive_part(-r.n), capacity = node.velocity_step * node.area;
+    const double square = pull * pull + per_weight * (r.t1 * r.t1 + r.t2 * r.t2);
+    const double most = capacity * capacity * surely_held;
+    const bool surely = (square <= most) & (square < 0x1p900) & (most > 0x1p-900);
+    const bool holds = bonded & (s.damage == 0.0) & surely & !gains;
+    const auto touching = contact(node);
+    const bool rubs = (touching.slack <= 0.0) & (touching.q.n < 0.0);
+    node.impulse = {holds ? r.n : 0.0, holds ? r.t1 : 0.0, holds ? r.t2 : 0.0};
+    node.status = holds ? status::bonded : status::free;
     return (bonded & !holds) | (!bonded & rubs);
   }
-  // Its root is found one by one.
+
+  // In packs: where H is transverse, bonds that need no counting of solutions, and nodes that touch.
   template <class V>
-  mask_of<V> solve(const problem<V>& /*p*/, answer<V>& /*a*/) const {
-    return mask_of<V>(true);
+  [[gnu::noinline]] mask_of<V> solve(const problem<V>& p, answer<V>& a) const {
+    const V* h = p.h;
+    const auto transverse = (h[3] == 0.0) & (h[4] == 0.0) & (h[5] == 0.0) & (h[1] == h[2]);
+    const auto bonded = (p.damage < 1.0) & (p.area > 0.0);
+    auto left = !transverse;
+    a = {};
+    if (any(bonded)) left = left | (bonded & solve_bonds(p, a));
+    if (any(!bonded)) touch_in_packs(p, friction, !bonded, a);
+    return left;
   }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {
     give(node, a);
   }
+
+ private:
+  template <class V>
+  mask_of<V> solve_bonds(const problem<V>& p, answer<V>& a) const {
+    const bool is_delayed = delay_time > 0.0 && strength < infinity;
+    if (!bonds() || is_delayed) return p.area == p.area;
+    const isotropic_step<V> step(*this, all, p);
+    const mask_of<V> left = step.solve(a);
+    return stiffness == infinity ? stand_still(p, left, a) : left;
+  }
+  // A rigid bond that has not been opened: see stands_still. Returns which of the lanes are left now.
+  template <class V>
+  mask_of<V> stand_still(const problem<V>& p, mask_of<V> left, answer<V>& a) const {
+    friction_problem<V> stop{};
+    friction_answer<V> r{};
+    for (int k = 0; k < 3; ++k) {
+      stop.contact.h[k] = p.h[k];
+      stop.contact.q[k] = p.v_free[k];
+      stop.rest[k] = p.v_previous[k];
+      r.r[k] = -(p.v_free[k] / p.h[k]);
+    }
+    r.status = status::stick;
+    take_off_positive_work(stop, r);
+    const V pull = positive_part(-r.r[0]), shear = per_weight * (r.r[1] * r.r[1] + r.r[2] * r.r[2]);
+    const V square = pull * pull + shear;
+    V held = smaller(strength, shear_strength());
+    if (mixes()) held = larger(softening_at(select(square > 0.0, shear / square, 0.0)).strength, held);
+    const V most = p.velocity_step * p.area * held;
+    const auto is_new = p.damage == 0.0, has_scale = (square < 0x1p900) & (most * most > 0x1p-900);
+    const auto stands = is_new & has_scale & (square <= most * most);
+    leave_bond(p, r.r, V(status::bonded), stands, a);
+    return (left | (is_new & !has_scale)) & !stands;
+  }
 };
+
+template <class Node>
+void cohesive::step(Node& node) const {
+  const in_phases form(*this);
+  gathered<double> given;
+  if (!form.asks(node, given)) return;
+  solved<double> found;
+  if (form.solve(given, found)) solve_alone(given, found);
+  give(node, found);
+}
 
 template <class Run>
 void cohesive::in_form(Run run) const {
-  run(in_phases{*this, sure_strength(), weight()});
+  run(in_phases(*this));
 }
 
 }  // namespace

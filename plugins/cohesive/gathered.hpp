@@ -60,6 +60,20 @@ node<full_delassus, State> node_of(const gathered<double>& g) {
           .state = {g.damage, kept(g.position), kept(g.opening)}};
 }
 
+// The answer where the bond stays as it was.
+template <class V>
+void leave_bond(const gathered<V>& g, const V (&impulse)[3], V status, mask_of<V> where, solved<V>& s) {
+  for (int k = 0; k < 3; ++k) {
+    s.impulse[k] = select(where, impulse[k], s.impulse[k]);
+    s.position[k] = select(where, g.position[k], s.position[k]);
+    s.opening[k] = select(where, g.opening[k], s.opening[k]);
+  }
+  s.damage = select(where, g.damage, s.damage);
+  for (V* energy : {&s.stored, &s.normal_gain, &s.tangential_gain, &s.rupture})
+    *energy = select(where, 0.0, *energy);
+  s.status = select(where, status, s.status);
+}
+
 template <class Node>
 void leave(const Node& node, solved<double>& s) {
   keep(node.impulse, s.impulse);

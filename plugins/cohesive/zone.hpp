@@ -60,7 +60,7 @@ struct zone {
   // Opening along which work is done in each direction, as one number.
   double size(vector w) const { return length(w.n, weight * w.t1, weight * w.t2); }
 
-  share of(secant k) const {
+  share of(secant<double> k) const {
     const double sum = k.soft + compliance_scale * k.stiff;
     return {compliance_scale * k.stiff / sum, k.soft / sum};
   }
