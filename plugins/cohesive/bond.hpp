@@ -70,17 +70,15 @@ struct bond {
 
   // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
   double softness_scale() const { return softening_at(0.0).width / strength; }
-  template <class V>
-  secant<V> secant_of(V damage) const {
-    return {1.0 - damage, flexibility() + (strength < infinity ? damage * softness_scale() : V(0.0))};
+  secant<double> secant_of(double damage) const {
+    return {1.0 - damage, flexibility() + (strength < infinity ? damage * softness_scale() : 0.0)};
   }
-  template <class V>
-  V damage_of(V opening, V traction) const {
+  double damage_of(double opening, double traction) const {
     return (opening - flexibility() * traction) / (opening + softness_scale() * traction);
   }
 
   template <class V>
-  V energy_of(secant<V> s, V size) const {
+  static V energy_of(secant<V> s, V size) {
     return select(s.soft > 0.0, 0.5 * s.stiff / s.soft * size * size, 0.0);
   }
 

@@ -321,7 +321,6 @@ struct cohesive::in_phases : cohesive {
     const auto transverse = (h[3] == 0.0) & (h[4] == 0.0) & (h[5] == 0.0) & (h[1] == h[2]);
     const auto bonded = (p.damage < 1.0) & (p.area > 0.0);
     auto left = !transverse;
-    a = {};
     if (any(bonded)) left = left | (bonded & solve_bonds(p, a));
     if (any(!bonded)) touch_in_packs(p, friction, !bonded, a);
     return left;
@@ -370,7 +369,7 @@ void cohesive::step(Node& node) const {
   const in_phases form(*this);
   gathered<double> given;
   if (!form.asks(node, given)) return;
-  solved<double> found;
+  solved<double> found{};
   if (form.solve(given, found)) solve_alone(given, found);
   give(node, found);
 }

@@ -12,10 +12,15 @@ inline namespace ILAW_KIT_LEVEL {
 // What is the same at all nodes of a bond.
 struct of_all_nodes {
   double weight, steepest;
-  softening<double> opened;  // mode I
+  softening<double> opened;      // mode I
+  double flexibility, softness;  // see secant_of
 
   explicit of_all_nodes(const bond& b)
-      : weight(b.weight()), steepest(b.steepest()), opened(b.softening_at(0.0)) {}
+      : weight(b.weight()),
+        steepest(b.steepest()),
+        opened(b.softening_at(0.0)),
+        flexibility(b.flexibility()),
+        softness(b.strength < infinity ? b.softness_scale() : 0.0) {}
 };
 
 template <class V>
@@ -24,7 +29,7 @@ class isotropic_step {
   using Mask = mask_of<V>;
 
   isotropic_step(const bond& b, const of_all_nodes& all, const gathered<V>& g)
-      : bond_(b), g_(g), weight_(all.weight), steepest_(all.steepest) {
+      : bond_(b), all_(all), g_(g) {
     const V *v = g.v_free, *u = g.v_previous, *w = g.opening, step = g.position_step;
     place_bond();
     const V rounding = 0x1p-48 * (absolute(v[0]) + absolute(u[0])), lowest = smaller(x_[0], 0.0);
@@ -34,8 +39,8 @@ class isotropic_step {
     for (int k = 0; k < 3; ++k) drive_[k] = 0.5 * step * v[k] + (x_[k] + w[k]);
     from_ = size_of(w[0], shear_square(w[1], w[2]));
     c_ = 0.25 * step * g.velocity_step * g.area * g.h[0];
-    ratio_ = weight_ * weight_ * g.h[1] / g.h[0];
-    now_ = b.secant_of(g.damage);
+    ratio_ = square_of_weight() * g.h[1] / g.h[0];
+    now_ = secant_of(g.damage);
     const softening<double>& s = all.opened;
     opened_ = {s.strength, s.onset, s.width, s.exponential};
     opened_met_ = opened_.meets(now_);
@@ -45,9 +50,12 @@ class isotropic_step {
   Mask solve(solved<V>& a) const {
     const V most = select(now_.soft > 0.0, c_ * now_.stiff / now_.soft, 1.0 / almost_nothing);
     const trial stiffest = at(most);
-    const Mask holds = (now_.soft > 0.0) & (bond_.strength == infinity ? most == most : is_below(stiffest));
-    const Mask rubs = (bond_.friction * g_.damage > 0.0) & (smaller(stiffest.free, at(0.0).free) < floor_);
-    const Mask is_unique = c_ * (1.0 + 2.0 * ratio_) * steepest_ <= 1.0;
+    const Mask is_soft = now_.soft > 0.0;
+    Mask holds = is_soft, rubs = most < 0.0;
+    if (bond_.strength < infinity && any(is_soft)) holds = is_soft & is_below(stiffest);
+    if (bond_.friction > 0.0)
+      rubs = (g_.damage > 0.0) & (smaller(stiffest.free, drive_[0] - g_.opening[0]) < floor_);
+    const Mask is_unique = c_ * (1.0 + 2.0 * ratio_) * all_.steepest <= 1.0;
     const Mask has_scale = (most < 1.0 / almost_nothing * 2.0) & (c_ > 0x1p-900);
     const Mask softens = has_scale & is_unique & !rubs & !holds;
     V kappa = most;
@@ -55,9 +63,9 @@ class isotropic_step {
     const trial found = at(kappa);
     const softening<V> s = softening_of(found);
     const V rest = excess(kappa, found, s), sum = found.size + from_;
-    const Mask is_found = absolute(rest) <= 0x1p-45 * (kappa + c_ * steepest_) * sum;
+    const Mask is_found = absolute(rest) <= 0x1p-45 * (kappa + c_ * all_.steepest) * sum;
     leave(kappa, found, damage_after(found, s, holds), a);
-    return !(has_scale & !rubs & (holds | (softens & is_found & (sum > 0x1p-450) & (sum < 0x1p400))));
+    return !(has_scale & !rubs & (holds | (softens & is_found & (sum > 0x1p-400) & (sum < 0x1p400))));
   }
 
  private:
@@ -67,15 +75,18 @@ class isotropic_step {
     Mask closed;
     V opening[3], shear, size;
   };
-  trial at(V kappa) const {
-    const V *w = g_.opening, left_n = 1.0 / (1.0 + kappa), left_t = 1.0 / (1.0 + ratio_ * kappa);
+  [[gnu::always_inline]] trial at(V kappa) const {
+    const V *w = g_.opening, of_n = 1.0 + kappa, of_t = 1.0 + ratio_ * kappa, both = 1.0 / (of_n * of_t);
+    const V left_n = both * of_t, left_t = both * of_n;
     const V free = left_n * drive_[0] - w[0];
     const Mask closed = free < floor_;
     const V n = select(closed, floor_, free), t1 = left_t * drive_[1] - w[1], t2 = left_t * drive_[2] - w[2];
     const V shear = shear_square(t1, t2);
     return {left_n, left_t, free, closed, {n, t1, t2}, shear, size_of(n, shear)};
   }
-  V shear_square(V t1, V t2) const { return weight_ * weight_ * (t1 * t1 + t2 * t2); }
+  double square_of_weight() const { return all_.weight * all_.weight; }
+  secant<V> secant_of(V damage) const { return {1.0 - damage, all_.flexibility + damage * all_.softness}; }
+  V shear_square(V t1, V t2) const { return square_of_weight() * (t1 * t1 + t2 * t2); }
   static V size_of(V n, V shear) { return square_root(n * n + shear); }
 
   softening<V> softening_of(const trial& m) const {
@@ -103,15 +114,22 @@ class isotropic_step {
     constexpr double close = 0x1p-54;  // of the product of two errors, which the next error is at most
     const trial free = at(0.0);
     V low = 0.0, high = most, before = 0.0, excess_before = excess(0.0, free);
-    V kappa = smaller(-excess_before / (free.size + from_), most);
+    const V sum = free.size + from_;
+    // Exact for the same bond, opened in one direction.
+    const V slope = sum * (1.0 - c_ * all_.steepest) + excess_before;
+    V kappa = smaller(-excess_before / select(slope > 0.0, slope, sum), most);
     for (int k = 0; k < most_steps && any(active); ++k) {
       const trial m = at(kappa);
       const V e = excess(kappa, m), scaled = (1.0 + kappa) * e;
       low = select(e < 0.0, kappa, low);
       high = select(e < 0.0, high, kappa);
       const V along = kappa - scaled * (kappa - before) / (scaled - excess_before);
-      const V nearer = smaller(larger(kappa - e / (m.size + from_), low), high);
-      const V next = select((along > low) & (along < high), along, nearer);
+      const Mask inside = (along > low) & (along < high);
+      V next = along;
+      if (any(active & !inside)) {
+        const V nearer = smaller(larger(kappa - e / (m.size + from_), low), high);
+        next = select(inside, along, nearer);
+      }
       const Mask moves = absolute(next - kappa) * absolute(kappa - before) > close * (kappa * kappa);
       before = select(active, kappa, before);
       excess_before = select(active, scaled, excess_before);
@@ -122,7 +140,8 @@ class isotropic_step {
   }
 
   V damage_after(const trial& m, const softening<V>& s, Mask holds) const {
-    const V reached = bond_.damage_of(m.size, s.traction(m.size));
+    const V traction = s.traction(m.size);
+    const V reached = (m.size - all_.flexibility * traction) / (m.size + all_.softness * traction);
     return select(holds | !(m.size > s.onset), g_.damage, larger(g_.damage, reached));
   }
 
@@ -143,18 +162,18 @@ class isotropic_step {
   // The impulse of bond and contact together: contact takes a closed node to the ground, whatever the bond
   // does.
   void leave(V kappa, const trial& m, V damage, solved<V>& a) const {
-    const V step = g_.position_step, taken = 2.0 * kappa / step;
-    const V bond_n = taken * m.left_n * drive_[0] / g_.h[0], taken_t = taken * ratio_ * m.left_t / g_.h[1];
-    const V closing = (g_.v_free[0] + (x_[0] - ground_) / step) / g_.h[0];
-    a.impulse[0] = -select(m.closed, closing, bond_n);
+    const V rate_of_step = 1.0 / g_.position_step, taken = 2.0 * kappa * rate_of_step;
+    const V taken_t = taken * ratio_ * m.left_t / g_.h[1];
+    const V closing = g_.v_free[0] + (x_[0] - ground_) * rate_of_step;
+    a.impulse[0] = -(select(m.closed, closing, taken * m.left_n * drive_[0]) / g_.h[0]);
     a.impulse[1] = -taken_t * drive_[1];
     a.impulse[2] = -taken_t * drive_[2];
     const V *y = m.opening, *w = g_.opening;
     const V rate = 0.5 * g_.area * (kappa / c_);
     a.normal_gain = rate * (y[0] + w[0]) * (y[0] - w[0]);
-    a.tangential_gain = rate * weight_ * weight_ * ((y[1] + w[1]) * (y[1] - w[1]) + (y[2] + w[2]) * (y[2] - w[2]));
+    a.tangential_gain = rate * square_of_weight() * ((y[1] + w[1]) * (y[1] - w[1]) + (y[2] + w[2]) * (y[2] - w[2]));
     const V stored_before = g_.area * bond_.energy_of(now_, from_);
-    a.stored = g_.area * bond_.energy_of(bond_.secant_of(damage), m.size);
+    a.stored = g_.area * bond_.energy_of(secant_of(damage), m.size);
     a.rupture = positive_part(a.normal_gain + a.tangential_gain - (a.stored - stored_before));
     a.status = select(damage < 1.0, V(status::bonded), V(status::broken));
     a.refused = not_refused;
@@ -166,8 +185,8 @@ class isotropic_step {
   }
 
   const bond& bond_;
+  const of_all_nodes& all_;
   const gathered<V>& g_;
-  double weight_, steepest_;
   V x_[3], drive_[3];      // position at the time of the impulse; w^+ + w^- without bond and contact
   V ground_, floor_;       // lowest next position, and lowest opening
   V from_, c_, ratio_;     // |w^-|

@@ -90,16 +90,14 @@ struct softening {
     const V rate = 0.5 * s.stiff / s.soft;
     const V elastic = select(s.soft > 0.0, rate * (from + to), strength);
     const V elastic_work = select(reached > low, rate * (low + reached) * (reached - low), 0.0);
-    const V mean = (elastic_work + work(reached, high)) / (high - low);
-    return select(high <= met, elastic, select(high > reached, mean, traction(high)));
+    const V end = onset + width, a = smaller(reached, end), b = smaller(high, end);
+    const V below = select(a < end, mean_traction(a, b), 0.0);
+    const V mean = (elastic_work + below * (b - a)) / (high - low);
+    return select(high <= met, elastic, select(high > reached, mean, below));
   }
 
  private:
-  // Area below the softening over onset <= from < to.
-  V work(V from, V to) const {
-    const V end = onset + width, a = smaller(from, end), b = smaller(to, end), way = b - a;
-    return select(way > 0.0, mean_traction(a, b) * way, 0.0);
-  }
+  // Over onset <= from <= to <= onset + width.
   V mean_traction(V from, V to) const {
     if (!exponential) return strength / width * ((onset + width) - 0.5 * (from + to));
     const V a = smaller(progress(from), 1.0), b = smaller(progress(to), 1.0);

@@ -189,8 +189,10 @@ template <class Form>
   using answer_type = typename Form::template answer<pack>;
   using answer_packs = std::array<pack, asked_block<Form>::answers>;
   int alone_count = 0;
+  int first_moved = 0;
+  while (first_moved < count && asked.nodes[first_moved] == first_moved) ++first_moved;
   for (column& c : asked.problem)  // in place: none moves back
-    for (int j = 0; j < count; ++j) c.values[j] = c.values[asked.nodes[j]];
+    for (int j = first_moved; j < count; ++j) c.values[j] = c.values[asked.nodes[j]];
   for (int first = 0; first < count; first += pack_size) {
     const int lanes = count - first < pack_size ? count - first : pack_size;
     std::array<pack, asked_block<Form>::problems> problem;
@@ -202,7 +204,13 @@ template <class Form>
     answer_type answer{};
     const mask left = law.solve(std::bit_cast<problem_type>(problem), answer);
     const auto packs = std::bit_cast<answer_packs>(answer);
+    const int node = asked.nodes[first];
+    const bool side_by_side = lanes == pack_size && asked.nodes[first + lanes - 1] == node + lanes - 1;
     for (std::size_t k = 0; k < packs.size(); ++k) {
+      if (side_by_side) {
+        packs[k].store(asked.answer[k].values + node);
+        continue;
+      }
       double values[pack_size];
       packs[k].store(values);
       for (int j = 0; j < lanes; ++j) asked.answer[k].values[asked.nodes[first + j]] = values[j];
