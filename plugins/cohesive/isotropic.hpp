@@ -49,12 +49,10 @@ class isotropic_step {
   // Says which lanes it leaves: those that may have several solutions, friction in closure, or extreme scales.
   Mask solve(solved<V>& a) const {
     const V most = select(now_.soft > 0.0, c_ * now_.stiff / now_.soft, 1.0 / almost_nothing);
-    const trial stiffest = at(most);
     const Mask is_soft = now_.soft > 0.0;
     Mask holds = is_soft, rubs = most < 0.0;
-    if (bond_.strength < infinity && any(is_soft)) holds = is_soft & is_below(stiffest);
-    if (bond_.friction > 0.0)
-      rubs = (g_.damage > 0.0) & (smaller(stiffest.free, drive_[0] - g_.opening[0]) < floor_);
+    if (bond_.strength < infinity && any(is_soft)) holds = is_soft & is_below(at(most));
+    if (bond_.friction > 0.0) rubs = (g_.damage > 0.0) & closes(most);
     const Mask is_unique = c_ * (1.0 + 2.0 * ratio_) * all_.steepest <= 1.0;
     const Mask has_scale = (most < 1.0 / almost_nothing * 2.0) & (c_ > 0x1p-900);
     const Mask softens = has_scale & is_unique & !rubs & !holds;
@@ -100,6 +98,11 @@ class isotropic_step {
   }
   V excess(V kappa, const trial& m) const { return excess(kappa, m, softening_of(m)); }
 
+  // Whether contact acts at any share: the normal opening falls or rises with kappa.
+  Mask closes(V most) const {
+    const V w = g_.opening[0];
+    return smaller(drive_[0] / (1.0 + most), drive_[0]) - w < floor_;
+  }
   Mask is_below(const trial& m) const {
     const V pull = now_.stiff * m.size;
     const double least = smaller(bond_.strength, bond_.shear_strength());

@@ -181,13 +181,18 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
   for (int i = 0; i < own.count; ++i) keep_problem<Law, Delassus, Frame, Layout, Scope>(l, own, asked, i);
 }
 
+// Pack k of a struct of packs: copies of the whole struct would cost as much as solving it.
+template <class Packs>
+char* place_of(Packs& packs, int k) {
+  return reinterpret_cast<char*>(&packs) + static_cast<std::size_t>(k) * sizeof(pack);
+}
+
 // Solves the problems of a block in packs. The last pack is filled up with its first problem. Returns how
 // many were left to be solved alone.
 template <class Form>
 [[gnu::noinline]] int solve_asked(const Form& law, asked_block<Form>& asked, int count) {
   using problem_type = typename Form::template problem<pack>;
   using answer_type = typename Form::template answer<pack>;
-  using answer_packs = std::array<pack, asked_block<Form>::answers>;
   int alone_count = 0;
   int first_moved = 0;
   while (first_moved < count && asked.nodes[first_moved] == first_moved) ++first_moved;
@@ -195,25 +200,21 @@ template <class Form>
     for (int j = first_moved; j < count; ++j) c.values[j] = c.values[asked.nodes[j]];
   for (int first = 0; first < count; first += pack_size) {
     const int lanes = count - first < pack_size ? count - first : pack_size;
-    std::array<pack, asked_block<Form>::problems> problem;
-    for (std::size_t k = 0; k < problem.size(); ++k) {
+    problem_type problem;
+    for (int k = 0; k < asked_block<Form>::problems; ++k) {
       double* values = asked.problem[k].values + first;
       for (int j = lanes; j < pack_size; ++j) values[j] = values[0];
-      problem[k] = pack::load(values);
+      __builtin_memcpy(place_of(problem, k), values, sizeof(pack));
     }
     answer_type answer{};
-    const mask left = law.solve(std::bit_cast<problem_type>(problem), answer);
-    const auto packs = std::bit_cast<answer_packs>(answer);
-    const int node = asked.nodes[first];
-    const bool side_by_side = lanes == pack_size && asked.nodes[first + lanes - 1] == node + lanes - 1;
-    for (std::size_t k = 0; k < packs.size(); ++k) {
-      if (side_by_side) {
-        packs[k].store(asked.answer[k].values + node);
-        continue;
-      }
+    const mask left = law.solve(problem, answer);
+    const int* nodes = asked.nodes + first;
+    const bool side_by_side = lanes == pack_size && nodes[lanes - 1] == nodes[0] + lanes - 1;
+    for (int k = 0; k < asked_block<Form>::answers; ++k) {
       double values[pack_size];
-      packs[k].store(values);
-      for (int j = 0; j < lanes; ++j) asked.answer[k].values[asked.nodes[first + j]] = values[j];
+      double* answers = asked.answer[k].values;
+      __builtin_memcpy(side_by_side ? answers + nodes[0] : values, place_of(answer, k), sizeof(pack));
+      for (int j = 0; !side_by_side && j < lanes; ++j) answers[nodes[j]] = values[j];
     }
     for (int j = 0; any(left) && j < lanes; ++j) {
       if (!left[j]) continue;
