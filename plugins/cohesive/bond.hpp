@@ -109,7 +109,8 @@ struct bond {
   // Else the mean traction on the way from w^- to w^+. Like `delayed` too long to be compiled for each form
   // of node.
   template <class Zone>
-  [[gnu::noinline]] outcome softened(double damage_before, secant<double> now, share stiffest, const Zone& z) const {
+  [[gnu::noinline]] outcome softened(double damage_before, secant<double> now, share stiffest,
+                                     const Zone& z) const {
     const double from = z.size(z.opening);
     const auto excess = [&](share trial) {
       const motion m = z.at(trial);

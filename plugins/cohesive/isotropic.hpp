@@ -1,5 +1,6 @@
-// isotropic.hpp - one bonded node whose H is diag(h_N, h_T, h_T), or a pack of them: a bond that softens or is
-// elastic, with contact that does not rub. The equations are those of zone.hpp, with kappa = c k for unknown.
+// isotropic.hpp - one bonded node whose H is diag(h_N, h_T, h_T), or a pack of them: a bond that softens or
+// is elastic, with contact that does not rub. The equations are those of zone.hpp, with kappa = c k for
+// unknown.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -28,8 +29,7 @@ class isotropic_step {
  public:
   using Mask = mask_of<V>;
 
-  isotropic_step(const bond& b, const of_all_nodes& all, const gathered<V>& g)
-      : bond_(b), all_(all), g_(g) {
+  isotropic_step(const bond& b, const of_all_nodes& all, const gathered<V>& g) : bond_(b), all_(all), g_(g) {
     const V *v = g.v_free, *u = g.v_previous, *w = g.opening, step = g.position_step;
     place_bond();
     const V rounding = 0x1p-48 * (absolute(v[0]) + absolute(u[0])), lowest = smaller(x_[0], 0.0);
@@ -46,7 +46,8 @@ class isotropic_step {
     opened_met_ = opened_.meets(now_);
   }
 
-  // Says which lanes it leaves: those that may have several solutions, friction in closure, or extreme scales.
+  // Says which lanes it leaves: those that may have several solutions, friction in closure, or extreme
+  // scales.
   Mask solve(solved<V>& a) const {
     const V most = select(now_.soft > 0.0, c_ * now_.stiff / now_.soft, 1.0 / almost_nothing);
     const Mask is_soft = now_.soft > 0.0;
@@ -174,7 +175,8 @@ class isotropic_step {
     const V *y = m.opening, *w = g_.opening;
     const V rate = 0.5 * g_.area * (kappa / c_);
     a.normal_gain = rate * (y[0] + w[0]) * (y[0] - w[0]);
-    a.tangential_gain = rate * square_of_weight() * ((y[1] + w[1]) * (y[1] - w[1]) + (y[2] + w[2]) * (y[2] - w[2]));
+    a.tangential_gain =
+        rate * square_of_weight() * ((y[1] + w[1]) * (y[1] - w[1]) + (y[2] + w[2]) * (y[2] - w[2]));
     const V stored_before = g_.area * bond_.energy_of(now_, from_);
     a.stored = g_.area * bond_.energy_of(secant_of(damage), m.size);
     a.rupture = positive_part(a.normal_gain + a.tangential_gain - (a.stored - stored_before));
@@ -190,9 +192,9 @@ class isotropic_step {
   const bond& bond_;
   const of_all_nodes& all_;
   const gathered<V>& g_;
-  V x_[3], drive_[3];      // position at the time of the impulse; w^+ + w^- without bond and contact
-  V ground_, floor_;       // lowest next position, and lowest opening
-  V from_, c_, ratio_;     // |w^-|
+  V x_[3], drive_[3];   // position at the time of the impulse; w^+ + w^- without bond and contact
+  V ground_, floor_;    // lowest next position, and lowest opening
+  V from_, c_, ratio_;  // |w^-|
   secant<V> now_;
   softening<V> opened_;
   V opened_met_;

@@ -1,5 +1,5 @@
-// touching.hpp - what is left of a bond at a node whose H is diag(h_N, h_T, h_T), or at a pack of them: contact
-// and friction, with the bits of coulomb. The equations are those of ilaw/kit/friction.hpp.
+// touching.hpp - what is left of a bond at a node whose H is diag(h_N, h_T, h_T), or at a pack of them:
+// contact and friction, with the bits of coulomb. The equations are those of ilaw/kit/friction.hpp.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -42,7 +42,8 @@ void touch_in_packs(const gathered<V>& g, double friction, mask_of<V> where, sol
   const V square = (down * speed) * (down * speed), impact = h_t * (down * normal) * (down * rest_n);
   const fraction<V> root = root_of_work(square, -(square + along), impact);
   const auto gains = along < impact, far = root.under == infinity;
-  const V over = select(gains, select(far, 0.0, root.over), 1.0), under = select(gains & !far, root.under, 1.0);
+  const V over = select(gains, select(far, 0.0, root.over), 1.0),
+          under = select(gains & !far, root.under, 1.0);
   // On the cone: rub.
   const V limit = select(normal > 0.0, friction * normal, 0.0), stop = h_t * under;
   const auto slips = speed * over > limit * stop;

@@ -5,6 +5,7 @@
 #include "bond.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace ilaw::testing {
 
@@ -194,5 +195,56 @@ struct Problem {
   double step, velocity_step, damage;
   Vector opening, position, v_previous, v_free;
 };
+
+// What is wrong with a solution; contact: whether it was pressed.
+inline std::optional<std::string> judge(const Problem& p, const NodeRun& node, bool& pressed) {
+  const Matrix& h = p.inertia.h;
+  const Vector h_r = times(h, node.r);
+  Vector after{}, sum{}, v{}, bond{}, contact{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    v[c] = p.v_free[c] + h_r[c];
+    after[c] = p.position[c] + 0.5 * p.step * v[c];
+    sum[c] = after[c] + p.opening[c];
+  }
+  const double k = p.curve.holds(p.damage, after) ? p.curve.secant(p.damage)
+                                                  : p.curve.stiffness(p.damage, p.step, p.opening, after);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double weight = c == 0 ? 1.0 : p.curve.weight * p.curve.weight;
+    bond[c] = -0.5 * p.velocity_step * k * weight * sum[c];
+    contact[c] = node.r[c] - bond[c];
+  }
+  // r is right to the condition; the opening, which it moves by h H r/2, as well; and so the traction.
+  const double smallest = 1.0 / p.inertia.condition * (h[0][0] + h[1][1] + h[2][2]);
+  const double size = norm(p.v_free) + norm(h_r) + (norm(p.position) + norm(p.opening)) / p.step;
+  const double impulse = 64 * ulp * (size / smallest + 0.5 * p.step * k * p.step * size);
+  const double speed = 64 * ulp * p.inertia.condition * size;
+  const auto say = [&](const char* what, double found, double allowed) {
+    return std::string(what) + ": " + std::to_string(found / allowed) + " of what is allowed";
+  };
+  pressed = node.r[0] - bond[0] > impulse;
+  const double next = 2.0 * after[0] - p.position[0];  // or as far as the node was leaving
+  const double ground = std::min(0.0, p.position[0] - p.step * p.v_previous[0]);
+  if (!pressed) {
+    if (next < ground - p.step * speed) return say("goes in", ground - next, p.step * speed);
+    if (norm(contact) > 4.0 * impulse) return say("not the bond's impulse", norm(contact), impulse);
+    return std::nullopt;
+  }
+  const double limit = p.curve.friction * p.damage * contact[0], slip = std::hypot(v[1], v[2]);
+  if (std::hypot(contact[1], contact[2]) > limit + impulse)
+    return say("beyond the cone", std::hypot(contact[1], contact[2]) - limit, impulse);
+  double work = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) work += contact[c] * (p.v_previous[c] + v[c]);
+  const double rounding =
+      impulse * (slip + speed) + speed * (limit + contact[0]) + impulse * norm(p.v_previous);
+  if (work > rounding) return say("contact puts energy in", work, rounding);
+  if (work > -rounding) return std::nullopt;  // all of what does no positive work
+  if (std::abs(next - ground) > p.step * speed && std::abs(next) > p.step * speed)
+    return say("pressed and not closed", next, p.step * speed);
+  if (std::hypot(contact[1], contact[2]) <= impulse) return std::nullopt;  // no friction does none either
+  const double along = contact[1] * v[1] + contact[2] * v[2];
+  if (std::abs(along + limit * slip) > rounding)
+    return say("not most dissipation", along + limit * slip, rounding);
+  return std::nullopt;
+}
 
 }  // namespace ilaw::testing

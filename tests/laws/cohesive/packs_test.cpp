@@ -1,0 +1,198 @@
+// Cohesive zones where H does not tell the tangents apart, which are solved side by side: the equations of
+// the page, and the same bits in any company.
+#include "any_inertia.hpp"
+
+#include <ilaw/profile.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace ilaw::testing {
+namespace {
+
+Inertia transverse(Draw& draw, double decades) {
+  Inertia made(draw, 0.0);
+  const double tangential = draw.power_of_ten(-decades, decades);
+  made.h = {Vector{1.0, 0.0, 0.0}, {0.0, tangential, 0.0}, {0.0, 0.0, tangential}};
+  made.condition = 3.0 * std::max(tangential, 1.0 / tangential);
+  return made;
+}
+
+// Bonds of all shapes and modes, rigid or not, without delay, which is solved node by node.
+Parameters undelayed(Draw& draw) {
+  for (;;) {
+    Parameters p = draw.bond();
+    if (p.numbers.count("delay_time") == 0) return p;
+  }
+}
+
+TEST(CohesivePacks, SolveTheEquationsOfThePage) {
+  Draw draw(41);
+  int several = 0, pressed = 0, softened = 0, held = 0, broken = 0;
+  std::optional<Curve> curve;
+  std::optional<NodeRun> bond;
+  const char* given = std::getenv("ILAW_TEST_STEPS");  // for a run of a million
+  const int problems = given ? std::atoi(given) : 6000;
+  for (int k = 0; k < problems; ++k) {
+    if (k % 30 == 0) {
+      const Parameters parameters = undelayed(draw);
+      curve.emplace(parameters);
+      bond.emplace("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
+    }
+    Problem p(draw, *curve, 0.0);
+    p.inertia = transverse(draw, 2.0);
+    NodeRun& node = *bond;
+    const std::int32_t code = p.solve(node);
+    if (code == ILAW_BAD_NODES) {
+      ASSERT_STREQ(node.report.reason, several_solutions) << "seed 41, problem " << k;
+      ++several;
+      continue;
+    }
+    ASSERT_EQ(code, ILAW_OK);
+    bool is_pressed = false;
+    const std::optional<std::string> wrong = judge(p, node, is_pressed);
+    ASSERT_FALSE(wrong) << "seed 41, problem " << k << ", shape " << p.curve.shape << ", strengths "
+                        << p.curve.s1 << " and " << p.curve.s2 << ", tangential H " << p.inertia.h[1][1]
+                        << ": " << *wrong;
+    pressed += is_pressed;
+    softened += node.named("damage") > p.damage;
+    held += node.named("damage") == p.damage;
+    broken += node.status == ILAW_BROKEN;
+  }
+  EXPECT_GT(pressed, problems / 20);
+  EXPECT_GT(softened, problems / 20);
+  EXPECT_GT(held, problems / 20);
+  EXPECT_GT(broken, problems / 200);
+  EXPECT_LT(several, problems / 50);
+}
+
+// What a node gives: impulse, velocity, energies, state.
+struct Given {
+  std::vector<double> numbers;
+  std::uint8_t status;
+};
+
+struct Nodes {
+  static constexpr std::size_t states = 7, outputs = 3 + 3 + 4;
+
+  explicit Nodes(std::size_t count)
+      : h(6 * count),
+        v_free(3 * count),
+        before(3 * count),
+        gap(count),
+        area(count, 1.0),
+        state(states * count),
+        given(outputs * count),
+        status(count) {}
+
+  ilaw_batch batch() {
+    ilaw_batch b{};
+    b.struct_size = sizeof b;
+    b.node_count = static_cast<std::int64_t>(status.size());
+    b.velocity_step = b.position_step = step;
+    b.v_free = {v_free.data(), 3, 1};
+    b.delassus = {h.data(), 6, 1};
+    b.gap = {gap.data(), 1, 1};
+    b.v_previous = {before.data(), 3, 1};
+    b.area = {area.data(), 1, 1};
+    b.state_in = {state.data(), states, 1};
+    b.state_out = {state.data(), states, 1};
+    b.impulse = {given.data(), outputs, 1};
+    b.velocity = {given.data() + 3, outputs, 1};
+    b.energy = {given.data() + 6, outputs, 1};
+    b.status = status.data();
+    b.status_stride = 1;
+    return b;
+  }
+  void set(std::size_t i, const Problem& p, double damage) {
+    const std::array<double, 6> entries = p.inertia.entries();
+    std::copy(entries.begin(), entries.end(), h.begin() + 6 * i);
+    std::copy(p.v_free.begin(), p.v_free.end(), v_free.begin() + 3 * i);
+    std::copy(p.v_previous.begin(), p.v_previous.end(), before.begin() + 3 * i);
+    const double kept[] = {damage,       p.position[0], p.position[1], p.position[2],
+                           p.opening[0], p.opening[1],  p.opening[2]};
+    std::copy(std::begin(kept), std::end(kept), state.begin() + states * i);
+  }
+  // Node i of these as node k of others.
+  void take(std::size_t k, const Nodes& from, std::size_t i) {
+    std::copy_n(from.h.begin() + 6 * i, 6, h.begin() + 6 * k);
+    std::copy_n(from.v_free.begin() + 3 * i, 3, v_free.begin() + 3 * k);
+    std::copy_n(from.before.begin() + 3 * i, 3, before.begin() + 3 * k);
+    std::copy_n(from.state.begin() + states * i, states, state.begin() + states * k);
+    gap[k] = from.gap[i];
+    step = from.step;
+  }
+  Given at(std::size_t i) const {
+    Given g{{given.begin() + outputs * i, given.begin() + outputs * (i + 1)}, status[i]};
+    g.numbers.insert(g.numbers.end(), state.begin() + states * i, state.begin() + states * (i + 1));
+    return g;
+  }
+
+  double step = 0.0;
+  std::vector<double> h, v_free, before, gap, area, state, given;
+  std::vector<std::uint8_t> status;
+};
+
+bool same_bits(const Given& a, const Given& b) {
+  return a.status == b.status &&
+         std::memcmp(a.numbers.data(), b.numbers.data(), a.numbers.size() * sizeof(double)) == 0;
+}
+
+// Bonds that hold, soften and are broken, of one kind.
+Nodes drawn_nodes(Draw& draw, const Curve& curve, std::size_t count) {
+  Nodes nodes(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Problem p(draw, curve, 0.0);
+    if (i == 0) nodes.step = p.step;
+    p.inertia = transverse(draw, 1.0);
+    const double kind = draw.between(0.0, 1.0), faster = p.step / nodes.step;
+    for (Vector* velocity : {&p.v_free, &p.v_previous})
+      for (double& component : *velocity) component *= faster;
+    if (kind < 0.2) p.position = p.opening = {};
+    nodes.set(i, p, kind < 0.2 ? 0.0 : kind < 0.4 ? 1.0 : p.damage);
+    nodes.gap[i] = draw.between(-1.0, 1.0) * nodes.step;
+  }
+  return nodes;
+}
+
+TEST(CohesivePacks, GiveANodeItsBitsInAnyCompany) {
+  Draw draw(42);
+  constexpr std::size_t count = 150;  // more than two blocks
+  std::int64_t alone = 0, all = 0;
+  for (int k = 0; k < 40; ++k) {
+    const Parameters parameters = undelayed(draw);
+    Parameters varied = parameters;
+    varied.numbers.erase("strength");
+    varied.per_node = {"strength"};
+    const ilaw::interface law = make_law("cohesive", SetupBuilder(parameters, 3, ILAW_DELASSUS_FULL));
+    const ilaw::interface per_node = make_law("cohesive", SetupBuilder(varied, 3, ILAW_DELASSUS_FULL));
+    const Nodes first = drawn_nodes(draw, Curve(parameters), count);
+    Nodes together = first, apart = first;
+    const auto* profile = static_cast<const ilaw_profile*>(law.law().extension(ILAW_PROFILE));
+    std::int64_t one_by_one = 0;
+    const ilaw_batch b = together.batch();
+    profile->evaluate_counting(law.instance(), &b, nullptr, &one_by_one);
+    const bool rubs = parameters.numbers.at("friction") > 0.0;
+    alone += rubs ? 0 : one_by_one;
+    all += rubs ? 0 : static_cast<std::int64_t>(count);
+    ilaw_batch c = apart.batch();
+    const std::vector<double> strength(count, parameters.numbers.at("strength"));
+    const ilaw_input values{strength.data(), 1, 1};
+    c.per_node_parameters = &values;
+    static_cast<void>(per_node.evaluate(c));
+    for (std::size_t i = 0; i < count; ++i) {
+      Nodes one(1);
+      one.take(0, first, i);
+      const ilaw_batch single = one.batch();
+      static_cast<void>(law.evaluate(single));  // refused nodes are to be the same, too
+      ASSERT_TRUE(same_bits(together.at(i), one.at(0))) << "seed 42, bond " << k << ", node " << i;
+      ASSERT_TRUE(same_bits(together.at(i), apart.at(i)))
+          << "seed 42, bond " << k << ", node " << i << ", strength per node";
+    }
+  }
+  EXPECT_GT(all, 1000);
+  EXPECT_LT(alone, all / 100) << "of " << all;
+}
+
+}  // namespace
+}  // namespace ilaw::testing
