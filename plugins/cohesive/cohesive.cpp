@@ -321,7 +321,7 @@ struct cohesive::in_phases : cohesive {
     const auto transverse = (h[3] == 0.0) & (h[4] == 0.0) & (h[5] == 0.0) & (h[1] == h[2]);
     const auto bonded = (p.damage < 1.0) & (p.area > 0.0);
     auto left = !transverse;
-    if (any(bonded)) left = left | (bonded & solve_bonds(p, a));
+    if (any(bonded)) left = left | solve_bonds(p, bonded & transverse, a);
     if (any(!bonded)) touch_in_packs(p, friction, !bonded, a);
     return left;
   }
@@ -332,35 +332,40 @@ struct cohesive::in_phases : cohesive {
 
  private:
   template <class V>
-  mask_of<V> solve_bonds(const problem<V>& p, answer<V>& a) const {
+  mask_of<V> solve_bonds(const problem<V>& p, mask_of<V> where, answer<V>& a) const {
     const bool is_delayed = delay_time > 0.0 && strength < infinity;
-    if (!bonds() || is_delayed) return p.area == p.area;
+    if (!bonds() || is_delayed) return where;
     const isotropic_step<V> step(*this, all, p);
-    const mask_of<V> left = step.solve(a);
-    return stiffness == infinity ? stand_still(p, left, a) : left;
-  }
-  // A rigid bond that has not been opened: see stands_still. Returns which of the lanes are left now.
-  template <class V>
-  mask_of<V> stand_still(const problem<V>& p, mask_of<V> left, answer<V>& a) const {
-    friction_problem<V> stop{};
-    friction_answer<V> r{};
-    for (int k = 0; k < 3; ++k) {
-      stop.contact.h[k] = p.h[k];
-      stop.contact.q[k] = p.v_free[k];
-      stop.rest[k] = p.v_previous[k];
-      r.r[k] = -(p.v_free[k] / p.h[k]);
-    }
-    r.status = status::stick;
-    take_off_positive_work(stop, r);
-    const V pull = positive_part(-r.r[0]), shear = per_weight * (r.r[1] * r.r[1] + r.r[2] * r.r[2]);
+    if (stiffness < infinity) return step.solve(where, a);
+    // One that has not been opened: see stands_still.
+    const friction_answer<V> stop = stopping(p);
+    const V pull = positive_part(-stop.r[0]),
+            shear = per_weight * (stop.r[1] * stop.r[1] + stop.r[2] * stop.r[2]);
     const V square = pull * pull + shear;
     V held = smaller(strength, shear_strength());
     if (mixes()) held = larger(softening_at(select(square > 0.0, shear / square, 0.0)).strength, held);
     const V most = p.velocity_step * p.area * held;
-    const auto is_new = p.damage == 0.0, has_scale = (square < 0x1p900) & (most * most > 0x1p-900);
-    const auto stands = is_new & has_scale & (square <= most * most);
-    leave_bond(p, r.r, V(status::bonded), stands, a);
-    return (left | (is_new & !has_scale)) & !stands;
+    const auto is_new = where & (p.damage == 0.0);
+    const auto is_clear = (square < 0x1p900) & (most * most > 0x1p-900);
+    const auto stands = is_new & is_clear & (square <= most * most), unclear = is_new & !is_clear;
+    const mask_of<V> left = step.solve(where & !stands & !unclear, a);
+    leave_bond(p, stop.r, V(status::bonded), stands, a);
+    return left | unclear;
+  }
+  // stopping_impulse, which lanes of other forms of H do not get from here.
+  template <class V>
+  static friction_answer<V> stopping(const problem<V>& p) {
+    friction_problem<V> stop{};
+    friction_answer<V> a{};
+    for (int k = 0; k < 3; ++k) {
+      stop.contact.h[k] = p.h[k];
+      stop.contact.q[k] = p.v_free[k];
+      stop.rest[k] = p.v_previous[k];
+      a.r[k] = -(p.v_free[k] / p.h[k]);
+    }
+    a.status = status::stick;
+    take_off_positive_work(stop, a);
+    return a;
   }
 };
 

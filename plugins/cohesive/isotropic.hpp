@@ -1,11 +1,12 @@
 // isotropic.hpp - one bonded node whose H is diag(h_N, h_T, h_T), or a pack of them: a bond that softens or
-// is elastic, with contact that does not rub. The equations are those of zone.hpp, with kappa = c k for
+// is elastic, with contact and friction. The equations are those of zone.hpp, with kappa = c k for
 // unknown.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "bond.hpp"
 #include "gathered.hpp"
+#include "touching.hpp"
 
 namespace cohesive_law {
 inline namespace ILAW_KIT_LEVEL {
@@ -46,42 +47,61 @@ class isotropic_step {
     opened_met_ = opened_.meets(now_);
   }
 
-  // Says which lanes it leaves: those that may have several solutions, friction in closure, or extreme
-  // scales.
-  Mask solve(solved<V>& a) const {
-    const V most = select(now_.soft > 0.0, c_ * now_.stiff / now_.soft, 1.0 / almost_nothing);
+  // Says which of these lanes it leaves: those that may have several solutions, and extreme scales.
+  Mask solve(Mask where, solved<V>& a) const {
     const Mask is_soft = now_.soft > 0.0;
-    Mask holds = is_soft, rubs = most < 0.0;
-    if (bond_.strength < infinity && any(is_soft)) holds = is_soft & is_below(at(most));
-    if (bond_.friction > 0.0) rubs = (g_.damage > 0.0) & closes(most);
+    const V most = select(is_soft, c_ * now_.stiff / now_.soft, 1.0 / almost_nothing);
+    Mask holds = where & is_soft;
+    if (bond_.strength < infinity && any(holds)) holds = holds & is_below(at(most));
     const Mask is_unique = c_ * (1.0 + 2.0 * ratio_) * all_.steepest <= 1.0;
-    const Mask has_scale = (most < 1.0 / almost_nothing * 2.0) & (c_ > 0x1p-900);
-    const Mask softens = has_scale & is_unique & !rubs & !holds;
+    const Mask has_scale = (most < 2.0 / almost_nothing) & (c_ > 0x1p-900);
+    const Mask softens = where & has_scale & is_unique & !holds;
     V kappa = most;
     if (any(softens)) kappa = select(softens, root(most, softens), most);
     const trial found = at(kappa);
     const softening<V> s = softening_of(found);
     const V rest = excess(kappa, found, s), sum = found.size + from_;
-    const Mask is_found = absolute(rest) <= 0x1p-45 * (kappa + c_ * all_.steepest) * sum;
+    const Mask is_found =
+        (absolute(rest) <= 0x1p-45 * (kappa + c_ * all_.steepest) * sum) & (sum > 0x1p-400) & (sum < 0x1p400);
     leave(kappa, found, damage_after(found, s, holds), a);
-    return !(has_scale & !rubs & (holds | (softens & is_found & (sum > 0x1p-400) & (sum < 0x1p400))));
+    return where & !(has_scale & (holds | (softens & is_found)));
   }
 
  private:
   // What kappa makes of the node.
   struct trial {
-    V left_n, left_t, free;  // parts of the motion that are left; the normal opening without contact
+    V left_n, left_t;  // parts of the motion that are left
     Mask closed;
-    V opening[3], shear, size;
+    V opening[3], rub[2], shear, size;  // rub: tangential impulse of friction on the node that the bond holds
   };
   [[gnu::always_inline]] trial at(V kappa) const {
     const V *w = g_.opening, of_n = 1.0 + kappa, of_t = 1.0 + ratio_ * kappa, both = 1.0 / (of_n * of_t);
     const V left_n = both * of_t, left_t = both * of_n;
     const V free = left_n * drive_[0] - w[0];
     const Mask closed = free < floor_;
-    const V n = select(closed, floor_, free), t1 = left_t * drive_[1] - w[1], t2 = left_t * drive_[2] - w[2];
-    const V shear = shear_square(t1, t2);
-    return {left_n, left_t, free, closed, {n, t1, t2}, shear, size_of(n, shear)};
+    trial m{left_n,     left_t,
+            closed,     {select(closed, floor_, free), left_t * drive_[1] - w[1], left_t * drive_[2] - w[2]},
+            {0.0, 0.0}, 0.0,
+            0.0};
+    if (bond_.friction > 0.0 && any(closed & (g_.damage > 0.0))) rub_closed(m, free);
+    m.shear = shear_square(m.opening[1], m.opening[2]);
+    m.size = size_of(m.opening[0], m.shear);
+    return m;
+  }
+  // See close in zone.hpp.
+  [[gnu::noinline]] void rub_closed(trial& m, V free) const {
+    const V rate = 1.0 / g_.position_step, target = (ground_ - x_[0]) * rate;
+    const V h_t = m.left_t * g_.h[1], normal = (ground_ + x_[0] - 2.0 * free) * rate / (m.left_n * g_.h[0]);
+    const V q1 = 2.0 * rate * (m.opening[1] - x_[1]), q2 = 2.0 * rate * (m.opening[2] - x_[2]);
+    const V rest_n = smaller(g_.v_previous[0] + target, 0.0);
+    const rubbing<V> found = rub(h_t, normal, q1, q2, rest_n, g_.v_previous, bond_.friction * g_.damage);
+    const Mask rubs = m.closed & (g_.damage > 0.0);
+    const V q[] = {q1, q2}, way = 0.5 * g_.position_step * h_t;
+    for (int k = 0; k < 2; ++k) {
+      m.rub[k] = select(rubs, -found.factor * q[k], 0.0);
+      const V rubbed = select(found.moves, m.opening[k + 1] + way * m.rub[k], x_[k + 1]);
+      m.opening[k + 1] = select(rubs, rubbed, m.opening[k + 1]);
+    }
   }
   double square_of_weight() const { return all_.weight * all_.weight; }
   secant<V> secant_of(V damage) const { return {1.0 - damage, all_.flexibility + damage * all_.softness}; }
@@ -99,11 +119,6 @@ class isotropic_step {
   }
   V excess(V kappa, const trial& m) const { return excess(kappa, m, softening_of(m)); }
 
-  // Whether contact acts at any share: the normal opening falls or rises with kappa.
-  Mask closes(V most) const {
-    const V w = g_.opening[0];
-    return smaller(drive_[0] / (1.0 + most), drive_[0]) - w < floor_;
-  }
   Mask is_below(const trial& m) const {
     const V pull = now_.stiff * m.size;
     const double least = smaller(bond_.strength, bond_.shear_strength());
@@ -170,8 +185,8 @@ class isotropic_step {
     const V taken_t = taken * ratio_ * m.left_t / g_.h[1];
     const V closing = g_.v_free[0] + (x_[0] - ground_) * rate_of_step;
     a.impulse[0] = -(select(m.closed, closing, taken * m.left_n * drive_[0]) / g_.h[0]);
-    a.impulse[1] = -taken_t * drive_[1];
-    a.impulse[2] = -taken_t * drive_[2];
+    a.impulse[1] = m.left_t * m.rub[0] - taken_t * drive_[1];
+    a.impulse[2] = m.left_t * m.rub[1] - taken_t * drive_[2];
     const V *y = m.opening, *w = g_.opening;
     const V rate = 0.5 * g_.area * (kappa / c_);
     a.normal_gain = rate * (y[0] + w[0]) * (y[0] - w[0]);

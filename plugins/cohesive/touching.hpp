@@ -30,27 +30,38 @@ V length_of(V a, V b) {
   return 0.5 * square_root(a * a + b * b) * scale.up;
 }
 
+// A pressed node with tangential velocity q without friction, and v_previous, whose contact takes the normal
+// velocity rest_n: friction gives it -factor q. See rub and stopping_part.
 template <class V>
-void touch_in_packs(const gathered<V>& g, double friction, mask_of<V> where, solved<V>& a) {
-  const V *v = g.v_free, *u = g.v_previous, h_n = g.h[0], h_t = g.h[1];
-  const V target = -positive_part(g.gap) * (1.0 / g.position_step);
-  const V excess = larger(v[0] - target, v[0] + u[0]), rest_n = smaller(u[0] + target, 0.0);
-  const V normal = positive_part(-excess / h_n), speed = length_of(v[1], v[2]);
-  // Without positive work: stopping_part.
-  const V down = scale_of<V>(speed).down;
-  const V along = (down * v[1]) * (down * u[1]) + (down * v[2]) * (down * u[2]);
+struct rubbing {
+  V factor;
+  mask_of<V> moves;
+};
+template <class V>
+rubbing<V> rub(V h_t, V normal, V q1, V q2, V rest_n, const V* v_previous, V friction) {
+  const V speed = length_of(q1, q2), down = scale_of<V>(speed).down;
+  const V along = (down * q1) * (down * v_previous[1]) + (down * q2) * (down * v_previous[2]);
   const V square = (down * speed) * (down * speed), impact = h_t * (down * normal) * (down * rest_n);
   const fraction<V> root = root_of_work(square, -(square + along), impact);
   const auto gains = along < impact, far = root.under == infinity;
   const V over = select(gains, select(far, 0.0, root.over), 1.0),
           under = select(gains & !far, root.under, 1.0);
-  // On the cone: rub.
   const V limit = select(normal > 0.0, friction * normal, 0.0), stop = h_t * under;
   const auto slips = speed * over > limit * stop;
   const V factor = select(slips, limit, over) / select(slips, speed, stop);
-  const auto moves = slips | (over < sticking_part * under);
-  const V closed = select(moves, V(status::slip), V(status::stick));
-  const V impulse[] = {normal, -factor * v[1], -factor * v[2]};
+  const mask_of<V> moves = slips | (over < sticking_part * under);
+  return {factor, moves};
+}
+
+template <class V>
+void touch_in_packs(const gathered<V>& g, double friction, mask_of<V> where, solved<V>& a) {
+  const V *v = g.v_free, *u = g.v_previous;
+  const V target = -positive_part(g.gap) * (1.0 / g.position_step);
+  const V excess = larger(v[0] - target, v[0] + u[0]), rest_n = smaller(u[0] + target, 0.0);
+  const V normal = positive_part(-excess / g.h[0]);
+  const rubbing<V> found = rub(g.h[1], normal, v[1], v[2], rest_n, u, V(friction));
+  const V closed = select(found.moves, V(status::slip), V(status::stick));
+  const V impulse[] = {normal, -found.factor * v[1], -found.factor * v[2]};
   leave_bond(g, impulse, select(normal > 0.0, closed, V(status::free)), where, a);
 }
 

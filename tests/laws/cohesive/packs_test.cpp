@@ -172,9 +172,8 @@ TEST(CohesivePacks, GiveANodeItsBitsInAnyCompany) {
     std::int64_t one_by_one = 0;
     const ilaw_batch b = together.batch();
     profile->evaluate_counting(law.instance(), &b, nullptr, &one_by_one);
-    const bool rubs = parameters.numbers.at("friction") > 0.0;
-    alone += rubs ? 0 : one_by_one;
-    all += rubs ? 0 : static_cast<std::int64_t>(count);
+    alone += one_by_one;
+    all += static_cast<std::int64_t>(count);
     ilaw_batch c = apart.batch();
     const std::vector<double> strength(count, parameters.numbers.at("strength"));
     const ilaw_input values{strength.data(), 1, 1};
@@ -190,7 +189,6 @@ TEST(CohesivePacks, GiveANodeItsBitsInAnyCompany) {
           << "seed 42, bond " << k << ", node " << i << ", strength per node";
     }
   }
-  EXPECT_GT(all, 1000);
   EXPECT_LT(alone, all / 100) << "of " << all;
 }
 
