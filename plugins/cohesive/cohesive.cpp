@@ -336,8 +336,9 @@ struct cohesive::in_phases : cohesive {
     const bool is_delayed = delay_time > 0.0 && strength < infinity;
     if (!bonds() || is_delayed) return where;
     const isotropic_step<V> step(*this, all, p);
-    if (stiffness < infinity) return step.solve(where, a);
-    // One that has not been opened: see stands_still.
+    const auto is_new = where & (p.damage == 0.0);
+    if (stiffness < infinity || !any(is_new)) return step.solve(where, a);
+    // A rigid bond that has not been opened: see stands_still.
     const friction_answer<V> stop = stopping(p);
     const V pull = positive_part(-stop.r[0]),
             shear = per_weight * (stop.r[1] * stop.r[1] + stop.r[2] * stop.r[2]);
@@ -345,7 +346,6 @@ struct cohesive::in_phases : cohesive {
     V held = smaller(strength, shear_strength());
     if (mixes()) held = larger(softening_at(select(square > 0.0, shear / square, 0.0)).strength, held);
     const V most = p.velocity_step * p.area * held;
-    const auto is_new = where & (p.damage == 0.0);
     const auto is_clear = (square < 0x1p900) & (most * most > 0x1p-900);
     const auto stands = is_new & is_clear & (square <= most * most), unclear = is_new & !is_clear;
     const mask_of<V> left = step.solve(where & !stands & !unclear, a);

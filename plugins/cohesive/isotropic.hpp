@@ -120,6 +120,7 @@ class isotropic_step {
   V excess(V kappa, const trial& m) const { return excess(kappa, m, softening_of(m)); }
 
   Mask is_below(const trial& m) const {
+    if (!bond_.mixes()) return m.size <= opened_met_;
     const V pull = now_.stiff * m.size;
     const double least = smaller(bond_.strength, bond_.shear_strength());
     return ((now_.stiff == 1.0) & (pull <= now_.soft * least)) |

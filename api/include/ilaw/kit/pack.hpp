@@ -79,8 +79,10 @@ inline pack select(mask m, pack a, pack b) { return pack(m.values() ? a.values()
 
 inline bool any(bool m) { return m; }
 inline bool any(mask m) {
-  std::int64_t found = 0;
-  for (int k = 0; k < pack_size; ++k) found |= m.values()[k];
+  using bytes = signed char __attribute__((vector_size(pack_size)));
+  const bytes narrow = __builtin_convertvector(m.values(), bytes);
+  std::uint64_t found = 0;
+  __builtin_memcpy(&found, &narrow, sizeof narrow);
   return found != 0;
 }
 
