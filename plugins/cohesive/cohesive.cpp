@@ -157,7 +157,7 @@ struct cohesive : bond {
     node.state.damage = bonds() ? 0.0 : 1.0;
   }
 
-  // Bonds that surely stand still and nodes that touch have closed forms; what is left is gathered.
+  // Bonds that surely stand still and nodes that are free are done at once; what is left is gathered.
   struct in_phases;
   template <class Run>
   void in_form(Run run) const;
@@ -352,7 +352,7 @@ struct cohesive::in_phases : cohesive {
     leave_bond(p, stop.r, V(status::bonded), stands, a);
     return left | unclear;
   }
-  // stopping_impulse, which lanes of other forms of H do not get from here.
+  // stopping_impulse for a transverse H.
   template <class V>
   static friction_answer<V> stopping(const problem<V>& p) {
     friction_problem<V> stop{};
