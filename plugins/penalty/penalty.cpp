@@ -1,5 +1,5 @@
 // Penalised contact with regularised friction, explicit and locally implicit. See penalty.md.
-#include "compression.hpp"
+#include "alone.hpp"
 
 #include <ilaw/kit.hpp>
 
@@ -123,14 +123,9 @@ struct penalty {
   template <class Node>
   double stable_velocity_step(const Node& node) const {
     if (integration == implicitly) return infinity;
-    const double penetration = positive_part(-node.gap), normal = node.delassus.normal();
-    const double tangent =
-        exponent == 1.0 ? stiffness : stiffness * exponent * power(penetration, exponent - 1.0);
-    const double pace = square_root(tangent * normal), half_damper = 0.5 * damping * normal;
-    const double closed = 2.0 / (length(pace, half_damper) + half_damper);
-    if (!(friction > 0.0)) return closed;
-    return smaller(closed,
-                   2.0 / square_root(tangential_stiffness * penalty_law::largest_tangential(node.delassus)));
+    return exponent == 1.0
+               ? stable_with(node, stiffness)
+               : stable_with(node, stiffness * exponent * power(positive_part(-node.gap), exponent - 1.0));
   }
 
   // Explicit or implicit, and the kind of spring: loops without a choice of powers vectorise.
@@ -144,6 +139,15 @@ struct penalty {
   }
 
  private:
+  // For the normal stiffness as it is now.
+  template <class Node>
+  double stable_with(const Node& node, double tangent) const {
+    const double normal = node.delassus.normal(), half_damper = 0.5 * damping * normal;
+    const double closed = 2.0 / (length(square_root(tangent * normal), half_damper) + half_damper);
+    const double rubs = kept_if(friction > 0.0, tangential_stiffness);  // none: 2/0 limits nothing
+    const double sliding = 2.0 / square_root(rubs * penalty_law::largest_tangential(node.delassus));
+    return smaller(sliding, closed);
+  }
   template <spring_kind Kind>
   double spring_force(double penetration) const {
     if constexpr (Kind == spring_kind::linear) return stiffness * penetration;
@@ -153,8 +157,10 @@ struct penalty {
   // Energy of the normal spring; none when it is rigid.
   template <spring_kind Kind>
   double potential(double penetration) const {
-    const double energy = spring_force<Kind>(penetration) * penetration / (exponent + 1.0);
-    return kept_if(stiffness < infinity, energy);
+    const double work = spring_force<Kind>(penetration) * penetration;
+    if constexpr (Kind == spring_kind::linear) return kept_if(stiffness < infinity, 0.5 * work);
+    if constexpr (Kind == spring_kind::hertz) return kept_if(stiffness < infinity, 0.4 * work);
+    return kept_if(stiffness < infinity, work / (exponent + 1.0));
   }
   double tangential_potential(vector slip, vector other) const {
     return kept_if(tangential_stiffness < infinity,
@@ -162,31 +168,20 @@ struct penalty {
   }
 
   // Gives the node a normal impulse that is known already, and the tangential one -q/softness within the
-  // cone.
-  // Says whether it slides.
+  // cone. Says whether it slides.
   template <class Node>
   bool rub(Node& node, double normal, vector q, double softness) const {
-    q.n = -normal;
-    const auto result = solve_contact_friction(diagonal_delassus{1.0, softness, softness}, -1.0, q, friction);
+    const auto result = penalty_law::rub_apart(normal, q, softness, friction);
     node.impulse = result.impulse;
-    const double rubbed = result.slips ? status::slip : status::stick;
+    return tell(node, result.slips);
+  }
+  // The status of a node that has its impulse. Who has no cone slides.
+  template <class Node>
+  bool tell(Node& node, bool slips) const {
+    const double normal = node.impulse.n, rubbed = slips ? status::slip : status::stick;
     const double closed = friction > 0.0 ? rubbed : status::closed;
     node.status = normal > 0.0 ? closed : status::free;
-    return result.slips | !(friction * normal > 0.0);
-  }
-
-  // The mean over the step of forces that the step ends with, so that springs give back what they took: see
-  // penalty.md.
-  template <spring_kind Kind, class Node>
-  void step_implicitly(Node& node, double damping_ratio) const {
-    penalty_law::compression normal = compression_of(node, damping_ratio);
-    const bool acts = acts_on(node);
-    if (friction > 0.0 && node.delassus.anisotropy() != 0.0) {
-      const auto found = rub_any<Kind>(node, acts, normal, sliding_velocity(node), softness_of(node));
-      strain<Kind>(node, acts ? normal.next(found) : 0.0, node.status != status::stick);
-    } else {
-      give<Kind>(node, normal, Kind == spring_kind::linear ? normal.linear() : normal.power_law(), acts);
-    }
+    return slips | !(friction * normal > 0.0);
   }
 
   template <class Node>
@@ -205,15 +200,31 @@ struct penalty {
   double softness_of(const Node& node) const {
     return 2.0 / node.velocity_step / (node.velocity_step * tangential_stiffness);
   }
+  template <class Node>
+  double indentation_of(const Node& node) const {
+    return kept_if(stiffness < infinity, node.state.indentation);
+  }
+
+  // The mean over the step of forces that the step ends with, so that springs give back what they took: see
+  // penalty.md. Here for a linear normal spring.
+  template <class Node>
+  void step_implicitly(Node& node, double damping_ratio) const {
+    const auto spring = spring_of(node.velocity_step, damping_ratio);
+    const double delassus = node.delassus.normal();
+    const penalty_law::compression<double> normal{spring,   node.v_free.n,        node.v_previous.n,
+                                                  delassus, indentation_of(node), spring.damper(delassus)};
+    const auto found = normal.linear();
+    const bool acts = acts_on(node);
+    const double moved = normal.next(found.impulse, found.opens);
+    give<spring_kind::linear>(node, acts ? found.impulse : 0.0, acts ? moved : 0.0);
+  }
 
   // Gives the node what its normal spring gives, and what friction makes of it.
   template <spring_kind Kind, class Node>
-  void give(Node& node, const penalty_law::compression& normal, penalty_law::compression::solution found,
-            bool acts) const {
-    found.impulse = acts ? found.impulse : 0.0;
+  void give(Node& node, double impulse, double indentation) const {
     const double softness = 0.5 * node.delassus.tangential() + softness_of(node);
-    const bool slides = rub(node, found.impulse, sliding_velocity(node), softness);
-    strain<Kind>(node, acts ? normal.next(found) : 0.0, slides);
+    const bool slides = rub(node, impulse, sliding_velocity(node), softness);
+    strain<Kind>(node, indentation, slides);
   }
 
   // What the step leaves in the springs. One that sticks moves along; one that slides keeps no more than its
@@ -224,7 +235,7 @@ struct penalty {
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2}, r = node.impulse;
     const vector v = node.v_free + node.delassus.times(r);
     const vector moved = spring + (0.5 * h) * (node.v_previous + v);
-    const double most = per_impulse * r.tangential_length(), length = moved.tangential_length();
+    const double most = per_impulse * friction_limit(friction, r.n), length = moved.tangential_length();
     const bool is_stiff = h * h * tangential_stiffness * node.delassus.tangential() > 4.0;
     const double kept = (slides & (length > most)) ? most / length : 1.0;
     const bool by_force = is_stiff & !slides, holds = tangential_stiffness < infinity && friction > 0.0;
@@ -241,22 +252,13 @@ struct penalty {
     node.state = {indentation, strained};
   }
 
-  template <class Node>
-  penalty_law::compression compression_of(const Node& node, double damping_ratio) const {
-    const double h = node.velocity_step, delassus = node.delassus.normal();
-    const double pace = h * square_root(stiffness) * square_root(delassus);
-    const double reached =
-        2.0 * damping_ratio * (pace / (h * delassus)) / (1.0 + (0.25 + 0.5 * damping_ratio) * pace);
-    const double damper = damping / (1.0 + 0.5 * h * damping * delassus);
-    return {.free = node.v_free.n,
-            .previous = node.v_previous.n,
-            .delassus = delassus,
-            .step = h,
-            .indentation = stiffness < infinity ? node.state.indentation : 0.0,
+  penalty_law::normal_spring spring_of(double step, double damping_ratio) const {
+    return {.step = step,
             .stiffness = stiffness,
             .exponent = exponent,
-            .damping = stiffness < infinity ? reached + damper : 0.0,
-            .lead = 1.0 / (1.0 + restitution) - 0.5};
+            .lead = 1.0 / (1.0 + restitution) - 0.5,
+            .damping = kept_if(stiffness < infinity, damping),
+            .ratio = damping_ratio};
   }
 
   // How much of the velocity before a step counts for a spring's mean: all; where it is rigid what of it the
@@ -267,47 +269,6 @@ struct penalty {
     const double turned = 0.0 - tangential_product(node.v_free, node.v_previous);
     const double part = turned > 0.0 ? turned / larger(turned, speed) : 0.0;
     return tangential_stiffness < infinity ? 1.0 : part;
-  }
-
-  // The same for any H. Tangents with a normal impulse that is known are Coulomb's local problem without
-  // coupling, the tangential spring an inverse mass beside H; what their impulse does to the normal leaves
-  // one equation for one unknown. A rigid spring has none to find: Coulomb's local problem as it is.
-  template <spring_kind Kind, class Node>
-  penalty_law::compression::solution rub_any(Node& node, bool acts, penalty_law::compression& normal,
-                                             vector q, double softness) const {
-    local_coulomb problem{};
-    fill(problem, node.delassus);
-    const double coupling_1 = problem.h[3], coupling_2 = problem.h[4], nn = problem.h[0];
-    for (double& entry : problem.h) entry *= 0.5;
-    problem.h[1] += softness;
-    problem.h[2] += softness;
-    problem.mu[0] = problem.mu[1] = friction;
-    problem.q[1] = q.t1;
-    problem.q[2] = q.t2;
-    if (stiffness == infinity) {
-      problem.q[0] = 0.5 * (normal.free + (normal.previous < 0.0 ? restitution : 1.0) * normal.previous);
-      apply_local_coulomb(node, acts ? -1.0 : 1.0, problem);
-      return {node.impulse.n, 0.0};
-    }
-    problem.h[3] = problem.h[4] = 0.0;
-    const double free = normal.free;
-    const auto tangents = [&](double r) {
-      problem.q[0] = -problem.h[0] * r;
-      problem.q[1] = q.t1 + 0.5 * coupling_1 * r;
-      problem.q[2] = q.t2 + 0.5 * coupling_2 * r;
-      apply_local_coulomb(node, -1.0, problem);
-      node.impulse.n = r;
-      return free + coupling_1 * node.impulse.t1 + coupling_2 * node.impulse.t2;
-    };
-    penalty_law::compression::solution found{0.0, 0.0};
-    if (acts && coupling_1 == 0.0 && coupling_2 == 0.0)
-      found = Kind == spring_kind::linear ? normal.linear() : normal.power_law();
-    else if (acts)
-      found.impulse = normal.impulse_where([&](double r) { return normal.given(tangents(r) + nn * r) - r; });
-    normal.free = tangents(acts ? found.impulse : 0.0);
-    if (!is_finite(found.impulse)) node.refused = no_solution;
-    found.opens = normal.travel(normal.free + nn * found.impulse) > normal.indentation ? 1.0 : 0.0;
-    return found;
   }
 
   // Forces of the configuration and the half step before: the stiffness eats the critical time step. The
@@ -343,49 +304,84 @@ template <bool Implicit, spring_kind Kind>
 struct penalty::form : penalty {
   double damping_ratio;
 
-  // Springs with a root to find are solved in packs, of Hertz's exponent alone; others one by one.
+  static constexpr bool is_always_stable = Implicit;
+  template <class Node>
+  double stable_velocity_step(const Node& node) const {
+    if constexpr (Kind == spring_kind::any) return penalty::stable_velocity_step(node);
+    if constexpr (Kind == spring_kind::linear) return stable_with(node, stiffness);
+    return stable_with(node, 1.5 * stiffness * square_root(positive_part(-node.gap)));
+  }
+
+  // What has a root to find is solved in packs: springs that are not linear, and friction where H has more
+  // than one tangential entry.
   template <class V>
-  using problem = penalty_law::compression_of_any<V>;
+  using problem = penalty_law::rubbing<V>;
   template <class V>
-  struct answer {
-    V impulse, opens;
-  };
+  using answer = penalty_law::rubbed<V>;
   static constexpr bool answers_every_node = true, is_linear = Kind == spring_kind::linear;
   template <class Node>
-  static constexpr bool finds_roots = !is_linear && Implicit && has_transverse_delassus<Node>;
+  static constexpr bool finds_roots = Implicit && !(is_linear && has_transverse_delassus<Node>);
 
   template <class Node>
   void step(Node& node) const requires(!finds_roots<Node>) {
     if constexpr (Implicit)
-      step_implicitly<Kind>(node, damping_ratio);
+      step_implicitly(node, damping_ratio);
     else
       step_explicitly<Kind>(node);
   }
 
   template <class Node>
   bool asks(Node& node, problem<double>& open) const requires finds_roots<Node> {
-    open = compression_of(node, damping_ratio);
+    open.step = node.velocity_step;
+    open.free = node.v_free.n;
+    open.previous = node.v_previous.n;
+    open.delassus = node.delassus.normal();
+    open.indentation = indentation_of(node);
+    if constexpr (!has_transverse_delassus<Node>) {
+      const vector q = sliding_velocity(node);
+      const double softness = softness_of(node);
+      local_coulomb entries{};
+      fill(entries, node.delassus);
+      open.friction = friction;
+      open.c1 = entries.h[3];
+      open.c2 = entries.h[4];
+      open.a11 = 0.5 * entries.h[1] + softness;
+      open.a22 = 0.5 * entries.h[2] + softness;
+      open.a12 = 0.5 * entries.h[5];
+      open.q1 = q.t1;
+      open.q2 = q.t2;
+    }
     const bool acts = acts_on(node);
-    answered(node, {0.0, 0.0});
+    answered(node, {});
     return acts;
   }
   template <class V>
-  static mask_of<V> solve(const problem<V>& p, answer<V>& a) {
-    const auto found = p.power_law();
-    a = {found.impulse, found.opens};
-    if constexpr (std::is_same_v<V, double>) return false;
-    return p.exponent != 1.5;
+  mask_of<V> solve(const problem<V>& p, answer<V>& a) const {
+    const mask_of<V> all(true);
+    if constexpr (Kind == spring_kind::any) return all;
+    if (stiffness == infinity) return all;
+    const auto spring = spring_of(penalty_law::first_of(p.step), damping_ratio);
+    const penalty_law::rubbing_node<V, is_linear> node(spring, p);
+    return any(p.friction > 0.0) ? node.solve(a) : node.press(a);
   }
-  static void solve_alone(const problem<double>& p, answer<double>& a) { solve(p, a); }
+  void solve_alone(const problem<double>& p, answer<double>& a) const {
+    a = penalty_law::node_alone(spring_of(p.step, damping_ratio), restitution, p).solve();
+  }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {
-    give<Kind>(node, compression_of(node, damping_ratio), {a.impulse, a.opens}, acts_on(node));
+    node.refused = larger(node.refused, a.refused);
+    if constexpr (has_transverse_delassus<Node>) {
+      give<Kind>(node, a.impulse, a.indentation);
+    } else {
+      node.impulse = {a.impulse, a.t1, a.t2};
+      strain<Kind>(node, a.indentation, tell(node, a.slides != 0.0));
+    }
   }
 };
 
 template <class Run>
 void penalty::in_form(Run run) const {
-  const double ratio = penalty_law::damping_ratio(restitution);
+  const double ratio = restitution < 1.0 ? penalty_law::damping_ratio(restitution) : 0.0;
   const auto run_kind = [&]<spring_kind Kind>() {
     integration == implicitly ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
   };

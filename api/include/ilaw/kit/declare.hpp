@@ -13,7 +13,8 @@
 //   is
 //                                                         not promised where parameters vary
 //   template <class Node> double stable_velocity_step(const Node&) const   if it limits the step: by how much
-//                                                         at this node, whatever its state; see ilaw_report
+//                                                         at this node, whatever its state; see ilaw_report;
+//                                                         a form that limits none: is_always_stable = true
 //   template <class Run> void in_form(Run) const;         a shorter step for these parameters, see below
 //   const char* conflict() const;                         why parameters do not go together, or null
 //   static const void* extension(const char* name);       see ilaw_law (default: ilaw/profile.h alone)
