@@ -107,8 +107,8 @@ kit::friction_result<Vector> rub_apart(double normal, Vector q, double softness,
 
 class node_alone {
  public:
-  node_alone(const normal_spring& spring, double restitution, const rubbing<double>& p)
-      : p_(p), restitution_(restitution) {
+  node_alone(const normal_spring& spring, double friction, double restitution, const rubbing<double>& p)
+      : p_(p), friction_(friction), restitution_(restitution) {
     normal_.spring = spring;
     normal_.free = p.free;
     normal_.previous = p.previous;
@@ -120,7 +120,7 @@ class node_alone {
   [[gnu::noinline]] rubbed<double> solve() const {
     const bool couples = p_.c1 != 0.0 || p_.c2 != 0.0;
     const bool is_plain = !couples && p_.a12 == 0.0 && p_.a11 == p_.a22;
-    if (is_plain || !(p_.friction > 0.0)) return apart();
+    if (is_plain || !(friction_ > 0.0)) return apart();
     return normal_.spring.is_rigid() ? rigid() : coupled(couples);
   }
 
@@ -129,17 +129,17 @@ class node_alone {
 
   rubbed<double> apart() const {
     const solution found = normal_.solve();
-    const auto result = rub_apart(found.impulse, kit::vector{0.0, p_.q1, p_.q2}, p_.a11, p_.friction);
-    return {found.impulse, result.impulse.t1,        result.impulse.t2,
-            found.end,     result.slips ? 1.0 : 0.0, kit::not_refused};
+    if (!(p_.a11 > 0.0)) return {found.impulse, 0.0, 0.0, found.end, sticks};
+    const auto result = rub_apart(found.impulse, kit::vector{0.0, p_.q1, p_.q2}, p_.a11, friction_);
+    const double outcome = result.slips ? slides : sticks;
+    return {found.impulse, result.impulse.t1, result.impulse.t2, found.end, outcome};
   }
 
   // Tangents with a normal impulse that is known are Coulomb's local problem without coupling, the tangential
   // spring an inverse mass beside H.
   kit::local_coulomb problem() const {
-    return {{0.5 * p_.delassus, p_.a11, p_.a22, 0.0, 0.0, p_.a12},
-            {0.0, p_.q1, p_.q2},
-            {p_.friction, p_.friction}};
+    return {
+        {0.5 * p_.delassus, p_.a11, p_.a22, 0.0, 0.0, p_.a12}, {0.0, p_.q1, p_.q2}, {friction_, friction_}};
   }
   // A rigid spring has no impulse to find: Coulomb's local problem as it is.
   rubbed<double> rigid() const {
@@ -149,10 +149,12 @@ class node_alone {
     whole.q[0] = 0.5 * (p_.free + (p_.previous < 0.0 ? restitution_ : 1.0) * p_.previous);
     double r[3];
     const kit::contact_mode mode = kit::solve(whole, r);
-    return {r[0], r[1],         r[2],
-            0.0,  slides(mode), mode == kit::contact_mode::none ? kit::no_solution : kit::not_refused};
+    return {r[0], r[1], r[2], 0.0, outcome_of(mode)};
   }
-  static double slides(kit::contact_mode mode) { return mode == kit::contact_mode::stick ? 0.0 : 1.0; }
+  static double outcome_of(kit::contact_mode mode) {
+    if (mode == kit::contact_mode::none) return has_none;
+    return mode == kit::contact_mode::stick ? sticks : slides;
+  }
 
   // What the tangential impulse does to the normal leaves one equation for r_N.
   rubbed<double> coupled(bool couples) const {
@@ -175,12 +177,12 @@ class node_alone {
       found = normal_.solve();
       free(found.impulse);
     }
-    const bool none = !kit::is_finite(found.impulse) || mode == kit::contact_mode::none;
-    return {found.impulse, r[1], r[2], found.end, slides(mode), none ? kit::no_solution : kit::not_refused};
+    const double outcome = kit::is_finite(found.impulse) ? outcome_of(mode) : has_none;
+    return {found.impulse, r[1], r[2], found.end, outcome};
   }
 
   rubbing<double> p_;
-  double restitution_;
+  double friction_, restitution_;
   any_compression normal_;
 };
 

@@ -13,6 +13,7 @@
 #include <ilaw/kit/pack.hpp>
 
 #include <limits>
+#include <type_traits>
 
 namespace penalty_law {
 
@@ -56,15 +57,36 @@ struct normal_spring {
   }
 };
 
-template <class V>
+// A number that is zero for sure: what it multiplies is not computed.
+struct none {
+  template <class V>
+  friend none operator*(V /*x*/, none) {
+    return {};
+  }
+  template <class V>
+  friend none operator*(none, V /*x*/) {
+    return {};
+  }
+  template <class V>
+  friend V operator+(V x, none) {
+    return x;
+  }
+  template <class V>
+  friend V operator-(V x, none) {
+    return x;
+  }
+};
+
+// IsPlain: linear, not rigid, without damper or restitution. The same numbers with less to compute.
+template <class V, bool IsPlain = false>
 struct compression {
   using Mask = kit::mask_of<V>;
 
   normal_spring spring;
   V free, previous;  // v_free, v^-
   V delassus;
-  V indentation;  // x
-  V damping;      // c
+  V indentation;                                 // x
+  std::conditional_t<IsPlain, none, V> damping;  // c
 
   // opens: 1 where the way ends open, else 0; end: x'. The impulse falls by gain/(1 + gain H) where v_free
   // grows by 1; pace: scale (1 + gain H), gain times as much as it is where the spring opens.
@@ -73,9 +95,7 @@ struct compression {
   };
 
   V mean_velocity(V v) const { return 0.5 * (previous + v); }
-  V travel(V v) const {
-    return spring.step * (mean_velocity(v) + spring.lead * kit::positive_part(v - previous));
-  }
+  V travel(V v) const { return spring.step * (mean_velocity(v) + lead() * kit::positive_part(v - previous)); }
 
   solution linear() const {
     const V most = kit::larger(spring.step * (kit::absolute(free) + kit::absolute(previous)), indentation);
@@ -87,9 +107,9 @@ struct compression {
   // and a power of two keeps squares of lengths from overflow. One division and one square root.
   solution linear(V scale, V v_free, V h) const {
     const double step = spring.step, k = spring.soft();
-    const double rigid = spring.is_rigid() ? 1.0 : 0.0, never = spring.is_rigid() ? kit::infinity : 0.0;
+    const auto rigid = if_rigid(1.0), never = if_rigid(kit::infinity);
     const V before = scale * previous, x = scale * indentation, sum = v_free + before;
-    const V part = kit::select(leads(scale, v_free, h), V(spring.lead), V(0.0));
+    const auto part = leading_part(scale, v_free, h);
 
     // Closed to the end, all is linear.
     const V start = 0.5 * sum + part * (v_free - before), gain = h * (0.5 + part);
@@ -117,7 +137,7 @@ struct compression {
   // Whether a linear spring pushes in the free step, without a division.
   Mask linear_pushes() const {
     const V way = kit::smaller(travel(free), indentation);
-    return spring.soft() * (indentation - 0.5 * way) > damping * mean_velocity(free);
+    return spring.soft() * (indentation - 0.5 * way) - damping * mean_velocity(free) > 0.0;
   }
 
   // x' of a linear spring, and where it is stiff from its force, which then is the more accurate.
@@ -128,8 +148,7 @@ struct compression {
     const V pressed = 2.0 / (k * step) * impulse + 2.0 / k * (damping * mean_velocity(v)) - indentation;
     const Mask by_force = (step * step * k * delassus > 4.0) & (impulse > 0.0);
     const V closed = kit::select(by_force, kit::positive_part(pressed), moved);
-    const double holds = spring.is_rigid() ? 0.0 : 1.0;
-    return holds * (1.0 - opens) * closed;
+    return (1.0 - if_rigid(1.0)) * (1.0 - opens) * closed;
   }
 
   // p = 3/2, lead 0, for the same scaled numbers. With q = h^2 k H/5, B = 1 + h c H/2, a = sqrt(x) and
@@ -168,10 +187,28 @@ struct compression {
   }
 
  private:
+  auto lead() const {
+    if constexpr (IsPlain)
+      return none{};
+    else
+      return spring.lead;
+  }
+  auto if_rigid(double x) const {
+    if constexpr (IsPlain)
+      return none{};
+    else
+      return spring.is_rigid() ? x : 0.0;
+  }
+  auto leading_part(V scale, V v_free, V h) const {
+    if constexpr (IsPlain)
+      return none{};
+    else
+      return kit::select(leads(scale, v_free, h), V(spring.lead), V(0.0));
+  }
   // Whether v > v^- in the end: whether at v = v^- the spring gives more than leads there. One comparison of
   // what was chosen, since GCC vectorises no choice between conditions.
   Mask leads(V scale, V v_free, V h) const {
-    const double step = spring.step, k = spring.soft(), rigid = spring.is_rigid() ? 1.0 : 0.0;
+    const double step = spring.step, k = spring.soft(), rigid = if_rigid(1.0);
     const V before = scale * previous, x = scale * indentation, way = step * before,
             viscous = damping * before;
     const V closed = kit::positive_part(k * (x - 0.5 * way) - viscous);

@@ -9,7 +9,11 @@ using namespace ilaw::kit;
 
 constexpr const char* integration_choices[] = {"explicit", "implicit"};
 constexpr double implicitly = 1.0;
-enum class spring_kind { linear, hertz, any };
+// plain: linear, neither rigid nor with damper or restitution.
+enum class spring_kind { plain, linear, hertz, any };
+constexpr bool is_linear(spring_kind kind) {
+  return kind == spring_kind::plain || kind == spring_kind::linear;
+}
 
 struct penalty {
   double stiffness;
@@ -150,7 +154,7 @@ struct penalty {
   }
   template <spring_kind Kind>
   double spring_force(double penetration) const {
-    if constexpr (Kind == spring_kind::linear) return stiffness * penetration;
+    if constexpr (is_linear(Kind)) return stiffness * penetration;
     if constexpr (Kind == spring_kind::hertz) return stiffness * (penetration * square_root(penetration));
     return stiffness * power(penetration, exponent);
   }
@@ -158,7 +162,7 @@ struct penalty {
   template <spring_kind Kind>
   double potential(double penetration) const {
     const double work = spring_force<Kind>(penetration) * penetration;
-    if constexpr (Kind == spring_kind::linear) return kept_if(stiffness < infinity, 0.5 * work);
+    if constexpr (is_linear(Kind)) return kept_if(stiffness < infinity, 0.5 * work);
     if constexpr (Kind == spring_kind::hertz) return kept_if(stiffness < infinity, 0.4 * work);
     return kept_if(stiffness < infinity, work / (exponent + 1.0));
   }
@@ -207,16 +211,17 @@ struct penalty {
 
   // The mean over the step of forces that the step ends with, so that springs give back what they took: see
   // penalty.md. Here for a linear normal spring.
-  template <class Node>
+  template <spring_kind Kind, class Node>
   void step_implicitly(Node& node, double damping_ratio) const {
     const auto spring = spring_of(node.velocity_step, damping_ratio);
     const double delassus = node.delassus.normal();
-    const penalty_law::compression<double> normal{spring,   node.v_free.n,        node.v_previous.n,
-                                                  delassus, indentation_of(node), spring.damper(delassus)};
+    penalty_law::compression<double, Kind == spring_kind::plain> normal{
+        spring, node.v_free.n, node.v_previous.n, delassus, indentation_of(node), {}};
+    if constexpr (Kind != spring_kind::plain) normal.damping = spring.damper(delassus);
     const auto found = normal.linear();
     const bool acts = acts_on(node);
     const double moved = normal.next(found.impulse, found.opens);
-    give<spring_kind::linear>(node, acts ? found.impulse : 0.0, acts ? moved : 0.0);
+    give<Kind>(node, acts ? found.impulse : 0.0, acts ? moved : 0.0);
   }
 
   // Gives the node what its normal spring gives, and what friction makes of it.
@@ -304,11 +309,11 @@ template <bool Implicit, spring_kind Kind>
 struct penalty::form : penalty {
   double damping_ratio;
 
-  static constexpr bool is_always_stable = Implicit;
+  static constexpr bool is_always_stable = Implicit, needs_previous = Implicit;
   template <class Node>
   double stable_velocity_step(const Node& node) const {
     if constexpr (Kind == spring_kind::any) return penalty::stable_velocity_step(node);
-    if constexpr (Kind == spring_kind::linear) return stable_with(node, stiffness);
+    if constexpr (is_linear(Kind)) return stable_with(node, stiffness);
     return stable_with(node, 1.5 * stiffness * square_root(positive_part(-node.gap)));
   }
 
@@ -318,14 +323,14 @@ struct penalty::form : penalty {
   using problem = penalty_law::rubbing<V>;
   template <class V>
   using answer = penalty_law::rubbed<V>;
-  static constexpr bool answers_every_node = true, is_linear = Kind == spring_kind::linear;
+  static constexpr bool answers_every_node = true;
   template <class Node>
-  static constexpr bool finds_roots = Implicit && !(is_linear && has_transverse_delassus<Node>);
+  static constexpr bool finds_roots = Implicit && !(is_linear(Kind) && has_transverse_delassus<Node>);
 
   template <class Node>
   void step(Node& node) const requires(!finds_roots<Node>) {
     if constexpr (Implicit)
-      step_implicitly(node, damping_ratio);
+      step_implicitly<Kind>(node, damping_ratio);
     else
       step_explicitly<Kind>(node);
   }
@@ -342,7 +347,6 @@ struct penalty::form : penalty {
       const double softness = softness_of(node);
       local_coulomb entries{};
       fill(entries, node.delassus);
-      open.friction = friction;
       open.c1 = entries.h[3];
       open.c2 = entries.h[4];
       open.a11 = 0.5 * entries.h[1] + softness;
@@ -361,20 +365,21 @@ struct penalty::form : penalty {
     if constexpr (Kind == spring_kind::any) return all;
     if (stiffness == infinity) return all;
     const auto spring = spring_of(penalty_law::first_of(p.step), damping_ratio);
-    const penalty_law::rubbing_node<V, is_linear> node(spring, p);
-    return any(p.friction > 0.0) ? node.solve(a) : node.press(a);
+    const penalty_law::rubbing_node<V, is_linear(Kind), Kind == spring_kind::plain> node(spring, friction, p);
+    return (friction > 0.0) & any(p.a11 > 0.0) ? node.solve(a) : node.press(a);
   }
   void solve_alone(const problem<double>& p, answer<double>& a) const {
-    a = penalty_law::node_alone(spring_of(p.step, damping_ratio), restitution, p).solve();
+    a = penalty_law::node_alone(spring_of(p.step, damping_ratio), friction, restitution, p).solve();
   }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {
-    node.refused = larger(node.refused, a.refused);
+    const bool fails = a.outcome == penalty_law::has_none;
+    node.refused = larger(node.refused, fails ? no_solution : not_refused);
     if constexpr (has_transverse_delassus<Node>) {
       give<Kind>(node, a.impulse, a.indentation);
     } else {
       node.impulse = {a.impulse, a.t1, a.t2};
-      strain<Kind>(node, a.indentation, tell(node, a.slides != 0.0));
+      strain<Kind>(node, a.indentation, tell(node, a.outcome != penalty_law::sticks));
     }
   }
 };
@@ -385,6 +390,9 @@ void penalty::in_form(Run run) const {
   const auto run_kind = [&]<spring_kind Kind>() {
     integration == implicitly ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
   };
+  const bool loses = restitution < 1.0 || damping > 0.0, is_soft = exponent == 1.0 && stiffness < infinity;
+  if (integration == implicitly && is_soft && !loses)
+    return run(form<true, spring_kind::plain>{*this, ratio});
   if (exponent == 1.0 || stiffness == infinity) return run_kind.template operator()<spring_kind::linear>();
   if (exponent == 1.5) return run_kind.template operator()<spring_kind::hertz>();
   run_kind.template operator()<spring_kind::any>();

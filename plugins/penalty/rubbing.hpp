@@ -15,34 +15,38 @@ template <class V>
 struct rubbing {
   V step;                                   // the same in all lanes
   V free, previous, delassus, indentation;  // as compression has them
-  V friction;
-  V c1, c2;         // what H couples the tangents to the normal by
-  V a11, a22, a12;  // A = H_T/2 + 2/(h^2 k_T)
+  V c1, c2;                                 // what H couples the tangents to the normal by
+  V a11, a22, a12;  // A = H_T/2 + 2/(h^2 k_T); zero where the normal spring alone is asked for
   V q1, q2;         // q + c r_N/2 + A r_T is the mean velocity of what slips
 };
 template <class V>
 struct rubbed {
-  V impulse, t1, t2, indentation, slides, refused;
+  V impulse, t1, t2, indentation, outcome;
 };
+// Outcomes.
+inline constexpr double sticks = 0.0, slides = 1.0, has_none = 2.0;
 
 inline double first_of(double x) { return x; }
 inline double first_of(kit::pack x) { return x.values()[0]; }
 
-// IsLinear: p = 1, else 3/2.
-template <class V, bool IsLinear>
+// IsLinear: p = 1, else 3/2. IsPlain: see compression.
+template <class V, bool IsLinear, bool IsPlain>
 class rubbing_node {
  public:
   using Mask = kit::mask_of<V>;
 
-  rubbing_node(const normal_spring& spring, const rubbing<V>& p)
+  rubbing_node(const normal_spring& spring, double friction, const rubbing<V>& p)
       : p_(p),
-        normal_{spring, p.free, p.previous, p.delassus, p.indentation, spring.damper(p.delassus)},
-        trace_(p.a11 + p.a22) {}
+        friction_(friction),
+        normal_{spring, p.free, p.previous, p.delassus, p.indentation, {}},
+        trace_(p.a11 + p.a22) {
+    if constexpr (!IsPlain) normal_.damping = spring.damper(p.delassus);
+  }
 
   // The normal spring alone. Returns the lanes that it did not solve.
   Mask press(rubbed<V>& a) const {
     const auto found = respond(V(1.0), p_.free, p_.delassus);
-    a = {found.impulse, V(0.0), V(0.0), next(found, p_.free), V(0.0), V(0.0)};
+    a = {found.impulse, V(0.0), V(0.0), next(found, p_.free), V(sticks)};
     return !((found.impulse < kit::infinity) & has_usual_scales(p_.delassus, p_.delassus));
   }
 
@@ -50,23 +54,23 @@ class rubbing_node {
   Mask solve(rubbed<V>& a) const {
     const Mask pushes = this->pushes();
     const trial start = at(0.0);
-    const Mask sticks = start.length <= p_.friction * start.held();
-    const Mask regular = is_regular(start, sticks);
-    const trial end = multiplier(start, pushes & regular & !sticks);
-    const V over = kit::select(sticks, V(1.0), p_.friction * end.normal.impulse);
-    const V factor = kit::select(pushes, over / kit::select(sticks, end.det, end.length), V(0.0));
+    const Mask holds = start.length <= friction_ * start.held();
+    const Mask regular = is_regular(start, holds);
+    const trial end = multiplier(start, pushes & regular & !holds);
+    const V over = kit::select(holds, V(1.0), friction_ * end.normal.impulse);
+    const V factor = kit::select(pushes, over / kit::select(holds, end.det, end.length), V(0.0));
     const V r = kit::select(pushes, end.normal.impulse, V(0.0));
     const V t1 = -end.n1 * factor, t2 = -end.n2 * factor;
     const V free = p_.free + (p_.c1 * t1 + p_.c2 * t2);
     const V moved = kit::positive_part(p_.indentation - normal_.travel(p_.free));
     const V indentation = kit::select(pushes, next(end.normal, free), moved);
-    a = {r, t1, t2, indentation, kit::select(sticks, V(0.0), V(1.0)), V(0.0)};
-    const Mask found = (sticks | is_met(end)) & regular & (r > 0.0);
+    a = {r, t1, t2, indentation, kit::select(holds, V(sticks), V(slides))};
+    const Mask found = (holds | is_met(end)) & regular & (r > 0.0);
     return is_plain() | (!has_usual_scales(p_.a11, p_.a22)) | (pushes & !found);
   }
 
  private:
-  using solution = typename compression<V>::solution;
+  using solution = typename compression<V, IsPlain>::solution;
   static constexpr double tolerance = 0x1p-46, least_determinant = 0x1p-20;
   static constexpr int most_steps = 16;
 
@@ -78,7 +82,7 @@ class rubbing_node {
   }
   V next(const solution& found, V free) const {
     if constexpr (!IsLinear) return found.end;
-    compression<V> moved = normal_;
+    compression<V, IsPlain> moved = normal_;
     moved.free = free;
     return moved.next(found.impulse, found.opens);
   }
@@ -118,16 +122,16 @@ class rubbing_node {
 
   // Weak coupling, also of a rigid spring, and fair condition: |r_T| - mu r_N falls with alpha, by Cauchy and
   // Schwarz, and has one root.
-  Mask is_regular(const trial& x, Mask sticks) const {
-    const V mu = p_.friction;
+  Mask is_regular(const trial& x, Mask holds) const {
+    const double mu = friction_;
     const Mask is_weak = 2.0 * (mu * mu * (trace_ * x.coupling)) < p_.delassus * x.condensed;
-    return (sticks | is_weak) & (x.det > least_determinant * (p_.a11 * p_.a22)) &
+    return (holds | is_weak) & (x.det > least_determinant * (p_.a11 * p_.a22)) &
            (x.condensed > least_determinant * (x.det * p_.delassus));
   }
 
   // Whether |r_T| is mu r_N.
   Mask is_met(const trial& x) const {
-    const V held = p_.friction * x.held();
+    const V held = friction_ * x.held();
     return kit::absolute(x.length - held) <= tolerance * held;
   }
 
@@ -137,7 +141,8 @@ class rubbing_node {
   trial multiplier(trial x, Mask active) const {
     V alpha = 0.0;
     for (int k = 0; k < most_steps && kit::any(active); ++k) {
-      const V mu = p_.friction, gain = x.normal.gain, pace = x.normal.pace, held = mu * x.held();
+      const double mu = friction_;
+      const V gain = x.normal.gain, pace = x.normal.pace, held = mu * x.held();
       const V y1 = x.s22 * x.n1 - p_.a12 * x.n2, y2 = x.s11 * x.n2 - p_.a12 * x.n1;
       const V bends = gain * (p_.c1 * y1 + p_.c2 * y2), excess = x.length - held;
       const V slope = (x.n1 * y1 + x.n2 * y2) * pace +
@@ -155,7 +160,8 @@ class rubbing_node {
   }
 
   rubbing<V> p_;
-  compression<V> normal_;
+  double friction_;
+  compression<V, IsPlain> normal_;
   V trace_;
 };
 

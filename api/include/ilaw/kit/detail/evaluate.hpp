@@ -153,6 +153,9 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
 }
 template <class Form>
 concept always_stable = Form::is_always_stable;
+// A form whose inputs always have v_previous is not compiled without it.
+template <class Form>
+concept needs_previous = Form::needs_previous;
 
 // The whole of a batch; Varying: with parameters per node.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, bool Varying>
@@ -204,7 +207,8 @@ struct evaluate_walk {
   static int run_form(const Law& law, const node_block<Law>& block) {
     int one_by_one = 0;
     in_its_form(law, [&block, &one_by_one]<class Form>(const Form& form) {
-      one_by_one = run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
+      if constexpr (Scope != scope::impulse || !needs_previous<Form>)
+        one_by_one = run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
     });
     return one_by_one;
   }
