@@ -36,6 +36,35 @@ inline double damping_ratio(double restitution) {
   return lost / pi * (((0.0081 * lost + 0.022) * lost + 0.2088) * lost + 1.0);
 }
 
+// plain: linear, neither rigid nor with damper or restitution. smooth: the same without friction.
+enum class spring_kind { smooth, plain, linear, hertz, any };
+constexpr bool is_plain(spring_kind kind) {
+  return kind == spring_kind::smooth || kind == spring_kind::plain;
+}
+constexpr bool is_linear(spring_kind kind) { return is_plain(kind) || kind == spring_kind::linear; }
+
+template <spring_kind Kind>
+double spring_force(double stiffness, double exponent, double penetration) {
+  if constexpr (is_linear(Kind)) return stiffness * penetration;
+  if constexpr (Kind == spring_kind::hertz) return stiffness * (penetration * kit::square_root(penetration));
+  return stiffness * kit::power(penetration, exponent);
+}
+template <spring_kind Kind>
+double potential(double stiffness, double exponent, double penetration) {
+  const double work = spring_force<Kind>(stiffness, exponent, penetration) * penetration;
+  if constexpr (is_linear(Kind)) return 0.5 * work;
+  if constexpr (Kind == spring_kind::hertz) return 0.4 * work;
+  return work / (exponent + 1.0);
+}
+
+// Explicit springs with a damper that lags: omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega)
+// (Belytschko, Liu, Moran 2000, eq. 6.2.31). The normal spring is taken as closed, and as stiff as it is
+// now.
+inline double stable_step(double delassus, double tangent, double damping) {
+  const double half_damper = 0.5 * damping * delassus;
+  return 2.0 / (kit::length(kit::square_root(tangent * delassus), half_damper) + half_damper);
+}
+
 // What is the same at all nodes of a loop.
 struct normal_spring {
   double step, stiffness, exponent;

@@ -9,11 +9,7 @@ using namespace ilaw::kit;
 
 constexpr const char* integration_choices[] = {"explicit", "implicit"};
 constexpr double implicitly = 1.0;
-// plain: linear, neither rigid nor with damper or restitution.
-enum class spring_kind { plain, linear, hertz, any };
-constexpr bool is_linear(spring_kind kind) {
-  return kind == spring_kind::plain || kind == spring_kind::linear;
-}
+using penalty_law::spring_kind, penalty_law::is_linear, penalty_law::is_plain;
 
 struct penalty {
   double stiffness;
@@ -121,9 +117,6 @@ struct penalty {
     return card.capabilities & ~(lets_go_early ? std::uint32_t{ILAW_CAN_REST} : 0U);
   }
 
-  // Explicit springs with a damper that lags: omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega)
-  // (Belytschko, Liu, Moran 2000, eq. 6.2.31). The normal spring is taken as closed, and as stiff as it is
-  // now.
   template <class Node>
   double stable_velocity_step(const Node& node) const {
     if (integration == implicitly) return infinity;
@@ -146,25 +139,15 @@ struct penalty {
   // For the normal stiffness as it is now.
   template <class Node>
   double stable_with(const Node& node, double tangent) const {
-    const double normal = node.delassus.normal(), half_damper = 0.5 * damping * normal;
-    const double closed = 2.0 / (length(square_root(tangent * normal), half_damper) + half_damper);
+    const double closed = penalty_law::stable_step(node.delassus.normal(), tangent, damping);
     const double rubs = kept_if(friction > 0.0, tangential_stiffness);  // none: 2/0 limits nothing
     const double sliding = 2.0 / square_root(rubs * penalty_law::largest_tangential(node.delassus));
     return smaller(sliding, closed);
   }
-  template <spring_kind Kind>
-  double spring_force(double penetration) const {
-    if constexpr (is_linear(Kind)) return stiffness * penetration;
-    if constexpr (Kind == spring_kind::hertz) return stiffness * (penetration * square_root(penetration));
-    return stiffness * power(penetration, exponent);
-  }
   // Energy of the normal spring; none when it is rigid.
   template <spring_kind Kind>
   double potential(double penetration) const {
-    const double work = spring_force<Kind>(penetration) * penetration;
-    if constexpr (is_linear(Kind)) return kept_if(stiffness < infinity, 0.5 * work);
-    if constexpr (Kind == spring_kind::hertz) return kept_if(stiffness < infinity, 0.4 * work);
-    return kept_if(stiffness < infinity, work / (exponent + 1.0));
+    return kept_if(stiffness < infinity, penalty_law::potential<Kind>(stiffness, exponent, penetration));
   }
   double tangential_potential(vector slip, vector other) const {
     return kept_if(tangential_stiffness < infinity,
@@ -215,9 +198,9 @@ struct penalty {
   void step_implicitly(Node& node, double damping_ratio) const {
     const auto spring = spring_of(node.velocity_step, damping_ratio);
     const double delassus = node.delassus.normal();
-    penalty_law::compression<double, Kind == spring_kind::plain> normal{
-        spring, node.v_free.n, node.v_previous.n, delassus, indentation_of(node), {}};
-    if constexpr (Kind != spring_kind::plain) normal.damping = spring.damper(delassus);
+    penalty_law::compression<double, is_plain(Kind)> normal{spring,   node.v_free.n,        node.v_previous.n,
+                                                            delassus, indentation_of(node), {}};
+    if constexpr (!is_plain(Kind)) normal.damping = spring.damper(delassus);
     const auto found = normal.linear();
     const bool acts = acts_on(node);
     const double moved = normal.next(found.impulse, found.opens);
@@ -227,15 +210,21 @@ struct penalty {
   // Gives the node what its normal spring gives, and what friction makes of it.
   template <spring_kind Kind, class Node>
   void give(Node& node, double impulse, double indentation) const {
-    const double softness = 0.5 * node.delassus.tangential() + softness_of(node);
-    const bool slides = rub(node, impulse, sliding_velocity(node), softness);
-    strain<Kind>(node, indentation, slides);
+    if constexpr (Kind == spring_kind::smooth) {
+      node.impulse = {impulse, 0.0, 0.0};
+      tell(node, false);
+      store<Kind>(node, indentation, {});
+    } else {
+      const double softness = 0.5 * node.delassus.tangential() + softness_of(node);
+      const bool slides = rub(node, impulse, sliding_velocity(node), softness);
+      store<Kind>(node, indentation, strained(node, slides));
+    }
   }
 
-  // What the step leaves in the springs. One that sticks moves along; one that slides keeps no more than its
-  // force holds, in the direction of its end.
-  template <spring_kind Kind, class Node>
-  void strain(Node& node, double indentation, bool slides) const {
+  // What the step leaves in the tangential spring. One that sticks moves along; one that slides keeps no more
+  // than its force holds, in the direction of its end.
+  template <class Node>
+  vector strained(const Node& node, bool slides) const {
     const double h = node.velocity_step, per_impulse = 1.0 / (h * tangential_stiffness);
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2}, r = node.impulse;
     const vector v = node.v_free + node.delassus.times(r);
@@ -248,13 +237,17 @@ struct penalty {
       const double end = by_force ? 0.0 - 2.0 * per_impulse * impulse - before : kept * after;
       return kept_if(holds, end) + 0.0;  // never -0: a node at rest keeps its bits
     };
-    const vector strained{0.0, next(spring.t1, moved.t1, r.t1), next(spring.t2, moved.t2, r.t2)};
+    return {0.0, next(spring.t1, moved.t1, r.t1), next(spring.t2, moved.t2, r.t2)};
+  }
+  template <spring_kind Kind, class Node>
+  void store(Node& node, double indentation, vector slip) const {
+    const vector before{0.0, node.state.spring.t1, node.state.spring.t2};
     const double stored_normal = potential<Kind>(indentation);
-    const double stored_tangential = tangential_potential(strained, strained);
+    const double stored_tangential = tangential_potential(slip, slip);
     node.normal_gain = stored_normal - potential<Kind>(node.state.indentation);
-    node.tangential_gain = stored_tangential - tangential_potential(spring, spring);
+    node.tangential_gain = stored_tangential - tangential_potential(before, before);
     node.stored = stored_normal + stored_tangential;
-    node.state = {indentation, strained};
+    node.state = {indentation, slip};
   }
 
   penalty_law::normal_spring spring_of(double step, double damping_ratio) const {
@@ -281,7 +274,7 @@ struct penalty {
   template <spring_kind Kind, class Node>
   void step_explicitly(Node& node) const {
     const double penetration = positive_part(-node.gap), h = node.velocity_step;
-    const double elastic = h * spring_force<Kind>(penetration);
+    const double elastic = h * penalty_law::spring_force<Kind>(stiffness, exponent, penetration);
     const double viscous = penetration > 0.0 ? h * damping * node.v_previous.n : 0.0;
     const double shear = friction > 0.0 ? h * tangential_stiffness : 0.0;
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2};
@@ -325,7 +318,8 @@ struct penalty::form : penalty {
   using answer = penalty_law::rubbed<V>;
   static constexpr bool answers_every_node = true;
   template <class Node>
-  static constexpr bool finds_roots = Implicit && !(is_linear(Kind) && has_transverse_delassus<Node>);
+  static constexpr bool finds_roots =
+      Implicit&& Kind != spring_kind::smooth && !(is_linear(Kind) && has_transverse_delassus<Node>);
 
   template <class Node>
   void step(Node& node) const requires(!finds_roots<Node>) {
@@ -365,8 +359,8 @@ struct penalty::form : penalty {
     if constexpr (Kind == spring_kind::any) return all;
     if (stiffness == infinity) return all;
     const auto spring = spring_of(penalty_law::first_of(p.step), damping_ratio);
-    const penalty_law::rubbing_node<V, is_linear(Kind), Kind == spring_kind::plain> node(spring, friction, p);
-    return (friction > 0.0) & any(p.a11 > 0.0) ? node.solve(a) : node.press(a);
+    const penalty_law::rubbing_node<V, is_linear(Kind), is_plain(Kind)> node(spring, friction, p);
+    return friction > 0.0 && any(p.a11 > 0.0) ? node.solve(a) : node.press(a);
   }
   void solve_alone(const problem<double>& p, answer<double>& a) const {
     a = penalty_law::node_alone(spring_of(p.step, damping_ratio), friction, restitution, p).solve();
@@ -379,7 +373,8 @@ struct penalty::form : penalty {
       give<Kind>(node, a.impulse, a.indentation);
     } else {
       node.impulse = {a.impulse, a.t1, a.t2};
-      strain<Kind>(node, a.indentation, tell(node, a.outcome != penalty_law::sticks));
+      const bool slides = tell(node, a.outcome != penalty_law::sticks);
+      store<Kind>(node, a.indentation, strained(node, slides));
     }
   }
 };
@@ -392,7 +387,8 @@ void penalty::in_form(Run run) const {
   };
   const bool loses = restitution < 1.0 || damping > 0.0, is_soft = exponent == 1.0 && stiffness < infinity;
   if (integration == implicitly && is_soft && !loses)
-    return run(form<true, spring_kind::plain>{*this, ratio});
+    return friction > 0.0 ? run(form<true, spring_kind::plain>{*this, ratio})
+                          : run(form<true, spring_kind::smooth>{*this, ratio});
   if (exponent == 1.0 || stiffness == infinity) return run_kind.template operator()<spring_kind::linear>();
   if (exponent == 1.5) return run_kind.template operator()<spring_kind::hertz>();
   run_kind.template operator()<spring_kind::any>();

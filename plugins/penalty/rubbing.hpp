@@ -65,8 +65,9 @@ class rubbing_node {
     const V moved = kit::positive_part(p_.indentation - normal_.travel(p_.free));
     const V indentation = kit::select(pushes, next(end.normal, free), moved);
     a = {r, t1, t2, indentation, kit::select(holds, V(sticks), V(slides))};
-    const Mask found = (holds | is_met(end)) & regular & (r > 0.0);
-    return is_plain() | (!has_usual_scales(p_.a11, p_.a22)) | (pushes & !found);
+    const Mask is_met = meets(end), plain = is_plain(), usual = has_usual_scales(p_.a11, p_.a22);
+    const Mask found = (holds | is_met) & regular & (r > 0.0);
+    return plain | !usual | (pushes & !found);
   }
 
  private:
@@ -130,7 +131,7 @@ class rubbing_node {
   }
 
   // Whether |r_T| is mu r_N.
-  Mask is_met(const trial& x) const {
+  Mask meets(const trial& x) const {
     const V held = friction_ * x.held();
     return kit::absolute(x.length - held) <= tolerance * held;
   }
@@ -154,7 +155,7 @@ class rubbing_node {
       const V step = excess * x.det * x.length * pace * over / (slope * kit::select(bounded, target, V(1.0)));
       alpha = kit::select(active, kit::positive_part(alpha + step), alpha);
       x = at(alpha);
-      active = active & !is_met(x);
+      active = active & !meets(x);
     }
     return x;
   }

@@ -101,7 +101,7 @@ struct Packs {
       for (std::size_t j = 0; j < lanes; ++j) values[j] = doubles(problems[j])[c];
       columns[c] = kit::pack::load(values);
     }
-    rubbed<kit::pack> answer;
+    rubbed<kit::pack> answer{};
     const penalty_law::rubbing_node<kit::pack, IsLinear, IsPlain> node(
         spring, friction, std::bit_cast<rubbing<kit::pack>>(columns));
     const kit::mask not_solved = node.solve(answer);
@@ -132,7 +132,7 @@ void expect_solved(double exponent, bool loses) {
     const Solved packs(spring, problems);
     for (std::size_t j = 0; j < Solved::lanes; ++j, ++total) {
       const std::string at = "trial " + std::to_string(trial) + ", lane " + std::to_string(j);
-      rubbed<double> own;
+      rubbed<double> own{};
       const penalty_law::rubbing_node<double, IsLinear, IsPlain> node(spring, friction, problems[j]);
       ASSERT_EQ(node.solve(own), packs.left[j]) << at;
       left += packs.left[j] ? 1 : 0;
@@ -173,7 +173,7 @@ TEST(PenaltyRubbing, AgreesWithTheSolverOfOneNode) {
     const bool is_linear = trial % 2 == 0;
     const normal_spring spring = draw.spring(is_linear ? 1.0 : 1.5, trial % 3 == 0);
     const rubbing<double> p = draw.problem(spring.step);
-    rubbed<double> quick;
+    rubbed<double> quick{};
     const bool left = is_linear
                           ? penalty_law::rubbing_node<double, true, false>(spring, friction, p).solve(quick)
                           : penalty_law::rubbing_node<double, false, false>(spring, friction, p).solve(quick);

@@ -13,8 +13,7 @@
 //   is
 //                                                         not promised where parameters vary
 //   template <class Node> double stable_velocity_step(const Node&) const   if it limits the step: by how much
-//                                                         at this node, whatever its state; see ilaw_report;
-//                                                         a form that limits none: is_always_stable = true
+//                                                         at this node, whatever its state; see ilaw_report
 //   template <class Run> void in_form(Run) const;         a shorter step for these parameters, see below
 //   const char* conflict() const;                         why parameters do not go together, or null
 //   static const void* extension(const char* name);       see ilaw_law (default: ilaw/profile.h alone)
@@ -32,6 +31,8 @@
 //   struct plain;                                         in the law, as is the declaration of in_form
 //   struct law::plain : law {                             behind the law
 //     static constexpr bool forgets = true;               where the law has a history: this step needs none
+//     static constexpr bool is_always_stable = true;      limits no step, so that none is worked out
+//     static constexpr bool needs_previous = true;        inputs() then always has v_previous: no loop without
 //     template <class Node> void step(Node&) const;
 //   };
 //   template <class Run> void law::in_form(Run run) const {
