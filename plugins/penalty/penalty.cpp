@@ -204,7 +204,7 @@ struct penalty {
     const auto found = normal.linear();
     const bool acts = acts_on(node);
     const double moved = normal.next(found.impulse, found.opens);
-    give<Kind>(node, acts ? found.impulse : 0.0, acts ? moved : 0.0);
+    give<Kind>(node, kept_if(acts, found.impulse), kept_if(acts, moved));
   }
 
   // Gives the node what its normal spring gives, and what friction makes of it.
