@@ -1,10 +1,12 @@
-// compression.hpp - one step of the implicit normal spring at one node, an equation with one unknown:
+// compression.hpp - one step of the implicit normal spring at one node or a pack of them, an equation with
+// one unknown:
 //
 //     r = h <S(x, x_free) - c phi vbar>,    v = v_free + H r,    vbar = (v^- + v)/2,
 //     x_free = x - h (vbar + lead <v - v^->),    x' = <x_free>,
 //
 // S: mean force of the spring on its way, (P(x) - P(x'))/(x - x_free), P = k x^(p+1)/(p+1); phi: the part
-// of the way on which it is closed. The right-hand side never increases with r: one solution.
+// of the way on which it is closed. The right-hand side never increases with r: one solution. penalty.md
+// derives it.
 #pragma once
 
 #include <ilaw/kit/node.hpp>
@@ -34,149 +36,232 @@ inline double damping_ratio(double restitution) {
   return lost / pi * (((0.0081 * lost + 0.022) * lost + 0.2088) * lost + 1.0);
 }
 
-// V: double, or a pack of them for Hertz's exponent.
-template <class V>
-struct compression_of_any {
+// plain: linear, neither rigid nor with damper or restitution. smooth: the same without friction.
+enum class spring_kind { smooth, plain, linear, hertz, any };
+constexpr bool is_plain(spring_kind kind) {
+  return kind == spring_kind::smooth || kind == spring_kind::plain;
+}
+constexpr bool is_linear(spring_kind kind) { return is_plain(kind) || kind == spring_kind::linear; }
+
+template <spring_kind Kind>
+double spring_force(double stiffness, double exponent, double penetration) {
+  if constexpr (is_linear(Kind)) return stiffness * penetration;
+  if constexpr (Kind == spring_kind::hertz) return stiffness * (penetration * kit::square_root(penetration));
+  return stiffness * kit::power(penetration, exponent);
+}
+template <spring_kind Kind>
+double potential(double stiffness, double exponent, double penetration) {
+  const double work = spring_force<Kind>(stiffness, exponent, penetration) * penetration;
+  if constexpr (is_linear(Kind)) return 0.5 * work;
+  if constexpr (Kind == spring_kind::hertz) return 0.4 * work;
+  return work / (exponent + 1.0);
+}
+
+// Explicit springs with a damper that lags: omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega)
+// (Belytschko, Liu, Moran 2000, eq. 6.2.31). The normal spring is taken as closed, and as stiff as it is
+// now.
+inline double stable_step(double delassus, double tangent, double damping) {
+  const double half_damper = 0.5 * damping * delassus;
+  return 2.0 / (kit::length(kit::square_root(tangent * delassus), half_damper) + half_damper);
+}
+
+// What is the same at all nodes of a loop.
+struct normal_spring {
+  double step, stiffness, exponent;
+  double lead;            // 0: keeps all energy; 1/2: a rigid spring keeps none
+  double damping, ratio;  // one of them is zero: the damper as given, or by its part of the critical one
+
+  bool is_rigid() const { return stiffness == kit::infinity; }
+  // Of a spring that is not rigid: what a rigid one multiplies by it counts nowhere.
+  double soft() const { return is_rigid() ? 0.0 : stiffness; }
+
+  // The damper of the step. By weights, since GCC vectorises no choice that is the same at all nodes.
+  template <class V>
+  V damper(V delassus) const {
+    const double by_ratio = ratio > 0.0 ? 1.0 : 0.0, given = 1.0 - by_ratio;
+    const V pace = step * kit::square_root(soft()) * kit::square_root(delassus);
+    const V reached = step * delassus * (1.0 + (0.25 + 0.5 * ratio) * pace);
+    return (2.0 * ratio * pace + damping) /
+           (by_ratio * reached + given * (1.0 + 0.5 * step * damping * delassus));
+  }
+};
+
+// A number that is zero for sure: what it multiplies is not computed.
+struct none {
+  template <class V>
+  friend none operator*(V /*x*/, none) {
+    return {};
+  }
+  template <class V>
+  friend none operator*(none, V /*x*/) {
+    return {};
+  }
+  template <class V>
+  friend V operator+(V x, none) {
+    return x;
+  }
+  template <class V>
+  friend V operator-(V x, none) {
+    return x;
+  }
+};
+
+// IsPlain: linear, not rigid, without damper or restitution. The same numbers with less to compute.
+template <class V, bool IsPlain = false>
+struct compression {
   using Mask = kit::mask_of<V>;
 
+  normal_spring spring;
   V free, previous;  // v_free, v^-
-  V delassus, step;
-  V indentation;  // x
-  V stiffness, exponent, damping;
-  V lead;  // 0: keeps all energy; 1/2: a rigid spring keeps none
+  V delassus;
+  V indentation;                                 // x
+  std::conditional_t<IsPlain, none, V> damping;  // c
 
+  // opens: 1 where the way ends open, else 0; end: x'. The impulse falls by gain/(1 + gain H) where v_free
+  // grows by 1; pace: scale (1 + gain H), gain times as much as it is where the spring opens.
   struct solution {
-    V impulse, opens;  // opens: 1 where the way ends open, else 0
+    V impulse, opens, end, gain, pace;
   };
 
   V mean_velocity(V v) const { return 0.5 * (previous + v); }
-  V travel(V v) const { return step * (mean_velocity(v) + lead * kit::positive_part(v - previous)); }
+  V travel(V v) const { return spring.step * (mean_velocity(v) + lead() * kit::positive_part(v - previous)); }
 
-  // p = 1. <v - v^-> is the larger of 0 and v - v^-, and the impulse falls as the travel grows: it is the
-  // smaller of those that either choice gives.
   solution linear() const {
-    const solution plain = linear_with(0.0), leading = linear_with(lead);
-    const bool leads = leading.impulse <= plain.impulse;
-    // By arithmetic, since GCC vectorises no choice between conditions.
-    const double part = leads ? 1.0 : 0.0;
-    return {leads ? leading.impulse : plain.impulse, plain.opens + part * (leading.opens - plain.opens)};
+    const V most = kit::larger(spring.step * (kit::absolute(free) + kit::absolute(previous)), indentation);
+    const V scale = kit::power_scale_of(most).down;
+    return linear(scale, scale * free, scale * delassus);
   }
 
-  // x', and where the spring is stiff from its force, which then is the more accurate.
-  double next(solution found) const {
-    const double v = free + delassus * found.impulse;
-    const double moved = kit::positive_part(indentation - travel(v));
-    const double pressed =
-        2.0 / stiffness * (found.impulse / step + damping * mean_velocity(v)) - indentation;
-    const bool is_stiff = (exponent == 1.0) & (step * step * stiffness * delassus > 4.0);
-    const double closed = (is_stiff & (found.impulse > 0.0)) ? kit::positive_part(pressed) : moved;
-    return ((found.opens != 0.0) | (stiffness == kit::infinity)) ? 0.0 : closed;
+  // p = 1, for v_free and H times `scale` as they are given: so they need not be divided by a determinant,
+  // and a power of two keeps squares of lengths from overflow. One division and one square root.
+  solution linear(V scale, V v_free, V h) const {
+    const double step = spring.step, k = spring.soft();
+    const auto rigid = if_rigid(1.0), never = if_rigid(kit::infinity);
+    const V before = scale * previous, x = scale * indentation, sum = v_free + before;
+    const auto part = leading_part(scale, v_free, h);
+
+    // Closed to the end, all is linear.
+    const V start = 0.5 * sum + part * (v_free - before), gain = h * (0.5 + part);
+    const V way = step * start, give = step * gain;
+    const V drive = step * (k * (x - 0.5 * way) - 0.5 * damping * sum) - rigid * start;
+    const V closed = kit::positive_part(drive);
+    const V resists = (1.0 - rigid) * scale + 0.5 * step * (k * give + damping * h) + rigid * gain;
+    const Mask opens = give * closed > (x - way) * resists + never;
+
+    // If that lets it open, r travel = h x <k x/2 - c vbar>, a quadratic equation.
+    const V linear = way + 0.5 * step * indentation * damping * h;
+    const V constant = 0.5 * step * indentation * kit::positive_part(k * x - damping * sum);
+    const V root = kit::square_root(linear * linear + 4.0 * give * constant);
+    const V over = kit::select(linear > 0.0, 2.0 * constant, root - linear);
+    const V under = kit::select(linear > 0.0, linear + root, 2.0 * give);
+
+    const V r = kit::select(opens, over, closed) / kit::select(opens, under, resists);
+    const V stretch = step * (0.5 + part);
+    const V opening = r * stretch + 0.5 * step * indentation * damping;
+    return {r, kit::select(opens, V(1.0), V(0.0)), V(0.0),
+            kit::select(opens, opening, 0.5 * step * (k * stretch + damping)),
+            kit::select(opens, root, resists)};
   }
 
-  // The impulse h <S - c phi vbar> that springs and damper give on a way that ends with v.
-  V given(V v) const {
-    const V way = travel(v), end = kit::positive_part(indentation - way);
-    const V closed = kit::select(way > indentation, indentation / way, V(1.0));
-    const V spring = closed * mean_force(indentation, end);
-    return step * kit::positive_part(spring - closed * damping * mean_velocity(v));
+  // Whether a linear spring pushes in the free step, without a division.
+  Mask linear_pushes() const {
+    const V way = kit::smaller(travel(free), indentation);
+    return spring.soft() * (indentation - 0.5 * way) - damping * mean_velocity(free) > 0.0;
   }
 
-  // Any p; a pack: Hertz's.
-  [[gnu::noinline]] solution power_law() const {
-    const V r = impulse_where([this](V trial) { return given(free + delassus * trial) - trial; });
-    return {r, kit::select(travel(free + delassus * r) > indentation, V(1.0), V(0.0))};
+  // x' of a linear spring, and where it is stiff from its force, which then is the more accurate.
+  V next(V impulse, V opens) const {
+    const double step = spring.step, k = spring.soft();
+    const V v = free + delassus * impulse;
+    const V moved = kit::positive_part(indentation - travel(v));
+    const V pressed = 2.0 / (k * step) * impulse + 2.0 / k * (damping * mean_velocity(v)) - indentation;
+    const Mask by_force = (step * step * k * delassus > 4.0) & (impulse > 0.0);
+    const V closed = kit::select(by_force, kit::positive_part(pressed), moved);
+    return (1.0 - if_rigid(1.0)) * (1.0 - opens) * closed;
   }
 
-  // The impulse r where f(r), the force for a step with r less r itself, is zero; NaN where it has no root,
-  // which only friction that is coupled to the normal brings about. f(0) is the force of the free step: an
-  // upper bound without coupling. Secants that keep the root bracketed (Illinois; Dowell and Jarratt 1971),
-  // and every third time the middle, so that no shape takes long. Lanes that are done keep their numbers.
-  template <class Function>
-  static V impulse_where(Function f) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    V low = 0.0, at_low = f(low), high = at_low, last = 0.0;
-    const Mask pushes = at_low > 0.0;
-    if (!kit::any(pushes)) return low;
-    V at_high = f(high);
-    for (int k = 0; k < most_doublings && kit::any(pushes & (at_high > 0.0)); ++k) {
-      const Mask grows = pushes & (at_high > 0.0);
-      high = kit::select(grows, 2.0 * high, high);
-      at_high = kit::select(grows, f(high), at_high);
-    }
-    const Mask unbounded = at_high > 0.0;
-    Mask active = pushes & (at_high < 0.0);
-    for (int k = 0; k < most_iterations && kit::any(active); ++k) {
-      const V secant = low + (high - low) * (at_low / (at_low - at_high));
-      const Mask inside = (secant > low) & (secant < high);
-      const V x = k % 3 == 2 ? middle(low, high) : kit::select(inside, secant, middle(low, high));
-      active = active & (x > low) & (x < high);
-      const V value = f(x), factor = kit::select(last * value > 0.0, V(0.5), V(1.0));
-      const Mask rises = active & (value > 0.0), falls = active & !(value > 0.0);
-      low = kit::select(rises, x, low);
-      high = kit::select(falls, x, high);
-      at_low = kit::select(rises, value, kit::select(falls, at_low * factor, at_low));
-      at_high = kit::select(falls, value, kit::select(rises, at_high * factor, at_high));
-      last = kit::select(rises, V(1.0), kit::select(falls, V(-1.0), last));
-      active = active & (at_high < 0.0);
-    }
-    return kit::select(pushes, kit::select(unbounded, V(none), high), V(0.0));
-  }
+  // p = 3/2, lead 0, for the same scaled numbers. With q = h^2 k H/5, B = 1 + h c H/2, a = sqrt(x) and
+  // z = x', a spring that stays closed has
+  //     (q a + B) z + q T(z) = D,    T = z^2/(a + sqrt(z)),    D = B x - h (v_free + v^-)/2 - q a^3,
+  // since (a^5 - z^(5/2))/(a^2 - z) = a^3 + a z + T. T is convex: Newton's method falls to the root from the
+  // solution without T, and its next z is a quotient of sums of positive terms.
+  solution hertz(V scale, V v_free, V h) const {
+    const double step = spring.step;
+    const V x = indentation, inverse = 1.0 / scale, a = kit::square_root(x);
+    const V give = 0.5 * step * h * inverse, way = 0.5 * step * (v_free * inverse + previous);
+    const double force = 0.4 * spring.stiffness * step;
+    const V q = give * force, b = 1.0 + give * damping, slope = q * a + b;
+    const V rest = b * x - way - q * a * x;
+    const Mask opens = !(rest >= 0.0);
+    const V z = indentation_of_hertz(a, q, slope, kit::select(opens, V(0.0), rest));
 
-  // (P(x) - P(x'))/(x - x'), without cancelling where both are close.
-  V mean_force(V x, V end) const {
-    const V most = kit::larger(x, end), least = kit::smaller(x, end);
-    if constexpr (std::is_same_v<V, double>)
-      if (exponent != 1.5) return exponent == 1.0 ? 0.5 * stiffness * (x + end) : any_mean_force(most, least);
-    const V s = kit::square_root(kit::select(most > 0.0, least / most, V(0.0)));
-    const V mean = 0.4 * ((((s + 1.0) * s + 1.0) * s + 1.0) * s + 1.0) / (1.0 + s);
-    return stiffness * (most * kit::square_root(most)) * mean;
+    // Where the tangents of force and inertia meet.
+    const V y = kit::square_root(z), sum = a + y, part = kit::select(sum > 0.0, z / sum, V(0.0));
+    const V tangent = force * (a + part * kit::select(sum > 0.0, (2.0 * a + 1.5 * y) / sum, V(0.0)));
+    const V stiff = tangent + damping, pushes = force * (a * x + a * z + part * z) - damping * (x - z);
+    const V drive = pushes + stiff * ((x - z) - way), resists = 1.0 + give * stiff;
+
+    // As for the linear spring; P(x) = k x^(5/2)/(5/2).
+    const V linear = way + give * damping * x;
+    const V constant = x * kit::positive_part(force * (a * x) - damping * way);
+    const V root = kit::square_root(linear * linear + 4.0 * give * constant);
+    const V over = kit::select(linear > 0.0, 2.0 * constant, root - linear);
+    const V under = kit::select(linear > 0.0, linear + root, 2.0 * give);
+
+    const V r = kit::select(opens, over, kit::positive_part(drive)) / kit::select(opens, under, resists);
+    const V end = kit::select(drive > 0.0, z, kit::positive_part(x - way));
+    return {r, kit::select(opens, V(1.0), V(0.0)), kit::select(opens, V(0.0), end),
+            0.5 * step * kit::select(opens, r + damping * x, stiff),
+            scale * kit::select(opens, root, resists)};
   }
 
  private:
-  // Its impulse with <v - v^-> taken as v - v^- times `part`. Closed to the end, all is linear; if that lets
-  // it open, r travel = h x <k x/2 - c vbar>, a quadratic equation.
-  solution linear_with(double part) const {
-    const double sum = free + previous, damper = damping * delassus;
-    const double start = 0.5 * sum + part * (free - previous), gain = delassus * (0.5 + part);
-    const double way = step * start, drive = stiffness * (indentation - 0.5 * way) - 0.5 * damping * sum;
-    const double spring =
-        kit::positive_part(step * drive / (1.0 + 0.5 * step * (stiffness * (step * gain) + damper)));
-    const double rigid = kit::positive_part(-start / gain);
-    const double closed = stiffness < kit::infinity ? spring : rigid;
-    const bool opens = step * (start + gain * closed) > indentation && stiffness < kit::infinity;
-
-    const double linear = way + 0.5 * step * indentation * damper;
-    const double constant =
-        0.5 * step * indentation * kit::positive_part(stiffness * indentation - damping * sum);
-    const double root = kit::length(linear, 2.0 * kit::square_root(step * gain * constant));
-    const double above = 2.0 * constant / (linear + root), below = 0.5 * (root - linear) / (step * gain);
-    const double opening = linear > 0.0 ? above : below;
-    return {opens ? opening : closed, opens ? 1.0 : 0.0};
+  auto lead() const {
+    if constexpr (IsPlain)
+      return none{};
+    else
+      return spring.lead;
+  }
+  auto if_rigid(double x) const {
+    if constexpr (IsPlain)
+      return none{};
+    else
+      return spring.is_rigid() ? x : 0.0;
+  }
+  auto leading_part(V scale, V v_free, V h) const {
+    if constexpr (IsPlain)
+      return none{};
+    else
+      return kit::select(leads(scale, v_free, h), V(spring.lead), V(0.0));
+  }
+  // Whether v > v^- in the end: whether at v = v^- the spring gives more than leads there. One comparison of
+  // what was chosen, since GCC vectorises no choice between conditions.
+  Mask leads(V scale, V v_free, V h) const {
+    const double step = spring.step, k = spring.soft(), rigid = if_rigid(1.0);
+    const V before = scale * previous, x = scale * indentation, way = step * before,
+            viscous = damping * before;
+    const V closed = kit::positive_part(k * (x - 0.5 * way) - viscous);
+    const V opening = x * kit::positive_part(0.5 * k * x - viscous);
+    const V reach = (1.0 - rigid) * ((before - v_free) * scale), push = step * h;
+    const V given = push * kit::select(way <= x, closed, opening) - rigid * before;
+    return given > kit::select(way <= x, reach, reach * way);
   }
 
-  double any_mean_force(double most, double least) const {
-    return most > 0.0 ? stiffness * kit::power(most, exponent) * mean_power(least / most) : 0.0;
-  }
-
-  // (1 - t^(p+1))/((p + 1) (1 - t)), by its series in 1 - t where that is small.
-  double mean_power(double t) const {
-    const double q = exponent + 1.0, d = 1.0 - t;
-    if (d > 0x1p-4) return (1.0 - t * kit::power(t, exponent)) / (q * d);
-    double sum = 1.0, term = 1.0;
-    for (int k = 1; k < series_terms; ++k) {
-      term *= d * (k - q) / (k + 1);
-      sum += term;
+  static V indentation_of_hertz(V a, V q, V slope, V rest) {
+    constexpr int most_steps = 40;
+    constexpr double close = 0x1p-26;  // the step that follows squares it
+    V z = rest / slope;
+    Mask active = z > 0.0;
+    for (int k = 0; k < most_steps && kit::any(active); ++k) {
+      const V y = kit::square_root(z), sum = a + y, bent = q * z, square = sum * sum;
+      const V next =
+          (bent * z * (a + 0.5 * y) + rest * square) / (slope * square + bent * (2.0 * a + 1.5 * y));
+      const Mask far = z - next > close * next;
+      z = kit::select(active, next, z);
+      active = active & far;
     }
-    return sum;
-  }
-  static constexpr int series_terms = 16;
-  static constexpr int most_iterations = 200, most_doublings = 64;
-  // Half way as the bits count where the numbers are far apart, so that an impulse of any size is found.
-  static V middle(V low, V high) {
-    return kit::select(high <= 4.0 * low, 0.5 * (low + high),
-                       kit::halfway(kit::larger(low, 0x1p-80 * high), high));
+    return kit::select(active, V(std::numeric_limits<double>::quiet_NaN()), z);
   }
 };
-using compression = compression_of_any<double>;
 
 }  // namespace penalty_law

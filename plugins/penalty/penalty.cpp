@@ -1,5 +1,5 @@
 // Penalised contact with regularised friction, explicit and locally implicit. See penalty.md.
-#include "compression.hpp"
+#include "alone.hpp"
 
 #include <ilaw/kit.hpp>
 
@@ -9,7 +9,7 @@ using namespace ilaw::kit;
 
 constexpr const char* integration_choices[] = {"explicit", "implicit"};
 constexpr double implicitly = 1.0;
-enum class spring_kind { linear, hertz, any };
+using penalty_law::spring_kind, penalty_law::is_linear, penalty_law::is_plain;
 
 struct penalty {
   double stiffness;
@@ -117,20 +117,12 @@ struct penalty {
     return card.capabilities & ~(lets_go_early ? std::uint32_t{ILAW_CAN_REST} : 0U);
   }
 
-  // Explicit springs with a damper that lags: omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega)
-  // (Belytschko, Liu, Moran 2000, eq. 6.2.31). The normal spring is taken as closed, and as stiff as it is
-  // now.
   template <class Node>
   double stable_velocity_step(const Node& node) const {
     if (integration == implicitly) return infinity;
-    const double penetration = positive_part(-node.gap), normal = node.delassus.normal();
-    const double tangent =
-        exponent == 1.0 ? stiffness : stiffness * exponent * power(penetration, exponent - 1.0);
-    const double pace = square_root(tangent * normal), half_damper = 0.5 * damping * normal;
-    const double closed = 2.0 / (length(pace, half_damper) + half_damper);
-    if (!(friction > 0.0)) return closed;
-    return smaller(closed,
-                   2.0 / square_root(tangential_stiffness * penalty_law::largest_tangential(node.delassus)));
+    return exponent == 1.0
+               ? stable_with(node, stiffness)
+               : stable_with(node, stiffness * exponent * power(positive_part(-node.gap), exponent - 1.0));
   }
 
   // Explicit or implicit, and the kind of spring: loops without a choice of powers vectorise.
@@ -144,17 +136,18 @@ struct penalty {
   }
 
  private:
-  template <spring_kind Kind>
-  double spring_force(double penetration) const {
-    if constexpr (Kind == spring_kind::linear) return stiffness * penetration;
-    if constexpr (Kind == spring_kind::hertz) return stiffness * (penetration * square_root(penetration));
-    return stiffness * power(penetration, exponent);
+  // For the normal stiffness as it is now.
+  template <class Node>
+  double stable_with(const Node& node, double tangent) const {
+    const double closed = penalty_law::stable_step(node.delassus.normal(), tangent, damping);
+    const double rubs = kept_if(friction > 0.0, tangential_stiffness);  // none: 2/0 limits nothing
+    const double sliding = 2.0 / square_root(rubs * penalty_law::largest_tangential(node.delassus));
+    return smaller(sliding, closed);
   }
   // Energy of the normal spring; none when it is rigid.
   template <spring_kind Kind>
   double potential(double penetration) const {
-    const double energy = spring_force<Kind>(penetration) * penetration / (exponent + 1.0);
-    return kept_if(stiffness < infinity, energy);
+    return kept_if(stiffness < infinity, penalty_law::potential<Kind>(stiffness, exponent, penetration));
   }
   double tangential_potential(vector slip, vector other) const {
     return kept_if(tangential_stiffness < infinity,
@@ -162,31 +155,20 @@ struct penalty {
   }
 
   // Gives the node a normal impulse that is known already, and the tangential one -q/softness within the
-  // cone.
-  // Says whether it slides.
+  // cone. Says whether it slides.
   template <class Node>
   bool rub(Node& node, double normal, vector q, double softness) const {
-    q.n = -normal;
-    const auto result = solve_contact_friction(diagonal_delassus{1.0, softness, softness}, -1.0, q, friction);
+    const auto result = penalty_law::rub_apart(normal, q, softness, friction);
     node.impulse = result.impulse;
-    const double rubbed = result.slips ? status::slip : status::stick;
+    return tell(node, result.slips);
+  }
+  // The status of a node that has its impulse. Who has no cone slides.
+  template <class Node>
+  bool tell(Node& node, bool slips) const {
+    const double normal = node.impulse.n, rubbed = slips ? status::slip : status::stick;
     const double closed = friction > 0.0 ? rubbed : status::closed;
     node.status = normal > 0.0 ? closed : status::free;
-    return result.slips | !(friction * normal > 0.0);
-  }
-
-  // The mean over the step of forces that the step ends with, so that springs give back what they took: see
-  // penalty.md.
-  template <spring_kind Kind, class Node>
-  void step_implicitly(Node& node, double damping_ratio) const {
-    penalty_law::compression normal = compression_of(node, damping_ratio);
-    const bool acts = acts_on(node);
-    if (friction > 0.0 && node.delassus.anisotropy() != 0.0) {
-      const auto found = rub_any<Kind>(node, acts, normal, sliding_velocity(node), softness_of(node));
-      strain<Kind>(node, acts ? normal.next(found) : 0.0, node.status != status::stick);
-    } else {
-      give<Kind>(node, normal, Kind == spring_kind::linear ? normal.linear() : normal.power_law(), acts);
-    }
+    return slips | !(friction * normal > 0.0);
   }
 
   template <class Node>
@@ -205,26 +187,49 @@ struct penalty {
   double softness_of(const Node& node) const {
     return 2.0 / node.velocity_step / (node.velocity_step * tangential_stiffness);
   }
+  template <class Node>
+  double indentation_of(const Node& node) const {
+    return kept_if(stiffness < infinity, node.state.indentation);
+  }
+
+  // The mean over the step of forces that the step ends with, so that springs give back what they took: see
+  // penalty.md. Here for a linear normal spring.
+  template <spring_kind Kind, class Node>
+  void step_implicitly(Node& node, double damping_ratio) const {
+    const auto spring = spring_of(node.velocity_step, damping_ratio);
+    const double delassus = node.delassus.normal();
+    penalty_law::compression<double, is_plain(Kind)> normal{spring,   node.v_free.n,        node.v_previous.n,
+                                                            delassus, indentation_of(node), {}};
+    if constexpr (!is_plain(Kind)) normal.damping = spring.damper(delassus);
+    const auto found = normal.linear();
+    const bool acts = acts_on(node);
+    const double moved = normal.next(found.impulse, found.opens);
+    give<Kind>(node, kept_if(acts, found.impulse), kept_if(acts, moved));
+  }
 
   // Gives the node what its normal spring gives, and what friction makes of it.
   template <spring_kind Kind, class Node>
-  void give(Node& node, const penalty_law::compression& normal, penalty_law::compression::solution found,
-            bool acts) const {
-    found.impulse = acts ? found.impulse : 0.0;
-    const double softness = 0.5 * node.delassus.tangential() + softness_of(node);
-    const bool slides = rub(node, found.impulse, sliding_velocity(node), softness);
-    strain<Kind>(node, acts ? normal.next(found) : 0.0, slides);
+  void give(Node& node, double impulse, double indentation) const {
+    if constexpr (Kind == spring_kind::smooth) {
+      node.impulse = {impulse, 0.0, 0.0};
+      tell(node, false);
+      store<Kind>(node, indentation, {});
+    } else {
+      const double softness = 0.5 * node.delassus.tangential() + softness_of(node);
+      const bool slides = rub(node, impulse, sliding_velocity(node), softness);
+      store<Kind>(node, indentation, strained(node, slides));
+    }
   }
 
-  // What the step leaves in the springs. One that sticks moves along; one that slides keeps no more than its
-  // force holds, in the direction of its end.
-  template <spring_kind Kind, class Node>
-  void strain(Node& node, double indentation, bool slides) const {
+  // What the step leaves in the tangential spring. One that sticks moves along; one that slides keeps no more
+  // than its force holds, in the direction of its end.
+  template <class Node>
+  vector strained(const Node& node, bool slides) const {
     const double h = node.velocity_step, per_impulse = 1.0 / (h * tangential_stiffness);
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2}, r = node.impulse;
     const vector v = node.v_free + node.delassus.times(r);
     const vector moved = spring + (0.5 * h) * (node.v_previous + v);
-    const double most = per_impulse * r.tangential_length(), length = moved.tangential_length();
+    const double most = per_impulse * friction_limit(friction, r.n), length = moved.tangential_length();
     const bool is_stiff = h * h * tangential_stiffness * node.delassus.tangential() > 4.0;
     const double kept = (slides & (length > most)) ? most / length : 1.0;
     const bool by_force = is_stiff & !slides, holds = tangential_stiffness < infinity && friction > 0.0;
@@ -232,31 +237,26 @@ struct penalty {
       const double end = by_force ? 0.0 - 2.0 * per_impulse * impulse - before : kept * after;
       return kept_if(holds, end) + 0.0;  // never -0: a node at rest keeps its bits
     };
-    const vector strained{0.0, next(spring.t1, moved.t1, r.t1), next(spring.t2, moved.t2, r.t2)};
+    return {0.0, next(spring.t1, moved.t1, r.t1), next(spring.t2, moved.t2, r.t2)};
+  }
+  template <spring_kind Kind, class Node>
+  void store(Node& node, double indentation, vector slip) const {
+    const vector before{0.0, node.state.spring.t1, node.state.spring.t2};
     const double stored_normal = potential<Kind>(indentation);
-    const double stored_tangential = tangential_potential(strained, strained);
+    const double stored_tangential = tangential_potential(slip, slip);
     node.normal_gain = stored_normal - potential<Kind>(node.state.indentation);
-    node.tangential_gain = stored_tangential - tangential_potential(spring, spring);
+    node.tangential_gain = stored_tangential - tangential_potential(before, before);
     node.stored = stored_normal + stored_tangential;
-    node.state = {indentation, strained};
+    node.state = {indentation, slip};
   }
 
-  template <class Node>
-  penalty_law::compression compression_of(const Node& node, double damping_ratio) const {
-    const double h = node.velocity_step, delassus = node.delassus.normal();
-    const double pace = h * square_root(stiffness) * square_root(delassus);
-    const double reached =
-        2.0 * damping_ratio * (pace / (h * delassus)) / (1.0 + (0.25 + 0.5 * damping_ratio) * pace);
-    const double damper = damping / (1.0 + 0.5 * h * damping * delassus);
-    return {.free = node.v_free.n,
-            .previous = node.v_previous.n,
-            .delassus = delassus,
-            .step = h,
-            .indentation = stiffness < infinity ? node.state.indentation : 0.0,
+  penalty_law::normal_spring spring_of(double step, double damping_ratio) const {
+    return {.step = step,
             .stiffness = stiffness,
             .exponent = exponent,
-            .damping = stiffness < infinity ? reached + damper : 0.0,
-            .lead = 1.0 / (1.0 + restitution) - 0.5};
+            .lead = 1.0 / (1.0 + restitution) - 0.5,
+            .damping = kept_if(stiffness < infinity, damping),
+            .ratio = damping_ratio};
   }
 
   // How much of the velocity before a step counts for a spring's mean: all; where it is rigid what of it the
@@ -269,53 +269,12 @@ struct penalty {
     return tangential_stiffness < infinity ? 1.0 : part;
   }
 
-  // The same for any H. Tangents with a normal impulse that is known are Coulomb's local problem without
-  // coupling, the tangential spring an inverse mass beside H; what their impulse does to the normal leaves
-  // one equation for one unknown. A rigid spring has none to find: Coulomb's local problem as it is.
-  template <spring_kind Kind, class Node>
-  penalty_law::compression::solution rub_any(Node& node, bool acts, penalty_law::compression& normal,
-                                             vector q, double softness) const {
-    local_coulomb problem{};
-    fill(problem, node.delassus);
-    const double coupling_1 = problem.h[3], coupling_2 = problem.h[4], nn = problem.h[0];
-    for (double& entry : problem.h) entry *= 0.5;
-    problem.h[1] += softness;
-    problem.h[2] += softness;
-    problem.mu[0] = problem.mu[1] = friction;
-    problem.q[1] = q.t1;
-    problem.q[2] = q.t2;
-    if (stiffness == infinity) {
-      problem.q[0] = 0.5 * (normal.free + (normal.previous < 0.0 ? restitution : 1.0) * normal.previous);
-      apply_local_coulomb(node, acts ? -1.0 : 1.0, problem);
-      return {node.impulse.n, 0.0};
-    }
-    problem.h[3] = problem.h[4] = 0.0;
-    const double free = normal.free;
-    const auto tangents = [&](double r) {
-      problem.q[0] = -problem.h[0] * r;
-      problem.q[1] = q.t1 + 0.5 * coupling_1 * r;
-      problem.q[2] = q.t2 + 0.5 * coupling_2 * r;
-      apply_local_coulomb(node, -1.0, problem);
-      node.impulse.n = r;
-      return free + coupling_1 * node.impulse.t1 + coupling_2 * node.impulse.t2;
-    };
-    penalty_law::compression::solution found{0.0, 0.0};
-    if (acts && coupling_1 == 0.0 && coupling_2 == 0.0)
-      found = Kind == spring_kind::linear ? normal.linear() : normal.power_law();
-    else if (acts)
-      found.impulse = normal.impulse_where([&](double r) { return normal.given(tangents(r) + nn * r) - r; });
-    normal.free = tangents(acts ? found.impulse : 0.0);
-    if (!is_finite(found.impulse)) node.refused = no_solution;
-    found.opens = normal.travel(normal.free + nn * found.impulse) > normal.indentation ? 1.0 : 0.0;
-    return found;
-  }
-
   // Forces of the configuration and the half step before: the stiffness eats the critical time step. The
   // spring is kept as the motion of this step will strain it, so that the next step finds it ready.
   template <spring_kind Kind, class Node>
   void step_explicitly(Node& node) const {
     const double penetration = positive_part(-node.gap), h = node.velocity_step;
-    const double elastic = h * spring_force<Kind>(penetration);
+    const double elastic = h * penalty_law::spring_force<Kind>(stiffness, exponent, penetration);
     const double viscous = penetration > 0.0 ? h * damping * node.v_previous.n : 0.0;
     const double shear = friction > 0.0 ? h * tangential_stiffness : 0.0;
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2};
@@ -343,16 +302,24 @@ template <bool Implicit, spring_kind Kind>
 struct penalty::form : penalty {
   double damping_ratio;
 
-  // Springs with a root to find are solved in packs, of Hertz's exponent alone; others one by one.
-  template <class V>
-  using problem = penalty_law::compression_of_any<V>;
-  template <class V>
-  struct answer {
-    V impulse, opens;
-  };
-  static constexpr bool answers_every_node = true, is_linear = Kind == spring_kind::linear;
+  static constexpr bool is_always_stable = Implicit, needs_previous = Implicit;
   template <class Node>
-  static constexpr bool finds_roots = !is_linear && Implicit && has_transverse_delassus<Node>;
+  double stable_velocity_step(const Node& node) const {
+    if constexpr (Kind == spring_kind::any) return penalty::stable_velocity_step(node);
+    if constexpr (is_linear(Kind)) return stable_with(node, stiffness);
+    return stable_with(node, 1.5 * stiffness * square_root(positive_part(-node.gap)));
+  }
+
+  // What has a root to find is solved in packs: springs that are not linear, and friction where H has more
+  // than one tangential entry.
+  template <class V>
+  using problem = penalty_law::rubbing<V>;
+  template <class V>
+  using answer = penalty_law::rubbed<V>;
+  static constexpr bool answers_every_node = true;
+  template <class Node>
+  static constexpr bool finds_roots =
+      Implicit&& Kind != spring_kind::smooth && !(is_linear(Kind) && has_transverse_delassus<Node>);
 
   template <class Node>
   void step(Node& node) const requires(!finds_roots<Node>) {
@@ -364,31 +331,64 @@ struct penalty::form : penalty {
 
   template <class Node>
   bool asks(Node& node, problem<double>& open) const requires finds_roots<Node> {
-    open = compression_of(node, damping_ratio);
+    open.step = node.velocity_step;
+    open.free = node.v_free.n;
+    open.previous = node.v_previous.n;
+    open.delassus = node.delassus.normal();
+    open.indentation = indentation_of(node);
+    if constexpr (!has_transverse_delassus<Node>) {
+      const vector q = sliding_velocity(node);
+      const double softness = softness_of(node);
+      local_coulomb entries{};
+      fill(entries, node.delassus);
+      open.c1 = entries.h[3];
+      open.c2 = entries.h[4];
+      open.a11 = 0.5 * entries.h[1] + softness;
+      open.a22 = 0.5 * entries.h[2] + softness;
+      open.a12 = 0.5 * entries.h[5];
+      open.q1 = q.t1;
+      open.q2 = q.t2;
+    }
     const bool acts = acts_on(node);
-    answered(node, {0.0, 0.0});
+    answered(node, {});
     return acts;
   }
   template <class V>
-  static mask_of<V> solve(const problem<V>& p, answer<V>& a) {
-    const auto found = p.power_law();
-    a = {found.impulse, found.opens};
-    if constexpr (std::is_same_v<V, double>) return false;
-    return p.exponent != 1.5;
+  mask_of<V> solve(const problem<V>& p, answer<V>& a) const {
+    const mask_of<V> all(true);
+    if constexpr (Kind == spring_kind::any) return all;
+    if (stiffness == infinity) return all;
+    const auto spring = spring_of(penalty_law::first_of(p.step), damping_ratio);
+    const penalty_law::rubbing_node<V, is_linear(Kind), is_plain(Kind)> node(spring, friction, p);
+    return friction > 0.0 && any(p.a11 > 0.0) ? node.solve(a) : node.press(a);
   }
-  static void solve_alone(const problem<double>& p, answer<double>& a) { solve(p, a); }
+  void solve_alone(const problem<double>& p, answer<double>& a) const {
+    a = penalty_law::node_alone(spring_of(p.step, damping_ratio), friction, restitution, p).solve();
+  }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {
-    give<Kind>(node, compression_of(node, damping_ratio), {a.impulse, a.opens}, acts_on(node));
+    const bool fails = a.outcome == penalty_law::has_none;
+    node.refused = larger(node.refused, fails ? no_solution : not_refused);
+    if constexpr (has_transverse_delassus<Node>) {
+      give<Kind>(node, a.impulse, a.indentation);
+    } else {
+      node.impulse = {a.impulse, a.t1, a.t2};
+      const bool slides = tell(node, a.outcome != penalty_law::sticks);
+      store<Kind>(node, a.indentation, strained(node, slides));
+    }
   }
 };
 
 template <class Run>
 void penalty::in_form(Run run) const {
-  const double ratio = penalty_law::damping_ratio(restitution);
+  const double ratio = restitution < 1.0 ? penalty_law::damping_ratio(restitution) : 0.0;
   const auto run_kind = [&]<spring_kind Kind>() {
     integration == implicitly ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
   };
+  const bool loses = restitution < 1.0 || damping > 0.0, is_soft = exponent == 1.0 && stiffness < infinity;
+  if (integration == implicitly && is_soft && !loses)
+    return friction > 0.0 ? run(form<true, spring_kind::plain>{*this, ratio})
+                          : run(form<true, spring_kind::smooth>{*this, ratio});
   if (exponent == 1.0 || stiffness == infinity) return run_kind.template operator()<spring_kind::linear>();
   if (exponent == 1.5) return run_kind.template operator()<spring_kind::hertz>();
   run_kind.template operator()<spring_kind::any>();

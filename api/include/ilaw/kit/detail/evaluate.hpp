@@ -126,6 +126,37 @@ const char* refusal_reason(const Law& law, const block_of_one<Law>& b, int i, bo
   return result_reason<Law>(stepped, b.impulse_guard);
 }
 
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+double stable_step_at(const Form& law, const node_block<Law>& b, int i) {
+  auto node = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
+  return law.stable_velocity_step(node);
+}
+
+// The smallest stable step of a block's good nodes, by the form that its loop ran with.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
+[[gnu::noinline, gnu::flatten]] double least_stable_step(const Form& form, const node_block<Law>& b) {
+  static_assert(block_size % pack_size == 0);
+  const Form law = form;
+  const node_block<Law> own = b;
+  column steps;
+  for (double& step : steps.values) step = infinity;
+#pragma omp simd
+  for (int i = 0; i < own.count; ++i) {
+    const double step = stable_step_at<Law, Delassus, Frame, Layout, Scope>(law, own, i);
+    steps.values[i] = own.refused[i] == 0.0 ? step : infinity;
+  }
+  pack least = infinity;
+  for (int i = 0; i < block_size; i += pack_size) least = smaller(pack::load(steps.values + i), least);
+  double smallest = infinity;
+  for (int lane = 0; lane < pack_size; ++lane) smallest = smaller(least.values()[lane], smallest);
+  return smallest;
+}
+template <class Form>
+concept always_stable = Form::is_always_stable;
+// A form whose inputs always have v_previous is not compiled without it.
+template <class Form>
+concept needs_previous = Form::needs_previous;
+
 // The whole of a batch; Varying: with parameters per node.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, bool Varying>
 struct evaluate_walk {
@@ -155,11 +186,18 @@ struct evaluate_walk {
   // The smallest stable step of the block's good nodes, for laws that limit it.
   static void limit_step(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
                          batch_walk<Law, Layout>& walk, tally& found) {
-    if constexpr (limits_step<Law>) {
+    if constexpr (limits_step<Law> && !Varying) {
+      in_its_form(law, [&walk, &found]<class Form>(const Form& form) {
+        if constexpr (!always_stable<Form>)
+          found.stable_velocity_step =
+              smaller(found.stable_velocity_step,
+                      least_stable_step<Law, Delassus, Frame, Layout, Scope>(form, walk.block()));
+      });
+    } else if constexpr (limits_step<Law>) {
       for (int i = 0; i < walk.nodes().count; ++i) {
         if (walk.block().refused[i] != 0.0) continue;
         Law own = law;
-        if constexpr (Varying) at_node(made, batch, walk.nodes().node(i), own);
+        at_node(made, batch, walk.nodes().node(i), own);
         const auto node = load_node<Law, Delassus, Frame, Layout, Scope>(walk.block(), i);
         found.stable_velocity_step = smaller(found.stable_velocity_step, own.stable_velocity_step(node));
       }
@@ -169,7 +207,8 @@ struct evaluate_walk {
   static int run_form(const Law& law, const node_block<Law>& block) {
     int one_by_one = 0;
     in_its_form(law, [&block, &one_by_one]<class Form>(const Form& form) {
-      one_by_one = run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
+      if constexpr (Scope != scope::impulse || !needs_previous<Form>)
+        one_by_one = run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
     });
     return one_by_one;
   }

@@ -1,0 +1,189 @@
+// alone.hpp - one node of the implicit penalty by bracketed secants: springs of any exponent, and what the
+// solvers in packs (compression.hpp, rubbing.hpp) leave over: strong coupling, ill-conditioned H, extreme
+// numbers.
+#pragma once
+
+#include "rubbing.hpp"
+
+#include <ilaw/kit/friction.hpp>
+
+namespace penalty_law {
+
+// The normal spring where it has no closed form.
+struct any_compression : compression<double> {
+  // The impulse h <S - c phi vbar> that springs and damper give on a way that ends with v.
+  double given(double v) const {
+    const double way = travel(v), end = kit::positive_part(indentation - way);
+    const double closed = way > indentation ? indentation / way : 1.0;
+    const double force = closed * mean_force(indentation, end);
+    return spring.step * kit::positive_part(force - closed * damping * mean_velocity(v));
+  }
+
+  // By what closes the step: closed form, or secants.
+  solution solve() const {
+    if (spring.exponent == 1.0 || spring.is_rigid()) {
+      solution found = linear();
+      found.end = next(found.impulse, found.opens);
+      return found;
+    }
+    if (spring.exponent == 1.5) {
+      const solution found = hertz(1.0, free, delassus);
+      if (kit::is_finite(found.impulse)) return found;
+    }
+    return at(impulse_where([this](double r) { return given(free + delassus * r) - r; }), free);
+  }
+  // What an impulse leads to, where v_free is what friction has made of it.
+  solution at(double impulse, double v_free) const {
+    const double way = travel(v_free + delassus * impulse), opens = way > indentation ? 1.0 : 0.0;
+    compression<double> moved = *this;
+    moved.free = v_free;
+    const double end =
+        spring.exponent == 1.0 ? moved.next(impulse, opens) : kit::positive_part(indentation - way);
+    return {impulse, opens, end, 0.0, 0.0};
+  }
+
+  // The impulse r where f(r), the force for a step with r less r itself, is zero; NaN where it has no root,
+  // which only friction that is coupled to the normal brings about. f(0) is the force of the free step: an
+  // upper bound without coupling. Secants that keep the root bracketed (Illinois; Dowell and Jarratt 1971),
+  // and every third time the middle, so that no shape takes long.
+  template <class Function>
+  static double impulse_where(Function f) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    double low = 0.0, at_low = f(low), high = at_low;
+    if (!(at_low > 0.0)) return low;
+    double at_high = f(high);
+    for (int k = 0; k < most_doublings && at_high > 0.0; ++k) at_high = f(high = 2.0 * high);
+    if (at_high > 0.0) return none;
+    double last = 0.0;
+    for (int k = 0; k < most_iterations && at_high < 0.0; ++k) {
+      const double secant = low + (high - low) * (at_low / (at_low - at_high));
+      const bool inside = secant > low && secant < high && k % 3 != 2;
+      const double x = inside ? secant : middle(low, high);
+      if (!(x > low && x < high)) break;
+      const double value = f(x), factor = last * value > 0.0 ? 0.5 : 1.0;
+      const bool rises = value > 0.0;
+      (rises ? low : high) = x;
+      (rises ? at_low : at_high) = value;
+      (rises ? at_high : at_low) *= factor;
+      last = rises ? 1.0 : -1.0;
+    }
+    return high;
+  }
+
+ private:
+  // (P(x) - P(x'))/(x - x'), without cancelling where both are close.
+  double mean_force(double x, double end) const {
+    if (spring.exponent == 1.0) return 0.5 * spring.stiffness * (x + end);
+    const double most = kit::larger(x, end), least = kit::smaller(x, end);
+    if (!(most > 0.0)) return 0.0;
+    return spring.stiffness * kit::power(most, spring.exponent) * mean_power(least / most);
+  }
+  // (1 - t^(p+1))/((p + 1) (1 - t)), by its series in 1 - t where that is small.
+  double mean_power(double t) const {
+    const double q = spring.exponent + 1.0, d = 1.0 - t;
+    if (d > 0x1p-4) return (1.0 - t * kit::power(t, spring.exponent)) / (q * d);
+    double sum = 1.0, term = 1.0;
+    for (int k = 1; k < series_terms; ++k) {
+      term *= d * (k - q) / (k + 1);
+      sum += term;
+    }
+    return sum;
+  }
+  static constexpr int series_terms = 16;
+  static constexpr int most_iterations = 200, most_doublings = 64;
+  // Half way as the bits count where the numbers are far apart, so that an impulse of any size is found.
+  static double middle(double low, double high) {
+    return high <= 4.0 * low ? 0.5 * (low + high) : kit::halfway(kit::larger(low, 0x1p-80 * high), high);
+  }
+};
+
+// The tangential impulse for a normal one that is known, by the closed form: one tangential entry, no
+// coupling.
+template <class Vector>
+kit::friction_result<Vector> rub_apart(double normal, Vector q, double softness, double friction) {
+  q.n = -normal;
+  return solve_contact_friction(kit::diagonal_delassus{1.0, softness, softness}, -1.0, q, friction);
+}
+
+class node_alone {
+ public:
+  node_alone(const normal_spring& spring, double friction, double restitution, const rubbing<double>& p)
+      : p_(p), friction_(friction), restitution_(restitution) {
+    normal_.spring = spring;
+    normal_.free = p.free;
+    normal_.previous = p.previous;
+    normal_.delassus = p.delassus;
+    normal_.indentation = spring.is_rigid() ? 0.0 : p.indentation;
+    normal_.damping = spring.damper(p.delassus);
+  }
+
+  [[gnu::noinline]] rubbed<double> solve() const {
+    const bool couples = p_.c1 != 0.0 || p_.c2 != 0.0;
+    const bool is_plain = !couples && p_.a12 == 0.0 && p_.a11 == p_.a22;
+    if (is_plain || !(friction_ > 0.0)) return apart();
+    return normal_.spring.is_rigid() ? rigid() : coupled(couples);
+  }
+
+ private:
+  using solution = compression<double>::solution;
+
+  rubbed<double> apart() const {
+    const solution found = normal_.solve();
+    if (!(p_.a11 > 0.0)) return {found.impulse, 0.0, 0.0, found.end, sticks};
+    const auto result = rub_apart(found.impulse, kit::vector{0.0, p_.q1, p_.q2}, p_.a11, friction_);
+    const double outcome = result.slips ? slides : sticks;
+    return {found.impulse, result.impulse.t1, result.impulse.t2, found.end, outcome};
+  }
+
+  // Tangents with a normal impulse that is known are Coulomb's local problem without coupling, the tangential
+  // spring an inverse mass beside H.
+  kit::local_coulomb problem() const {
+    return {
+        {0.5 * p_.delassus, p_.a11, p_.a22, 0.0, 0.0, p_.a12}, {0.0, p_.q1, p_.q2}, {friction_, friction_}};
+  }
+  // A rigid spring has no impulse to find: Coulomb's local problem as it is.
+  rubbed<double> rigid() const {
+    kit::local_coulomb whole = problem();
+    whole.h[3] = 0.5 * p_.c1;
+    whole.h[4] = 0.5 * p_.c2;
+    whole.q[0] = 0.5 * (p_.free + (p_.previous < 0.0 ? restitution_ : 1.0) * p_.previous);
+    double r[3];
+    const kit::contact_mode mode = kit::solve(whole, r);
+    return {r[0], r[1], r[2], 0.0, outcome_of(mode)};
+  }
+  static double outcome_of(kit::contact_mode mode) {
+    if (mode == kit::contact_mode::none) return has_none;
+    return mode == kit::contact_mode::stick ? sticks : slides;
+  }
+
+  // What the tangential impulse does to the normal leaves one equation for r_N.
+  rubbed<double> coupled(bool couples) const {
+    double r[3];
+    kit::contact_mode mode = kit::contact_mode::free;
+    kit::local_coulomb tangents = problem();
+    const auto free = [&](double normal) {
+      tangents.q[0] = -tangents.h[0] * normal;
+      tangents.q[1] = p_.q1 + 0.5 * p_.c1 * normal;
+      tangents.q[2] = p_.q2 + 0.5 * p_.c2 * normal;
+      mode = kit::solve(tangents, r);
+      return p_.free + p_.c1 * r[1] + p_.c2 * r[2];
+    };
+    solution found{};
+    if (couples) {
+      const double impulse = normal_.impulse_where(
+          [&](double normal) { return normal_.given(free(normal) + p_.delassus * normal) - normal; });
+      found = normal_.at(impulse, free(impulse));
+    } else {
+      found = normal_.solve();
+      free(found.impulse);
+    }
+    const double outcome = kit::is_finite(found.impulse) ? outcome_of(mode) : has_none;
+    return {found.impulse, r[1], r[2], found.end, outcome};
+  }
+
+  rubbing<double> p_;
+  double friction_, restitution_;
+  any_compression normal_;
+};
+
+}  // namespace penalty_law
