@@ -35,7 +35,7 @@
 //   struct law::plain : law {                             behind the law
 //     static constexpr bool forgets = true;               where the law has a history: this step needs none
 //     static constexpr bool is_always_stable = true;      limits no step, so that none is worked out
-//     static constexpr bool needs_previous = true;        inputs() then always has v_previous: no loop without
+//     static constexpr bool needs_previous = true;        inputs() then always has v_previous
 //     template <class Node> void step(Node&) const;
 //   };
 //   template <class Run> void law::in_form(Run run) const {
