@@ -68,7 +68,7 @@ struct coulomb : friction_in_packs {
        .maximum = 1.0},
       activation_parameter(&coulomb::activation)};
 
-  bool falls() const { return kinetic_friction < friction || kinetic_friction < second(); }
+  bool falls() const { return (kinetic_friction < friction) | (kinetic_friction < second()); }
   bool tells_tangents_apart() const { return (friction_2 != infinity) & (friction_2 != friction); }
 
   // One coefficient at all speeds, or one that falls, which keeps their loops free of all that follows.
@@ -76,6 +76,8 @@ struct coulomb : friction_in_packs {
   struct falling;
   template <class Run>
   void in_form(Run run) const;
+  using form_of_nodes = plain;
+  bool has_form_of_nodes() const { return !(falls() | tells_tangents_apart()); }
 
   // Nodes whose tangents have no name cannot tell them apart: for them one coefficient is all.
   template <class Node>
@@ -96,7 +98,9 @@ struct coulomb : friction_in_packs {
   template <class Node>
   double left(const Node& node) const {
     const double speed = node.v_previous.tangential_length();
-    const bool slipped = speed > at_rest * node.v_free.tangential_length();
+    const scaled_length free = node.v_free.scaled_tangential_length();
+    const double scaled = free.down * speed;
+    const bool slipped = scaled * scaled > at_rest * at_rest * free.square;
     const double way = slipped ? decay * speed : 0.0;
     return exp(-way);
   }

@@ -97,9 +97,9 @@ struct postit {
        .minimum = 0.0}};
   static constexpr history_card history_variable = window_variable;
 
+  static constexpr std::uint32_t always_reads = reads_gap | reads_v_previous;
   std::uint32_t inputs() const {
-    return reads_gap | reads_v_previous |
-           (adhesion_limit < infinity || initial_adhesion > 0.0 ? reads_area : 0U);
+    return always_reads | (adhesion_limit < infinity || initial_adhesion > 0.0 ? reads_area : 0U);
   }
   // What is bonded from the start holds at any gap.
   std::uint32_t capabilities() const {
@@ -119,8 +119,9 @@ struct postit {
     node.state.adhesion = initial_adhesion > 0.0 ? initial_adhesion * node.area : 0.0;
   }
 
-  // Brittle or saturated: what is left of a bond that breaks is one more root to find.
-  template <bool Saturated>
+  // Brittle or saturated: what is left of a bond that breaks is one more root to find. A bond that does not
+  // wear needs no exponential.
+  template <bool Saturated, bool Wears>
   struct form;
   template <class Run>
   void in_form(Run run) const;
@@ -163,7 +164,7 @@ struct postit {
 
   // What the step makes of the bond: the node comes with the impulse of contact, is given the trial impulse
   // where its bond holds, and heals.
-  template <class Node>
+  template <bool Wears, class Node>
   void settle(Node& node, vector trial, bool holds) const {
     const bool was_bonded = node.state.adhesion > 0.0, breaks = was_bonded & !holds;
     const bool is_free = !(node.impulse.n > 0.0);
@@ -172,7 +173,7 @@ struct postit {
     node.status = holds ? status::bonded : (breaks ? status::broken : node.status);
     count_rupture(node.state, node.velocity_step, breaks, holds, is_free);
     node.state.adhesion = breaks ? 0.0 : node.state.adhesion;
-    heal(node, was_bonded, breaks);
+    heal<Wears>(node, was_bonded, breaks);
   }
 
   // Sliding under pressure bonds and breaks in every step. A rupture counts only if the node was free since
@@ -186,9 +187,10 @@ struct postit {
   }
 
   // Pressing bonds: R_Y = max(R_Y, min(eta(b) <S_N>, R_Y,max)). A rupture has cleared the window.
-  template <class Node>
+  template <bool Wears, class Node>
   void heal(Node& node, bool was_bonded, bool breaks) const {
-    const double efficiency = exp(-node.state.ruptures / efficiency_decrease);
+    double efficiency = 1.0;
+    if constexpr (Wears) efficiency = exp(-node.state.ruptures / efficiency_decrease);
     const double limit = adhesion_limit * node.area;  // not a number: inf, and no area is read
     const double summed = breaks ? 0.0 : node.earlier.n;
     const double pressed = efficiency * positive_part(summed + node.impulse.n);
@@ -200,7 +202,7 @@ struct postit {
 };
 
 // Nodes that touch are asked for their friction, for any H; a transverse H has a closed form.
-template <bool Saturated>
+template <bool Saturated, bool Wears>
 struct postit::form : postit, friction_in_packs {
   template <class Node>
   void step(Node& node) const requires(Saturated || has_transverse_delassus<Node>) {
@@ -214,7 +216,7 @@ struct postit::form : postit, friction_in_packs {
     } else {
       apply_plain_contact(node, node.v_free, friction);
     }
-    settle(node, trial, holds);
+    settle<Wears>(node, trial, holds);
   }
   template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const
@@ -223,22 +225,24 @@ struct postit::form : postit, friction_in_packs {
     const bool holds = this->holds(node, trial);
     const bool is_pressed =
         ask_friction(node, plain_contact(node, node.v_free), friction, friction, true, open);
-    settle(node, trial, holds);
+    settle<Wears>(node, trial, holds);
     return is_pressed & !holds;
   }
   template <class Node>
   void answered(Node& node, const friction_answer<double>& a) const {
     give_friction(node, a);
-    settle(node, {}, false);
+    settle<Wears>(node, {}, false);
   }
 };
 
 template <class Run>
 void postit::in_form(Run run) const {
   if (rupture == saturated)
-    run(form<true>{{*this}, {}});
+    run(form<true, true>{{*this}, {}});
+  else if (efficiency_decrease < infinity)
+    run(form<false, true>{{*this}, {}});
   else
-    run(form<false>{{*this}, {}});
+    run(form<false, false>{{*this}, {}});
 }
 
 }  // namespace

@@ -65,6 +65,7 @@ struct tie {
                ? nullptr
                : "parameter 'force' is a mean over 'memory', which must be above 0 and finite";
   }
+  static constexpr std::uint32_t always_reads = reads_v_previous;
   std::uint32_t inputs() const {
     if (strength < infinity) return card.inputs;
     return force < infinity ? reads_gap | reads_v_previous : reads_v_previous;

@@ -67,8 +67,8 @@ struct Results {
 struct Layout {
   std::int64_t node_stride = 0, component_stride = 0;  // 0: AoS
   bool soa = false;
-  bool separate_state = false, outputs = true;
-  std::vector<std::int32_t> order{};  // index list; empty: none
+  bool separate_state = false, outputs = true, energy = true;  // energy: among the outputs
+  std::vector<std::int32_t> order{};                           // index list; empty: none
   std::int32_t index_base = 0;
   bool wide_index = false;  // of 64 bits
 };
@@ -171,7 +171,7 @@ class Arrays {
     b.impulse = r.out();
     if (layout_.outputs) {
       b.velocity = v.out();
-      b.energy = energy.out();
+      if (layout_.energy) b.energy = energy.out();
       b.status = status.data();
       b.status_stride = 1;
     }

@@ -104,6 +104,34 @@ TEST_P(Contract, OptionalOutputsDoNotChangeTheImpulse) {
   EXPECT_EQ(with.state, without.state);
 }
 
+TEST_P(Contract, EnergiesThatAreNotAskedForChangeNothingElse) {
+  for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL}) {
+    const ilaw::interface law = make(frame);
+    const Nodes nodes(150);
+    const bool global = frame == ILAW_FRAME_GLOBAL;
+    const Results all = run(law, nodes, {}, global);
+    Results motion = run(law, nodes, {.energy = false}, global);
+    motion.energy = all.energy;
+    EXPECT_TRUE(motion == all) << "frame " << frame;
+  }
+}
+
+// From some thousand nodes on, arrays are asked for ahead, and blocks are worked on in pieces.
+TEST_P(Contract, LargeBatchesGiveTheBitsOfListedNodes) {
+  constexpr std::int64_t n = 8192 + 64 + 21;
+  std::vector<std::int32_t> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), 0);
+  for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL}) {
+    const ilaw::interface law = make(frame);
+    const Nodes nodes(n);
+    const bool global = frame == ILAW_FRAME_GLOBAL;
+    const Results listed = run(law, nodes, {.order = order}, global);
+    EXPECT_TRUE(run(law, nodes, {}, global) == listed) << "frame " << frame;
+    EXPECT_TRUE(run(law, nodes, {.soa = true, .separate_state = true}, global) == listed)
+        << "SoA, frame " << frame;
+  }
+}
+
 TEST_P(Contract, InstructionSetsGiveTheSameBits) {
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
     for (const bool outputs : {false, true}) {

@@ -8,6 +8,9 @@
 //   struct state { ... };                                 named memory, and
 //   static constexpr state_variable<state> state_variables[];   its description, see state.hpp
 //   std::uint32_t inputs() const;                         what these parameters read (default: card.inputs)
+//   static constexpr std::uint32_t always_reads;          what inputs() has among them for all parameters:
+//   the
+//                                                         loops without it are not compiled (default: none)
 //   std::uint32_t capabilities() const;                   what these parameters can do (default: the card's)
 //   static constexpr bool rests_by_parameters = true;     ILAW_CAN_REST is for capabilities() to promise: it
 //   is
@@ -38,7 +41,9 @@
 //   }
 // The kit asks for a form once per block of nodes that share their parameters. Where these vary from node to
 // node it takes the law's own step, which serves all of them: in a law that is nothing but forms by calling
-// in_form itself, as penalty does.
+// in_form itself, as penalty does. A law may name one form for blocks of such nodes all of which have it:
+//   using form_of_nodes = plain;
+//   bool has_form_of_nodes() const;
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once

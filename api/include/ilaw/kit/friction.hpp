@@ -58,9 +58,10 @@ inline constexpr double sticking_part = 1.0 - 0x1p-46;
 // only where the motion turned round within the step, as it does on a stiff spring, and the impact takes less
 // than it costs to stop that from behind.
 template <class Delassus, class Vector>
-fraction<double> stopping_part(const Delassus& delassus, double normal, Vector q, double speed, Vector rest) {
-  const double down = power_scale_of(speed).down;  // without overflow or underflow on the way
-  const double along = tangential_product(down * q, down * rest), square = (down * speed) * (down * speed);
+fraction<double> stopping_part(const Delassus& delassus, double normal, Vector q, scaled_length speed,
+                               Vector rest) {
+  const double down = speed.down;  // without overflow or underflow on the way
+  const double along = tangential_product(down * q, down * rest), square = speed.root() * speed.root();
   const double impact = delassus.tangential() * (down * normal) * (down * rest.n);
   const fraction<double> part = root_of_work(square, -(square + along), impact);
   const bool gains = along < impact;
@@ -72,6 +73,7 @@ template <class Vector>
 struct friction_result {
   Vector impulse;
   bool slips;
+  double status;  // where the contact is pressed
 };
 
 // The tangential impulse along q_T: the part of -q_T/h_T that may act, scaled back to the cone.
@@ -80,9 +82,12 @@ friction_result<Vector> rub(const Delassus& delassus, double normal, Vector q, d
                             fraction<double> part, double friction) {
   const double limit = friction_limit(friction, normal), under = delassus.tangential() * part.under;
   const bool slips = speed * part.over > limit * under;
+  // Before the division, of which GCC would else make two; a choice between numbers, not between truths.
+  const bool turns = part.over < sticking_part * part.under, moves = slips | turns;
+  const double held = turns ? status::slip : status::stick;
+  const double closed = slips ? status::slip : held;
   const double factor = (slips ? limit : part.over) / (slips ? speed : under);
-  const bool moves = slips | (part.over < sticking_part * part.under);
-  friction_result<Vector> result{-factor * q, moves};
+  friction_result<Vector> result{-factor * q, moves, closed};
   result.impulse.n = normal;
   return result;
 }
@@ -104,8 +109,8 @@ friction_result<Vector> solve_contact_friction(const Delassus& delassus,
                                                const contact_problem<Vector>& contact, double friction) {
   const auto& [slack, q, rest] = contact;
   const double normal = slack <= 0.0 ? positive_part(-q.n / delassus.normal()) : 0.0;
-  const double speed = q.tangential_length();
-  return rub(delassus, normal, q, speed, stopping_part(delassus, normal, q, speed, rest), friction);
+  const scaled_length speed = q.scaled_tangential_length();
+  return rub(delassus, normal, q, speed.length(), stopping_part(delassus, normal, q, speed, rest), friction);
 }
 
 // Gives the node its impulse and status, by the closed form.
@@ -113,8 +118,7 @@ template <class Node, class Vector>
 void apply_isotropic_friction(Node& node, const contact_problem<Vector>& problem, double friction) {
   const auto result = solve_contact_friction(node.delassus, problem, friction);
   node.impulse = result.impulse;
-  const double closed_status = result.slips ? status::slip : status::stick;
-  node.status = result.impulse.n > 0.0 ? closed_status : status::free;
+  node.status = result.impulse.n > 0.0 ? result.status : status::free;
 }
 
 // The entries of H in the order of local_problem.
@@ -225,9 +229,8 @@ mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
   if (has_closed_form(p.contact)) {
     const contact_problem<vector> contact{0.0, {q[0], q[1], q[2]}, {p.rest[0], p.rest[1], p.rest[2]}};
     const auto result = solve_contact_friction(diagonal_delassus{h[0], h[1], h[1]}, contact, p.contact.mu[0]);
-    const double moves = result.slips ? status::slip : status::stick;
     a = {{result.impulse.n, result.impulse.t1, result.impulse.t2},
-         result.impulse.n > 0.0 ? moves : status::free,
+         result.impulse.n > 0.0 ? result.status : status::free,
          not_refused};
     return;
   }

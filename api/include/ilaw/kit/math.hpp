@@ -58,20 +58,27 @@ inline power_scale power_scale_of(double largest) {
   return {std::bit_cast<double>(exponent_bits - exponent), std::bit_cast<double>(exponent)};
 }
 
-// |(a, b)| and |(a, b, c)| without overflow or underflow on the way.
-inline double length(double a, double b) {
+// A length without overflow or underflow on the way: square is that of down * the vector.
+struct scaled_length {
+  double square, down, up;
+  double root() const { return square_root(square); }
+  double length() const { return 0.5 * root() * up; }
+};
+inline scaled_length scaled_length_of(double a, double b) {
   const power_scale scale = power_scale_of(larger(absolute(a), absolute(b)));
   a *= scale.down;
   b *= scale.down;
-  return 0.5 * square_root(a * a + b * b) * scale.up;
+  return {a * a + b * b, scale.down, scale.up};
 }
-inline double length(double a, double b, double c) {
+inline scaled_length scaled_length_of(double a, double b, double c) {
   const power_scale scale = power_scale_of(larger(larger(absolute(a), absolute(b)), absolute(c)));
   a *= scale.down;
   b *= scale.down;
   c *= scale.down;
-  return 0.5 * square_root(a * a + b * b + c * c) * scale.up;
+  return {a * a + b * b + c * c, scale.down, scale.up};
 }
+inline double length(double a, double b) { return scaled_length_of(a, b).length(); }
+inline double length(double a, double b, double c) { return scaled_length_of(a, b, c).length(); }
 
 // `m ? a : b`, the same word for a double and for a pack of them (pack.hpp).
 inline double select(bool m, double a, double b) { return m ? a : b; }

@@ -5,6 +5,7 @@
 
 #include <ilaw/kit/detail/instance.hpp>
 #include <ilaw/kit/detail/kernel.hpp>
+#include <ilaw/kit/detail/tangent_columns.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
@@ -35,65 +36,6 @@ int state_entry(int k, int dimension) {
   return -1;
 }
 
-// Tangents of a block's nodes, as columns to be written. Each loop stands alone, as vector code.
-class tangent_columns {
- public:
-  tangent_columns(column* first, column* second) {
-    for (int c = 0; c < 3; ++c) {
-      first_[c] = first[c].values;
-      second_[c] = second[c].values;
-    }
-  }
-
-  // A tangent that is none makes the second one NaN, and so the node's vectors.
-  void put(int i, axis n, axis t1, bool is_tangent) const {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    const axis t2 = cross(n, t1);
-    columns::put(first_, i, t1);
-    columns::put(second_, i, {is_tangent ? t2.x : none, is_tangent ? t2.y : none, is_tangent ? t2.z : none});
-  }
-
-  [[gnu::noinline, gnu::flatten]] void choose(int count, const double* const* normals) const {
-    const tangent_columns own = *this;
-    const double* const n[] = {normals[0], normals[1], normals[2]};
-#pragma omp simd
-    for (int i = 0; i < count; ++i) own.put(i, columns::get(n, i), any_tangent(columns::get(n, i)), true);
-  }
-
-  [[gnu::noinline, gnu::flatten]] void keep(int count, const double* const* normals,
-                                            const double* const* tangents) const {
-    const tangent_columns own = *this;
-    const double *const n[] = {normals[0], normals[1], normals[2]}, *const t[] = {tangents[0], tangents[1],
-                                                                                  tangents[2]};
-#pragma omp simd
-    for (int i = 0; i < count; ++i) own.keep_at(i, n, t);
-  }
-
-  // From the frames of the step before: three columns of the normal, three of the tangent.
-  [[gnu::noinline, gnu::flatten]] void transport(int count, const double* const* normals,
-                                                 const double* const* before) const {
-    const tangent_columns own = *this;
-    const double* const n[] = {normals[0], normals[1], normals[2]};
-    const double* const f[] = {before[0], before[1], before[2], before[3], before[4], before[5]};
-#pragma omp simd
-    for (int i = 0; i < count; ++i) own.transport_at(i, n, f);
-  }
-
- private:
-  void keep_at(int i, const double* const* normals, const double* const* tangents) const {
-    const axis n = columns::get(normals, i), t = columns::get(tangents, i);
-    const bool is_unit = unit(t), is_across = orthogonal(n, t);
-    put(i, n, t, is_unit & is_across);
-  }
-  void transport_at(int i, const double* const* normals, const double* const* before) const {
-    const axis n = columns::get(before, i), t = columns::get(before + 3, i), now = columns::get(normals, i);
-    const bool was_unit = unit(n), is_unit = unit(t), is_across = orthogonal(n, t);
-    put(i, now, transported_tangent(n, t, now), was_unit & is_unit & is_across);
-  }
-
-  double *first_[3], *second_[3];
-};
-
 template <class Law, class Layout>
 class batch_walk {
  public:
@@ -101,12 +43,17 @@ class batch_walk {
   static constexpr bool in_place = std::is_same_v<Layout, interleaved>;
 
   batch_walk(const instance<Law>& made, const ilaw_batch& batch, block_room<Law>& room)
-      : made_(made), batch_(batch), room_(room), dimension_(static_cast<int>(made.dimension)) {}
+      : made_(made), batch_(batch), room_(room), dimension_(static_cast<int>(made.dimension)) {
+    has_ahead_ = batch_.node_count >= streams::fewest_nodes && !batch_.index && !batch_.index64;
+    if (has_ahead_) expect_arrays();
+  }
 
   // Fills the columns of the block that starts at position first.
   void open(std::int64_t first) {
     nodes_ = range(first);
     block_.count = nodes_.count;
+    block_.next = first + block_size;
+    block_.ahead = has_ahead_ && block_.next < batch_.node_count ? &ahead_ : nullptr;
     block_.time = batch_.time;
     block_.velocity_step = batch_.velocity_step;
     block_.position_step = batch_.position_step;
@@ -155,16 +102,14 @@ class batch_walk {
 
   // Writes what the block computed to the host's arrays. Outputs that are absent are left out.
   void close() {
-    if (!in_place) scatter_vector(batch_.impulse, dimension_, nodes_, block_.impulse);
-    if (batch_.velocity.values) scatter_vector(batch_.velocity, dimension_, nodes_, block_.velocity);
-    if (batch_.energy.values)
-      for (int k = 0; k < ILAW_ENERGY_COUNT; ++k) scatter(batch_.energy, k, nodes_, block_.energy[k]);
-    if (batch_.status)
-      for (int i = 0; i < nodes_.count; ++i)
-        batch_.status[nodes_.node(i) * batch_.status_stride] = static_cast<std::uint8_t>(block_.status[i]);
+    if (!in_place) scatter_components(batch_.impulse, dimension_, nodes_, block_.impulse);
+    if (batch_.velocity.values) scatter_components(batch_.velocity, dimension_, nodes_, block_.velocity);
+    if (batch_.energy.values) scatter_components(batch_.energy, ILAW_ENERGY_COUNT, nodes_, block_.energy);
+    if (batch_.status) write_status();
+    double* entries[states + 1] = {};
     for (int k = 0; k < states; ++k)
-      if (const int entry = state_entry<Law>(k, dimension_); entry >= 0)
-        scatter_doubles(batch_.state_out, entry, nodes_, block_.state_out[k]);
+      if (const int entry = state_entry<Law>(k, dimension_); entry >= 0) entries[entry] = block_.state_out[k];
+    scatter_doubles(batch_.state_out, state_entries(), nodes_, entries);
   }
 
   // The frame of an accepted step becomes the frame to carry on from.
@@ -198,6 +143,56 @@ class batch_walk {
     return a.values[node * a.node_stride + c * a.component_stride];
   }
 
+  int delassus_numbers() const {
+    switch (made_.delassus_form) {
+      case ILAW_DELASSUS_SCALAR:
+        return 1;
+      case ILAW_DELASSUS_TRANSVERSE:
+        return dimension_ > 1 ? 2 : 1;
+      case ILAW_DELASSUS_DIAGONAL:
+        return dimension_;
+      default:
+        return dimension_ * (dimension_ + 1) / 2;
+    }
+  }
+  int state_entries() const {
+    int count = 0;
+    for (int k = 0; k < states; ++k) count += state_entry<Law>(k, dimension_) >= 0 ? 1 : 0;
+    return count;
+  }
+
+  // All that is read or written where nodes follow each other.
+  void expect_arrays() {
+    const auto of_batch = [this](const auto& array, int numbers) {
+      expect(array, numbers, holds_floats(batch_), ahead_);
+    };
+    of_batch(batch_.v_free, dimension_);
+    of_batch(batch_.v_previous, dimension_);
+    of_batch(batch_.delassus, delassus_numbers());
+    for (const ilaw_input* one : {&batch_.gap, &batch_.gap_offset, &batch_.area}) of_batch(*one, 1);
+    of_batch(batch_.normal, dimension_);
+    of_batch(batch_.tangent, dimension_);
+    expect(batch_.state_in, state_entries(), false, ahead_);
+    of_batch(batch_.impulse, dimension_);
+    of_batch(batch_.velocity, dimension_);
+    of_batch(batch_.energy, ILAW_ENERGY_COUNT);
+    if (batch_.state_out.values != batch_.state_in.values)
+      expect(batch_.state_out, state_entries(), false, ahead_);
+    for (std::uint32_t k = 0; k < made_.per_node_count; ++k) of_batch(batch_.per_node_parameters[k], 1);
+  }
+
+  void write_status() const {
+    const double* s = block_.status;
+    std::uint8_t* status = batch_.status + nodes_.first;
+    if (nodes_.listed() || batch_.status_stride != 1) {
+      for (int i = 0; i < nodes_.count; ++i)
+        batch_.status[nodes_.node(i) * batch_.status_stride] = static_cast<std::uint8_t>(s[i]);
+      return;
+    }
+#pragma omp simd
+    for (int i = 0; i < nodes_.count; ++i) status[i] = static_cast<std::uint8_t>(static_cast<int>(s[i]));
+  }
+
   void keep_frame(int i) {
     const axis n = columns::get(block_.axes, i), t = columns::get(block_.axes + 3, i);
     const double entries[6] = {n.x, n.y, n.z, t.x, t.y, t.z};
@@ -212,7 +207,6 @@ class batch_walk {
   void gather_in_layout(const ilaw_input& input, column* room, const double** components) {
     if constexpr (in_place) {
       components[0] = input.values + 3 * nodes_.first;
-      prefetch_next(components[0], 3 * nodes_.count);
     } else {
       gather_vector(input, dimension_, nodes_, room, components);
     }
@@ -251,21 +245,20 @@ class batch_walk {
 
   // Missing dimensions are padded so that H stays positive definite; see delassus orders in ilaw.h.
   void gather_delassus() {
+    const double* given[6];
+    gather_components(batch_.delassus, delassus_numbers(), nodes_, room_.delassus, given);
     const double** h = block_.delassus;
-    const auto component = [this](int c) {
-      return gather(batch_.delassus, c, nodes_, room_.delassus[c].values);
-    };
     if (made_.is_transverse()) {  // two columns are read; a scalar is both
-      h[0] = component(0);
-      h[1] = made_.delassus_form == ILAW_DELASSUS_TRANSVERSE && dimension_ > 1 ? component(1) : h[0];
+      h[0] = given[0];
+      h[1] = given[delassus_numbers() - 1];
       return;
     }
-    for (int e = 0; e < 3; ++e) h[e] = e < dimension_ ? component(e) : h[0];
+    for (int e = 0; e < 3; ++e) h[e] = given[e < dimension_ ? e : 0];
     for (int e = 3; e < 6; ++e) h[e] = zeros.values;
     if (dimension_ == 2) h[2] = h[1];  // or it would pass for anisotropic
     if (made_.delassus_form != ILAW_DELASSUS_FULL) return;
-    if (dimension_ == 2) h[3] = component(2);
-    for (int e = 3; dimension_ == 3 && e < 6; ++e) h[e] = component(e);
+    if (dimension_ == 2) h[3] = given[2];
+    for (int e = 3; dimension_ == 3 && e < 6; ++e) h[e] = given[e];
   }
 
   // In two dimensions the second tangent is given the entry of the first, lest H pass for anisotropic.
@@ -294,10 +287,10 @@ class batch_walk {
       gather_vector(batch_.tangent, dimension_, nodes_, room_.tangent, block_.axes + 3);
       tangents.keep(nodes_.count, block_.axes, block_.axes + 3);
     } else if (in_space && made_.carries_frame && !is_initial_) {
+      ilaw_input frames = batch_.state_in;
+      frames.values += made_.frame_offset() * frames.component_stride;
       const double* before[6];
-      for (int k = 0; k < 6; ++k)
-        before[k] = gather_doubles(batch_.state_in, static_cast<int>(made_.frame_offset()) + k, nodes_,
-                                   room_.frame_before[k].values);
+      gather_doubles(frames, 6, nodes_, room_.frame_before, before);
       tangents.transport(nodes_.count, block_.axes, before);
     } else if (in_space) {
       tangents.choose(nodes_.count, block_.axes);
@@ -310,11 +303,11 @@ class batch_walk {
 
   void open_state() {
     if (batch_.state_in.values) {
+      const double* entries[states + 1];
+      gather_doubles(batch_.state_in, state_entries(), nodes_, room_.state_in, entries);
       for (int k = 0; k < states; ++k) {
         const int entry = state_entry<Law>(k, dimension_);
-        block_.state_in[k] = entry >= 0
-                                 ? gather_doubles(batch_.state_in, entry, nodes_, room_.state_in[k].values)
-                                 : zeros.values;
+        block_.state_in[k] = entry >= 0 ? entries[entry] : zeros.values;
       }
       copy_unnamed_state();
     } else {
@@ -365,7 +358,8 @@ class batch_walk {
   const ilaw_batch& batch_;
   block_room<Law>& room_;
   int dimension_;
-  bool is_initial_ = false;
+  bool is_initial_ = false, has_ahead_ = false;
+  streams ahead_;
   node_range nodes_{};
   node_block<Law> block_;
 };

@@ -138,8 +138,7 @@ struct evaluate_walk {
     for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
       walk.open(first);
       if constexpr (Varying)
-        found.one_by_one +=
-            run_block<Law, Delassus, Frame, Layout, Scope>(parameters.of(walk.nodes()), walk.block());
+        found.one_by_one += run_varying(parameters.of(walk.nodes()), walk.block());
       else
         found.one_by_one += run_form(law, walk.block());
       limit_step(made, law, batch, walk, found);
@@ -166,6 +165,13 @@ struct evaluate_walk {
     }
   }
 
+  static int run_varying(const law_per_node<Law>& laws, const node_block<Law>& block) {
+    if constexpr (requires { typename Law::form_of_nodes; })
+      if (laws.have_form_of_nodes(block.count))
+        return run_block<Law, Delassus, Frame, Layout, Scope>(laws.in_form_of_nodes(), block);
+    return run_block<Law, Delassus, Frame, Layout, Scope>(laws, block);
+  }
+
   static int run_form(const Law& law, const node_block<Law>& block) {
     int one_by_one = 0;
     in_its_form(law, [&block, &one_by_one]<class Form>(const Form& form) {
@@ -190,12 +196,18 @@ struct evaluate_walk {
 
 template <class Law, class Delassus, class Frame, class Layout>
 tally walk_laid_out(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
-  if (batch.velocity.values || batch.energy.values || batch.status)
+  const bool asks_motion = batch.velocity.values || batch.status;
+  if (batch.energy.values || (asks_motion && !always_reads_previous<Law>))
     return evaluate_walk<Law, Delassus, Frame, Layout, scope::outputs, false>::run(made, law, batch);
-  if constexpr ((Law::card.inputs & reads_v_previous) != 0)
-    if (made.inputs() & ILAW_INPUT_V_PREVIOUS)
+  if constexpr (always_reads_previous<Law>)
+    if (asks_motion)
+      return evaluate_walk<Law, Delassus, Frame, Layout, scope::motion, false>::run(made, law, batch);
+  if constexpr (reads_previous<Law>)
+    if (always_reads_previous<Law> || (made.inputs() & ILAW_INPUT_V_PREVIOUS))
       return evaluate_walk<Law, Delassus, Frame, Layout, scope::with_previous, false>::run(made, law, batch);
-  return evaluate_walk<Law, Delassus, Frame, Layout, scope::impulse, false>::run(made, law, batch);
+  if constexpr (!always_reads_previous<Law>)
+    return evaluate_walk<Law, Delassus, Frame, Layout, scope::impulse, false>::run(made, law, batch);
+  return {};
 }
 
 // What the card serves; create refuses the rest, and no loop is compiled for it.

@@ -42,13 +42,40 @@ struct node_range {
   }
 };
 
-// Asks for the same part of the next block while this one is worked on: hardware prefetchers lose the many
-// streams of a batch at block boundaries.
-template <class Number>
-void prefetch_next(const Number* values, std::int64_t count) {
-  constexpr std::int64_t line = 64 / sizeof(Number);
-  for (std::int64_t k = 0; k < count; k += line) __builtin_prefetch(values + count + k);
-}
+// Arrays that a batch reads or writes node by node, asked for a block ahead and some nodes at a time:
+// hardware prefetchers lose so many streams at block boundaries, and a processor that is asked for more lines
+// than it can wait for (some 16) does nothing else until they are there.
+class streams {
+ public:
+  static constexpr int nodes_at_once = 16;
+  static constexpr std::int64_t fewest_nodes = 8192;  // fewer are in the second cache, or may as well be
+
+  template <class Number>
+  void add(const Number* values, std::int64_t numbers_of_node) {
+    if (count_ == most) return;
+    streams_[count_++] = {reinterpret_cast<const char*>(values),
+                          numbers_of_node * std::int64_t{sizeof(Number)}};
+  }
+
+  void ask(std::int64_t node) const {
+    constexpr std::int64_t line = 64;
+    for (int k = 0; k < count_; ++k) {
+      const stream& s = streams_[k];
+      const char* begin = s.values + node * s.bytes_of_node;
+      for (std::int64_t at = 0; at < nodes_at_once * s.bytes_of_node; at += line)
+        __builtin_prefetch(begin + at);
+    }
+  }
+
+ private:
+  struct stream {
+    const char* values;
+    std::int64_t bytes_of_node;
+  };
+  static constexpr int most = 24;
+  stream streams_[most];
+  int count_ = 0;
+};
 
 // The host's arrays as what they hold.
 inline const float* as_floats(const double* values) { return reinterpret_cast<const float*>(values); }
@@ -69,32 +96,33 @@ const double* gather_of(const Number* values, std::int64_t stride, const node_ra
   }
   values += nodes.first * stride;
   if (stride == 1) {
-    prefetch_next(values, count);
     if constexpr (std::is_same_v<Number, double>) return values;
     for (int i = 0; i < count; ++i) room[i] = values[i];
-  } else if (stride == 2) {  // pairs, as of a transverse H, in vector code
-    prefetch_next(values, 2 * count);
-    for (int i = 0; i < count; ++i) room[i] = values[2 * i];
   } else {
     for (int i = 0; i < count; ++i) room[i] = values[i * stride];
   }
   return room;
 }
-inline const double* gather_doubles(const ilaw_input& input, int component, const node_range& nodes,
-                                    double* room) {
-  return gather_of(input.values + component * input.component_stride, input.node_stride, nodes, room);
-}
 inline const double* gather(const ilaw_input& input, int component, const node_range& nodes, double* room) {
-  if (!nodes.of_floats) return gather_doubles(input, component, nodes, room);
+  if (!nodes.of_floats)
+    return gather_of(input.values + component * input.component_stride, input.node_stride, nodes, room);
   const float* values = as_floats(input.values) + component * input.component_stride;
   return gather_of(values, input.node_stride, nodes, room);
 }
 
-// The components of a block of an (3,n) array.
+// Takes apart rows of two or three numbers.
 template <class Number>
-void separate(const Number* __restrict__ values, int count, column* room) {
-  prefetch_next(values, 3 * count);
-  double* __restrict__ a = room[0].values, * __restrict__ b = room[1].values, * __restrict__ c = room[2].values;
+void separate_pairs(const Number* __restrict__ values, int count, double* __restrict__ a,
+                    double* __restrict__ b) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    a[i] = values[2 * i];
+    b[i] = values[2 * i + 1];
+  }
+}
+template <class Number>
+void separate_triples(const Number* __restrict__ values, int count, double* __restrict__ a,
+                      double* __restrict__ b, double* __restrict__ c) {
 #pragma omp simd
   for (int i = 0; i < count; ++i) {
     a[i] = values[3 * i];
@@ -102,6 +130,52 @@ void separate(const Number* __restrict__ values, int count, column* room) {
     c[i] = values[3 * i + 2];
   }
 }
+
+// Rows of six numbers as twice as many of three, then pairs of those: of six at once compilers make no vector
+// code.
+template <class Number>
+void separate_sixes(const Number* values, int count, column* room) {
+  alignas(64) double parts[3][2 * block_size];
+  separate_triples(values, 2 * count, parts[0], parts[1], parts[2]);
+  for (int k = 0; k < 3; ++k) separate_pairs(parts[k], count, room[k].values, room[k + 3].values);
+}
+
+// Gives the components of a block of nodes; where a node's are neighbours, in one pass over them.
+template <class Number>
+void gather_components_of(const Number* values, std::int64_t node_stride, std::int64_t component_stride,
+                          int numbers, const node_range& nodes, column* room, const double** components) {
+  const bool in_rows = !nodes.listed() && node_stride == numbers && component_stride == 1;
+  const Number* rows = values + nodes.first * node_stride;
+  for (int k = 0; k < numbers; ++k) components[k] = room[k].values;
+  if (in_rows && numbers == 2)
+    separate_pairs(rows, nodes.count, room[0].values, room[1].values);
+  else if (in_rows && numbers == 3)
+    separate_triples(rows, nodes.count, room[0].values, room[1].values, room[2].values);
+  else if (in_rows && numbers == 6)
+    separate_sixes(rows, nodes.count, room);
+  else
+    for (int k = 0; k < numbers; ++k)
+      components[k] = gather_of(values + k * component_stride, node_stride, nodes, room[k].values);
+}
+inline void gather_doubles(const ilaw_input& input, int numbers, const node_range& nodes, column* room,
+                           const double** components) {
+  gather_components_of(input.values, input.node_stride, input.component_stride, numbers, nodes, room,
+                       components);
+}
+inline void gather_components(const ilaw_input& input, int numbers, const node_range& nodes, column* room,
+                              const double** components) {
+  if (!nodes.of_floats) return gather_doubles(input, numbers, nodes, room, components);
+  gather_components_of(as_floats(input.values), input.node_stride, input.component_stride, numbers, nodes,
+                       room, components);
+}
+
+// The three components of a block of vectors.
+inline void gather_vector(const ilaw_input& input, int dimension, const node_range& nodes, column* room,
+                          const double** components) {
+  gather_components(input, dimension, nodes, room, components);
+  for (int k = dimension; k < 3; ++k) components[k] = zeros.values;
+}
+
 template <class Number>
 void interleave(double* const* components, int count, Number* __restrict__ values) {
   const double* __restrict__ a = components[0], * __restrict__ b = components[1], * __restrict__ c = components[2];
@@ -111,21 +185,6 @@ void interleave(double* const* components, int count, Number* __restrict__ value
     values[3 * i + 1] = static_cast<Number>(b[i]);
     values[3 * i + 2] = static_cast<Number>(c[i]);
   }
-}
-
-// Gives the three components of a block of vectors; (3,n) arrays are transposed in one pass.
-inline void gather_vector(const ilaw_input& input, int dimension, const node_range& nodes, column* room,
-                          const double** components) {
-  if (dimension == 3 && !nodes.listed() && input.node_stride == 3 && input.component_stride == 1) {
-    if (nodes.of_floats)
-      separate(as_floats(input.values) + 3 * nodes.first, nodes.count, room);
-    else
-      separate(input.values + 3 * nodes.first, nodes.count, room);
-    for (int k = 0; k < 3; ++k) components[k] = room[k].values;
-    return;
-  }
-  for (int k = 0; k < 3; ++k)
-    components[k] = k < dimension ? gather(input, k, nodes, room[k].values) : zeros.values;
 }
 
 // Where to write one component: in the host's array if it is consecutive, else in room, to be scattered.
@@ -152,27 +211,40 @@ void scatter_of(Number* values, std::int64_t stride, const node_range& nodes, co
     if (values == written) return;
   for (int i = 0; i < nodes.count; ++i) values[i * stride] = static_cast<Number>(written[i]);
 }
-inline void scatter_doubles(const ilaw_output& output, int component, const node_range& nodes,
-                            const double* written) {
-  scatter_of(output.values + component * output.component_stride, output.node_stride, nodes, written);
+template <class Number>
+void scatter_components_of(Number* values, std::int64_t node_stride, std::int64_t component_stride,
+                           int numbers, const node_range& nodes, double* const* components) {
+  if (numbers == 3 && !nodes.listed() && node_stride == 3 && component_stride == 1)
+    interleave(components, nodes.count, values + 3 * nodes.first);
+  else
+    for (int k = 0; k < numbers; ++k)
+      scatter_of(values + k * component_stride, node_stride, nodes, components[k]);
 }
-inline void scatter(const ilaw_output& output, int component, const node_range& nodes,
-                    const double* written) {
-  if (!nodes.of_floats) return scatter_doubles(output, component, nodes, written);
-  float* values = as_floats(output.values) + component * output.component_stride;
-  scatter_of(values, output.node_stride, nodes, written);
+inline void scatter_doubles(const ilaw_output& output, int numbers, const node_range& nodes,
+                            double* const* components) {
+  scatter_components_of(output.values, output.node_stride, output.component_stride, numbers, nodes,
+                        components);
+}
+inline void scatter_components(const ilaw_output& output, int numbers, const node_range& nodes,
+                               double* const* components) {
+  if (!nodes.of_floats) return scatter_doubles(output, numbers, nodes, components);
+  scatter_components_of(as_floats(output.values), output.node_stride, output.component_stride, numbers, nodes,
+                        components);
 }
 
-inline void scatter_vector(const ilaw_output& output, int dimension, const node_range& nodes,
-                           double* const* components) {
-  if (dimension == 3 && !nodes.listed() && output.node_stride == 3 && output.component_stride == 1) {
-    if (nodes.of_floats)
-      interleave(components, nodes.count, as_floats(output.values) + 3 * nodes.first);
+// Adds an input or output to what is asked for ahead, where few numbers of a node lie apart.
+template <class Array>
+void expect(const Array& array, int numbers, bool of_floats, streams& ahead) {
+  constexpr std::int64_t widest = 8;
+  const auto add = [&](std::int64_t at, std::int64_t numbers_of_node) {
+    if (of_floats)
+      ahead.add(as_floats(array.values) + at, numbers_of_node);
     else
-      interleave(components, nodes.count, output.values + 3 * nodes.first);
-    return;
-  }
-  for (int k = 0; k < dimension; ++k) scatter(output, k, nodes, components[k]);
+      ahead.add(array.values + at, numbers_of_node);
+  };
+  if (!array.values || array.node_stride < 1 || array.node_stride > widest) return;
+  if (array.component_stride == 1) return add(0, array.node_stride);
+  for (int k = 0; k < numbers; ++k) add(k * array.component_stride, array.node_stride);
 }
 
 }  // namespace ilaw::kit::detail

@@ -18,6 +18,8 @@ struct node_block {
   static constexpr int states = state_doubles<Law>;
 
   int count;
+  const streams* ahead;  // null: no other block follows
+  std::int64_t next;     // position of the block that does
   double time, velocity_step, position_step;
   double impulse_guard;   // an impulse that overflows when multiplied by it may do so as the host is given it
   const double* axes[9];  // normal, tangents; see frame.hpp
@@ -50,8 +52,8 @@ struct node_block {
 };
 
 // What a kernel computes besides impulse and state, so that what is not asked for costs nothing: nothing,
-// v_previous read as well, or that and the optional outputs.
-enum class scope { impulse, with_previous, outputs };
+// v_previous read as well, or that and velocity and status, or all optional outputs.
+enum class scope { impulse, with_previous, motion, outputs };
 
 template <class Law, class Delassus, class Frame>
 using node_in = node<Delassus, state_t<Law>, typename Frame::vector_type, Law::card.inputs>;
@@ -126,6 +128,12 @@ inline constexpr bool can_carry = std::is_same_v<Frame, stored_frame> &&
 
 template <class Law>
 inline constexpr bool reads_previous = (Law::card.inputs & reads_v_previous) != 0;
+// Whatever its parameters: then there is one loop less to compile, and one for velocity and status alone.
+template <class Law>
+inline constexpr bool always_reads_previous = [] {
+  if constexpr (requires { Law::always_reads; }) return (Law::always_reads & reads_v_previous) != 0;
+  return reads_previous<Law> && !requires(const Law& law) { law.inputs(); };
+}();
 
 // Inputs as the law's card has them.
 template <class Law, scope Scope, class Basis>
@@ -203,11 +211,13 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
 
 template <class Law, scope Scope, class Node>
 double input_defect(const Node& n) {
-  double sum = defect(n.v_free) + n.delassus.positive_defect();
+  double sum =
+      defect(n.v_free) + n.delassus.positive_defect();  // of what there is: GCC keeps additions of zero
   if constexpr ((Law::card.inputs & reads_gap) != 0) sum += defect(n.gap);
   if constexpr (reads_previous<Law> && Scope != scope::impulse) sum += defect(n.v_previous);
   if constexpr ((Law::card.inputs & reads_area) != 0) sum += defect(n.area) + defect_unless(n.area >= 0.0);
-  return sum + incoming_state_defect<Law>(n.state);
+  if constexpr (has_state<Law>) sum += incoming_state_defect<Law>(n.state);
+  return sum;
 }
 
 // Not zero where a promise is broken. By bits and products: choices, and comparisons of an impulse that was
@@ -226,18 +236,19 @@ inline double status_defect(double s) {
   const double product = s * (s - 1.0) * (s - 2.0) * (s - 3.0) * (s - 4.0) * (s - 5.0) * (s - 6.0);
   return defect(product * 0x1p1000 * 0x1p1000);
 }
+template <class Law>
+inline constexpr bool may_pull = (Law::card.capabilities & ILAW_CAN_ADHERE) != 0;
+template <class Law>
+inline constexpr bool may_act_anywhere =
+    (Law::card.capabilities & ILAW_CAN_ACT_AT_DISTANCE) != 0 || has_history<Law> || has_state<Law> ||
+    (Law::card.inputs & reads_gap) == 0;
 template <class Law, class Node>
 double pull_defect(const Node& n) {
-  if constexpr ((Law::card.capabilities & ILAW_CAN_ADHERE) != 0) return 0.0;
-  return defect_where(n.impulse.n < 0.0);
+  return may_pull<Law> ? 0.0 : defect_where(n.impulse.n < 0.0);
 }
-template <class Law, class Node>
+template <class Node>
 double distance_defect(const Node& n) {
-  constexpr bool may_act = (Law::card.capabilities & ILAW_CAN_ACT_AT_DISTANCE) != 0;
-  if constexpr (may_act || has_history<Law> || has_state<Law> || (Law::card.inputs & reads_gap) == 0)
-    return 0.0;
-  else
-    return kit::kept_if(is_out_of_reach(n), absolute(n.impulse.n) + tangential_product(n.impulse, n.impulse));
+  return kit::kept_if(is_out_of_reach(n), absolute(n.impulse.n) + tangential_product(n.impulse, n.impulse));
 }
 
 // Steps one node, and says whether its input was good and its result one that a law may give and a double
@@ -250,9 +261,12 @@ stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int
   const double before = input_defect<Law, Scope>(n);
   step(n);
   // In the host's axes a component may be as large as the whole vector: it must be a number there, too.
-  const double after = defect(b.impulse_guard * n.impulse) + state_defect<Law>(n.state);
-  const double kept = status_defect(n.status) + pull_defect<Law>(n) + distance_defect<Law>(n);
-  s.accepted = before + after + kept + n.refused == 0.0;
+  double sum = before + status_defect(n.status);
+  if constexpr (!may_pull<Law>) sum += pull_defect<Law>(n);
+  if constexpr (has_state<Law>) sum += state_defect<Law>(n.state);
+  if constexpr (!may_act_anywhere<Law>) sum += distance_defect(n);
+  sum += defect(b.impulse_guard * n.impulse);
+  s.accepted = (sum == 0.0) & (n.refused == 0.0);
   return s;
 }
 
@@ -302,17 +316,22 @@ auto previous_for_energy(const node_block<Law>& b, int i, const Node& n) {
   }
 }
 
-template <class Law, class Frame, class Layout, class Node>
-void store_outputs(const node_block<Law>& b, int i, const Node& n, bool accepted) {
+template <class Frame, class Layout, class Law, class Node>
+void store_motion(const node_block<Law>& b, int i, const Node& n, bool accepted) {
   const auto v = n.v_free + n.delassus.times(n.impulse);
   columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, Layout::get(b.v_free, i)));
+  b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
+}
+
+template <class Frame, class Layout, class Law, class Node>
+void store_energy(const node_block<Law>& b, int i, const Node& n, bool accepted) {
+  const auto v = n.v_free + n.delassus.times(n.impulse);
   const energy_split e = split_energy(n, previous_for_energy<Law, Frame, Layout>(b, i, n), v);
   const bool known = accepted & (defect(columns::get(b.v_previous_of_energy, i)) == 0.0);
   b.energy[ILAW_ENERGY_FRICTION][i] = known ? e.friction : 0.0;
   b.energy[ILAW_ENERGY_IMPACT][i] = known ? e.impact : 0.0;
   b.energy[ILAW_ENERGY_RUPTURE][i] = known ? e.rupture : 0.0;
   b.energy[ILAW_ENERGY_STORED][i] = accepted ? e.stored : 0.0;
-  b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
 }
 
 // Whether a form of a law works with the law's history in the step itself, which then runs node by node. One
@@ -347,7 +366,8 @@ void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool 
   auto [n, accepted] = step_node<Law, Delassus, Frame, Layout, Scope>(step, b, i);
   accepted = accepted & valid;
   Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
-  if constexpr (Scope == scope::outputs) store_outputs<Law, Frame, Layout>(b, i, n, accepted);
+  if constexpr (Scope >= scope::motion) store_motion<Frame, Layout>(b, i, n, accepted);
+  if constexpr (Scope == scope::outputs) store_energy<Frame, Layout>(b, i, n, accepted);
   if constexpr (has_window<Law>)
     keep_for_window(b, i, n);
   else if constexpr (remembers<Law, Form>)

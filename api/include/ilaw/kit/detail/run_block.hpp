@@ -85,20 +85,30 @@ struct one_law {
 };
 template <class Laws>
 inline constexpr bool is_one_law = std::is_same_v<Laws, one_law<typename Laws::form>>;
-template <class Law>
+template <class Law, class Form = Law>
 struct law_per_node {
-  using form = Law;
-  Law law;
+  using form = Form;
+  Form law;
   const column* parameters;
   const double* valid;  // 1 or 0
 
-  Law at(int i) const { return with(i, std::make_index_sequence<parameter_count<Law>>{}); }
+  Form at(int i) const { return with(i, std::make_index_sequence<parameter_count<Law>>{}); }
   bool is_valid(int i) const { return valid[i] != 0.0; }
+
+  // The form that a law names for such nodes, and whether the first ones have it.
+  auto in_form_of_nodes() const {
+    return law_per_node<Law, typename Law::form_of_nodes>{{law}, parameters, valid};
+  }
+  bool have_form_of_nodes(int count) const {
+    int others = 0;
+    for (int i = 0; i < count; ++i) others += at(i).has_form_of_nodes() ? 0 : 1;
+    return others == 0;
+  }
 
  private:
   template <std::size_t... K>
-  Law with(int i, std::index_sequence<K...>) const {
-    Law own = law;
+  Form with(int i, std::index_sequence<K...>) const {
+    Form own = law;
     ((own.*Law::parameters[K].member = parameters[K].values[i]), ...);
     return own;
   }
@@ -111,8 +121,13 @@ void over_nodes(const node_block<Law>& b, Step step) {
     for (int i = 0; i < b.count; ++i) step(b, i);
   } else {
     const node_block<Law> own = b;
+    const int at_once = own.ahead ? streams::nodes_at_once : block_size;
+    for (int first = 0, end; first < own.count; first = end) {
+      if (own.ahead) own.ahead->ask(own.next + first);
+      end = first + at_once < own.count ? first + at_once : own.count;
 #pragma omp simd
-    for (int i = 0; i < own.count; ++i) step(own, i);
+      for (int i = first; i < end; ++i) step(own, i);
+    }
   }
 }
 
