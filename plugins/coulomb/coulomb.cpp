@@ -77,7 +77,10 @@ struct coulomb : friction_in_packs {
   template <class Run>
   void in_form(Run run) const;
   using form_of_nodes = plain;
-  bool has_form_of_nodes() const { return !(falls() | tells_tangents_apart()); }
+  bool has_form_of_nodes() const {
+    const bool falls_anywhere = falls(), is_elliptical = tells_tangents_apart();
+    return !(falls_anywhere | is_elliptical);
+  }
 
   // Nodes whose tangents have no name cannot tell them apart: for them one coefficient is all.
   template <class Node>
