@@ -34,7 +34,6 @@ class Blocks {
       obstacle_before_[c] = step.obstacle_velocity_before[c];
     }
     stands_still_ = !Turns && obstacle_ == Components{} && obstacle_before_ == Components{};
-    if constexpr (What == Meets::obstacle) flat_ = step.setup.counterpart->flat_at(step.step.time);
     // What a law does not give is what it was.
     if (!(step.law.outputs() & ILAW_OUTPUT_STATUS)) status_room_.fill(ILAW_FREE);
   }
@@ -75,7 +74,7 @@ class Blocks {
   void locate() {
     if constexpr (Partnered)
       locate_partners();
-    else if (flat_)
+    else if (!Turns && step_.flat)
       locate_at_plane();
     else
       step_.setup.counterpart->locate(node_index_.data(), count_, step_.step.u, step_.step.time,
@@ -86,9 +85,9 @@ class Blocks {
 
   // All nodes have the plane's normal: it is written once.
   void locate_at_plane() {
-    flat_gaps<D>(step_.model, node_.data(), count_, step_.step.u, *flat_, gap_.data());
+    flat_gaps<D>(step_.model, node_.data(), count_, step_.step.u, *step_.flat, gap_.data());
     for (; normals_ < count_; ++normals_)
-      for (int c = 0; c < D; ++c) normal_[D * normals_ + c] = flat_->normal[c];
+      for (int c = 0; c < D; ++c) normal_[D * normals_ + c] = step_.flat->normal[c];
   }
 
   // Of the surface where it is touched: a gap offset is a body's own.
@@ -285,9 +284,8 @@ class Blocks {
   const std::int32_t* contacts_ = nullptr;
   std::ptrdiff_t count_ = 0;
   bool contacts_in_row_ = false, nodes_in_row_ = false;
-  bool acts_ = false;         // an impulse of the block is not zero
-  bool stands_still_ = true;  // the obstacle
-  std::optional<FlatSurface> flat_;
+  bool acts_ = false;           // an impulse of the block is not zero
+  bool stands_still_ = true;    // the obstacle
   std::ptrdiff_t normals_ = 0;  // nodes whose normal is already that of the plane
   Components obstacle_, obstacle_before_;
   // What this block works on: in the host's arrays or the rooms below.
@@ -303,28 +301,45 @@ class Blocks {
   std::vector<ilaw_input> parameters_;
 };
 
+// How many of the contacts make the next block: those that follow each other, where they are enough
+// to be worth a call of the law; what does not is copied to and fro.
+std::ptrdiff_t next_block(const std::int32_t* contacts, std::ptrdiff_t count) {
+  constexpr std::ptrdiff_t enough = 24;
+  count = std::min(block_size, count);
+  if (follow_each_other(contacts, count)) return count;
+  std::ptrdiff_t row = 1;
+  while (contacts[row] == contacts[row - 1] + 1) ++row;
+  return row >= enough ? row : count;
+}
+
 template <int D, Meets What>
-ChunkOutcome solve_blocks(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count) {
-  ChunkOutcome outcome;
+void solve_blocks(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count,
+                  ChunkOutcome& outcome) {
   Blocks<D, What> blocks(step);
-  for (std::ptrdiff_t first = 0; first < count; first += block_size)
-    blocks.solve(contacts + first, std::min(block_size, count - first), outcome);
-  return outcome;
+  for (std::ptrdiff_t size = 0; count > 0; contacts += size, count -= size) {
+    size = next_block(contacts, count);
+    blocks.solve(contacts, size, outcome);
+  }
 }
 
 template <int D>
-ChunkOutcome solve_in(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count) {
-  if (!step.contacts.point.empty()) return solve_blocks<D, Meets::partners>(step, contacts, count);
-  return step.setup.counterpart->turns() ? solve_blocks<D, Meets::turning_obstacle>(step, contacts, count)
-                                         : solve_blocks<D, Meets::obstacle>(step, contacts, count);
+void solve_in(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count,
+              ChunkOutcome& outcome) {
+  if (!step.contacts.point.empty())
+    solve_blocks<D, Meets::partners>(step, contacts, count, outcome);
+  else if (step.setup.counterpart->turns())
+    solve_blocks<D, Meets::turning_obstacle>(step, contacts, count, outcome);
+  else
+    solve_blocks<D, Meets::obstacle>(step, contacts, count, outcome);
 }
 
 }  // namespace
 
-ChunkOutcome solve_chunk(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count) {
+void solve_chunk(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count,
+                 ChunkOutcome& outcome) {
   const int d = step.model.dimension();
-  if (d == 1) return solve_in<1>(step, contacts, count);
-  return d == 2 ? solve_in<2>(step, contacts, count) : solve_in<3>(step, contacts, count);
+  if (d == 1) return solve_in<1>(step, contacts, count, outcome);
+  return d == 2 ? solve_in<2>(step, contacts, count, outcome) : solve_in<3>(step, contacts, count, outcome);
 }
 
 }  // namespace ilaw::host

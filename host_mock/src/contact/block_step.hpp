@@ -22,6 +22,7 @@ struct BlockStep {
   const Law& law;
   ContactArrays& contacts;
   const StepView& step;
+  const FlatSurface* flat;  // the obstacle, where it is a plane
   const Vector &obstacle_velocity, &obstacle_velocity_before;
   TurningRates rates;
   Dofs& v;  // v_free, then what the impulses make of it
@@ -38,6 +39,8 @@ struct ChunkOutcome {
 // Nodes of an interface whose contacts a thread takes at a time.
 constexpr std::ptrdiff_t contact_chunk = 2048;
 
-ChunkOutcome solve_chunk(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count);
+// Adds what becomes of the contacts to outcome.
+void solve_chunk(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count,
+                 ChunkOutcome& outcome);
 
 }  // namespace ilaw::host

@@ -94,6 +94,8 @@ class Counterpart {
   // velocity of its surface at rate 1, where a node meets it.
   virtual bool turns() const { return false; }
   virtual TurningRates rates(double /*time*/, double /*dt*/) const { return {}; }
+  // Whether its velocity, how it turns and where it is flat are the same in all steps.
+  virtual bool stands_still() const { return true; }
   virtual Vector unit_turn(int /*node_index*/, const Dofs& /*u*/, double /*time*/,
                            const RigidSurface& /*there*/) const {
     return {};
@@ -123,6 +125,7 @@ class RigidCounterpart : public Counterpart {
   Vector unit_turn(int node_index, const Dofs& u, double time, const RigidSurface& there) const override {
     return obstacle_->unit_velocity(position(node_index, u), there, time);
   }
+  bool stands_still() const override { return obstacle_->stands_still(); }
   const std::vector<int>& partners() const override { return none_; }
   bool keeps_normal() const override { return obstacle_->is_flat(); }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/interface.hpp"
 
-#include "base/bytes.hpp"
 #include "base/parallel.hpp"
 #include "base/running_law.hpp"
 #include "contact/law_faults.hpp"
@@ -18,14 +17,6 @@ namespace {
 // The largest speed is that of the largest square, which is 0 for smaller ones: nodes that come to
 // rest on a spring have them, at gaps as small.
 constexpr double least_speed = 0x1p-500;
-
-// Parameters of one node, as a batch takes them.
-std::vector<ilaw_input> inputs_of(const std::vector<double>& parameters) {
-  std::vector<ilaw_input> inputs;
-  inputs.reserve(parameters.size());
-  for (const double& value : parameters) inputs.push_back({&value, 1, 1});
-  return inputs;
-}
 
 }  // namespace
 
@@ -68,73 +59,6 @@ int Interface::contact_index_of(int node_index, const Dofs& u) {
                  axes_turn()});
   if (const std::size_t chunk = k / contact_chunk; chunk < far_.size()) far_[chunk] = {};
   return contacts_.index_of(k);
-}
-
-std::vector<double> Interface::parameters_of(int node_index) const {
-  std::vector<double> parameters;
-  for (std::size_t p = 0; p < info().per_node_parameter_count; ++p)
-    parameters.push_back(setup_.arguments.per_node.at(info().per_node_parameters[p])[at(node_index)]);
-  return parameters;
-}
-
-// The state that the law starts with at time 0, whenever the contact is made. Its axes are those of
-// the first time that it is active: where the normal turns, a law whose state has axes is active
-// from the first step (may_skip).
-std::vector<double> Interface::first_state(int node_index, const Dofs& u) const {
-  std::vector<double> state(info().state_size);
-  if (state.empty()) return state;
-  const std::vector<double> parameters = parameters_of(node_index);
-  const std::vector<ilaw_input> inputs = inputs_of(parameters);
-  const Vector normal = setup_.counterpart->contact_point(node_index, u, 0.0).normal;
-  ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
-  batch.node_count = 1;
-  batch.area = {&setup_.areas[at(node_index)], 1, 1};
-  batch.normal = {normal.data(), dimension_, 1};
-  batch.per_node_parameters = inputs.data();
-  batch.state_out = {state.data(), static_cast<std::int64_t>(state.size()), 1};
-  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
-  const Answer answer = law_.initialise(batch);
-  check({answer.code, 1, -1, 0, answer.report.reason}, std::to_string(setup_.nodes[at(node_index)]));
-  return state;
-}
-
-std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
-  const int contact_index = contacts_.index_of(at(node_index));
-  if (contact_index < 0) return first_state(node_index, u);
-  const auto first =
-      contacts_.state.begin() + static_cast<std::ptrdiff_t>(contacts_.first_state(contact_index));
-  return {first, first + static_cast<std::ptrdiff_t>(info().state_size)};
-}
-
-// The step has no size yet: at rest, no law's answer depends on it. A node that the law refuses is
-// told of by the first step.
-int Interface::status_at_start(int node_index, const Dofs& u) const {
-  if (setup_.birth > 0.0) return ILAW_FREE;
-  const ContactPoint point = setup_.counterpart->contact_point(node_index, u, 0.0);
-  const std::vector<double> parameters = parameters_of(node_index), state = first_state(node_index, u);
-  const std::vector<ilaw_input> inputs = inputs_of(parameters);
-  const Vector rest = Vector::Zero(dimension_);
-  Vector impulse = rest;
-  std::vector<double> state_out = state;
-  const double gap = point.gap - setup_.gap_offset,
-               delassus = point.delassus(model_, nodes()[at(node_index)]);
-  const auto size = static_cast<std::int64_t>(state.size());
-  std::uint8_t status = ILAW_FREE;
-  ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
-  batch.node_count = 1;
-  batch.v_free = batch.v_previous = {rest.data(), dimension_, 1};
-  batch.delassus = {&delassus, 1, 1};
-  batch.gap = {&gap, 1, 1};
-  batch.area = {&setup_.areas[at(node_index)], 1, 1};
-  batch.normal = {point.normal.data(), dimension_, 1};
-  batch.per_node_parameters = inputs.data();
-  batch.state_in = {state.data(), size, 1};
-  batch.state_out = {state_out.data(), size, 1};
-  batch.impulse = {impulse.data(), dimension_, 1};
-  batch.status = &status;
-  batch.status_stride = 1;
-  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
-  return law_.evaluate(batch).code == ILAW_OK ? status : int{ILAW_FREE};
 }
 
 bool Interface::axes_turn() const { return law_.carries_axes() && !setup_.counterpart->keeps_normal(); }
@@ -196,15 +120,25 @@ void Interface::look_at(std::size_t chunk, const StepView& step) {
 
 // ---- a step ---------------------------------------------------------------------------------------------
 
-void Interface::choose_active(const StepView& step) {
+// One that stands still is asked once: a few virtual calls take as long as a law that has one node.
+void Interface::follow_obstacle(const StepView& step) {
+  if (obstacle_is_known_) return;
   const Counterpart& counterpart = *setup_.counterpart;
   obstacle_velocity_before_ = counterpart.velocity(step.time - step.dt, step.time);
   obstacle_velocity_ = counterpart.velocity(step.time, step.time + step.dt);
+  obstacle_speed_before_ = obstacle_velocity_before_.norm();
+  obstacle_speed_ = obstacle_velocity_.norm();
   if (counterpart.turns()) rates_ = counterpart.rates(step.time, step.dt);
+  flat_ = counterpart.flat_at(step.time);
+  obstacle_is_known_ = counterpart.stands_still();
+}
+
+void Interface::choose_active(const StepView& step) {
+  follow_obstacle(step);
+  const Counterpart& counterpart = *setup_.counterpart;
   const double moving = counterpart.partners().empty() ? 1.0 : 2.0;
-  const double closing_before =
-                   moving * std::max(step.speed_before, least_speed) + obstacle_velocity_before_.norm(),
-               closing_after = moving * std::max(step.speed_after, least_speed) + obstacle_velocity_.norm();
+  const double closing_before = moving * std::max(step.speed_before, least_speed) + obstacle_speed_before_,
+               closing_after = moving * std::max(step.speed_after, least_speed) + obstacle_speed_;
   closing_ = step.dt * closing_after;
   const bool due = proximity_.refresh_due(step.dt, closing_before, closing_after, counterpart.validity());
   acts_ = !(step.time < setup_.birth || step.time >= setup_.death);
@@ -219,17 +153,26 @@ void Interface::solve(const StepView& step, Dofs& v) {
   sums_ = {};
   if (active().empty()) return;
   const bool energies = asks_energies_ && (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0,
-             watched = InputCopy::is_due(step.time, step.dt);
-  const BlockStep blocks{
-      setup_, model_, law_,     contacts_, step, obstacle_velocity_, obstacle_velocity_before_,
-      rates_, v,      energies, watched};
+             watched = InputCopy::is_due(step.number);
+  const BlockStep blocks{setup_,
+                         model_,
+                         law_,
+                         contacts_,
+                         step,
+                         flat_ ? &*flat_ : nullptr,
+                         obstacle_velocity_,
+                         obstacle_velocity_before_,
+                         rates_,
+                         v,
+                         energies,
+                         watched};
   outcomes_.resize(chunk_starts_.size() - 1);
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   for_each_chunk(static_cast<std::ptrdiff_t>(outcomes_.size()), 1, [&](std::ptrdiff_t c, auto, auto) {
     const std::ptrdiff_t* const range = &chunk_starts_[static_cast<std::size_t>(c)];
     ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
     outcome = {};
-    if (range[1] > range[0]) outcome = solve_chunk(blocks, near_.data() + range[0], range[1] - range[0]);
+    if (range[1] > range[0]) solve_chunk(blocks, near_.data() + range[0], range[1] - range[0], outcome);
   });
   Refusal refusal;
   for (const ChunkOutcome& outcome : outcomes_) {
@@ -287,7 +230,7 @@ void Interface::evaluate(const ContactList& contacts, const StepView& step) {
   const auto count = static_cast<std::ptrdiff_t>(contacts.size());
   outcomes_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), {});
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
-  const bool is_watched = InputCopy::is_due(step.time, step.dt);
+  const bool is_watched = InputCopy::is_due(step.number);
   for_each_chunk(count, contact_chunk, [&](std::ptrdiff_t c, std::ptrdiff_t first, std::ptrdiff_t end) {
     ilaw_batch part = batch;
     part.index = contacts.data() + first;
@@ -386,15 +329,6 @@ void Interface::add_impulse(int contact_index, Dofs& impulse) const {
   point(contact_index).for_each_node(node_of(contact_index), [&](int node, double weight) {
     impulse.segment(node * d, d) += weight * this->impulse(contact_index);
   });
-}
-
-void Interface::load(std::istream& in, const Dofs& u) {
-  const std::vector<int> nodes = ContactArrays::load_nodes(in, setup_.nodes.size());
-  for (const int node_index : nodes) contact_index_of(node_index, u);
-  if (contacts_.node_index != nodes) refuse_damaged();
-  contacts_.load_state(in);
-  far_.clear();
-  proximity_.invalidate();
 }
 
 }  // namespace ilaw::host

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -115,6 +116,7 @@ class Interface {
   // Whether the state of a contact that is out of reach changes: axes follow the normal.
   bool axes_turn() const;
   bool may_skip() const;
+  void follow_obstacle(const StepView& step);
   void choose_active(const StepView& step);
   void refresh_near(const StepView& step);
   void look_at(std::size_t chunk, const StepView& step);
@@ -138,7 +140,10 @@ class Interface {
   std::vector<std::uint8_t> is_near_;         // by node_index, at the last refresh
   std::vector<FarNodes> far_;                 // by chunk of nodes; no bound where some are near
   Vector obstacle_velocity_, obstacle_velocity_before_;
+  double obstacle_speed_ = 0.0, obstacle_speed_before_ = 0.0;
   TurningRates rates_;
+  std::optional<FlatSurface> flat_;
+  bool obstacle_is_known_ = false;      // it stands still, and all of it is above
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
   bool asks_energies_ = true;

@@ -32,6 +32,7 @@ struct StepView {
   double time, dt;
   double speed_before;  // at the half step before time
   double speed_after;   // of v_free, and of what other contacts may make of it
+  std::int64_t number;  // from 1 on
 };
 
 using ContactList = std::vector<std::int32_t>;  // by contact_index

@@ -37,11 +37,6 @@ Refusal overwriting(const char* input) {
   return {ILAW_BAD_LIBRARY, 0, -1, 0, text.data()};
 }
 
-bool InputCopy::is_due(double time, double dt) {
-  constexpr std::int64_t every = 1000;
-  return std::llround(time / dt) % every == 1;
-}
-
 InputCopy::InputCopy(const ilaw_batch& batch, std::size_t dimension, std::size_t parameter_count) {
   for (std::int64_t i = 0; i < batch.node_count; ++i)
     entries_.push_back(static_cast<std::size_t>(batch.index ? batch.index[i] : i));

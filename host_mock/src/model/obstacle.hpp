@@ -23,6 +23,7 @@ class Motion {
     if (!path_) return velocity_;
     return (displacement(to) - displacement(from)) / (to - from);
   }
+  bool stands_still() const { return !path_ && velocity_.isZero(0.0); }
 
  private:
   Vector velocity_;
@@ -73,6 +74,7 @@ class Obstacle {
   // Whether its surface moves along itself, beside that, and how fast; mean, between two times.
   bool turns() const { return turning_.has_value(); }
   double rate(double from, double to) const { return turning_->rate(from, to); }
+  bool stands_still() const { return !turns() && motion_.stands_still(); }
   // The velocity of its surface at rate 1, at the place with that gap and normal.
   Vector unit_velocity(const Vector& x, const RigidSurface& there, double time) const;
   // Whether the normal is the same everywhere.

@@ -122,7 +122,7 @@ void Integrator::correct(StepTimes step) {
 // interface finds gaps, normals and 1/m, passes v_free and v_before relative to the obstacle, takes
 // impulses, states and energies, and adds r/m. Where some do, laws are evaluated until all agree.
 void Integrator::add_reactions(double time, double speed_free) {
-  const StepView step{u_, v_before_, time, dt_, speed_before_, speed_free};
+  const StepView step{u_, v_before_, time, dt_, speed_before_, speed_free, steps_ + 1};
   if (coupled_)
     add_coupled_reactions(step);
   else

@@ -1,0 +1,102 @@
+// What contacts start with where no step has reached them, and what a checkpoint brings back.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/bytes.hpp"
+#include "base/running_law.hpp"
+#include "contact/interface.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <istream>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+// Parameters of one node, as a batch takes them.
+std::vector<ilaw_input> inputs_of(const std::vector<double>& parameters) {
+  std::vector<ilaw_input> inputs;
+  inputs.reserve(parameters.size());
+  for (const double& value : parameters) inputs.push_back({&value, 1, 1});
+  return inputs;
+}
+
+}  // namespace
+
+std::vector<double> Interface::parameters_of(int node_index) const {
+  std::vector<double> parameters;
+  for (std::size_t p = 0; p < info().per_node_parameter_count; ++p)
+    parameters.push_back(setup_.arguments.per_node.at(info().per_node_parameters[p])[at(node_index)]);
+  return parameters;
+}
+
+// The state that the law starts with at time 0, whenever the contact is made. Its axes are those of
+// the first time that it is active: where the normal turns, a law whose state has axes is active
+// from the first step (may_skip).
+std::vector<double> Interface::first_state(int node_index, const Dofs& u) const {
+  std::vector<double> state(info().state_size);
+  if (state.empty()) return state;
+  const std::vector<double> parameters = parameters_of(node_index);
+  const std::vector<ilaw_input> inputs = inputs_of(parameters);
+  const Vector normal = setup_.counterpart->contact_point(node_index, u, 0.0).normal;
+  ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
+  batch.node_count = 1;
+  batch.area = {&setup_.areas[at(node_index)], 1, 1};
+  batch.normal = {normal.data(), dimension_, 1};
+  batch.per_node_parameters = inputs.data();
+  batch.state_out = {state.data(), static_cast<std::int64_t>(state.size()), 1};
+  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
+  const Answer answer = law_.initialise(batch);
+  check({answer.code, 1, -1, 0, answer.report.reason}, std::to_string(setup_.nodes[at(node_index)]));
+  return state;
+}
+
+std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
+  const int contact_index = contacts_.index_of(at(node_index));
+  if (contact_index < 0) return first_state(node_index, u);
+  const auto first =
+      contacts_.state.begin() + static_cast<std::ptrdiff_t>(contacts_.first_state(contact_index));
+  return {first, first + static_cast<std::ptrdiff_t>(info().state_size)};
+}
+
+// The step has no size yet: at rest, no law's answer depends on it. A node that the law refuses is
+// told of by the first step.
+int Interface::status_at_start(int node_index, const Dofs& u) const {
+  if (setup_.birth > 0.0) return ILAW_FREE;
+  const ContactPoint point = setup_.counterpart->contact_point(node_index, u, 0.0);
+  const std::vector<double> parameters = parameters_of(node_index), state = first_state(node_index, u);
+  const std::vector<ilaw_input> inputs = inputs_of(parameters);
+  const Vector rest = Vector::Zero(dimension_);
+  Vector impulse = rest;
+  std::vector<double> state_out = state;
+  const double gap = point.gap - setup_.gap_offset,
+               delassus = point.delassus(model_, nodes()[at(node_index)]);
+  const auto size = static_cast<std::int64_t>(state.size());
+  std::uint8_t status = ILAW_FREE;
+  ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
+  batch.node_count = 1;
+  batch.v_free = batch.v_previous = {rest.data(), dimension_, 1};
+  batch.delassus = {&delassus, 1, 1};
+  batch.gap = {&gap, 1, 1};
+  batch.area = {&setup_.areas[at(node_index)], 1, 1};
+  batch.normal = {point.normal.data(), dimension_, 1};
+  batch.per_node_parameters = inputs.data();
+  batch.state_in = {state.data(), size, 1};
+  batch.state_out = {state_out.data(), size, 1};
+  batch.impulse = {impulse.data(), dimension_, 1};
+  batch.status = &status;
+  batch.status_stride = 1;
+  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
+  return law_.evaluate(batch).code == ILAW_OK ? status : int{ILAW_FREE};
+}
+
+void Interface::load(std::istream& in, const Dofs& u) {
+  const std::vector<int> nodes = ContactArrays::load_nodes(in, setup_.nodes.size());
+  for (const int node_index : nodes) contact_index_of(node_index, u);
+  if (contacts_.node_index != nodes) refuse_damaged();
+  contacts_.load_state(in);
+  far_.clear();
+  proximity_.invalidate();
+}
+
+}  // namespace ilaw::host
