@@ -7,16 +7,37 @@
 
 #include <nlohmann/json.hpp>
 
-#include <string_view>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace ilaw::host {
 
-// Takes the elements of an array "points" from the beginning of a text, and leaves its "]" there.
-// They must be what the schema allows, in the form that most scenes have: the same number of
-// components throughout, and no springs. Where they are not, null comes back: the scene is then
-// read in the plain way, which also says what is wrong.
-nlohmann::json packed_points(std::string_view& text);
+// Takes what a parser finds inside the array "points" of a model. Every function returns whether it
+// is what the schema allows, in the form that most scenes have: the same number of components
+// throughout, and no springs. Where it is not, the scene is read in the plain way, which also says
+// what is wrong.
+class PointPacker {
+ public:
+  bool start_point();
+  bool key(const std::string& name);
+  bool start_vector();
+  bool number(double value);
+  bool end_vector();
+  bool end_point();
+
+  nlohmann::json packed() && { return nlohmann::json::binary(std::move(bytes_)); }
+
+ private:
+  enum Field { mass, area, position, velocity, field_count };
+
+  std::vector<std::uint8_t> bytes_;
+  std::size_t width_ = 0;  // components of a vector
+  bool in_point_ = false, in_vector_ = false;
+  int field_ = field_count;
+  std::size_t sizes_[field_count] = {};
+  double values_[field_count][3] = {};
+};
 
 // Whether points, as they stand in a scene, are packed; then they can be had as objects again.
 bool are_packed(const nlohmann::json& points);

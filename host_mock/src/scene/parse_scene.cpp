@@ -5,10 +5,8 @@
 #include "scene/packed_points.hpp"
 #include "scene/validation.hpp"
 
-#include <cstddef>
-#include <iterator>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,49 +15,27 @@ namespace {
 
 using nlohmann::json;
 
-// Characters that a parser takes from a text one by one, while its events may take more of them; the
-// default is the end of any text.
-class Characters {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = char;
-
-  Characters() = default;
-  explicit Characters(std::string_view& rest) : rest_(&rest) {}
-  char operator*() const { return rest_->front(); }
-  Characters& operator++() {
-    rest_->remove_prefix(1);
-    return *this;
-  }
-  // Of which one is the end.
-  bool operator!=(const Characters& end) const { return rest_ != end.rest_ && !rest_->empty(); }
-
- private:
-  std::string_view* rest_ = nullptr;
-};
-
 class Reader : public nlohmann::json_sax<json> {
  public:
-  // packable: the rest of the text that is read, null where points are not to be packed.
-  explicit Reader(std::string_view* packable) : packable_(packable) {}
+  explicit Reader(bool packs) : packs_(packs) {}
 
   json take() { return std::move(root_); }
-  // Whether the text must be read in the plain way.
-  bool must_read_plainly() const { return must_read_plainly_; }
+  // Whether reading stopped at points that cannot be packed.
+  bool cannot_pack() const { return cannot_pack_; }
 
   bool null() override { return add(json()); }
   bool boolean(bool value) override { return add(value); }
-  bool number_integer(number_integer_t value) override { return add(value); }
-  bool number_unsigned(number_unsigned_t value) override { return add(value); }
-  bool number_float(number_float_t value, const string_t& /*text*/) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add_number(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add_number(value); }
+  bool number_float(number_float_t value, const string_t& /*text*/) override { return add_number(value); }
   bool string(string_t& value) override { return add(std::move(value)); }
   bool binary(binary_t& value) override { return add(std::move(value)); }
 
-  bool start_object(std::size_t /*size*/) override { return open(json::object()); }
+  bool start_object(std::size_t /*size*/) override {
+    return packer_ ? packed(packer_->start_point()) : open(json::object());
+  }
   bool key(string_t& key) override {
+    if (packer_) return packed(packer_->key(key));
     json& object = *open_.back();
     if (object.contains(key))
       throw SceneError("", "key '" + key + "' appears twice in one object, expected once");
@@ -68,26 +44,38 @@ class Reader : public nlohmann::json_sax<json> {
     if (open_.size() == 1) part_ = "/" + key;
     return true;
   }
-  bool end_object() override { return close(); }
+  bool end_object() override { return packer_ ? packed(packer_->end_point()) : close(); }
 
-  // The parser has taken the "[" and no more.
   bool start_array(std::size_t /*size*/) override {
-    if (!packable_ || open_.size() != 2 || open_[1] != model_ || key_ != "points") return open(json::array());
-    json points = packed_points(*packable_);
-    must_read_plainly_ = points.is_null();
-    return !must_read_plainly_ && open(std::move(points));
+    if (packer_) {
+      is_in_vector_ = true;
+      return packed(packer_->start_vector());
+    }
+    const bool are_points = packs_ && open_.size() == 2 && open_[1] == model_ && key_ == "points";
+    if (are_points) packer_.emplace();
+    return open(json::array());
   }
-  bool end_array() override { return close(); }
+  bool end_array() override {
+    if (packer_ && std::exchange(is_in_vector_, false)) return packed(packer_->end_vector());
+    if (packer_) *open_.back() = std::move(*std::exchange(packer_, std::nullopt)).packed();
+    return close();
+  }
 
-  // The parser counts no lines of what is packed.
   bool parse_error(std::size_t /*at*/, const std::string& /*token*/, const json::exception& error) override {
-    if (!packable_) throw SceneError(std::string("not valid JSON: ") + error.what());
-    must_read_plainly_ = true;
-    return false;
+    throw SceneError(std::string("not valid JSON: ") + error.what());
   }
 
  private:
+  bool packed(bool is_fit) {
+    cannot_pack_ = !is_fit;
+    return is_fit;
+  }
+  template <class Number>
+  bool add_number(Number value) {
+    return packer_ ? packed(packer_->number(static_cast<double>(value))) : add(value);
+  }
   bool add(json value) {
+    if (packer_) return packed(false);
     place(std::move(value));
     return true;
   }
@@ -115,8 +103,8 @@ class Reader : public nlohmann::json_sax<json> {
   std::vector<json*> open_;  // objects and arrays, from the outermost on
   json *slot_ = nullptr, *model_ = nullptr;
   std::string key_, part_;  // part_: of the scene, that is read
-  std::string_view* packable_;
-  bool must_read_plainly_ = false;
+  bool packs_, cannot_pack_ = false, is_in_vector_ = false;
+  std::optional<PointPacker> packer_;
 };
 
 }  // namespace
@@ -124,10 +112,8 @@ class Reader : public nlohmann::json_sax<json> {
 json parse_scene(const std::string& text) {
   constexpr std::size_t large = 1 << 18;
   for (const bool packs : {text.size() >= large, false}) {
-    std::string_view rest = text;
-    Reader reader(packs ? &rest : nullptr);
-    if (json::sax_parse(Characters(rest), Characters(), &reader) || !reader.must_read_plainly())
-      return reader.take();
+    Reader reader(packs);
+    if (json::sax_parse(text, &reader) || !reader.cannot_pack()) return reader.take();
   }
   return {};
 }
