@@ -196,9 +196,7 @@ std::unique_ptr<ilaw_interface> create_interface(ilaw_library& library, const il
 
 // A reason may be a pointer to nowhere, or steer a terminal: hosts print it.
 std::int32_t with_readable_reason(std::int32_t code, ilaw_report* report) {
-  if (code == ILAW_OK || !report ||
-      report->struct_size < offsetof(ilaw_report, reason) + sizeof report->reason || !report->reason)
-    return code;
+  if (code == ILAW_OK || !report || !report->reason) return code;
   if (!ilaw::loading::readable_text(report->reason) || !ilaw::loading::clean_text(report->reason, false))
     report->reason = "(the library gave a reason that is no readable text)";
   return code;

@@ -47,7 +47,7 @@ bool readable(const void* address, std::size_t size) {
   for (std::uintptr_t at = first;;) {  // one byte in each page
     if (!pages.can_read(reinterpret_cast<const char*>(at))) return false;
     const std::uintptr_t next = (at | (page_size - 1)) + 1;
-    if (next > last || next == 0) return true;
+    if (next > last) return true;  // what can be read is below the last page of all
     at = next;
   }
 }

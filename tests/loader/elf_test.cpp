@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -97,6 +98,58 @@ TEST(ElfFile, IsRefusedByTheLoaderItself) {
   bytes = whole_library();
   end_of_names(bytes) = 'x';
   EXPECT_NE(refusal_of(bytes).find("a table of names without end"), std::string::npos) << refusal_of(bytes);
+}
+
+Elf64_Phdr& first_segment(Bytes& bytes) { return entry_at<Elf64_Phdr>(bytes, header(bytes).e_phoff); }
+
+TEST(ElfFile, IsRefusedInItsOwnWords) {
+  const struct {
+    const char* said;
+    void (*done)(Bytes&);
+  } cases[] = {
+      {"not an ELF file", [](Bytes& b) { b.resize(3); }},
+      {"not an ELF file", [](Bytes& b) { b[1] = 'e'; }},
+      {"truncated at 10 bytes", [](Bytes& b) { b.resize(10); }},
+      {"not a 64-bit ELF file", [](Bytes& b) { b[EI_CLASS] = ELFCLASS32; }},
+      {"not a little-endian ELF file", [](Bytes& b) { b[EI_DATA] = ELFDATA2MSB; }},
+      {"ELF version 7", [](Bytes& b) { header(b).e_version = 7; }},
+      {"ELF file of type 2", [](Bytes& b) { header(b).e_type = ET_EXEC; }},
+      {"truncated at", [](Bytes& b) { header(b).e_shoff = b.size() + 1; }},
+      {"program headers of 57 bytes", [](Bytes& b) { header(b).e_phentsize = 57; }},
+      {"program headers of 56 bytes", [](Bytes& b) { header(b).e_phnum = PN_XNUM; }},
+      {"a segment that cannot be loaded, at",
+       [](Bytes& b) { last_loaded(b).p_vaddr = first_segment(b).p_vaddr; }},
+      {"a segment that cannot be loaded, at", [](Bytes& b) { last_loaded(b).p_align = 0; }},
+      {"a segment that cannot be loaded, at",
+       [](Bytes& b) { last_loaded(b).p_align = std::uint64_t{1} << 40; }},
+      {"a segment that cannot be loaded, at", [](Bytes& b) { last_loaded(b).p_vaddr += 8; }},
+      {"a dynamic section without end",
+       [](Bytes& b) {
+         const Elf64_Phdr found = segment(b, PT_DYNAMIC);
+         for (std::uint64_t at = found.p_offset; at + sizeof(Elf64_Dyn) <= b.size(); at += sizeof(Elf64_Dyn))
+           if (entry_at<Elf64_Dyn>(b, at).d_tag == DT_NULL) entry_at<Elf64_Dyn>(b, at).d_tag = DT_DEBUG;
+       }},
+      {"no table of symbols", [](Bytes& b) { dynamic(b, DT_SYMTAB).d_tag = DT_DEBUG; }},
+      {"no hash table of symbols", [](Bytes& b) { dynamic(b, DT_GNU_HASH).d_tag = DT_DEBUG; }},
+      {"a table that reaches beyond its segment, entry 7",
+       [](Bytes& b) { dynamic(b, DT_RELASZ).d_un.d_val = 1 << 30; }},
+      {"a dynamic section that points outside the file, entry 12",
+       [](Bytes& b) { dynamic(b, DT_INIT).d_un.d_ptr = 0x7000000000; }},
+      {"a name outside the table of names", [](Bytes& b) { dynamic(b, DT_NEEDED).d_un.d_val = 1 << 30; }},
+      // What the loader lets pass, dlopen may not.
+      {"cannot be loaded: ", [](Bytes& b) {
+         const char* const text = "libc.so.6";
+         *std::search(b.begin(), b.end(), text, text + 9) = 'q';
+       }}};
+  int number = 0;
+  for (const auto& one : cases) {
+    Bytes bytes = whole_library();
+    one.done(bytes);
+    const std::string said = refusal_of(bytes);
+    EXPECT_NE(said.find(std::string(": ") + one.said), std::string::npos)
+        << "case " << number << ": " << said << ", expected " << one.said;
+    ++number;
+  }
 }
 
 struct Damage {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <dlfcn.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -91,6 +92,14 @@ TEST(Loader, RefusesFilesThatAreNoLibraries) {
             text + ": not an ELF file, expected a whole ELF shared library for this machine");
   EXPECT_NE(refusal_of(folder.string()).second.find(": a folder, expected"), std::string::npos);
   EXPECT_EQ(refusal_of((folder / "none.so").string()).first, ILAW_NOT_FOUND);
+  const std::string pipe = (folder / "pipe.so").string(), huge = (folder / "huge.so").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_NE(refusal_of(pipe).second.find(": not a regular file, expected"), std::string::npos);
+  std::ofstream(huge) << "\x7f"
+                         "ELF";
+  fs::resize_file(huge, (std::uintmax_t{1} << 30) + 1);  // without room on the disk
+  EXPECT_NE(refusal_of(huge).second.find(": larger than 1 GiB, expected"), std::string::npos);
+  fs::remove_all(folder);
 }
 
 // dlopen maps what the headers promise: a truncated file would die of SIGBUS.
@@ -168,6 +177,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "capabilities is 1048576, expected only the bits of 15"},
         RefusedInfo{"refused_info", ILAW_BAD_LIBRARY, "info refuses its own instance"},
         RefusedInfo{"odd_code", ILAW_BAD_LIBRARY, "create gave no instance, code 57"},
+        RefusedInfo{"throws_number", ILAW_BAD_LIBRARY, "an exception of a library"},
+        RefusedInfo{"throws_error", ILAW_BAD_LIBRARY, "a table is missing"},
         RefusedInfo{"odd_message", ILAW_INVALID_PARAMETER, "wrong ?[2J?"}),
     [](const auto& drawn) { return drawn.param.name; });
 
@@ -213,6 +224,62 @@ TEST(Loader, RefusesStructsThatNoHostCanHaveFilled) {
   ilaw_interface_destroy(law);
 }
 
+// Hosts print it.
+TEST(Loader, GivesReasonsThatMayBePrinted) {
+  const std::string unreadable = "(the library gave a reason that is no readable text)";
+  const std::pair<const char*, std::string> cases[] = {
+      {"odd_node", "a node that is none"}, {"wild_reason", unreadable}, {"control_reason", unreadable}};
+  for (const auto& [name, reason] : cases) {
+    const ilaw::library library(variant(name));
+    const ilaw_setup setup = setup_1d();
+    ilaw_interface* law = nullptr;
+    ASSERT_EQ(ilaw_interface_create(library.get(), "zero", &setup, &law, nullptr, 0), ILAW_OK) << name;
+    ilaw_batch batch{};
+    batch.struct_size = sizeof batch;
+    ilaw_report report{};
+    report.struct_size = sizeof report;
+    EXPECT_EQ(ilaw_interface_evaluate(law, &batch, &report), ILAW_BAD_NODES) << name;
+    EXPECT_EQ(report.reason, reason) << name;
+    EXPECT_EQ(ilaw_interface_initialise(law, &batch, nullptr), ILAW_BAD_NODES) << name;
+    ilaw_interface_destroy(law);
+  }
+}
+
+TEST(Loader, AnswersNullArgumentsWithACode) {
+  const ilaw::library library(variant("good"));
+  const ilaw_setup setup = setup_1d();
+  ilaw_library* opened = library.get();
+  ilaw_interface* law = nullptr;
+  char message[256] = "before";
+  EXPECT_EQ(ilaw_library_open(nullptr, &opened, message, sizeof message), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(opened, nullptr);
+  EXPECT_STREQ(message, "the name of the library, or where to put it, is null or empty");
+  EXPECT_EQ(ilaw_library_open("", &opened, nullptr, sizeof message), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(ilaw_library_open_named("good", nullptr, message, 0), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(ilaw_interface_create(nullptr, "zero", &setup, &law, message, sizeof message),
+            ILAW_INVALID_ARGUMENT);
+  EXPECT_STREQ(message, "library, setup or interface is null");
+  EXPECT_EQ(ilaw_interface_create(library.get(), "zero", nullptr, &law, nullptr, 0), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(ilaw_interface_create(library.get(), "zero", &setup, nullptr, nullptr, 0), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(ilaw_library_plugin(nullptr), nullptr);
+  EXPECT_EQ(ilaw_library_path(nullptr), nullptr);
+  EXPECT_EQ(ilaw_library_law(nullptr, "zero"), nullptr);
+  EXPECT_EQ(ilaw_library_law(library.get(), nullptr), nullptr);
+  EXPECT_EQ(ilaw_interface_law(nullptr), nullptr);
+  EXPECT_EQ(ilaw_interface_instance(nullptr), nullptr);
+  ilaw_instance_info info{};
+  info.struct_size = sizeof info;
+  EXPECT_EQ(ilaw_interface_info(nullptr, &info), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(ilaw_interface_initialise(nullptr, nullptr, nullptr), ILAW_INVALID_ARGUMENT);
+  ilaw_interface_destroy(nullptr);
+  ilaw_library_close(nullptr);
+  // The only law of a library needs no name.
+  ASSERT_EQ(ilaw_interface_create(library.get(), nullptr, &setup, &law, nullptr, 0), ILAW_OK);
+  EXPECT_STREQ(ilaw_interface_law(law)->id, "zero");
+  EXPECT_EQ(ilaw_interface_info(law, nullptr), ILAW_INVALID_ARGUMENT);
+  ilaw_interface_destroy(law);
+}
+
 TEST(Loader, NamesTheLawsOfALibrary) {
   const ilaw::library library(variant("good"));
   EXPECT_NE(library.law("zero"), nullptr);
@@ -243,6 +310,26 @@ TEST(Search, FindsNamesInThePathInItsOrder) {
   EXPECT_EQ(std::count(files.begin(), files.end(), (second / "here.so").string()), 1);
   EXPECT_EQ(std::count(files.begin(), files.end(), (first / "here.so").string()), 0);
   EXPECT_EQ(ilaw::search_path().substr(0, second.string().size()), second.string());
+}
+
+TEST(Search, GoesOnUntilTheVisitorHasSeenEnough) {
+  const fs::path folder = folder_with("here");
+  fs::copy_file(variant("good"), folder / "there.so");
+  std::ofstream(folder / "so") << "no library by its name";
+  setenv("ILAW_PATH", (folder / ".." / "." / folder.filename()).c_str(), 1);
+  std::vector<std::string> seen;
+  const auto visit = [](const char* path, void* context) -> std::int32_t {
+    static_cast<std::vector<std::string>*>(context)->push_back(path);
+    return 7;
+  };
+  EXPECT_EQ(ilaw_search(visit, &seen), 7);
+  EXPECT_EQ(seen, std::vector<std::string>{(folder / "here.so").string()});
+  EXPECT_EQ(ilaw_search(nullptr, nullptr), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(ilaw::search()[1], (folder / "there.so").string());
+  char text[8];
+  EXPECT_EQ(ilaw_search_path(nullptr, 0), ilaw::search_path().size() + 1);
+  EXPECT_EQ(ilaw_search_path(text, sizeof text), ilaw::search_path().size() + 1);
+  EXPECT_EQ(text, ilaw::search_path().substr(0, 7));
 }
 
 TEST(Search, NeverLooksInTheCurrentFolder) {

@@ -12,6 +12,10 @@ struct ilaw_instance {
 
 static int instances; /* that live; laws are created by many threads at once */
 
+/* in throws.cpp */
+void throw_number(void);
+void throw_error(void);
+
 static int32_t create(const ilaw_setup* setup, ilaw_instance** instance, char* message, size_t message_size) {
   (void)setup;
   if (message_size > 0) message[0] = '\0';
@@ -22,6 +26,14 @@ static int32_t create(const ilaw_setup* setup, ilaw_instance** instance, char* m
   *instance = NULL;
   strncpy(message, "wrong \033[2J\xff", message_size);
   return ILAW_INVALID_PARAMETER;
+#elif defined(VARIANT_THROWS_NUMBER) || defined(VARIANT_THROWS_ERROR)
+  *instance = NULL;
+#ifdef VARIANT_THROWS_NUMBER
+  throw_number();
+#else
+  throw_error();
+#endif
+  return ILAW_OK;
 #else
   *instance = malloc(sizeof **instance);
   if (!*instance) return ILAW_OUT_OF_MEMORY;
@@ -96,6 +108,14 @@ static int32_t info(const ilaw_instance* instance, ilaw_instance_info* out) {
 #endif
 }
 
+#if defined(VARIANT_ODD_NODE)
+#define REASON "a node that is none"
+#elif defined(VARIANT_WILD_REASON)
+#define REASON ((const char*)16)
+#elif defined(VARIANT_CONTROL_REASON)
+#define REASON "wrong \033[2J"
+#endif
+
 static int32_t nothing(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report) {
   int64_t i;
   (void)instance;
@@ -105,11 +125,11 @@ static int32_t nothing(const ilaw_instance* instance, const ilaw_batch* batch, i
 #ifdef VARIANT_ODD_STATUS
   for (i = 0; batch->status && i < batch->node_count; ++i) batch->status[i * batch->status_stride] = 42;
 #endif
-#ifdef VARIANT_ODD_NODE
+#ifdef REASON
   if (report) {
     report->bad_count = 1;
     report->first_bad_node = INT64_C(1) << 40;
-    report->reason = "a node that is none";
+    report->reason = REASON;
   }
   return ILAW_BAD_NODES;
 #endif

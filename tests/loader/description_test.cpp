@@ -1,0 +1,338 @@
+// What a library says wrong of itself is refused in words that name it, whatever it is.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <description.hpp>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+namespace {
+
+using ilaw::loading::check_instance_info;
+using ilaw::loading::checked_plugin;
+using ilaw::loading::refusal;
+using ilaw::loading::storage;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+const void* const no_address = reinterpret_cast<const void*>(16);
+
+// A library without fault, whose one law has a parameter of each kind and a variable of state. Made where it
+// stays: it points into itself.
+struct Description {
+  std::array<const char*, 2> choices{"smooth", "rough"};
+  std::array<const char*, 1> references{"Author (1999), Title"};
+  ilaw_parameter number{}, choice{};
+  ilaw_state_variable variable{};
+  ilaw_law law{};
+  ilaw_plugin plugin{};
+  std::array<const ilaw_parameter*, 2> parameters{&number, &choice};
+  std::array<const ilaw_state_variable*, 2> variables{&variable, &variable};
+  std::array<const ilaw_law*, 2> laws{&law, &law};
+
+  Description() {
+    number = {sizeof number,
+              ILAW_PARAMETER_NUMBER,
+              "strength",
+              "s",
+              "Pa",
+              "Of the bond.\n",
+              0.0,
+              1.0,
+              0.5,
+              0,
+              0,
+              0,
+              0,
+              nullptr,
+              0,
+              0};
+    choice = {sizeof choice,
+              ILAW_PARAMETER_CHOICE,
+              "surface",
+              "",
+              "1",
+              "Its finish.",
+              0.0,
+              1.0,
+              1.0,
+              0,
+              0,
+              0,
+              0,
+              choices.data(),
+              2,
+              0};
+    variable = {sizeof variable, ILAW_STATE_SCALAR, "damage", "1", "Of the bond.", 1, 0, 0};
+    law.struct_size = sizeof law;
+    law.dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_3;
+    law.delassus_forms = ILAW_DELASSUS_SCALAR;
+    law.inputs = ILAW_INPUT_GAP;
+    law.id = "bond";
+    law.title = "Bond";
+    law.doc = "Holds.";
+    law.references = references.data();
+    law.reference_count = 1;
+    law.parameters = parameters.data();
+    law.parameter_count = 2;
+    law.state_variables = variables.data();
+    law.state_variable_count = 1;
+    law.create = [](const ilaw_setup*, ilaw_instance**, char*, std::size_t) { return std::int32_t{ILAW_OK}; };
+    law.destroy = [](ilaw_instance*) {};
+    law.info = [](const ilaw_instance*, ilaw_instance_info*) { return std::int32_t{ILAW_OK}; };
+    law.initialise = law.evaluate = [](const ilaw_instance*, const ilaw_batch*, ilaw_report*) {
+      return std::int32_t{ILAW_OK};
+    };
+    plugin = {sizeof plugin, ILAW_ABI_MAJOR, ILAW_ABI_MINOR, "bonds", "1.0",
+              "tests",       "BSD",          laws.data(),    1,       0,
+              nullptr};
+  }
+  Description(const Description&) = delete;
+  Description& operator=(const Description&) = delete;
+
+  std::string answer() const {
+    storage kept;
+    try {
+      checked_plugin("bonds.so", &plugin, kept);
+    } catch (const refusal& error) {
+      EXPECT_EQ(error.code(), ILAW_BAD_LIBRARY) << error.what();
+      return error.what();
+    }
+    return "";
+  }
+};
+
+struct Fault {
+  const char* name;
+  void (*make)(Description&);
+  const char* said;  // "": nothing is wrong with it
+
+  friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+};
+
+class FaultyDescription : public testing::TestWithParam<Fault> {};
+
+TEST_P(FaultyDescription, IsNamedWithWhatWasFoundAndExpected) {
+  Description description;
+  ASSERT_EQ(description.answer(), "");
+  GetParam().make(description);
+  const std::string wanted = GetParam().said;
+  EXPECT_EQ(description.answer(), wanted.empty() ? "" : "bonds.so: " + wanted);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Library, FaultyDescription,
+    testing::Values(
+        Fault{"NoVendor", [](Description& d) { d.plugin.vendor = nullptr; },
+              "vendor is null, expected a text"},
+        Fault{"LawsNull", [](Description& d) { d.plugin.laws = nullptr; },
+              "laws is null, expected 1 entries"},
+        Fault{"LawNull", [](Description& d) { d.laws[0] = nullptr; }, "law 0: law is null"},
+        Fault{"LawNowhere", [](Description& d) { d.laws[0] = static_cast<const ilaw_law*>(no_address); },
+              "law 0: law points to memory that cannot be read"},
+        Fault{"LawsNowhere",
+              [](Description& d) { d.plugin.laws = static_cast<const ilaw_law* const*>(no_address); },
+              "laws points to memory that cannot be read"},
+        Fault{"HugeLaw", [](Description& d) { d.law.struct_size = 4097; },
+              "law 0: law has struct_size 4097, expected at least 136 and at most 4096"},
+        Fault{"NoDimension", [](Description& d) { d.law.dimensions = 0; },
+              "law 'bond': dimensions has none of 1, 2 and 3"},
+        Fault{"NoForm", [](Description& d) { d.law.delassus_forms = 0; },
+              "law 'bond': delassus_forms is 0, expected at least one form"},
+        Fault{"UnknownOutput", [](Description& d) { d.law.outputs = 1U << 20; },
+              "law 'bond': outputs is 1048576, expected only the bits of 7"},
+        Fault{"EmptyId", [](Description& d) { d.law.id = ""; },
+              "law 0: id is '', expected lower-case letters, digits and '_'"},
+        Fault{"IdOfADigit", [](Description& d) { d.law.id = "2bonds"; },
+              "law 0: id is '2bonds', expected lower-case letters, digits and '_'"},
+        Fault{"IdWithBraces", [](Description& d) { d.law.id = "bond{}"; },
+              "law 0: id is 'bond{}', expected lower-case letters, digits and '_'"},
+        Fault{"NoCreate", [](Description& d) { d.law.create = nullptr; },
+              "law 'bond': function 'create' is null, expected a function"},
+        Fault{"NoDestroy", [](Description& d) { d.law.destroy = nullptr; },
+              "law 'bond': function 'destroy' is null, expected a function"},
+        Fault{"NoInfo", [](Description& d) { d.law.info = nullptr; },
+              "law 'bond': function 'info' is null, expected a function"},
+        Fault{"NoInitialise", [](Description& d) { d.law.initialise = nullptr; },
+              "law 'bond': function 'initialise' is null, expected a function"},
+        Fault{"LinesInATitle", [](Description& d) { d.law.title = "two\nlines"; },
+              "law 'bond': title has bytes that are no UTF-8 or control characters"},
+        Fault{"LinesInADoc", [](Description& d) { d.law.doc = "two\n\tlines"; }, ""},
+        Fault{"BellInADoc", [](Description& d) { d.law.doc = "two\alines"; },
+              "law 'bond': doc has bytes that are no UTF-8 or control characters"},
+        Fault{"LettersOfFourBytes", [](Description& d) { d.law.title = "\u00e9 \u20ac \U0001F600"; }, ""},
+        Fault{"ControlOfTwoBytes", [](Description& d) { d.law.title = "\xc2\x9b[2J"; },
+              "law 'bond': title has bytes that are no UTF-8 or control characters"},
+        Fault{"HalfOfAPair", [](Description& d) { d.law.title = "\xed\xa0\x80"; },
+              "law 'bond': title has bytes that are no UTF-8 or control characters"},
+        Fault{"BeyondUnicode", [](Description& d) { d.law.title = "\xf4\x90\x80\x80"; },
+              "law 'bond': title has bytes that are no UTF-8 or control characters"},
+        Fault{"LetterCutShort", [](Description& d) { d.law.title = "\xe2\x82"; },
+              "law 'bond': title has bytes that are no UTF-8 or control characters"},
+        Fault{"TextWithoutEnd",
+              [](Description& d) {
+                static const std::string endless(70000, 'a');
+                d.law.doc = endless.c_str();
+              },
+              "law 'bond': doc is no readable text of at most 64 KiB"},
+        Fault{"ReferenceNull", [](Description& d) { d.references[0] = nullptr; },
+              "law 'bond': a reference is null, expected a text"},
+        Fault{"ParameterTwice", [](Description& d) { d.parameters[1] = &d.number; },
+              "law 'bond': parameter 'strength' is declared twice"},
+        Fault{"UnknownKind", [](Description& d) { d.number.kind = 9; },
+              "law 'bond': parameter 'strength': kind is 9, expected at most 2"},
+        Fault{"UnknownMayBe", [](Description& d) { d.number.may_be = 8; },
+              "law 'bond': parameter 'strength': may_be is 8, expected only the bits of 3"},
+        Fault{"RangeUpsideDown", [](Description& d) { d.number.minimum = 2.0; },
+              "law 'bond': parameter 'strength': minimum 2.000000 is not below maximum 1.000000"},
+        Fault{"RangeOfNoNumbers", [](Description& d) { d.number.maximum = NAN; },
+              "law 'bond': parameter 'strength': minimum 0.000000 is not below maximum nan"},
+        Fault{"DefaultAtAnExcludedMinimum",
+              [](Description& d) {
+                d.number.minimum_excluded = 1;
+                d.number.default_value = 0.0;
+              },
+              "law 'bond': parameter 'strength': default 0.000000 lies outside its own range"},
+        Fault{"DefaultBelow", [](Description& d) { d.number.default_value = -1.0; },
+              "law 'bond': parameter 'strength': default -1.000000 lies outside its own range"},
+        Fault{"DefaultInfinite", [](Description& d) { d.number.default_value = infinity; },
+              "law 'bond': parameter 'strength': default inf lies outside its own range"},
+        Fault{"DefaultInfiniteWhereAllowed",
+              [](Description& d) {
+                d.number.default_value = infinity;
+                d.number.infinity_allowed = 1;
+              },
+              ""},
+        Fault{"NoDefaultWhereRequired",
+              [](Description& d) {
+                d.number.default_value = d.choice.default_value = NAN;
+                d.number.required = d.choice.required = 1;
+              },
+              ""},
+        Fault{"NoChoices", [](Description& d) { d.choice.choice_count = 0; },
+              "law 'bond': parameter 'surface': choice_count is 0, expected at least 1"},
+        Fault{"DefaultBetweenChoices", [](Description& d) { d.choice.default_value = 0.5; },
+              "law 'bond': parameter 'surface': default 0.500000 is no index of its choices"},
+        Fault{"DefaultBelowChoices", [](Description& d) { d.choice.default_value = -1.0; },
+              "law 'bond': parameter 'surface': default -1.000000 is no index of its choices"},
+        Fault{"DefaultBeyondChoices", [](Description& d) { d.choice.default_value = 2.0; },
+              "law 'bond': parameter 'surface': default 2.000000 is no index of its choices"},
+        Fault{"ChoiceNull", [](Description& d) { d.choices[1] = nullptr; },
+              "law 'bond': parameter 'surface': a choice is null, expected a text"},
+        Fault{"VariableTwice", [](Description& d) { d.law.state_variable_count = 2; },
+              "law 'bond': state variable 'damage' is declared twice"}),
+    [](const auto& drawn) { return drawn.param.name; });
+
+// ---- instances ------------------------------------------------------------------------------------------
+
+// As create is asked for it: one parameter per node, one not.
+struct Instance {
+  ilaw_argument per_node{sizeof per_node, ILAW_VALUE_PER_NODE, "strength", 0.0, nullptr, nullptr, 0};
+  ilaw_argument plain{sizeof plain, ILAW_VALUE_NUMBER, "delay", 0.0, nullptr, nullptr, 0};
+  ilaw_argument nameless{sizeof nameless, ILAW_VALUE_PER_NODE, nullptr, 0.0, nullptr, nullptr, 0};
+  std::array<const ilaw_argument*, 4> arguments{&per_node, nullptr, &nameless, &plain};
+  std::array<const char*, 2> names{"strength", "strength"};
+  ilaw_state_variable first{sizeof first, ILAW_STATE_VECTOR, "first", "m", "", 3, 0, 0};
+  ilaw_state_variable second{sizeof second, ILAW_STATE_TANGENTIAL, "second", "m", "", 2, 0, 0};
+  std::array<const ilaw_state_variable*, 2> variables{&first, &second};
+  ilaw_setup setup{};
+  ilaw_instance_info info{};
+
+  Instance() {
+    setup.struct_size = sizeof setup;
+    setup.dimension = 3;
+    setup.arguments = arguments.data();
+    setup.argument_count = 4;
+    info.struct_size = sizeof info;
+    info.state_variables = variables.data();
+    info.state_variable_count = 2;
+    info.state_size = 5;
+    info.per_node_parameters = names.data();
+    info.per_node_parameter_count = 1;
+  }
+  Instance(const Instance&) = delete;
+  Instance& operator=(const Instance&) = delete;
+
+  std::string answer() const {
+    storage kept;
+    const std::string file = "bonds.so";
+    ilaw_law law{};
+    law.id = "bond";
+    ilaw_instance_info checked = info;
+    try {
+      check_instance_info({file, law, ILAW_ABI_MINOR}, setup, checked, kept);
+    } catch (const refusal& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST(FaultyInstance, IsNamedWithWhatWasFoundAndExpected) {
+  const std::string at = "bonds.so: law 'bond': instance: ";
+  const auto said_of = [](void (*make)(Instance&)) {
+    Instance instance;
+    make(instance);
+    return instance.answer();
+  };
+  EXPECT_EQ(said_of([](Instance&) {}), "");
+  EXPECT_EQ(said_of([](Instance& i) { i.setup.dimension = 2; }),
+            at + "state variable 'first': count is 3, expected 2");
+  EXPECT_EQ(said_of([](Instance& i) { i.first.kind = ILAW_STATE_AXIS; }), "");
+  EXPECT_EQ(said_of([](Instance& i) { i.second.count = 3; }),
+            at + "state variable 'second': count is 3, expected 2");
+  EXPECT_EQ(said_of([](Instance& i) { i.info.state_size = 6; }),
+            at + "state_size is 6, expected the sum of the counts, 5, and at most 1048576");
+  EXPECT_EQ(said_of([](Instance& i) {
+              i.first.kind = i.second.kind = ILAW_STATE_HISTORY;
+              i.first.count = i.second.count = 1 << 20;
+              i.info.state_size = 2 << 20;
+            }),
+            at + "state_size is 2097152, expected the sum of the counts, 2097152, and at most 1048576");
+  EXPECT_EQ(said_of([](Instance& i) { i.variables[1] = &i.first; }),
+            at + "state variable 'first' is declared twice");
+  EXPECT_EQ(said_of([](Instance& i) { i.info.per_node_parameter_count = 2; }),
+            at + "per-node parameter 'strength' is declared twice");
+  EXPECT_EQ(said_of([](Instance& i) { i.names[0] = "delay"; }),
+            at + "per-node parameter 'delay' was not given per node");
+  EXPECT_EQ(said_of([](Instance& i) { i.info.per_node_parameter_count = 0; }),
+            at + "per_node_parameter_count is 0, expected 1, the parameters given per node");
+  EXPECT_EQ(said_of([](Instance& i) {
+              i.setup.arguments = nullptr;
+              i.info.per_node_parameter_count = 0;
+            }),
+            "");
+  EXPECT_EQ(said_of([](Instance& i) { i.info.energy_inputs = 1U << 20; }),
+            "bonds.so: law 'bond': reads inputs 1048576, expected only the bits of 31");
+}
+
+// ---- memory ---------------------------------------------------------------------------------------------
+
+TEST(Readable, IsMemoryThatIsThereToItsLastByte) {
+  const std::string text(3 * 4096, 'a');
+  EXPECT_TRUE(ilaw::loading::readable(text.data(), text.size()));
+  EXPECT_FALSE(ilaw::loading::readable(text.data(), 0));
+  EXPECT_FALSE(ilaw::loading::readable(text.data(), std::size_t{1} << 46));
+  EXPECT_FALSE(ilaw::loading::readable(text.data(), SIZE_MAX));
+  EXPECT_FALSE(ilaw::loading::readable(nullptr, 1));
+  EXPECT_FALSE(ilaw::loading::readable(no_address, 1));
+}
+
+// The kernel is asked through a pipe: a host that has no descriptors left still loads libraries.
+TEST(Readable, IsTakenOnTrustWithoutDescriptors) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit none{0, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const std::string said = Description().answer();
+  const bool trusted = ilaw::loading::readable(no_address, 1);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(said, "");
+  EXPECT_TRUE(trusted);
+}
+
+}  // namespace
