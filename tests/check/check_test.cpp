@@ -99,6 +99,57 @@ std::string name_of(const ::testing::TestParamInfo<std::string>& drawn) {
 
 INSTANTIATE_TEST_SUITE_P(Rules, Broken, ::testing::ValuesIn(with_id_of_rules()), name_of);
 
+// Rules that can be broken in several ways: each is told apart from the others.
+TEST(OtherWays, OfBreakingARuleAreSeenToo) {
+  const std::pair<const char*, const char*> ways[] = {
+      {"description-constant: text", "the description was sample|"},
+      {"description-constant: law", "the entry describes no law 'sample' any more"},
+      {"extension-unknown: library", "extension of the library gave something"},
+      {"info-within: inputs", "the instance reads inputs 32"},
+      {"info-within: before", "the instance reads inputs "},
+      {"info-frame: local", "ILAW_INPUT_NORMAL in the local frame"},
+      {"info-frame: tangent", "ILAW_INPUT_TANGENT without tangents"},
+      {"functions-return: info", "info returned -"},
+      {"setups-served: nothing", "create returned ILAW_OK and no instance"},
+      {"setup-unserved: code", "create refused dimension 0 with code -"},
+      {"refusal-message: instance", "a refusal left *instance set"},
+      {"refusal-message: beyond", "create wrote beyond the 512 bytes of the message"},
+      {"refusal-message: endless", "the message has no zero at its end"},
+      {"sizes-long: info", "info wrote beyond the known struct"},
+      {"sizes-long: report", "or wrote beyond the known report"},
+      {"functions-return: code", "evaluate returned -"},
+      {"call-refused: writes", ", wrote results"},
+      {"call-refused: silent", ", gave no reason"},
+      {"report-null: refused", "without a report evaluate returned -"},
+      {"report-clean: step", "stable_velocity_step nan"},
+      {"bad-input-report: count", "bad_count 2"},
+      {"bad-input-node: impulse", "impulse 1"},
+      {"bad-input-node: state", "state_out "},
+      {"bad-input-node: status", "status 0"},
+      {"bad-input-node: energy", "an energy other than 0"},
+      {"foreign-state: impulse", "bad input with an impulse"},
+      {"foreign-state: state", "bad input with another state"},
+      {"foreign-state: others", "node 3 changed"},
+      {"skip-promise: impulse", "out of reach, impulse "},
+      {"skip-promise: status", "out of reach, status 1"},
+      {"status-meaning: number", "status 8"},
+      {"status-meaning: closed", "ILAW_CLOSED with the impulse "},
+      {"energy-parts: stored", "stored energy 1"},
+      {"energy-parts: no number", "dissipated part 1 of nan"},
+      {"outputs-written: impulse", "the array impulse was not written"},
+      {"outputs-written: state", "the array state_out was not written"},
+      {"outputs-written: energy", "the array energy was not written"},
+      {"outputs-written: status", "the array status was not written"},
+      {"step-limits: impulse", "impulse inf"}};
+  for (const auto& [breaks, words] : ways) {
+    const std::string rule = std::string(breaks).substr(0, std::string(breaks).find(':'));
+    const Checked checked = check_sample(breaks, only({rule}));
+    EXPECT_EQ(broken(checked), Names{rule}) << breaks;
+    const std::string& seen = checked.outcomes.at(0).finding.seen;
+    EXPECT_NE(seen.find(words), std::string::npos) << breaks << ": " << seen;
+  }
+}
+
 // Whatever ends a process: the words, and nothing but this one rule.
 TEST(Ending, OfTheProcessIsAFinding) {
   const std::map<std::string, std::string> words = {

@@ -104,17 +104,17 @@ static ilaw_law law = {sizeof(ilaw_law),
                        sample_evaluate,
                        sample_extension};
 static const ilaw_law* const laws[] = {&law};
-static const ilaw_plugin plugin = {sizeof(ilaw_plugin),
-                                   ILAW_ABI_MAJOR,
-                                   ILAW_ABI_MINOR,
-                                   "sample",
-                                   "1.0",
-                                   "tests",
-                                   "BSD-3-Clause",
-                                   laws,
-                                   1,
-                                   0,
-                                   NULL};
+static ilaw_plugin plugin = {sizeof(ilaw_plugin),
+                             ILAW_ABI_MAJOR,
+                             ILAW_ABI_MINOR,
+                             "sample",
+                             "1.0",
+                             "tests",
+                             "BSD-3-Clause",
+                             laws,
+                             1,
+                             0,
+                             NULL};
 static const ilaw_plugin other_plugin = {sizeof(ilaw_plugin),
                                          ILAW_ABI_MAJOR,
                                          ILAW_ABI_MINOR,
@@ -138,6 +138,11 @@ const ilaw_parameter* parameter_named(const char* name) {
   return NULL;
 }
 
+static const void* library_extension(const char* name) {
+  (void)name;
+  return &damping;
+}
+
 const void* sample_extension(const char* name) {
   (void)name;
   return breaks("extension-unknown") ? &damping : NULL;
@@ -150,11 +155,16 @@ __attribute__((constructor)) static void begin(void) {
   block = calloc(1, sizeof *block);
   if (breaks("library-opens")) law.title = NULL;
   if (breaks("parameter-units")) friction.unit = "furlong";
+  if (breaks("extension-unknown: library")) plugin.extension = library_extension;
+  if (breaks("info-within: before")) law.inputs &= ~(uint32_t)ILAW_INPUT_V_PREVIOUS;
   if (breaks("energy-made")) law.outputs &= ~(uint32_t)ILAW_OUTPUT_ENERGY;
 }
 __attribute__((destructor)) static void end(void) { free(block); }
 
 ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {
   static int calls;
-  return breaks("description-constant") && calls++ % 2 ? &other_plugin : &plugin;
+  const int again = calls++ % 2;
+  if (breaks("description-constant: text")) law.doc = again ? "Keeps some rules." : "Keeps every rule.";
+  if (breaks("description-constant: law")) law.id = again ? "example" : "sample";
+  return breaks("description-constant") && again ? &other_plugin : &plugin;
 }

@@ -11,6 +11,8 @@ static int32_t refuse(char* message, size_t size, int32_t code, const char* name
   if (breaks("prints-nothing")) fprintf(stderr, "sample: %s\n", what);
   if (message && size > 0)
     snprintf(message, size, "law 'sample': %s: %s", breaks("refusal-message") ? "\n" : name, what);
+  if (message && breaks("refusal-message: beyond")) message[size] = '\0';
+  if (message && breaks("refusal-message: endless")) memset(message, 'x', size);
   return code;
 }
 
@@ -106,11 +108,13 @@ int32_t sample_create(const ilaw_setup* setup, ilaw_instance** result, char* mes
   int has_damping = breaks("parameter-missing");
   uint32_t k;
   if (!result) return ILAW_INVALID_ARGUMENT;
-  *result = NULL;
+  if (!breaks("refusal-message: instance")) *result = NULL;
   if (message && size > 0) message[0] = '\0';
   if (!setup || setup->struct_size < ILAW_SETUP_SIZE_1_0) return ILAW_INVALID_ARGUMENT;
   if (breaks("sizes-long") && setup->struct_size > sizeof *setup) return ILAW_INVALID_ARGUMENT;
-  if (!serves(setup)) return refuse(message, size, ILAW_UNSUPPORTED, "setup", "is not served");
+  if (!serves(setup))
+    return refuse(message, size, breaks("setup-unserved: code") ? ILAW_INVALID_ARGUMENT : ILAW_UNSUPPORTED,
+                  "setup", "is not served");
   made = calloc(1, sizeof *made);
   if (!made) return ILAW_OUT_OF_MEMORY;
   made->own = calloc(1, sizeof *made->own);
@@ -133,7 +137,7 @@ int32_t sample_create(const ilaw_setup* setup, ilaw_instance** result, char* mes
     sample_destroy(made);
     return refuse(message, size, ILAW_INVALID_PARAMETER, "damping", "is missing");
   }
-  *result = made;
+  if (!breaks("setups-served: nothing")) *result = made;
   return ILAW_OK;
 }
 
@@ -148,12 +152,17 @@ void sample_destroy(ilaw_instance* made) {
 int32_t sample_info(const ilaw_instance* made, ilaw_instance_info* info) {
   ilaw_instance_info full;
   const uint32_t size = info ? info->struct_size : 0;
-  if (!made || size < ILAW_INSTANCE_INFO_SIZE_1_0) return ILAW_INVALID_ARGUMENT;
+  if (!made || size < ILAW_INSTANCE_INFO_SIZE_1_0 || breaks("functions-return: info"))
+    return ILAW_INVALID_ARGUMENT;
   memset(&full, 0, sizeof full);
   full.struct_size = size;
   full.inputs = ILAW_INPUT_GAP | ILAW_INPUT_AREA;
   if (made->setup.frame == ILAW_FRAME_GLOBAL && !breaks("info-frame")) full.inputs |= ILAW_INPUT_NORMAL;
   if (made->setup.tangent_given && made->setup.dimension == 3) full.inputs |= ILAW_INPUT_TANGENT;
+  if (breaks("info-within: inputs")) full.inputs |= 1U << 5;
+  if (breaks("info-within: before")) full.inputs |= ILAW_INPUT_V_PREVIOUS;
+  if (breaks("info-frame: local")) full.inputs |= ILAW_INPUT_NORMAL;
+  if (breaks("info-frame: tangent")) full.inputs |= ILAW_INPUT_TANGENT;
   full.energy_inputs = ILAW_INPUT_V_PREVIOUS;
   full.state_variable_count = 1;
   full.state_size = 1;
@@ -163,5 +172,7 @@ int32_t sample_info(const ilaw_instance* made, ilaw_instance_info* info) {
   full.capabilities = ILAW_CAN_REST | (breaks("info-within") ? ILAW_CAN_ADHERE : 0);
   full.state_version = 1 + (breaks("info-same") ? shared()->infos++ : 0);
   memcpy(info, &full, size < sizeof full ? size : sizeof full);
+  if (breaks("sizes-long: info") && size > sizeof full)
+    memset((char*)info + sizeof full, 0, size - sizeof full);
   return ILAW_OK;
 }

@@ -65,6 +65,8 @@ static int32_t check_call(const ilaw_instance* made, const ilaw_batch* b, ilaw_r
     return refuse(report, ILAW_INVALID_ARGUMENT, "the batch is too small");
   if (b->flags != 0 && !breaks("batch-flags")) return refuse(report, ILAW_UNSUPPORTED, "flags are not known");
   wrong = wrong_call(made, b, evaluates);
+  if (wrong && b->impulse.values && breaks("call-refused: writes")) b->impulse.values[0] += 1.0;
+  if (wrong && breaks("call-refused: silent")) return refuse(report, ILAW_INVALID_ARGUMENT, NULL);
   return wrong ? refuse(report, ILAW_INVALID_ARGUMENT, wrong) : ILAW_OK;
 }
 
@@ -88,7 +90,7 @@ static void misbehave(const ilaw_batch* b) {
   static volatile int counter;
   static int* volatile nowhere = (int*)8; /* read at run time, so that the compiler does not see through it */
   static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-  volatile char* room;
+  volatile char* volatile room; /* so that what is asked for is not left out */
   jmp_buf here;
   if (breaks("functions-return")) *nowhere = 1;
   if (breaks("hang"))
@@ -132,10 +134,13 @@ static int32_t step_all(const ilaw_instance* made, const ilaw_batch* b, ilaw_rep
     }
   }
   if (report) {
-    report->bad_count = bad;
+    report->bad_count = bad > 0 && breaks("bad-input-report: count") ? bad + 1 : bad;
     report->first_bad_node = bad == 0 && breaks("report-clean") ? 0 : first;
     report->reason = breaks("bad-input-report") ? NULL : reason;
     report->stable_velocity_step = breaks("stable-step") ? b->area.values[0] : INFINITY;
+    if (breaks("report-clean: step")) report->stable_velocity_step = NAN;
+    if (breaks("sizes-long: report") && report->struct_size > sizeof *report)
+      memset((char*)report + sizeof *report, 0, report->struct_size - sizeof *report);
   }
   return bad > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
@@ -159,6 +164,8 @@ int32_t sample_evaluate(const ilaw_instance* made, const ilaw_batch* b, ilaw_rep
     if (code == ILAW_OK) refuse(report, ILAW_OK, NULL);
     return code;
   }
+  if (breaks("functions-return: code")) return refuse(report, ILAW_OUT_OF_MEMORY, "there is no room");
+  if (breaks("report-null: refused") && !report) return ILAW_INVALID_ARGUMENT;
   if (breaks("report-null")) *(volatile int64_t*)&report->bad_count = 0;
   fegetenv(&host);
   enter(&host, mode, traps);

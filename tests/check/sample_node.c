@@ -221,6 +221,8 @@ static double solve(node* at, const ilaw_instance* made, const ilaw_batch* b) {
   at->status = r == 0.0 ? ILAW_FREE : least <= 0.0 ? ILAW_CLOSED : least < most ? ILAW_STICK : ILAW_SLIP;
   if (r < 0.0 || (r == 0.0 && least > 0.0)) at->status = ILAW_BONDED;
   if (breaks("status-meaning")) at->status = ILAW_FREE;
+  if (breaks("status-meaning: number")) at->status = ILAW_STATUS_COUNT;
+  if (breaks("status-meaning: closed")) at->status = ILAW_CLOSED;
   return r;
 }
 
@@ -236,18 +238,26 @@ static void account(node* at, const ilaw_batch* b, int64_t i) {
   if (breaks("energy-balance")) at->energy[ILAW_ENERGY_IMPACT] *= 2.0;
   for (c = 0; c < 4 && !breaks("energy-parts"); ++c)
     if (!(at->energy[c] > 0.0)) at->energy[c] = 0.0;
+  if (breaks("energy-parts: stored")) at->energy[ILAW_ENERGY_STORED] = 1.0;
+  if (breaks("energy-parts: no number")) at->energy[ILAW_ENERGY_IMPACT] = NAN;
+}
+
+/* The last node of eleven is left out. */
+static int leaves_out(const char* output, const ilaw_batch* b, int64_t k) {
+  return b->node_count == 11 && k == 10 && breaks(output);
 }
 
 static void write_node(const node* at, const ilaw_batch* b, int64_t k, const double* state) {
   const int64_t i = node_of(b, k);
   int c;
-  for (c = 0; c < at->d; ++c)
+  for (c = 0; c < at->d && !leaves_out("outputs-written: impulse", b, k); ++c)
     b->impulse.values[i * b->impulse.node_stride + c * b->impulse.component_stride] = at->r[c];
-  memcpy(&b->state_out.values[i * b->state_out.node_stride], state, sizeof *state);
-  for (c = 0; b->energy.values && c < 4; ++c)
+  if (!leaves_out("outputs-written: state", b, k))
+    memcpy(&b->state_out.values[i * b->state_out.node_stride], state, sizeof *state);
+  for (c = 0; b->energy.values && c < 4 && !leaves_out("outputs-written: energy", b, k); ++c)
     b->energy.values[i * b->energy.node_stride + c * b->energy.component_stride] = at->energy[c];
-  if (b->status) b->status[i * b->status_stride] = at->status;
-  if (!b->velocity.values || (breaks("outputs-written") && b->node_count == 11 && k == 10)) return;
+  if (b->status && !leaves_out("outputs-written: status", b, k)) b->status[i * b->status_stride] = at->status;
+  if (!b->velocity.values || leaves_out("outputs-written", b, k)) return;
   for (c = 0; c < at->d; ++c)
     b->velocity.values[i * b->velocity.node_stride + c * b->velocity.component_stride] =
         breaks("velocity-output") ? at->v[c] : at->after[c];
@@ -267,6 +277,9 @@ static const char* step_good(node* at, const ilaw_instance* made, const ilaw_bat
   if (!finite && !breaks("impulse-finite")) return "the impulse overflows";
   if (breaks("skip-promise") && closures == 0.0 && b->time == b->velocity_step && out_of_reach(at, b))
     next += 1.0;
+  if (breaks("skip-promise: impulse") && out_of_reach(at, b)) at->r[0] = 1e-3;
+  if (breaks("skip-promise: status") && out_of_reach(at, b)) at->status = ILAW_CLOSED;
+  if (breaks("step-limits: impulse") && b->velocity_step > 100.0) at->r[0] = INFINITY;
   if (breaks("rest-promise") && closures > 0.0 && out_of_reach(at, b)) next += 1.0;
   write_node(at, b, k, &next);
   return NULL;
@@ -276,11 +289,13 @@ const char* step_node(const ilaw_instance* made, const ilaw_batch* b, int64_t k,
   const int64_t i = node_of(b, k);
   node at, none;
   const char* wrong;
+  double state;
   int c;
   gather(&at, made, b, i);
   none = at;
   at.strays = strays(made, b) || (breaks("batch-order") && b->node_count == 13 && k == 12) ||
-              (breaks("bad-input-others") && after_bad && b->node_count == 11);
+              (breaks("bad-input-others") && after_bad && b->node_count == 11) ||
+              (breaks("foreign-state: others") && after_bad);
   wrong = defect(&at, made, b);
   if (!wrong) wrong = step_good(&at, made, b, k);
   if (k == b->node_count - 1 && breaks("purity-instances")) {
@@ -289,10 +304,13 @@ const char* step_node(const ilaw_instance* made, const ilaw_batch* b, int64_t k,
   }
   if (!wrong) return NULL;
   for (c = 0; c < 3; ++c) {
-    none.r[c] = 0.0;
+    none.r[c] = breaks("foreign-state: impulse") || breaks("bad-input-node: impulse") ? 1.0 : 0.0;
     none.after[c] = breaks("bad-input-node") ? 0.0 : none.v[c];
   }
-  none.status = ILAW_BAD_INPUT;
-  write_node(&none, b, k, &b->state_in.values[i * b->state_in.node_stride]);
+  none.status = breaks("bad-input-node: status") ? ILAW_FREE : ILAW_BAD_INPUT;
+  none.energy[0] = breaks("bad-input-node: energy") ? 1.0 : 0.0;
+  memcpy(&state, &b->state_in.values[i * b->state_in.node_stride], sizeof state);
+  if (breaks("foreign-state: state") || breaks("bad-input-node: state")) state += 1.0;
+  write_node(&none, b, k, &state);
   return wrong;
 }
