@@ -10,14 +10,16 @@
 
 A branch is one outcome of a condition that stands in the source: of an if, a loop, ?:, a case, each operand of && and
 ||. What a compiler adds, as the edges of exceptions, is none, and neither is a condition that is known when compiled.
-What is compiled several times, as templates are, counts as reached where it is in one of them. Counts are kept in
-files that all processes map, so that those of children that crash are there too. Exit code: 0.
+What is compiled several times, as templates are, counts as reached where it is in one of them; constexpr functions
+that ran in the compiler alone are left out. Counts are kept in files that all processes map, so that those of
+children that crash are there too. Exit code: 0.
 """
 import argparse
 import collections
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -29,6 +31,8 @@ BUILD = SOURCE / "build" / "coverage"
 COUNTS = BUILD / "counts"
 PAGE = SOURCE / "docs" / "reliability.md"
 AREAS = ("api", "plugins", "host_mock")
+# The head of a function that may run in the compiler.
+CONSTEXPR = re.compile(r"(?<!if )\bconst(?:expr|eval)\b[^;{}=]*\([^;{}=]*\)[^;{}=]*\{")
 # They build what is built, or look at how; no line is run through in them alone.
 LEFT_OUT = "^installed|^FirstLaw|^new_law|^python|portable|^hosts_install"
 
@@ -120,6 +124,28 @@ def branches_reached():
     return branches
 
 
+def compiled_only(name, hits):
+    """Lines of a file's constexpr functions of which no line was run: they work when laws are compiled."""
+    text, lines = (SOURCE / name).read_text(), set()
+    for found in CONSTEXPR.finditer(text):
+        end, depth = found.end(), 1
+        while depth > 0:
+            depth += {"{": 1, "}": -1}.get(text[end], 0)
+            end += 1
+        own = range(text.count("\n", 0, found.start()) + 1, text.count("\n", 0, end) + 2)
+        if not any(hits.get(line) for line in own):
+            lines.update(own)
+    return lines
+
+
+def leave_out_compiled(lines, branches):
+    for name in list(lines):
+        if name.split("/")[0] in AREAS:
+            left_out = compiled_only(name, lines[name])
+            lines[name] = {line: hit for line, hit in lines[name].items() if line not in left_out}
+            branches[name] = {place: hit for place, hit in branches[name].items() if place[0] not in left_out}
+
+
 def share(of, area):
     hit = [one for name, places in of.items() if name.startswith(area + "/") for one in places.values()]
     return sum(hit), len(hit)
@@ -156,6 +182,7 @@ def main():
         run_tests(options)
     subprocess.run(["llvm-profdata", "merge", "-o", COUNTS / "all.profdata", *COUNTS.glob("*.profraw")], check=True)
     lines, branches = lines_reached(), branches_reached()
+    leave_out_compiled(lines, branches)
     print(table(lines, branches))
     print_files(lines, branches, options.files)
     if options.table:
