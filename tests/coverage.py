@@ -5,7 +5,7 @@
     tests/coverage.py loader_test kit_test     these programs alone
     tests/coverage.py --add loader_test        these on top of what was run before
     tests/coverage.py --add                    nothing anew: what was run before
-    tests/coverage.py --files 20               also the files where most was not reached: lines, then branches
+    tests/coverage.py --files 20               also each folder, and the files where most was missed: lines, then branches
     tests/coverage.py --table                  and writes the figures into docs/reliability.md
 
 A branch is one outcome of a condition that stands in the source: of an if, a loop, ?:, a case, each operand of && and
@@ -146,8 +146,8 @@ def leave_out_compiled(lines, branches):
             branches[name] = {place: hit for place, hit in branches[name].items() if place[0] not in left_out}
 
 
-def share(of, area):
-    hit = [one for name, places in of.items() if name.startswith(area + "/") for one in places.values()]
+def share(of, folder):
+    hit = [one for name, places in of.items() if name.startswith(folder + "/") for one in places.values()]
     return sum(hit), len(hit)
 
 
@@ -161,13 +161,16 @@ def percent(part):
     return f"{100.0 * part[0] / max(part[1], 1):.1f} % of {part[1]}"
 
 
-def table(lines, branches):
+def table(lines, branches, folders=AREAS):
     rows = ["| | lines | branches |", "| --- | --- | --- |"]
-    rows += [f"| {area} | {percent(share(lines, area))} | {percent(share(branches, area))} |" for area in AREAS]
+    rows += [f"| {folder} | {percent(share(lines, folder))} | {percent(share(branches, folder))} |"
+             for folder in folders]
     return "\n".join(rows)
 
 
 def print_files(lines, branches, count):
+    folders = {os.path.dirname(name) for name in lines if name.split("/")[0] in AREAS}
+    print(table(lines, branches, sorted(folders)))
     for name, places in unreached(lines)[:count]:
         print(f"{len(places):5}  {name}: {' '.join(map(str, places))}")
     for name, places in unreached(branches)[:count]:
@@ -184,7 +187,8 @@ def main():
     lines, branches = lines_reached(), branches_reached()
     leave_out_compiled(lines, branches)
     print(table(lines, branches))
-    print_files(lines, branches, options.files)
+    if options.files > 0:
+        print_files(lines, branches, options.files)
     if options.table:
         marked_part.write(PAGE, "<!-- coverage -->", "<!-- end of the coverage -->", table(lines, branches))
 

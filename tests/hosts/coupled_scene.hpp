@@ -17,7 +17,8 @@ namespace coupled_scene {
 constexpr double h = 1e-3, g = 10.0, radius = 0.5;
 
 inline ilaw::interface create(const std::string& name, std::uint32_t form,
-                              const std::vector<std::pair<const char*, double>>& numbers = {}) {
+                              const std::vector<std::pair<const char*, double>>& numbers = {},
+                              std::uint32_t dimension = 3) {
   std::vector<ilaw_argument> arguments(numbers.size());
   std::vector<const ilaw_argument*> pointers;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -28,7 +29,7 @@ inline ilaw::interface create(const std::string& name, std::uint32_t form,
   }
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
-  setup.dimension = 3;
+  setup.dimension = dimension;
   setup.delassus_form = form;
   setup.frame = ILAW_FRAME_GLOBAL;
   setup.arguments = pointers.data();

@@ -1,0 +1,162 @@
+// Calls of ilaw/coupled.h that are wrong, empty, or of bodies that do not rotate.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coupled_scene.hpp"
+
+#include <gtest/gtest.h>
+#include <ilaw/coupled.hpp>
+#include <ilaw/loader.hpp>
+
+#include <array>
+#include <vector>
+
+namespace {
+
+using namespace coupled_scene;
+
+struct Call {
+  ilaw_bodies bodies;
+  ilaw_contacts contacts;
+  ilaw_batch batch;
+};
+
+TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
+  static const double six[6] = {1, 1, 1, 0, 0, 0};
+  static const std::int32_t list[1] = {0};
+  const struct {
+    const char* said;
+    void (*spoil)(Call&);
+  } mistakes[] = {
+      {"bodies are missing, or their struct_size is wrong", [](Call& c) { c.bodies.struct_size = 8; }},
+      {"dimension is not 1, 2 or 3", [](Call& c) { c.bodies.dimension = 0; }},
+      {"dimension is not 1, 2 or 3", [](Call& c) { c.bodies.dimension = 4; }},
+      {"counts of bodies are wrong", [](Call& c) { c.bodies.owned_count = -1; }},
+      {"counts of bodies are wrong", [](Call& c) { c.bodies.count = c.bodies.owned_count - 1; }},
+      {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.inverse_mass = {}; }},
+      {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.v_free = {}; }},
+      {"bodies rotate in dimension 3 alone", [](Call& c) { c.bodies.dimension = 2; }},
+      {"spin_free is missing", [](Call& c) { c.bodies.spin_free = {}; }},
+      {"spin_previous is missing", [](Call& c) { c.bodies.spin_previous = {}; }},
+      {"the struct_size of contacts is not that of any version", [](Call& c) { c.contacts.struct_size = 8; }},
+      {"a batch is missing, or its struct_size is wrong", [](Call& c) { c.contacts.batch = nullptr; }},
+      {"law or instance is null", [](Call& c) { c.contacts.law = nullptr; }},
+      {"law or instance is null", [](Call& c) { c.contacts.instance = nullptr; }},
+      {"delassus_form is neither scalar, transverse nor full",
+       [](Call& c) { c.contacts.delassus_form = ILAW_DELASSUS_DIAGONAL; }},
+      {"node_count is negative", [](Call& c) { c.batch.node_count = -1; }},
+      {"contacts have no list of nodes", [](Call& c) { c.batch.index = list; }},
+      {"body or counterpart is missing", [](Call& c) { c.contacts.body = nullptr; }},
+      {"body or counterpart is missing", [](Call& c) { c.contacts.counterpart = nullptr; }},
+      {"impulse is missing", [](Call& c) { c.batch.impulse = {}; }},
+      {"state_in or state_out is missing", [](Call& c) { c.batch.state_in = {}; }},
+      {"state_in or state_out is missing", [](Call& c) { c.batch.state_out = {}; }},
+      {"the law reads v_previous, which the bodies do not have", [](Call& c) { c.bodies.v_previous = {}; }},
+      {"bodies rotate, so delassus_form has to be transverse or full",
+       [](Call& c) { c.contacts.delassus_form = ILAW_DELASSUS_SCALAR; }},
+      {"bodies rotate, and an arm is missing", [](Call& c) { c.contacts.arm = {}; }},
+      {"bodies rotate, and an arm is missing", [](Call& c) { c.contacts.counterpart_arm = {}; }},
+      {"delassus_form is transverse, and bodies are no spheres",
+       [](Call& c) {
+         c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
+         c.bodies.inverse_inertia = {six, 0, 1};
+       }},
+      {"delassus_form is transverse, and the normal is missing", [](Call& c) {
+         c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
+         c.batch.normal = {};
+       }}};
+  Scene scene = cube(tie(), 1);
+  const std::vector<double> before = scene.v;
+  for (const auto& mistake : mistakes) {
+    Call call{scene.bodies(), {}, scene.batch()};
+    call.contacts = scene.contacts(call.batch);
+    mistake.spoil(call);
+    const ilaw_contacts* groups[] = {&call.contacts};
+    ilaw_coupled_report report{};
+    report.struct_size = sizeof report;
+    ilaw_coupled* solver = ilaw_coupled_create();
+    EXPECT_EQ(ilaw_coupled_solve(solver, &call.bodies, groups, 1, nullptr, &report), ILAW_INVALID_ARGUMENT)
+        << mistake.said;
+    EXPECT_STREQ(report.reason, mistake.said);
+    ilaw_coupled_destroy(solver);
+  }
+  EXPECT_EQ(scene.v, before);
+}
+
+TEST(Coupled, AnswersCallsOfNothing) {
+  Scene scene = cube(tie(), 1);
+  const ilaw_bodies bodies = scene.bodies();
+  const ilaw_contacts* nothing[] = {nullptr};
+  ilaw_coupled* solver = ilaw_coupled_create();
+  ilaw_coupled_report report{};
+  ilaw_coupled_options options{};
+  ilaw_exchange exchange{};
+  EXPECT_EQ(ilaw_coupled_solve(nullptr, &bodies, nullptr, 0, nullptr, nullptr), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nullptr, 0, nullptr, &report), ILAW_INVALID_ARGUMENT);
+  EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nullptr, 0, &options, nullptr), ILAW_INVALID_ARGUMENT);
+  options.struct_size = sizeof options;
+  options.exchange = &exchange;
+  EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nullptr, 0, &options, nullptr), ILAW_INVALID_ARGUMENT);
+  report.struct_size = sizeof report;
+  EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nullptr, 1, nullptr, &report), ILAW_INVALID_ARGUMENT);
+  EXPECT_STREQ(report.reason, "groups are missing");
+  EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nothing, 1, nullptr, &report), ILAW_INVALID_ARGUMENT);
+  EXPECT_STREQ(report.reason, "a group is null");
+  EXPECT_EQ(report.bad_group, 0);
+  // Bodies that touch nothing keep their velocities.
+  const std::vector<double> before = scene.v;
+  EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nullptr, 0, nullptr, &report), ILAW_OK);
+  EXPECT_EQ(scene.v, before);
+  ilaw_coupled_destroy(solver);
+}
+
+// Two points that a rigid bond joins have the velocity of their centre of mass, in the plane and on a line.
+TEST(Coupled, PointsThatAreTiedMoveAsOne) {
+  for (const std::uint32_t dimension : {1U, 2U})
+    for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_FULL}) {
+      const ilaw::interface law = create("tie", form, {}, dimension);
+      const auto d = static_cast<std::int64_t>(dimension);
+      const std::array<double, 2> inverse_mass{1.0 / 2.0, 1.0 / 3.0}, normal{1.0, 0.0};
+      const std::array<double, 4> start{1.0, -0.5, -2.0, 0.25};
+      std::array<double, 4> v = start, impulse{};
+      const double gap = 0.0, area = 1.0;
+      std::vector<double> state(law.info().state_size);
+      const auto size = static_cast<std::int64_t>(state.size());
+      const std::int32_t first = 0, second = 1;
+      ilaw_batch batch{};
+      batch.struct_size = sizeof batch;
+      batch.node_count = 1;
+      batch.velocity_step = batch.position_step = batch.time = h;
+      batch.gap = {&gap, 1, 0};
+      batch.area = {&area, 1, 0};
+      batch.normal = {normal.data(), d, 1};
+      batch.state_in = {state.data(), size, 1};
+      batch.state_out = {state.data(), size, 1};
+      batch.impulse = {impulse.data(), d, 1};
+      ASSERT_EQ(law.initialise(batch), ILAW_OK);
+      ilaw_contacts contacts{};
+      contacts.struct_size = sizeof contacts;
+      contacts.delassus_form = form;
+      contacts.law = &law.law();
+      contacts.instance = law.instance();
+      contacts.batch = &batch;
+      contacts.body = &first;
+      contacts.counterpart = &second;
+      ilaw_bodies bodies{};
+      bodies.struct_size = sizeof bodies;
+      bodies.dimension = dimension;
+      bodies.count = bodies.owned_count = 2;
+      bodies.inverse_mass = {inverse_mass.data(), 1, 0};
+      bodies.v_free = bodies.v_previous = {start.data(), d, 1};
+      bodies.velocity = {v.data(), d, 1};
+      const ilaw_contacts* groups[] = {&contacts};
+      ilaw_coupled* solver = ilaw_coupled_create();
+      EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, groups, 1, nullptr, nullptr), ILAW_OK);
+      ilaw_coupled_destroy(solver);
+      for (std::size_t c = 0; c < dimension; ++c) {
+        const double together = (2.0 * start[c] + 3.0 * start[dimension + c]) / 5.0;
+        EXPECT_NEAR(v[c], together, 1e-12) << "d = " << dimension << ", form " << form;
+        EXPECT_NEAR(v[dimension + c], together, 1e-12) << "d = " << dimension << ", form " << form;
+      }
+    }
+}
+
+}  // namespace
