@@ -1,8 +1,12 @@
 // Resultants and events: sums against momentum, closed forms, and the same whatever the rows.
 #include "run_result.hpp"
 
+#include "results/forces.hpp"
+
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace ilaw::host::testing {
@@ -63,6 +67,14 @@ TEST(Forces, SumToTheChangeOfMomentumWhateverTheRows) {
           << "axis " << axis << ", every " << every;
       EXPECT_EQ(run.history.at("b.z_max.F" + std::to_string(axis)),
                 run.history.at("grip.F" + std::to_string(axis)));
+    }
+    for (const std::string& name : parts) {
+      const auto column = [&](const char* axis) { return run.history.at(name + axis); };
+      double largest = 0.0;
+      for (std::size_t k = 0; k < column(".F0").size(); ++k)
+        largest = std::max(largest, std::hypot(column(".F0")[k], column(".F1")[k], column(".F2")[k]));
+      EXPECT_NEAR(run.summary["forces"][name]["largest"].get<double>(), largest, 1e-12 * largest)
+          << name << ", every " << every;
     }
     EXPECT_GT(std::abs(first["floor.F2"]), 0.5);
     EXPECT_NEAR(first["blow.F2"], 9 * 0.002, 1e-15);
@@ -137,6 +149,23 @@ TEST(Forces, OfSpringsAreTheChangeOfMomentumOfTheirNodes) {
   }
 }
 
+// A run that ends between two rows has told of all its steps.
+TEST(Forces, BetweenRowsAreInTheSummary) {
+  Scene scene = scene_of(R"({
+    "model": {"type": "points", "dimension": 1, "points": [{"mass": 2, "position": [0]}]},
+    "time": {"dt": 0.013, "end": 1}, "loads": [{"type": "gravity", "name": "weight", "acceleration": [-10]}],
+    "interfaces": [], "output": {"every": 20, "forces": ["weight"]}})");
+  Integrator integrator = integrator_of(scene);
+  Forces forces(scene, integrator);
+  const double start = integrator.velocity()[0];
+  for (int step = 0; step < 7; ++step) {
+    integrator.step();
+    forces.add_step(integrator);
+  }
+  EXPECT_NEAR(forces.summary()["weight"]["impulse"][0].get<double>(), 2 * (integrator.velocity()[0] - start),
+              1e-14);
+}
+
 // Positions follow a path, though damping is listed after it.
 TEST(Forces, OfDampingDoNotReachAGrip) {
   json scene = shaken_block();
@@ -200,6 +229,23 @@ TEST(Events, OfABallAreItsBounces) {
     EXPECT_EQ(count(run.events, std::string(",elastic,") + event + ","), 3U) << run.events;
   scene["output"].erase("events");
   EXPECT_EQ(ran(scene).events, "");
+}
+
+// Masses at rest on a floor that is taken away: it lets go of what it carried, and of nothing else.
+TEST(Events, OfAnInterfaceThatEndsAreItsReleases) {
+  const json scene = json::parse(R"({
+    "model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0]}, {"mass": 2, "position": [5]},
+      {"mass": 3, "position": [0]}]},
+    "time": {"dt": 0.013, "end": 0.2}, "loads": [{"type": "gravity", "acceleration": [-10]}],
+    "interfaces": [{"name": "floor", "law": "contact", "nodes": "all", "death": 0.1,
+      "obstacle": {"type": "plane", "point": [0], "normal": [1]}}],
+    "output": {"events": true}})");
+  const Ran run = ran(scene);
+  EXPECT_EQ(count(run.events, "\n"), 5U) << run.events;
+  for (const char* node : {"0", "2"}) {
+    EXPECT_EQ(count(run.events, "," + std::string(node) + ",floor,contact,"), 1U) << run.events;
+    EXPECT_EQ(count(run.events, "," + std::string(node) + ",floor,release,0\n"), 1U) << run.events;
+  }
 }
 
 // ---- resumed, refused -----------------------------------------------------------------------------------

@@ -2,8 +2,11 @@
 #include "host_runner.hpp"
 #include "program_runner.hpp"
 
+#include "base/stopwatch.hpp"
+
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <string>
 
 namespace ilaw::host::testing {
@@ -105,6 +108,44 @@ TEST(Summary, WarnsOfAnExplicitSpringThatIsTooStiff) {
     EXPECT_EQ(implicit["stable_step"], "inf");
     EXPECT_TRUE(implicit["warnings"].empty()) << dt << ": " << implicit["warnings"];
   }
+}
+
+// In scenes of few nodes one step in 16 is timed for all: of what the steps take, the better part is told.
+TEST(Clock, StepsThatAreTimedStandForThoseThatAreNot) {
+  double share = 0.0;
+  for (int attempt = 0; attempt < 5 && share < 0.25; ++attempt) {  // others may hold the processor
+    Scene scene = scene_of(mass_on_spring("implicit", 1e-5).dump());
+    Integrator integrator = integrator_of(scene);
+    const auto start = std::chrono::steady_clock::now();
+    while (integrator.steps() < 3000) integrator.step();
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    const PhaseSeconds seconds = integrator.seconds();
+    share = (seconds.interfaces + seconds.internal_forces) / elapsed.count();
+  }
+  EXPECT_GT(share, 0.25);
+}
+
+// A phase far longer than those of small scenes was interrupted, and is no measure of the others.
+TEST(Clock, AnInterruptionStandsForItself) {
+  constexpr int weight = 16;
+  const std::int64_t begin = ticks_now();
+  Laps laps(weight);
+  while (ticks_now() - begin < 1 << 20) continue;
+  std::int64_t ticks = 0;
+  laps.add_to(ticks);
+  EXPECT_GT(ticks, 1 << 19);
+  EXPECT_LE(ticks, ticks_now() - begin);
+  int weighted = 0;
+  for (int k = 0; k < 100; ++k) {
+    ticks = 0;
+    laps.add_to(ticks);
+    weighted += ticks > 0 && ticks % weight == 0 ? 1 : 0;
+  }
+  EXPECT_GT(weighted, 90);
+  Laps untimed(0);
+  ticks = 0;
+  untimed.add_to(ticks);
+  EXPECT_EQ(ticks, 0);
 }
 
 // Contacts that share nodes: how many sweeps, and what the last one still changed.
