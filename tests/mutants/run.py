@@ -4,6 +4,7 @@
     tests/mutants/run.py                   all mutants of mutants.json
     tests/mutants/run.py --only window     those whose name holds this word
     tests/mutants/run.py --area kit        those of an area: plugins, kit, loader or host
+    tests/mutants/run.py --last 24         the last ones of mutants.json
     tests/mutants/run.py --check           only whether each still fits the sources, exactly once
     tests/mutants/run.py --table           and writes the score into docs/reliability.md
 
@@ -50,6 +51,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="mutants whose name holds this word")
     parser.add_argument("--area", choices=sorted(AREAS), action="append", help="mutants of this area; to be repeated")
+    parser.add_argument("--last", type=int, default=0, help="this many from the end of mutants.json")
     parser.add_argument("--check", action="store_true", help="do not build: see whether mutants fit the sources")
     parser.add_argument("--table", action="store_true", help="write the score into docs/reliability.md")
     parser.add_argument("--jobs", default=os.cpu_count(), type=int, help="processes of the build and of the tests")
@@ -108,7 +110,8 @@ def copy_tree(by_file):
 
 def build(programs, jobs):
     configure = ["cmake", "-S", TREE, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DILAW_TESTS=ON",
-                 "-DCMAKE_CXX_FLAGS_DEBUG=-O1", "-DCMAKE_C_FLAGS_DEBUG=-O1"]
+                 "-DILAW_UNITY=ON", "-DILAW_LAMMPS=OFF", "-DILAW_SOLVERS=OFF", "-DCMAKE_CXX_FLAGS_DEBUG=-O1",
+                 "-DCMAKE_C_FLAGS_DEBUG=-O1"]
     if shutil.which("ccache"):
         configure += ["-DCMAKE_C_COMPILER_LAUNCHER=ccache", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"]
     subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
@@ -163,7 +166,7 @@ def main():
     if options.check:
         return 0
 
-    chosen = [mutant for mutant in everything
+    chosen = [mutant for mutant in everything[-options.last:]
               if options.only in mutant["name"] and mutant["area"] in (options.area or AREAS)]
     copy_tree(sources)
     tests = {test for mutant in chosen for test in tests_of(mutant)}
