@@ -330,7 +330,8 @@ bool Blocks::is_linear() const {
 void Blocks::add_internal_forces(const Dofs& u, Dofs& force) const {
   for (const Block& block : blocks_) {
     const int layers = block.elements[static_cast<std::size_t>(block.layer_axis)];
-    const bool many = block.elements[0] * block.elements[1] * block.elements[2] >= fewest_for_threads;
+    [[maybe_unused]] const bool many =
+        block.elements[0] * block.elements[1] * block.elements[2] >= fewest_for_threads;
     for (int parity = 0; parity < 2; ++parity) {
 #pragma omp parallel for schedule(static) if (many)
       for (int layer = parity; layer < layers; layer += 2)
