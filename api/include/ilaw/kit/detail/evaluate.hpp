@@ -5,6 +5,7 @@
 #include <ilaw/float.h>
 #include <ilaw/kit/detail/batch_walk.hpp>
 #include <ilaw/kit/detail/node_parameters.hpp>
+#include <ilaw/kit/detail/stable_step.hpp>
 #include <ilaw/kit/detail/wrong_batch.hpp>
 
 #include <string>
@@ -126,33 +127,6 @@ const char* refusal_reason(const Law& law, const block_of_one<Law>& b, int i, bo
   return result_reason<Law>(stepped, b.impulse_guard);
 }
 
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
-double stable_step_at(const Form& law, const node_block<Law>& b, int i) {
-  auto node = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
-  return law.stable_velocity_step(node);
-}
-
-// The smallest stable step of a block's good nodes, by the form that its loop ran with.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
-[[gnu::noinline, gnu::flatten]] double least_stable_step(const Form& form, const node_block<Law>& b) {
-  static_assert(block_size % pack_size == 0);
-  const Form law = form;
-  const node_block<Law> own = b;
-  column steps;
-  for (double& step : steps.values) step = infinity;
-#pragma omp simd
-  for (int i = 0; i < own.count; ++i) {
-    const double step = stable_step_at<Law, Delassus, Frame, Layout, Scope>(law, own, i);
-    steps.values[i] = own.refused[i] == 0.0 ? step : infinity;
-  }
-  pack least = infinity;
-  for (int i = 0; i < block_size; i += pack_size) least = smaller(pack::load(steps.values + i), least);
-  double smallest = infinity;
-  for (int lane = 0; lane < pack_size; ++lane) smallest = smaller(least.values()[lane], smallest);
-  return smallest;
-}
-template <class Form>
-concept always_stable = Form::is_always_stable;
 // A form whose inputs always have v_previous is not compiled without it.
 template <class Form>
 concept needs_previous = Form::needs_previous;

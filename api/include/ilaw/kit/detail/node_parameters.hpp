@@ -9,6 +9,36 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
+// The law at the nodes of a block with parameters per node in columns, in the order of Law::parameters.
+template <class Law, class Form = Law>
+struct law_per_node {
+  using form = Form;
+  Form law;
+  const column* parameters;
+  const double* valid;  // 1 or 0
+
+  Form at(int i) const { return with(i, std::make_index_sequence<parameter_count<Law>>{}); }
+  bool is_valid(int i) const { return valid[i] != 0.0; }
+
+  // The form that a law names for such nodes, and whether the first ones have it.
+  auto in_form_of_nodes() const {
+    return law_per_node<Law, typename Law::form_of_nodes>{{law}, parameters, valid};
+  }
+  bool have_form_of_nodes(int count) const {
+    int others = 0;
+    for (int i = 0; i < count; ++i) others += at(i).has_form_of_nodes() ? 0 : 1;
+    return others == 0;
+  }
+
+ private:
+  template <std::size_t... K>
+  Form with(int i, std::index_sequence<K...>) const {
+    Form own = law;
+    ((own.*Law::parameters[K].member = parameters[K].values[i]), ...);
+    return own;
+  }
+};
+
 // The parameters of one node; says what is wrong with them, null where nothing is. Then law stays as it was:
 // no step need stand what no parameter may be.
 template <class Law>
