@@ -174,7 +174,8 @@ TEST_P(Contract, InstructionSetsGiveTheSameBits) {
 
 INSTANTIATE_TEST_SUITE_P(Laws, Contract, ::testing::ValuesIn(law_cases("contract")), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Kit, Contract,
-                         ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}}),
+                         ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}},
+                                           LawCase{"tie", "tie_that_cannot_break", {}, {}}),
                          name_of_case);
 
 }  // namespace
