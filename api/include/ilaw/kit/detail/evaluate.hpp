@@ -261,7 +261,7 @@ tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   if constexpr (has_varying_parameters<Law>)
     if (made.per_node_count > 0) return walk_varying<Law, Delassus, Frame>(made, law, batch);
   if constexpr (std::is_same_v<Delassus, transverse_delassus> && !std::is_same_v<Frame, stored_frame> &&
-                in_space<Law>)
+                in_space<Law> && !is_for_old_processors)
     if (all_interleaved(made, batch))
       return walk_for_impulse<Law, Delassus, Frame, interleaved>(made, law, batch);
   return walk_in_columns<Law, Delassus, Frame>(made, law, batch);

@@ -267,13 +267,7 @@ concept tries_first = requires(const Form& law, Node& node) {
   { law.try_step(node) } -> std::same_as<bool>;
 };
 
-// Not where energies are asked, or tangents that the law does without, nor in the code for old processors
-// beside that of others: each is a loop more to compile.
-#if defined(ILAW_KIT_OTHER_LEVELS)
-inline constexpr bool is_for_old_processors = true;
-#else
-inline constexpr bool is_for_old_processors = false;
-#endif
+// Not where energies are asked, or tangents that the law does without: each is a loop more to compile.
 template <class Law, class Frame, scope Scope>
 inline constexpr bool is_worth_a_try = !is_for_old_processors && Scope < scope::outputs &&
                                        (!std::is_same_v<Frame, stored_frame> || Law::card.names_tangents);
