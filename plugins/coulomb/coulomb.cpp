@@ -129,6 +129,10 @@ struct coulomb::plain : coulomb {
     apply_isotropic_friction(node, contact(node), friction);
   }
   template <class Node>
+  bool try_step(Node& node) const requires has_transverse_delassus<Node> {
+    return try_isotropic_friction(node, contact(node), friction);
+  }
+  template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const requires(!has_transverse_delassus<Node>) {
     return ask_friction(node, contact(node), friction, friction, true, open);
   }
@@ -138,6 +142,10 @@ struct coulomb::falling : coulomb {
   template <class Node>
   void step(Node& node) const requires has_transverse_delassus<Node> {
     apply_isotropic_friction(node, contact(node), fallen(friction, left(node)));
+  }
+  template <class Node>
+  bool try_step(Node& node) const requires has_transverse_delassus<Node> {
+    return try_isotropic_friction(node, contact(node), fallen(friction, left(node)));
   }
   template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const requires(!has_transverse_delassus<Node>) {

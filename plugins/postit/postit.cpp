@@ -218,6 +218,16 @@ struct postit::form : postit, friction_in_packs {
     }
     settle<Wears>(node, trial, holds);
   }
+  // Where nothing turned round within the step, no work is to be taken off.
+  template <class Node>
+  bool try_step(Node& node) const requires(!Saturated && has_transverse_delassus<Node>) {
+    const vector trial = whole_stopping_impulse(node);
+    const double work = node.state.adhesion > 0.0 ? positive_part(doubled_work(node, trial)) : 0.0;
+    const bool holds = this->holds(node, trial);
+    const bool is_usual = try_isotropic_friction(node, plain_contact(node, node.v_free), friction);
+    settle<Wears>(node, trial, holds);
+    return work + (is_usual ? 0.0 : 1.0) == 0.0;
+  }
   template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const
       requires(!Saturated && !has_transverse_delassus<Node>) {

@@ -116,6 +116,32 @@ TEST_P(Contract, EnergiesThatAreNotAskedForChangeNothingElse) {
   }
 }
 
+// Laws that try the usual step first: motions that turned round within the step are met in some blocks, and
+// not in others.
+TEST_P(Contract, NodesThatAreNotUsualChangeNoOther) {
+  for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL}) {
+    const ilaw::interface law = make(frame);
+    Nodes nodes(1000);
+    const std::vector<double> other = nodes.v_previous;
+    nodes.v_previous = nodes.v_free;
+    for (const std::size_t i : {5, 200, 201, 930})
+      for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) nodes.v_previous[c] = 2.0 * other[c] - nodes.v_free[c];
+    const bool global = frame == ILAW_FRAME_GLOBAL;
+    const Results in_full = run(law, nodes, {}, global);  // as it is where energies are asked for
+    for (const bool soa : {false, true})
+      for (const bool separate_state : {false, true}) {
+        Results tried =
+            run(law, nodes, {.soa = soa, .separate_state = separate_state, .energy = false}, global);
+        tried.energy = in_full.energy;
+        EXPECT_TRUE(tried == in_full) << "frame " << frame << ", SoA " << soa << ", apart " << separate_state;
+        const Results alone =
+            run(law, nodes, {.soa = soa, .separate_state = separate_state, .outputs = false}, global);
+        EXPECT_TRUE(alone.impulse == in_full.impulse && alone.state == in_full.state)
+            << "without outputs, frame " << frame << ", SoA " << soa << ", apart " << separate_state;
+      }
+  }
+}
+
 // From some thousand nodes on, arrays are asked for ahead, and blocks are worked on in pieces.
 TEST_P(Contract, LargeBatchesGiveTheBitsOfListedNodes) {
   constexpr std::int64_t n = 8192 + 64 + 21;
@@ -148,7 +174,8 @@ TEST_P(Contract, InstructionSetsGiveTheSameBits) {
 
 INSTANTIATE_TEST_SUITE_P(Laws, Contract, ::testing::ValuesIn(law_cases("contract")), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Kit, Contract,
-                         ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}}),
+                         ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}},
+                                           LawCase{"tie", "tie_that_cannot_break", {}, {}}),
                          name_of_case);
 
 }  // namespace

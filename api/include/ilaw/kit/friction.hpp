@@ -57,14 +57,20 @@ inline constexpr double sticking_part = 1.0 - 0x1p-46;
 // times 2 h_T, is s^2 q_T^2 - s q_T.(q_T + rest_T) + h_T r_N rest_N, and must not be positive. Less than 1
 // only where the motion turned round within the step, as it does on a stiff spring, and the impact takes less
 // than it costs to stop that from behind.
+struct turning {
+  double square, along, impact;  // q_T^2, q_T.rest_T, h_T r_N rest_N: times a power of two
+
+  bool gains() const { return along < impact; }
+};
 template <class Delassus, class Vector>
-fraction<double> stopping_part(const Delassus& delassus, double normal, Vector q, scaled_length speed,
-                               Vector rest) {
+turning turning_of(const Delassus& delassus, double normal, Vector q, scaled_length speed, Vector rest) {
   const double down = speed.down;  // without overflow or underflow on the way
-  const double along = tangential_product(down * q, down * rest), square = speed.root() * speed.root();
-  const double impact = delassus.tangential() * (down * normal) * (down * rest.n);
-  const fraction<double> part = root_of_work(square, -(square + along), impact);
-  const bool gains = along < impact;
+  return {speed.square, tangential_product(down * q, down * rest),
+          delassus.tangential() * (down * normal) * (down * rest.n)};
+}
+inline fraction<double> stopping_part(turning t) {
+  const fraction<double> part = root_of_work(t.square, -(t.square + t.along), t.impact);
+  const bool gains = t.gains();
   const bool far = part.under == infinity;  // v^- is so much larger than q that nothing is left
   return {gains ? (far ? 0.0 : part.over) : 1.0, (gains & !far) ? part.under : 1.0};
 }
@@ -103,22 +109,42 @@ friction_result<Vector> solve_contact_friction(const Delassus& delassus, double 
   return rub(delassus, normal, q, q.tangential_length(), {}, friction);
 }
 
+template <class Delassus, class Vector>
+double pressing_impulse(const Delassus& delassus, const contact_problem<Vector>& contact) {
+  return contact.slack <= 0.0 ? positive_part(-contact.q.n / delassus.normal()) : 0.0;
+}
+
 // The same, without positive work.
 template <class Delassus, class Vector>
 friction_result<Vector> solve_contact_friction(const Delassus& delassus,
                                                const contact_problem<Vector>& contact, double friction) {
   const auto& [slack, q, rest] = contact;
-  const double normal = slack <= 0.0 ? positive_part(-q.n / delassus.normal()) : 0.0;
+  const double normal = pressing_impulse(delassus, contact);
   const scaled_length speed = q.scaled_tangential_length();
-  return rub(delassus, normal, q, speed.length(), stopping_part(delassus, normal, q, speed, rest), friction);
+  const fraction<double> part = stopping_part(turning_of(delassus, normal, q, speed, rest));
+  return rub(delassus, normal, q, speed.length(), part, friction);
+}
+
+template <class Node, class Vector>
+void give(Node& node, const friction_result<Vector>& result) {
+  node.impulse = result.impulse;
+  node.status = result.impulse.n > 0.0 ? result.status : status::free;
 }
 
 // Gives the node its impulse and status, by the closed form.
 template <class Node, class Vector>
 void apply_isotropic_friction(Node& node, const contact_problem<Vector>& problem, double friction) {
-  const auto result = solve_contact_friction(node.delassus, problem, friction);
-  node.impulse = result.impulse;
-  node.status = result.impulse.n > 0.0 ? result.status : status::free;
+  give(node, solve_contact_friction(node.delassus, problem, friction));
+}
+
+// The same without the root that a motion needs that turned round within the step. False: it did.
+template <class Node, class Vector>
+bool try_isotropic_friction(Node& node, const contact_problem<Vector>& contact, double friction) {
+  const auto& [slack, q, rest] = contact;
+  const double normal = pressing_impulse(node.delassus, contact);
+  const scaled_length speed = q.scaled_tangential_length();
+  give(node, rub(node.delassus, normal, q, speed.length(), {}, friction));
+  return !turning_of(node.delassus, normal, q, speed, rest).gains();
 }
 
 // The entries of H in the order of local_problem.
@@ -308,11 +334,19 @@ void apply_local_coulomb(Node& node, double slack, const local_coulomb& problem)
   node.refused = mode == contact_mode::none ? no_solution : not_refused;
 }
 
-// The impulse that stops the node, r = -H^-1 v_free, without positive work r.v^-/2: all of it unless the node
-// was moving before, and turned round within the step.
+// The impulse that stops the node, r = -H^-1 v_free, and its work: as it is, and without positive work, all
+// of it unless the node was moving before, and turned round within the step.
+template <class Node>
+vector whole_stopping_impulse(const Node& node) {
+  return -node.delassus.solve(node.v_free);
+}
+template <class Node>
+double doubled_work(const Node& node, vector r) {
+  return normal_product(r, node.v_previous) + tangential_product(r, node.v_previous);
+}
 template <class Node>
 vector stopping_impulse(const Node& node) {
-  const vector r = -node.delassus.solve(node.v_free);
+  const vector r = whole_stopping_impulse(node);
   friction_answer<double> answer{{r.n, r.t1, r.t2}, status::stick, not_refused};
   friction_problem<double> problem;
   fill(problem, node.delassus, {0.0, node.v_free, node.v_previous}, 0.0, 0.0);

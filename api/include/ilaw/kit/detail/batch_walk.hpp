@@ -60,6 +60,7 @@ class batch_walk {
     for (const double*& sum : block_.earlier) sum = zeros.values;
     block_.earlier_refused = zeros.values;
     block_.impulse_guard = holds_floats(batch_) ? 0x1p898 : 4.0;
+    block_.in_full = &in_full_;
     gather_inputs();
     if (made_.frame == ILAW_FRAME_GLOBAL) gather_frame();
     if (made_.frame == ILAW_FRAME_GLOBAL && dimension_ == 2) pad_turned_delassus();
@@ -359,6 +360,7 @@ class batch_walk {
   block_room<Law>& room_;
   int dimension_;
   bool is_initial_ = false, has_ahead_ = false;
+  int in_full_ = 0;
   streams ahead_;
   node_range nodes_{};
   node_block<Law> block_;

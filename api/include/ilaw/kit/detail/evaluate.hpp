@@ -27,9 +27,11 @@ inline std::int32_t refuse(ilaw_report* report, const char* reason,
   return code;
 }
 
-// Whether the vectors that a kernel may read and write in place are (3,n) arrays.
+// Whether the vectors that a kernel may read and write in place are (3,n) arrays. Where velocities are asked
+// as well, taking all vectors apart beforehand costs no more, and saves loops.
 template <class Law>
 bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
+  if (b.velocity.values || b.status || b.energy.values) return false;
   const auto is_interleaved = [](const auto& a) { return a.node_stride == 3 && a.component_stride == 1; };
   return made.dimension == 3 && !b.index && !b.index64 && !holds_floats(b) && is_interleaved(b.v_free) &&
          is_interleaved(b.impulse) && (made.frame == ILAW_FRAME_LOCAL || is_interleaved(b.normal));
@@ -96,7 +98,7 @@ const char* result_reason(const Node& n, double impulse_guard) {
   if (n.refused == impossible_state) return "the state is not one that the law can have written";
   if (n.refused == time_before_history) return "the time lies before what the state remembers";
   if (is_not_a_number(n.impulse)) return "the law gave an impulse that is not a number";
-  if (defect(impulse_guard * n.impulse) + state_defect<Law>(n.state) != 0.0)
+  if (overflow_defect(n.impulse, impulse_guard) + state_defect<Law>(n.state) != 0.0)
     return "the impulse or the state overflows";
   if (status_defect(n.status) != 0.0) return "the law gave a status that ilaw.h does not have";
   if (pull_defect<Law>(n) != 0.0) return "the law pulled, which needs ILAW_CAN_ADHERE in its card";
@@ -201,26 +203,32 @@ struct evaluate_walk {
       Law own = law;
       const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
       found.add(walk.nodes().node(i), wrong ? wrong
-                                            : refusal_reason<Law, Delassus, Frame, Layout, Scope>(
+                                            : refusal_reason<Law, Delassus, Frame, Layout, reading<Scope>>(
                                                   own, {own, walk.block(), i}, i, made.tangent_given));
     }
   }
 };
 
+// With or without the velocity before the step, as the parameters ask for it.
 template <class Law, class Delassus, class Frame, class Layout>
-tally walk_laid_out(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
-  const bool asks_motion = batch.velocity.values || batch.status;
-  if (batch.energy.values || (asks_motion && !always_reads_previous<Law>))
-    return evaluate_walk<Law, Delassus, Frame, Layout, scope::outputs, false>::run(made, law, batch);
-  if constexpr (always_reads_previous<Law>)
-    if (asks_motion)
-      return evaluate_walk<Law, Delassus, Frame, Layout, scope::motion, false>::run(made, law, batch);
+tally walk_for_impulse(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
   if constexpr (reads_previous<Law>)
     if (always_reads_previous<Law> || (made.inputs() & ILAW_INPUT_V_PREVIOUS))
       return evaluate_walk<Law, Delassus, Frame, Layout, scope::with_previous, false>::run(made, law, batch);
   if constexpr (!always_reads_previous<Law>)
     return evaluate_walk<Law, Delassus, Frame, Layout, scope::impulse, false>::run(made, law, batch);
   return {};
+}
+
+template <class Law, class Delassus, class Frame>
+tally walk_in_columns(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
+  const bool asks_motion = batch.velocity.values || batch.status;
+  if (batch.energy.values || (asks_motion && !always_reads_previous<Law>))
+    return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, false>::run(made, law, batch);
+  if constexpr (always_reads_previous<Law>)
+    if (asks_motion)
+      return evaluate_walk<Law, Delassus, Frame, columns, scope::motion, false>::run(made, law, batch);
+  return walk_for_impulse<Law, Delassus, Frame, columns>(made, law, batch);
 }
 
 // What the card serves; create refuses the rest, and no loop is compiled for it.
@@ -237,17 +245,26 @@ inline constexpr bool has_varying_parameters = [] {
   return false;
 }();
 
+// With parameters per node. Without energies where they would be much of the work.
+template <class Law, class Delassus, class Frame>
+tally walk_varying(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
+  if constexpr (std::is_same_v<Delassus, transverse_delassus> && !std::is_same_v<Frame, stored_frame> &&
+                always_reads_previous<Law>)
+    if (!batch.energy.values)
+      return evaluate_walk<Law, Delassus, Frame, columns, scope::motion, true>::run(made, law, batch);
+  return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
+}
+
 template <class Law, class Delassus, class Frame>
 tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
   if constexpr (has_varying_parameters<Law>)
-    if (made.per_node_count > 0)
-      return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
+    if (made.per_node_count > 0) return walk_varying<Law, Delassus, Frame>(made, law, batch);
   if constexpr (std::is_same_v<Delassus, transverse_delassus> && !std::is_same_v<Frame, stored_frame> &&
-                in_space<Law>)
+                in_space<Law> && !is_for_old_processors)
     if (all_interleaved(made, batch))
-      return walk_laid_out<Law, Delassus, Frame, interleaved>(made, law, batch);
-  return walk_laid_out<Law, Delassus, Frame, columns>(made, law, batch);
+      return walk_for_impulse<Law, Delassus, Frame, interleaved>(made, law, batch);
+  return walk_in_columns<Law, Delassus, Frame>(made, law, batch);
 }
 
 // A diagonal H turned out of its axes is full.

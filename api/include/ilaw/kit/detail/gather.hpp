@@ -4,7 +4,7 @@
 #pragma once
 
 #include <ilaw/ilaw.h>
-#include <ilaw/kit/detail/level.hpp>
+#include <ilaw/kit/detail/rows.hpp>
 
 #include <cstdint>
 #include <type_traits>
@@ -110,27 +110,6 @@ inline const double* gather(const ilaw_input& input, int component, const node_r
   return gather_of(values, input.node_stride, nodes, room);
 }
 
-// Takes apart rows of two or three numbers.
-template <class Number>
-void separate_pairs(const Number* __restrict__ values, int count, double* __restrict__ a,
-                    double* __restrict__ b) {
-#pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    a[i] = values[2 * i];
-    b[i] = values[2 * i + 1];
-  }
-}
-template <class Number>
-void separate_triples(const Number* __restrict__ values, int count, double* __restrict__ a,
-                      double* __restrict__ b, double* __restrict__ c) {
-#pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    a[i] = values[3 * i];
-    b[i] = values[3 * i + 1];
-    c[i] = values[3 * i + 2];
-  }
-}
-
 // Rows of six numbers as twice as many of three, then pairs of those: of six at once compilers make no vector
 // code.
 template <class Number>
@@ -174,17 +153,6 @@ inline void gather_vector(const ilaw_input& input, int dimension, const node_ran
                           const double** components) {
   gather_components(input, dimension, nodes, room, components);
   for (int k = dimension; k < 3; ++k) components[k] = zeros.values;
-}
-
-template <class Number>
-void interleave(double* const* components, int count, Number* __restrict__ values) {
-  const double* __restrict__ a = components[0], * __restrict__ b = components[1], * __restrict__ c = components[2];
-#pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    values[3 * i] = static_cast<Number>(a[i]);
-    values[3 * i + 1] = static_cast<Number>(b[i]);
-    values[3 * i + 2] = static_cast<Number>(c[i]);
-  }
 }
 
 // Where to write one component: in the host's array if it is consecutive, else in room, to be scattered.

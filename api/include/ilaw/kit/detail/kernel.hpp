@@ -44,6 +44,7 @@ struct node_block {
   double* stirs;     // 0 where a carried frame stays as it was
   double* given[3];  // of laws with a window: the impulse for it, in the local frame,
   double* reached;   // and the status
+  int* in_full;      // how many of the next blocks are not tried first, see try_first
 
   std::int64_t history_offset(int i) const {
     return (history_nodes ? history_nodes[i] : i) * history_node_stride;
@@ -51,9 +52,10 @@ struct node_block {
   history history_of(int i) const { return {history_values + history_offset(i), history_component_stride}; }
 };
 
-// What a kernel computes besides impulse and state, so that what is not asked for costs nothing: nothing,
-// v_previous read as well, or that and velocity and status, or all optional outputs.
+// What is computed besides impulse and state: nothing, v_previous read as well, velocity and status, or all.
 enum class scope { impulse, with_previous, motion, outputs };
+template <scope Scope>
+inline constexpr scope reading = Scope == scope::impulse ? scope::impulse : scope::with_previous;
 
 template <class Law, class Delassus, class Frame>
 using node_in = node<Delassus, state_t<Law>, typename Frame::vector_type, Law::card.inputs>;
@@ -189,7 +191,7 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope>
 node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
   const auto frame = Frame::template at<Layout>(b.axes, i);
   auto v_free = frame.to_local(Layout::get(b.v_free, i));
-  v_free.n += frame.unit_defect();
+  if constexpr (!std::is_same_v<Frame, local_frame>) v_free.n += frame.unit_defect();
   node_in<Law, Delassus, Frame> n{.time = b.time,
                                   .velocity_step = b.velocity_step,
                                   .position_step = b.position_step,
@@ -220,20 +222,15 @@ double input_defect(const Node& n) {
   return sum;
 }
 
-// Not zero where a promise is broken. By bits and products: choices, and comparisons of an impulse that was
-// chosen itself, would become branches.
-inline double defect_where(bool is_broken) {
-  return kit::kept_if(is_broken, std::numeric_limits<double>::quiet_NaN());
-}
-
 // What a law may not give: a status that ilaw.h does not have, a pull or an impulse out of reach that its
-// card does not announce. Who is out of reach is to be left alone while it is fresh, as nodes without a state
-// always are.
+// card does not announce; zero where it keeps to it. Who is out of reach is to be left alone while it is
+// fresh, as nodes without a state always are.
 // Without a comparison, which GCC would take into the choices of a step: a choice between truths does not
 // vectorise. The product is zero at the statuses, and large where it is not.
 inline double status_defect(double s) {
   static_assert(status::free == 0.0 && status::healed == 6.0);
-  const double product = s * (s - 1.0) * (s - 2.0) * (s - 3.0) * (s - 4.0) * (s - 5.0) * (s - 6.0);
+  const double middle = s - 3.0, square = middle * middle;
+  const double product = middle * (square - 1.0) * ((square - 4.0) * (square - 9.0));
   return defect(product * 0x1p1000 * 0x1p1000);
 }
 template <class Law>
@@ -244,11 +241,19 @@ inline constexpr bool may_act_anywhere =
     (Law::card.inputs & reads_gap) == 0;
 template <class Law, class Node>
 double pull_defect(const Node& n) {
-  return may_pull<Law> ? 0.0 : defect_where(n.impulse.n < 0.0);
+  return may_pull<Law> ? 0.0 : absolute(n.impulse.n) - n.impulse.n;
+}
+inline double size_of(vector a) { return absolute(a.n) + (absolute(a.t1) + absolute(a.t2)); }
+inline double size_of(projected_vector a) {
+  return (absolute(a.n) + absolute(a.x)) + (absolute(a.y) + absolute(a.z));
+}
+template <class Vector>
+double overflow_defect(Vector impulse, double guard) {
+  return defect(guard * size_of(impulse));
 }
 template <class Node>
 double distance_defect(const Node& n) {
-  return kit::kept_if(is_out_of_reach(n), absolute(n.impulse.n) + tangential_product(n.impulse, n.impulse));
+  return kit::kept_if(is_out_of_reach(n), size_of(n.impulse));
 }
 
 // Steps one node, and says whether its input was good and its result one that a law may give and a double
@@ -265,7 +270,7 @@ stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int
   if constexpr (!may_pull<Law>) sum += pull_defect<Law>(n);
   if constexpr (has_state<Law>) sum += state_defect<Law>(n.state);
   if constexpr (!may_act_anywhere<Law>) sum += distance_defect(n);
-  sum += defect(b.impulse_guard * n.impulse);
+  sum += overflow_defect(n.impulse, b.impulse_guard);
   // One comparison: of two, where refused was chosen, GCC makes branches, and no vector code.
   s.accepted = sum + n.refused == 0.0;
   return s;

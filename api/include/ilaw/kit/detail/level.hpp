@@ -7,3 +7,14 @@
 #ifndef ILAW_KIT_LEVEL
 #define ILAW_KIT_LEVEL baseline
 #endif
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// The code for old processors beside that of others has fewer loops: less to compile, and the same bits.
+#if defined(ILAW_KIT_OTHER_LEVELS)
+inline constexpr bool is_for_old_processors = true;
+#else
+inline constexpr bool is_for_old_processors = false;
+#endif
+
+}  // namespace ilaw::kit::detail

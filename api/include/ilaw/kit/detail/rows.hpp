@@ -1,0 +1,113 @@
+// rows.hpp - takes rows of a few numbers, one row per node, apart into columns, and puts columns together to
+// rows. Doubles are moved by whole vectors, each of which is read and written once: of such loops compilers
+// read every vector once per column, and where rows are not aligned each reading touches two lines.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/pack.hpp>
+
+#include <type_traits>
+#include <utility>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+using lanes = pack::lanes;
+inline constexpr auto each_lane = std::make_integer_sequence<int, pack_size>{};
+
+inline lanes lanes_at(const double* values) { return pack::load(values).values(); }
+inline void put_lanes(lanes v, double* values) { pack(v).store(values); }
+
+// Column c of as many rows of two as there are lanes.
+template <int Column, int... K>
+lanes column_of(lanes first, lanes second, std::integer_sequence<int, K...> /*lanes*/) {
+  return __builtin_shufflevector(first, second, 2 * K + Column...);
+}
+// The same of rows of three: from the first two vectors, then from the third.
+template <int Column, int... K>
+lanes column_of(lanes first, lanes second, lanes third, std::integer_sequence<int, K...> /*lanes*/) {
+  constexpr int both = 2 * pack_size;
+  const lanes found =
+      __builtin_shufflevector(first, second, (3 * K + Column < both ? 3 * K + Column : -1)...);
+  return __builtin_shufflevector(found, third,
+                                 (3 * K + Column < both ? K : 3 * K + Column - both + pack_size)...);
+}
+// Vector v of the rows that three columns make.
+template <int Vector, int... K>
+lanes row_of(lanes a, lanes b, lanes c, std::integer_sequence<int, K...> /*lanes*/) {
+  constexpr int from = Vector * pack_size;
+  const lanes found = __builtin_shufflevector(
+      a, b, ((from + K) % 3 == 2 ? -1 : (from + K) / 3 + (from + K) % 3 * pack_size)...);
+  return __builtin_shufflevector(found, c, ((from + K) % 3 == 2 ? (from + K) / 3 + pack_size : K)...);
+}
+
+template <class Number>
+void separate_pairs(const Number* __restrict__ values, int first, int count, double* __restrict__ a,
+                    double* __restrict__ b) {
+#pragma omp simd
+  for (int i = first; i < count; ++i) {
+    a[i] = values[2 * i];
+    b[i] = values[2 * i + 1];
+  }
+}
+template <class Number>
+void separate_pairs(const Number* values, int count, double* a, double* b) {
+  int i = 0;
+  if constexpr (std::is_same_v<Number, double>)
+    for (; i + pack_size <= count; i += pack_size) {
+      const lanes u = lanes_at(values + 2 * i), v = lanes_at(values + 2 * i + pack_size);
+      put_lanes(column_of<0>(u, v, each_lane), a + i);
+      put_lanes(column_of<1>(u, v, each_lane), b + i);
+    }
+  separate_pairs(values, i, count, a, b);
+}
+
+template <class Number>
+void separate_triples(const Number* __restrict__ values, int first, int count, double* __restrict__ a,
+                      double* __restrict__ b, double* __restrict__ c) {
+#pragma omp simd
+  for (int i = first; i < count; ++i) {
+    a[i] = values[3 * i];
+    b[i] = values[3 * i + 1];
+    c[i] = values[3 * i + 2];
+  }
+}
+template <class Number>
+void separate_triples(const Number* values, int count, double* a, double* b, double* c) {
+  int i = 0;
+  if constexpr (std::is_same_v<Number, double>)
+    for (; i + pack_size <= count; i += pack_size) {
+      const double* rows = values + 3 * i;
+      const lanes u = lanes_at(rows), v = lanes_at(rows + pack_size), w = lanes_at(rows + 2 * pack_size);
+      put_lanes(column_of<0>(u, v, w, each_lane), a + i);
+      put_lanes(column_of<1>(u, v, w, each_lane), b + i);
+      put_lanes(column_of<2>(u, v, w, each_lane), c + i);
+    }
+  separate_triples(values, i, count, a, b, c);
+}
+
+template <class Number>
+void interleave(const double* __restrict__ a, const double* __restrict__ b, const double* __restrict__ c,
+                int first, int count, Number* __restrict__ values) {
+#pragma omp simd
+  for (int i = first; i < count; ++i) {
+    values[3 * i] = static_cast<Number>(a[i]);
+    values[3 * i + 1] = static_cast<Number>(b[i]);
+    values[3 * i + 2] = static_cast<Number>(c[i]);
+  }
+}
+template <class Number>
+void interleave(double* const* components, int count, Number* values) {
+  const double *a = components[0], *b = components[1], *c = components[2];
+  int i = 0;
+  if constexpr (std::is_same_v<Number, double>)
+    for (; i + pack_size <= count; i += pack_size) {
+      const lanes u = lanes_at(a + i), v = lanes_at(b + i), w = lanes_at(c + i);
+      double* rows = values + 3 * i;
+      put_lanes(row_of<0>(u, v, w, each_lane), rows);
+      put_lanes(row_of<1>(u, v, w, each_lane), rows + pack_size);
+      put_lanes(row_of<2>(u, v, w, each_lane), rows + 2 * pack_size);
+    }
+  interleave(a, b, c, i, count, values);
+}
+
+}  // namespace ilaw::kit::detail
