@@ -94,7 +94,8 @@ class isotropic_step {
     const V h_t = m.left_t * g_.h[1], normal = (ground_ + x_[0] - 2.0 * free) * rate / (m.left_n * g_.h[0]);
     const V q1 = 2.0 * rate * (m.opening[1] - x_[1]), q2 = 2.0 * rate * (m.opening[2] - x_[2]);
     const V rest_n = smaller(g_.v_previous[0] + target, 0.0);
-    const rubbing<V> found = rub(h_t, normal, q1, q2, rest_n, g_.v_previous, bond_.friction * g_.damage);
+    const rubbing_factor<V> found =
+        rub_from(h_t, normal, q1, q2, rest_n, g_.v_previous, bond_.friction * g_.damage);
     const Mask rubs = m.closed & (g_.damage > 0.0);
     const V q[] = {q1, q2}, way = 0.5 * g_.position_step * h_t;
     for (int k = 0; k < 2; ++k) {

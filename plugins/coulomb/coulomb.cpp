@@ -101,7 +101,7 @@ struct coulomb : friction_in_packs {
   template <class Node>
   double left(const Node& node) const {
     const double speed = node.v_previous.tangential_length();
-    const scaled_length free = node.v_free.scaled_tangential_length();
+    const auto free = node.v_free.scaled_tangential_length();
     const double scaled = free.down * speed;
     const bool slipped = scaled * scaled > at_rest * at_rest * free.square;
     const double way = slipped ? decay * speed : 0.0;

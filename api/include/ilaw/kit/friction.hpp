@@ -11,8 +11,9 @@
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // Largest tangential impulse that friction can give: mu r_N, zero without pressure also when mu is infinite.
-constexpr double friction_limit(double friction, double normal_impulse) {
-  return normal_impulse > 0.0 ? friction * normal_impulse : 0.0;
+template <class V>
+V friction_limit(V friction, V normal_impulse) {
+  return select(normal_impulse > 0.0, friction * normal_impulse, V(0.0));
 }
 
 // What a contact with friction is asked: 0 <= q_N + (H r)_N _|_ r_N >= 0 and Coulomb's law for q + H r, where
@@ -56,17 +57,33 @@ inline constexpr double sticking_part = 1.0 - 0x1p-46;
 // What of the impulse -q_T/h_T, which stops the slip, may act: with the part s the work of the whole impulse,
 // times 2 h_T, is s^2 q_T^2 - s q_T.(q_T + rest_T) + h_T r_N rest_N, and must not be positive. Less than 1
 // only where the motion turned round within the step, as it does on a stiff spring, and the impact takes less
-// than it costs to stop that from behind.
-template <class Delassus, class Vector>
-fraction<double> stopping_part(const Delassus& delassus, double normal, Vector q, scaled_length speed,
-                               Vector rest) {
-  const double down = speed.down;  // without overflow or underflow on the way
-  const double along = tangential_product(down * q, down * rest), square = speed.root() * speed.root();
-  const double impact = delassus.tangential() * (down * normal) * (down * rest.n);
-  const fraction<double> part = root_of_work(square, -(square + along), impact);
-  const bool gains = along < impact;
-  const bool far = part.under == infinity;  // v^- is so much larger than q that nothing is left
-  return {gains ? (far ? 0.0 : part.over) : 1.0, (gains & !far) ? part.under : 1.0};
+// than it costs to stop that from behind. along: q_T.rest_T, both times speed.down, against overflow.
+template <class V>
+fraction<V> stopping_part(V h_t, V normal, scaled_length<V> speed, V along, V rest_n) {
+  const V square = speed.root() * speed.root(), impact = h_t * (speed.down * normal) * (speed.down * rest_n);
+  const fraction<V> part = root_of_work(square, -(square + along), impact);
+  const auto gains = along < impact;
+  const auto far = part.under == infinity;  // v^- is so much larger than q that nothing is left
+  return {select(gains, select(far, V(0.0), part.over), V(1.0)), select(gains & !far, part.under, V(1.0))};
+}
+
+// The tangential impulse -factor q_T: the part of -q_T/h_T that may act, scaled back to the cone.
+template <class V>
+struct rubbing_factor {
+  V factor;
+  mask_of<V> moves;
+  V status;  // where the contact is pressed
+};
+template <class V>
+rubbing_factor<V> rub(V h_t, V normal, V speed, fraction<V> part, V friction) {
+  const V limit = friction_limit(friction, normal), under = h_t * part.under;
+  const auto slips = speed * part.over > limit * under;
+  // Before the division, of which GCC would else make two; a choice between numbers, not between truths.
+  const auto turns = part.over < sticking_part * part.under;
+  const mask_of<V> moves = slips | turns;
+  const V held = select(turns, V(status::slip), V(status::stick));
+  const V closed = select(slips, V(status::slip), held);
+  return {select(slips, limit, part.over) / select(slips, speed, under), moves, closed};
 }
 
 template <class Vector>
@@ -75,19 +92,11 @@ struct friction_result {
   bool slips;
   double status;  // where the contact is pressed
 };
-
-// The tangential impulse along q_T: the part of -q_T/h_T that may act, scaled back to the cone.
 template <class Delassus, class Vector>
-friction_result<Vector> rub(const Delassus& delassus, double normal, Vector q, double speed,
-                            fraction<double> part, double friction) {
-  const double limit = friction_limit(friction, normal), under = delassus.tangential() * part.under;
-  const bool slips = speed * part.over > limit * under;
-  // Before the division, of which GCC would else make two; a choice between numbers, not between truths.
-  const bool turns = part.over < sticking_part * part.under, moves = slips | turns;
-  const double held = turns ? status::slip : status::stick;
-  const double closed = slips ? status::slip : held;
-  const double factor = (slips ? limit : part.over) / (slips ? speed : under);
-  friction_result<Vector> result{-factor * q, moves, closed};
+friction_result<Vector> rub_along(const Delassus& delassus, double normal, Vector q, double speed,
+                                  fraction<double> part, double friction) {
+  const auto found = rub(delassus.tangential(), normal, speed, part, friction);
+  friction_result<Vector> result{-found.factor * q, found.moves, found.status};
   result.impulse.n = normal;
   return result;
 }
@@ -100,7 +109,7 @@ template <class Delassus, class Vector>
 friction_result<Vector> solve_contact_friction(const Delassus& delassus, double slack, Vector q,
                                                double friction) {
   const double normal = slack <= 0.0 ? positive_part(-q.n / delassus.normal()) : 0.0;
-  return rub(delassus, normal, q, q.tangential_length(), {}, friction);
+  return rub_along(delassus, normal, q, q.tangential_length(), {}, friction);
 }
 
 // The same, without positive work.
@@ -109,8 +118,10 @@ friction_result<Vector> solve_contact_friction(const Delassus& delassus,
                                                const contact_problem<Vector>& contact, double friction) {
   const auto& [slack, q, rest] = contact;
   const double normal = slack <= 0.0 ? positive_part(-q.n / delassus.normal()) : 0.0;
-  const scaled_length speed = q.scaled_tangential_length();
-  return rub(delassus, normal, q, speed.length(), stopping_part(delassus, normal, q, speed, rest), friction);
+  const auto speed = q.scaled_tangential_length();
+  const double along = tangential_product(speed.down * q, speed.down * rest);
+  const auto part = stopping_part(delassus.tangential(), normal, speed, along, rest.n);
+  return rub_along(delassus, normal, q, speed.length(), part, friction);
 }
 
 // Gives the node its impulse and status, by the closed form.
