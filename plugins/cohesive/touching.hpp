@@ -1,5 +1,5 @@
-// touching.hpp - what is left of a bond at a node whose H is diag(h_N, h_T, h_T), or at a pack of them:
-// contact and friction, with the bits of coulomb.
+// touching.hpp - nodes without an equation of a bond: what stops them, and, at a node whose H is diag(h_N,
+// h_T, h_T), or a pack of them, what is left of a bond: contact and friction, with the bits of coulomb.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,14 +8,25 @@
 namespace cohesive_law {
 inline namespace ILAW_KIT_LEVEL {
 
-// Friction of a node without bond whose slip is q and whose contact takes the normal velocity rest_n.
-template <class V>
-rubbing_factor<V> rub_from(V h_t, V normal, V q1, V q2, V rest_n, const V* v_previous, V friction) {
-  const scaled_length<V> speed = scaled_length_of(q1, q2);
-  const V down = speed.down;
-  const V along = (down * q1) * (down * v_previous[1]) + (down * q2) * (down * v_previous[2]);
-  return rub(h_t, normal, speed.length(), stopping_part(h_t, normal, speed, along, rest_n), friction);
-}
+// H^-1 v_free, and what it takes off v^-, times a scale: with a transverse H without a division, which who
+// only asks can do without.
+struct stopped_bond {
+  double scale = 1.0;
+  vector pull;
+  double work;
+
+  template <class Node>
+  explicit stopped_bond(const Node& node) {
+    if constexpr (has_transverse_delassus<Node>) {
+      const double n = node.delassus.normal(), t = node.delassus.tangential();
+      scale = n * t;
+      pull = {t * node.v_free.n, n * node.v_free.t1, n * node.v_free.t2};
+    } else {
+      pull = node.delassus.solve(node.v_free);
+    }
+    work = normal_product(pull, node.v_previous) + tangential_product(pull, node.v_previous);
+  }
+};
 
 template <class V>
 void touch_in_packs(const gathered<V>& g, double friction, mask_of<V> where, solved<V>& a) {
@@ -23,7 +34,8 @@ void touch_in_packs(const gathered<V>& g, double friction, mask_of<V> where, sol
   const V target = -positive_part(g.gap) * (1.0 / g.position_step);
   const V excess = larger(v[0] - target, v[0] + u[0]), rest_n = smaller(u[0] + target, 0.0);
   const V normal = positive_part(-excess / g.h[0]);
-  const rubbing_factor<V> found = rub_from(g.h[1], normal, v[1], v[2], rest_n, u, V(friction));
+  const V rest[] = {rest_n, u[1], u[2]};
+  const rubbing_factor<V> found = rub_from(g.h[1], normal, v, rest, V(friction));
   const V impulse[] = {normal, -found.factor * v[1], -found.factor * v[2]};
   leave_bond(g, impulse, select(normal > 0.0, found.status, V(status::free)), where, a);
 }

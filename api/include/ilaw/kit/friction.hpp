@@ -86,6 +86,15 @@ rubbing_factor<V> rub(V h_t, V normal, V speed, fraction<V> part, V friction) {
   return {select(slips, limit, part.over) / select(slips, speed, under), moves, closed};
 }
 
+// The same without positive work; entry 0 of the vectors is the normal one.
+template <class V>
+rubbing_factor<V> rub_from(V h_t, V normal, const V* q, const V* rest, V friction) {
+  const scaled_length<V> speed = scaled_length_of(q[1], q[2]);
+  const V down = speed.down;
+  const V along = (down * q[1]) * (down * rest[1]) + (down * q[2]) * (down * rest[2]);
+  return rub(h_t, normal, speed.length(), stopping_part(h_t, normal, speed, along, rest[0]), friction);
+}
+
 template <class Vector>
 struct friction_result {
   Vector impulse;
@@ -223,7 +232,18 @@ mask_of<V> has_closed_form(const local_problem<V>& p) {
          (p.mu[0] == p.mu[1]);
 }
 
-// Solves what is regular; says which are left to solve_friction_alone.
+// The closed form at a pressed contact.
+template <class V>
+void solve_isotropic(const friction_problem<V>& p, mask_of<V> where, friction_answer<V>& a) {
+  const V *h = p.contact.h, *q = p.contact.q;
+  const V normal = positive_part(-q[0] / h[0]);
+  const rubbing_factor<V> found = rub_from(h[1], normal, q, p.rest, p.contact.mu[0]);
+  a.r[0] = select(where, normal, a.r[0]);
+  for (int k = 1; k < 3; ++k) a.r[k] = select(where, -found.factor * q[k], a.r[k]);
+  a.status = select(where, select(normal > 0.0, found.status, V(status::free)), a.status);
+}
+
+// Solves what is regular or has a closed form; says which are left to solve_friction_alone.
 template <class V>
 mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
   const local::regular_answer<V> found = solve_regular(p.contact);
@@ -231,20 +251,13 @@ mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
   a.status = select(found.sticks, V(status::stick), V(status::slip));
   a.refused = not_refused;
   take_off_positive_work(p, a);
-  return (!found.found) | has_closed_form(p.contact);
+  const mask_of<V> closed = has_closed_form(p.contact);
+  if (any(closed)) solve_isotropic(p, closed, a);
+  return !(found.found | closed);
 }
 
 [[gnu::noinline]] inline void solve_friction_alone(const friction_problem<double>& p,
                                                    friction_answer<double>& a) {
-  const double *h = p.contact.h, *q = p.contact.q;
-  if (has_closed_form(p.contact)) {
-    const contact_problem<vector> contact{0.0, {q[0], q[1], q[2]}, {p.rest[0], p.rest[1], p.rest[2]}};
-    const auto result = solve_contact_friction(diagonal_delassus{h[0], h[1], h[1]}, contact, p.contact.mu[0]);
-    a = {{result.impulse.n, result.impulse.t1, result.impulse.t2},
-         result.impulse.n > 0.0 ? result.status : status::free,
-         not_refused};
-    return;
-  }
   a = {};
   const contact_mode mode = solve_pressed(p.contact, a.r);
   a.status = mode == contact_mode::slip ? status::slip : status::stick;
@@ -253,20 +266,24 @@ mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
   take_off_positive_work(p, a);
 }
 
-// What of it is asked at a node: nothing where the contact is open, or, with a transverse H, where the cone
-// is circular. Whether it is follows from the parameters, which loops know before they know the coefficients.
+// What of it is asked at a node: nothing where the contact is open, or, with one coefficient, where H is
+// transverse.
 template <class Node, class Vector>
 bool ask_friction(Node& node, const contact_problem<Vector>& contact, double friction_1, double friction_2,
-                  bool is_circular, friction_problem<double>& problem) {
+                  friction_problem<double>& problem) {
   fill(problem, node.delassus, contact, friction_1, friction_2);
-  const bool is_pressed = (contact.slack <= 0.0) & (contact.q.n < 0.0);
-  if constexpr (has_transverse_delassus<Node>) {
-    apply_isotropic_friction(node, contact, friction_1);
-    return is_pressed & !is_circular;
-  }
   node.impulse = {};
   node.status = status::free;
-  return is_pressed;
+  return (contact.slack <= 0.0) & (contact.q.n < 0.0);
+}
+template <class Node, class Vector>
+bool ask_friction(Node& node, const contact_problem<Vector>& contact, double friction,
+                  friction_problem<double>& problem) {
+  if constexpr (!has_transverse_delassus<Node>)
+    return ask_friction(node, contact, friction, friction, problem);
+  fill(problem, node.delassus, contact, friction, friction);
+  apply_isotropic_friction(node, contact, friction);
+  return false;
 }
 
 template <class Node>
@@ -301,7 +318,7 @@ template <class Node>
 void apply_any_friction(Node& node, const contact_problem<vector>& contact, double friction_1,
                         double friction_2) {
   friction_problem<double> problem;
-  if (!ask_friction(node, contact, friction_1, friction_2, friction_1 == friction_2, problem)) return;
+  if (!ask_friction(node, contact, friction_1, friction_2, problem)) return;
   friction_answer<double> answer;
   if (solve_friction(problem, answer)) solve_friction_alone(problem, answer);
   give_friction(node, answer);
