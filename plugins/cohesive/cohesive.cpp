@@ -300,13 +300,14 @@ struct cohesive::in_phases : cohesive {
     gather(node, open);
     const state& s = node.state;
     const bool bonded = (s.damage < 1.0) & (node.area > 0.0);
-    const vector r = -node.delassus.solve(node.v_free);
-    const bool gains = normal_product(r, node.v_previous) + tangential_product(r, node.v_previous) > 0.0;
-    const double pull = positive_part(-r.n), capacity = node.velocity_step * node.area;
-    const double square = pull * pull + per_weight * (r.t1 * r.t1 + r.t2 * r.t2);
+    const stopped_bond stop(node);
+    const double pull = positive_part(stop.pull.n), capacity = stop.scale * (node.velocity_step * node.area);
+    const double square =
+        pull * pull + per_weight * (stop.pull.t1 * stop.pull.t1 + stop.pull.t2 * stop.pull.t2);
     const double most = capacity * capacity * surely_held;
     const bool surely = (square <= most) & (square < 0x1p900) & (most > 0x1p-900);
-    const bool holds = bonded & (s.damage == 0.0) & surely & !gains;
+    const bool holds = bonded & (s.damage == 0.0) & surely & (stop.work >= 0.0);
+    const vector r = -node.delassus.solve(node.v_free);
     const auto touching = contact(node);
     const bool rubs = (touching.slack <= 0.0) & (touching.q.n < 0.0);
     node.impulse = {holds ? r.n : 0.0, holds ? r.t1 : 0.0, holds ? r.t2 : 0.0};

@@ -92,15 +92,15 @@ class isotropic_step {
   [[gnu::noinline]] void rub_closed(trial& m, V free) const {
     const V rate = 1.0 / g_.position_step, target = (ground_ - x_[0]) * rate;
     const V h_t = m.left_t * g_.h[1], normal = (ground_ + x_[0] - 2.0 * free) * rate / (m.left_n * g_.h[0]);
-    const V q1 = 2.0 * rate * (m.opening[1] - x_[1]), q2 = 2.0 * rate * (m.opening[2] - x_[2]);
-    const V rest_n = smaller(g_.v_previous[0] + target, 0.0);
-    const rubbing<V> found = rub(h_t, normal, q1, q2, rest_n, g_.v_previous, bond_.friction * g_.damage);
+    const V *y = m.opening, *u = g_.v_previous, rest[] = {smaller(u[0] + target, 0.0), u[1], u[2]};
+    const V q[] = {0.0, 2.0 * rate * (y[1] - x_[1]), 2.0 * rate * (y[2] - x_[2])};
+    const rubbing_factor<V> found = rub_from(h_t, normal, q, rest, bond_.friction * g_.damage);
     const Mask rubs = m.closed & (g_.damage > 0.0);
-    const V q[] = {q1, q2}, way = 0.5 * g_.position_step * h_t;
-    for (int k = 0; k < 2; ++k) {
-      m.rub[k] = select(rubs, -found.factor * q[k], 0.0);
-      const V rubbed = select(found.moves, m.opening[k + 1] + way * m.rub[k], x_[k + 1]);
-      m.opening[k + 1] = select(rubs, rubbed, m.opening[k + 1]);
+    const V way = 0.5 * g_.position_step * h_t;
+    for (int k = 1; k < 3; ++k) {
+      m.rub[k - 1] = select(rubs, -found.factor * q[k], 0.0);
+      const V rubbed = select(found.moves, m.opening[k] + way * m.rub[k - 1], x_[k]);
+      m.opening[k] = select(rubs, rubbed, m.opening[k]);
     }
   }
   double square_of_weight() const { return all_.weight * all_.weight; }

@@ -100,6 +100,10 @@ struct softening {
   // Over onset <= from <= to <= onset + width.
   V mean_traction(V from, V to) const {
     if (!exponential) return strength / width * ((onset + width) - 0.5 * (from + to));
+    return exponential_mean_traction(from, to);
+  }
+  // On its own, so that the bilinear form stays short enough for its loops to take it in.
+  [[gnu::noinline]] V exponential_mean_traction(V from, V to) const {
     const V a = smaller(progress(from), 1.0), b = smaller(progress(to), 1.0);
     const V unit = exp(-0.5 * decay * (a + b)) * sinh_ratio(0.5 * decay * (b - a));
     return strength * ((unit - decay_end) / (1.0 - decay_end));

@@ -1,5 +1,5 @@
-// touching.hpp - what is left of a bond at a node whose H is diag(h_N, h_T, h_T), or at a pack of them:
-// contact and friction, with the bits of coulomb. The equations are those of ilaw/kit/friction.hpp.
+// touching.hpp - nodes without an equation of a bond: what stops them, and, at a node whose H is diag(h_N,
+// h_T, h_T), or a pack of them, what is left of a bond: contact and friction, with the bits of coulomb.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,50 +8,25 @@
 namespace cohesive_law {
 inline namespace ILAW_KIT_LEVEL {
 
-// Of power_scale_of in ilaw/kit/math.hpp.
-template <class V>
-struct scale_of {
-  V down, up;
+// H^-1 v_free, and what it takes off v^-, times a scale: with a transverse H without a division, which who
+// only asks can do without.
+struct stopped_bond {
+  double scale = 1.0;
+  vector pull;
+  double work;
 
-  explicit scale_of(V largest) {
-    using bits = detail::bits_of<V>;
-    constexpr std::uint64_t exponent_bits = 0x7FF0000000000000;
-    const auto exponent =
-        bits::in(larger(largest, V(std::numeric_limits<double>::min()))) & bits::of(exponent_bits);
-    down = bits::number(bits::of(exponent_bits) - exponent);
-    up = bits::number(exponent);
+  template <class Node>
+  explicit stopped_bond(const Node& node) {
+    if constexpr (has_transverse_delassus<Node>) {
+      const double n = node.delassus.normal(), t = node.delassus.tangential();
+      scale = n * t;
+      pull = {t * node.v_free.n, n * node.v_free.t1, n * node.v_free.t2};
+    } else {
+      pull = node.delassus.solve(node.v_free);
+    }
+    work = normal_product(pull, node.v_previous) + tangential_product(pull, node.v_previous);
   }
 };
-template <class V>
-V length_of(V a, V b) {
-  const scale_of<V> scale(larger(absolute(a), absolute(b)));
-  a = a * scale.down;
-  b = b * scale.down;
-  return 0.5 * square_root(a * a + b * b) * scale.up;
-}
-
-// A pressed node with tangential velocity q without friction, and v_previous, whose contact takes the normal
-// velocity rest_n: friction gives it -factor q. See rub and stopping_part.
-template <class V>
-struct rubbing {
-  V factor;
-  mask_of<V> moves;
-};
-template <class V>
-rubbing<V> rub(V h_t, V normal, V q1, V q2, V rest_n, const V* v_previous, V friction) {
-  const V speed = length_of(q1, q2), down = scale_of<V>(speed).down;
-  const V along = (down * q1) * (down * v_previous[1]) + (down * q2) * (down * v_previous[2]);
-  const V square = (down * speed) * (down * speed), impact = h_t * (down * normal) * (down * rest_n);
-  const fraction<V> root = root_of_work(square, -(square + along), impact);
-  const auto gains = along < impact, far = root.under == infinity;
-  const V over = select(gains, select(far, 0.0, root.over), 1.0),
-          under = select(gains & !far, root.under, 1.0);
-  const V limit = select(normal > 0.0, friction * normal, 0.0), stop = h_t * under;
-  const auto slips = speed * over > limit * stop;
-  const V factor = select(slips, limit, over) / select(slips, speed, stop);
-  const mask_of<V> moves = slips | (over < sticking_part * under);
-  return {factor, moves};
-}
 
 template <class V>
 void touch_in_packs(const gathered<V>& g, double friction, mask_of<V> where, solved<V>& a) {
@@ -59,10 +34,10 @@ void touch_in_packs(const gathered<V>& g, double friction, mask_of<V> where, sol
   const V target = -positive_part(g.gap) * (1.0 / g.position_step);
   const V excess = larger(v[0] - target, v[0] + u[0]), rest_n = smaller(u[0] + target, 0.0);
   const V normal = positive_part(-excess / g.h[0]);
-  const rubbing<V> found = rub(g.h[1], normal, v[1], v[2], rest_n, u, V(friction));
-  const V closed = select(found.moves, V(status::slip), V(status::stick));
+  const V rest[] = {rest_n, u[1], u[2]};
+  const rubbing_factor<V> found = rub_from(g.h[1], normal, v, rest, V(friction));
   const V impulse[] = {normal, -found.factor * v[1], -found.factor * v[2]};
-  leave_bond(g, impulse, select(normal > 0.0, closed, V(status::free)), where, a);
+  leave_bond(g, impulse, select(normal > 0.0, found.status, V(status::free)), where, a);
 }
 
 }  // namespace ILAW_KIT_LEVEL

@@ -71,8 +71,13 @@ struct coulomb : friction_in_packs {
   bool falls() const { return (kinetic_friction < friction) | (kinetic_friction < second()); }
   bool tells_tangents_apart() const { return (friction_2 != infinity) & (friction_2 != friction); }
 
-  // One coefficient at all speeds, or one that falls, which keeps their loops free of all that follows.
+  // What is not asked is free.
+  static constexpr bool answers_every_node = true;
+
+  // One coefficient at all speeds, or one of each tangent, or one that falls: what keeps their loops free of
+  // all that follows.
   struct plain;
+  struct elliptical;
   struct falling;
   template <class Run>
   void in_form(Run run) const;
@@ -90,8 +95,7 @@ struct coulomb : friction_in_packs {
   template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const requires has_tangents<Node> {
     const double part = left(node);
-    return ask_friction(node, contact(node), fallen(friction, part), fallen(second(), part),
-                        !tells_tangents_apart(), open);
+    return ask_friction(node, contact(node), fallen(friction, part), fallen(second(), part), open);
   }
 
  private:
@@ -101,7 +105,7 @@ struct coulomb : friction_in_packs {
   template <class Node>
   double left(const Node& node) const {
     const double speed = node.v_previous.tangential_length();
-    const scaled_length free = node.v_free.scaled_tangential_length();
+    const auto free = node.v_free.scaled_tangential_length();
     const double scaled = free.down * speed;
     const bool slipped = scaled * scaled > at_rest * at_rest * free.square;
     const double way = slipped ? decay * speed : 0.0;
@@ -134,7 +138,18 @@ struct coulomb::plain : coulomb {
   }
   template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const requires(!has_transverse_delassus<Node>) {
-    return ask_friction(node, contact(node), friction, friction, true, open);
+    return ask_friction(node, contact(node), friction, open);
+  }
+};
+
+struct coulomb::elliptical : coulomb {
+  template <class Node>
+  void step(Node& node) const requires(!has_tangents<Node>) {
+    apply_isotropic_friction(node, contact(node), friction);
+  }
+  template <class Node>
+  bool asks(Node& node, friction_problem<double>& open) const requires has_tangents<Node> {
+    return ask_friction(node, contact(node), friction, second(), open);
   }
 };
 
@@ -150,14 +165,16 @@ struct coulomb::falling : coulomb {
   template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const requires(!has_transverse_delassus<Node>) {
     const double fallen_to = fallen(friction, left(node));
-    return ask_friction(node, contact(node), fallen_to, fallen_to, true, open);
+    return ask_friction(node, contact(node), fallen_to, open);
   }
 };
 
 template <class Run>
 void coulomb::in_form(Run run) const {
-  if (tells_tangents_apart())
+  if (tells_tangents_apart() && falls())
     run(*this);
+  else if (tells_tangents_apart())
+    run(elliptical{*this});
   else if (falls())
     run(falling{*this});
   else

@@ -186,4 +186,14 @@ class node_alone {
   any_compression normal_;
 };
 
+inline void solve_alone(const normal_spring& spring, double friction, double restitution,
+                        const rubbing<double>& p, rubbed<double>& a) {
+  a = node_alone(spring, friction, restitution, p).solve();
+}
+inline void solve_alone(const normal_spring& spring, double friction, double restitution,
+                        const pressing<double>& p, pressed<double>& a) {
+  const rubbed<double> found = node_alone(spring, friction, restitution, p).solve();
+  a = {found.impulse, found.indentation};
+}
+
 }  // namespace penalty_law

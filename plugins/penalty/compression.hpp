@@ -36,24 +36,31 @@ inline double damping_ratio(double restitution) {
   return lost / pi * (((0.0081 * lost + 0.022) * lost + 0.2088) * lost + 1.0);
 }
 
-// plain: linear, neither rigid nor with damper or restitution. smooth: the same without friction.
-enum class spring_kind { smooth, plain, linear, hertz, any };
+// plain: linear, neither rigid nor, where it is implicit, with damper or restitution. smooth: the same
+// without friction.
+enum class spring_kind { smooth, plain, linear, smooth_hertz, hertz, any };
+constexpr bool is_smooth(spring_kind kind) {
+  return kind == spring_kind::smooth || kind == spring_kind::smooth_hertz;
+}
 constexpr bool is_plain(spring_kind kind) {
   return kind == spring_kind::smooth || kind == spring_kind::plain;
+}
+constexpr bool is_hertz(spring_kind kind) {
+  return kind == spring_kind::smooth_hertz || kind == spring_kind::hertz;
 }
 constexpr bool is_linear(spring_kind kind) { return is_plain(kind) || kind == spring_kind::linear; }
 
 template <spring_kind Kind>
 double spring_force(double stiffness, double exponent, double penetration) {
   if constexpr (is_linear(Kind)) return stiffness * penetration;
-  if constexpr (Kind == spring_kind::hertz) return stiffness * (penetration * kit::square_root(penetration));
+  if constexpr (is_hertz(Kind)) return stiffness * (penetration * kit::square_root(penetration));
   return stiffness * kit::power(penetration, exponent);
 }
 template <spring_kind Kind>
 double potential(double stiffness, double exponent, double penetration) {
   const double work = spring_force<Kind>(stiffness, exponent, penetration) * penetration;
   if constexpr (is_linear(Kind)) return 0.5 * work;
-  if constexpr (Kind == spring_kind::hertz) return 0.4 * work;
+  if constexpr (is_hertz(Kind)) return 0.4 * work;
   return work / (exponent + 1.0);
 }
 
@@ -63,6 +70,15 @@ double potential(double stiffness, double exponent, double penetration) {
 inline double stable_step(double delassus, double tangent, double damping) {
   const double half_damper = 0.5 * damping * delassus;
   return 2.0 / (kit::length(kit::square_root(tangent * delassus), half_damper) + half_damper);
+}
+
+// How much of the velocity before a step counts for the mean of a rigid tangential spring: what of it the
+// free velocity has turned round, so that stopping it does no work.
+template <class Vector>
+double turned_part(Vector v_free, Vector v_previous) {
+  const double speed = tangential_product(v_previous, v_previous);
+  const double turned = 0.0 - tangential_product(v_free, v_previous);
+  return turned > 0.0 ? turned / kit::larger(turned, speed) : 0.0;
 }
 
 // What is the same at all nodes of a loop.

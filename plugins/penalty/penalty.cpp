@@ -9,7 +9,7 @@ using namespace ilaw::kit;
 
 constexpr const char* integration_choices[] = {"explicit", "implicit"};
 constexpr double implicitly = 1.0;
-using penalty_law::spring_kind, penalty_law::is_linear, penalty_law::is_plain;
+using penalty_law::spring_kind, penalty_law::is_linear, penalty_law::is_plain, penalty_law::is_smooth;
 
 struct penalty {
   double stiffness;
@@ -181,7 +181,9 @@ struct penalty {
   template <class Node>
   vector sliding_velocity(const Node& node) const {
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2};
-    return 0.5 * (node.v_free + held(node) * node.v_previous) + (2.0 / node.velocity_step) * spring;
+    const double turned = penalty_law::turned_part(node.v_free, node.v_previous),
+                 held = tangential_stiffness < infinity ? 1.0 : turned;
+    return 0.5 * (node.v_free + held * node.v_previous) + (2.0 / node.velocity_step) * spring;
   }
   template <class Node>
   double softness_of(const Node& node) const {
@@ -210,7 +212,7 @@ struct penalty {
   // Gives the node what its normal spring gives, and what friction makes of it.
   template <spring_kind Kind, class Node>
   void give(Node& node, double impulse, double indentation) const {
-    if constexpr (Kind == spring_kind::smooth) {
+    if constexpr (is_smooth(Kind)) {
       node.impulse = {impulse, 0.0, 0.0};
       tell(node, false);
       store<Kind>(node, indentation, {});
@@ -259,16 +261,6 @@ struct penalty {
             .ratio = damping_ratio};
   }
 
-  // How much of the velocity before a step counts for a spring's mean: all; where it is rigid what of it the
-  // free velocity has turned round, so that stopping it does no work.
-  template <class Node>
-  double held(const Node& node) const {
-    const double speed = tangential_product(node.v_previous, node.v_previous);
-    const double turned = 0.0 - tangential_product(node.v_free, node.v_previous);
-    const double part = turned > 0.0 ? turned / larger(turned, speed) : 0.0;
-    return tangential_stiffness < infinity ? 1.0 : part;
-  }
-
   // Forces of the configuration and the half step before: the stiffness eats the critical time step. The
   // spring is kept as the motion of this step will strain it, so that the next step finds it ready.
   template <spring_kind Kind, class Node>
@@ -276,21 +268,25 @@ struct penalty {
     const double penetration = positive_part(-node.gap), h = node.velocity_step;
     const double elastic = h * penalty_law::spring_force<Kind>(stiffness, exponent, penetration);
     const double viscous = penetration > 0.0 ? h * damping * node.v_previous.n : 0.0;
-    const double shear = friction > 0.0 ? h * tangential_stiffness : 0.0;
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2};
-    rub(node, positive_part(elastic - viscous), shear * spring, 1.0);
-
-    const double per_impulse = shear > 0.0 ? 1.0 / shear : 0.0;
-    const double moves = shear > 0.0 ? node.position_step : 0.0;
-    const double strains = node.impulse.n > 0.0 ? moves : 0.0;
-    const vector v = node.v_free + node.delassus.times(node.impulse);
-    const vector kept{0.0, 0.0 - per_impulse * node.impulse.t1, 0.0 - per_impulse * node.impulse.t2};
-    const vector next{0.0, kept.t1 + strains * v.t1, kept.t2 + strains * v.t2};
+    vector kept{}, next{};
+    node.impulse = {positive_part(elastic - viscous), 0.0, 0.0};
+    if constexpr (is_smooth(Kind)) {
+      tell(node, false);
+    } else {
+      const double shear = friction > 0.0 ? h * tangential_stiffness : 0.0;
+      rub(node, node.impulse.n, shear * spring, 1.0);
+      const double per_impulse = shear > 0.0 ? 1.0 / shear : 0.0;
+      const double moves = shear > 0.0 ? node.position_step : 0.0;
+      const double strains = node.impulse.n > 0.0 ? moves : 0.0;
+      const vector v = node.v_free + node.delassus.times(node.impulse);
+      kept = {0.0, 0.0 - per_impulse * node.impulse.t1, 0.0 - per_impulse * node.impulse.t2};
+      next = {0.0, kept.t1 + strains * v.t1, kept.t2 + strains * v.t2};
+    }
     if (node.state.indentation != 0.0) node.refused = impossible_state;
     node.state = {0.0, next};
-
     // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
-    const vector mean = node.v_previous + v;
+    const vector v = node.v_free + node.delassus.times(node.impulse), mean = node.v_previous + v;
     const double normal = potential<Kind>(penetration) - 0.5 * elastic / h * node.position_step * v.n;
     node.stored = positive_part(normal + tangential_potential(kept, next));
     node.normal_gain = -0.5 * elastic * mean.n;
@@ -306,6 +302,8 @@ struct penalty::form : penalty {
   template <class Node>
   double stable_velocity_step(const Node& node) const {
     if constexpr (Kind == spring_kind::any) return penalty::stable_velocity_step(node);
+    if constexpr (Kind == spring_kind::smooth)
+      return penalty_law::stable_step(node.delassus.normal(), stiffness, damping);
     if constexpr (is_linear(Kind)) return stable_with(node, stiffness);
     return stable_with(node, 1.5 * stiffness * square_root(positive_part(-node.gap)));
   }
@@ -313,9 +311,9 @@ struct penalty::form : penalty {
   // What has a root to find is solved in packs: springs that are not linear, and friction where H has more
   // than one tangential entry.
   template <class V>
-  using problem = penalty_law::rubbing<V>;
+  using problem = std::conditional_t<is_smooth(Kind), penalty_law::pressing<V>, penalty_law::rubbing<V>>;
   template <class V>
-  using answer = penalty_law::rubbed<V>;
+  using answer = std::conditional_t<is_smooth(Kind), penalty_law::pressed<V>, penalty_law::rubbed<V>>;
   static constexpr bool answers_every_node = true;
   template <class Node>
   static constexpr bool finds_roots =
@@ -336,7 +334,7 @@ struct penalty::form : penalty {
     open.previous = node.v_previous.n;
     open.delassus = node.delassus.normal();
     open.indentation = indentation_of(node);
-    if constexpr (!has_transverse_delassus<Node>) {
+    if constexpr (!is_smooth(Kind) && !has_transverse_delassus<Node>) {
       const vector q = sliding_velocity(node);
       const double softness = softness_of(node);
       local_coulomb entries{};
@@ -353,23 +351,24 @@ struct penalty::form : penalty {
     answered(node, {});
     return acts;
   }
-  template <class V>
-  mask_of<V> solve(const problem<V>& p, answer<V>& a) const {
-    const mask_of<V> all(true);
+  template <class Problem, class Answer>
+  auto solve(const Problem& p, Answer& a) const {
+    const mask_of<decltype(p.step)> all(true);
     if constexpr (Kind == spring_kind::any) return all;
     if (stiffness == infinity) return all;
     const auto spring = spring_of(penalty_law::first_of(p.step), damping_ratio);
-    const penalty_law::rubbing_node<V, is_linear(Kind), is_plain(Kind)> node(spring, friction, p);
-    return friction > 0.0 && any(p.a11 > 0.0) ? node.solve(a) : node.press(a);
+    return penalty_law::solve<is_linear(Kind), is_plain(Kind)>(spring, friction, p, a);
   }
   void solve_alone(const problem<double>& p, answer<double>& a) const {
-    a = penalty_law::node_alone(spring_of(p.step, damping_ratio), friction, restitution, p).solve();
+    penalty_law::solve_alone(spring_of(p.step, damping_ratio), friction, restitution, p, a);
   }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {
-    const bool fails = a.outcome == penalty_law::has_none;
-    node.refused = larger(node.refused, fails ? no_solution : not_refused);
-    if constexpr (has_transverse_delassus<Node>) {
+    if constexpr (!is_smooth(Kind)) {
+      const bool fails = a.outcome == penalty_law::has_none;
+      node.refused = larger(node.refused, fails ? no_solution : not_refused);
+    }
+    if constexpr (is_smooth(Kind) || has_transverse_delassus<Node>) {
       give<Kind>(node, a.impulse, a.indentation);
     } else {
       node.impulse = {a.impulse, a.t1, a.t2};
@@ -382,14 +381,15 @@ struct penalty::form : penalty {
 template <class Run>
 void penalty::in_form(Run run) const {
   const double ratio = restitution < 1.0 ? penalty_law::damping_ratio(restitution) : 0.0;
-  const auto run_kind = [&]<spring_kind Kind>() {
-    integration == implicitly ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
-  };
   const bool loses = restitution < 1.0 || damping > 0.0, is_soft = exponent == 1.0 && stiffness < infinity;
-  if (integration == implicitly && is_soft && !loses)
-    return friction > 0.0 ? run(form<true, spring_kind::plain>{*this, ratio})
-                          : run(form<true, spring_kind::smooth>{*this, ratio});
+  const bool implicit = integration == implicitly, rubs = friction > 0.0;
+  const auto run_kind = [&]<spring_kind Kind>() {
+    implicit ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
+  };
+  if (is_soft && !rubs && !(implicit && loses)) return run_kind.template operator()<spring_kind::smooth>();
+  if (is_soft && implicit && !loses) return run(form<true, spring_kind::plain>{*this, ratio});
   if (exponent == 1.0 || stiffness == infinity) return run_kind.template operator()<spring_kind::linear>();
+  if (exponent == 1.5 && implicit && !rubs) return run(form<true, spring_kind::smooth_hertz>{*this, ratio});
   if (exponent == 1.5) return run_kind.template operator()<spring_kind::hertz>();
   run_kind.template operator()<spring_kind::any>();
 }

@@ -23,11 +23,23 @@ template <class V>
 struct rubbed {
   V impulse, t1, t2, indentation, outcome;
 };
+// The normal spring alone.
+template <class V>
+struct pressing {
+  V step, free, previous, delassus, indentation;
+  operator rubbing<V>() const {
+    return {step, free, previous, delassus, indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  }
+};
+template <class V>
+struct pressed {
+  V impulse, indentation;
+};
 // Outcomes.
 inline constexpr double sticks = 0.0, slides = 1.0, has_none = 2.0;
 
 inline double first_of(double x) { return x; }
-inline double first_of(kit::pack x) { return x.values()[0]; }
+inline double first_of(kit::pack x) { return x[0]; }
 
 // IsLinear: p = 1, else 3/2. IsPlain: see compression.
 template <class V, bool IsLinear, bool IsPlain>
@@ -165,5 +177,19 @@ class rubbing_node {
   compression<V, IsPlain> normal_;
   V trace_;
 };
+
+// What is asked in pack form. Return the lanes that they did not solve.
+template <bool IsLinear, bool IsPlain, class V>
+kit::mask_of<V> solve(const normal_spring& spring, double friction, const rubbing<V>& p, rubbed<V>& a) {
+  const rubbing_node<V, IsLinear, IsPlain> node(spring, friction, p);
+  return friction > 0.0 && kit::any(p.a11 > 0.0) ? node.solve(a) : node.press(a);
+}
+template <bool IsLinear, bool IsPlain, class V>
+kit::mask_of<V> solve(const normal_spring& spring, double friction, const pressing<V>& p, pressed<V>& a) {
+  rubbed<V> found;
+  const auto left = rubbing_node<V, IsLinear, IsPlain>(spring, friction, p).press(found);
+  a = {found.impulse, found.indentation};
+  return left;
+}
 
 }  // namespace penalty_law

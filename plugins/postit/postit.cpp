@@ -233,8 +233,7 @@ struct postit::form : postit, friction_in_packs {
       requires(!Saturated && !has_transverse_delassus<Node>) {
     const vector trial = stopping_impulse(node);
     const bool holds = this->holds(node, trial);
-    const bool is_pressed =
-        ask_friction(node, plain_contact(node, node.v_free), friction, friction, true, open);
+    const bool is_pressed = ask_friction(node, plain_contact(node, node.v_free), friction, open);
     settle<Wears>(node, trial, holds);
     return is_pressed & !holds;
   }

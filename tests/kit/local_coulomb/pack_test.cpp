@@ -72,8 +72,8 @@ TEST(LocalCoulombPack, EveryLaneHasTheBitsOfADoubleWhateverStandsBesideIt) {
       if (!alone.found) continue;
       ASSERT_EQ(together.sticks[lane], alone.sticks) << "problem " << which;
       for (int c = 0; c < 3; ++c)
-        ASSERT_TRUE(same_bits(together.r[c].values()[lane], alone.r[c]))
-            << "problem " << which << ", component " << c << ": " << together.r[c].values()[lane] << ", "
+        ASSERT_TRUE(same_bits(together.r[c][lane], alone.r[c]))
+            << "problem " << which << ", component " << c << ": " << together.r[c][lane] << ", "
             << alone.r[c];
     }
   }
@@ -118,15 +118,15 @@ TEST(Pack, ComputesWhatDoublesDo) {
   for (const double a : values)
     for (const double b : values) {
       const pack x(a), y(b);
-      ASSERT_TRUE(same_bits(pack(a).values()[0], a));
-      ASSERT_TRUE(same_bits(kit::larger(x, y).values()[0], kit::larger(a, b))) << a << ' ' << b;
-      ASSERT_TRUE(same_bits(kit::smaller(x, y).values()[0], kit::smaller(a, b))) << a << ' ' << b;
-      ASSERT_TRUE(same_bits(kit::absolute(x).values()[0], kit::absolute(a)));
-      ASSERT_TRUE(same_bits(kit::positive_part(x).values()[0], kit::positive_part(a)));
+      ASSERT_TRUE(same_bits(pack(a)[0], a));
+      ASSERT_TRUE(same_bits(kit::larger(x, y)[0], kit::larger(a, b))) << a << ' ' << b;
+      ASSERT_TRUE(same_bits(kit::smaller(x, y)[0], kit::smaller(a, b))) << a << ' ' << b;
+      ASSERT_TRUE(same_bits(kit::absolute(x)[0], kit::absolute(a)));
+      ASSERT_TRUE(same_bits(kit::positive_part(x)[0], kit::positive_part(a)));
       ASSERT_EQ((x < y)[pack_size - 1], a < b);
       ASSERT_EQ((x != y)[pack_size - 1], a != b);
       ASSERT_EQ(kit::any((x <= y) & !(x == y)), (a <= b) && a != b);
-      const double root = kit::square_root(x).values()[pack_size - 1];
+      const double root = kit::square_root(x)[pack_size - 1];
       ASSERT_TRUE(!(a >= 0.0) || same_bits(root, std::sqrt(a))) << a;
     }
 }

@@ -108,7 +108,7 @@ struct Packs {
     const auto packs = std::bit_cast<std::array<kit::pack, answer_size>>(answer);
     for (std::size_t j = 0; j < lanes; ++j) {
       std::array<double, answer_size> own;
-      for (std::size_t c = 0; c < answer_size; ++c) own[c] = packs[c].values()[j];
+      for (std::size_t c = 0; c < answer_size; ++c) own[c] = packs[c][j];
       answers[j] = std::bit_cast<rubbed<double>>(own);
       left[j] = not_solved[static_cast<int>(j)];
     }

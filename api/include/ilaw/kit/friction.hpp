@@ -11,8 +11,9 @@
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 // Largest tangential impulse that friction can give: mu r_N, zero without pressure also when mu is infinite.
-constexpr double friction_limit(double friction, double normal_impulse) {
-  return normal_impulse > 0.0 ? friction * normal_impulse : 0.0;
+template <class V>
+V friction_limit(V friction, V normal_impulse) {
+  return select(normal_impulse > 0.0, friction * normal_impulse, V(0.0));
 }
 
 // What a contact with friction is asked: 0 <= q_N + (H r)_N _|_ r_N >= 0 and Coulomb's law for q + H r, where
@@ -57,22 +58,51 @@ inline constexpr double sticking_part = 1.0 - 0x1p-46;
 // times 2 h_T, is s^2 q_T^2 - s q_T.(q_T + rest_T) + h_T r_N rest_N, and must not be positive. Less than 1
 // only where the motion turned round within the step, as it does on a stiff spring, and the impact takes less
 // than it costs to stop that from behind.
+template <class V>
 struct turning {
-  double square, along, impact;  // q_T^2, q_T.rest_T, h_T r_N rest_N: times a power of two
+  V square, along, impact;  // q_T^2, q_T.rest_T, h_T r_N rest_N: times a power of two, against overflow
 
-  bool gains() const { return along < impact; }
+  auto gains() const { return along < impact; }
 };
-template <class Delassus, class Vector>
-turning turning_of(const Delassus& delassus, double normal, Vector q, scaled_length speed, Vector rest) {
-  const double down = speed.down;  // without overflow or underflow on the way
-  return {speed.square, tangential_product(down * q, down * rest),
-          delassus.tangential() * (down * normal) * (down * rest.n)};
+template <class V>
+turning<V> turning_of(V h_t, V normal, scaled_length<V> speed, V along, V rest_n) {
+  return {speed.square, along, h_t * (speed.down * normal) * (speed.down * rest_n)};
 }
-inline fraction<double> stopping_part(turning t) {
-  const fraction<double> part = root_of_work(t.square, -(t.square + t.along), t.impact);
-  const bool gains = t.gains();
-  const bool far = part.under == infinity;  // v^- is so much larger than q that nothing is left
-  return {gains ? (far ? 0.0 : part.over) : 1.0, (gains & !far) ? part.under : 1.0};
+template <class V>
+fraction<V> stopping_part(turning<V> t) {
+  const fraction<V> part = root_of_work(t.square, -(t.square + t.along), t.impact);
+  const auto gains = t.gains();
+  const auto far = part.under == infinity;  // v^- is so much larger than q that nothing is left
+  return {select(gains, select(far, V(0.0), part.over), V(1.0)), select(gains & !far, part.under, V(1.0))};
+}
+
+// The tangential impulse -factor q_T: the part of -q_T/h_T that may act, scaled back to the cone.
+template <class V>
+struct rubbing_factor {
+  V factor;
+  mask_of<V> moves;
+  V status;  // where the contact is pressed
+};
+template <class V>
+rubbing_factor<V> rub(V h_t, V normal, V speed, fraction<V> part, V friction) {
+  const V limit = friction_limit(friction, normal), under = h_t * part.under;
+  const auto slips = speed * part.over > limit * under;
+  // Before the division, of which GCC would else make two; a choice between numbers, not between truths.
+  const auto turns = part.over < sticking_part * part.under;
+  const mask_of<V> moves = slips | turns;
+  const V held = select(turns, V(status::slip), V(status::stick));
+  const V closed = select(slips, V(status::slip), held);
+  return {select(slips, limit, part.over) / select(slips, speed, under), moves, closed};
+}
+
+// The same without positive work; entry 0 of the vectors is the normal one.
+template <class V>
+rubbing_factor<V> rub_from(V h_t, V normal, const V* q, const V* rest, V friction) {
+  const scaled_length<V> speed = scaled_length_of(q[1], q[2]);
+  const V down = speed.down;
+  const V along = (down * q[1]) * (down * rest[1]) + (down * q[2]) * (down * rest[2]);
+  const turning<V> turns = turning_of(h_t, normal, speed, along, rest[0]);
+  return rub(h_t, normal, speed.length(), stopping_part(turns), friction);
 }
 
 template <class Vector>
@@ -81,19 +111,11 @@ struct friction_result {
   bool slips;
   double status;  // where the contact is pressed
 };
-
-// The tangential impulse along q_T: the part of -q_T/h_T that may act, scaled back to the cone.
 template <class Delassus, class Vector>
-friction_result<Vector> rub(const Delassus& delassus, double normal, Vector q, double speed,
-                            fraction<double> part, double friction) {
-  const double limit = friction_limit(friction, normal), under = delassus.tangential() * part.under;
-  const bool slips = speed * part.over > limit * under;
-  // Before the division, of which GCC would else make two; a choice between numbers, not between truths.
-  const bool turns = part.over < sticking_part * part.under, moves = slips | turns;
-  const double held = turns ? status::slip : status::stick;
-  const double closed = slips ? status::slip : held;
-  const double factor = (slips ? limit : part.over) / (slips ? speed : under);
-  friction_result<Vector> result{-factor * q, moves, closed};
+friction_result<Vector> rub_along(const Delassus& delassus, double normal, Vector q, double speed,
+                                  fraction<double> part, double friction) {
+  const auto found = rub(delassus.tangential(), normal, speed, part, friction);
+  friction_result<Vector> result{-found.factor * q, found.moves, found.status};
   result.impulse.n = normal;
   return result;
 }
@@ -106,23 +128,28 @@ template <class Delassus, class Vector>
 friction_result<Vector> solve_contact_friction(const Delassus& delassus, double slack, Vector q,
                                                double friction) {
   const double normal = slack <= 0.0 ? positive_part(-q.n / delassus.normal()) : 0.0;
-  return rub(delassus, normal, q, q.tangential_length(), {}, friction);
+  return rub_along(delassus, normal, q, q.tangential_length(), {}, friction);
 }
 
 template <class Delassus, class Vector>
 double pressing_impulse(const Delassus& delassus, const contact_problem<Vector>& contact) {
   return contact.slack <= 0.0 ? positive_part(-contact.q.n / delassus.normal()) : 0.0;
 }
+template <class Delassus, class Vector>
+turning<double> turning_at(const Delassus& delassus, double normal, const contact_problem<Vector>& contact,
+                           scaled_length<double> speed) {
+  const double along = tangential_product(speed.down * contact.q, speed.down * contact.rest);
+  return turning_of(delassus.tangential(), normal, speed, along, contact.rest.n);
+}
 
 // The same, without positive work.
 template <class Delassus, class Vector>
 friction_result<Vector> solve_contact_friction(const Delassus& delassus,
                                                const contact_problem<Vector>& contact, double friction) {
-  const auto& [slack, q, rest] = contact;
   const double normal = pressing_impulse(delassus, contact);
-  const scaled_length speed = q.scaled_tangential_length();
-  const fraction<double> part = stopping_part(turning_of(delassus, normal, q, speed, rest));
-  return rub(delassus, normal, q, speed.length(), part, friction);
+  const auto speed = contact.q.scaled_tangential_length();
+  const auto part = stopping_part(turning_at(delassus, normal, contact, speed));
+  return rub_along(delassus, normal, contact.q, speed.length(), part, friction);
 }
 
 template <class Node, class Vector>
@@ -140,11 +167,10 @@ void apply_isotropic_friction(Node& node, const contact_problem<Vector>& problem
 // The same without the root that a motion needs that turned round within the step. False: it did.
 template <class Node, class Vector>
 bool try_isotropic_friction(Node& node, const contact_problem<Vector>& contact, double friction) {
-  const auto& [slack, q, rest] = contact;
   const double normal = pressing_impulse(node.delassus, contact);
-  const scaled_length speed = q.scaled_tangential_length();
-  give(node, rub(node.delassus, normal, q, speed.length(), {}, friction));
-  return !turning_of(node.delassus, normal, q, speed, rest).gains();
+  const auto speed = contact.q.scaled_tangential_length();
+  give(node, rub_along(node.delassus, normal, contact.q, speed.length(), {}, friction));
+  return !turning_at(node.delassus, normal, contact, speed).gains();
 }
 
 // The entries of H in the order of local_problem.
@@ -238,7 +264,18 @@ mask_of<V> has_closed_form(const local_problem<V>& p) {
          (p.mu[0] == p.mu[1]);
 }
 
-// Solves what is regular; says which are left to solve_friction_alone.
+// The closed form at a pressed contact.
+template <class V>
+void solve_isotropic(const friction_problem<V>& p, mask_of<V> where, friction_answer<V>& a) {
+  const V *h = p.contact.h, *q = p.contact.q;
+  const V normal = positive_part(-q[0] / h[0]);
+  const rubbing_factor<V> found = rub_from(h[1], normal, q, p.rest, p.contact.mu[0]);
+  a.r[0] = select(where, normal, a.r[0]);
+  for (int k = 1; k < 3; ++k) a.r[k] = select(where, -found.factor * q[k], a.r[k]);
+  a.status = select(where, select(normal > 0.0, found.status, V(status::free)), a.status);
+}
+
+// Solves what is regular or has a closed form; says which are left to solve_friction_alone.
 template <class V>
 mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
   const local::regular_answer<V> found = solve_regular(p.contact);
@@ -246,20 +283,13 @@ mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
   a.status = select(found.sticks, V(status::stick), V(status::slip));
   a.refused = not_refused;
   take_off_positive_work(p, a);
-  return (!found.found) | has_closed_form(p.contact);
+  const mask_of<V> closed = has_closed_form(p.contact);
+  if (any(closed)) solve_isotropic(p, closed, a);
+  return !(found.found | closed);
 }
 
 [[gnu::noinline]] inline void solve_friction_alone(const friction_problem<double>& p,
                                                    friction_answer<double>& a) {
-  const double *h = p.contact.h, *q = p.contact.q;
-  if (has_closed_form(p.contact)) {
-    const contact_problem<vector> contact{0.0, {q[0], q[1], q[2]}, {p.rest[0], p.rest[1], p.rest[2]}};
-    const auto result = solve_contact_friction(diagonal_delassus{h[0], h[1], h[1]}, contact, p.contact.mu[0]);
-    a = {{result.impulse.n, result.impulse.t1, result.impulse.t2},
-         result.impulse.n > 0.0 ? result.status : status::free,
-         not_refused};
-    return;
-  }
   a = {};
   const contact_mode mode = solve_pressed(p.contact, a.r);
   a.status = mode == contact_mode::slip ? status::slip : status::stick;
@@ -268,20 +298,24 @@ mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
   take_off_positive_work(p, a);
 }
 
-// What of it is asked at a node: nothing where the contact is open, or, with a transverse H, where the cone
-// is circular. Whether it is follows from the parameters, which loops know before they know the coefficients.
+// What of it is asked at a node: nothing where the contact is open, or, with one coefficient, where H is
+// transverse.
 template <class Node, class Vector>
 bool ask_friction(Node& node, const contact_problem<Vector>& contact, double friction_1, double friction_2,
-                  bool is_circular, friction_problem<double>& problem) {
+                  friction_problem<double>& problem) {
   fill(problem, node.delassus, contact, friction_1, friction_2);
-  const bool is_pressed = (contact.slack <= 0.0) & (contact.q.n < 0.0);
-  if constexpr (has_transverse_delassus<Node>) {
-    apply_isotropic_friction(node, contact, friction_1);
-    return is_pressed & !is_circular;
-  }
   node.impulse = {};
   node.status = status::free;
-  return is_pressed;
+  return (contact.slack <= 0.0) & (contact.q.n < 0.0);
+}
+template <class Node, class Vector>
+bool ask_friction(Node& node, const contact_problem<Vector>& contact, double friction,
+                  friction_problem<double>& problem) {
+  if constexpr (!has_transverse_delassus<Node>)
+    return ask_friction(node, contact, friction, friction, problem);
+  fill(problem, node.delassus, contact, friction, friction);
+  apply_isotropic_friction(node, contact, friction);
+  return false;
 }
 
 template <class Node>
@@ -316,7 +350,7 @@ template <class Node>
 void apply_any_friction(Node& node, const contact_problem<vector>& contact, double friction_1,
                         double friction_2) {
   friction_problem<double> problem;
-  if (!ask_friction(node, contact, friction_1, friction_2, friction_1 == friction_2, problem)) return;
+  if (!ask_friction(node, contact, friction_1, friction_2, problem)) return;
   friction_answer<double> answer;
   if (solve_friction(problem, answer)) solve_friction_alone(problem, answer);
   give_friction(node, answer);
@@ -334,19 +368,11 @@ void apply_local_coulomb(Node& node, double slack, const local_coulomb& problem)
   node.refused = mode == contact_mode::none ? no_solution : not_refused;
 }
 
-// The impulse that stops the node, r = -H^-1 v_free, and its work: as it is, and without positive work, all
-// of it unless the node was moving before, and turned round within the step.
-template <class Node>
-vector whole_stopping_impulse(const Node& node) {
-  return -node.delassus.solve(node.v_free);
-}
-template <class Node>
-double doubled_work(const Node& node, vector r) {
-  return normal_product(r, node.v_previous) + tangential_product(r, node.v_previous);
-}
+// The impulse that stops the node, r = -H^-1 v_free, without positive work r.v^-/2: all of it unless the node
+// was moving before, and turned round within the step.
 template <class Node>
 vector stopping_impulse(const Node& node) {
-  const vector r = whole_stopping_impulse(node);
+  const vector r = -node.delassus.solve(node.v_free);
   friction_answer<double> answer{{r.n, r.t1, r.t2}, status::stick, not_refused};
   friction_problem<double> problem;
   fill(problem, node.delassus, {0.0, node.v_free, node.v_previous}, 0.0, 0.0);

@@ -295,8 +295,8 @@ inline contact_mode solve_axes(const contact& a, double mu1, double mu2, double*
 // Any problem with q_N < 0. Not inlined: it is rarely needed.
 [[gnu::noinline]] inline contact_mode solve_pressed(const local_coulomb& problem, double* r) {
   const double *h = problem.h, *q = problem.q;
-  const power_scale mass = power_scale_of(larger(h[0], larger(h[1], h[2])));
-  const power_scale speed = power_scale_of(larger(absolute(q[0]), larger(absolute(q[1]), absolute(q[2]))));
+  const auto mass = power_scale_of(larger(h[0], larger(h[1], h[2])));
+  const auto speed = power_scale_of(larger(absolute(q[0]), larger(absolute(q[1]), absolute(q[2]))));
   const double a = mass.down, b = speed.down;
   const local::contact scaled{a * h[0], a * h[3], a * h[4], a * h[1], a * h[2],
                               a * h[5], b * q[0], b * q[1], b * q[2]};

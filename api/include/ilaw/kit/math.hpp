@@ -46,40 +46,6 @@ inline double halfway(double low, double high) {
   return std::bit_cast<double>(a + (b - a) / 2);
 }
 
-// Powers of two that bring a number to [2, 4) and back: number * down lies there, number = scaled * up / 2.
-// They are made from its exponent by integer arithmetic, which vectorises without a branch or a division.
-struct power_scale {
-  double down, up;
-};
-inline power_scale power_scale_of(double largest) {
-  constexpr std::uint64_t exponent_bits = 0x7FF0000000000000;
-  const std::uint64_t exponent =
-      std::bit_cast<std::uint64_t>(larger(largest, std::numeric_limits<double>::min())) & exponent_bits;
-  return {std::bit_cast<double>(exponent_bits - exponent), std::bit_cast<double>(exponent)};
-}
-
-// A length without overflow or underflow on the way: square is that of down * the vector.
-struct scaled_length {
-  double square, down, up;
-  double root() const { return square_root(square); }
-  double length() const { return 0.5 * root() * up; }
-};
-inline scaled_length scaled_length_of(double a, double b) {
-  const power_scale scale = power_scale_of(larger(absolute(a), absolute(b)));
-  a *= scale.down;
-  b *= scale.down;
-  return {a * a + b * b, scale.down, scale.up};
-}
-inline scaled_length scaled_length_of(double a, double b, double c) {
-  const power_scale scale = power_scale_of(larger(larger(absolute(a), absolute(b)), absolute(c)));
-  a *= scale.down;
-  b *= scale.down;
-  c *= scale.down;
-  return {a * a + b * b + c * c, scale.down, scale.up};
-}
-inline double length(double a, double b) { return scaled_length_of(a, b).length(); }
-inline double length(double a, double b, double c) { return scaled_length_of(a, b, c).length(); }
-
 // `m ? a : b`, the same word for a double and for a pack of them (pack.hpp).
 inline double select(bool m, double a, double b) { return m ? a : b; }
 
@@ -95,6 +61,49 @@ struct bits_of<double> {
   static type of(std::uint64_t all) { return all; }
   static double number(type bits) { return std::bit_cast<double>(bits); }
 };
+
+}  // namespace detail
+
+// Powers of two that bring a number to [2, 4) and back: number * down lies there, number = scaled * up / 2.
+// They are made from its exponent by integer arithmetic, which vectorises without a branch or a division.
+template <class V>
+struct power_scale {
+  V down, up;
+};
+template <class V>
+power_scale<V> power_scale_of(V largest) {
+  using bits = detail::bits_of<V>;
+  constexpr std::uint64_t exponent_bits = 0x7FF0000000000000;
+  const auto exponent =
+      bits::in(larger(largest, V(std::numeric_limits<double>::min()))) & bits::of(exponent_bits);
+  return {bits::number(bits::of(exponent_bits) - exponent), bits::number(exponent)};
+}
+
+// A length without overflow or underflow on the way: square is that of down * the vector.
+template <class V>
+struct scaled_length {
+  V square, down, up;
+  V root() const { return square_root(square); }
+  V length() const { return 0.5 * root() * up; }
+};
+template <class V>
+scaled_length<V> scaled_length_of(V a, V b) {
+  const power_scale<V> scale = power_scale_of(larger(absolute(a), absolute(b)));
+  a = a * scale.down;
+  b = b * scale.down;
+  return {a * a + b * b, scale.down, scale.up};
+}
+inline scaled_length<double> scaled_length_of(double a, double b, double c) {
+  const auto scale = power_scale_of(larger(larger(absolute(a), absolute(b)), absolute(c)));
+  a *= scale.down;
+  b *= scale.down;
+  c *= scale.down;
+  return {a * a + b * b + c * c, scale.down, scale.up};
+}
+inline double length(double a, double b) { return scaled_length_of(a, b).length(); }
+inline double length(double a, double b, double c) { return scaled_length_of(a, b, c).length(); }
+
+namespace detail {
 
 // e^x to 1 ulp: x = k ln2 + s with |s| <= ln2/2 (Cody and Waite 1980), Taylor polynomial of degree 13 whose
 // remainder is below 5e-18, scaled by 2^k in two steps so that results below the normal range round once.

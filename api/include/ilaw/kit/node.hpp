@@ -18,7 +18,7 @@ struct vector {
   friend constexpr vector operator-(vector a, vector b) { return {a.n - b.n, a.t1 - b.t1, a.t2 - b.t2}; }
   friend constexpr vector operator-(vector a) { return {-a.n, -a.t1, -a.t2}; }
   friend constexpr vector operator*(double s, vector a) { return {s * a.n, s * a.t1, s * a.t2}; }
-  scaled_length scaled_tangential_length() const { return scaled_length_of(t1, t2); }
+  scaled_length<double> scaled_tangential_length() const { return scaled_length_of(t1, t2); }
   double tangential_length() const { return length(t1, t2); }
 };
 
@@ -38,7 +38,7 @@ struct projected_vector {
   friend constexpr projected_vector operator*(double s, projected_vector a) {
     return {s * a.n, s * a.x, s * a.y, s * a.z};
   }
-  scaled_length scaled_tangential_length() const { return scaled_length_of(x, y, z); }
+  scaled_length<double> scaled_tangential_length() const { return scaled_length_of(x, y, z); }
   double tangential_length() const { return length(x, y, z); }
 };
 

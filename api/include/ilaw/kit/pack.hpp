@@ -1,4 +1,4 @@
-// pack.hpp - doubles side by side, as many as the instruction set of this level holds, for solvers that are
+// pack.hpp - doubles side by side, some registers of this level's instruction set full, for solvers that are
 // written once for one problem (V = double) and for a pack of them (V = pack).
 //
 // Made of the vector extensions of GCC and clang: they compile to the same instructions as
@@ -14,26 +14,101 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
+// What one register of this level holds, and how many of them make a pack: one waits for its division or
+// root while the other works.
 #if defined(__AVX512F__)
-inline constexpr int pack_size = 8;
+inline constexpr int register_size = 8;
 #elif defined(__AVX__)
-inline constexpr int pack_size = 4;
+inline constexpr int register_size = 4;
 #else
-inline constexpr int pack_size = 2;
+inline constexpr int register_size = 2;
 #endif
+inline constexpr int pack_registers = 2;
+inline constexpr int pack_size = pack_registers * register_size;
+
+namespace detail {
+
+template <class Number>
+struct register_of;
+template <>
+struct register_of<double> {
+  using type = double __attribute__((vector_size(8 * register_size)));
+};
+template <>
+struct register_of<std::int64_t> {
+  using type = std::int64_t __attribute__((vector_size(8 * register_size)));
+};
+template <>
+struct register_of<std::uint64_t> {
+  using type = std::uint64_t __attribute__((vector_size(8 * register_size)));
+};
+template <class Number>
+struct registers {
+  using one = typename register_of<Number>::type;
+  one part[pack_registers];
+};
+
+// Register by register.
+template <class Result, class Function>
+[[gnu::always_inline]] inline registers<Result> each(Function f) {
+  registers<Result> all;
+  for (int k = 0; k < pack_registers; ++k) all.part[k] = f(k);
+  return all;
+}
+
+}  // namespace detail
+
+// The bits of a pack.
+class bit_pack {
+ public:
+  using lanes = detail::registers<std::uint64_t>;
+
+  explicit bit_pack(lanes v) : v_(v) {}
+  explicit bit_pack(std::uint64_t all)
+      : v_(detail::each<std::uint64_t>([all](int) { return all - lanes::one{}; })) {}
+  const lanes& values() const { return v_; }
+
+#define ILAW_KIT_OF_BITS(operation)                                                               \
+  friend bit_pack operator operation(bit_pack a, bit_pack b) {                                    \
+    return bit_pack(                                                                              \
+        detail::each<std::uint64_t>([&](int k) { return a.v_.part[k] operation b.v_.part[k]; })); \
+  }
+  ILAW_KIT_OF_BITS(+)
+  ILAW_KIT_OF_BITS(-)
+  ILAW_KIT_OF_BITS(&)
+  ILAW_KIT_OF_BITS(|)
+#undef ILAW_KIT_OF_BITS
+  friend bit_pack operator<<(bit_pack a, int n) {
+    return bit_pack(detail::each<std::uint64_t>([&](int k) { return a.v_.part[k] << n; }));
+  }
+  friend bit_pack operator>>(bit_pack a, int n) {
+    return bit_pack(detail::each<std::uint64_t>([&](int k) { return a.v_.part[k] >> n; }));
+  }
+
+ private:
+  lanes v_;
+};
 
 // What comparisons of packs give: per lane all bits or none.
 class mask {
  public:
-  using lanes = std::int64_t __attribute__((vector_size(8 * pack_size)));
+  using lanes = detail::registers<std::int64_t>;
 
   explicit mask(lanes v) : v_(v) {}
-  explicit mask(bool all) : v_((all ? std::int64_t{-1} : std::int64_t{0}) - lanes{}) {}
-  friend mask operator&(mask a, mask b) { return mask(a.v_ & b.v_); }
-  friend mask operator|(mask a, mask b) { return mask(a.v_ | b.v_); }
-  friend mask operator!(mask a) { return mask(~a.v_); }
-  bool operator[](int lane) const { return v_[lane] != 0; }
-  lanes values() const { return v_; }
+  explicit mask(bool all)
+      : v_(detail::each<std::int64_t>(
+            [all](int) { return (all ? std::int64_t{-1} : std::int64_t{0}) - lanes::one{}; })) {}
+  friend mask operator&(mask a, mask b) {
+    return mask(detail::each<std::int64_t>([&](int k) { return a.v_.part[k] & b.v_.part[k]; }));
+  }
+  friend mask operator|(mask a, mask b) {
+    return mask(detail::each<std::int64_t>([&](int k) { return a.v_.part[k] | b.v_.part[k]; }));
+  }
+  friend mask operator!(mask a) {
+    return mask(detail::each<std::int64_t>([&](int k) { return ~a.v_.part[k]; }));
+  }
+  bool operator[](int lane) const { return v_.part[lane / register_size][lane % register_size] != 0; }
+  const lanes& values() const { return v_; }
 
  private:
   lanes v_;
@@ -41,13 +116,14 @@ class mask {
 
 class pack {
  public:
-  using lanes = double __attribute__((vector_size(8 * pack_size)));
-  using integers = std::uint64_t __attribute__((vector_size(8 * pack_size)));
+  using lanes = detail::registers<double>;
 
   pack() = default;
-  pack(double all) : v_(all - lanes{}) {}
+  pack(double all) : v_(detail::each<double>([all](int) { return all - lanes::one{}; })) {}
   explicit pack(lanes v) : v_(v) {}
-  explicit pack(integers bits) : v_(reinterpret_cast<lanes>(bits)) {}
+  explicit pack(bit_pack bits)
+      : v_(detail::each<double>([&](int k) { return reinterpret_cast<lanes::one>(bits.values().part[k]); })) {
+  }
 
   static pack load(const double* values) {
     pack p;
@@ -55,58 +131,87 @@ class pack {
     return p;
   }
   void store(double* values) const { __builtin_memcpy(values, &v_, sizeof v_); }
-  lanes values() const { return v_; }
-  integers bits() const { return reinterpret_cast<integers>(v_); }
+  const lanes& values() const { return v_; }
+  double operator[](int lane) const { return v_.part[lane / register_size][lane % register_size]; }
+  bit_pack bits() const {
+    return bit_pack(detail::each<std::uint64_t>(
+        [&](int k) { return reinterpret_cast<bit_pack::lanes::one>(v_.part[k]); }));
+  }
 
-  friend pack operator+(pack a, pack b) { return pack(a.v_ + b.v_); }
-  friend pack operator-(pack a, pack b) { return pack(a.v_ - b.v_); }
-  friend pack operator*(pack a, pack b) { return pack(a.v_ * b.v_); }
-  friend pack operator/(pack a, pack b) { return pack(a.v_ / b.v_); }
-  friend pack operator-(pack a) { return pack(-a.v_); }
-  friend mask operator<(pack a, pack b) { return mask(a.v_ < b.v_); }
-  friend mask operator<=(pack a, pack b) { return mask(a.v_ <= b.v_); }
-  friend mask operator>(pack a, pack b) { return mask(a.v_ > b.v_); }
-  friend mask operator>=(pack a, pack b) { return mask(a.v_ >= b.v_); }
-  friend mask operator==(pack a, pack b) { return mask(a.v_ == b.v_); }
-  friend mask operator!=(pack a, pack b) { return mask(a.v_ != b.v_); }
+#define ILAW_KIT_OF_PACKS(operation)                                                               \
+  friend pack operator operation(pack a, pack b) {                                                 \
+    return pack(detail::each<double>([&](int k) { return a.v_.part[k] operation b.v_.part[k]; })); \
+  }
+  ILAW_KIT_OF_PACKS(+)
+  ILAW_KIT_OF_PACKS(-)
+  ILAW_KIT_OF_PACKS(*)
+  ILAW_KIT_OF_PACKS(/)
+#undef ILAW_KIT_OF_PACKS
+#define ILAW_KIT_OF_PACKS(operation)                                                                     \
+  friend mask operator operation(pack a, pack b) {                                                       \
+    return mask(detail::each<std::int64_t>([&](int k) { return a.v_.part[k] operation b.v_.part[k]; })); \
+  }
+  ILAW_KIT_OF_PACKS(<)
+  ILAW_KIT_OF_PACKS(<=)
+  ILAW_KIT_OF_PACKS(>)
+  ILAW_KIT_OF_PACKS(>=)
+  ILAW_KIT_OF_PACKS(==)
+  ILAW_KIT_OF_PACKS(!=)
+#undef ILAW_KIT_OF_PACKS
+  friend pack operator-(pack a) {
+    return pack(detail::each<double>([&](int k) { return -a.v_.part[k]; }));
+  }
 
  private:
   lanes v_;
 };
 
 // The same words for a double (math.hpp) and for a pack.
-inline pack select(mask m, pack a, pack b) { return pack(m.values() ? a.values() : b.values()); }
+inline pack select(mask m, pack a, pack b) {
+  return pack(detail::each<double>(
+      [&](int k) { return m.values().part[k] ? a.values().part[k] : b.values().part[k]; }));
+}
 
 inline bool any(bool m) { return m; }
 inline bool any(mask m) {
-  using bytes = signed char __attribute__((vector_size(pack_size)));
-  const bytes narrow = __builtin_convertvector(m.values(), bytes);
+  using bytes = signed char __attribute__((vector_size(register_size)));
   std::uint64_t found = 0;
+  auto all = m.values().part[0];
+  for (int k = 1; k < pack_registers; ++k) all = all | m.values().part[k];
+  const bytes narrow = __builtin_convertvector(all, bytes);
   __builtin_memcpy(&found, &narrow, sizeof narrow);
   return found != 0;
 }
 
 inline pack absolute(pack x) {
   constexpr std::uint64_t all_but_sign = 0x7FFFFFFFFFFFFFFF;
-  return pack(x.bits() & (all_but_sign - pack::integers{}));
+  return pack(x.bits() & bit_pack(all_but_sign));
 }
-inline pack square_root(pack x) {
+
+namespace detail {
+
+inline registers<double>::one root_of(registers<double>::one x) {
 #if defined(__AVX512F__) && defined(__clang__)
   constexpr int current_rounding = 4;
-  return pack(__builtin_ia32_sqrtpd512(x.values(), current_rounding));
+  return __builtin_ia32_sqrtpd512(x, current_rounding);
 #elif defined(__AVX512F__)
   constexpr int current_rounding = 4;
   constexpr char every_lane = -1;
-  return pack(__builtin_ia32_sqrtpd512_mask(x.values(), x.values(), every_lane, current_rounding));
+  return __builtin_ia32_sqrtpd512_mask(x, x, every_lane, current_rounding);
 #elif defined(__AVX__)
-  return pack(__builtin_ia32_sqrtpd256(x.values()));
+  return __builtin_ia32_sqrtpd256(x);
 #elif defined(__SSE2__)
-  return pack(__builtin_ia32_sqrtpd(x.values()));
+  return __builtin_ia32_sqrtpd(x);
 #else
-  pack::lanes root = x.values();
-  for (int k = 0; k < pack_size; ++k) root[k] = square_root(root[k]);
-  return pack(root);
+  for (int k = 0; k < register_size; ++k) x[k] = square_root(x[k]);
+  return x;
 #endif
+}
+
+}  // namespace detail
+
+inline pack square_root(pack x) {
+  return pack(detail::each<double>([&](int k) { return detail::root_of(x.values().part[k]); }));
 }
 inline pack larger(pack a, pack b) { return select(a > b, a, b); }
 inline pack smaller(pack a, pack b) { return select(a < b, a, b); }
@@ -117,9 +222,9 @@ namespace detail {
 
 template <>
 struct bits_of<pack> {
-  using type = pack::integers;
+  using type = bit_pack;
   static type in(pack x) { return x.bits(); }
-  static type of(std::uint64_t all) { return all - type{}; }
+  static type of(std::uint64_t all) { return type(all); }
   static pack number(type bits) { return pack(bits); }
 };
 

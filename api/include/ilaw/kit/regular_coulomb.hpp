@@ -103,16 +103,17 @@ class regular_contact {
   V multiplier(trial x, Mask& active) const {
     constexpr double close = 0x1p-20;  // the step that follows squares it
     V alpha = 0.0;
-    for (int k = 0; k < most_steps && any(active); ++k) {
+    if (!any(active)) return alpha;
+    for (int k = 0;; ++k) {
       const V target = n_ * x.det, excess = x.need - target;
       const V y1 = x.s.adjugate_1(x.n1, x.n2), y2 = x.s.adjugate_2(x.n1, x.n2);
       const V slope = (x.n1 * per_m_ - x.length * w1_) * y1 + (x.n2 * per_m_ - x.length * w2_) * y2;
       const V next = alpha + x.need * excess * x.length / (n_ * slope);
       alpha = select(active, next, alpha);
       active = active & !(absolute(excess) <= close * target);
+      if (k + 1 == most_steps || !any(active)) return alpha;
       x = at(alpha);
     }
-    return alpha;
   }
 
   // One Newton step on rows and cone, from the residual of rho; then the answer, and whether it holds.

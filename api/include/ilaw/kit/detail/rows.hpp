@@ -11,11 +11,15 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-using lanes = pack::lanes;
-inline constexpr auto each_lane = std::make_integer_sequence<int, pack_size>{};
+using lanes = registers<double>::one;
+inline constexpr auto each_lane = std::make_integer_sequence<int, register_size>{};
 
-inline lanes lanes_at(const double* values) { return pack::load(values).values(); }
-inline void put_lanes(lanes v, double* values) { pack(v).store(values); }
+inline lanes lanes_at(const double* values) {
+  lanes v;
+  __builtin_memcpy(&v, values, sizeof v);
+  return v;
+}
+inline void put_lanes(lanes v, double* values) { __builtin_memcpy(values, &v, sizeof v); }
 
 // Column c of as many rows of two as there are lanes.
 template <int Column, int... K>
@@ -25,19 +29,19 @@ lanes column_of(lanes first, lanes second, std::integer_sequence<int, K...> /*la
 // The same of rows of three: from the first two vectors, then from the third.
 template <int Column, int... K>
 lanes column_of(lanes first, lanes second, lanes third, std::integer_sequence<int, K...> /*lanes*/) {
-  constexpr int both = 2 * pack_size;
+  constexpr int both = 2 * register_size;
   const lanes found =
       __builtin_shufflevector(first, second, (3 * K + Column < both ? 3 * K + Column : -1)...);
   return __builtin_shufflevector(found, third,
-                                 (3 * K + Column < both ? K : 3 * K + Column - both + pack_size)...);
+                                 (3 * K + Column < both ? K : 3 * K + Column - both + register_size)...);
 }
 // Vector v of the rows that three columns make.
 template <int Vector, int... K>
 lanes row_of(lanes a, lanes b, lanes c, std::integer_sequence<int, K...> /*lanes*/) {
-  constexpr int from = Vector * pack_size;
+  constexpr int from = Vector * register_size;
   const lanes found = __builtin_shufflevector(
-      a, b, ((from + K) % 3 == 2 ? -1 : (from + K) / 3 + (from + K) % 3 * pack_size)...);
-  return __builtin_shufflevector(found, c, ((from + K) % 3 == 2 ? (from + K) / 3 + pack_size : K)...);
+      a, b, ((from + K) % 3 == 2 ? -1 : (from + K) / 3 + (from + K) % 3 * register_size)...);
+  return __builtin_shufflevector(found, c, ((from + K) % 3 == 2 ? (from + K) / 3 + register_size : K)...);
 }
 
 template <class Number>
@@ -53,8 +57,8 @@ template <class Number>
 void separate_pairs(const Number* values, int count, double* a, double* b) {
   int i = 0;
   if constexpr (std::is_same_v<Number, double>)
-    for (; i + pack_size <= count; i += pack_size) {
-      const lanes u = lanes_at(values + 2 * i), v = lanes_at(values + 2 * i + pack_size);
+    for (; i + register_size <= count; i += register_size) {
+      const lanes u = lanes_at(values + 2 * i), v = lanes_at(values + 2 * i + register_size);
       put_lanes(column_of<0>(u, v, each_lane), a + i);
       put_lanes(column_of<1>(u, v, each_lane), b + i);
     }
@@ -75,9 +79,10 @@ template <class Number>
 void separate_triples(const Number* values, int count, double* a, double* b, double* c) {
   int i = 0;
   if constexpr (std::is_same_v<Number, double>)
-    for (; i + pack_size <= count; i += pack_size) {
+    for (; i + register_size <= count; i += register_size) {
       const double* rows = values + 3 * i;
-      const lanes u = lanes_at(rows), v = lanes_at(rows + pack_size), w = lanes_at(rows + 2 * pack_size);
+      const lanes u = lanes_at(rows), v = lanes_at(rows + register_size),
+                  w = lanes_at(rows + 2 * register_size);
       put_lanes(column_of<0>(u, v, w, each_lane), a + i);
       put_lanes(column_of<1>(u, v, w, each_lane), b + i);
       put_lanes(column_of<2>(u, v, w, each_lane), c + i);
@@ -100,12 +105,12 @@ void interleave(double* const* components, int count, Number* values) {
   const double *a = components[0], *b = components[1], *c = components[2];
   int i = 0;
   if constexpr (std::is_same_v<Number, double>)
-    for (; i + pack_size <= count; i += pack_size) {
+    for (; i + register_size <= count; i += register_size) {
       const lanes u = lanes_at(a + i), v = lanes_at(b + i), w = lanes_at(c + i);
       double* rows = values + 3 * i;
       put_lanes(row_of<0>(u, v, w, each_lane), rows);
-      put_lanes(row_of<1>(u, v, w, each_lane), rows + pack_size);
-      put_lanes(row_of<2>(u, v, w, each_lane), rows + 2 * pack_size);
+      put_lanes(row_of<1>(u, v, w, each_lane), rows + register_size);
+      put_lanes(row_of<2>(u, v, w, each_lane), rows + 2 * register_size);
     }
   interleave(a, b, c, i, count, values);
 }

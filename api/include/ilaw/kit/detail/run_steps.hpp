@@ -112,7 +112,7 @@ struct asked_block {
   static constexpr int problems = doubles_in<problem_of_form<Form>>,
                        answers = doubles_in<answer_of_form<Form>>;
   column open, problem[problems], answer[answers];
-  int nodes[block_size];  // those with a problem
+  int nodes[block_size + pack_size];  // those with a problem, and room to fill up the last pack
 };
 
 template <class Struct, std::size_t... K>
@@ -174,6 +174,14 @@ char* place_of(Packs& packs, int k) {
   return reinterpret_cast<char*>(&packs) + static_cast<std::size_t>(k) * sizeof(pack);
 }
 
+// The numbers of a pack's nodes, which stand side by side or not.
+inline void collect(const double* column, const int* nodes, bool side_by_side, char* pack_of_them) {
+  double values[pack_size];
+  if (!side_by_side)
+    for (int j = 0; j < pack_size; ++j) values[j] = column[nodes[j]];
+  __builtin_memcpy(pack_of_them, side_by_side ? column + nodes[0] : values, sizeof(pack));
+}
+
 // Solves the problems of a block in packs. The last pack is filled up with its first problem. Returns how
 // many were left to be solved alone.
 template <class Form>
@@ -181,22 +189,16 @@ template <class Form>
   using problem_type = typename Form::template problem<pack>;
   using answer_type = typename Form::template answer<pack>;
   int alone_count = 0;
-  int first_moved = 0;
-  while (first_moved < count && asked.nodes[first_moved] == first_moved) ++first_moved;
-  for (column& c : asked.problem)  // in place: none moves back
-    for (int j = first_moved; j < count; ++j) c.values[j] = c.values[asked.nodes[j]];
   for (int first = 0; first < count; first += pack_size) {
     const int filled = count - first < pack_size ? count - first : pack_size;
+    int* nodes = asked.nodes + first;
+    for (int j = filled; j < pack_size; ++j) nodes[j] = nodes[0];
+    const bool side_by_side = nodes[pack_size - 1] == nodes[0] + pack_size - 1;
     problem_type problem;
-    for (int k = 0; k < asked_block<Form>::problems; ++k) {
-      double* values = asked.problem[k].values + first;
-      for (int j = filled; j < pack_size; ++j) values[j] = values[0];
-      __builtin_memcpy(place_of(problem, k), values, sizeof(pack));
-    }
+    for (int k = 0; k < asked_block<Form>::problems; ++k)
+      collect(asked.problem[k].values, nodes, side_by_side, place_of(problem, k));
     answer_type answer{};
     const mask left = law.solve(problem, answer);
-    const int* nodes = asked.nodes + first;
-    const bool side_by_side = filled == pack_size && nodes[filled - 1] == nodes[0] + filled - 1;
     for (int k = 0; k < asked_block<Form>::answers; ++k) {
       double values[pack_size];
       double* answers = asked.answer[k].values;
@@ -208,9 +210,8 @@ template <class Form>
       ++alone_count;
       answer_of_form<Form> alone{};
       law.solve_alone(
-          from_columns<problem_of_form<Form>>(asked.problem, first + j, places<problem_of_form<Form>>),
-          alone);
-      to_columns(alone, asked.answer, asked.nodes[first + j], places<answer_of_form<Form>>);
+          from_columns<problem_of_form<Form>>(asked.problem, nodes[j], places<problem_of_form<Form>>), alone);
+      to_columns(alone, asked.answer, nodes[j], places<answer_of_form<Form>>);
     }
   }
   return alone_count;

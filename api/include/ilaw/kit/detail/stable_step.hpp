@@ -29,7 +29,7 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
   pack least = infinity;
   for (int i = 0; i < block_size; i += pack_size) least = smaller(pack::load(steps.values + i), least);
   double smallest = infinity;
-  for (int lane = 0; lane < pack_size; ++lane) smallest = smaller(least.values()[lane], smallest);
+  for (int lane = 0; lane < pack_size; ++lane) smallest = smaller(least[lane], smallest);
   return smallest;
 }
 
