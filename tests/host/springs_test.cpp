@@ -70,6 +70,25 @@ TEST(Damper, SlowsDownExponentially) {
   EXPECT_NEAR(order(steps, errors), 1.0, 0.1);
 }
 
+// Each step takes h c/m of the speed before it, and the half step to the first velocity half of that.
+TEST(Damper, StartsWithHalfAStep) {
+  constexpr double c = 0.5;
+  for (const double h : {0.07, 0.11, 0.13}) {
+    json source = two_masses(0.0, c);
+    source["time"]["dt"] = h;
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    const double part = h * c / reduced_mass;
+    double rate = -0.4 * (1.0 - 0.5 * part);
+    for (;; rate *= 1.0 - part) {
+      ASSERT_NEAR(integrator.velocity()[1] - integrator.velocity()[0], rate, 1e-15)
+          << "step " << integrator.steps() << " of " << h;
+      if (integrator.steps() == scene.steps) break;
+      integrator.step();
+    }
+  }
+}
+
 // One end drives, the other is dragged along: the reaction of what drives is what the damper gives to
 // the mass, whatever else damps.
 TEST(Damper, DragsFromAnEndThatIsDriven) {
