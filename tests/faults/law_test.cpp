@@ -47,7 +47,7 @@ TEST_P(BrokenLaw, IsNamedAndEndsTheRun) {
     EXPECT_NE(outcome.output.find(GetParam().said), std::string::npos) << outcome.output;
     for (const char* part : {"law 'broken'", "library " ILAW_BROKEN_LAW, "interface 'floor'", "step "})
       EXPECT_NE(outcome.output.find(part), std::string::npos) << part << " in " << outcome.output;
-    EXPECT_EQ(outcome.output.find('\033'), std::string::npos);
+    EXPECT_EQ(outcome.output.find('\033'), std::string::npos) << "coupled " << coupled;
   }
 }
 
@@ -90,7 +90,7 @@ TEST(BrokenLaw, ThatHangsDoesNotOutliveTwoInterrupts) {
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   int status = 0;
   for (int k = 0; k < 2; ++k) {
-    EXPECT_EQ(waitpid(child, &status, WNOHANG), 0);
+    EXPECT_EQ(waitpid(child, &status, WNOHANG), 0) << "k " << k;
     kill(child, SIGINT);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }

@@ -55,7 +55,7 @@ TEST(Sweep, RunsEachValueAndGathersTheSummaries) {
     EXPECT_NEAR(std::stod(cell(rows, k, "energy.dissipated_friction")), 0.5 * mass * 4, 0.02 * mass) << k;
     EXPECT_NEAR(std::stod(cell(rows, k, "forces.floor.impulse.0")), -2 * mass, 1e-9) << k;
     const json summary = json::parse(text_of(folder / "all" / rows[k][0] / "summary.json"));
-    EXPECT_EQ(summary["scene"]["source"]["interfaces"][0]["parameters"]["friction"], friction);
+    EXPECT_EQ(summary["scene"]["source"]["interfaces"][0]["parameters"]["friction"], friction) << "k " << k;
   }
   // A table of some of them, by columns of the summary and of the history.
   const std::string one = (folder / "all" / "friction=0.1_mass=1").string(),
@@ -92,12 +92,32 @@ TEST(Sweep, RunsNothingIfOneIsRefused) {
            {"/time/dt=0.1,fast", "dt=fast: /time/dt: found \"fast\""},
            {"/interfaces/1/skip=true", "/interfaces/1/skip: found nothing there to set"},
            {"/output/evry=1", "/output/evry: unknown key"},
-           {"friction=1", "--set friction=1: expected /pointer=value"}}) {
+           {"friction=1", "--set friction=1: expected /pointer=value"},
+           {"/time/d~t=1", "--set /time/d~t=1: expected a JSON pointer before '='"}}) {
     const Outcome outcome = run_program(run + setting);
     EXPECT_EQ(outcome.code, 2) << setting;
     EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
     EXPECT_FALSE(std::filesystem::exists(folder / "all")) << setting;
   }
+}
+
+// One that watches a node, one that sums forces: no picture has both.
+TEST(Plot, OfRunsWithoutAColumnInCommonIsRefused) {
+  const auto folder = fresh_folder();
+  std::string folders;
+  for (const auto& [name, output] :
+       {std::pair{"watched", R"({"watch": [0]})"}, {"summed", R"({"forces": ["floor"]})"}}) {
+    json scene = sliding();
+    scene["time"]["end"] = 0.1;
+    scene["output"] = json::parse(output);
+    const auto file = folder / (std::string(name) + ".json"), out = folder / name;
+    std::ofstream(file) << scene.dump();
+    ASSERT_EQ(run_program("run " + file.string() + " --out " + out.string()).code, 0) << name;
+    folders += " " + out.string();
+  }
+  const Outcome outcome = run_program("plot" + folders);
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.output.find("found no columns that all runs have"), std::string::npos) << outcome.output;
 }
 
 // 45 nodes: panels of an envelope each.
