@@ -79,6 +79,27 @@ TEST(BrokenLaw, ThatKeepsItsPromisesRuns) {
   for (const bool coupled : {false, true}) EXPECT_EQ(run_breaking("nothing", coupled).code, 0);
 }
 
+// Energy from nowhere: found in random scenes, which are kept with one node and without what does not matter.
+TEST(BrokenLaw, ThatPushesFailsTheStress) {
+  const auto folder = empty_folder();
+  const std::string path = std::filesystem::path(ILAW_BROKEN_LAW).parent_path().string();
+  const auto stress = [&](const char* promise) {
+    return run_program("stress --law broken_law --scenes 3 --steps 40 --nodes 20 --keep " + folder.string(),
+                       "ILAW_BROKEN=" + std::string(promise) + " ILAW_PATH=" + path + " ");
+  };
+  const Outcome pushed = stress("push");
+  EXPECT_EQ(pushed.code, 1);
+  EXPECT_NE(pushed.output.find("seed 1 (broken) failed: energy added by interfaces: found "),
+            std::string::npos)
+      << pushed.output;
+  const json kept = json::parse(text_of(folder / "broken_1.json"));
+  EXPECT_EQ(kept["doc"].get<std::string>().find("energy added by interfaces: found "), 0U) << kept;
+  EXPECT_EQ(kept["model"]["points"].size(), 1U) << kept;
+  EXPECT_EQ(kept["interfaces"].size(), 1U) << kept;
+  const Outcome sound = stress("nothing");
+  EXPECT_EQ(sound.code, 0) << sound.output;
+}
+
 TEST(BrokenLaw, ThatHangsDoesNotOutliveTwoInterrupts) {
   const auto folder = empty_folder();
   const std::string scene = written(scene_with_broken_law(false), folder).string();
