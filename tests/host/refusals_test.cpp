@@ -242,6 +242,25 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/springs", R"([{"nodes": [0], "stiffness": 1, "to": [0]}])",
                 "/springs/0/to: found node 0 at both ends, expected another node"}));
 
+TEST(Scene, OfAnotherKindOfValueIsRefused) {
+  EXPECT_EQ(refusal_of_text("[]").find("/: found [], expected object"), 0U) << refusal_of_text("[]");
+  for (const char* pointer : {"/model", "/model/type", "/interfaces/0", "/interfaces/0/obstacle", "/loads/0",
+                              "/interfaces/0/obstacle/type", "/loads", "/interfaces"}) {
+    json scene = good_scene();
+    scene[json::json_pointer(pointer)] = 3;
+    EXPECT_EQ(refusal_of_text(scene.dump()).find(std::string(pointer) + ": found 3, expected "), 0U)
+        << refusal_of_text(scene.dump());
+  }
+}
+
+TEST(Scene, WithManyMistakesNamesSomeAndCountsTheOthers) {
+  json scene = good_scene();
+  for (int k = 0; k < 30; ++k) scene["key" + std::to_string(k)] = k;
+  const std::string refusal = refusal_of_text(scene.dump());
+  EXPECT_EQ(refusal.find("/key0: unknown key"), 0U) << refusal;
+  EXPECT_EQ(refusal.substr(refusal.size() - 5), " more") << refusal;
+}
+
 TEST(Scene, WithAMissingKeyIsRefused) {
   json scene = good_scene();
   scene["interfaces"][0].erase("nodes");

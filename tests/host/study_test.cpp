@@ -273,6 +273,22 @@ TEST(Study, TakesTheUsualLawsWhereTheSceneListsNone) {
   EXPECT_NE(study.outcome.output.find("implicit 100.0"), std::string::npos) << study.outcome.output;
 }
 
+// Of a scene with friction they have it, too; one with another law is compared with itself.
+TEST(Study, TakesLawsThatSuitTheScene) {
+  json rubs = read_scene_source(scene_files::named("oblique_impact.json"));
+  rubs["time"]["end"] = 0.35;  // past the first impact
+  json holds = read_scene_source(scene_files::named("postit_test2.json"));
+  for (json* scene : {&rubs, &holds}) scene->erase("study");
+  const Result rubbed = study_of(rubs, "--levels 2"), held = study_of(holds, "--levels 2");
+  ASSERT_EQ(rubbed.outcome.code, 0) << rubbed.outcome.output;
+  ASSERT_EQ(held.outcome.code, 0) << held.outcome.output;
+  const json usual = json::parse(text_of(rubbed.folder / "study.json"))["laws"];
+  EXPECT_EQ(usual.size(), 7U) << usual;
+  const json own = json::parse(text_of(held.folder / "study.json"))["laws"];
+  ASSERT_EQ(own.size(), 1U) << own;
+  EXPECT_EQ(own[0]["name"], "as in the scene");
+}
+
 TEST(Study, OfSeveralScenesHasAFolderForEach) {
   const auto folder = fresh_folder();
   const std::string scenes =
