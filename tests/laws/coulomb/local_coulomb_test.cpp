@@ -253,7 +253,7 @@ TEST(Ball, SlidesUntilItRolls) {
 
 // Infinite friction that would have to pull: refused, with the reason.
 TEST(CoulombDelassus, SaysWhereThereIsNoSolution) {
-  NodeRun node("coulomb", {{{"friction", inf_value}}, {}}, 1e-3, ILAW_DELASSUS_FULL) << "c " << c;
+  NodeRun node("coulomb", {{{"friction", inf_value}}, {}}, 1e-3, ILAW_DELASSUS_FULL);
   node.h = {1.0, 1.0, 1.0, 0.9, 0.0, 0.0};
   EXPECT_EQ(node.step({-0.1, -1.0, 0.0}), ILAW_BAD_NODES);
   EXPECT_STREQ(node.report.reason, "the law's equations have no solution for this H");
