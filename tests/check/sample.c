@@ -115,17 +115,7 @@ static ilaw_plugin plugin = {sizeof(ilaw_plugin),
                              1,
                              0,
                              NULL};
-static const ilaw_plugin other_plugin = {sizeof(ilaw_plugin),
-                                         ILAW_ABI_MAJOR,
-                                         ILAW_ABI_MINOR,
-                                         "sample",
-                                         "1.0",
-                                         "tests",
-                                         "BSD-3-Clause",
-                                         laws,
-                                         1,
-                                         0,
-                                         NULL};
+static ilaw_plugin other_plugin; /* the same at another place */
 
 int breaks(const char* rule) { return strcmp(broken, rule) == 0; }
 shared_memory* shared(void) { return block; }
@@ -153,6 +143,7 @@ __attribute__((constructor)) static void begin(void) {
   if (named) broken = named;
   first_thread = pthread_self();
   block = calloc(1, sizeof *block);
+  other_plugin = plugin;
   if (breaks("library-opens")) law.title = NULL;
   if (breaks("parameter-units")) friction.unit = "furlong";
   if (breaks("extension-unknown: library")) plugin.extension = library_extension;

@@ -75,12 +75,19 @@ std::int32_t answer(const ilaw_batch& batch, ilaw_report& report) {
   return breaks("bad_node") || breaks("wild_reason") || breaks("steering_text") ? ILAW_BAD_NODES : ILAW_OK;
 }
 
+std::int64_t node_of(const ilaw_batch& batch, std::int64_t i) {
+  return batch.index ? batch.index[i] - batch.index_base : i;
+}
+
 std::int32_t evaluate(const ilaw_instance*, const ilaw_batch* batch, ilaw_report* report) {
+  const double push = breaks("push") ? 1.0 : 0.0;  // whatever the motion
   for (std::int64_t i = 0; i < batch->node_count; ++i) {
-    batch->impulse.values[i * batch->impulse.node_stride] = 0.0;
-    batch->status[i * batch->status_stride] = ILAW_FREE;
+    const std::int64_t node = node_of(*batch, i);
+    batch->impulse.values[node * batch->impulse.node_stride] = push;
+    batch->status[node * batch->status_stride] = ILAW_FREE;
     for (std::int64_t k = 0; k < ILAW_ENERGY_COUNT; ++k)
-      batch->energy.values[i * batch->energy.node_stride + k * batch->energy.component_stride] = 0.0;
+      if (batch->energy.values)
+        batch->energy.values[node * batch->energy.node_stride + k * batch->energy.component_stride] = 0.0;
   }
   if (breaks("v_free")) const_cast<double*>(batch->v_free.values)[0] = 7.0;
   if (breaks("gap")) const_cast<double*>(batch->gap.values)[0] = 7.0;

@@ -248,7 +248,7 @@ TEST(Scene, WithAnAbsurdDirectionIsRefused) {
   for (const double length : {1e300, 1e-300, -1e155}) {
     scene["interfaces"][0]["obstacle"]["normal"] = {length};
     const Outcome outcome = run_scene(scene, folder);
-    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.code, 2) << "length " << length;
     EXPECT_NE(outcome.output.find("/interfaces/0/obstacle/normal: found " +
                                   scene["interfaces"][0]["obstacle"]["normal"].dump() +
                                   ", expected a direction with a length of 1e-150 to 1e150"),

@@ -55,7 +55,7 @@ TEST(Bench, MeasuresEveryLawInItsCases) {
 TEST(Bench, TakesPlainValuesOfParametersThatAreMissing) {
   for (const std::string& law : ilaw::testing::laws_of_tree()) {
     const json results = measured(law + " --nodes 50");
-    ASSERT_EQ(results.size(), 1U);
+    ASSERT_EQ(results.size(), 1U) << "law " << law;
     EXPECT_EQ(complaint_about(results[0]), "") << results[0];
   }
   const json coulomb = measured("coulomb --nodes 50");

@@ -53,8 +53,9 @@ void expect_a_bar(double ratio, double modulus, json loads) {
     bar_run.step();
     block_run.step();
     for (int node = 0; node < blocks.model->node_count(); ++node) {
-      ASSERT_NEAR(block_run.displacement()[3 * node], bar_run.displacement()[node % 41], 1e-12);
-      ASSERT_NEAR(block_run.displacement()[3 * node + 1], 0.0, 1e-12);
+      ASSERT_NEAR(block_run.displacement()[3 * node], bar_run.displacement()[node % 41], 1e-12)
+          << "node " << node;
+      ASSERT_NEAR(block_run.displacement()[3 * node + 1], 0.0, 1e-12) << "node " << node;
     }
   }
   EXPECT_GT(bar_run.displacement().cwiseAbs().minCoeff(), 0.1);  // the wave passed everywhere

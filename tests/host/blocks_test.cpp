@@ -173,7 +173,8 @@ TEST_P(NeoHookeanBlock, FeelsNoForceFromAnyRotation) {
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(angle, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
     EXPECT_LE(forces(block, linear_field(block, turn - Eigen::Matrix3d::Identity())).cwiseAbs().maxCoeff(),
-              1e-14);
+              1e-14)
+        << "angle " << angle;
   }
 }
 
@@ -190,7 +191,7 @@ TEST_P(NeoHookeanBlock, TurnsItsForcesWithTheBody) {
       turned.segment<3>(3 * node) = turn * (x + u).segment<3>(3 * node) - x.segment<3>(3 * node);
       exact.segment<3>(3 * node) = (turn * exact.segment<3>(3 * node)).eval();
     }
-    EXPECT_LE((forces(block, turned) - exact).cwiseAbs().maxCoeff(), 1e-13);
+    EXPECT_LE((forces(block, turned) - exact).cwiseAbs().maxCoeff(), 1e-13) << "draw " << draw;
   }
 }
 

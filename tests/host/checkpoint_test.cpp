@@ -98,7 +98,7 @@ TEST_P(Resumed, GoesOnToTheSameBits) {
     while (uninterrupted.steps() < stop) uninterrupted.step();
     std::istringstream state(saved(uninterrupted));
     resumed.load(state);
-    ASSERT_EQ(resumed.steps(), stop);
+    ASSERT_EQ(resumed.steps(), stop) << "k " << k;
     while (resumed.steps() < scene.steps) {
       resumed.step();
       uninterrupted.step();
@@ -108,12 +108,12 @@ TEST_P(Resumed, GoesOnToTheSameBits) {
           << resumed.steps();
     }
     const EnergyReport energy = resumed.energy(), wanted = uninterrupted.energy();
-    EXPECT_EQ(energy.interface_work, wanted.interface_work);
-    EXPECT_EQ(energy.balance_error, wanted.balance_error);
-    EXPECT_EQ(energy.by_law, wanted.by_law);
-    EXPECT_EQ(energy.least_dissipation, wanted.least_dissipation);
-    EXPECT_EQ(resumed.tally().status_counts, uninterrupted.tally().status_counts);
-    EXPECT_EQ(resumed.tally().penetration_max, uninterrupted.tally().penetration_max);
+    EXPECT_EQ(energy.interface_work, wanted.interface_work) << "k " << k;
+    EXPECT_EQ(energy.balance_error, wanted.balance_error) << "k " << k;
+    EXPECT_EQ(energy.by_law, wanted.by_law) << "k " << k;
+    EXPECT_EQ(energy.least_dissipation, wanted.least_dissipation) << "k " << k;
+    EXPECT_EQ(resumed.tally().status_counts, uninterrupted.tally().status_counts) << "k " << k;
+    EXPECT_EQ(resumed.tally().penetration_max, uninterrupted.tally().penetration_max) << "k " << k;
   }
 }
 

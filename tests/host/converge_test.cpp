@@ -68,9 +68,9 @@ TEST(Converge, TwoBarsAgainstTheExactSolution) {
   ASSERT_EQ(study.table.at("dt").size(), 5U);
   for (std::size_t k = 0; k < 5; ++k) {
     EXPECT_NEAR(study.table.at("dt")[k], 0.009 / std::pow(2.0, k), 1e-9);  // cfl 0.9, elements of 0.01
-    EXPECT_NEAR(study.table.at("steps")[k], 4.0 / study.table.at("dt")[k], 1.0);
+    EXPECT_NEAR(study.table.at("steps")[k], 4.0 / study.table.at("dt")[k], 1.0) << "k " << k;
     // Found closed a step late at most.
-    EXPECT_LE(study.table.at("instant")[k], study.table.at("dt")[k]);
+    EXPECT_LE(study.table.at("instant")[k], study.table.at("dt")[k]) << "k " << k;
   }
   EXPECT_GE(order_in(study, "u_L2"), 0.8);
   EXPECT_GE(order_in(study, "v_L1"), 0.45);
@@ -144,7 +144,7 @@ TEST(Converge, BouncingBallIsOfFirstOrder) {
     scene["time"] = {{"dt", 1e-2 / std::sqrt(2.0)}, {"end", 2.5}};
     const Study study = study_of(scene, "--levels 12 --factor 1.7");
     ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
-    EXPECT_EQ(study.orders["refined"], "time step");
+    EXPECT_EQ(study.orders["refined"], "time step") << "restitution " << restitution;
     for (const char* norm : {"u_L2", "v_L1"}) {
       // Without rebound there is one jump, which half steps see at the right place or one off: no order.
       if (restitution == 0.0 && std::string(norm) == "v_L1") continue;
@@ -174,8 +174,8 @@ TEST(Converge, PostitTestsAreOfFirstOrderInTime) {
   for (const char* name : {"postit_test1", "postit_test2", "postit_test3"}) {
     const Study study = study_of(shipped(name), "");
     ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
-    EXPECT_EQ(study.orders["reference"], "exact solution");
-    ASSERT_EQ(study.table.at("dt").size(), 12U);
+    EXPECT_EQ(study.orders["reference"], "exact solution") << "name " << name;
+    ASSERT_EQ(study.table.at("dt").size(), 12U) << "name " << name;
     for (const char* norm : {"u_L2", "u_max", "v_L1", "instant"}) {
       EXPECT_GE(order_in(study, norm), 0.8) << norm << " of " << name;
       EXPECT_LE(order_in(study, norm), 1.3) << norm << " of " << name;
@@ -185,8 +185,8 @@ TEST(Converge, PostitTestsAreOfFirstOrderInTime) {
   }
 }
 
-// The 3D test with elements of 0.05/2^level: its rows of nodes, 0.05 apart, and when each broke first once
-// the tab is lifted.
+// The 3D test with elements of 0.05/2^level, half as wide and until it has come off: its rows of nodes, 0.05
+// apart, and when each broke first once the tab is lifted.
 struct Peel {
   Trace trace;
   std::vector<double> ruptures;
@@ -195,10 +195,12 @@ struct Peel {
 Peel peel_at(int level) {
   json source = shipped("postit_3d");
   const int n = 1 << level;
-  source["model"]["blocks"][0]["elements"] = {20 * n, 2 * n, n};
+  source["model"]["blocks"][0]["size"] = {1.0, 0.05, 0.05};
+  source["model"]["blocks"][0]["elements"] = {20 * n, n, n};
+  source["loads"][1]["history"] = json::parse("[[0.0, 0.0], [0.2, 5e-5], [0.4, 5e-5], [0.6, 0.0]]");
+  source["time"]["end"] = 1.55;
   source["output"]["watch"] = json::array();
-  for (int row = 0; row <= 20; ++row)
-    source["output"]["watch"].push_back({{"near", {0.05 * row, 0.05, 0.0}}});
+  for (int row = 0; row <= 20; ++row) source["output"]["watch"].push_back({{"near", {0.05 * row, 0.0, 0.0}}});
   Scene scene = scene_of(source.dump());
   Integrator integrator = integrator_of(scene);
   Interface& bond = *scene.interfaces[0];

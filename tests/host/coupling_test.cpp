@@ -131,16 +131,16 @@ TEST(NodeToFacet, GapIsContinuousAcrossFacetsAndOpenBeyondTheBorder) {
       interface.setup().counterpart->refresh(u);
       const ContactPoint contact_point = counterpart.contact_point(0, u, 0.0);
       EXPECT_NEAR(contact_point.gap, z, 1e-15) << x;
-      EXPECT_NEAR(contact_point.normal[2], 1.0, 1e-15);
+      EXPECT_NEAR(contact_point.normal[2], 1.0, 1e-15) << "x " << x;
       double sum = 0.0;
       Eigen::Vector3d foot = Eigen::Vector3d::Zero();
       for (std::size_t i = 0; i < 4; ++i) {
         sum += contact_point.weights[i];
         foot += contact_point.weights[i] * scene.model->position().segment<3>(3 * contact_point.partners[i]);
       }
-      EXPECT_NEAR(sum, 1.0, 1e-15);
-      EXPECT_LE((foot - Eigen::Vector3d(0.3 + x, 0.3 + 0.5 * x, 0.5)).norm(), 1e-14);
-      EXPECT_LE(counterpart.gap_bound(0, u, 0.0), contact_point.gap);
+      EXPECT_NEAR(sum, 1.0, 1e-15) << "x " << x;
+      EXPECT_LE((foot - Eigen::Vector3d(0.3 + x, 0.3 + 0.5 * x, 0.5)).norm(), 1e-14) << "x " << x;
+      EXPECT_LE(counterpart.gap_bound(0, u, 0.0), contact_point.gap) << "x " << x;
     }
   u[3 * node] = -0.5;  // 0.2 beyond the border, and below the surface
   interface.setup().counterpart->refresh(u);
@@ -209,12 +209,12 @@ TEST(Column, EachContactCarriesWhatLiesAboveIt) {
         const Interface& contact = *scene.interfaces[static_cast<std::size_t>(k)];
         EXPECT_NEAR(contact.impulse(contact.active().at(0))[0], 0.01 * (balls - k), 1e-12) << k;
       }
-      EXPECT_LE(integrator.velocity().cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_LE(integrator.velocity().cwiseAbs().maxCoeff(), 1e-12) << "balls " << balls;
     }
-    EXPECT_LE(integrator.tally().sweeps_max, 100);
-    EXPECT_LE(integrator.tally().coupling_residual_max, 1e-14);
-    EXPECT_EQ(integrator.tally().unconverged, 0);
-    EXPECT_TRUE(integrator.warnings().empty());
+    EXPECT_LE(integrator.tally().sweeps_max, 100) << "balls " << balls;
+    EXPECT_LE(integrator.tally().coupling_residual_max, 1e-14) << "balls " << balls;
+    EXPECT_EQ(integrator.tally().unconverged, 0) << "balls " << balls;
+    EXPECT_TRUE(integrator.warnings().empty()) << "balls " << balls;
   }
 }
 

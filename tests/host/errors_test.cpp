@@ -54,11 +54,12 @@ TEST(Norms, OfAJumpDisplacedByOneStepAreOfFirstOrder) {
     const double h = 1.0 / n;
     const double instant = 0.5;
     const Errors errors = errors_against({bounce(instant)}, trace_of(bounce(instant + h), h, n));
-    EXPECT_NEAR(errors.v_L1, 2.0 / n, 1e-12);
-    EXPECT_NEAR(errors.u_max, 2.0 * h / 0.5, 1e-12);
-    EXPECT_NEAR(errors.instant, h, 1e-15);
+    EXPECT_NEAR(errors.v_L1, 2.0 / n, 1e-12) << "n " << n;
+    EXPECT_NEAR(errors.u_max, 2.0 * h / 0.5, 1e-12) << "n " << n;
+    EXPECT_NEAR(errors.instant, h, 1e-15) << "n " << n;
     // Half of the errors are 2 h; the mean square of the motion is 1/12.
-    EXPECT_NEAR(errors.u_L2, std::sqrt(0.5) * 2.0 * h / std::sqrt(1.0 / 12.0), 3.0 * h * h * 10.0);
+    EXPECT_NEAR(errors.u_L2, std::sqrt(0.5) * 2.0 * h / std::sqrt(1.0 / 12.0), 3.0 * h * h * 10.0)
+        << "n " << n;
     steps.push_back(h);
     found["u_L2"].push_back(errors.u_L2);
     found["u_max"].push_back(errors.u_max);

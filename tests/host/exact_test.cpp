@@ -178,6 +178,96 @@ TEST(ExactMotion, BarsRefuseWhatTheyDoNotCover) {
     EXPECT_EQ(refusal_of(scene).substr(0, 33), "/exact: expected one bar at rest,") << refusal_of(scene);
 }
 
+// ---- what has no closed form -----------------------------------------------------------------------------
+
+// A shipped scene, and what is put where so that its closed form no longer holds.
+struct Departure {
+  const char *name, *pointer, *value;
+};
+
+void expect_refusal(const Departure& departure) {
+  json scene = shipped(departure.name);
+  scene[json::json_pointer(departure.pointer)] = json::parse(departure.value);
+  EXPECT_EQ(refusal_of(scene).find("/exact: expected "), 0U)
+      << departure.name << ", " << departure.pointer << " = " << departure.value << ": " << refusal_of(scene);
+}
+
+constexpr const char* resting_points = R"({"type": "points", "dimension": 1, "points": [
+    {"mass": 1, "position": [1]}, {"mass": 1, "position": [2]}]})";
+
+TEST(ExactMotion, OfBarsIsRefusedForEachDepartureFromItsScene) {
+  for (const Departure& departure :
+       {Departure{"two_bars", "/model/bars/0/start", "-0.9"},
+        {"two_bars", "/model/bars/0/velocity", "-1"},
+        {"two_bars", "/model/bars/0/length", "3"},
+        {"two_bars", "/model/bars/1/density", "2"},
+        {"two_bars", "/time/end", "40"},
+        {"two_bars", "/output/watch", "[0]"},
+        {"two_bars", "/loads", R"([{"type": "gravity", "acceleration": [1]}])"},
+        {"two_bars", "/springs", R"([{"nodes": [0], "anchor": [0], "stiffness": 1}])"},
+        {"two_bars", "/initial", R"([{"displacement": [0.001]}])"},
+        {"bar_on_wall", "/model/bars/0/velocity", "10"},
+        {"bar_on_wall", "/model/bars/0/start", "-1"},
+        {"bar_on_wall", "/loads", R"([{"type": "gravity", "acceleration": [1]}])"},
+        {"bar_on_wall", "/output/watch", "[0, 1]"},
+        {"bar_on_wall", "/model/bars/1",
+         R"({"name": "b", "length": 1, "elements": 1, "young": 1, "density": 1})"},
+        {"bouncing_bar", "/loads/0/nodes", "[0]"},
+        {"bouncing_bar", "/loads/0/acceleration", "[10]"},
+        {"bouncing_bar", "/loads", "[]"},
+        {"bouncing_bar", "/model/bars/0/start", "-1"},
+        {"bouncing_bar", "/model/bars/0/start", "0.1"},
+        {"bouncing_bar", "/model/bars/0/initial_displacement", "[0.1, 0.2]"},
+        {"held_rod", "/loads/0/path", "[[0, 0], [1, 0]]"},
+        {"held_rod", "/loads/0/nodes", "[99, 100]"},
+        {"held_rod", "/loads/0/nodes", "[50]"},
+        {"held_rod", "/loads/0", R"({"type": "gravity", "acceleration": [1]})"},
+        {"held_rod", "/model/bars/0/velocity", "1"},
+        {"held_rod", "/model/bars/0/initial_displacement", "[-0.5, 0]"},
+        {"held_rod", "/interfaces/0/obstacle/point", "[-0.1]"},
+        {"glued_bar", "/loads", "[]"},
+        {"glued_bar", "/loads/0/history", "[[0, 1], [1, 1]]"},
+        {"glued_bar", "/loads/0", R"({"type": "gravity", "acceleration": [1]})"},
+        {"glued_bar", "/loads/0/direction", "[-1]"},
+        {"glued_bar", "/interfaces/0/parameters", "{}"},
+        {"glued_bar", "/interfaces/0/parameters/memory", "0.1"},
+        {"glued_bar", "/interfaces/0/parameters/memory", "\"inf\""},
+        {"glued_bar", "/interfaces/0/parameters/initial_adhesion", "10"},
+        {"glued_bar", "/time/end", "3.5"}})
+    expect_refusal(departure);
+}
+
+TEST(ExactMotion, OfPointsIsRefusedForEachDepartureFromItsScene) {
+  for (const Departure& departure :
+       {Departure{"oblique_impact", "/interfaces/0/parameters/friction", "0"},
+        {"oblique_impact", "/interfaces/0/parameters/restitution", "1"},
+        {"oblique_impact", "/interfaces/0/obstacle/normal", "[0.1, 1]"},
+        {"oblique_impact", "/interfaces/0/obstacle/point", "[0, 0.5]"},
+        {"oblique_impact", "/interfaces/0/obstacle",
+         R"({"type": "sphere", "center": [0, 0], "radius": 0.1, "rate": 1})"},
+        {"oblique_impact", "/interfaces/0/obstacle",
+         R"({"type": "sphere", "center": [0, 0], "radius": 0.1})"},
+        {"oblique_impact", "/model/points/0/velocity", "[4, 1]"},
+        {"oblique_impact", "/model/points/0/velocity", "[0, 0]"},
+        {"oblique_impact", "/model/points/1", R"({"mass": 1, "position": [1, 1]})"},
+        {"oblique_impact", "/loads/0/acceleration", "[0, 10]"},
+        {"oblique_impact", "/loads/0", R"({"type": "shock", "nodes": [0], "time": 1, "impulse": [1, 1]})"},
+        {"oblique_impact", "/loads", "[]"},
+        {"postit_test1", "/model", resting_points},
+        {"postit_test1", "/model/points/0/stiffness", "[1]"},
+        {"postit_test1", "/model/points/0/velocity", "[1]"},
+        {"postit_test1", "/interfaces/0/obstacle/normal", "[-1]"},
+        {"postit_test1", "/interfaces/0/obstacle", R"({"type": "sphere", "center": [-1], "radius": 1})"},
+        {"postit_test1", "/interfaces/0/parameters/adhesion_limit", R"({"per_node": [1]})"},
+        {"postit_test1", "/interfaces/0/parameters/rupture", "\"saturated\""},
+        {"postit_test1", "/interfaces/0",
+         R"({"law": "contact", "nodes": "all", "obstacle": {"type": "plane", "point": [0], "normal": [1]}})"},
+        {"postit_test1", "/interfaces/1",
+         R"({"law": "contact", "nodes": "all", "obstacle": {"type": "plane", "point": [0], "normal": [1]}})"},
+        {"bouncing_ball", "/exact", R"({"type": "bouncing_ball"})"}})
+    expect_refusal(departure);
+}
+
 // ---- bars that start deformed ---------------------------------------------------------------------------
 
 // A bar of E = S = L = 1, moved by a at its left and b at its right end, has the strain b - a everywhere: the

@@ -62,15 +62,17 @@ TEST(Fields, HoldWhatTheIntegratorHolds) {
       const int contact_index = interface.contact_index_of(node_index, integrator.displacement());
       belongs[static_cast<std::size_t>(node)] = true;
       // The plane is z = 0.
-      ASSERT_EQ(gap.at(node),
-                scene.model->position()[3 * node + 2] + integrator.displacement()[3 * node + 2]);
+      ASSERT_EQ(gap.at(node), scene.model->position()[3 * node + 2] + integrator.displacement()[3 * node + 2])
+          << "k " << k;
       ASSERT_EQ(status.at(node),
-                interface.is_active(contact_index) ? interface.status(contact_index) : int{ILAW_FREE});
-      ASSERT_EQ(adhesion.at(node), interface.state(contact_index, 0));
-      ASSERT_EQ(ruptures.at(node), interface.state(contact_index, 1));
+                interface.is_active(contact_index) ? interface.status(contact_index) : int{ILAW_FREE})
+          << "k " << k;
+      ASSERT_EQ(adhesion.at(node), interface.state(contact_index, 0)) << "k " << k;
+      ASSERT_EQ(ruptures.at(node), interface.state(contact_index, 1)) << "k " << k;
       for (int c = 0; c < 3; ++c)
         ASSERT_DOUBLE_EQ(traction.at(node, c) * interface.setup().areas[k] * scene.dt,
-                         integrator.interface_impulse()[3 * node + c]);
+                         integrator.interface_impulse()[3 * node + c])
+            << "k " << k << ", c " << c;
       bonded += status.at(node) == double{ILAW_BONDED};
       broken += ruptures.at(node) > 0.0;
     }
@@ -101,7 +103,8 @@ TEST(Fields, HaveTheMeshOfTheModel) {
     std::array<double, 3> x{};
     grid->GetPoint(node, x.data());
     for (int c = 0; c < 3; ++c)
-      ASSERT_EQ(x[static_cast<std::size_t>(c)], scene.model->position()[3 * node + c]);
+      ASSERT_EQ(x[static_cast<std::size_t>(c)], scene.model->position()[3 * node + c])
+          << "node " << node << ", c " << c;
   }
   double volume = 0.0;
   for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
@@ -184,9 +187,10 @@ TEST(Fields, AreListedInASeries) {
     EXPECT_NEAR(
         series["files"][k]["time"].get<double>(),
         static_cast<double>(std::min<std::size_t>(40 * k, summary["steps"])) * summary["dt"].get<double>(),
-        1e-15);
+        1e-15)
+        << "k " << k;
     const auto grid = grid_of(folder / series["files"][k]["name"].get<std::string>());
-    EXPECT_EQ(grid->GetNumberOfPoints(), summary["nodes"].get<int>());
+    EXPECT_EQ(grid->GetNumberOfPoints(), summary["nodes"].get<int>()) << "k " << k;
   }
   source["output"].erase("fields");
   const auto without = fresh_folder();

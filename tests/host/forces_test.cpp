@@ -50,7 +50,7 @@ TEST(Forces, SumToTheChangeOfMomentumWhateverTheRows) {
   for (const int every : {1, 7, 20}) {
     scene["output"]["every"] = every;
     const Ran run = ran(scene);
-    EXPECT_NEAR(run.last("time"), integrator.time(), 1e-12);
+    EXPECT_NEAR(run.last("time"), integrator.time(), 1e-12) << "every " << every;
     for (int axis = 0; axis < 3; ++axis) {
       double sum = 0.0;
       for (const std::string& name : parts) {
@@ -66,7 +66,8 @@ TEST(Forces, SumToTheChangeOfMomentumWhateverTheRows) {
       EXPECT_NEAR(sum, momentum(axis) - start[static_cast<std::size_t>(axis)], 1e-12)
           << "axis " << axis << ", every " << every;
       EXPECT_EQ(run.history.at("b.z_max.F" + std::to_string(axis)),
-                run.history.at("grip.F" + std::to_string(axis)));
+                run.history.at("grip.F" + std::to_string(axis)))
+          << "every " << every << ", axis " << axis;
     }
     for (const std::string& name : parts) {
       const auto column = [&](const char* axis) { return run.history.at(name + axis); };
@@ -76,8 +77,8 @@ TEST(Forces, SumToTheChangeOfMomentumWhateverTheRows) {
       EXPECT_NEAR(run.summary["forces"][name]["largest"].get<double>(), largest, 1e-12 * largest)
           << name << ", every " << every;
     }
-    EXPECT_GT(std::abs(first["floor.F2"]), 0.5);
-    EXPECT_NEAR(first["blow.F2"], 9 * 0.002, 1e-15);
+    EXPECT_GT(std::abs(first["floor.F2"]), 0.5) << "every " << every;
+    EXPECT_NEAR(first["blow.F2"], 9 * 0.002, 1e-15) << "every " << every;
   }
 }
 
@@ -142,8 +143,9 @@ TEST(Forces, OfSpringsAreTheChangeOfMomentumOfTheirNodes) {
       // Springs 0-1 and 2-0 act on 0 and 2 as on their own: of the second, 0 has the opposite.
       EXPECT_NEAR(gained(1), rope - (strut - gained(2)), 1e-13) << "axis " << axis << ", h " << h;
       EXPECT_NEAR(run.summary["forces"]["strut"]["impulse"][static_cast<std::size_t>(axis)].get<double>(),
-                  strut, 1e-13);
-      EXPECT_GT(std::abs(strut) + std::abs(rope), 0.1);
+                  strut, 1e-13)
+          << "h " << h << ", axis " << axis;
+      EXPECT_GT(std::abs(strut) + std::abs(rope), 0.1) << "h " << h << ", axis " << axis;
     }
     for (const double moment : run.history.at("rope.M0")) ASSERT_NEAR(moment, 0.0, 1e-14) << h;
   }

@@ -33,8 +33,8 @@ TEST(Initial, DisplacementOfASpringSwingsAsACosine) {
       EXPECT_NEAR(integrator.displacement()[0], 0.1 * std::cos(2.0 * std::asin(h) * n), 1e-13) << h;
       EXPECT_NEAR(integrator.displacement()[1], 0.3 * std::cos(2.0 * std::asin(1.5 * h) * n), 1e-13) << h;
     }
-    EXPECT_EQ(integrator.displacement()[2], 0.0);
-    EXPECT_LT(integrator.energy().balance_error, 1e-13);
+    EXPECT_EQ(integrator.displacement()[2], 0.0) << "h " << h;
+    EXPECT_LT(integrator.energy().balance_error, 1e-13) << "h " << h;
   }
 }
 

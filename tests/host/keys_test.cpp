@@ -55,8 +55,8 @@ TEST(Tangent, TellsWhichWayFrictionIsLarger) {
     const Eigen::Vector3d first = v.head<3>(), second = v.tail<3>();
     EXPECT_NEAR(first.dot(t1), 1.0 - mu_1 * g * time, mu_1 * g * h) << angle;
     EXPECT_NEAR(second.dot(t2), 1.0 - mu_2 * g * time, mu_2 * g * h) << angle;
-    EXPECT_NEAR(first.dot(t2), 0.0, 1e-12);
-    EXPECT_NEAR(second.dot(t1), 0.0, 1e-12);
+    EXPECT_NEAR(first.dot(t2), 0.0, 1e-12) << "angle " << angle;
+    EXPECT_NEAR(second.dot(t1), 0.0, 1e-12) << "angle " << angle;
   }
 }
 

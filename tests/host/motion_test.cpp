@@ -108,13 +108,13 @@ TEST(SlidingBlock, StopsAtItsDistanceAndKeepsItsDirection) {
       while (integrator.steps() < scene.steps) integrator.step();
       const Dofs& u = integrator.displacement();
       // Rounding of up to 4600 sums below 0.5.
-      EXPECT_NEAR(u[0] * 1.6, u[1] * 1.2, 4600 * 0.5 * 2.2e-16);
-      EXPECT_EQ(integrator.velocity().head(2).norm(), 0.0);
+      EXPECT_NEAR(u[0] * 1.6, u[1] * 1.2, 4600 * 0.5 * 2.2e-16) << "h " << h << ", friction " << friction;
+      EXPECT_EQ(integrator.velocity().head(2).norm(), 0.0) << "h " << h << ", friction " << friction;
       error += std::abs(std::hypot(u[0], u[1]) - 2.0 * 2.0 / (2.0 * friction * 10.0)) / 4.0;
     }
     steps.push_back(h);
     errors.push_back(error);
-    EXPECT_LE(error, 2.0 * h);
+    EXPECT_LE(error, 2.0 * h) << "h " << h;
   }
   EXPECT_GE(order(steps, errors), 0.9);
 }
@@ -146,9 +146,9 @@ TEST(MovingPlane, CarriesItsPoint) {
         motion + "}}]}");
     Integrator integrator = integrator_of(scene);
     while (integrator.steps() < scene.steps) integrator.step();
-    EXPECT_NEAR(integrator.displacement()[0], 0.5, 2e-3);
-    EXPECT_NEAR(integrator.velocity()[0], 0.5, 1e-12);
-    EXPECT_LE(integrator.energy().balance_error, 1e-12);
+    EXPECT_NEAR(integrator.displacement()[0], 0.5, 2e-3) << "motion " << motion;
+    EXPECT_NEAR(integrator.velocity()[0], 0.5, 1e-12) << "motion " << motion;
+    EXPECT_LE(integrator.energy().balance_error, 1e-12) << "motion " << motion;
   }
 }
 
@@ -181,7 +181,7 @@ TEST(MovingPlane, CountsWithItsVelocityBeforeAndAfterAKink) {
     Integrator integrator = integrator_of(scene);
     while (integrator.steps() < scene.steps) integrator.step();
     EXPECT_NEAR(integrator.velocity()[0], w + 0.5, 1e-12) << w;
-    EXPECT_LE(integrator.energy().balance_error, 1e-12);
+    EXPECT_LE(integrator.energy().balance_error, 1e-12) << "w " << w;
   }
 }
 
@@ -215,11 +215,11 @@ TEST(Shock, EntersExactlyOneStep) {
           R"(, "impulse": [1.0]}], "interfaces": []})");
       Integrator integrator = integrator_of(scene);
       while (integrator.steps() < n - 1) integrator.step();
-      EXPECT_EQ(integrator.velocity()[0], 0.0);
+      EXPECT_EQ(integrator.velocity()[0], 0.0) << "n " << n;
       integrator.step();
-      EXPECT_EQ(integrator.velocity()[0], 1.0);
+      EXPECT_EQ(integrator.velocity()[0], 1.0) << "n " << n;
       while (integrator.steps() < 310) integrator.step();
-      EXPECT_EQ(integrator.velocity()[0], 1.0);
+      EXPECT_EQ(integrator.velocity()[0], 1.0) << "n " << n;
     }
 }
 

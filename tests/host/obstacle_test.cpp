@@ -72,7 +72,7 @@ TEST(Obstacle, HasAGapThatIsADistanceAlongItsNormal) {
     const Vector3d x = random_vector(random);
     for (const Obstacle* obstacle : std::initializer_list<const Obstacle*>{&plane, &sphere, &cylinder}) {
       const RigidSurface surface = obstacle->at(x, 0.0);
-      ASSERT_NEAR(surface.normal.norm(), 1.0, 1e-15);
+      ASSERT_NEAR(surface.normal.norm(), 1.0, 1e-15) << "draw " << draw;
       ASSERT_NEAR(obstacle->at(x - surface.gap * surface.normal, 0.0).gap, 0.0, 1e-14) << draw;
       ASSERT_NEAR(obstacle->at(x + 0.3 * surface.normal, 0.0).gap, surface.gap + 0.3, 1e-14) << draw;
     }
@@ -97,8 +97,9 @@ TEST(MovingObstacle, IsTheOneAtRestDisplaced) {
       const Vector3d center = random_vector(random), x = random_vector(random);
       const double time = 0.003 * draw;
       const Sphere moving(center, 0.5, motion), resting(center, 0.5, still());
-      EXPECT_EQ(moving.at(x, time).gap, resting.at(x - motion.displacement(time), 0.0).gap);
-      EXPECT_EQ(Vector3d(moving.velocity(0.1, 0.2)), Vector3d(motion.velocity(0.1, 0.2)));
+      EXPECT_EQ(moving.at(x, time).gap, resting.at(x - motion.displacement(time), 0.0).gap)
+          << "draw " << draw;
+      EXPECT_EQ(Vector3d(moving.velocity(0.1, 0.2)), Vector3d(motion.velocity(0.1, 0.2))) << "draw " << draw;
     }
 }
 
@@ -206,7 +207,7 @@ TEST(Damping, DecaysExponentiallyToSecondOrder) {
     steps.push_back(dt);
     v_errors.push_back((integrator.velocity() - std::exp(-rate * (t + 0.5 * dt)) * start).norm());
     u_errors.push_back((integrator.displacement() - (1.0 - std::exp(-rate * t)) / rate * start).norm());
-    EXPECT_LE(integrator.energy().balance_error, 1e-14);
+    EXPECT_LE(integrator.energy().balance_error, 1e-14) << "dt " << dt;
   }
   EXPECT_NEAR(order(steps, v_errors), 2.0, 0.05);
   EXPECT_NEAR(order(steps, u_errors), 2.0, 0.05);

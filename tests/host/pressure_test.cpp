@@ -147,9 +147,9 @@ TEST(Pressure, WorksOnTheVolume) {
     const double work = p * (before - volume_of(*scene.model, u));
     steps.push_back(h);
     errors.push_back(std::abs(integrator.energy().external_work - work));
-    EXPECT_GT(work, 0.02);
+    EXPECT_GT(work, 0.02) << "h " << h;
     EXPECT_LT(errors.back(), 0.5 * h * h) << h;
-    EXPECT_LT(integrator.energy().balance_error, 1e-12);
+    EXPECT_LT(integrator.energy().balance_error, 1e-12) << "h " << h;
   }
   EXPECT_GT(order(steps, errors), 1.8);
 }

@@ -330,7 +330,7 @@ TEST(Program, ListsAndDescribesLaws) {
   const Outcome list = run_program("list");
   EXPECT_EQ(list.code, 0);
   for (const char* law : {"contact", "coulomb", "postit"})
-    EXPECT_NE(list.output.find(law), std::string::npos);
+    EXPECT_NE(list.output.find(law), std::string::npos) << "law " << law;
   const Outcome described = run_program("describe postit --json");
   const nlohmann::json postit = nlohmann::json::parse(described.output);
   EXPECT_EQ(postit["laws"][0]["id"], "postit");

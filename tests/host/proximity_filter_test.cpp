@@ -259,6 +259,33 @@ json soft_block(const char* name, const json& corner, const json& size, const js
           {"material", {{"type", "neo_hookean"}, {"young", 1e3}, {"poisson", 0.3}, {"density", 1.0}}}};
 }
 
+// A plate turns over below a block that is far off and flies away from it: now the block is behind the
+// surface, which lets it go no further, however little the two have approached. What was known of the gap
+// holds for as long as the surface is not looked for again, no longer.
+TEST(ProximityFilter, SeesASurfaceTurnItsBack) {
+  constexpr double rate = 10.0, mass = 0.025;  // of a node
+  json loads = json::array();
+  for (int node = 0; node < 8; ++node) {
+    const double x = node % 2 - 0.5, z = 0.2 * (node / 4 - 0.5);
+    loads.push_back({{"type", "shock"},
+                     {"nodes", {node}},
+                     {"time", 0.0005},
+                     {"impulse", {mass * rate * z, 0.0, -mass * rate * x}}});
+  }
+  const Tally tally = expect_same_bits(
+      {{"model",
+        {{"type", "blocks"},
+         {"blocks",
+          {soft_block("plate", {-0.5, -0.5, -0.1}, {1, 1, 0.2}, {1, 1, 1}, {0, 0, 0}),
+           soft_block("far", {-0.05, -0.05, 30}, {0.1, 0.1, 0.1}, {1, 1, 1}, {0, 0, 1})}}}},
+       {"time", {{"dt", 1e-3}, {"end", 0.4}}},
+       {"loads", loads},
+       {"interfaces",
+        {{{"law", "contact"}, {"nodes", "far.z_min"}, {"against", {{"surface", "plate.z_max"}}}}}}});
+  EXPECT_GT(tally.skipped, 100);
+  EXPECT_GT(tally.status_counts[ILAW_CLOSED], 0);
+}
+
 // Contacts share nodes, and are solved in an order that must not depend on which are active: a block is
 // thrown on another one, with a third far above it, whose nodes come first in the list and would, if active,
 // share the same facets.

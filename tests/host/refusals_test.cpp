@@ -106,6 +106,161 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/output/every", "0", "/output/every: found 0, expected integer >= 1"},
         Mistake{"/output/every", "1.5", "/output/every: found 1.5, expected integer >= 1"}));
 
+INSTANTIATE_TEST_SUITE_P(
+    Obstacle, Mistakes,
+    ::testing::Values(
+        Mistake{"/interfaces/0/against", R"({"nodes": [1], "normal": [0, 1]})",
+                "/interfaces/0: found both 'obstacle' and 'against', expected one of 'obstacle' (rigid) and "
+                "'against' (another body)"},
+        Mistake{"/interfaces/0/obstacle",
+                R"({"type": "cylinder", "point": [0, 0], "axis": [0, 1], "radius": 1})",
+                "/interfaces/0/obstacle/type: found \"cylinder\" in 2D, expected a model in 3D"},
+        Mistake{"/interfaces/0/obstacle/rate", "1",
+                "/interfaces/0/obstacle/rate: found \"plane\" in 2D, expected none: it cannot turn and keep"},
+        Mistake{"/interfaces/0/obstacle",
+                R"({"type": "sphere", "center": [0, 0], "radius": 1, "rate": 1, "angles": [[0, 0], [1, 1]]})",
+                "/interfaces/0/obstacle: found both 'rate' and 'angles', expected at most one of them"},
+        Mistake{"/interfaces/0/obstacle",
+                R"({"type": "sphere", "center": [0, 0], "radius": 1, "rate": 1, "axis": [0, 1]})",
+                "/interfaces/0/obstacle/axis: found [0,1], expected none: discs turn in their plane"},
+        Mistake{"/interfaces/0/obstacle",
+                R"({"type": "plane", "point": [0, 0], "normal": [0, 1], "velocity": [0, 1],
+                    "path": [[0, 0, 0], [1, 0, 0]]})",
+                "/interfaces/0/obstacle: found both 'velocity' and 'path', expected at most one of them"},
+        Mistake{"/interfaces/0/obstacle/path", "[[0, 0, 0], [1, 0]]",
+                "/interfaces/0/obstacle/path/1: found 2 numbers, expected 3 (time and values)"},
+        Mistake{"/interfaces/0/obstacle/path", "[[0, 0, 0], [0, 1, 0]]",
+                "/interfaces/0/obstacle/path/1: found time 0, expected one after 0"},
+        Mistake{"/interfaces/0/tangent", "[0, 1]",
+                "/interfaces/0/tangent: found [0,1], expected a direction across the normal"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Against, Mistakes,
+    ::testing::Values(
+        Mistake{"/interfaces/0", R"({"law": "contact", "nodes": [0], "against": {"nodes": [1]}})",
+                "/interfaces/0/against: found {\"nodes\":[1]}, expected 'nodes' and 'normal', or 'surface'"},
+        Mistake{"/interfaces/0",
+                R"({"law": "contact", "nodes": [0, 1], "against": {"nodes": [1], "normal": [0, 1]}})",
+                "/interfaces/0/against/nodes: found 1 nodes, expected one for each of the 2 nodes of the"},
+        Mistake{"/interfaces/0",
+                R"({"law": "contact", "nodes": [0], "against": {"nodes": [0], "normal": [0, 1]}})",
+                "/interfaces/0/against/nodes: node 0 would meet itself, expected another node"},
+        Mistake{
+            "/interfaces/0",
+            R"({"law": "coulomb", "nodes": [0], "parameters": {"friction": 1}, "tangent": [1, 0],
+                    "obstacle": {"type": "sphere", "center": [0, 0], "radius": 0.1}})",
+            "/interfaces/0/tangent: found a tangent, expected none: the normal of the counterpart turns"}));
+
+// Whole scenes, of one point on a line or of a block.
+INSTANTIATE_TEST_SUITE_P(
+    Whole, Mistakes,
+    ::testing::Values(
+        Mistake{
+            "",
+            R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0], "area": 0}]},
+                        "time": {"dt": 1e-3, "end": 1}, "interfaces": [],
+                        "loads": [{"type": "force", "nodes": "all", "direction": [1], "total": true,
+                                   "history": [[0, 1]]}]})",
+            "/loads/0/nodes: the nodes have no area to share a total force by"},
+        Mistake{"", R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0]}]},
+                        "time": {"dt": 1e-3, "end": 1}, "interfaces": [],
+                        "loads": [{"name": "pull", "type": "force", "nodes": "all", "direction": [1],
+                                   "history": [[0, 1]]}],
+                        "output": {"forces": [{"of": "pull", "about": [0]}]}})",
+                "/output/forces/0/about: found [0], expected none: forces on a line have no moment"},
+        Mistake{
+            "", R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0]}]},
+                        "time": {"dt": 1e-3, "end": 1}, "interfaces": [], "output": {"forces": ["pull"]}})",
+            "/output/forces/0: found \"pull\", expected the name of an interface, of a load, of springs, or of a "
+            "set that a motion drives: the scene has none"},
+        Mistake{"", R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0]}]},
+                        "time": {"dt": 1e-3, "end": 1}, "interfaces": [],
+                        "loads": [{"type": "shock", "nodes": "all", "time": 0, "impulse": [1]}]})",
+                "/loads/0/time: found 0, expected a time > 0"},
+        Mistake{
+            "",
+            R"({"model": {"type": "blocks", "blocks": [{"name": "b", "size": [1, 1, 1], "elements": [1, 1, 1],
+                          "material": {"type": "linear", "young": 1, "poisson": 0.3, "density": 1}}]},
+                        "time": {"cfl": 0.9, "end": 1},
+                        "interfaces": [{"law": "contact", "nodes": "b.x_min", "against": {"surface": "b.z_max"}}]})",
+            "/interfaces/0/against/surface: node 4 would meet its own facet, expected the surface of another"},
+        Mistake{
+            "",
+            R"({"model": {"type": "blocks", "blocks": [{"name": "b", "size": [1, 1, 1], "elements": [1, 1, 1],
+                          "material": {"type": "linear", "young": 1, "poisson": 0.3, "density": 1}}]},
+                        "time": {"cfl": 0.9, "end": 1},
+                        "interfaces": [{"law": "contact", "nodes": "b.z_min", "obstacle": {"type": "sphere",
+                          "center": [0, 0, -1], "radius": 1, "rate": 1}}]})",
+            "/interfaces/0/obstacle: key 'axis' is missing, about which the sphere turns"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Names, Mistakes,
+    ::testing::Values(
+        Mistake{"/interfaces/1",
+                R"({"name": "interface0", "law": "contact", "nodes": [0],
+                    "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}})",
+                "/interfaces/1/name: found 'interface0' twice, expected a different name for each"},
+        Mistake{"/output/forces", "[\"interface0\", \"interface0\"]",
+                "/output/forces/1: found 'interface0' twice, expected each once"},
+        Mistake{"/output/forces", "[{\"of\": \"interface\"}]",
+                "/output/forces/0/of: found \"interface\", expected the name of an interface, of a load"},
+        Mistake{"/loads/0/name", "\"interface0\"",
+                "/loads/0/name: found 'interface0' twice, expected a name that"},
+        Mistake{"/interfaces/0/nodes", R"({"box": [[5, 5], [6, 6]]})",
+                "/interfaces/0/nodes/box: found no node inside, expected at least one"},
+        Mistake{"/loads/0", R"({"type": "motion", "nodes": [0], "axes": [2]})",
+                "/loads/0/axes: found axis 2, expected 0 to 1"},
+        Mistake{
+            "/loads/0", R"({"type": "motion", "nodes": [0]})",
+            "/interfaces/0/nodes: found node 0, whose motion is prescribed by a load, expected nodes that"},
+        Mistake{
+            "/interfaces/0/parameters/friction", R"({"values": [0.1, 0.2]})",
+            "/interfaces/0/parameters/friction: found {\"values\":[0.1,0.2]}, expected a number, \"inf\""},
+        Mistake{"/interfaces/0/parameters/friction", R"({"table": 3})",
+                "/interfaces/0/parameters/friction/table: found 3, expected an array"},
+        Mistake{"/interfaces/0/parameters/friction", R"({"table": [[0, 1], [1]]})",
+                "/interfaces/0/parameters/friction/table/1: found [1], expected [time, value]"},
+        Mistake{
+            "/interfaces/0/parameters/friction", R"({"table": [[0, 1], [1, "high"]]})",
+            "/interfaces/0/parameters/friction/table/1/1: found \"high\", expected a number or \"inf\""}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Springs, Mistakes,
+    ::testing::Values(
+        Mistake{
+            "/springs", R"([{"nodes": [0], "stiffness": 1, "to": [1], "anchor": [0, 0]}])",
+            "/springs/0: found both 'to' and 'anchor', expected one of 'to' (nodes) and 'anchor' (a fixed"},
+        Mistake{"/springs", R"([{"nodes": [0], "stiffness": 1}])",
+                "/springs/0: found neither, expected one of 'to' (nodes) and 'anchor'"},
+        Mistake{
+            "/springs", R"([{"nodes": [0], "anchor": [0, 0]}])",
+            "/springs/0: found {\"anchor\":[0,0],\"nodes\":[0]}, expected 'stiffness', 'damping' or both"},
+        Mistake{"/springs", R"([{"nodes": [0, 1], "stiffness": 1, "to": [1]}])",
+                "/springs/0/to: found 1 nodes, expected one for each of the 2 nodes of 'nodes'"},
+        Mistake{"/springs", R"([{"nodes": [0, 1], "stiffness": 1, "to": [1, 1]}])",
+                "/springs/0/to/1: found node 1 twice, expected each node once"},
+        Mistake{"/springs", R"([{"nodes": [0], "stiffness": 1, "to": [0]}])",
+                "/springs/0/to: found node 0 at both ends, expected another node"}));
+
+TEST(Scene, OfAnotherKindOfValueIsRefused) {
+  EXPECT_EQ(refusal_of_text("[]").find("/: found [], expected object"), 0U) << refusal_of_text("[]");
+  for (const char* pointer : {"/model", "/model/type", "/interfaces/0", "/interfaces/0/obstacle", "/loads/0",
+                              "/interfaces/0/obstacle/type", "/loads", "/interfaces"}) {
+    json scene = good_scene();
+    scene[json::json_pointer(pointer)] = 3;
+    EXPECT_EQ(refusal_of_text(scene.dump()).find(std::string(pointer) + ": found 3, expected "), 0U)
+        << refusal_of_text(scene.dump());
+  }
+}
+
+TEST(Scene, WithManyMistakesNamesSomeAndCountsTheOthers) {
+  json scene = good_scene();
+  for (int k = 0; k < 30; ++k) scene["key" + std::to_string(k)] = k;
+  const std::string refusal = refusal_of_text(scene.dump());
+  EXPECT_EQ(refusal.find("/key0: unknown key"), 0U) << refusal;
+  EXPECT_EQ(refusal.substr(refusal.size() - 5), " more") << refusal;
+}
+
 TEST(Scene, WithAMissingKeyIsRefused) {
   json scene = good_scene();
   scene["interfaces"][0].erase("nodes");
@@ -125,12 +280,13 @@ TEST(Scene, NestedTooDeepIsRefusedWhereItIs) {
   for (const int depth : {65, 100000}) {
     const auto n = static_cast<std::size_t>(depth);
     const std::string arrays = std::string(n, '[') + std::string(n, ']');
-    EXPECT_EQ(refusal_of_text(arrays), "/: " + refusal);
+    EXPECT_EQ(refusal_of_text(arrays), "/: " + refusal) << "depth " << depth;
     EXPECT_EQ(refusal_of_text(R"({"time": {"dt": 1e-3}, "interfaces": )" + arrays + "}"),
-              "/interfaces: " + refusal);
+              "/interfaces: " + refusal)
+        << "depth " << depth;
     std::string objects = "1";
     for (int k = 0; k < 65; ++k) objects = "{\"a\": " + objects + "}";
-    EXPECT_EQ(refusal_of_text(R"({"model": )" + objects + "}"), "/model: " + refusal);
+    EXPECT_EQ(refusal_of_text(R"({"model": )" + objects + "}"), "/model: " + refusal) << "depth " << depth;
   }
 }
 

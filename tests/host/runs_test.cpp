@@ -55,7 +55,7 @@ TEST(Sweep, RunsEachValueAndGathersTheSummaries) {
     EXPECT_NEAR(std::stod(cell(rows, k, "energy.dissipated_friction")), 0.5 * mass * 4, 0.02 * mass) << k;
     EXPECT_NEAR(std::stod(cell(rows, k, "forces.floor.impulse.0")), -2 * mass, 1e-9) << k;
     const json summary = json::parse(text_of(folder / "all" / rows[k][0] / "summary.json"));
-    EXPECT_EQ(summary["scene"]["source"]["interfaces"][0]["parameters"]["friction"], friction);
+    EXPECT_EQ(summary["scene"]["source"]["interfaces"][0]["parameters"]["friction"], friction) << "k " << k;
   }
   // A table of some of them, by columns of the summary and of the history.
   const std::string one = (folder / "all" / "friction=0.1_mass=1").string(),
@@ -92,12 +92,117 @@ TEST(Sweep, RunsNothingIfOneIsRefused) {
            {"/time/dt=0.1,fast", "dt=fast: /time/dt: found \"fast\""},
            {"/interfaces/1/skip=true", "/interfaces/1/skip: found nothing there to set"},
            {"/output/evry=1", "/output/evry: unknown key"},
-           {"friction=1", "--set friction=1: expected /pointer=value"}}) {
+           {"friction=1", "--set friction=1: expected /pointer=value"},
+           {"/time/d~t=1", "--set /time/d~t=1: expected a JSON pointer before '='"}}) {
     const Outcome outcome = run_program(run + setting);
     EXPECT_EQ(outcome.code, 2) << setting;
     EXPECT_NE(outcome.output.find(message), std::string::npos) << outcome.output;
     EXPECT_FALSE(std::filesystem::exists(folder / "all")) << setting;
   }
+}
+
+// Commas in brackets and quotes belong to a value; settings whose last keys are alike have their whole names,
+// and values that are alike a number.
+TEST(Sweep, TellsValuesAndNamesApart) {
+  const auto folder = fresh_folder();
+  json scene = sliding();
+  scene["time"]["end"] = 0.01;
+  std::ofstream(folder / "scene.json") << scene.dump();
+  const std::string run = "run " + (folder / "scene.json").string() + " --out " + folder.string();
+  for (const auto& [settings, names] : std::map<std::string, std::vector<std::string>>{
+           {"--set '/model/points/0/velocity=[2,0],[1,0]'", {"velocity=_2_0_", "velocity=_1_0_"}},
+           {"--set '/title=\"a, b\",c'", {"title=a__b", "title=c"}},
+           {"--set /model/points/0/velocity/0=1 --set /model/points/0/position/0=2,2",
+            {"model.points.0.velocity.0=1_model.points.0.position.0=2",
+             "model.points.0.velocity.0=1_model.points.0.position.0=2_1"}}}) {
+    const Outcome outcome = run_program(run + " " + settings);
+    ASSERT_EQ(outcome.code, 0) << settings << outcome.output;
+    for (const std::string& name : names)
+      EXPECT_TRUE(std::filesystem::exists(folder / name / "summary.json")) << settings << ": " << name;
+  }
+}
+
+TEST(Sweep, CountsTheRunsThatFail) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << sliding().dump();
+  const Outcome outcome = run_program("run " + (folder / "scene.json").string() + " --out " +
+                                      folder.string() + " --set /model/points/0/velocity/0=1,1e200");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.output.find("2 runs, 1 failed; their summaries in "), std::string::npos)
+      << outcome.output;
+  EXPECT_EQ(rows_of(text_of(folder / "sweep.csv")).size(), 3U);
+}
+
+TEST(Plot, SaysWhatIsNoHistory) {
+  const auto folder = fresh_folder(), good = folder / "good", odd = folder / "odd";
+  json scene = sliding();
+  scene["time"]["end"] = 0.1;
+  std::ofstream(folder / "scene.json") << scene.dump();
+  ASSERT_EQ(run_program("run " + (folder / "scene.json").string() + " --out " + good.string()).code, 0);
+  const auto refused = [&](const std::string& command, const std::string& said) {
+    const Outcome outcome = run_program(command);
+    EXPECT_EQ(outcome.code, 2) << command;
+    EXPECT_NE(outcome.output.find(said), std::string::npos) << command << ": " << outcome.output;
+  };
+  std::filesystem::create_directories(odd);
+  refused("plot " + odd.string(), "found no such file, expected the history");
+  std::filesystem::create_directories(odd / "history.csv");
+  refused("plot " + odd.string(), "found something that is no file, expected the history");
+  std::filesystem::remove(odd / "history.csv");
+  std::ofstream(odd / "history.csv") << "time\n0\n";
+  refused("plot " + odd.string(), "found no column besides time, expected the history");
+  refused("plot " + good.string() + " " + odd.string() + "/", "found no summary, expected that of a run");
+  std::ofstream(odd / "summary.json") << "[]";
+  refused("table " + odd.string(), "found no summary, expected that of a run");
+  refused("plot " + good.string() + " --panels velocty", "--panels: found 'velocty', expected some of ");
+  refused("plot " + good.string() + " " + good.string() + " --panels velocity",
+          "--panels: found with several folders or --x");
+  refused("table " + good.string() + " --columns n0.u0:median",
+          "n0.u0:median: found 'median', expected one of last, min, max, mean");
+  ASSERT_EQ(run_program("plot " + good.string() + "/ --panels velocity").code, 0);
+  EXPECT_NE(text_of(good / "history.gnuplot").find("'velocity'"), std::string::npos);
+  const Outcome table = run_program("table " + good.string() + "/ --csv --columns n0.u0:min,n0.v0:last");
+  EXPECT_EQ(rows_of(table.output).size(), 2U) << table.output;
+  EXPECT_EQ(run_program("table " + good.string()).code, 0);
+}
+
+TEST(Plot, SaysWhyThereIsNoPicture) {
+  const auto folder = fresh_folder(), programs = folder / "bin";
+  json scene = sliding();
+  scene["time"]["end"] = 0.1;
+  std::ofstream(folder / "scene.json") << scene.dump();
+  ASSERT_EQ(run_program("run " + (folder / "scene.json").string() + " --out " + folder.string()).code, 0);
+  std::filesystem::create_directories(programs);
+  const auto said = [&] {
+    const Outcome outcome = run_program("plot " + folder.string(), "PATH=" + programs.string() + " ");
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_FALSE(std::filesystem::exists(folder / "history.png"));
+    return outcome.output;
+  };
+  EXPECT_EQ(said(), "ilaw: gnuplot cannot be started; it is in the package gnuplot-nox\n");
+  std::ofstream(programs / "gnuplot") << "#!/bin/sh\nexit 3\n";
+  std::filesystem::permissions(programs / "gnuplot", std::filesystem::perms::owner_all);
+  EXPECT_EQ(said(),
+            "ilaw: gnuplot failed; run it on " + (folder / "history.gnuplot").string() + " to see why\n");
+}
+
+// One that watches a node, one that sums forces: no picture has both.
+TEST(Plot, OfRunsWithoutAColumnInCommonIsRefused) {
+  const auto folder = fresh_folder();
+  std::string folders;
+  for (const auto& [name, output] :
+       {std::pair{"watched", R"({"watch": [0]})"}, {"summed", R"({"forces": ["floor"]})"}}) {
+    json scene = sliding();
+    scene["time"]["end"] = 0.1;
+    scene["output"] = json::parse(output);
+    const auto file = folder / (std::string(name) + ".json"), out = folder / name;
+    std::ofstream(file) << scene.dump();
+    ASSERT_EQ(run_program("run " + file.string() + " --out " + out.string()).code, 0) << name;
+    folders += " " + out.string();
+  }
+  const Outcome outcome = run_program("plot" + folders);
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.output.find("found no columns that all runs have"), std::string::npos) << outcome.output;
 }
 
 // 45 nodes: panels of an envelope each.

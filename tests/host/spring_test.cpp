@@ -54,7 +54,7 @@ TEST(RotatingSpring, HasAnEnergyErrorOfSecondOrderWithoutDrift) {
     }
     steps.push_back(dt);
     errors.push_back(second_half);
-    EXPECT_LE(second_half, 1.01 * first_half);
+    EXPECT_LE(second_half, 1.01 * first_half) << "dt " << dt;
   }
   EXPECT_NEAR(order(steps, errors), 2.0, 0.05);
 }
@@ -87,7 +87,7 @@ TEST(RotatingSpring, DivergesBeyondItsCriticalStepOnly) {
     std::string text = spring(0.1, 20.0, "");
     text.replace(text.find("[0.0, 3.0]"), 10, "[0.0, 0.0]");
     Scene scene = scene_of(text);
-    EXPECT_NEAR(scene.model->critical_step(), 0.2, 1e-15);
+    EXPECT_NEAR(scene.model->critical_step(), 0.2, 1e-15) << "part " << part;
     Integrator integrator(*scene.model, scene.loads, scene.interfaces, part * 0.2);
     double farthest = 0.0;
     for (int k = 0; k < 60; ++k) {

@@ -44,7 +44,7 @@ TEST(Stress, OfAHomogeneousDeformationIsTheClosedForm) {
            {std::pair{"linear", hooke}, std::pair{"neo_hookean", cauchy}}) {
         const Scene scene = scene_of(block_of(material, element));
         const auto stresses = scene.model->stresses(affine(*scene.model, F));
-        ASSERT_EQ(stresses.size(), 6U);
+        ASSERT_EQ(stresses.size(), 6U) << "size " << size;
         for (const Eigen::Matrix3d& stress : stresses)
           EXPECT_LE((stress - expected).norm(), 1e-9 * expected.norm())
               << material << ", " << element << ", size " << size;
@@ -83,7 +83,7 @@ TEST(Stress, StandsInTheFields) {
     const double squares = std::pow(s(0, 0) - s(1, 1), 2) + std::pow(s(1, 1) - s(2, 2), 2) +
                            std::pow(s(2, 2) - s(0, 0), 2),
                  shears = s(0, 1) * s(0, 1) + s(1, 2) * s(1, 2) + s(0, 2) * s(0, 2);
-    ASSERT_NEAR(mises.GetComponent(cell, 0), std::sqrt(0.5 * squares + 3.0 * shears), 1e-6);
+    ASSERT_NEAR(mises.GetComponent(cell, 0), std::sqrt(0.5 * squares + 3.0 * shears), 1e-6) << "k " << k;
     largest = std::max(largest, mises.GetComponent(cell, 0));
   }
   EXPECT_GT(largest, 1e4);

@@ -73,7 +73,8 @@ TEST(Cost, LiesOnTheLineBetweenRuns) {
     for (const double steps : {13.0, 177.0, 9999.0}) {
       const Cost cost = cost_of(runs, norm_u_L2, 3.0 * std::pow(steps, -order));
       EXPECT_NEAR(cost.steps / steps, 1.0, 1e-12) << order << ", " << steps;
-      EXPECT_NEAR(cost.seconds, 1e-6 * cost.steps, 1e-12 * cost.steps);
+      EXPECT_NEAR(cost.seconds, 1e-6 * cost.steps, 1e-12 * cost.steps)
+          << "order " << order << ", steps " << steps;
     }
   }
 }
@@ -119,7 +120,8 @@ TEST(StudyLaws, ScaledParametersAreInUnitsOfTheNodeAndTheStep) {
   for (const int elements : {10, 35}) {
     bar["model"]["bars"][0]["elements"] = elements;
     const json of_bar = with_law(bar, entry, 0.01, "scene.json")["interfaces"][0]["parameters"];
-    EXPECT_NEAR(of_bar["stiffness"].get<double>(), 3.0 * 900.0 * elements / (2.0 * 10.0), 1e-6);
+    EXPECT_NEAR(of_bar["stiffness"].get<double>(), 3.0 * 900.0 * elements / (2.0 * 10.0), 1e-6)
+        << "elements " << elements;
   }
 }
 
@@ -271,6 +273,22 @@ TEST(Study, TakesTheUsualLawsWhereTheSceneListsNone) {
   EXPECT_NE(study.outcome.output.find("implicit 100.0"), std::string::npos) << study.outcome.output;
 }
 
+// Of a scene with friction they have it, too; one with another law is compared with itself.
+TEST(Study, TakesLawsThatSuitTheScene) {
+  json rubs = read_scene_source(scene_files::named("oblique_impact.json"));
+  rubs["time"]["end"] = 0.35;  // past the first impact
+  json holds = read_scene_source(scene_files::named("postit_test2.json"));
+  for (json* scene : {&rubs, &holds}) scene->erase("study");
+  const Result rubbed = study_of(rubs, "--levels 2"), held = study_of(holds, "--levels 2");
+  ASSERT_EQ(rubbed.outcome.code, 0) << rubbed.outcome.output;
+  ASSERT_EQ(held.outcome.code, 0) << held.outcome.output;
+  const json usual = json::parse(text_of(rubbed.folder / "study.json"))["laws"];
+  EXPECT_EQ(usual.size(), 7U) << usual;
+  const json own = json::parse(text_of(held.folder / "study.json"))["laws"];
+  ASSERT_EQ(own.size(), 1U) << own;
+  EXPECT_EQ(own[0]["name"], "as in the scene");
+}
+
 TEST(Study, OfSeveralScenesHasAFolderForEach) {
   const auto folder = fresh_folder();
   const std::string scenes =
@@ -311,6 +329,16 @@ TEST(Study, RefusesWhatItCannotCompare) {
   refusal(good, "--law 'contact:3'", "/study/laws/0/parameters: found 3, expected object");
   refusal(good, "--law '{\"scaled\": 1}'", "/study/laws/0/scaled: found 1, expected boolean");
   refusal(good, "--law Contact", "/study/laws/0/law: found \"Contact\"");
+  const auto folder = fresh_folder();
+  for (const char* name : {"a", "b"}) {
+    std::filesystem::create_directories(folder / name);
+    std::ofstream(folder / name / "ball.json") << good.dump();
+  }
+  const Outcome alike =
+      run_program("study " + (folder / "a/ball.json").string() + " " + (folder / "b/ball.json").string() +
+                  " --out " + (folder / "out").string());
+  EXPECT_EQ(alike.code, 2);
+  EXPECT_NE(alike.output.find("found two scenes called 'ball'"), std::string::npos) << alike.output;
   for (const char* options : {"--levels 0", "--factor 1", "--refine space", "--repetitions 0"})
     refusal(good, options, "--");
 }

@@ -85,8 +85,8 @@ TEST(TurningObstacle, IsTheSameForContactsThatShareNodes) {
     const Integrator one = after_impact(alone), other = after_impact(shared);
     EXPECT_LT((one.velocity() - other.velocity()).cwiseAbs().maxCoeff(), 1e-14) << type;
     EXPECT_NEAR(other.energy().reaction_work, 0.0, 1e-13) << type;
-    EXPECT_NEAR(one.energy().by_law[ILAW_ENERGY_FRICTION], other.energy().by_law[ILAW_ENERGY_FRICTION],
-                1e-13);
+    EXPECT_NEAR(one.energy().by_law[ILAW_ENERGY_FRICTION], other.energy().by_law[ILAW_ENERGY_FRICTION], 1e-13)
+        << "type " << type;
   }
 }
 
@@ -142,7 +142,7 @@ TEST(TurningObstacle, CarriesAPointAround) {
                              Eigen::Vector2d(1, 2));
     };
     const double start = arm().squaredNorm();
-    EXPECT_NEAR(start, r * r, 2.0 * h);
+    EXPECT_NEAR(start, r * r, 2.0 * h) << "h " << h;
     while (integrator.steps() < scene.steps) {
       const double n = static_cast<double>(integrator.steps() - 1);
       ASSERT_NEAR(arm().squaredNorm(), start * std::pow(1.0 + w * w * h * h, n), 1e-12) << h << ", " << n;

@@ -131,7 +131,7 @@ TEST(Coupled, PointsThatAreTiedMoveAsOne) {
       batch.state_in = {state.data(), size, 1};
       batch.state_out = {state.data(), size, 1};
       batch.impulse = {impulse.data(), d, 1};
-      ASSERT_EQ(law.initialise(batch), ILAW_OK);
+      ASSERT_EQ(law.initialise(batch), ILAW_OK) << "form " << form;
       ilaw_contacts contacts{};
       contacts.struct_size = sizeof contacts;
       contacts.delassus_form = form;
@@ -149,7 +149,7 @@ TEST(Coupled, PointsThatAreTiedMoveAsOne) {
       bodies.velocity = {v.data(), d, 1};
       const ilaw_contacts* groups[] = {&contacts};
       ilaw_coupled* solver = ilaw_coupled_create();
-      EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, groups, 1, nullptr, nullptr), ILAW_OK);
+      EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, groups, 1, nullptr, nullptr), ILAW_OK) << "form " << form;
       ilaw_coupled_destroy(solver);
       for (std::size_t c = 0; c < dimension; ++c) {
         const double together = (2.0 * start[c] + 3.0 * start[dimension + c]) / 5.0;

@@ -67,7 +67,7 @@ TEST(Coupled, WorkIsTheChangeOfKineticEnergy) {
     const double parts = report.energy[ILAW_ENERGY_FRICTION] + report.energy[ILAW_ENERGY_IMPACT];
     if (sweeps > 100) {
       EXPECT_LE(report.residual, 1e-13) << report.sweeps;
-      EXPECT_NEAR(-report.work, parts, 1e-11 * before);
+      EXPECT_NEAR(-report.work, parts, 1e-11 * before) << "sweeps " << sweeps;
     }
   }
 }

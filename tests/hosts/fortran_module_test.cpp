@@ -244,7 +244,8 @@ TEST_P(FortranArray, GoesInWithoutACopy) {
   for (std::int64_t node = 0; node < s.nodes; ++node)
     for (std::int64_t component = 0; component < s.components; ++component)
       EXPECT_EQ(read(input, node, component), s.first + s.per_node * static_cast<double>(node) +
-                                                  s.per_component * static_cast<double>(component));
+                                                  s.per_component * static_cast<double>(component))
+          << "node " << node << ", component " << component;
 }
 
 INSTANTIATE_TEST_SUITE_P(Sections, FortranArray,
@@ -264,9 +265,9 @@ TEST(FortranModule, OutputsAreTheArraysThatInputsAre) {
   for (int section = 0; section < 3; ++section) {
     const ilaw_output output = fortran_output(section);
     const ilaw_input input = fortran_input(same_as_input[section]);
-    EXPECT_EQ(output.values, input.values);
-    EXPECT_EQ(output.node_stride, input.node_stride);
-    EXPECT_EQ(output.component_stride, input.component_stride);
+    EXPECT_EQ(output.values, input.values) << "section " << section;
+    EXPECT_EQ(output.node_stride, input.node_stride) << "section " << section;
+    EXPECT_EQ(output.component_stride, input.component_stride) << "section " << section;
   }
 }
 

@@ -155,8 +155,8 @@ TEST_P(Host, BlockOnSpringComesToRestWhereItMust) {
 // The half kick of gravity at the start sinks a block by g h^2/2 before the first impulse, and no deeper.
 TEST_P(Host, FloorHoldsTheBlocks) {
   for (const std::size_t number : {0, 1, 3, 4, 5}) {
-    EXPECT_NEAR(result(number).u[2], -g * h * h / 2, rounding);
-    EXPECT_EQ(result(number).status, ILAW_STICK);
+    EXPECT_NEAR(result(number).u[2], -g * h * h / 2, rounding) << "number " << number;
+    EXPECT_EQ(result(number).status, ILAW_STICK) << "number " << number;
   }
 }
 

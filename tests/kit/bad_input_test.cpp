@@ -45,15 +45,17 @@ TEST_P(BadInput, IsRefusedAtItsNodeOnly) {
     EXPECT_EQ(bad.report.first_bad_node, 70);
     EXPECT_STREQ(bad.report.reason, spoilt.reason);
     for (std::size_t i = 0; i < 130; ++i) {
-      EXPECT_EQ(bad.status[i], i == 70 ? int{ILAW_BAD_INPUT} : int{good.status[i]});
+      EXPECT_EQ(bad.status[i], i == 70 ? int{ILAW_BAD_INPUT} : int{good.status[i]}) << "i " << i;
       for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_EQ(bad.impulse[3 * i + c], i == 70 ? 0.0 : good.impulse[3 * i + c]);
+        EXPECT_EQ(bad.impulse[3 * i + c], i == 70 ? 0.0 : good.impulse[3 * i + c])
+            << "i " << i << ", c " << c;
         const double velocity = bad.velocity[3 * i + c],
                      expected = i == 70 ? nodes.v_free[3 * i + c] : good.velocity[3 * i + c];
-        EXPECT_TRUE(velocity == expected || (std::isnan(velocity) && std::isnan(expected)));
+        EXPECT_TRUE(velocity == expected || (std::isnan(velocity) && std::isnan(expected)))
+            << "i " << i << ", c " << c;
       }
       for (std::size_t c = 0; c < 4; ++c)
-        EXPECT_EQ(bad.energy[4 * i + c], i == 70 ? 0.0 : good.energy[4 * i + c]);
+        EXPECT_EQ(bad.energy[4 * i + c], i == 70 ? 0.0 : good.energy[4 * i + c]) << "i " << i << ", c " << c;
     }
   }
 }
@@ -112,10 +114,10 @@ TEST(BadInputAtMemory, LeavesStateAndHistoryUntouched) {
   nodes.v_free[3 * 66] = nan_value;
   for (const bool separate : {false, true}) {
     const Results bad = run(law, nodes, {.separate_state = separate}, false, 1);
-    EXPECT_EQ(bad.report.first_bad_node, 66);
+    EXPECT_EQ(bad.report.first_bad_node, 66) << "separate " << separate;
     const std::size_t s = law.info().state_size;
     for (std::size_t k = 0; k < bad.state.size(); ++k)
-      EXPECT_EQ(bad.state[k], k / s == 66 ? 0.0 : good.state[k]);
+      EXPECT_EQ(bad.state[k], k / s == 66 ? 0.0 : good.state[k]) << "separate " << separate << ", k " << k;
   }
 }
 
@@ -142,10 +144,10 @@ TEST(Extremes, AreSolvedWhereTheResultCanBeRepresented) {
       nodes.gap = {0.0};
       const Results results = run(law, nodes, {}, false, 1);
       EXPECT_EQ(results.code, ILAW_OK) << scale << " " << h;
-      EXPECT_EQ(results.impulse[0], scale / h);
+      EXPECT_EQ(results.impulse[0], scale / h) << "h " << h;
       // A few ulp, where subnormal velocities have ulps of 5e-324.
       const double relative = 1e-15 + 5e-324 / scale;
-      EXPECT_LE(std::abs(results.impulse[1] + 0.5 * (scale / h)), relative * (scale / h));
+      EXPECT_LE(std::abs(results.impulse[1] + 0.5 * (scale / h)), relative * (scale / h)) << "h " << h;
     }
 }
 

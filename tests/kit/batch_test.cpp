@@ -26,7 +26,7 @@ TEST_P(Contract, LayoutsGiveTheSameBits) {
       const Nodes nodes(n);
       const bool global = frame == ILAW_FRAME_GLOBAL;
       const Results reference = run(law, nodes, {}, global);
-      EXPECT_EQ(reference.code, ILAW_OK);
+      EXPECT_EQ(reference.code, ILAW_OK) << "n " << n;
       EXPECT_TRUE(run(law, nodes, {.soa = true}, global) == reference) << "SoA, n = " << n;
       EXPECT_TRUE(run(law, nodes, {.node_stride = 2, .component_stride = 2}, global) == reference)
           << "strided";
@@ -91,7 +91,7 @@ TEST_P(Contract, PartsOfABatchGiveTheSameBitsAndLeaveTheRestAlone) {
   for (std::size_t i = 0; i < 100; ++i)
     for (std::size_t c = 0; c < 3; ++c) {
       const bool inside = i >= 20 && i < 57;
-      EXPECT_EQ(part.impulse[3 * i + c], inside ? whole.impulse[3 * i + c] : Laid::guard);
+      EXPECT_EQ(part.impulse[3 * i + c], inside ? whole.impulse[3 * i + c] : Laid::guard) << "c " << c;
     }
 }
 
@@ -167,8 +167,8 @@ TEST_P(Contract, InstructionSetsGiveTheSameBits) {
         all.push_back(run(make(frame), Nodes(517), {.outputs = outputs}, frame == ILAW_FRAME_GLOBAL));
       }
       unsetenv("ILAW_ISA");
-      EXPECT_TRUE(all[0] == all[1]);
-      EXPECT_TRUE(all[0] == all[2]);
+      EXPECT_TRUE(all[0] == all[1]) << "outputs " << outputs;
+      EXPECT_TRUE(all[0] == all[2]) << "outputs " << outputs;
     }
 }
 

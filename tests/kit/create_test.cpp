@@ -133,7 +133,8 @@ TEST(Create, RefusesAMemoryThatVaries) {
          {std::pair{tables_of({{"memory", {0.0, 0.1, 1.0, 0.2}}}), "a table in time"},
           {per_node, "a value per node"}})
       EXPECT_EQ(refusal_of(law, varying), "law '" + law + "': parameter 'memory' was given as " + words +
-                                              ": expected a number in [0, inf]");
+                                              ": expected a number in [0, inf]")
+          << "law " << law;
 }
 
 // A value per node comes with the batch and is checked there.

@@ -85,7 +85,7 @@ TEST(FloatEnvironment, FlagsAreLeftAsTheyWere) {
       const int before = std::fetestexcept(FE_ALL_EXCEPT);
       outcome_of(law, nodes);
       const int after = std::fetestexcept(FE_ALL_EXCEPT);
-      EXPECT_EQ(after, before);
+      EXPECT_EQ(after, before) << "flags " << flags;
     }
     std::feclearexcept(FE_ALL_EXCEPT);
   });
@@ -99,7 +99,7 @@ TEST(FloatEnvironment, RoundingModeDoesNotMatterAndStays) {
       const Outcome found = outcome_of(law, nodes);
       const int after = std::fegetround();
       std::fesetround(FE_TONEAREST);
-      EXPECT_EQ(after, mode);
+      EXPECT_EQ(after, mode) << "mode " << mode;
       EXPECT_TRUE(same(found, nearest)) << mode;
     }
   });

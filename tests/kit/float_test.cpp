@@ -92,7 +92,8 @@ class Floats : public ::testing::TestWithParam<LawCase> {
       ASSERT_EQ(doubles.state.get(), floats.state.get()) << "step " << step;
       const ilaw_batch batch = doubles.batch(v_free, step * 1e-3);
       const FloatBatch mirrored(floats.batch(v_free, step * 1e-3), nodes.count, nodes.d, nodes.hc);
-      ASSERT_EQ(of_floats.evaluate(law.instance(), &mirrored.b, nullptr), law.evaluate(batch));
+      ASSERT_EQ(of_floats.evaluate(law.instance(), &mirrored.b, nullptr), law.evaluate(batch))
+          << "step " << step;
       ASSERT_EQ(mirrored.difference_from(batch), "") << "step " << step;
       ASSERT_EQ(doubles.status, floats.status) << "step " << step;
       if (layout.separate_state) std::swap(doubles.state, doubles.next);

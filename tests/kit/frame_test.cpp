@@ -119,10 +119,10 @@ TEST(Frame, MemoryFollowsTheNormalByAnyAngle) {
     // The frame is at the end of the state, as (normal, tangent).
     const auto tangent = [&] { return Vector{node.state[s - 3], node.state[s - 2], node.state[s - 1]}; };
     node.b.normal = {n.data(), 0, 1};
-    ASSERT_EQ(law.initialise(node.b), ILAW_OK);
+    ASSERT_EQ(law.initialise(node.b), ILAW_OK) << "angle " << angle;
     const Vector t1 = tangent();
     node.b.normal = {turned.data(), 0, 1};
-    ASSERT_EQ(law.evaluate(node.b), ILAW_OK);
+    ASSERT_EQ(law.evaluate(node.b), ILAW_OK) << "angle " << angle;
     const Vector t2 = tangent();
     // Opposite normals: the tangent stays. Else the part along the axis stays, and that across it turns.
     Vector expected = t1;
@@ -180,12 +180,12 @@ TEST_P(GlobalAxes, GiveTheLocalResultTurned) {
     one.gap = {nodes.gap[i]};
     one.delassus = {2.0};
     const Results expected = run(local, one, {}, false, 1);
-    EXPECT_NEAR(normal_part(part(found.impulse)), expected.impulse[0], 1e-15);
+    EXPECT_NEAR(normal_part(part(found.impulse)), expected.impulse[0], 1e-15) << "i " << i;
     double rt = 0.0;
     for (int c = 0; c < d; ++c)
       rt += std::pow(part(found.impulse)[c] - normal_part(part(found.impulse)) * part(nodes.normal)[c], 2);
-    EXPECT_NEAR(std::sqrt(rt), d > 1 ? std::abs(expected.impulse[1]) : 0.0, 1e-15);
-    EXPECT_EQ(found.status[i], expected.status[0]);
+    EXPECT_NEAR(std::sqrt(rt), d > 1 ? std::abs(expected.impulse[1]) : 0.0, 1e-15) << "i " << i;
+    EXPECT_EQ(found.status[i], expected.status[0]) << "i " << i;
   }
 }
 

@@ -95,7 +95,8 @@ TEST(Power, HasItsLimits) {
 
 TEST(Length, NeitherOverflowsNorUnderflows) {
   for (const double scale : {1e-320, 1e-300, 1e-160, 1.0, 1e160, 1e300})
-    EXPECT_NEAR(length(3.0 * scale, 4.0 * scale) / (5.0 * scale), 1.0, scale < 1e-310 ? 1e-2 : 4e-16);
+    EXPECT_NEAR(length(3.0 * scale, 4.0 * scale) / (5.0 * scale), 1.0, scale < 1e-310 ? 1e-2 : 4e-16)
+        << "scale " << scale;
   EXPECT_EQ(length(0.0, 0.0), 0.0);
   EXPECT_EQ(length(0.0, -2.0), 2.0);
 }

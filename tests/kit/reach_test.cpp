@@ -77,7 +77,7 @@ TEST(OutOfReach, FreshNodesAreLeftAloneToTheLastBit) {
       int outside = 0, broken = 0;
       for (int k = 0; k < 3000; ++k) {
         draw_borderline(node, global, random);
-        ASSERT_EQ(node.law.initialise(node.b), ILAW_OK);
+        ASSERT_EQ(node.law.initialise(node.b), ILAW_OK) << "k " << k;
         if (global) turn(node, random);  // by any angle since
         if (!node.is_out_of_reach(global)) continue;
         ++outside;

@@ -114,17 +114,17 @@ TEST(Sized, SizesThatNoVersionHasAreRefused) {
   for (const std::uint32_t size : {4097U, 0xFFFFFFFFU}) {
     report.struct_size = sizeof report;
     batch.struct_size = size;
-    EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report), ILAW_INVALID_ARGUMENT);
-    EXPECT_STREQ(report.reason, "struct_size of the batch is none of any version");
+    EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report), ILAW_INVALID_ARGUMENT) << "size " << size;
+    EXPECT_STREQ(report.reason, "struct_size of the batch is none of any version") << "size " << size;
     batch.struct_size = sizeof batch;
     report = {};
     report.struct_size = size;
-    EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report), ILAW_INVALID_ARGUMENT);
-    EXPECT_EQ(report.reason, nullptr);
+    EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report), ILAW_INVALID_ARGUMENT) << "size " << size;
+    EXPECT_EQ(report.reason, nullptr) << "size " << size;
     info.struct_size = size;
-    EXPECT_EQ(law.law().info(law.instance(), &info), ILAW_INVALID_ARGUMENT);
+    EXPECT_EQ(law.law().info(law.instance(), &info), ILAW_INVALID_ARGUMENT) << "size " << size;
     other.struct_size = size;
-    EXPECT_EQ(law.law().create(&other, &instance, nullptr, 0), ILAW_INVALID_ARGUMENT);
+    EXPECT_EQ(law.law().create(&other, &instance, nullptr, 0), ILAW_INVALID_ARGUMENT) << "size " << size;
   }
 }
 

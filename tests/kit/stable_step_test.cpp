@@ -39,7 +39,7 @@ TEST(StableStep, OfAnExplicitSpringIsWhereItsMotionBeginsToGrow) {
       const double limit = probe.report.stable_velocity_step;
       // 2 (sqrt(1 + z^2) - z)/omega, z = c H/(2 omega).
       const double omega = std::sqrt(stiffness * h), z = damping * h / (2.0 * omega);
-      EXPECT_NEAR(limit, 2.0 * (std::sqrt(1.0 + z * z) - z) / omega, 1e-12 * limit);
+      EXPECT_NEAR(limit, 2.0 * (std::sqrt(1.0 + z * z) - z) / omega, 1e-12 * limit) << "h " << h;
       for (const auto& [part, stable] : {std::pair{0.99, true}, {1.01, false}}) {
         NodeRun node("penalty", springs(stiffness, damping), part * limit);
         node.h[0] = h;

@@ -110,7 +110,7 @@ TEST(StateVariables, HaveTheSizeOfTheirKind) {
     EXPECT_EQ(law.info().state_size, 1 + d + (d - 1) + 2) << d;
     for (std::uint32_t k = 0; k < law.info().state_variable_count; ++k) {
       if (law.info().state_variables[k]->kind == ILAW_STATE_TANGENTIAL) {
-        EXPECT_EQ(law.info().state_variables[k]->count, d - 1);
+        EXPECT_EQ(law.info().state_variables[k]->count, d - 1) << "d " << d << ", k " << k;
       }
     }
   }

@@ -38,7 +38,7 @@ TEST(Status, StandsWhereItsStrideSays) {
       b.index = listed ? odd.data() : nullptr;
       b.index_base = listed ? 1 : 0;
       b.node_count = listed ? static_cast<std::int64_t>(odd.size()) : node_count;
-      ASSERT_EQ(law.evaluate(b), ILAW_OK);
+      ASSERT_EQ(law.evaluate(b), ILAW_OK) << "listed " << listed;
       std::vector<std::uint8_t> expected(status.size(), untouched_status);
       for (std::int64_t i = 0; i < node_count; ++i)
         if (!listed || i % 2 == 1)

@@ -33,7 +33,7 @@ TEST_P(Threads, OpenAndCloseALibrary) {
     for (int k = 0; k < 20; ++k) {
       const ilaw::interface law = make_tested_law(
           GetParam().law, SetupBuilder(GetParam().parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_LOCAL));
-      EXPECT_EQ(law.law().id, GetParam().law);
+      EXPECT_EQ(law.law().id, GetParam().law) << "k " << k;
     }
   });
 }

@@ -79,6 +79,22 @@ TEST(Window, OfAConstantForceIsForceTimesDuration) {
             << "tau/h " << ratio << ", " << buckets << " buckets, varies " << varies;
 }
 
+// A constant force since the window began, whose first step is longer than tau and a bucket: what counts of
+// it later is what lies within tau, no more.
+TEST(Window, KeepsOfALongFirstStepWhatLiesWithinItsDuration) {
+  constexpr double force = 3.0;
+  for (const double beyond : {0.02, 0.37, 4.3})
+    for (const double buckets : {1.0, 2.0, 3.0, 8.0, 16.0, 64.0})
+      for (const double h : {0.0137, 0.11, 0.23}) {
+        const double longest = 1.0 + 1.0 / buckets + beyond;
+        Window w(1.0, buckets, -2.6);
+        ASSERT_EQ(w.step(longest, {force * longest, 0, 0}).n, force * longest);
+        for (int k = 0; k * h < 3.0; ++k)
+          ASSERT_NEAR(w.step(h, {force * h, 0, 0}).n, force, 1e-12)
+              << "first step " << longest << ", " << buckets << " buckets, h " << h << ", step " << k;
+      }
+}
+
 // A step is spread evenly although the force in it is not, which matters where an edge cuts it: at most
 // h^2 F'/8 at each of three edges, those of the oldest bucket and that of tau.
 double cut_steps(double longest) { return 3.0 * longest * longest / 8.0; }

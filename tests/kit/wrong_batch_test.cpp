@@ -77,7 +77,7 @@ TEST(WrongBatch, FlagsThatAreNotKnownAreRefused) {
     node.b.flags = std::uint64_t{1} << bit;
     for (const auto call : {law.law().evaluate, law.law().initialise}) {
       EXPECT_EQ(call(law.instance(), &node.b, &node.report), ILAW_UNSUPPORTED) << bit;
-      EXPECT_STREQ(node.report.reason, "flags of the batch are not known");
+      EXPECT_STREQ(node.report.reason, "flags of the batch are not known") << "bit " << bit;
     }
   }
 }

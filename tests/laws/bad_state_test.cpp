@@ -121,7 +121,7 @@ TEST_P(BadState, ThatIsNotReadChangesNoImpulse) {
       return code == ILAW_OK && !HasFailure() && ++step < sound.size();
     });
     if (step > 0) ++late;
-    ASSERT_FALSE(HasFailure());
+    ASSERT_FALSE(HasFailure()) << "entry " << entry;
   }
   EXPECT_GT(late, 0U) << "every slot was read at once: nothing was tested";
 }

@@ -33,8 +33,8 @@ TEST_P(Limits, GiveTheSameBits) {
     ASSERT_EQ(other.evaluate(), ILAW_OK) << other.report.reason;
     for (std::size_t i = 0; i < nodes.count; ++i) {
       acting += run.r[i][0] != 0.0;
-      ASSERT_EQ(run.r[i], other.r[i]);
-      ASSERT_EQ(run.v[i], other.v[i]);
+      ASSERT_EQ(run.r[i], other.r[i]) << "k " << k << ", i " << i;
+      ASSERT_EQ(run.v[i], other.v[i]) << "k " << k << ", i " << i;
     }
   }
   EXPECT_GT(acting, 200 * steps);

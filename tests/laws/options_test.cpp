@@ -22,9 +22,9 @@ class OptionsOf : public ::testing::TestWithParam<LawCase> {
       a.time = b.time += RandomNodes::step;
       ASSERT_EQ(a.evaluate(), ILAW_OK) << a.report.reason;
       ASSERT_EQ(b.evaluate(), ILAW_OK) << b.report.reason;
-      ASSERT_EQ(a.r, b.r);
-      ASSERT_EQ(a.state, b.state);
-      ASSERT_EQ(a.status, b.status);
+      ASSERT_EQ(a.r, b.r) << "k " << k;
+      ASSERT_EQ(a.state, b.state) << "k " << k;
+      ASSERT_EQ(a.status, b.status) << "k " << k;
     }
   }
 
@@ -120,7 +120,7 @@ TEST_P(OptionsOf, BadValuesAreBadInputAtTheirNodesOnly) {
       EXPECT_STREQ(per_node.report.reason, "a per-node parameter is out of range");
       for (std::size_t i = 0; i < nodes.count; ++i) {
         ASSERT_EQ(per_node.r[i], i % 3 ? constant.r[i] : Vector{}) << parameter->name << " " << bad;
-        ASSERT_EQ(per_node.status[i], i % 3 ? int{constant.status[i]} : int{ILAW_BAD_INPUT});
+        ASSERT_EQ(per_node.status[i], i % 3 ? int{constant.status[i]} : int{ILAW_BAD_INPUT}) << "i " << i;
       }
     }
 }

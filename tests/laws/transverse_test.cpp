@@ -64,7 +64,7 @@ class Transverse : public ::testing::TestWithParam<Drawn> {
       draw(others, k);
       set();
       one.time = other.time += RandomNodes::step;
-      ASSERT_EQ(one.evaluate(), other.evaluate());
+      ASSERT_EQ(one.evaluate(), other.evaluate()) << "k " << k;
       const std::optional<std::string> found = difference(one, other);
       EXPECT_FALSE(found) << "step " << k << ", " << *found;
       for (const Vector& r : one.r) acting += r != Vector{};

@@ -167,8 +167,8 @@ TEST(FrictionOnASpring, TakesEnergyUpToTheCriticalStep) {
         Vector free = node.v;
         free[0] -= h * pressure / mass;
         for (std::size_t c = 1; c < 3; ++c) free[c] -= h * stiffness / mass * u[c];
-        ASSERT_EQ(node.step(free), ILAW_OK);
-        ASSERT_EQ(node.v[0], 0.0);
+        ASSERT_EQ(node.step(free), ILAW_OK) << "friction " << friction << ", k " << k;
+        ASSERT_EQ(node.v[0], 0.0) << "friction " << friction << ", k " << k;
         largest = std::max(largest, energy());
         dissipated += node.energy[ILAW_ENERGY_FRICTION];
       }

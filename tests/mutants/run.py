@@ -104,7 +104,7 @@ def copy_tree(by_file):
             write(target, by_file[name])
         elif source.exists() and (not target.exists() or target.read_bytes() != source.read_bytes()):
             target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(source, target)
+            shutil.copy(source, target)  # as new, or what was built of an older copy would do
     write(TREE / "mutant_switch.hpp", SWITCH)
 
 

@@ -54,7 +54,7 @@ TEST(Versions, ExampleHostsPrintTheSameInEveryLanguage) {
 
 TEST(Versions, WhatOlderLawsDoNotKnowIsZero) {
   for (const std::string& laws : versions)
-    EXPECT_EQ(output_of("grown_members", all_libraries(laws)), "status 0\n");
+    EXPECT_EQ(output_of("grown_members", all_libraries(laws)), "status 0\n") << "laws " << laws;
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ worst, sweeps, seconds, looked_at, heights = 0.0, [], 0.0, 0, []
 steps = round(end / O.dt)
 for begun in range(0, steps, 10):
     began = time.process_time()
-    O.run(10, True)
+    for _ in range(10):
+        O.step()  # O.run sleeps until it looks again whether the steps are done
     seconds += time.process_time() - began
     worst = max(worst, overlap())
     heights.append((O.time, mean_height()))

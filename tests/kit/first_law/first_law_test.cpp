@@ -72,8 +72,8 @@ void expect_works(const std::string& file) {
   nodes.b.velocity_step = nodes.b.position_step = 0.01;
   ASSERT_EQ(law.evaluate(nodes.b), ILAW_OK);
   for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(nodes.r[0][c], -0.8 / 1.4 * nodes.v[c], 1e-15);
-    EXPECT_EQ(nodes.r[1][c], 0.0);
+    EXPECT_NEAR(nodes.r[0][c], -0.8 / 1.4 * nodes.v[c], 1e-15) << "c " << c;
+    EXPECT_EQ(nodes.r[1][c], 0.0) << "c " << c;
   }
 }
 

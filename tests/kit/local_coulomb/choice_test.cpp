@@ -93,7 +93,8 @@ TEST(LocalCoulombChoice, IsTheSlidingSolutionOfLeastEnergy) {
     long double least = energy(p, chosen);
     EXPECT_NEAR(std::hypot(chosen[1], chosen[2]),
                 std::hypot(sliding_impulse(p, roots[0])[1], sliding_impulse(p, roots[0])[2]),
-                1e-6 * (1.0 + r[0]));
+                1e-6 * (1.0 + r[0]))
+        << "k " << k;
     for (std::size_t i = 1; i < roots.size(); ++i)
       EXPECT_LT(least, energy(p, sliding_impulse(p, roots[i]))) << "draw " << k << ", root " << i;
   }
@@ -109,7 +110,7 @@ TEST(LocalCoulombChoice, SticksWhereItCan) {
     double r[3];
     const contact_mode mode = kit::solve(p, r);
     if (!(outside(p, 0.0L) < -1e-6L)) continue;
-    ASSERT_EQ(mode, contact_mode::stick);
+    ASSERT_EQ(mode, contact_mode::stick) << "k " << k;
     both += k % 10 == 0 && !all_roots(p).empty();
   }
   EXPECT_GE(both, 1);
@@ -136,7 +137,7 @@ TEST(LocalCoulombChoice, FollowsQContinuouslyWhereTheSolutionIsAlone) {
       ASSERT_LE(change, 20.0 * (std::abs(from[0]) + 1.0) / steps) << "path " << path << ", step " << k;
       std::copy(r, r + 3, before);
     }
-    ASSERT_EQ(before[0], 0.0);
+    ASSERT_EQ(before[0], 0.0) << "path " << path;
   }
 }
 

@@ -134,16 +134,16 @@ TEST(LocalCoulomb, IsTheEnumerationInTwoDimensions) {
     const double nt = draw.uniform(-0.99, 0.99) * std::sqrt(nn * tt), mu = draw.decade(-2.0, 1.0);
     p = {{nn, tt, tt, nt, 0.0, 0.0}, {-draw.uniform(0.01, 1.0), draw.uniform(-1.0, 1.0), 0.0}, {mu, mu}};
     const Solved s = solved(p);
-    EXPECT_EQ(s.r[2], 0.0);
+    EXPECT_EQ(s.r[2], 0.0) << "k " << k;
     const double n = -p.q[0] / nn, w = nt / nn, c = p.q[1] + nt * n, side = c > 0.0 ? 1.0 : -1.0;
     const double schur = tt - w * nt, stuck = -c / schur, pressed = n - w * stuck;
     const double margin = mu * pressed - std::abs(stuck);
     if (std::abs(margin) < 1e-9 * (mu + 1.0) * (n + std::abs(stuck))) continue;  // rounding decides
-    ASSERT_EQ(s.mode, margin > 0.0 ? contact_mode::stick : contact_mode::slip);
+    ASSERT_EQ(s.mode, margin > 0.0 ? contact_mode::stick : contact_mode::slip) << "k " << k;
     const double expected = margin > 0.0 ? pressed : n / (1.0 - mu * side * w);
     const double tolerance = 1e-11 * (1.0 + std::abs(expected));
-    ASSERT_NEAR(s.r[0], expected, tolerance);
-    ASSERT_NEAR(s.r[1], margin > 0.0 ? stuck : -mu * side * expected, tolerance * (1.0 + mu));
+    ASSERT_NEAR(s.r[0], expected, tolerance) << "k " << k;
+    ASSERT_NEAR(s.r[1], margin > 0.0 ? stuck : -mu * side * expected, tolerance * (1.0 + mu)) << "k " << k;
     slips += s.mode == contact_mode::slip;
   }
   EXPECT_GT(slips, 10000);
@@ -159,9 +159,9 @@ TEST(LocalCoulomb, IsTheClosedFormWithoutCouplingAndAnisotropy) {
     const Solved s = solved(p);
     const double normal = -p.q[0] / nn, speed = std::hypot(p.q[1], p.q[2]);
     const double factor = std::min(1.0 / tt, mu * normal / speed);
-    ASSERT_NEAR(s.r[0], normal, 8 * static_cast<double>(ulp) * normal);
-    ASSERT_NEAR(s.r[1], -factor * p.q[1], 16 * static_cast<double>(ulp) * factor * speed);
-    ASSERT_NEAR(s.r[2], -factor * p.q[2], 16 * static_cast<double>(ulp) * factor * speed);
+    ASSERT_NEAR(s.r[0], normal, 8 * static_cast<double>(ulp) * normal) << "k " << k;
+    ASSERT_NEAR(s.r[1], -factor * p.q[1], 16 * static_cast<double>(ulp) * factor * speed) << "k " << k;
+    ASSERT_NEAR(s.r[2], -factor * p.q[2], 16 * static_cast<double>(ulp) * factor * speed) << "k " << k;
   }
 }
 
@@ -170,10 +170,10 @@ TEST(LocalCoulomb, WithoutFrictionIsTheNormalRowAlone) {
   for (int k = 0; k < 10000; ++k) {
     local_coulomb p = draw.pressed_coupled(0.1);
     double r[3];
-    ASSERT_EQ(kit::solve(p, r), contact_mode::slip);
-    ASSERT_NEAR(r[0], -p.q[0] / p.h[0], 4 * static_cast<double>(ulp) * r[0]);
-    ASSERT_EQ(r[1], 0.0);
-    ASSERT_EQ(r[2], 0.0);
+    ASSERT_EQ(kit::solve(p, r), contact_mode::slip) << "k " << k;
+    ASSERT_NEAR(r[0], -p.q[0] / p.h[0], 4 * static_cast<double>(ulp) * r[0]) << "k " << k;
+    ASSERT_EQ(r[1], 0.0) << "k " << k;
+    ASSERT_EQ(r[2], 0.0) << "k " << k;
   }
 }
 
@@ -184,10 +184,10 @@ TEST(LocalCoulomb, IsFreeWhereTheNormalVelocityOpens) {
     p.q[0] = k % 2 ? -p.q[0] : 0.0;
     p.mu[0] = p.mu[1] = draw.decade(-3.0, 3.0);
     const Solved s = solved(p);
-    ASSERT_EQ(s.mode, contact_mode::free);
-    ASSERT_EQ(s.r[0], 0.0);
-    ASSERT_EQ(s.r[1], 0.0);
-    ASSERT_EQ(s.r[2], 0.0);
+    ASSERT_EQ(s.mode, contact_mode::free) << "k " << k;
+    ASSERT_EQ(s.r[0], 0.0) << "k " << k;
+    ASSERT_EQ(s.r[1], 0.0) << "k " << k;
+    ASSERT_EQ(s.r[2], 0.0) << "k " << k;
   }
 }
 
@@ -205,14 +205,14 @@ TEST(LocalCoulomb, InfiniteFrictionSticksOrHasNoSolution) {
     if (rough.r[0] < 1e-6) continue;  // at the border, where the two differ by as much as 1/mu
     if (s.mode == contact_mode::none) {
       ++none;
-      ASSERT_EQ(s.r[0], 0.0);
+      ASSERT_EQ(s.r[0], 0.0) << "k " << k;
       continue;
     }
     ++held;
-    ASSERT_EQ(s.mode, contact_mode::stick);
-    ASSERT_EQ(rough.mode, contact_mode::stick);
-    ASSERT_LE(largest(s.v), 16.0L * ulp * s.natural);
-    ASSERT_GT(s.r[0], 0.0);
+    ASSERT_EQ(s.mode, contact_mode::stick) << "k " << k;
+    ASSERT_EQ(rough.mode, contact_mode::stick) << "k " << k;
+    ASSERT_LE(largest(s.v), 16.0L * ulp * s.natural) << "k " << k;
+    ASSERT_GT(s.r[0], 0.0) << "k " << k;
   }
   EXPECT_EQ(none, 0);  // where 1e9 presses, so does infinity
   EXPECT_GT(held, 50000);
@@ -255,15 +255,15 @@ TEST(LocalCoulomb, IsTheSameInOtherUnitsAndAxes) {
     local_coulomb scaled = p;
     for (double& h : scaled.h) h *= 0x1p-37;
     for (double& q : scaled.q) q *= 0x1p-90;
-    ASSERT_EQ(kit::solve(scaled, other), mode);
+    ASSERT_EQ(kit::solve(scaled, other), mode) << "k " << k;
     for (int c = 0; c < 3; ++c) ASSERT_EQ(other[c], r[c] * 0x1p-53);
     const local_coulomb swapped{
         {p.h[0], p.h[2], p.h[1], p.h[4], p.h[3], p.h[5]}, {p.q[0], p.q[2], p.q[1]}, {p.mu[1], p.mu[0]}};
     if (kit::solve(swapped, exchanged) != mode) continue;
     const double tolerance = 1e-12 * (1.0 + r[0]);
-    ASSERT_NEAR(exchanged[0], r[0], tolerance);
-    ASSERT_NEAR(exchanged[1], r[2], tolerance);
-    ASSERT_NEAR(exchanged[2], r[1], tolerance);
+    ASSERT_NEAR(exchanged[0], r[0], tolerance) << "k " << k;
+    ASSERT_NEAR(exchanged[1], r[2], tolerance) << "k " << k;
+    ASSERT_NEAR(exchanged[2], r[1], tolerance) << "k " << k;
   }
 }
 

@@ -89,7 +89,7 @@ TEST(Siconos, FindsTheSameSolutionsLessExactly) {
   std::vector<std::array<double, 3>> ours(problems.size()), theirs(problems.size());
   const Stopwatch own_watch;
   for (std::size_t k = 0; k < problems.size(); ++k)
-    ASSERT_NE(kit::solve(problems[k], ours[k].data()), kit::contact_mode::none);
+    ASSERT_NE(kit::solve(problems[k], ours[k].data()), kit::contact_mode::none) << "k " << k;
   const double own_time = own_watch.nanoseconds() / static_cast<double>(problems.size());
   SiconosContact siconos(SICONOS_FRICTION_3D_ONECONTACT_NSN_GP);
   const Stopwatch their_watch;

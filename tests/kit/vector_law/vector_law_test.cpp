@@ -64,7 +64,7 @@ TEST_P(VectorLaw, SolvesItsEquationAndAgesExactly) {
     Driven node(free, step, age);
     node.evaluate(law);
     const double r = -node.nodes.r[0][1];
-    ASSERT_NEAR(node.nodes.r[0][0], 1.0, 1e-15);
+    ASSERT_NEAR(node.nodes.r[0][0], 1.0, 1e-15) << "k " << k;
     // |v_free| less 2 mu(V) is V itself. Where the node all but sticks, V is what rounding leaves.
     const double inverse =
         2.0 * v_0 * std::sinh(r / a) * std::exp(-(mu_0 + b * std::log(v_0 * age / slip_distance)) / a);
@@ -72,7 +72,7 @@ TEST_P(VectorLaw, SolvesItsEquationAndAgesExactly) {
     const double way = inverse * step / slip_distance;
     const double expected = slip_distance / inverse * -std::expm1(-way) + age * std::exp(-way);
     ASSERT_NEAR(node.age(), expected, 1e-9 * expected) << "seed 11, free speed " << free << ", age " << age;
-    ASSERT_EQ(node.nodes.status[0], inverse > v_0 ? ILAW_SLIP : ILAW_STICK);
+    ASSERT_EQ(node.nodes.status[0], inverse > v_0 ? ILAW_SLIP : ILAW_STICK) << "k " << k;
   }
 }
 
@@ -97,8 +97,8 @@ TEST_P(VectorLaw, AgesAtRestByTheTime) {
     const int count = static_cast<int>(std::round(0.273 / step));
     for (int k = 0; k < count; ++k) node.evaluate(law);
     EXPECT_NEAR(node.age(), 1e-3 + count * step, 1e-12) << step;
-    EXPECT_EQ(node.nodes.r[0][1], 0.0);
-    EXPECT_EQ(node.nodes.status[0], ILAW_STICK);
+    EXPECT_EQ(node.nodes.r[0][1], 0.0) << "step " << step;
+    EXPECT_EQ(node.nodes.status[0], ILAW_STICK) << "step " << step;
   }
 }
 
@@ -149,8 +149,8 @@ TEST(VectorLawForms, GiveTheSameBits) {
     nodes->b.state_out = {nodes->state.data(), 1, 1};
   }
   for (int k = 0; k < 3; ++k) {
-    ASSERT_EQ(alone.evaluate(one.b), ILAW_OK);
-    ASSERT_EQ(packs.evaluate(other.b), ILAW_OK);
+    ASSERT_EQ(alone.evaluate(one.b), ILAW_OK) << "k " << k;
+    ASSERT_EQ(packs.evaluate(other.b), ILAW_OK) << "k " << k;
     for (std::size_t i = 0; i < count; ++i) {
       ASSERT_EQ(one.r[i], other.r[i]) << "seed 12, step " << k << ", node " << i;
       ASSERT_EQ(one.state[i], other.state[i]) << "seed 12, step " << k << ", node " << i;

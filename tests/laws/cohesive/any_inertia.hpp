@@ -5,7 +5,9 @@
 #include "bond.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
+#include <string>
 
 namespace ilaw::testing {
 
@@ -246,5 +248,69 @@ inline std::optional<std::string> judge(const Problem& p, const NodeRun& node, b
     return say("not most dissipation", along + limit * slip, rounding);
   return std::nullopt;
 }
+
+// The work of the impulse is what was dissipated and stored.
+inline void keep_energy(const Problem& p, const NodeRun& node) {
+  const double y = p.curve.size(p.opening), stored = 0.5 * p.curve.secant(p.damage) * y * y;
+  const Vector h_r = times(p.inertia.h, node.r);
+  double balance = node.energy[ILAW_ENERGY_STORED] - stored, scale = stored + node.energy[ILAW_ENERGY_STORED];
+  for (std::size_t c = 0; c < 3; ++c) {
+    balance += node.energy[c] + 0.5 * node.r[c] * (p.v_previous[c] + node.v[c]);
+    scale += norm(node.r) * (std::abs(p.v_previous[c]) + std::abs(p.v_free[c]) + norm(h_r));
+  }
+  ASSERT_LE(std::abs(balance), 64 * ulp * p.inertia.condition * scale);
+}
+
+// Random problems, 30 of each bond, judged by the equations of the page; and what came of them.
+struct SolvedProblems {
+  int count = 0, several = 0, pressed = 0, softened = 0, held = 0, broken = 0;
+
+  template <class DrawnBond, class DrawnProblem>
+  void solve(unsigned seed, DrawnBond drawn_bond, DrawnProblem drawn_problem) {
+    Draw draw(seed);
+    std::optional<Curve> curve;
+    std::optional<NodeRun> node;
+    const char* given = std::getenv("ILAW_TEST_STEPS");  // for a run of a million
+    const int wanted = given ? std::atoi(given) : 6000;
+    for (; count < wanted && !::testing::Test::HasFailure(); ++count) {
+      if (count % 30 == 0) {
+        const Parameters parameters = drawn_bond(draw);
+        curve.emplace(parameters);
+        node.emplace("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
+      }
+      SCOPED_TRACE(::testing::Message()
+                   << "seed " << seed << ", problem " << count << ", shape " << curve->shape << ", strengths "
+                   << curve->s1 << " and " << curve->s2 << ", delay " << curve->delay);
+      solve(drawn_problem(draw, *curve), *node);
+    }
+  }
+  void expect_variety() const {
+    EXPECT_GT(pressed, count / 20);
+    EXPECT_GT(softened, count / 20);
+    EXPECT_GT(held, count / 20);
+    EXPECT_GT(broken, count / 200);
+    EXPECT_LT(several, count / 50);
+  }
+
+ private:
+  void solve(const Problem& p, NodeRun& node) {
+    const std::int32_t code = p.solve(node);
+    if (code == ILAW_BAD_NODES) {
+      ASSERT_STREQ(node.report.reason, several_solutions);
+      ++several;
+      return;
+    }
+    ASSERT_EQ(code, ILAW_OK);
+    bool is_pressed = false;
+    const std::optional<std::string> wrong = judge(p, node, is_pressed);
+    ASSERT_FALSE(wrong) << *wrong << ", condition " << p.inertia.condition;
+    ASSERT_GE(node.energy[ILAW_ENERGY_RUPTURE], 0.0);
+    if (p.velocity_step == p.step) keep_energy(p, node);
+    pressed += is_pressed;
+    softened += node.named("damage") > p.damage;
+    held += node.named("damage") == p.damage;
+    broken += node.status == ILAW_BROKEN;
+  }
+};
 
 }  // namespace ilaw::testing

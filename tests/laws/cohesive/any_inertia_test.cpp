@@ -7,18 +7,6 @@
 namespace ilaw::testing {
 namespace {
 
-// The work of the impulse is what was dissipated and stored.
-void keep_energy(const Problem& p, const NodeRun& node, int k) {
-  const double y = p.curve.size(p.opening), stored = 0.5 * p.curve.secant(p.damage) * y * y;
-  const Vector h_r = times(p.inertia.h, node.r);
-  double balance = node.energy[ILAW_ENERGY_STORED] - stored, scale = stored + node.energy[ILAW_ENERGY_STORED];
-  for (std::size_t c = 0; c < 3; ++c) {
-    balance += node.energy[c] + 0.5 * node.r[c] * (p.v_previous[c] + node.v[c]);
-    scale += norm(node.r) * (std::abs(p.v_previous[c]) + std::abs(p.v_free[c]) + norm(h_r));
-  }
-  ASSERT_LE(std::abs(balance), 64 * ulp * p.inertia.condition * scale) << "problem " << k;
-}
-
 // A bond that was pulled open and is now sheared, in which it is weaker, has more than the curve of shear
 // allows also where it is unloaded.
 TEST(CohesiveAnyInertia, SolvesThemWhereItTurnsToShear) {
@@ -53,44 +41,60 @@ TEST(CohesiveAnyInertia, SolvesThemWhereItTurnsToShear) {
   EXPECT_GT(softened, 30);
 }
 
+// A bond that has been sheared, on a node with any H or with one that does not tell the tangents apart, which
+// is solved in packs.
+Problem sheared_problem(Draw& draw, const Curve& curve, bool in_packs) {
+  Problem p(draw, curve, in_packs ? 0.0 : draw.between(0.0, 6.0));
+  const double sheared = draw.between(0.3, 0.99) * curve.meets(p.damage), toward = 2.0 / p.step * sheared;
+  p.opening = {draw.between(0.0, 0.5) * sheared, sheared, 0.0};
+  p.position = {0.0, draw.between(0.5, 1.5) * sheared, 0.0};
+  p.v_free = draw.vector(toward);
+  if (in_packs) {
+    const double across = draw.power_of_ten(-3.0, 3.0);
+    p.inertia.h = {Vector{1.0, 0.0, 0.0}, {0.0, across, 0.0}, {0.0, 0.0, across}};
+  }
+  const double c = 0.25 * p.step * p.velocity_step * p.inertia.h[0][0];
+  const double times = draw.power_of_ten(-3.0, 1.0) / (c * curve.secant(p.damage));
+  for (Vector& row : p.inertia.h)
+    for (double& entry : row) entry *= times;
+  return p;
+}
+
+// As it is unloaded the mix of modes changes, and may end on a curve that asks for less damage than the bond
+// has: what is broken stays broken.
+TEST(CohesiveAnyInertia, NeverHealsWhereTheModeChanges) {
+  Draw draw(33);
+  int softened = 0;
+  for (int bond = 0; bond < 20; ++bond) {
+    const double strength = draw.between(0.5, 2.0), toughness = draw.between(0.5, 2.0);
+    const Parameters parameters{{{"strength", strength},
+                                 {"strength_2", strength * draw.power_of_ten(-2.0, 0.0)},
+                                 {"toughness", toughness},
+                                 {"toughness_2", toughness * draw.power_of_ten(-0.7, 0.7)},
+                                 {"mixing_exponent", draw.power_of_ten(-0.5, 0.5)}},
+                                {{"shape", bond % 2 ? "bilinear" : "exponential"}}};
+    const Curve curve(parameters);
+    NodeRun node("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
+    for (int k = 0; k < 600; ++k) {
+      const Problem p = sheared_problem(draw, curve, k % 6 > 0);
+      if (p.solve(node) != ILAW_OK) continue;  // several solutions
+      ASSERT_GE(node.named("damage"), p.damage)
+          << "seed 33, bond " << bond << ", problem " << k << ", strengths " << curve.s1 << " and "
+          << curve.s2 << ", toughnesses " << curve.g1 << " and " << curve.g2 << ", exponent " << curve.eta;
+      softened += node.named("damage") > p.damage;
+    }
+  }
+  EXPECT_GT(softened, 1000);
+}
+
 // All shapes and delay, H of a condition of up to a million, turned and scaled: the traction is that of the
 // page's curve to rounding, the node stays outside, and what is left is contact and friction.
 TEST(CohesiveAnyInertia, SolvesTheEquationsOfThePage) {
-  Draw draw(21);
-  int several = 0, pressed = 0, softened = 0, broken = 0;
-  std::optional<Curve> curve;
-  std::optional<NodeRun> bond;
-  const char* given = std::getenv("ILAW_TEST_STEPS");  // for a run of a million
-  const int problems = given ? std::atoi(given) : 6000;
-  for (int k = 0; k < problems; ++k) {
-    if (k % 30 == 0) {
-      const Parameters parameters = draw.bond();
-      curve.emplace(parameters);
-      bond.emplace("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
-    }
-    const Problem p(draw, *curve, draw.between(0.0, 6.0));
-    NodeRun& node = *bond;
-    const std::int32_t code = p.solve(node);
-    if (code == ILAW_BAD_NODES) {
-      ASSERT_STREQ(node.report.reason, several_solutions) << "problem " << k;
-      ++several;
-      continue;
-    }
-    ASSERT_EQ(code, ILAW_OK);
-    bool is_pressed = false;
-    const std::optional<std::string> wrong = judge(p, node, is_pressed);
-    ASSERT_FALSE(wrong) << "problem " << k << ", shape " << p.curve.shape << ", delay " << p.curve.delay
-                        << ", condition " << p.inertia.condition << ": " << *wrong;
-    ASSERT_GE(node.energy[ILAW_ENERGY_RUPTURE], 0.0);
-    if (p.velocity_step == p.step) keep_energy(p, node, k);
-    pressed += is_pressed;
-    softened += node.named("damage") > p.damage;
-    broken += node.status == ILAW_BROKEN;
-  }
-  EXPECT_GT(pressed, problems / 20);
-  EXPECT_GT(softened, problems / 20);
-  EXPECT_GT(broken, problems / 200);
-  EXPECT_LT(several, problems / 50);
+  SolvedProblems solved;
+  solved.solve(
+      21, [](Draw& draw) { return draw.bond(); },
+      [](Draw& draw, const Curve& curve) { return Problem(draw, curve, draw.between(0.0, 6.0)); });
+  solved.expect_variety();
 }
 
 // A mass with any inverse on its bond, pushed at random: whatever way it goes, a bond of one toughness has

@@ -27,43 +27,13 @@ Parameters undelayed(Draw& draw) {
 }
 
 TEST(CohesivePacks, SolveTheEquationsOfThePage) {
-  Draw draw(41);
-  int several = 0, pressed = 0, softened = 0, held = 0, broken = 0;
-  std::optional<Curve> curve;
-  std::optional<NodeRun> bond;
-  const char* given = std::getenv("ILAW_TEST_STEPS");  // for a run of a million
-  const int problems = given ? std::atoi(given) : 6000;
-  for (int k = 0; k < problems; ++k) {
-    if (k % 30 == 0) {
-      const Parameters parameters = undelayed(draw);
-      curve.emplace(parameters);
-      bond.emplace("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
-    }
-    Problem p(draw, *curve, 0.0);
+  SolvedProblems solved;
+  solved.solve(41, undelayed, [](Draw& draw, const Curve& curve) {
+    Problem p(draw, curve, 0.0);
     p.inertia = transverse(draw, 2.0);
-    NodeRun& node = *bond;
-    const std::int32_t code = p.solve(node);
-    if (code == ILAW_BAD_NODES) {
-      ASSERT_STREQ(node.report.reason, several_solutions) << "seed 41, problem " << k;
-      ++several;
-      continue;
-    }
-    ASSERT_EQ(code, ILAW_OK);
-    bool is_pressed = false;
-    const std::optional<std::string> wrong = judge(p, node, is_pressed);
-    ASSERT_FALSE(wrong) << "seed 41, problem " << k << ", shape " << p.curve.shape << ", strengths "
-                        << p.curve.s1 << " and " << p.curve.s2 << ", tangential H " << p.inertia.h[1][1]
-                        << ": " << *wrong;
-    pressed += is_pressed;
-    softened += node.named("damage") > p.damage;
-    held += node.named("damage") == p.damage;
-    broken += node.status == ILAW_BROKEN;
-  }
-  EXPECT_GT(pressed, problems / 20);
-  EXPECT_GT(softened, problems / 20);
-  EXPECT_GT(held, problems / 20);
-  EXPECT_GT(broken, problems / 200);
-  EXPECT_LT(several, problems / 50);
+    return p;
+  });
+  solved.expect_variety();
 }
 
 // What a node gives: impulse, velocity, energies, state.

@@ -19,19 +19,22 @@ TEST(Contact, KeepsMoreausComplementarity) {
       node.gap = k % 10 == 0 ? 0.0 : uniform(random);  // zero is closed
       node.h[0] = 1.0 + 0.9 * uniform(random);
       node.v_previous = {before, 0.3 * scale, 0.0};
-      ASSERT_EQ(node.step({v, 0.7 * scale, -0.2 * scale}), ILAW_OK);
-      ASSERT_GE(node.r[0], 0.0);
-      ASSERT_EQ(node.r[1], 0.0);
-      ASSERT_EQ(node.r[2], 0.0);
+      ASSERT_EQ(node.step({v, 0.7 * scale, -0.2 * scale}), ILAW_OK)
+          << "restitution " << restitution << ", k " << k;
+      ASSERT_GE(node.r[0], 0.0) << "restitution " << restitution << ", k " << k;
+      ASSERT_EQ(node.r[1], 0.0) << "restitution " << restitution << ", k " << k;
+      ASSERT_EQ(node.r[2], 0.0) << "restitution " << restitution << ", k " << k;
       const double left = node.v[0] + (before < 0.0 ? restitution : 1.0) * before;
       if (node.gap > 0.0) {
-        ASSERT_EQ(node.r[0], 0.0);
+        ASSERT_EQ(node.r[0], 0.0) << "restitution " << restitution << ", k " << k;
       } else {
-        ASSERT_GE(left, -4 * ulp * scale);
-        ASSERT_LE(std::min(node.r[0] * node.h[0], left), 4 * ulp * scale);
+        ASSERT_GE(left, -4 * ulp * scale) << "restitution " << restitution << ", k " << k;
+        ASSERT_LE(std::min(node.r[0] * node.h[0], left), 4 * ulp * scale)
+            << "restitution " << restitution << ", k " << k;
       }
-      ASSERT_EQ(node.status, node.r[0] > 0.0 ? ILAW_CLOSED : ILAW_FREE);
-      ASSERT_GE(node.energy[ILAW_ENERGY_IMPACT], 0.0);
+      ASSERT_EQ(node.status, node.r[0] > 0.0 ? ILAW_CLOSED : ILAW_FREE)
+          << "restitution " << restitution << ", k " << k;
+      ASSERT_GE(node.energy[ILAW_ENERGY_IMPACT], 0.0) << "restitution " << restitution << ", k " << k;
     }
   }
 }
@@ -43,9 +46,10 @@ TEST(Contact, LosesTheEnergyOfItsRestitution) {
     node.h[0] = 0.5;  // mass 2
     node.gap = -1e-9;
     node.v_previous = {-3.0, 1.0, 0.0};
-    ASSERT_EQ(node.step({-3.0, 1.0, 0.0}), ILAW_OK);
-    EXPECT_NEAR(node.v[0], 3.0 * restitution, 1e-15);
-    EXPECT_NEAR(node.energy[ILAW_ENERGY_IMPACT], 9.0 * (1.0 - restitution * restitution), 1e-14);
+    ASSERT_EQ(node.step({-3.0, 1.0, 0.0}), ILAW_OK) << "restitution " << restitution;
+    EXPECT_NEAR(node.v[0], 3.0 * restitution, 1e-15) << "restitution " << restitution;
+    EXPECT_NEAR(node.energy[ILAW_ENERGY_IMPACT], 9.0 * (1.0 - restitution * restitution), 1e-14)
+        << "restitution " << restitution;
   }
 }
 
@@ -60,7 +64,7 @@ TEST(Contact, PredictiveNeverPenetrates) {
         position += h * node.v[0];
         ASSERT_GE(position, -1e-15) << "e " << restitution << ", h " << h << ", step " << k;
         node.gap = position;
-        ASSERT_EQ(node.step({node.v[0] - 10.0 * h, 0.0, 0.0}), ILAW_OK);
+        ASSERT_EQ(node.step({node.v[0] - 10.0 * h, 0.0, 0.0}), ILAW_OK) << "h " << h << ", k " << k;
       }
     }
 }
@@ -94,7 +98,7 @@ TEST(Contact, PredictsWithThePositionStep) {
     node.position_dt = l;
     node.gap = 0.4 * l;
     node.v_previous = {-1.0, 0.0, 0.0};
-    ASSERT_EQ(node.step({-1.0, 0.2, 0.0}), ILAW_OK);
+    ASSERT_EQ(node.step({-1.0, 0.2, 0.0}), ILAW_OK) << "l " << l;
     EXPECT_NEAR(node.gap + l * node.v[0], 0.0, 1e-18) << "position step " << l;
   }
 }

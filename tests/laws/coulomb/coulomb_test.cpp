@@ -35,11 +35,13 @@ TEST(Coulomb, ObliqueImpactFollowsItsClosedForm) {
         const double vz = std::cos(angle * M_PI / 180.0), vx = std::sin(angle * M_PI / 180.0);
         node.h[0] = 0.4;
         node.v_previous = {-vz, 0.6 * vx, 0.8 * vx};
-        ASSERT_EQ(node.step(node.v_previous), ILAW_OK);
+        ASSERT_EQ(node.step(node.v_previous), ILAW_OK) << "friction " << friction << ", angle " << angle;
         const double left = std::max(0.0, vx - friction * (1.0 + restitution) * vz);
-        ASSERT_NEAR(node.v[0], restitution * vz, 4 * ulp);
-        ASSERT_NEAR(node.v[1], 0.6 * left, 8 * ulp * (1.0 + friction));
-        ASSERT_NEAR(node.v[2], 0.8 * left, 8 * ulp * (1.0 + friction));
+        ASSERT_NEAR(node.v[0], restitution * vz, 4 * ulp) << "friction " << friction << ", angle " << angle;
+        ASSERT_NEAR(node.v[1], 0.6 * left, 8 * ulp * (1.0 + friction))
+            << "friction " << friction << ", angle " << angle;
+        ASSERT_NEAR(node.v[2], 0.8 * left, 8 * ulp * (1.0 + friction))
+            << "friction " << friction << ", angle " << angle;
         const double energy = node.v[0] * node.v[0] + node.v[1] * node.v[1] + node.v[2] * node.v[2];
         ASSERT_LE(energy, 1.0 + 8 * ulp) << "mu " << friction << ", angle " << angle;
       }
@@ -56,27 +58,31 @@ TEST(Coulomb, KeepsComplementarityConeAndDirectionAtAnyScale) {
       node.h[0] = std::pow(10.0, draw.between(-6.0, 6.0));
       node.gap = draw.between(-1.0, 0.3);
       node.v_previous = {};
-      ASSERT_EQ(node.step(q), ILAW_OK);
+      ASSERT_EQ(node.step(q), ILAW_OK) << "friction " << friction << ", k " << k;
       const double scale = std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])});
       if (node.gap > 0.0 || q[0] >= 0.0) {
         for (const double r : node.r) ASSERT_EQ(r, 0.0);
-        ASSERT_EQ(node.status, ILAW_FREE);
+        ASSERT_EQ(node.status, ILAW_FREE) << "friction " << friction << ", k " << k;
         continue;
       }
-      ASSERT_GT(node.r[0], 0.0);
-      ASSERT_NEAR(node.v[0], 0.0, 2 * ulp * scale);
-      ASSERT_LE(tangential(node.r), friction * node.r[0] * (1.0 + 8 * ulp) + 1e-323);
+      ASSERT_GT(node.r[0], 0.0) << "friction " << friction << ", k " << k;
+      ASSERT_NEAR(node.v[0], 0.0, 2 * ulp * scale) << "friction " << friction << ", k " << k;
+      ASSERT_LE(tangential(node.r), friction * node.r[0] * (1.0 + 8 * ulp) + 1e-323)
+          << "friction " << friction << ", k " << k;
       if (node.status == ILAW_STICK) {
         ++sticks;
-        ASSERT_NEAR(tangential(node.v), 0.0, 4 * ulp * scale);
+        ASSERT_NEAR(tangential(node.v), 0.0, 4 * ulp * scale) << "friction " << friction << ", k " << k;
       } else {
         ++slips;
-        ASSERT_EQ(node.status, ILAW_SLIP);
+        ASSERT_EQ(node.status, ILAW_SLIP) << "friction " << friction << ", k " << k;
         // On the cone, and opposite to the slip: r_T x v_T = 0, r_T . v_T <= 0.
-        ASSERT_NEAR(tangential(node.r), friction * node.r[0], 8 * ulp * friction * node.r[0] + 1e-322);
+        ASSERT_NEAR(tangential(node.r), friction * node.r[0], 8 * ulp * friction * node.r[0] + 1e-322)
+            << "friction " << friction << ", k " << k;
         const double limit = 16 * ulp * tangential(node.r) * scale + 1e-300;
-        ASSERT_NEAR(node.r[1] * node.v[2], node.r[2] * node.v[1], limit);
-        ASSERT_LE(node.r[1] * node.v[1] + node.r[2] * node.v[2], limit);
+        ASSERT_NEAR(node.r[1] * node.v[2], node.r[2] * node.v[1], limit)
+            << "friction " << friction << ", k " << k;
+        ASSERT_LE(node.r[1] * node.v[1] + node.r[2] * node.v[2], limit)
+            << "friction " << friction << ", k " << k;
       }
       for (const double energy : node.energy) ASSERT_GE(energy, 0.0);
     }
@@ -93,10 +99,10 @@ TEST(Coulomb, DissipatesAtMost) {
     node.h[0] = draw.between(0.1, 3.0);
     node.gap = 0.0;
     node.v_previous = {};
-    ASSERT_EQ(node.step(draw.velocity()), ILAW_OK);
+    ASSERT_EQ(node.step(draw.velocity()), ILAW_OK) << "k " << k;
     const double angle = draw.between(0.0, 2.0 * M_PI), size = draw.between(0.0, 0.4 * node.r[0]);
     const double other = size * (std::cos(angle) * node.v[1] + std::sin(angle) * node.v[2]);
-    ASSERT_LE(node.r[1] * node.v[1] + node.r[2] * node.v[2], other + 1e-14);
+    ASSERT_LE(node.r[1] * node.v[1] + node.r[2] * node.v[2], other + 1e-14) << "k " << k;
   }
 }
 
@@ -109,13 +115,14 @@ TEST(Coulomb, EnergyOutputsAreTheWork) {
     const Vector before = draw.velocity();
     node.gap = 0.0;
     node.v_previous = before;
-    ASSERT_EQ(node.step(draw.velocity()), ILAW_OK);
+    ASSERT_EQ(node.step(draw.velocity()), ILAW_OK) << "k " << k;
     const double normal = -0.5 * node.r[0] * (before[0] + node.v[0]);
     const double sliding = -0.5 * (node.r[1] * (before[1] + node.v[1]) + node.r[2] * (before[2] + node.v[2]));
-    ASSERT_NEAR(node.energy[ILAW_ENERGY_IMPACT], std::max(0.0, normal + std::min(0.0, sliding)), 1e-13);
-    ASSERT_NEAR(node.energy[ILAW_ENERGY_FRICTION], std::max(0.0, sliding), 1e-13);
-    ASSERT_EQ(node.energy[ILAW_ENERGY_RUPTURE], 0.0);
-    ASSERT_EQ(node.energy[ILAW_ENERGY_STORED], 0.0);
+    ASSERT_NEAR(node.energy[ILAW_ENERGY_IMPACT], std::max(0.0, normal + std::min(0.0, sliding)), 1e-13)
+        << "k " << k;
+    ASSERT_NEAR(node.energy[ILAW_ENERGY_FRICTION], std::max(0.0, sliding), 1e-13) << "k " << k;
+    ASSERT_EQ(node.energy[ILAW_ENERGY_RUPTURE], 0.0) << "k " << k;
+    ASSERT_EQ(node.energy[ILAW_ENERGY_STORED], 0.0) << "k " << k;
   }
 }
 
@@ -129,13 +136,13 @@ TEST(Coulomb, WithoutFrictionIsContactAndWithInfiniteFrictionSticks) {
     smooth.h[0] = contact.h[0] = rough.h[0] = draw.between(0.1, 3.0);
     smooth.gap = contact.gap = rough.gap = draw.between(-1.0, 0.3);
     smooth.v_previous = contact.v_previous = before;
-    ASSERT_EQ(smooth.step(q), ILAW_OK);
-    ASSERT_EQ(contact.step(q), ILAW_OK);
-    ASSERT_EQ(smooth.r, contact.r);
-    ASSERT_EQ(smooth.v, contact.v);
+    ASSERT_EQ(smooth.step(q), ILAW_OK) << "k " << k;
+    ASSERT_EQ(contact.step(q), ILAW_OK) << "k " << k;
+    ASSERT_EQ(smooth.r, contact.r) << "k " << k;
+    ASSERT_EQ(smooth.v, contact.v) << "k " << k;
     rough.v_previous = {};
-    ASSERT_EQ(rough.step(q), ILAW_OK);
-    ASSERT_EQ(rough.status, rough.r[0] > 0.0 ? ILAW_STICK : ILAW_FREE);
+    ASSERT_EQ(rough.step(q), ILAW_OK) << "k " << k;
+    ASSERT_EQ(rough.status, rough.r[0] > 0.0 ? ILAW_STICK : ILAW_FREE) << "k " << k;
   }
 }
 

@@ -64,7 +64,7 @@ TEST(CoulombDelassus, GivesTheBitsOfTheLocalSolver) {
     Contacts contacts({{{"friction", 0.4}, {"friction_2", friction_2}}, {}}, 100000);
     Draw draw(41);
     fill(contacts, draw);
-    ASSERT_EQ(contacts.step(), ILAW_OK);
+    ASSERT_EQ(contacts.step(), ILAW_OK) << "friction_2 " << friction_2;
     for (std::size_t i = 0; i < contacts.q.size(); ++i) {
       kit::local_coulomb p{{}, {}, {0.4, friction_2}};
       std::copy(contacts.h[i].begin(), contacts.h[i].end(), p.h);
@@ -74,7 +74,8 @@ TEST(CoulombDelassus, GivesTheBitsOfTheLocalSolver) {
       ASSERT_EQ(contacts.r[i], (Vector{r[0], r[1], r[2]})) << "contact " << i;
       ASSERT_EQ(contacts.status[i], mode == kit::contact_mode::slip    ? ILAW_SLIP
                                     : mode == kit::contact_mode::stick ? ILAW_STICK
-                                                                       : ILAW_FREE);
+                                                                       : ILAW_FREE)
+          << "friction_2 " << friction_2 << ", i " << i;
     }
   }
 }
@@ -89,11 +90,11 @@ TEST(CoulombDelassus, NeverCreatesEnergyAndDissipatesAtMost) {
   for (std::size_t i = 0; i < contacts.q.size(); ++i) {
     const Vector &r = contacts.r[i], &v = contacts.v[i];
     const double natural = (1.0 + dot(r, r)) * 30.0;
-    ASSERT_LE(dot(r, contacts.q[i]) + dot(r, v), 1e-14 * natural);
+    ASSERT_LE(dot(r, contacts.q[i]) + dot(r, v), 1e-14 * natural) << "i " << i;
     // No impulse of the ellipse takes more from this slip.
     const double angle = draw.uniform(0.0, 6.2832);
     const double other = r[0] * (0.5 * std::cos(angle) * v[1] + 0.2 * std::sin(angle) * v[2]);
-    ASSERT_LE(r[1] * v[1] + r[2] * v[2], other + 1e-14 * natural);
+    ASSERT_LE(r[1] * v[1] + r[2] * v[2], other + 1e-14 * natural) << "i " << i;
   }
 }
 
@@ -111,10 +112,10 @@ TEST(CoulombDelassus, RestitutionCreatesNoEnergyWhereHCouples) {
       node.h = {1.0, 1.0, 1.0, w, 0.0, 0.0};
       const Vector v{-1.0, -w, 0.0};
       node.v_previous = v;
-      ASSERT_EQ(node.step(v), ILAW_OK);
+      ASSERT_EQ(node.step(v), ILAW_OK) << "moreau " << moreau;
       const double work = 0.5 * (dot(node.r, v) + dot(node.r, node.v));
       const double newton = (e * e + w * w - 1.0) / (2.0 * (1.0 - w * w));
-      EXPECT_NEAR(work, moreau ? -0.5 * (1.0 - e * e) : std::min(newton, 0.0), 1e-14);
+      EXPECT_NEAR(work, moreau ? -0.5 * (1.0 - e * e) : std::min(newton, 0.0), 1e-14) << "moreau " << moreau;
     }
 }
 
@@ -127,7 +128,7 @@ TEST(CoulombDelassus, SlidesOnADiagonalHAtTheRootOfItsOneEquation) {
     node.h = {draw.decade(-1, 1), draw.decade(-2, 2), draw.decade(-2, 2)};
     const Vector q{-draw.uniform(0.1, 1.0), draw.normal(), draw.normal()};
     node.v_previous = {};
-    ASSERT_EQ(node.step(q), ILAW_OK);
+    ASSERT_EQ(node.step(q), ILAW_OK) << "k " << k;
     const double limit = -0.5 * q[0] / node.h[0];
     const auto length = [&](double a) { return std::hypot(q[1] / (node.h[1] + a), q[2] / (node.h[2] + a)); };
     double low = 0.0, high = std::hypot(q[1], q[2]) / limit;
@@ -135,9 +136,9 @@ TEST(CoulombDelassus, SlidesOnADiagonalHAtTheRootOfItsOneEquation) {
       const double a = 0.5 * (low + high);
       (length(a) > limit ? low : high) = a;
     }
-    ASSERT_NEAR(node.r[0], -q[0] / node.h[0], 4 * ulp * node.r[0]);
-    ASSERT_NEAR(node.r[1], -q[1] / (node.h[1] + low), 1e-13 * limit + 1e-15);
-    ASSERT_NEAR(node.r[2], -q[2] / (node.h[2] + low), 1e-13 * limit + 1e-15);
+    ASSERT_NEAR(node.r[0], -q[0] / node.h[0], 4 * ulp * node.r[0]) << "k " << k;
+    ASSERT_NEAR(node.r[1], -q[1] / (node.h[1] + low), 1e-13 * limit + 1e-15) << "k " << k;
+    ASSERT_NEAR(node.r[2], -q[2] / (node.h[2] + low), 1e-13 * limit + 1e-15) << "k " << k;
   }
 }
 
@@ -170,11 +171,11 @@ TEST(KineticFriction, FallsFromTheStaticOneWithTheSlipSpeed) {
     NodeRun node("coulomb", {{{"friction", 0.5}, {"kinetic_friction", 0.2}, {"decay", decay}}, {}});
     for (const double speed : {0.0, 0.3, 2.0, 500.0}) {
       node.v_previous = {0.0, 0.6 * speed, -0.8 * speed};
-      ASSERT_EQ(node.step({-1.0, 6.0, -8.0}), ILAW_OK);
+      ASSERT_EQ(node.step({-1.0, 6.0, -8.0}), ILAW_OK) << "decay " << decay << ", speed " << speed;
       const double left = speed == 0.0 ? 1.0 : std::exp(-decay * speed);
       const double expected = 0.2 + 0.3 * left;
       ASSERT_NEAR(node.r[1], -0.6 * expected, 4 * ulp) << "decay " << decay << ", speed " << speed;
-      ASSERT_NEAR(node.r[2], 0.8 * expected, 4 * ulp);
+      ASSERT_NEAR(node.r[2], 0.8 * expected, 4 * ulp) << "decay " << decay << ", speed " << speed;
     }
   }
 }
@@ -186,9 +187,9 @@ TEST(KineticFriction, AboveTheStaticOneDoesNothing) {
   for (int k = 0; k < 1000; ++k) {
     const Vector q{-std::abs(draw.normal()), draw.normal(), draw.normal()};
     plain.v_previous = above.v_previous = {0.0, draw.normal(), draw.normal()};
-    ASSERT_EQ(plain.step(q), ILAW_OK);
-    ASSERT_EQ(above.step(q), ILAW_OK);
-    ASSERT_EQ(plain.r, above.r);
+    ASSERT_EQ(plain.step(q), ILAW_OK) << "k " << k;
+    ASSERT_EQ(above.step(q), ILAW_OK) << "k " << k;
+    ASSERT_EQ(plain.r, above.r) << "k " << k;
   }
 }
 
@@ -206,12 +207,12 @@ TEST(StickSlip, HasThePeriodOfTheClosedForm) {
     for (int step = 0; releases < 6; ++step) {
       x += dt * v;
       node.v_previous = {0.0, v - belt, 0.0};
-      EXPECT_EQ(node.step({-dt * weight, v - belt - dt * k * x, 0.0}), ILAW_OK);
+      EXPECT_EQ(node.step({-dt * weight, v - belt - dt * k * x, 0.0}), ILAW_OK) << "step " << step;
       v = node.v[1] + belt;
       if (stuck && node.status == ILAW_SLIP) {
         if (releases++ == 0) first = dt * step;
         last = dt * step;
-        EXPECT_NEAR(x, mu * weight / k, 2.0 * dt * belt);
+        EXPECT_NEAR(x, mu * weight / k, 2.0 * dt * belt) << "step " << step;
       }
       stuck = node.status == ILAW_STICK;
     }
@@ -236,12 +237,12 @@ TEST(Ball, SlidesUntilItRolls) {
     const double slides = std::hypot(u0[1], u0[2]) / (3.5 * mu * g);
     Vector v = v0, turning = spin;  // of the centre; of the lowest point about it
     for (int k = 1; k * h < 2.0 * slides; ++k) {
-      ASSERT_EQ(node.step({-h * g, v[1] + turning[1], v[2] + turning[2]}), ILAW_OK);
+      ASSERT_EQ(node.step({-h * g, v[1] + turning[1], v[2] + turning[2]}), ILAW_OK) << "k " << k;
       for (std::size_t c = 1; c < 3; ++c) {
         v[c] += node.r[c] / m;
         turning[c] += 2.5 / m * node.r[c];
         const double left = std::max(1.0 - k * h / slides, 0.0);
-        ASSERT_NEAR(v[c] + turning[c], left * u0[c], 2.0 * h * mu * g * 3.5);
+        ASSERT_NEAR(v[c] + turning[c], left * u0[c], 2.0 * h * mu * g * 3.5) << "k " << k << ", c " << c;
       }
       ASSERT_EQ(node.status, k * h < slides ? ILAW_SLIP : ILAW_STICK) << k * h << " of " << slides;
     }

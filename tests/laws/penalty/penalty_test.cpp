@@ -348,6 +348,18 @@ TEST(Penalty, RefusesBadParameters) {
   }
 }
 
+// A damper slows down a node that penetrates, not one that comes.
+TEST(Penalty, AnExplicitDamperWaitsForTouch) {
+  for (const double gap : {0.0, 0.01}) {
+    NodeRun node("penalty", with("explicit", {{"stiffness", 2.0}, {"damping", 100.0}}));
+    node.gap = gap;
+    node.v_previous = {-1.0, 0.0, 0.0};
+    ASSERT_EQ(node.step({-1.0, 0.0, 0.0}), ILAW_OK);
+    EXPECT_EQ(node.r[0], 0.0) << "gap " << gap;
+    EXPECT_EQ(node.status, ILAW_FREE) << "gap " << gap;
+  }
+}
+
 // A damper slows down what leaves, up to the spring's own push, and never holds it.
 TEST(Penalty, AnExplicitDamperDoesNotPull) {
   NodeRun node("penalty", {{{"stiffness", 2.0}, {"damping", 100.0}}, {{"integration", "explicit"}}}, 1e-3);

@@ -49,10 +49,11 @@ TEST(Postit, ConstantPullBreaksAtAdhesionOverForce) {
   for (const double h : {0.01, 0.005, 0.0025, 0.00125}) {
     EXPECT_EQ(rupture_time({{{"memory", 0.2}, {"buckets", 4096}}, {}}, h, 0.4, pull, 3.0), -1.0)
         << "F tau = R holds";
-    EXPECT_EQ(rupture_time({{{"memory", 0.2}, {"buckets", 4096}}, {}}, h, 0.41, pull, 3.0), -1.0);
+    EXPECT_EQ(rupture_time({{{"memory", 0.2}, {"buckets", 4096}}, {}}, h, 0.41, pull, 3.0), -1.0)
+        << "h " << h;
     const double time = rupture_time({{{"memory", 0.2}, {"buckets", 4096}}, {}}, h, 0.39, pull, 3.0);
-    EXPECT_GE(time, 0.195 - 1e-12);
-    EXPECT_LE(time, 0.195 + h);
+    EXPECT_GE(time, 0.195 - 1e-12) << "h " << h;
+    EXPECT_LE(time, 0.195 + h) << "h " << h;
   }
 }
 
@@ -132,14 +133,14 @@ TEST(Postit, AdhesionFollowsRupturesLimitAndArea) {
     const double press = 0.1 + 0.02 * ruptures;
     node.position = {};
     node.v = node.v_previous = {};
-    EXPECT_EQ(node.push({-press, 0, 0}), ILAW_HEALED);
+    EXPECT_EQ(node.push({-press, 0, 0}), ILAW_HEALED) << "ruptures " << ruptures;
     const double expected = std::min(std::exp(-ruptures / 10.0) * press, 0.1);
     limited += expected == 0.1 ? 1 : 0;
-    EXPECT_NEAR(node.named("adhesion"), expected, 4e-16);
-    EXPECT_EQ(node.push({0.99 * expected, 0, 0}), ILAW_BONDED);
-    EXPECT_EQ(node.push({1.01 * expected, 0, 0}), ILAW_BROKEN);
-    EXPECT_EQ(node.named("ruptures"), ruptures + 1.0);
-    EXPECT_EQ(node.named("adhesion"), 0.0);
+    EXPECT_NEAR(node.named("adhesion"), expected, 4e-16) << "ruptures " << ruptures;
+    EXPECT_EQ(node.push({0.99 * expected, 0, 0}), ILAW_BONDED) << "ruptures " << ruptures;
+    EXPECT_EQ(node.push({1.01 * expected, 0, 0}), ILAW_BROKEN) << "ruptures " << ruptures;
+    EXPECT_EQ(node.named("ruptures"), ruptures + 1.0) << "ruptures " << ruptures;
+    EXPECT_EQ(node.named("adhesion"), 0.0) << "ruptures " << ruptures;
   }
   EXPECT_GT(limited, 5);
   EXPECT_LT(limited, 20);
@@ -171,7 +172,7 @@ TEST(Postit, ARuptureUnderPressureHealsByItsOwnStepAlone) {
       1e-3);
   for (int k = 1; k <= 3; ++k) {
     node.push({-0.2, 0, 0});
-    EXPECT_NEAR(node.named("adhesion"), 0.2 * k, 1e-15);
+    EXPECT_NEAR(node.named("adhesion"), 0.2 * k, 1e-15) << "k " << k;
   }
   const double most = 0.1 * 0.65 + 0.8 * 0.6;  // friction carries mu S_N, the bond lambda R
   EXPECT_EQ(node.push({-0.05, most + 0.01, 0}), ILAW_BROKEN);
@@ -288,10 +289,10 @@ TEST(Postit, ASeparationMakesTheNextRuptureCount) {
   for (int k = 0; k < 7; ++k) {
     node.position = {};
     node.v = node.v_previous = {};
-    EXPECT_EQ(node.push({-0.1, 0, 0}), ILAW_HEALED);
-    EXPECT_EQ(node.push({0.5, 0, 0}), ILAW_BROKEN);
+    EXPECT_EQ(node.push({-0.1, 0, 0}), ILAW_HEALED) << "k " << k;
+    EXPECT_EQ(node.push({0.5, 0, 0}), ILAW_BROKEN) << "k " << k;
     for (int free = 0; free < 60; ++free) EXPECT_EQ(node.push({0, 0, 0}), ILAW_FREE);
-    EXPECT_EQ(node.named("ruptures"), k + 1.0);
+    EXPECT_EQ(node.named("ruptures"), k + 1.0) << "k " << k;
   }
 }
 
@@ -309,7 +310,7 @@ TEST(Postit, AFreeNodeOutOfReachKeepsItsState) {
   }
   const std::vector<double> before = evaluated.state;
   for (int k = 0; k < 200; ++k) {
-    EXPECT_EQ(evaluated.push({-1e-4, 0, 0}), ILAW_FREE);
+    EXPECT_EQ(evaluated.push({-1e-4, 0, 0}), ILAW_FREE) << "k " << k;
     ASSERT_EQ(evaluated.state, before) << k;
   }
   skipped.steps = evaluated.steps;

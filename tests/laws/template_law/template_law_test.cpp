@@ -47,7 +47,7 @@ TEST(template_law, SlowsAMassExponentially) {
     const auto count = static_cast<int>(std::lround(end / h));
     double energy = 0.0;
     for (int step = 0; step < count; ++step) {
-      ASSERT_EQ(node.step(node.v), ILAW_OK);
+      ASSERT_EQ(node.step(node.v), ILAW_OK) << "k " << k << ", step " << step;
       energy += node.energy[ILAW_ENERGY_IMPACT];
     }
     EXPECT_NEAR(-node.v[0], speed * std::pow(1.0 + h * rate, -count), 1e-13) << "h " << h;
@@ -55,7 +55,8 @@ TEST(template_law, SlowsAMassExponentially) {
     errors[k] = std::abs(node.v[0] + speed * std::exp(-rate * end));
   }
   for (int k = 1; k < 3; ++k)
-    EXPECT_NEAR(std::log(errors[k] / errors[k - 1]) / std::log(steps[k] / steps[k - 1]), 1.0, 0.05);
+    EXPECT_NEAR(std::log(errors[k] / errors[k - 1]) / std::log(steps[k] / steps[k - 1]), 1.0, 0.05)
+        << "k " << k;
 }
 
 TEST(template_law, NeverPullsAndNeedsAClosedGapAndAnArea) {

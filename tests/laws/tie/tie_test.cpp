@@ -40,9 +40,9 @@ TEST(Tie, UnbrokenIsTheBilateralConstraintForAnyH) {
     node.gap = uniform(random);
     const double scale = std::pow(10.0, exponent(random));
     node.v_previous = {};
-    ASSERT_EQ(node.step({scale * uniform(random), scale * uniform(random), scale * uniform(random)}),
-              ILAW_OK);
-    ASSERT_EQ(node.status, ILAW_BONDED);
+    ASSERT_EQ(node.step({scale * uniform(random), scale * uniform(random), scale * uniform(random)}), ILAW_OK)
+        << "k " << k;
+    ASSERT_EQ(node.status, ILAW_BONDED) << "k " << k;
     const double r = std::abs(node.r[0]) + std::abs(node.r[1]) + std::abs(node.r[2]);
     for (const double v : node.v) ASSERT_LE(std::abs(v), 64 * ulp * 4.0 * r);
   }

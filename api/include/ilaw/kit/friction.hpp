@@ -368,11 +368,19 @@ void apply_local_coulomb(Node& node, double slack, const local_coulomb& problem)
   node.refused = mode == contact_mode::none ? no_solution : not_refused;
 }
 
-// The impulse that stops the node, r = -H^-1 v_free, without positive work r.v^-/2: all of it unless the node
-// was moving before, and turned round within the step.
+// The impulse that stops the node, r = -H^-1 v_free, and its work: as it is, and without positive work, all
+// of it unless the node was moving before, and turned round within the step.
+template <class Node>
+vector whole_stopping_impulse(const Node& node) {
+  return -node.delassus.solve(node.v_free);
+}
+template <class Node>
+double doubled_work(const Node& node, vector r) {
+  return normal_product(r, node.v_previous) + tangential_product(r, node.v_previous);
+}
 template <class Node>
 vector stopping_impulse(const Node& node) {
-  const vector r = -node.delassus.solve(node.v_free);
+  const vector r = whole_stopping_impulse(node);
   friction_answer<double> answer{{r.n, r.t1, r.t2}, status::stick, not_refused};
   friction_problem<double> problem;
   fill(problem, node.delassus, {0.0, node.v_free, node.v_previous}, 0.0, 0.0);
