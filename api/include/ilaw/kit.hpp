@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/kit/bond.hpp>
 #include <ilaw/kit/common_parameters.hpp>
 #include <ilaw/kit/contact.hpp>
 #include <ilaw/kit/declare.hpp>

@@ -1,0 +1,40 @@
+// bond.hpp - what laws with bonds share: the impulse that stops a node, and the contact that is left of a bond.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/friction.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+// The impulse that stops the node, r = -H^-1 v_free, and its work: as it is, and without positive work, all
+// of it unless the node was moving before, and turned round within the step.
+template <class Node>
+vector whole_stopping_impulse(const Node& node) {
+  return -node.delassus.solve(node.v_free);
+}
+template <class Node>
+double doubled_work(const Node& node, vector r) {
+  return normal_product(r, node.v_previous) + tangential_product(r, node.v_previous);
+}
+template <class Node>
+vector stopping_impulse(const Node& node) {
+  const vector r = whole_stopping_impulse(node);
+  friction_answer<double> answer{{r.n, r.t1, r.t2}, status::stick, not_refused};
+  friction_problem<double> problem;
+  fill(problem, node.delassus, {0.0, node.v_free, node.v_previous}, 0.0, 0.0);
+  take_off_positive_work(problem, answer);
+  return {answer.r[0], answer.r[1], answer.r[2]};
+}
+
+// Contact and friction where the gap is closed and nothing rebounds: what is left of a bond.
+template <class Node, class Vector>
+contact_problem<Vector> plain_contact(const Node& node, Vector v_free) {
+  const contact_condition condition = contact_leaving_at(0.0, node.gap, v_free.n, node.v_previous.n);
+  return contact_problem_of(condition, v_free, node.v_previous);
+}
+template <class Node, class Vector>
+void apply_plain_contact(Node& node, Vector v_free, double friction) {
+  apply_contact_friction(node, plain_contact(node, v_free), friction);
+}
+
+}  // namespace ilaw::kit
