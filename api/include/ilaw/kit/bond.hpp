@@ -1,4 +1,5 @@
-// bond.hpp - what laws with bonds share: the impulse that stops a node, and the contact that is left of a bond.
+// bond.hpp - what laws with bonds share: the impulse that stops a node, and the contact that is left of a
+// bond.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
