@@ -15,6 +15,7 @@
 //   static constexpr bool rests_by_parameters = true;     ILAW_CAN_REST is for capabilities() to promise: it
 //   is
 //                                                         not promised where parameters vary
+//   template <class Node> bool try_step(Node&) const      the usual case; true: the same as step, bit for bit
 //   template <class Node> double stable_velocity_step(const Node&) const   if it limits the step: by how much
 //                                                         at this node, whatever its state; see ilaw_report
 //   template <class Run> void in_form(Run) const;         a shorter step for these parameters, see below
