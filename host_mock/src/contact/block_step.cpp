@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -28,19 +29,23 @@ enum class Meets { obstacle, turning_obstacle, partners };
 template <int D, Meets What>
 class Blocks {
  public:
-  explicit Blocks(const BlockStep& step) : step_(step), at_(step.contacts) {
-    for (int c = 0; c < D; ++c) {
-      obstacle_[c] = step.obstacle_velocity[c];
-      obstacle_before_[c] = step.obstacle_velocity_before[c];
-    }
-    stands_still_ = !Turns && obstacle_ == Components{} && obstacle_before_ == Components{};
+  explicit Blocks(const BlockStep& step)
+      : step_(step),
+        at_(step.contacts),
+        obstacle_(components(step.obstacle_velocity)),
+        obstacle_before_(components(step.obstacle_velocity_before)),
+        moves_(obstacle_ != Components{}),
+        moved_(obstacle_before_ != Components{}),
+        stands_still_(!Turns && !moves_ && !moved_) {
     // What a law does not give is what it was.
     if (!(step.law.outputs() & ILAW_OUTPUT_STATUS)) status_room_.fill(ILAW_FREE);
   }
 
-  void solve(const std::int32_t* contacts, std::ptrdiff_t count, ChunkOutcome& outcome) {
+  // in_row: whether the contacts follow each other.
+  void solve(const std::int32_t* contacts, std::ptrdiff_t count, bool in_row, ChunkOutcome& outcome) {
     contacts_ = contacts;
     count_ = count;
+    contacts_in_row_ = in_row;
     find_nodes();
     locate();
     const ilaw_batch batch = make_batch();
@@ -58,6 +63,11 @@ class Blocks {
   using Vectors = std::array<double, D * block_size>;
   using Components = std::array<double, D>;
 
+  // One by one: a loop over so few becomes a call of memmove.
+  static Components components(const Vector& vector) {
+    return [&]<std::size_t... C>(std::index_sequence<C...>) { return Components{vector[Eigen::Index{C}]...}; }
+    (std::make_index_sequence<D>());
+  }
   std::size_t contact(std::ptrdiff_t i) const { return static_cast<std::size_t>(contacts_[i]); }
   Eigen::Index first_dof(std::ptrdiff_t i) const {
     return Eigen::Index{D} * node_[static_cast<std::size_t>(i)];
@@ -67,7 +77,6 @@ class Blocks {
     for (std::ptrdiff_t i = 0; i < count_; ++i) node_index_[i] = at_.node_index[contact(i)];
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       node_[i] = step_.setup.nodes[static_cast<std::size_t>(node_index_[i])];
-    contacts_in_row_ = follow_each_other(contacts_, count_);
     nodes_in_row_ = follow_each_other(node_.data(), count_);
   }
 
@@ -123,9 +132,10 @@ class Blocks {
     return value;
   }
 
-  // rate: at which the obstacle turns.
-  const double* relative(const Dofs& v, const Components& obstacle, double rate, Vectors& room) const {
-    if (What == Meets::obstacle && nodes_in_row_ && obstacle == Components{}) return &v[first_dof(0)];
+  // is_moving: whether the obstacle's velocity is not zero; rate: at which it turns.
+  const double* relative(const Dofs& v, const Components& obstacle, bool is_moving, double rate,
+                         Vectors& room) const {
+    if (What == Meets::obstacle && nodes_in_row_ && !is_moving) return &v[first_dof(0)];
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       for (int c = 0; c < D; ++c) room[D * i + c] = component(v.data(), i, c) - obstacle[c];
     if constexpr (Turns)
@@ -153,10 +163,10 @@ class Blocks {
     status_ = contacts_in_row_ ? &at_.status[contact(0)] : status_room_.data();
     ilaw_batch batch = empty_batch(step_.setup, step_.step.time, step_.step.dt);
     batch.node_count = count_;
-    batch.v_free = {relative(step_.v, obstacle_, step_.rates.after, v_free_), D, 1};
+    batch.v_free = {relative(step_.v, obstacle_, moves_, step_.rates.after, v_free_), D, 1};
     if ((info.inputs | (step_.gets_energies ? info.energy_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)
-      batch.v_previous = {relative(step_.step.v_before, obstacle_before_, step_.rates.before, v_previous_), D,
-                          1};
+      batch.v_previous = {
+          relative(step_.step.v_before, obstacle_before_, moved_, step_.rates.before, v_previous_), D, 1};
     batch.delassus = {delassus_, 1, 0};
     batch.gap = {gap_.data(), 1, 0};
     batch.normal = {normal_.data(), D, 1};
@@ -173,6 +183,7 @@ class Blocks {
 
   void add_parameters(ilaw_batch& batch) {
     const std::size_t count = at_.parameters.size();
+    if (count == 0) return;
     if (!contacts_in_row_) parameter_room_.resize(count * block_size);
     parameters_.resize(count);
     for (std::size_t p = 0; p < count; ++p)
@@ -281,13 +292,13 @@ class Blocks {
 
   const BlockStep& step_;
   ContactArrays& at_;
+  const Components obstacle_, obstacle_before_;
+  const bool moves_, moved_, stands_still_;  // the obstacle, in the coming step and before
   const std::int32_t* contacts_ = nullptr;
   std::ptrdiff_t count_ = 0;
   bool contacts_in_row_ = false, nodes_in_row_ = false;
   bool acts_ = false;           // an impulse of the block is not zero
-  bool stands_still_ = true;    // the obstacle
   std::ptrdiff_t normals_ = 0;  // nodes whose normal is already that of the plane
-  Components obstacle_, obstacle_before_;
   // What this block works on: in the host's arrays or the rooms below.
   double *delassus_ = nullptr, *impulse_ = nullptr;
   std::uint8_t* status_ = nullptr;
@@ -301,24 +312,29 @@ class Blocks {
   std::vector<ilaw_input> parameters_;
 };
 
-// How many of the contacts make the next block: those that follow each other, where they are enough
-// to be worth a call of the law; what does not is copied to and fro.
-std::ptrdiff_t next_block(const std::int32_t* contacts, std::ptrdiff_t count) {
+struct Block {
+  std::ptrdiff_t count;
+  bool in_row;  // its contacts follow each other
+};
+
+// The contacts that make the next block: those that follow each other, where they are enough to be
+// worth a call of the law; what does not is copied to and fro.
+Block next_block(const std::int32_t* contacts, std::ptrdiff_t count) {
   constexpr std::ptrdiff_t enough = 24;
   count = std::min(block_size, count);
-  if (follow_each_other(contacts, count)) return count;
+  if (follow_each_other(contacts, count)) return {count, true};
   std::ptrdiff_t row = 1;
   while (contacts[row] == contacts[row - 1] + 1) ++row;
-  return row >= enough ? row : count;
+  return row >= enough ? Block{row, true} : Block{count, false};
 }
 
 template <int D, Meets What>
 void solve_blocks(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count,
                   ChunkOutcome& outcome) {
   Blocks<D, What> blocks(step);
-  for (std::ptrdiff_t size = 0; count > 0; contacts += size, count -= size) {
-    size = next_block(contacts, count);
-    blocks.solve(contacts, size, outcome);
+  for (Block block{}; count > 0; contacts += block.count, count -= block.count) {
+    block = next_block(contacts, count);
+    blocks.solve(contacts, block.count, block.in_row, outcome);
   }
 }
 

@@ -150,8 +150,10 @@ void Interface::choose_active(const StepView& step) {
 
 void Interface::solve(const StepView& step, Dofs& v) {
   choose_active(step);
-  sums_ = {};
-  if (active().empty()) return;
+  if (active().empty()) {
+    sums_ = {};
+    return;
+  }
   const bool energies = asks_energies_ && (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0,
              watched = InputCopy::is_due(step.number);
   const BlockStep blocks{setup_,
@@ -174,12 +176,13 @@ void Interface::solve(const StepView& step, Dofs& v) {
     outcome = {};
     if (range[1] > range[0]) solve_chunk(blocks, near_.data() + range[0], range[1] - range[0], outcome);
   });
-  Refusal refusal;
-  for (const ChunkOutcome& outcome : outcomes_) {
-    refusal.add(outcome.refusal);
-    sums_.add(outcome.sums);
+  Refusal refusal = outcomes_.front().refusal;
+  sums_ = outcomes_.front().sums;
+  for (std::size_t c = 1; c < outcomes_.size(); ++c) {
+    refusal.add(outcomes_[c].refusal);
+    sums_.add(outcomes_[c].sums);
   }
-  check(refusal);
+  if (refusal.code != ILAW_OK) check(refusal);
 }
 
 // ---- a step where contacts share nodes ------------------------------------------------------------------

@@ -23,6 +23,27 @@ void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undam
     }
 }
 
+struct WildMotion {
+  const Model& model;
+  const Dofs &u, &v;
+  double time, dt;
+  std::int64_t step;
+};
+
+[[noreturn]] void explain_divergence(const WildMotion& motion) {
+  const Dofs& v = motion.v;
+  Eigen::Index dof = 0, largest = 0;
+  v.cwiseAbs().maxCoeff(&largest);
+  while (dof < v.size() && std::isfinite(v[dof])) ++dof;
+  if (dof == v.size()) dof = largest;
+  std::array<char, 32> velocity{};  // with an exponent: it may have 300 digits
+  std::snprintf(velocity.data(), velocity.size(), "%g", v[dof]);
+  throw Diverged("velocity " + std::string(velocity.data()) + " at node " +
+                 std::to_string(dof / motion.model.dimension()) + ", step " + std::to_string(motion.step) +
+                 ", time " + std::to_string(motion.time) +
+                 advice_on_divergence(motion.model, motion.u, motion.dt));
+}
+
 }  // namespace
 
 void Integrator::step() {
@@ -55,10 +76,12 @@ int Integrator::timed_steps() const {
 }
 
 void Integrator::move() {
-  for_each_part(u_.size(), [&](Eigen::Index first, Eigen::Index end) {
+  for_each_part(u_.size(), [u = u_.data(), before = v_before_.data(), v = v_.data(), h = dt_](
+                               Eigen::Index first, Eigen::Index end) {
+#pragma omp simd
     for (Eigen::Index i = first; i < end; ++i) {
-      v_before_[i] = v_[i];
-      u_[i] += dt_ * v_[i];
+      before[i] = v[i];
+      u[i] += h * v[i];
     }
   });
 }
@@ -92,8 +115,11 @@ double Integrator::kick(StepTimes step) {
       for (Eigen::Index i = first; i < end; ++i)
         v_[i] += (external_impulse_[i] + internal_impulse_[i]) * inverse_mass_[i];
     else if (pushed || deformed) {
-      const Dofs& impulse = pushed ? external_impulse_ : internal_impulse_;
-      for (Eigen::Index i = first; i < end; ++i) v_[i] += impulse[i] * inverse_mass_[i];
+      double* const v = v_.data();
+      const double* const impulse = (pushed ? external_impulse_ : internal_impulse_).data();
+      const double* const inverse = inverse_mass_.data();
+#pragma omp simd
+      for (Eigen::Index i = first; i < end; ++i) v[i] += impulse[i] * inverse[i];
     }
     return largest_square(v_, d, first, end);
   }));
@@ -140,16 +166,7 @@ void Integrator::add_coupled_reactions(const StepView& step) {
 
 // A speed whose square is infinite has no kinetic energy, either.
 void Integrator::check_motion(double speed, double time) const {
-  if (std::isfinite(speed)) return;
-  Eigen::Index dof = 0, largest = 0;
-  v_.cwiseAbs().maxCoeff(&largest);
-  while (dof < v_.size() && std::isfinite(v_[dof])) ++dof;
-  if (dof == v_.size()) dof = largest;
-  std::array<char, 32> velocity{};  // with an exponent: it may have 300 digits
-  std::snprintf(velocity.data(), velocity.size(), "%g", v_[dof]);
-  throw Diverged("velocity " + std::string(velocity.data()) + " at node " +
-                 std::to_string(dof / model_.dimension()) + ", step " + std::to_string(steps_ + 1) +
-                 ", time " + std::to_string(time) + advice_on_divergence(model_, u_, dt_));
+  if (!std::isfinite(speed)) explain_divergence({model_, u_, v_, time, dt_, steps_ + 1});
 }
 
 }  // namespace ilaw::host
