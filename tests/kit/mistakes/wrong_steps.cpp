@@ -61,9 +61,26 @@ struct writes_v_free {
   }
 };
 
+// try_step must be template <class Node> bool try_step(Node& node) const
+struct changes_as_it_tries {
+  double a;
+  CARD;
+  PARAMETER(changes_as_it_tries);
+  template <class Node>
+  void step(Node& node) const {
+    node.impulse.n = a;
+  }
+  template <class Node>
+  bool try_step(Node& node) {
+    node.impulse.n = a;
+    return true;
+  }
+};
+
 // The compiler looks at each.
 #define SEEN(law) auto* const seen_##law = &detail::library_of<law>::describe
 SEEN(gap_not_declared);
 SEEN(area_not_declared);
 SEEN(contact_without_v_previous);
 SEEN(writes_v_free);
+SEEN(changes_as_it_tries);

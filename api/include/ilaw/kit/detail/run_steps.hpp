@@ -268,6 +268,12 @@ concept tries_first = requires(const Form& law, Node& node) {
   { law.try_step(node) } -> std::same_as<bool>;
 };
 
+template <class Form, class Node>
+constexpr bool tries_rightly() {
+  if constexpr (requires(Form & law, Node & node) { law.try_step(node); }) return tries_first<Form, Node>;
+  return true;
+}
+
 // Not where energies are asked, or tangents that the law does without: each is a loop more to compile.
 template <class Law, class Frame, scope Scope>
 inline constexpr bool is_worth_a_try = !is_for_old_processors && Scope < scope::outputs &&
@@ -322,6 +328,8 @@ void try_first(const Laws& laws, const node_block<Law>& b) {
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 int run_steps(const Laws& laws, const node_block<Law>& b) {
   using form = typename Laws::form;
+  static_assert(tries_rightly<form, node_in<Law, Delassus, Frame>>(),
+                "try_step must be template <class Node> bool try_step(Node& node) const");
   if constexpr (asks_first<form, node_in<Law, Delassus, Frame>>) {
     constexpr scope reads = reading<Scope>;
     asked_block<form> asked;
