@@ -29,7 +29,9 @@ inline std::string plugin_file(const std::string& law) {
     const std::string file = std::string(folder) + "/" + law + ".so";
     if (std::filesystem::exists(file)) return file;
   }
-  return std::string(ILAW_PLUGIN_FOLDER) + "/" + law + ".so";
+  std::string file = ILAW_PLUGIN_FOLDER "/";
+  file += law;
+  return file += ".so";
 }
 
 struct Parameters {
