@@ -98,7 +98,7 @@ class isotropic_step {
     const Mask rubs = m.closed & (g_.damage > 0.0);
     const V way = 0.5 * g_.position_step * h_t;
     for (int k = 1; k < 3; ++k) {
-      m.rub[k - 1] = select(rubs, -found.factor * q[k], 0.0);
+      m.rub[k - 1] = select(rubs, 0.0 - found.factor * q[k], 0.0);
       const V rubbed = select(found.moves, m.opening[k] + way * m.rub[k - 1], x_[k]);
       m.opening[k] = select(rubs, rubbed, m.opening[k]);
     }

@@ -36,7 +36,7 @@ void touch_in_packs(const gathered<V>& g, double friction, mask_of<V> where, sol
   const V normal = positive_part(-excess / g.h[0]);
   const V rest[] = {rest_n, u[1], u[2]};
   const rubbing_factor<V> found = rub_from(g.h[1], normal, v, rest, V(friction));
-  const V impulse[] = {normal, -found.factor * v[1], -found.factor * v[2]};
+  const V impulse[] = {normal, 0.0 - found.factor * v[1], 0.0 - found.factor * v[2]};
   leave_bond(g, impulse, select(normal > 0.0, found.status, V(status::free)), where, a);
 }
 

@@ -115,7 +115,8 @@ template <class Delassus, class Vector>
 friction_result<Vector> rub_along(const Delassus& delassus, double normal, Vector q, double speed,
                                   fraction<double> part, double friction) {
   const auto found = rub(delassus.tangential(), normal, speed, part, friction);
-  friction_result<Vector> result{-found.factor * q, found.moves, found.status};
+  // From zero, so that what does not rub gets 0, and not -0.
+  friction_result<Vector> result{Vector{} - found.factor * q, found.moves, found.status};
   result.impulse.n = normal;
   return result;
 }
@@ -271,7 +272,7 @@ void solve_isotropic(const friction_problem<V>& p, mask_of<V> where, friction_an
   const V normal = positive_part(-q[0] / h[0]);
   const rubbing_factor<V> found = rub_from(h[1], normal, q, p.rest, p.contact.mu[0]);
   a.r[0] = select(where, normal, a.r[0]);
-  for (int k = 1; k < 3; ++k) a.r[k] = select(where, -found.factor * q[k], a.r[k]);
+  for (int k = 1; k < 3; ++k) a.r[k] = select(where, 0.0 - found.factor * q[k], a.r[k]);
   a.status = select(where, select(normal > 0.0, found.status, V(status::free)), a.status);
 }
 
