@@ -4,7 +4,7 @@
     ILAW_PATH=build/release/lib/ilaw tests/bench/loops.py build/release/bin/ilaw build/release/bin/ilaw_bench_dividers
 
 Time in cache by `ilaw bench`; instructions, divisions and roots are counted in the loop that the case runs
-through at level v4: the longest one of the function that is named by its words.
+through at level v4: the longest one of each function that is named by its words.
 """
 import argparse
 import json
@@ -15,17 +15,30 @@ import subprocess
 
 FRICTION = '{"friction": 0.3}'
 KINETIC = '{"friction": 0.3, "kinetic_friction": 0.2, "decay": 1.0}'
-# What, law, options of ilaw bench, words of the function, times that the row's bar allows.
+LOCAL = ["local_frame", "interleaved"]
+HOLDING = '{"strength": 1e12, "toughness": 1e12}'
+
+
+def spring(**more):
+    return ["--parameters", json.dumps({"stiffness": 10000, **more})]
+
+
+# What, law, options of ilaw bench, words of the functions that a node runs through, times that the row's bar allows.
 CASES = [
-    ("contact", "contact", [], ["step_block", "transverse", "local_frame", "interleaved"], 1.2),
-    ("contact, full $H$", "contact", ["--delassus", "full"], ["step_block", "full_", "local_frame"], 1.3),
-    ("coulomb", "coulomb", ["--parameters", FRICTION], ["try_block", "local_frame", "interleaved", "::plain"], 1.2),
-    ("coulomb, kinetic", "coulomb", ["--parameters", KINETIC],
-     ["try_block", "local_frame", "interleaved", "::falling"], 2.0),
-    ("tie", "tie", [], ["try_block", "transverse", "local_frame", "interleaved"], 1.2),
-    ("tie, full $H$", "tie", ["--delassus", "full"], ["try_block", "full_", "local_frame"], 1.3),
-    ("postit, no memory", "postit", ["--parameters", FRICTION],
-     ["try_block", "local_frame", "interleaved", "<false, false>"], 1.5),
+    ("contact", "contact", [], [["step_block", "transverse", *LOCAL]], 1.2),
+    ("contact, full $H$", "contact", ["--delassus", "full"], [["step_block", "full_", "local_frame"]], 1.3),
+    ("coulomb", "coulomb", ["--parameters", FRICTION], [["try_block", *LOCAL, "::plain"]], 1.2),
+    ("coulomb, kinetic", "coulomb", ["--parameters", KINETIC], [["try_block", *LOCAL, "::falling"]], 2.0),
+    ("tie", "tie", [], [["try_block", "transverse", *LOCAL]], 1.2),
+    ("tie, full $H$", "tie", ["--delassus", "full"], [["try_block", "full_", "local_frame"]], 1.3),
+    ("postit, no memory", "postit", ["--parameters", FRICTION], [["try_block", *LOCAL, "<false, false>"]], 1.5),
+    ("penalty, explicit", "penalty", spring(), [["step_block", *LOCAL, "form<false", "kind)0>"]], 1.2),
+    ("penalty, implicit", "penalty", spring(integration="implicit"),
+     [["step_block", *LOCAL, "form<true", "kind)0>"]], 1.2),
+    ("penalty, implicit, friction", "penalty", spring(integration="implicit", friction=0.3),
+     [["step_block", *LOCAL, "form<true", "kind)1>"]], 1.2),
+    ("cohesive, holding", "cohesive", ["--parameters", HOLDING],
+     [["mark_block", "transverse", *LOCAL], ["finish_block", "transverse", *LOCAL]], 1.5),
 ]
 SCOPE = "(scope)1"  # impulse and state, with the velocity before the step
 
@@ -56,9 +69,10 @@ def loops_of(library):
 
 
 def row(case, given, folder, dividers):
-    what, law, options, words, bar = case
-    loop = next(body for name, body in loops_of(folder / f"{law}.so").items()
-                if SCOPE in name and all(word in name for word in words))
+    what, law, options, functions, bar = case
+    loops = loops_of(folder / f"{law}.so").items()
+    loop = [instruction for words in functions
+            for instruction in next(body for name, body in loops if SCOPE in name and all(w in name for w in words))]
     divisions = sum(w.startswith("vdivpd") for w in loop)
     roots = sum(w.startswith("vsqrtpd") for w in loop)
     busy = (divisions * dividers[0] + roots * dividers[1]) / 8.0
