@@ -7,9 +7,9 @@
 
 #include <elf.h>
 
-#include <cstdint>
+#include <array>
 #include <cstring>
-#include <limits>
+#include <utility>
 #include <vector>
 
 namespace ilaw::loading {
@@ -30,8 +30,8 @@ bool inside(std::uint64_t offset, std::uint64_t size, std::uint64_t bytes) {
 
 class elf_check {
  public:
-  elf_check(const std::string& path, const unsigned char* bytes, std::size_t size)
-      : path_(path), bytes_(bytes), size_(size) {}
+  elf_check(const std::string& path, std::uint64_t size, byte_source bytes)
+      : path_(path), size_(size), bytes_(std::move(bytes)) {}
 
   void run() {
     check_identity();
@@ -53,16 +53,17 @@ class elf_check {
   template <class Entry>
   Entry read(std::uint64_t offset) const {
     Entry entry;
-    if (!inside(offset, sizeof entry, size_)) refuse_truncated();
-    std::memcpy(&entry, bytes_ + offset, sizeof entry);
+    if (!inside(offset, sizeof entry, size_) || !bytes_(offset, &entry, sizeof entry)) refuse_truncated();
     return entry;
   }
 
   void check_identity() {
-    if (size_ < SELFMAG || std::memcmp(bytes_, ELFMAG, SELFMAG) != 0) refuse("not an ELF file");
-    if (size_ < EI_NIDENT) refuse_truncated();
-    if (bytes_[EI_CLASS] != ELFCLASS64) refuse("not a 64-bit ELF file");
-    if (bytes_[EI_DATA] != ELFDATA2LSB) refuse("not a little-endian ELF file");
+    using magic = std::array<unsigned char, SELFMAG>;
+    if (size_ < SELFMAG || std::memcmp(read<magic>(0).data(), ELFMAG, SELFMAG) != 0)
+      refuse("not an ELF file");
+    const auto identity = read<std::array<unsigned char, EI_NIDENT>>(0);
+    if (identity[EI_CLASS] != ELFCLASS64) refuse("not a 64-bit ELF file");
+    if (identity[EI_DATA] != ELFDATA2LSB) refuse("not a little-endian ELF file");
     header_ = read<Elf64_Ehdr>(0);
     if (header_.e_version != EV_CURRENT) refuse("ELF version " + std::to_string(header_.e_version));
     if (header_.e_type != ET_DYN) refuse("ELF file of type " + std::to_string(header_.e_type));
@@ -186,12 +187,12 @@ class elf_check {
            entry.d_tag == DT_RUNPATH) &&
           entry.d_un.d_val >= texts)
         refuse("a name outside the table of names");
-    if (bytes_[offset_of(value_of(DT_STRTAB)) + texts - 1] != 0) refuse("a table of names without end");
+    if (read<char>(offset_of(value_of(DT_STRTAB)) + texts - 1) != 0) refuse("a table of names without end");
   }
 
   const std::string& path_;
-  const unsigned char* bytes_;
-  std::size_t size_;
+  std::uint64_t size_;
+  byte_source bytes_;
   Elf64_Ehdr header_{};
   std::vector<Elf64_Phdr> segments_;
   std::vector<Elf64_Dyn> dynamic_;
@@ -199,8 +200,8 @@ class elf_check {
 
 }  // namespace
 
-void check_elf(const std::string& path, const unsigned char* bytes, std::size_t size) {
-  elf_check(path, bytes, size).run();
+void check_elf(const std::string& path, std::uint64_t size, byte_source bytes) {
+  elf_check(path, size, std::move(bytes)).run();
 }
 
 void check_shared_object(const std::string& path) {
@@ -213,9 +214,11 @@ void check_shared_object(const std::string& path) {
   if (status.folder) refuse("a folder");
   if (!status.regular) refuse("not a regular file");
   if (status.size > most) refuse("larger than 1 GiB");
-  std::vector<unsigned char> bytes;
-  if (!read_whole(path, bytes)) refuse("the file cannot be read");
-  check_elf(path, bytes.data(), bytes.size());
+  const open_file file(path);
+  if (!file.is_open()) refuse("the file cannot be read");
+  check_elf(path, status.size, [&file](std::uint64_t offset, void* to, std::size_t count) {
+    return file.copy(offset, to, count);
+  });
 }
 
 }  // namespace ilaw::loading

@@ -11,25 +11,6 @@
 #include <memory>
 
 namespace ilaw::loading {
-namespace {
-
-class descriptor {
- public:
-  explicit descriptor(const std::string& path)
-      : number_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
-  ~descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  descriptor(const descriptor&) = delete;
-  descriptor& operator=(const descriptor&) = delete;
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
-
-}  // namespace
-
 file_status status_of(const std::string& path) {
   struct statx found {};
   file_status status;
@@ -58,18 +39,20 @@ std::vector<std::string> names_in(const std::string& folder) {
   return names;
 }
 
-bool read_whole(const std::string& path, std::vector<unsigned char>& bytes) {
-  const descriptor file(path);
-  if (file.number() < 0) return false;
-  bytes.resize(status_of(path).size);
-  std::size_t known = 0;
-  while (known < bytes.size()) {
-    const ssize_t more = read(file.number(), bytes.data() + known, bytes.size() - known);
-    if (more < 0) return false;
-    if (more == 0) break;  // shorter than it was a moment ago
+open_file::open_file(const std::string& path)
+    : number_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+
+open_file::~open_file() {
+  if (number_ >= 0) close(number_);
+}
+
+bool open_file::copy(std::uint64_t offset, void* to, std::size_t size) const {
+  auto* bytes = static_cast<unsigned char*>(to);
+  for (std::size_t known = 0; known < size;) {
+    const ssize_t more = pread(number_, bytes + known, size - known, static_cast<off_t>(offset + known));
+    if (more <= 0) return false;  // or shorter than it was a moment ago
     known += static_cast<std::size_t>(more);
   }
-  bytes.resize(known);
   return true;
 }
 

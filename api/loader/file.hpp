@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,7 +24,20 @@ std::string canonical(const std::string& path);
 // Names in a folder, sorted; none where it cannot be read.
 std::vector<std::string> names_in(const std::string& folder);
 
-// False where it cannot be read.
-bool read_whole(const std::string& path, std::vector<unsigned char>& bytes);
+// A file of which parts are read.
+class open_file {
+ public:
+  explicit open_file(const std::string& path);
+  ~open_file();
+  open_file(const open_file&) = delete;
+  open_file& operator=(const open_file&) = delete;
+
+  bool is_open() const { return number_ >= 0; }
+  // False where these bytes cannot be read.
+  bool copy(std::uint64_t offset, void* to, std::size_t size) const;
+
+ private:
+  int number_;
+};
 
 }  // namespace ilaw::loading

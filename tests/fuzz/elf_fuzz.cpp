@@ -4,10 +4,14 @@
 #include <refusal.hpp>
 
 #include <cstdint>
+#include <cstring>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   try {
-    ilaw::loading::check_elf("fuzzed", bytes, size);
+    ilaw::loading::check_elf("fuzzed", size, [bytes](std::uint64_t offset, void* to, std::size_t count) {
+      std::memcpy(to, bytes + offset, count);
+      return true;
+    });
   } catch (const ilaw::loading::refusal&) {
   }
   return 0;
