@@ -7,6 +7,7 @@ Time in cache by `ilaw bench`; instructions, divisions and roots are counted in 
 through at level v4: the longest one of each function that is named by its words.
 """
 import argparse
+import functools
 import json
 import os
 import pathlib
@@ -47,6 +48,7 @@ def output_of(*command):
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
+@functools.cache
 def loops_of(library):
     """Name of each function: instructions of its longest loop with vectors of eight doubles."""
     found = {}
