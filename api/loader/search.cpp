@@ -104,6 +104,7 @@ std::string find_named(const std::string& name) {
   std::string where = joined(path.folders);
   if (!path.left_out.empty())
     where += "; not searched, since every user may write there: " + joined(path.left_out);
+  if (ends_in_so(name)) where += "; the path of a file has a '/', as ./" + name;
   throw refusal(ILAW_NOT_FOUND, "'" + name + "': no " + file + " found, expected it in one of: " + where);
 }
 

@@ -101,8 +101,8 @@ struct any_compression : compression<double> {
 // coupling.
 template <class Vector>
 kit::friction_result<Vector> rub_apart(double normal, Vector q, double softness, double friction) {
-  q.n = -normal;
-  return solve_contact_friction(kit::diagonal_delassus{1.0, softness, softness}, -1.0, q, friction);
+  const kit::diagonal_delassus delassus{1.0, softness, softness};
+  return rub_along(delassus, kit::positive_part(normal), q, q.tangential_length(), {}, friction);
 }
 
 class node_alone {

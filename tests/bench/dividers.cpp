@@ -1,16 +1,13 @@
 // How long the divider of this processor takes for eight numbers, one division or root right after the other:
 // below it no loop comes that has so many of them (docs/benchmarks.md, "What forbids the bars").
+#include "base/clock.hpp"
+
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 
 namespace {
 
-double seconds() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+double seconds() { return ilaw::host::clock_seconds(CLOCK_THREAD_CPUTIME_ID); }
 
 // The fastest of some runs: what disturbs a machine only takes longer.
 template <class Work>

@@ -12,6 +12,7 @@
 //
 // --read writes a scene of N points, reads it as `ilaw run` does, and says how long that took and the largest
 // memory that the process has held.
+#include "base/clock.hpp"
 #include "base/csv.hpp"
 #include "scene/scene.hpp"
 #include "step/integrator.hpp"
@@ -25,7 +26,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -38,11 +38,7 @@ namespace {
 
 using namespace ilaw::host;
 // Seconds of the wall clock; of this thread's processor time where there is but one.
-double now() {
-  timespec time{};
-  clock_gettime(omp_get_max_threads() == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
+double now() { return clock_seconds(omp_get_max_threads() == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC); }
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -86,6 +86,21 @@ TEST(LargeScene, IsReadPackedToTheSameNumbers) {
   EXPECT_EQ(packed.model->initial_velocity(), plain.model->initial_velocity());
 }
 
+// Two thousand million elements: found before any memory is asked for.
+TEST(LargeScene, OfMoreElementsThanNumbersIsRefused) {
+  json scene = json::parse(text_of(scene_files::named("two_blocks.json")));
+  scene["model"]["blocks"][1]["elements"] = {2000, 1000, 1000};
+  try {
+    scene_of(scene.dump());
+    FAIL() << "not refused";
+  } catch (const SceneError& error) {
+    const std::string refusal = error.what(),
+                      begin = "/model/blocks/1/elements: found [2000,1000,1000], which makes ";
+    EXPECT_EQ(refusal.find(begin), 0U) << refusal;
+    EXPECT_NE(refusal.find(" nodes, expected at most 5e8"), std::string::npos) << refusal;
+  }
+}
+
 TEST(LargeScene, TellsAMistakeInAPointByItsPointer) {
   const auto refusal_of = [](const json& point) -> std::string {
     json source = falling_points(5000);

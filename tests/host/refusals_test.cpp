@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "/interface: unknown key, expected one of: converge, doc, exact, initial, interfaces, loads, "
                 "model, output, sets, springs, study, time, title (did you mean 'interfaces'?)"},
         Mistake{"/model/type", "\"bar\"", "/model/type: found \"bar\", expected one of \"points\""},
-        Mistake{"/model/dimension", "4", "/model/dimension: found 4, expected integer >= 1 <= 3"},
+        Mistake{"/model/dimension", "4", "/model/dimension: found 4, expected integer >= 1 and <= 3"},
         Mistake{"/model/points/1/mass", "0", "/model/points/1/mass: found 0, expected number > 0"},
         Mistake{"/model/points/1/mass", "\"heavy\"",
                 "/model/points/1/mass: found \"heavy\", expected number > 0"},
@@ -293,7 +293,7 @@ TEST(Scene, WithMoreNodesThanNumbersIsRefused) {
     scene["model"]["bars"].push_back(
         {{"length", 1.0}, {"elements", 100000000}, {"young", 1.0}, {"density", 1.0}});
   EXPECT_EQ(refusal_of_text(scene.dump()),
-            "/model/bars/4/elements: found 100000000, which makes 500000005.0 nodes, expected at most 5e8");
+            "/model/bars/4/elements: found 100000000, which makes 500000005 nodes, expected at most 5e8");
 }
 
 // The bounds of a range are all told, also those that do not belong to it.
@@ -301,7 +301,7 @@ TEST(Scene, TellsWhereARangeEnds) {
   json scene = json::parse(text_of(scene_files::named("block_impact.json")));
   scene["model"]["blocks"][0]["material"]["poisson"] = 0.5;
   EXPECT_EQ(refusal_of_text(scene.dump()),
-            "/model/blocks/0/material/poisson: found 0.5, expected number > -1 < 0.5");
+            "/model/blocks/0/material/poisson: found 0.5, expected number > -1 and < 0.5");
 }
 
 TEST(Scene, WhoseLibraryIsNoLibraryIsRefusedThere) {

@@ -80,6 +80,14 @@ TEST(Sweep, RunsEachValueAndGathersTheSummaries) {
   ASSERT_EQ(run_program("plot " + one + " --x n0.u0 --y floor.F0").code, 0);
   EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(one) / "floor.F0_over_n0.u0.svg"));
   EXPECT_EQ(run_program("plot " + one + " --y n7.u0").code, 2);
+  // Files that lie beside the runs by now are none.
+  const Outcome all = run_program("table " + (folder / "all").string() + "/* --csv --columns steps");
+  EXPECT_EQ(rows_of(all.output).size(), rows.size()) << all.output;
+  EXPECT_EQ(run_program("plot " + (folder / "all").string() + "/* --y floor.F0").code, 0);
+  EXPECT_NE(run_program("table " + (folder / "all/sweep.csv").string()).output.find("found no summary"),
+            std::string::npos);
+  EXPECT_NE(run_program("table " + (folder / "all").string() + "/*.*").output.find("found files alone"),
+            std::string::npos);
 }
 
 TEST(Sweep, RunsNothingIfOneIsRefused) {
@@ -155,6 +163,10 @@ TEST(Plot, SaysWhatIsNoHistory) {
   std::ofstream(odd / "summary.json") << "[]";
   refused("table " + odd.string(), "found no summary, expected that of a run");
   refused("plot " + good.string() + " --panels velocty", "--panels: found 'velocty', expected some of ");
+  refused("plot " + good.string() + " --panels velocty", "(did you mean 'velocity'?)");
+  refused("plot " + good.string() + " --y floor.F2",
+          "found no column 'floor.F2', expected one of time, n0.u0, ");
+  refused("plot " + good.string() + " --y floor.F2", "(did you mean 'floor.F0'?)");
   refused("plot " + good.string() + " " + good.string() + " --panels velocity",
           "--panels: found with several folders or --x");
   refused("table " + good.string() + " --columns n0.u0:median",
@@ -288,6 +300,59 @@ TEST(Refusals, NameSeveralMistakesAndWhatIsMeant) {
   scene = sliding();
   scene["interfaces"][0]["law"] = "coulom";
   EXPECT_NE(said(scene).find("(did you mean 'coulomb'?)"), std::string::npos);
+  scene = sliding();
+  scene["interfaces"][0]["parameters"] = {{"fricton", 0.5}};
+  EXPECT_NE(said(scene).find("(did you mean 'friction'?)"), std::string::npos);
+  scene = sliding();
+  scene["output"]["watch"] = "floor";
+  scene["loads"][0]["acceleration"] = -10;
+  for (const char* part : {"/output/watch: found \"floor\", expected array\n",
+                           "/loads/0/acceleration: found -10, expected array of 1 to 3 numbers\n"})
+    EXPECT_NE(said(scene).find(part), std::string::npos) << part << " in " << said(scene);
+}
+
+json block_on_plane() {
+  return json::parse(R"({
+    "model": {"type": "blocks", "blocks": [{"name": "b", "size": [0.1, 0.1, 0.1], "elements": [2, 2, 2],
+      "material": {"type": "linear", "young": 1e6, "poisson": 0.3, "density": 1000}}]},
+    "time": {"cfl": 0.9, "end": 0.01},
+    "interfaces": [{"law": "contact", "nodes": "b.z_min",
+      "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
+}
+
+// What lies on a plane does not tell which side is meant, what is behind it does; and a place in millimetres
+// is near to no node of a body in metres.
+TEST(Warnings, TellOfTheWrongSideAndOfWrongUnits) {
+  using Warnings = std::vector<std::string>;
+  const auto warnings_of = [](const char* pointer, const char* value) {
+    json scene = block_on_plane();
+    scene[json::json_pointer(pointer)] = json::parse(value);
+    return scene_of(scene.dump()).warnings;
+  };
+  EXPECT_EQ(warnings_of("/output/watch", R"([{"near": [0, 0, 0.27]}])"), Warnings{});
+  EXPECT_EQ(warnings_of("/output/watch", R"([0, {"near": [[0, 0, 0], [0, 0, 0.6]]}])"),
+            Warnings{"/output/watch/1/near: found [[0,0,0],[0,0,0.6]], 0.5 from the nearest node, beyond the "
+                     "model's size, 0.17320508075688776: are they in its units?"});
+  EXPECT_EQ(warnings_of("/interfaces/0/obstacle/normal", "[0, 0, -1]")
+                .front()
+                .find("/interfaces/0/obstacle/normal: all of the model lies behind the plane, by up to 0.0"),
+            0U);
+  EXPECT_EQ(warnings_of("/interfaces/0/obstacle/point", "[0, 0, 0.1]").size(), 1U);
+}
+
+// A step beyond the critical one: half of it might be too large as well.
+TEST(Refusals, OfARunThatDivergesNameAStepThatIsStable) {
+  const auto folder = fresh_folder();
+  json scene = block_on_plane();
+  scene["time"] = {{"dt", 0.02}, {"end", 10}};
+  scene["model"]["blocks"][0]["velocity"] = {0, 0, -1};
+  std::ofstream(folder / "scene.json") << scene.dump();
+  const Outcome outcome =
+      run_program("run " + (folder / "scene.json").string() + " --out " + (folder / "out").string());
+  EXPECT_EQ(outcome.code, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("; the critical step is 0.00"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find(", 0.9 of it \"cfl\": 0.9"), std::string::npos) << outcome.output;
+  EXPECT_LT(outcome.output.size(), 2000U) << outcome.output;
 }
 
 }  // namespace

@@ -325,7 +325,7 @@ TEST(Study, RefusesWhatItCannotCompare) {
   refusal(good, "--law glue", "with law 'glue': /interfaces/0/law");
   refusal(good, "--law 'contact:{\"restitution\": 2}'",
           "with law 'contact restitution 2': /interfaces/0/parameters/restitution");
-  refusal(good, "--law 'contact:{\"restitution\"}'", "not valid JSON");
+  refusal(good, "--law 'contact:{\"restitution\"}'", "--law contact:{\"restitution\"}: not valid JSON");
   refusal(good, "--law 'contact:3'", "/study/laws/0/parameters: found 3, expected object");
   refusal(good, "--law '{\"scaled\": 1}'", "/study/laws/0/scaled: found 1, expected boolean");
   refusal(good, "--law Contact", "/study/laws/0/law: found \"Contact\"");

@@ -23,11 +23,11 @@ program blocks
   real(c_double), target :: inverse_mass(blocks_count)
   integer(c_int8_t), target :: status(blocks_count) = 0
   real(c_double), allocatable, target :: state(:, :)
-  real(c_double) :: force(3, blocks_count), friction_work(blocks_count) = 0
   type(c_ptr) :: interface
   type(ilaw_instance_info) :: info
   type(ilaw_batch) :: batch
   type(ilaw_report) :: report
+  real(c_double) :: force(3, blocks_count), friction_work(blocks_count) = 0
   integer :: n, i
 
   u(3, 3) = 0.05d0; u(:, 4) = [0.4d0, -0.3d0, 0d0]; u(:, 5) = [0.06d0, 0.08d0, 0d0]

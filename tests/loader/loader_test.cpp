@@ -341,6 +341,9 @@ TEST(Search, NeverLooksInTheCurrentFolder) {
     EXPECT_EQ(code, ILAW_NOT_FOUND) << "ILAW_PATH=" << path;
     EXPECT_EQ(message.find("'local': no local.so found, expected it in one of: /"), 0U) << message;
   }
+  const std::string as_file = refusal_of("local.so").second,
+                    hint = "; the path of a file has a '/', as ./local.so";
+  EXPECT_NE(as_file.find(hint), std::string::npos) << as_file;
   EXPECT_EQ(refusal_of("./local.so").first, ILAW_OK);  // an explicit path is the user's word
   fs::current_path(before);
   unsetenv("ILAW_PATH");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/measure.hpp"
 
+#include "base/clock.hpp"
 #include "bench/bench_law.hpp"
 #include "bench/node_arrays.hpp"
 #include "bench/triad.hpp"
@@ -9,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -21,19 +21,13 @@ namespace {
 // Beyond this the triad is far larger than any cache, and only takes memory.
 constexpr double most_triad_elements = 1e7;
 
-double thread_seconds() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 // Seconds of one call, from as many as fill a few milliseconds.
 template <class Work>
 double seconds_of(Work&& work) {
   for (long calls = 1;; calls *= 4) {
-    const double start = thread_seconds();
+    const double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     for (long k = 0; k < calls; ++k) work();
-    const double seconds = thread_seconds() - start;
+    const double seconds = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start;
     if (seconds > 2e-3) return seconds / static_cast<double>(calls);
   }
 }

@@ -171,15 +171,21 @@ void check_usage(const Options& options) {
       throw UsageError("found rule '" + id + "', expected one that `ilaw check --rules` lists");
 }
 
+void check_law(const Opened& opened, const std::string& law) {
+  if (law.empty() || opened.path.empty()) return;
+  if (std::find(opened.laws.begin(), opened.laws.end(), law) != opened.laws.end()) return;
+  std::string names;
+  for (const std::string& name : opened.laws) names += (names.empty() ? "" : ", ") + name;
+  throw UsageError("found law '" + law + "', expected one of " + opened.path + ": " + names);
+}
+
 }  // namespace
 
 std::vector<Outcome> check(const std::string& name_or_path, const Options& options) {
   check_usage(options);
   std::vector<Outcome> outcomes;
   const Opened opened = open(name_or_path, options, outcomes);
-  if (!options.law.empty() && !opened.path.empty() &&
-      std::find(opened.laws.begin(), opened.laws.end(), options.law) == opened.laws.end())
-    throw UsageError("found law '" + options.law + "', expected one of " + opened.path);
+  check_law(opened, options.law);
   for (const std::string& law : opened.laws)
     if (options.law.empty() || options.law == law) LawCheck(opened.path, law, options, outcomes).run();
   return outcomes;

@@ -3,6 +3,7 @@
 #include "cli/commands.hpp"
 
 #include "base/exit_code.hpp"
+#include "base/words.hpp"
 #include "cli/terminal.hpp"
 #include "results/comparison.hpp"
 #include "results/gnuplot.hpp"
@@ -54,11 +55,9 @@ Caption read_caption(const std::filesystem::path& folder) {
 // The first of the wanted panels that the history does not have, with those that it has; empty:
 // none.
 std::string unknown_panel(const std::vector<std::string>& wanted, const std::vector<std::string>& names) {
-  std::string known;
-  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
   for (const std::string& panel : wanted)
     if (std::find(names.begin(), names.end(), panel) == names.end())
-      return "--panels: found '" + panel + "', expected some of " + known;
+      return "--panels: found '" + panel + "', expected some of " + joined(names) + suggestion(panel, names);
   return "";
 }
 
@@ -96,15 +95,22 @@ int plot_history(const std::filesystem::path& results, const std::vector<std::st
   return exit_done;
 }
 
+// Of many names the last, where the resultants are.
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 20;
+  if (names.size() <= most) return joined(names);
+  return joined(std::vector<std::string>(names.end() - most, names.end())) + " and " +
+         std::to_string(names.size() - most) + " more";
+}
+
 void check_columns(const std::vector<RunFolder>& runs, const std::vector<std::string>& columns) {
   for (const RunFolder& run : runs) {
     const HistoryFile history(run.folder / "history.csv");
-    std::string names;
-    for (const std::string& name : history.names()) names += (names.empty() ? "" : ", ") + name;
     for (const std::string& column : columns)
       if (!history.index_of(column))
         throw std::runtime_error((run.folder / "history.csv").string() + ": found no column '" + column +
-                                 "', expected one of " + names);
+                                 "', expected one of " + some_of(history.names()) +
+                                 suggestion(column, history.names()));
   }
 }
 
@@ -120,7 +126,7 @@ int plot_columns(const PlotOptions& options) {
   std::vector<RunFolder> runs;
   ComparisonSetup setup{options.x, options.y};
   try {
-    for (const std::string& folder : options.folders) runs.push_back(open_run(folder));
+    runs = open_runs(options.folders);
     if (setup.y.empty()) setup.y = comparable_columns(runs);
     if (setup.y.empty()) throw std::runtime_error("found no columns that all runs have");
     std::vector<std::string> needed = setup.y;

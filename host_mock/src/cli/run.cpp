@@ -183,11 +183,10 @@ class Run {
     const double depth = integrator_.tally().penetration_max, part = depth / shortest_edge(*scene_.model);
     if (!(part > much)) return;
     std::array<char, 160> text{};
-    std::snprintf(
-        text.data(), text.size(),
-        "nodes penetrate by up to %.2g, %.0f %% of the shortest element edge: a penalty that is too "
-        "soft does, and a large step",
-        depth, 100.0 * part);
+    std::snprintf(text.data(), text.size(),
+                  "nodes penetrate by up to %.2g, %.3g %% of the shortest element edge: they start there, a "
+                  "penalty is too soft, or the step is too large",
+                  depth, 100.0 * part);
     record.warnings.emplace_back(text.data());
   }
 

@@ -28,8 +28,7 @@ Rows transposed(const Rows& rows) {
 
 int table(const TableOptions& options) {
   try {
-    std::vector<RunFolder> runs;
-    for (const std::string& folder : options.folders) runs.push_back(open_run(folder));
+    const std::vector<RunFolder> runs = open_runs(options.folders);
     const Rows rows = table_of(runs, options.columns);
     if (options.csv)
       write_csv(std::cout, rows);

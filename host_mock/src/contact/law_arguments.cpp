@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/law_setup.hpp"
 
+#include "base/words.hpp"
+
+#include <algorithm>
 #include <deque>
 
 namespace ilaw::host {
@@ -36,8 +39,8 @@ class ArgumentList {
     return changed;
   }
 
-  // Of the parameter that a law's message names first: laws put names in quotes.
-  std::string pointer_from(const std::string& message, std::optional<std::size_t> node_index) const {
+  // The parameter that a law's message names first, or null: laws put names in quotes.
+  const ilaw_argument* named_in(const std::string& message) const {
     const ilaw_argument* named = nullptr;
     std::size_t first = std::string::npos;
     for (const ilaw_argument& argument : arguments_)
@@ -45,6 +48,10 @@ class ArgumentList {
         first = at;
         named = &argument;
       }
+    return named;
+  }
+
+  std::string pointer_to(const ilaw_argument* named, std::optional<std::size_t> node_index) const {
     if (!named) return "";
     std::string pointer = "/" + std::string(named->name);
     for (const auto& [argument, values] : per_node_)
@@ -66,6 +73,14 @@ class ArgumentList {
   std::vector<std::pair<ilaw_argument*, const std::vector<double>*>> per_node_;
   std::vector<const ilaw_argument*> pointers_;
 };
+
+// The parameter that was meant by a name that the law does not have.
+std::string meant_by(const std::string& given, const ilaw_law* law) {
+  std::vector<std::string> names;
+  for (std::uint32_t k = 0; law && k < law->parameter_count; ++k)
+    names.emplace_back(law->parameters[k]->name);
+  return std::find(names.begin(), names.end(), given) == names.end() ? suggestion(given, names) : "";
+}
 
 // Straight through the law: the loader, which checks every instance, has seen one.
 void try_create(const ilaw_law& law, const ilaw_setup& setup) {
@@ -93,7 +108,9 @@ ilaw::interface create_law(const std::string& law, const Arguments& given, ilaw_
     return created;
   } catch (const ilaw::error& refusal) {
     if (refusal.code() != ILAW_INVALID_PARAMETER) throw;
-    throw ParameterError(refusal, arguments.pointer_from(refusal.what(), node_index), node_index);
+    const ilaw_argument* named = arguments.named_in(refusal.what());
+    const std::string text = refusal.what() + (named ? meant_by(named->name, library.law(law)) : "");
+    throw ParameterError({refusal.code(), text}, arguments.pointer_to(named, node_index), node_index);
   }
 }
 

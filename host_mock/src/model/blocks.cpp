@@ -11,7 +11,7 @@ namespace ilaw::host {
 namespace {
 
 // Below it threads cost more than they bring.
-constexpr int fewest_for_threads = 512;
+constexpr std::int64_t fewest_for_threads = 512;
 
 // Corners of the unit cube in VTK's order.
 constexpr std::array<std::array<int, 3>, 8> corner_of{
@@ -330,8 +330,7 @@ bool Blocks::is_linear() const {
 void Blocks::add_internal_forces(const Dofs& u, Dofs& force) const {
   for (const Block& block : blocks_) {
     const int layers = block.elements[static_cast<std::size_t>(block.layer_axis)];
-    [[maybe_unused]] const bool many =
-        block.elements[0] * block.elements[1] * block.elements[2] >= fewest_for_threads;
+    [[maybe_unused]] const bool many = block.element_count() >= fewest_for_threads;
     for (int parity = 0; parity < 2; ++parity) {
 #pragma omp parallel for schedule(static) if (many)
       for (int layer = parity; layer < layers; layer += 2)

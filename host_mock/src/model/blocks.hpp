@@ -12,6 +12,8 @@
 #include "model/material.hpp"
 #include "model/model.hpp"
 
+#include <cstdint>
+
 namespace ilaw::host {
 
 // Which dilatation an integration point feels: its own, or the mean of its element (Nagtegaal, Parks
@@ -69,6 +71,7 @@ class Blocks : public Model {
     ElementMatrix stiffness;
     std::array<int, 8> corners;  // nodes of an element, from its first
 
+    std::int64_t element_count() const { return std::int64_t{elements[0]} * elements[1] * elements[2]; }
     int element_first(const std::array<int, 3>& at) const;
     // Displacements relative to the first node: rounding then grows with strain, not with how far a
     // block has moved.

@@ -100,6 +100,7 @@ std::string advice_on_divergence(const Model& model, const Dofs& u, double dt) {
   }
   const double critical = model.critical_step();
   if (!std::isfinite(critical)) return text + "; a smaller 'dt' may cure it";
+  if (dt > critical) return text + "; the critical step is " + text_of(critical) + ", 0.9 of it \"cfl\": 0.9";
   return text + "; half the step is \"cfl\": " + text_of(0.5 * dt / critical);
 }
 

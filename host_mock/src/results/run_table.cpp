@@ -100,6 +100,14 @@ RunFolder open_run(const std::filesystem::path& folder) {
   return {path, std::move(summary)};
 }
 
+std::vector<RunFolder> open_runs(const std::vector<std::string>& folders) {
+  std::vector<RunFolder> runs;
+  for (const std::string& folder : folders)
+    if (folders.size() == 1 || !std::filesystem::is_regular_file(folder)) runs.push_back(open_run(folder));
+  if (runs.empty()) throw std::runtime_error("found files alone, expected folders that `ilaw run` wrote");
+  return runs;
+}
+
 std::vector<std::string> differences(const std::vector<RunFolder>& runs) {
   std::vector<json> scenes;
   std::vector<std::string> pointers;

@@ -23,6 +23,8 @@ struct RunFolder {
 
 // Throws std::runtime_error where the folder has no summary.
 RunFolder open_run(const std::filesystem::path& folder);
+// Those of all folders. Files among them, as a sweep and its pictures leave beside its runs, are passed over.
+std::vector<RunFolder> open_runs(const std::vector<std::string>& folders);
 
 // JSON pointers of the scenes' numbers and words that are not the same in all runs.
 std::vector<std::string> differences(const std::vector<RunFolder>& runs);

@@ -7,12 +7,6 @@ std::string at(const std::string& pointer, std::size_t index) {
   return pointer + "/" + std::to_string(index);
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 SceneError mistake(const std::string& pointer, const std::string& found, const std::string& expected) {
   return {pointer, "found " + found + ", expected " + expected};
 }

@@ -8,15 +8,11 @@
 
 #include <cstddef>
 #include <string>
-#include <vector>
 
 namespace ilaw::host {
 
 // JSON pointer of an element.
 std::string at(const std::string& pointer, std::size_t index);
-
-// "one, two, three".
-std::string joined(const std::vector<std::string>& words);
 
 // "found <found>, expected <expected>", at the pointer.
 SceneError mistake(const std::string& pointer, const std::string& found, const std::string& expected);

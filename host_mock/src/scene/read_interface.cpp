@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/read_interface.hpp"
 
+#include "base/words.hpp"
 #include "scene/arguments.hpp"
 #include "scene/json_text.hpp"
 #include "scene/read_counterpart.hpp"
 #include "scene/selection.hpp"
-#include "scene/suggestion.hpp"
 #include "scene/values.hpp"
 
 #include <cmath>

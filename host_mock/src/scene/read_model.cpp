@@ -94,9 +94,10 @@ void check_memory(double nodes, int dimension, const std::string& pointer) {
 
 // Nodes of all bodies read so far: three degrees of freedom each must fit a 32-bit number.
 void check_nodes(double nodes, const json& body, const std::string& pointer) {
-  if (nodes > 5e8)
-    throw mistake(pointer + "/elements",
-                  body["elements"].dump() + ", which makes " + json(nodes).dump() + " nodes", "at most 5e8");
+  if (!(nodes > 5e8)) return;
+  std::array<char, 48> count{};
+  std::snprintf(count.data(), count.size(), ", which makes %.10g nodes", nodes);
+  throw mistake(pointer + "/elements", body["elements"].dump() + count.data(), "at most 5e8");
 }
 
 // Of the ends of a bar, which must stay where they are to each other.

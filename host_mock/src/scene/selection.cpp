@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/selection.hpp"
 
+#include "base/words.hpp"
 #include "scene/json_text.hpp"
-#include "scene/suggestion.hpp"
 #include "scene/values.hpp"
 
 #include <algorithm>

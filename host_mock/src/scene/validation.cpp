@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/validation.hpp"
 
+#include "base/words.hpp"
 #include "scene/json_text.hpp"
 #include "scene/packed_points.hpp"
-#include "scene/suggestion.hpp"
 
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -51,6 +51,33 @@ const json& child(const json& part, const std::string& token, bool is_index) {
   return others.is_object() ? resolved(part["additionalProperties"]) : nothing;
 }
 
+// "array of 1 to 3 numbers".
+std::string array_in_words(const json& part) {
+  const json least = part.value("minItems", json()), most = part.value("maxItems", json());
+  std::string count = least.is_null() ? "" : " " + least.dump();
+  if (!least.is_null() && most.is_null()) count += " or more";
+  if (!least.is_null() && !most.is_null() && least != most) count += " to " + most.dump();
+  const json items = part.contains("items") ? resolved(part["items"]) : json::object();
+  if (count.empty() && !items.contains("type")) return "array";
+  return "array of" + count + " " + items.value("type", std::string("entrie")) + "s";
+}
+
+// "object with model, time".
+std::string object_in_words(const json& part) {
+  if (!part.contains("required")) return "object";
+  return "object with " + joined(part["required"].get<std::vector<std::string>>());
+}
+
+// "number > 0 and <= 1".
+std::string value_in_words(const json& part) {
+  std::string limits;
+  for (const auto& [key, words] :
+       {std::pair{"minimum", " >= "}, std::pair{"exclusiveMinimum", " > "}, std::pair{"maximum", " <= "},
+        std::pair{"exclusiveMaximum", " < "}, std::pair{"pattern", " matching "}})
+    if (part.contains(key)) limits += (limits.empty() ? "" : " and") + (words + part[key].dump());
+  return part.value("type", std::string("a value")) + limits;
+}
+
 // What the schema allows for a value, in words.
 std::string allowed(const json& part) {
   if (part.contains("anyOf")) {
@@ -63,16 +90,9 @@ std::string allowed(const json& part) {
     for (const json& one : part["enum"]) values.push_back(one.dump());
     return "one of " + joined(values);
   }
-  std::string text = part.value("type", "a value");
-  if (part.contains("items") && resolved(part["items"]).contains("type"))
-    text += " of " + resolved(part["items"])["type"].get<std::string>() + "s";
-  for (const auto& [key, words] :
-       {std::pair{"minimum", " >= "}, std::pair{"exclusiveMinimum", " > "}, std::pair{"maximum", " <= "},
-        std::pair{"exclusiveMaximum", " < "}, std::pair{"minItems", " of at least "},
-        std::pair{"maxItems", " of at most "}, std::pair{"pattern", " matching "}})
-    if (part.contains(key))
-      text += words + part[key].dump() + (std::string(key).ends_with("Items") ? " entries" : "");
-  return text;
+  const std::string type = part.value("type", "");
+  if (type == "array") return array_in_words(part);
+  return type == "object" ? object_in_words(part) : value_in_words(part);
 }
 
 using Mistakes = std::vector<std::string>;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -100,6 +101,81 @@ void warn_of_start(Scene& scene) {
                                " node(s) start inside the " + (rigid ? "obstacle" : "other body") +
                                ", node " + std::to_string(gaps.deepest) + " by " + json(-gaps.least).dump());
   }
+}
+
+namespace {
+
+// How far all of the model lies behind a plane; 0 where some of it does not.
+double depth_behind(const FlatSurface& flat, const Model& model) {
+  const Eigen::Index d = model.dimension();
+  const Dofs start = model.position() + model.initial_displacement();
+  const Vector origin = flat.point + flat.displacement;
+  const double rounding = 1e-12 * (start.cwiseAbs().maxCoeff() + origin.cwiseAbs().maxCoeff());
+  double depth = 0.0;
+  for (int node = 0; node < model.node_count(); ++node) {
+    const double gap = start.segment(d * node, d).dot(flat.normal) - origin.dot(flat.normal);
+    if (gap > rounding) return 0.0;
+    depth = std::max(depth, -gap - rounding);
+  }
+  return depth;
+}
+
+}  // namespace
+
+// A plane keeps bodies on the side that its normal points to. Where its own nodes lie on it, the rest of the
+// model tells.
+void warn_of_side(Scene& scene) {
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    const Interface& interface = *scene.interfaces[i];
+    const std::optional<FlatSurface> flat = interface.setup().counterpart->flat_at(0.0);
+    const double depth = flat ? depth_behind(*flat, *scene.model) : 0.0;
+    if (!(depth > 0.0) || gaps_at_start(scene, interface, -1e-9 * depth, HUGE_VAL).below > 0) continue;
+    scene.warnings.push_back(at("/interfaces", i) + "/obstacle/normal: all of the model lies behind the " +
+                             "plane, by up to " + json(depth).dump() + ": does it point towards the bodies?");
+  }
+}
+
+namespace {
+
+// The farthest that one of the places is from the node that is nearest to it.
+double farthest_place(const json& places, const Model& model) {
+  if (places.empty() || !places[0].is_number()) {
+    double farthest = 0.0;
+    for (const json& place : places) farthest = std::max(farthest, farthest_place(place, model));
+    return farthest;
+  }
+  const auto numbers = places.get<std::vector<double>>();
+  const Eigen::Index d = model.dimension();
+  const Eigen::Map<const Dofs> place(numbers.data(), d);
+  double nearest = HUGE_VAL;
+  for (int node = 0; node < model.node_count(); ++node)
+    nearest = std::min(nearest, (model.position().segment(d * node, d) - place).norm());
+  return nearest;
+}
+
+void warn_of_places_in(const json& part, const std::string& pointer, double size, Scene& scene) {
+  if (part.is_object() && part.contains("near")) {
+    const double distance = farthest_place(part["near"], *scene.model);
+    if (distance > size)
+      scene.warnings.push_back(pointer + "/near: found " + part["near"].dump() + ", " +
+                               json(distance).dump() + " from the nearest node, beyond the model's size, " +
+                               json(size).dump() + ": are they in its units?");
+    return;
+  }
+  if (!part.is_structured()) return;
+  for (const auto& [key, value] : part.items()) warn_of_places_in(value, pointer + "/" + key, size, scene);
+}
+
+}  // namespace
+
+void warn_of_places(Scene& scene) {
+  const Model& model = *scene.model;
+  const Eigen::Map<const Eigen::MatrixXd> places(model.position().data(), model.dimension(),
+                                                 model.node_count());
+  const double size = (places.rowwise().maxCoeff() - places.rowwise().minCoeff()).norm();
+  if (!(size > 0.0)) return;
+  for (const char* part : {"sets", "initial", "springs", "loads", "interfaces", "output"})
+    warn_of_places_in(scene.source.value(part, json()), std::string("/") + part, size, scene);
 }
 
 // The n-th node meets the n-th partner: lists in different orders pair what is far from each other.

@@ -10,6 +10,10 @@ namespace ilaw::host {
 void warn_of_times(Scene& scene);
 // Nodes that start inside a rigid obstacle or beyond their partners: most laws throw them out of it.
 void warn_of_start(Scene& scene);
+// Bodies on the wrong side of a plane.
+void warn_of_side(Scene& scene);
+// Nodes that are sought near a place far from all of them.
+void warn_of_places(Scene& scene);
 // Bonds across a gap, which pull from afar.
 void warn_of_open_bonds(Scene& scene);
 // Partners of nodes that stand twice in a list, or that do not face their nodes.

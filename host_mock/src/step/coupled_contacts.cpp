@@ -28,7 +28,6 @@ bool share_nodes(const Model& model, const Interfaces& interfaces) {
 CoupledContacts::CoupledContacts(const Model& model, Interfaces& interfaces)
     : interfaces_(interfaces),
       dimension_(model.dimension()),
-      node_count_(model.node_count()),
       colours_(interfaces.size(), Colours(model.node_count())) {
   for (const auto& interface : interfaces_) interface->evaluate_repeatedly();
 }
@@ -81,7 +80,7 @@ void CoupledContacts::iterate(const StepView& step, double speed, Dofs& v, Outco
   if (!(outcome.residual > tolerance)) return;
   outcome.residual = 0.0;
   int most = outcome.sweeps;
-  for (const ContactGroup& island : islands_of(acting_, node_count_)) {
+  for (const ContactGroup& island : islands_of(acting_)) {
     Outcome found{outcome.sweeps, residual(island, speed, v).relative(), 0.0};
     accelerate({island, step, speed, v}, found);
     most = std::max(most, found.sweeps);
@@ -238,7 +237,7 @@ std::string CoupledContacts::explain(const Dofs& v, const Outcome& outcome) cons
 }
 
 std::size_t CoupledContacts::contacts_joined_to(int node) const {
-  for (const ContactGroup& island : islands_of(acting_, node_count_)) {
+  for (const ContactGroup& island : islands_of(acting_)) {
     std::size_t count = 0;
     bool has_node = false;
     for (const auto& [interface, contacts] : island)

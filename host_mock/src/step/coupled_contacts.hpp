@@ -81,7 +81,7 @@ class CoupledContacts {
   void move_to(const ContactGroup& group, const Dofs& scaled, Dofs& v) const;
 
   Interfaces& interfaces_;
-  int dimension_, node_count_;
+  int dimension_;
   std::vector<Colours> colours_;  // one per interface
   ContactGroup acting_;           // of the step, all of them
   Dofs v_free_;

@@ -2,47 +2,48 @@
 #include "step/islands.hpp"
 
 #include <cstddef>
-#include <numeric>
+#include <unordered_map>
 
 namespace ilaw::host {
 namespace {
 
-// Nodes that contacts join, as a forest: each points to one that it is joined to, roots to
-// themselves.
+// Nodes that contacts join, as a forest: each points to one that it is joined to, roots to themselves. Those
+// that no contact has are not in it.
 class JoinedNodes {
  public:
-  explicit JoinedNodes(int node_count) : joined_to_(static_cast<std::size_t>(node_count)) {
-    std::iota(joined_to_.begin(), joined_to_.end(), 0);
-  }
   int root(int node) {
     while (at(node) != node) node = at(node) = at(at(node));
     return node;
   }
-  void join(int a, int b) { at(root(a)) = root(b); }
+  void join(int a, int b) {
+    const int other = root(b);
+    at(root(a)) = other;
+  }
 
  private:
-  int& at(int node) { return joined_to_[static_cast<std::size_t>(node)]; }
-  std::vector<int> joined_to_;
+  int& at(int node) { return joined_to_.try_emplace(node, node).first->second; }
+  std::unordered_map<int, int> joined_to_;
 };
 
 }  // namespace
 
-std::vector<ContactGroup> islands_of(const ContactGroup& group, int node_count) {
-  JoinedNodes nodes(node_count);
+std::vector<ContactGroup> islands_of(const ContactGroup& group) {
+  JoinedNodes nodes;
   for (const auto& [interface, contacts] : group)
     for (const std::int32_t contact : contacts) {
       const int own = interface->node_of(contact);
       interface->point(contact).for_each_node(own, [&](int node, double) { nodes.join(own, node); });
     }
   constexpr std::size_t none = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> number(static_cast<std::size_t>(node_count), none), last_part;
+  std::unordered_map<int, std::size_t> island_of_root;
+  std::vector<std::size_t> last_part;
   std::vector<ContactGroup> islands;
   for (std::size_t part = 0; part < group.size(); ++part)
     for (const std::int32_t contact : group[part].contacts) {
-      std::size_t& island =
-          number[static_cast<std::size_t>(nodes.root(group[part].interface->node_of(contact)))];
-      if (island == none) {
-        island = islands.size();
+      const int root = nodes.root(group[part].interface->node_of(contact));
+      const auto [found, is_new] = island_of_root.try_emplace(root, islands.size());
+      const std::size_t island = found->second;
+      if (is_new) {
         islands.emplace_back();
         last_part.push_back(none);
       }

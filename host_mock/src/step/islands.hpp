@@ -18,6 +18,6 @@ struct ContactPart {
 using ContactGroup = std::vector<ContactPart>;
 
 // The islands of a group, by their first contact; each keeps the group's order.
-std::vector<ContactGroup> islands_of(const ContactGroup& group, int node_count);
+std::vector<ContactGroup> islands_of(const ContactGroup& group);
 
 }  // namespace ilaw::host

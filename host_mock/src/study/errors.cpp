@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "study/errors.hpp"
 
+#include "base/clock.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 namespace ilaw::host {
 namespace {
@@ -117,16 +118,10 @@ void ask_no_energies(const Interfaces& interfaces) {
   for (const auto& interface : interfaces) interface->ask_energies(false);
 }
 
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 }  // namespace
 
 Trace trace_of(Scene& scene) {
-  const double start = processor_seconds();
+  const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
   ask_no_energies(scene.interfaces);
   Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
   const std::vector<WatchedContact> contacts = watched_contacts(scene, integrator.displacement());
@@ -145,7 +140,7 @@ Trace trace_of(Scene& scene) {
     trace.work.push_back(integrator.interface_work());
     note_instants(contacts, integrator.time(), trace);
   }
-  trace.seconds = processor_seconds() - start;
+  trace.seconds = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
   trace.energy = integrator.energy().scale;
   trace.penetration = integrator.tally().penetration_max;
   return trace;
@@ -154,9 +149,9 @@ Trace trace_of(Scene& scene) {
 double seconds_of(Scene& scene) {
   ask_no_energies(scene.interfaces);
   Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
-  const double start = processor_seconds();
+  const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
   while (integrator.steps() < scene.steps) integrator.step();
-  return processor_seconds() - start;
+  return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
 }
 
 Errors errors_against(const std::vector<ExactNode>& exact, const Trace& trace) {

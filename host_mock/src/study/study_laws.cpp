@@ -77,10 +77,17 @@ json usual_penalty(const json& source, const char* integration, double stiffness
 }  // namespace
 
 json read_law_option(const std::string& text) {
-  if (text.starts_with('{')) return parse_scene(text);
+  const auto parsed = [&](const std::string& part) {
+    try {
+      return parse_scene(part);
+    } catch (const SceneError& error) {
+      throw SceneError("--law " + text + ": " + error.what());
+    }
+  };
+  if (text.starts_with('{')) return parsed(text);
   const auto colon = text.find(':');
   json entry{{"law", text.substr(0, colon)}};
-  if (colon != std::string::npos) entry["parameters"] = parse_scene(text.substr(colon + 1));
+  if (colon != std::string::npos) entry["parameters"] = parsed(text.substr(colon + 1));
   return entry;
 }
 

@@ -116,5 +116,11 @@ TEST(ViscousLaw, InPlainCGivesTheSame) {
             std::string::npos);
 }
 
+TEST(ViscousLaw, InPlainCKeepsEveryRule) {
+  const fs::path log = fs::temp_directory_path() / ("ilaw_viscous_" + std::to_string(getpid()) + ".log");
+  run(ILAW_BUILD "/bin/ilaw check " ILAW_VISCOUS_C, log);
+  fs::remove(log);
+}
+
 }  // namespace
 }  // namespace ilaw::testing

@@ -23,6 +23,8 @@ static const ilaw_parameter viscosity = {.struct_size = sizeof viscosity,
                                          .required = 1};
 static const ilaw_parameter* const parameters[] = {&viscosity};
 static const char* const references[] = {"docs/first_law.md"};
+/* It holds back a node that leaves, and leaves alone what is out of reach. */
+enum { capabilities = ILAW_CAN_ADHERE | ILAW_CAN_REST };
 
 static int32_t refuse(int32_t code, char* message, size_t size, const char* why) {
   if (size > 0) snprintf(message, size, "viscous: %s", why);
@@ -56,8 +58,8 @@ static void destroy(ilaw_instance* instance) { free(instance); }
 static int32_t info(const ilaw_instance* instance, ilaw_instance_info* out) {
   if (!instance || !out || out->struct_size < ILAW_INSTANCE_INFO_SIZE_1_0) return ILAW_INVALID_ARGUMENT;
   const ilaw_instance_info known = {
-      .struct_size = out->struct_size, .inputs = instance->inputs, .capabilities = ILAW_CAN_REST};
-  memset(out, 0, out->struct_size); /* what a later version appended is zero */
+      .struct_size = out->struct_size, .inputs = instance->inputs, .capabilities = capabilities};
+  /* What a later version appended stays as the host zeroed it. */
   memcpy(out, &known, known.struct_size < sizeof known ? known.struct_size : sizeof known);
   return ILAW_OK;
 }
@@ -70,6 +72,17 @@ static int64_t node_of(const ilaw_batch* b, int64_t k) {
 static const char* wrong_call(const ilaw_instance* law, const ilaw_batch* b) {
   if (!law || !b || b->struct_size < ILAW_BATCH_SIZE_1_0) return "the batch is null or too small";
   if (b->node_count < 0 || (b->index && b->index64)) return "node_count is negative, or two lists are given";
+  if (b->index_base != 0 && b->index_base != 1) return "index_base is neither 0 nor 1";
+  if (!isfinite(b->time)) return "time is not finite";
+  for (int64_t k = 0; k < b->node_count; ++k)
+    if (node_of(b, k) < 0) return "an index is below index_base";
+  return NULL;
+}
+
+static const char* wrong_arrays(const ilaw_instance* law, const ilaw_batch* b) {
+  if (!(b->velocity_step > 0.0 && isfinite(b->velocity_step)) ||
+      !(b->position_step > 0.0 && isfinite(b->position_step)))
+    return "a step is not finite and > 0";
   if (b->node_count == 0) return NULL;
   if (!b->v_free.values || !b->delassus.values || !b->gap.values || !b->area.values || !b->impulse.values ||
       (law->inputs & ILAW_INPUT_NORMAL && !b->normal.values))
@@ -78,11 +91,6 @@ static const char* wrong_call(const ilaw_instance* law, const ilaw_batch* b) {
       (b->impulse.node_stride == 0 || (b->velocity.values && b->velocity.node_stride == 0) ||
        (b->status && b->status_stride == 0)))
     return "an output has a node stride of 0";
-  if (!isfinite(b->time) || !(b->velocity_step > 0.0 && isfinite(b->velocity_step)) ||
-      !(b->position_step > 0.0 && isfinite(b->position_step)))
-    return "time or a step is wrong";
-  for (int64_t k = 0; k < b->node_count; ++k)
-    if (node_of(b, k) < 0) return "an index is below index_base";
   return NULL;
 }
 
@@ -130,8 +138,8 @@ static int32_t done(ilaw_report* report, int32_t code, int64_t count, int64_t fi
 
 /* No state: there is nothing to write. */
 static int32_t initialise(const ilaw_instance* law, const ilaw_batch* b, ilaw_report* report) {
-  if (!law || !b || b->struct_size < ILAW_BATCH_SIZE_1_0 || b->node_count < 0)
-    return done(report, ILAW_INVALID_ARGUMENT, 0, -1, "the batch is null, too small or negative");
+  const char* refused = wrong_call(law, b);
+  if (refused) return done(report, ILAW_INVALID_ARGUMENT, 0, -1, refused);
   return done(report, b->flags ? ILAW_UNSUPPORTED : ILAW_OK, 0, -1, b->flags ? "flags are not known" : NULL);
 }
 
@@ -141,6 +149,7 @@ static int32_t evaluate(const ilaw_instance* law, const ilaw_batch* b, ilaw_repo
   fesetenv(FE_DFL_ENV);
   int64_t count = 0, first = -1;
   const char *refused = wrong_call(law, b), *reason = NULL;
+  if (!refused) refused = wrong_arrays(law, b);
   const int unsupported = !refused && (b->flags || b->energy.values);
   for (int64_t k = 0; !refused && !unsupported && k < b->node_count; ++k) {
     const int64_t i = node_of(b, k);
@@ -160,7 +169,7 @@ static const ilaw_law law = {.struct_size = sizeof law,
                              .delassus_forms = ILAW_DELASSUS_SCALAR,
                              .inputs = ILAW_INPUT_GAP | ILAW_INPUT_AREA | ILAW_INPUT_NORMAL,
                              .outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS,
-                             .capabilities = ILAW_CAN_REST,
+                             .capabilities = capabilities,
                              .id = "viscous",
                              .title = "Viscous layer",
                              .doc = "A force -c A v where the gap is closed, solved implicitly.",

@@ -121,17 +121,6 @@ friction_result<Vector> rub_along(const Delassus& delassus, double normal, Vecto
   return result;
 }
 
-// Solves q + H r = u, 0 <= u_N _|_ r_N >= 0, |r_T| <= mu r_N with r_T opposite to u_T where u_T != 0,
-// in closed form for H = diag(h_N, h_T, h_T): the normal row stands alone (Signorini), and the slip u_T is
-// parallel to q_T, so that sliding scales the sticking impulse back to the cone (de Saxce and Feng 1991).
-// Where slack > 0 the contact is open and r = 0.
-template <class Delassus, class Vector>
-friction_result<Vector> solve_contact_friction(const Delassus& delassus, double slack, Vector q,
-                                               double friction) {
-  const double normal = slack <= 0.0 ? positive_part(-q.n / delassus.normal()) : 0.0;
-  return rub_along(delassus, normal, q, q.tangential_length(), {}, friction);
-}
-
 template <class Delassus, class Vector>
 double pressing_impulse(const Delassus& delassus, const contact_problem<Vector>& contact) {
   return contact.slack <= 0.0 ? positive_part(-contact.q.n / delassus.normal()) : 0.0;
@@ -143,7 +132,10 @@ turning<double> turning_at(const Delassus& delassus, double normal, const contac
   return turning_of(delassus.tangential(), normal, speed, along, contact.rest.n);
 }
 
-// The same, without positive work.
+// Solves q + H r = u, 0 <= u_N _|_ r_N >= 0, |r_T| <= mu r_N with r_T opposite to u_T where u_T != 0,
+// in closed form for H = diag(h_N, h_T, h_T): the normal row stands alone (Signorini), and the slip u_T is
+// parallel to q_T, so that sliding scales the sticking impulse back to the cone (de Saxce and Feng 1991).
+// Of that impulse acts what does no positive work. Where slack > 0 the contact is open and r = 0.
 template <class Delassus, class Vector>
 friction_result<Vector> solve_contact_friction(const Delassus& delassus,
                                                const contact_problem<Vector>& contact, double friction) {
@@ -312,11 +304,13 @@ bool ask_friction(Node& node, const contact_problem<Vector>& contact, double fri
 template <class Node, class Vector>
 bool ask_friction(Node& node, const contact_problem<Vector>& contact, double friction,
                   friction_problem<double>& problem) {
-  if constexpr (!has_transverse_delassus<Node>)
+  if constexpr (has_transverse_delassus<Node>) {
+    fill(problem, node.delassus, contact, friction, friction);
+    apply_isotropic_friction(node, contact, friction);
+    return false;
+  } else {
     return ask_friction(node, contact, friction, friction, problem);
-  fill(problem, node.delassus, contact, friction, friction);
-  apply_isotropic_friction(node, contact, friction);
-  return false;
+  }
 }
 
 template <class Node>

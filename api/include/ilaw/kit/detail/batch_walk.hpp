@@ -201,7 +201,7 @@ class batch_walk {
   }
 
   const double* optional(const ilaw_input& input, bool read, column& room) {
-    return read && input.values ? gather(input, 0, nodes_, room.values) : zeros.values;
+    return read && input.values ? gather(input, nodes_, room.values) : zeros.values;
   }
 
   // Vectors that may stay interleaved where the layout says so.

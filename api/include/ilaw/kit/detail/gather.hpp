@@ -103,11 +103,9 @@ const double* gather_of(const Number* values, std::int64_t stride, const node_ra
   }
   return room;
 }
-inline const double* gather(const ilaw_input& input, int component, const node_range& nodes, double* room) {
-  if (!nodes.of_floats)
-    return gather_of(input.values + component * input.component_stride, input.node_stride, nodes, room);
-  const float* values = as_floats(input.values) + component * input.component_stride;
-  return gather_of(values, input.node_stride, nodes, room);
+inline const double* gather(const ilaw_input& input, const node_range& nodes, double* room) {
+  if (!nodes.of_floats) return gather_of(input.values, input.node_stride, nodes, room);
+  return gather_of(as_floats(input.values), input.node_stride, nodes, room);
 }
 
 // Rows of six numbers as twice as many of three, then pairs of those: of six at once compilers make no vector

@@ -94,7 +94,7 @@ class node_parameters {
   void take(std::uint32_t k, const node_range& nodes) {
     const ilaw_parameter& p = *made_.per_node[k];
     double* own = values_[position_of(k)].values;
-    const double* given = gather(batch_.per_node_parameters[k], 0, nodes, own);
+    const double* given = gather(batch_.per_node_parameters[k], nodes, own);
     for (int i = 0; i < nodes.count; ++i) {
       own[i] = given[i];
       valid_.values[i] = in_range(p, own[i]) ? valid_.values[i] : 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/suggestion.hpp"
+#include "base/words.hpp"
 
 #include <algorithm>
 
@@ -22,6 +22,12 @@ std::size_t edits(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
 
 std::string suggestion(const std::string& found, const std::vector<std::string>& words) {
   std::size_t fewest = 3;

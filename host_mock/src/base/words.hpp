@@ -1,4 +1,4 @@
-// suggestion.hpp - the name that was meant.
+// words.hpp - names in messages: those that are allowed, and the one that was meant.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,6 +6,9 @@
 #include <vector>
 
 namespace ilaw::host {
+
+// "one, two, three".
+std::string joined(const std::vector<std::string>& words);
 
 // " (did you mean 'one'?)" with the nearest of the words, or nothing where none is near.
 std::string suggestion(const std::string& found, const std::vector<std::string>& words);
