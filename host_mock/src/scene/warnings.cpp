@@ -115,9 +115,9 @@ double depth_behind(const FlatSurface& flat, const Model& model) {
   for (int node = 0; node < model.node_count(); ++node) {
     const double gap = start.segment(d * node, d).dot(flat.normal) - origin.dot(flat.normal);
     if (gap > rounding) return 0.0;
-    depth = std::max(depth, -gap - rounding);
+    depth = std::max(depth, -gap);
   }
-  return depth;
+  return depth > rounding ? depth : 0.0;
 }
 
 }  // namespace

@@ -351,18 +351,6 @@ void apply_any_friction(Node& node, const contact_problem<vector>& contact, doub
   give_friction(node, answer);
 }
 
-// The local problem at a node, whose work is its caller's to see to.
-template <class Node>
-void apply_local_coulomb(Node& node, double slack, const local_coulomb& problem) {
-  double r[3] = {};
-  const contact_mode mode = slack <= 0.0 ? solve(problem, r) : contact_mode::free;
-  node.impulse = {r[0], r[1], r[2]};
-  node.status = mode == contact_mode::slip    ? status::slip
-                : mode == contact_mode::stick ? status::stick
-                                              : status::free;
-  node.refused = mode == contact_mode::none ? no_solution : not_refused;
-}
-
 // Contact with friction, by the closed form where it holds.
 template <class Node, class Vector>
 void apply_contact_friction(Node& node, const contact_problem<Vector>& contact, double friction) {
