@@ -93,7 +93,8 @@ class Contacts:
                 raise NotImplementedError(f"ilaw: body {b.id}: single spheres and walls are served alone")
         for b in spheres:
             if b.state.blockedDOFs not in ("", FIXED):
-                raise NotImplementedError(f"ilaw: body {b.id}: blockedDOFs {b.state.blockedDOFs!r}, all or none expected")
+                found = f"blockedDOFs {b.state.blockedDOFs!r}"
+                raise NotImplementedError(f"ilaw: body {b.id}: {found}, all or none expected")
         self._ids, self._states = np.array([b.id for b in spheres], np.int64), [b.state for b in spheres]
         self._row = np.full(len(O.bodies), -1)
         self._row[self._ids] = np.arange(len(spheres))

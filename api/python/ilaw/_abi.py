@@ -6,7 +6,8 @@ A test compares sizes, places and values with the C compiler's.
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, c_char_p, c_double, c_int32, c_int64, c_size_t, c_uint8, c_uint16, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_int32, c_int64, c_size_t, c_uint8, c_uint16, c_uint32, c_uint64
+from ctypes import c_void_p
 from enum import IntEnum, IntFlag
 
 ABI_MAJOR, ABI_MINOR = 1, 0
@@ -45,7 +46,14 @@ class Frame(IntEnum):
     GLOBAL = 1
 
 
-class Input(IntFlag):
+class Named(IntFlag):
+    """Printed by its names, as `ilaw describe` does."""
+
+    def __str__(self) -> str:
+        return ", ".join(str(flag.name).lower() for flag in type(self) if flag in self)
+
+
+class Input(Named):
     """Arrays of a batch that a law reads besides v_free and delassus."""
 
     GAP = 1
@@ -55,13 +63,13 @@ class Input(IntFlag):
     TANGENT = 16
 
 
-class Output(IntFlag):
+class Output(Named):
     VELOCITY = 1
     STATUS = 2
     ENERGY = 4
 
 
-class Capability(IntFlag):
+class Capability(Named):
     ADHERE = 1
     STORE_ENERGY = 2
     ACT_AT_DISTANCE = 4
@@ -81,7 +89,7 @@ class ValueKind(IntEnum):
     PER_NODE = 3
 
 
-class MayBe(IntFlag):
+class MayBe(Named):
     TABLE = 1
     PER_NODE = 2
 

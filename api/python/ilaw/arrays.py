@@ -20,7 +20,8 @@ def _check_memory(name: str, array: NDArray[Any]) -> None:
     if array.dtype != DOUBLE:
         raise InvalidArgument(f"{name}: array of {array.dtype}, expected float64 (astype makes one, a copy)")
     if not array.flags.aligned or any(stride % 8 for stride in array.strides):
-        raise InvalidArgument(f"{name}: numbers that are not at multiples of 8 bytes, expected a plain array of float64")
+        found = "numbers that are not at multiples of 8 bytes"
+        raise InvalidArgument(f"{name}: {found}, expected a plain array of float64")
 
 
 def as_array(name: str, value: Any) -> NDArray[np.float64]:

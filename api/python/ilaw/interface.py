@@ -122,8 +122,9 @@ class Interface:
         setup.arguments, setup.argument_count = self._arguments.pointers, self._arguments.count
         handle = ctypes.c_void_p()
         message = ctypes.create_string_buffer(1024)
+        law_id = law.encode() if law else None
         code = loader().ilaw_interface_create(
-            library.handle, law.encode() if law else None, ctypes.byref(setup), ctypes.byref(handle), message, len(message)
+            library.handle, law_id, ctypes.byref(setup), ctypes.byref(handle), message, len(message)
         )
         raise_for(code, message.value.decode(errors="replace"))
         self.handle = handle
@@ -135,7 +136,8 @@ class Interface:
         self.capabilities = _abi.Capability(info.capabilities)
         self.state_size = int(info.state_size)
         self.state_version = int(info.state_version)
-        self.state_variables: tuple[StateVariable, ...] = state_variables(info.state_variables, info.state_variable_count)
+        variables = state_variables(info.state_variables, info.state_variable_count)
+        self.state_variables: tuple[StateVariable, ...] = variables
         names = [info.per_node_parameters[i].decode() for i in range(info.per_node_parameter_count)]
         self.per_node_parameters = {name: self._arguments.per_node[name] for name in names}
 
