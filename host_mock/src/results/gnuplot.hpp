@@ -11,6 +11,10 @@
 
 namespace ilaw::host {
 
+// Of curves; the first seven are colours that colour-blind readers tell apart (Okabe and Ito 2008).
+inline constexpr const char* curve_colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00",
+                                                "#56B4E9", "#000000", "#999999", "#8B5A2B", "#7A5FD0"};
+
 // In single quotes, where gnuplot substitutes nothing.
 std::string in_quotes(std::string_view text);
 

@@ -31,10 +31,6 @@ struct Panel {
   bool summed = false;  // over time
 };
 
-// Colours that colour-blind readers tell apart (Okabe and Ito 2008).
-constexpr const char* palette[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                   "#E69F00", "#56B4E9", "#000000"};
-
 // Sizes in pixels. A letter: of the key and of tics, of the title.
 constexpr double panel_width = 785, least_left = 95, least_right = 120, title_line = 22, below = 55,
                  between = 18, curve_height = 120, row_height = 24, key_line = 18, key_letter = 8.0,
@@ -196,10 +192,11 @@ void draw_curves(std::ostream& script, const Panel& panel) {
     script << (k == 0 ? "plot " : ", ")
            << "sum = 0, history using 1:" << (panel.summed ? "(sum = sum + $" : "($") << curve.column
            << ") with " << style_of(panel) << " linewidth 1.4 dashtype " << (many_nodes ? within + 1 : 1)
-           << " linecolor rgb " << in_quotes(palette[(many_nodes ? node : k) % std::size(palette)])
-           << " title " << in_quotes(legend_of(panel, curve));
+           << " linecolor rgb "
+           << in_quotes(curve_colours[(many_nodes ? node : k) % std::size(curve_colours)]) << " title "
+           << in_quotes(legend_of(panel, curve));
     if (!has_split_key(panel)) continue;
-    if (within == 0) key += key_entry(curve.node, 1, palette[node % std::size(palette)]);
+    if (within == 0) key += key_entry(curve.node, 1, curve_colours[node % std::size(curve_colours)]);
     if (node == 0) key_of_components += key_entry(curve.component, within + 1, "#808080");
   }
   script << key << key_of_components << "\n";
@@ -220,12 +217,12 @@ void draw_envelope(std::ostream& script, const Panel& panel) {
   for (const Curve& curve : panel.curves) components.insert(curve.component);
   std::size_t k = 0;
   for (const std::string& component : components) {
-    const std::string block = block_of(panel, component), colour = in_quotes(palette[k]);
+    const std::string block = block_of(panel, component), colour = in_quotes(curve_colours[k]);
     script << (k == 0 ? "plot " : ", ") << block << " using 1:2:4 with filledcurves fillcolor rgb " << colour
            << " fillstyle transparent solid 0.2 noborder title '', " << block
            << " using 1:3 with lines linewidth 1.4 linecolor rgb " << colour << " title "
            << in_quotes(component.empty() ? "median" : component);
-    k = (k + 1) % std::size(palette);
+    k = (k + 1) % std::size(curve_colours);
   }
   script << ", NaN with lines linecolor rgb 'white' title "
          << in_quotes(std::to_string(node_count(panel)) + " nodes") << "\n";

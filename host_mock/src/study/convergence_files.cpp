@@ -56,7 +56,8 @@ void write_panel(const ErrorTable& table, const std::string& csv, const Abscissa
   script << "set xlabel '" << over.label << "'\nset key bottom " << over.key_corner << " noenhanced\nplot ";
   for (std::size_t n = 0; n < 3; ++n)
     script << (n ? ", " : "") << csv << " using ($" << over.column << '/' << over.unit << "):" << n + 4
-           << " with linespoints linewidth 1.5 pointtype " << n + 5 << " title '" << norm_names[n] << "'";
+           << " with linespoints linewidth 1.5 pointtype " << n + 5 << " linecolor rgb '" << curve_colours[n]
+           << "' title '" << norm_names[n] << "'";
   if (over.column == 1) {
     const double h = table.runs[0].dt, top = table.errors[0][norm_u_L2];
     script << ", " << top / h << "*x with lines dashtype 2 linecolor rgb '#808080' title 'order 1'";

@@ -87,10 +87,6 @@ struct Panel {
 
 constexpr std::size_t steps_column = 3, seconds_column = 4, first_norm_column = 6;
 
-// The first seven: colours that colour-blind readers tell apart (Okabe and Ito 2008).
-constexpr const char* palette[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00",
-                                   "#56B4E9", "#000000", "#999999", "#8B5A2B", "#7A5FD0"};
-
 // Logarithmic axes show what is larger than zero; an exact solution may tell no impulse or work.
 bool has_points(const Study& study, Norm norm) {
   return std::any_of(study.laws.begin(), study.laws.end(), [&](const LawRuns& law) {
@@ -112,8 +108,9 @@ void write_panel(const Study& study, const std::string& csv, const Panel& panel,
     script << (k == 0 ? "plot " : ", ") << csv << " using (strcol(1) eq " << in_quotes(study.laws[k].name)
            << " ? $" << panel.column << '/' << panel.unit << " : NaN):" << first_norm_column + panel.norm
            << " with linespoints linewidth " << (k == 0 ? 3.0 : 1.5) << " pointsize 0.8 pointtype "
-           << (k == 0 ? 7 : 3 + k) << " linecolor rgb " << in_quotes(palette[k % std::size(palette)])
-           << " title " << in_quotes(study.laws[k].name);
+           << (k == 0 ? 7 : 3 + k) << " linecolor rgb "
+           << in_quotes(curve_colours[k % std::size(curve_colours)]) << " title "
+           << in_quotes(study.laws[k].name);
   script << "\n";
 }
 
