@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <string_view>
 
 namespace LAMMPS_NS {
 namespace {
@@ -103,6 +104,7 @@ void FixIlaw::check_run() {
         "needs newton off: with newton on only one of two ranks finds a contact across their border, and "
         "the other does not know its impulse");
   if (std::strstr(update->integrate_style, "respa")) refuse("does not run with respa");
+  check_integration();
   bool behind = false;
   for (int i = 0; i < modify->nfix; ++i) {
     if (modify->fix[i] == all_.back())
@@ -111,6 +113,18 @@ void FixIlaw::check_run() {
       refuse("has to come after all fixes that add forces, gravity included, but fix " +
              std::string(modify->fix[i]->id) + " comes later");
   }
+}
+
+// The laws count on spins that change.
+void FixIlaw::check_integration() {
+  const char* without_spin = nullptr;
+  for (int i = 0; i < modify->nfix; ++i) {
+    const std::string_view style = modify->fix[i]->style;
+    if (style.starts_with("nve/sphere")) return;
+    if (style.starts_with("nve")) without_spin = modify->fix[i]->id;
+  }
+  if (without_spin)
+    refuse("needs grains that fix nve/sphere moves, but fix " + std::string(without_spin) + " turns none");
 }
 
 // The most exact of what fixes ask for; those that say nothing leave it to the others.

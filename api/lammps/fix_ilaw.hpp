@@ -64,6 +64,7 @@ class FixIlaw : public Fix {
 
   bool leads() const { return all_.back() == this; }
   void check_run();
+  void check_integration();
   void evaluate(double velocity_step);
   ilaw_coupled_options options() const;
   void gather_bodies(double velocity_step);

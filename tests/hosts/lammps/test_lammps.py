@@ -240,6 +240,7 @@ def test_walls_hold_where_they_are(tmp_path, wall, lowest):
     (("coulomb friction 0.3 sweeps", "no_such_law sweeps"), "no_such_law"),
     (("pair_style zero 1.2", "pair_style zero 0.9"), "has to be larger than the largest diameter"),
     (("pair coulomb", "pair coulomb mu 0.1"), "mu"),
+    (("fix nve all nve/sphere", "fix nve all nve"), "that fix nve/sphere moves, but fix nve turns none"),
     (("tol 1e-10\n", "tol 1e-10\nfix late all gravity 1 vector 1 0 0\n"), "fix late comes later"),
 ])
 def test_says_what_it_refuses(tmp_path, change, message):
