@@ -6,7 +6,8 @@
 
 namespace ilaw::host {
 
-// Of CLOCK_THREAD_CPUTIME_ID: the processor's time of this thread, which others on the machine disturb little.
+// Seconds of a clock. CLOCK_THREAD_CPUTIME_ID, the processor's time of this thread, is one that others on the
+// machine disturb little.
 inline double clock_seconds(clockid_t clock) {
   std::timespec now{};
   clock_gettime(clock, &now);

@@ -108,16 +108,16 @@ namespace {
 // How far all of the model lies behind a plane; 0 where some of it does not.
 double depth_behind(const FlatSurface& flat, const Model& model) {
   const Eigen::Index d = model.dimension();
-  const Dofs start = model.position() + model.initial_displacement();
   const Vector origin = flat.point + flat.displacement;
-  const double rounding = 1e-12 * (start.cwiseAbs().maxCoeff() + origin.cwiseAbs().maxCoeff());
   double depth = 0.0;
   for (int node = 0; node < model.node_count(); ++node) {
-    const double gap = start.segment(d * node, d).dot(flat.normal) - origin.dot(flat.normal);
+    const auto x = model.position().segment(d * node, d) + model.initial_displacement().segment(d * node, d);
+    const double gap = x.dot(flat.normal) - origin.dot(flat.normal);
+    const double rounding = 1e-12 * (x.norm() + origin.norm());
     if (gap > rounding) return 0.0;
-    depth = std::max(depth, -gap);
+    if (gap < -rounding) depth = std::max(depth, -gap);
   }
-  return depth > rounding ? depth : 0.0;
+  return depth;
 }
 
 }  // namespace
@@ -153,29 +153,33 @@ double farthest_place(const json& places, const Model& model) {
   return nearest;
 }
 
-void warn_of_places_in(const json& part, const std::string& pointer, double size, Scene& scene) {
+double extent_of(const Model& model) {
+  const Eigen::Map<const Eigen::MatrixXd> places(model.position().data(), model.dimension(),
+                                                 model.node_count());
+  return (places.rowwise().maxCoeff() - places.rowwise().minCoeff()).norm();
+}
+
+void warn_of_places_in(const json& part, const std::string& pointer, Scene& scene) {
   if (part.is_object() && part.contains("near")) {
-    const double distance = farthest_place(part["near"], *scene.model);
-    if (distance > size)
+    const double distance = farthest_place(part["near"], *scene.model), size = extent_of(*scene.model);
+    if (size > 0.0 && distance > size)
       scene.warnings.push_back(pointer + "/near: found " + part["near"].dump() + ", " +
                                json(distance).dump() + " from the nearest node, beyond the model's size, " +
                                json(size).dump() + ": are they in its units?");
     return;
   }
-  if (!part.is_structured()) return;
-  for (const auto& [key, value] : part.items()) warn_of_places_in(value, pointer + "/" + key, size, scene);
+  for (auto one = part.begin(); one != part.end(); ++one) {
+    if (!one->is_structured()) continue;  // lists of a million numbers, too
+    const std::string key = part.is_array() ? std::to_string(one - part.begin()) : one.key();
+    warn_of_places_in(*one, pointer + "/" + key, scene);
+  }
 }
 
 }  // namespace
 
 void warn_of_places(Scene& scene) {
-  const Model& model = *scene.model;
-  const Eigen::Map<const Eigen::MatrixXd> places(model.position().data(), model.dimension(),
-                                                 model.node_count());
-  const double size = (places.rowwise().maxCoeff() - places.rowwise().minCoeff()).norm();
-  if (!(size > 0.0)) return;
   for (const char* part : {"sets", "initial", "springs", "loads", "interfaces", "output"})
-    warn_of_places_in(scene.source.value(part, json()), std::string("/") + part, size, scene);
+    if (scene.source.contains(part)) warn_of_places_in(scene.source[part], std::string("/") + part, scene);
 }
 
 // The n-th node meets the n-th partner: lists in different orders pair what is far from each other.
