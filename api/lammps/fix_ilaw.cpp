@@ -119,9 +119,9 @@ void FixIlaw::check_run() {
 void FixIlaw::check_integration() {
   const char* without_spin = nullptr;
   for (int i = 0; i < modify->nfix; ++i) {
-    const std::string_view style = modify->fix[i]->style;
-    if (style.starts_with("nve/sphere")) return;
-    if (style.starts_with("nve")) without_spin = modify->fix[i]->id;
+    const std::string_view moves = modify->fix[i]->style;
+    if (moves.starts_with("nve/sphere")) return;
+    if (moves.starts_with("nve")) without_spin = modify->fix[i]->id;
   }
   if (without_spin)
     refuse("needs grains that fix nve/sphere moves, but fix " + std::string(without_spin) + " turns none");

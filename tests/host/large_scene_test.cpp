@@ -1,5 +1,6 @@
 // Scenes of many points: read packed, stepped in blocks, by any number of threads.
 #include "host_runner.hpp"
+#include "program_runner.hpp"
 
 #include <nlohmann/json.hpp>
 
