@@ -88,9 +88,10 @@ TEST(NodesOfAScene, AreRefusedWithPointerFoundAndAllowed) {
   EXPECT_EQ(with("/sets/tips", "\"tip\"").find("/sets/tips: found \"tip\", expected one of all, cube, "), 0U);
   EXPECT_EQ(with("/sets/all", "[0]").find("/sets/all: found 'all', which the model has"), 0U);
   EXPECT_EQ(with("/sets/far", "[75]"), "/sets/far/0: found node 75, expected 0 to 74");
-  EXPECT_EQ(with("/sets/far", "7"),
-            "/sets/far: found 7, expected string or array of 1 or more integers or object with near or object "
-            "with box");
+  EXPECT_EQ(
+      with("/sets/far", "7"),
+      "/sets/far: found 7, expected string or array of 1 or more integers or object with near or object "
+      "with box");
   EXPECT_EQ(with("/sets/far", R"({"bx": [[0, 0, 0], [1, 1, 1]]})").find("/sets/far/bx: unknown key"), 0U)
       << with("/sets/far", R"({"bx": [[0, 0, 0], [1, 1, 1]]})");
   EXPECT_NE(with("/loads", R"([{"type": "gravity", "nodes": "tib", "acceleration": [0, 0, 1]}])")
