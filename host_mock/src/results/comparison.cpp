@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <iterator>
 #include <set>
 #include <utility>
 
@@ -17,10 +16,6 @@ namespace {
 // Sizes in pixels.
 constexpr double margin_left = 95, plot_width = 780, margin_above = 45, margin_below = 55, panel_gap = 18,
                  panel_height = 150, letter = 7.5, letter_of_title = 9.5, legend_line = 18;
-
-// Colours that colour-blind readers tell apart (Okabe and Ito 2008).
-constexpr const char* run_colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                       "#E69F00", "#56B4E9", "#000000"};
 
 std::set<std::string> columns_that_vary(const RunFolder& run) {
   HistoryFile history(run.folder / "history.csv");
@@ -110,8 +105,8 @@ void write_comparison(std::ostream& script, const std::filesystem::path& picture
         const HistoryFile history(runs[k].folder / "history.csv");
         script << (k == 0 ? "plot " : ", ") << in_quotes((runs[k].folder / "history.csv").string())
                << " using " << *history.index_of(setup.x) + 1 << ":" << *history.index_of(setup.y[p]) + 1
-               << " with lines linewidth 1.4 dashtype " << 1 + k / std::size(run_colours) << " linecolor rgb "
-               << in_quotes(run_colours[k % std::size(run_colours)]) << " title "
+               << " with lines linewidth 1.4 dashtype " << 1 + k / palette.size() << " linecolor rgb "
+               << in_quotes(palette[k % palette.size()]) << " title "
                << in_quotes(p == 0 && runs.size() > 1 ? legends[k] : "");
       }
       script << "\n";

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -10,6 +11,10 @@
 #include <string_view>
 
 namespace ilaw::host {
+
+// Of curves. The first seven are colours that colour-blind readers tell apart (Okabe and Ito 2008).
+inline constexpr std::array palette{"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00",
+                                    "#56B4E9", "#000000", "#999999", "#8B5A2B", "#7A5FD0"};
 
 // In single quotes, where gnuplot substitutes nothing.
 std::string in_quotes(std::string_view text);

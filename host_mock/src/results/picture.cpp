@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <iterator>
 #include <map>
 #include <set>
 #include <string_view>
@@ -30,10 +29,6 @@ struct Panel {
   std::vector<Curve> curves;
   bool summed = false;  // over time
 };
-
-// Colours that colour-blind readers tell apart (Okabe and Ito 2008).
-constexpr const char* palette[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                   "#E69F00", "#56B4E9", "#000000"};
 
 // Sizes in pixels. A letter: of the key and of tics, of the title.
 constexpr double panel_width = 785, least_left = 95, least_right = 120, title_line = 22, below = 55,
@@ -196,10 +191,10 @@ void draw_curves(std::ostream& script, const Panel& panel) {
     script << (k == 0 ? "plot " : ", ")
            << "sum = 0, history using 1:" << (panel.summed ? "(sum = sum + $" : "($") << curve.column
            << ") with " << style_of(panel) << " linewidth 1.4 dashtype " << (many_nodes ? within + 1 : 1)
-           << " linecolor rgb " << in_quotes(palette[(many_nodes ? node : k) % std::size(palette)])
-           << " title " << in_quotes(legend_of(panel, curve));
+           << " linecolor rgb " << in_quotes(palette[(many_nodes ? node : k) % palette.size()]) << " title "
+           << in_quotes(legend_of(panel, curve));
     if (!has_split_key(panel)) continue;
-    if (within == 0) key += key_entry(curve.node, 1, palette[node % std::size(palette)]);
+    if (within == 0) key += key_entry(curve.node, 1, palette[node % palette.size()]);
     if (node == 0) key_of_components += key_entry(curve.component, within + 1, "#808080");
   }
   script << key << key_of_components << "\n";
@@ -225,7 +220,7 @@ void draw_envelope(std::ostream& script, const Panel& panel) {
            << " fillstyle transparent solid 0.2 noborder title '', " << block
            << " using 1:3 with lines linewidth 1.4 linecolor rgb " << colour << " title "
            << in_quotes(component.empty() ? "median" : component);
-    k = (k + 1) % std::size(palette);
+    k = (k + 1) % palette.size();
   }
   script << ", NaN with lines linecolor rgb 'white' title "
          << in_quotes(std::to_string(node_count(panel)) + " nodes") << "\n";

@@ -77,7 +77,7 @@ void write_laws(const Study& study, const std::string& title, const std::filesys
 }
 
 // An error over a column of study.csv, both counted from 1.
-struct Panel {
+struct ErrorPanel {
   Norm norm;
   const char* title;
   std::size_t column;
@@ -86,10 +86,6 @@ struct Panel {
 };
 
 constexpr std::size_t steps_column = 3, seconds_column = 4, first_norm_column = 6;
-
-// The first seven: colours that colour-blind readers tell apart (Okabe and Ito 2008).
-constexpr const char* palette[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00",
-                                   "#56B4E9", "#000000", "#999999", "#8B5A2B", "#7A5FD0"};
 
 // Logarithmic axes show what is larger than zero; an exact solution may tell no impulse or work.
 bool has_points(const Study& study, Norm norm) {
@@ -100,7 +96,7 @@ bool has_points(const Study& study, Norm norm) {
   });
 }
 
-void write_panel(const Study& study, const std::string& csv, const Panel& panel, bool has_key,
+void write_panel(const Study& study, const std::string& csv, const ErrorPanel& panel, bool has_key,
                  std::ostream& script) {
   script
       << "set xlabel " << in_quotes(panel.label) << "\nset title " << in_quotes(panel.title)
@@ -112,8 +108,8 @@ void write_panel(const Study& study, const std::string& csv, const Panel& panel,
     script << (k == 0 ? "plot " : ", ") << csv << " using (strcol(1) eq " << in_quotes(study.laws[k].name)
            << " ? $" << panel.column << '/' << panel.unit << " : NaN):" << first_norm_column + panel.norm
            << " with linespoints linewidth " << (k == 0 ? 3.0 : 1.5) << " pointsize 0.8 pointtype "
-           << (k == 0 ? 7 : 3 + k) << " linecolor rgb " << in_quotes(palette[k % std::size(palette)])
-           << " title " << in_quotes(study.laws[k].name);
+           << (k == 0 ? 7 : 3 + k) << " linecolor rgb " << in_quotes(palette[k % palette.size()]) << " title "
+           << in_quotes(study.laws[k].name);
   script << "\n";
 }
 
@@ -129,7 +125,7 @@ bool draw_study(const Study& study, const std::string& title, const std::filesys
   // Run times of machines differ: over that of the first law's finest run.
   const double unit = study.laws[0].runs.back().seconds;
   const char *steps = "steps", *time = "run time / that of the first law's finest run";
-  const Panel panels[] = {
+  const ErrorPanel panels[] = {
       {norm_u_L2, "error of displacements (u_L2)", steps_column, 1.0, steps},
       {norm_u_L2, "error of displacements (u_L2)", seconds_column, std::isfinite(unit) ? unit : 1.0, time},
       {norm_impulse, "error of the impulse history", steps_column, 1.0, steps},
