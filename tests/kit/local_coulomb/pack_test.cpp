@@ -112,7 +112,7 @@ TEST(LocalCoulombPack, LeavesFewOfTheUsualProblems) {
     }
     return count;
   };
-  EXPECT_LT(left(0.5), draws / 500);
+  EXPECT_LT(left(0.5), draws / 300);
   EXPECT_LT(left(0.05), draws / 20);  // strong coupling: a fifth without the quartic
 }
 
