@@ -27,9 +27,9 @@ enum class Meets { obstacle, turning_obstacle, partners };
 
 // One block after the other, in D dimensions.
 template <int D, Meets What>
-class Blocks {
+class BlockWalk {
  public:
-  explicit Blocks(const BlockStep& step)
+  explicit BlockWalk(const BlockStep& step)
       : step_(step),
         at_(step.contacts),
         obstacle_(components(step.obstacle_velocity)),
@@ -331,7 +331,7 @@ Block next_block(const std::int32_t* contacts, std::ptrdiff_t count) {
 template <int D, Meets What>
 void solve_blocks(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count,
                   ChunkOutcome& outcome) {
-  Blocks<D, What> blocks(step);
+  BlockWalk<D, What> blocks(step);
   for (Block block{}; count > 0; contacts += block.count, count -= block.count) {
     block = next_block(contacts, count);
     blocks.solve(contacts, block.count, block.in_row, outcome);

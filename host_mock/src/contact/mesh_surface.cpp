@@ -163,9 +163,9 @@ ContactPoint MeshSurface::contact_point(int node_index, const Dofs& u, double /*
   const double beside = (p - best.point - normal_distance * best.normal).norm();
   // A point that is nearest to an edge without facing the patch lies beyond the surface's border:
   // it is not in contact.
-  const bool faces = beside <= 1e-6 * shortest_edge_;
-  return {faces ? normal_distance : best.distance, best.normal, ContactPoint::most_partners, facets_[facet],
-          best.weights};
+  const bool is_over_patch = beside <= 1e-6 * shortest_edge_;
+  return {is_over_patch ? normal_distance : best.distance, best.normal, ContactPoint::most_partners,
+          facets_[facet], best.weights};
 }
 
 }  // namespace ilaw::host

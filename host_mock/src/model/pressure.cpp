@@ -13,11 +13,11 @@ namespace {
 constexpr double gauss = 0.57735026918962576451;
 constexpr std::array<std::array<double, 2>, 4> corner_at = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
-using Corners = Eigen::Matrix<double, 3, 4>;
+using FacetCorners = Eigen::Matrix<double, 3, 4>;
 using Shape = Eigen::Vector4d;
 
 // The area vector at a point, and the shape functions there.
-Eigen::Vector3d area_vector(const Corners& x, double xi, double eta, Shape& shape) {
+Eigen::Vector3d area_vector(const FacetCorners& x, double xi, double eta, Shape& shape) {
   Shape along_xi, along_eta;
   for (std::size_t a = 0; a < 4; ++a) {
     const auto [s, t] = corner_at[a];
@@ -39,7 +39,7 @@ void Pressure::add_force(double time, const Dofs& u, Dofs& force) const {
   const double pressure = history_.at(time)[0];
   if (pressure == 0.0) return;
   for (const Facet& facet : facets_) {
-    Corners x;
+    FacetCorners x;
     for (std::size_t a = 0; a < 4; ++a) {
       const Eigen::Index dof = Eigen::Index{3} * facet[a];
       x.col(static_cast<Eigen::Index>(a)) = model_.position().segment<3>(dof) + u.segment<3>(dof);

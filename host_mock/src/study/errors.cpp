@@ -58,7 +58,7 @@ struct Sample {
 // Linear between entries, constant beyond the ends. In the step of a jump velocities are between
 // both sides.
 template <class Entry>
-Entry between(const std::vector<Entry>& entries, double at) {
+Entry interpolated(const std::vector<Entry>& entries, double at) {
   at = std::clamp(at, 0.0, static_cast<double>(entries.size() - 1));
   const auto before = static_cast<std::size_t>(at);
   const std::size_t after = std::min(before + 1, entries.size() - 1);
@@ -179,9 +179,9 @@ Errors errors_against(const std::vector<ExactNode>& exact, const Trace& trace) {
 Errors errors_against(const Trace& reference, const Trace& trace) {
   return errors_with(trace, reference.instants, reference.energy, [&](double time) {
     const double half = (time + 0.5 * trace.dt) / reference.dt - 1.5;
-    return Sample{between(reference.displacement, time / reference.dt - 1.0),
-                  between(reference.velocity, half), between(reference.impulse, half),
-                  between(reference.work, half)};
+    return Sample{interpolated(reference.displacement, time / reference.dt - 1.0),
+                  interpolated(reference.velocity, half), interpolated(reference.impulse, half),
+                  interpolated(reference.work, half)};
   });
 }
 

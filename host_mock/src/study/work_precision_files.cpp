@@ -77,7 +77,7 @@ void write_laws(const Study& study, const std::string& title, const std::filesys
 }
 
 // An error over a column of study.csv, both counted from 1.
-struct Panel {
+struct ErrorPanel {
   Norm norm;
   const char* title;
   std::size_t column;
@@ -96,7 +96,7 @@ bool has_points(const Study& study, Norm norm) {
   });
 }
 
-void write_panel(const Study& study, const std::string& csv, const Panel& panel, bool has_key,
+void write_panel(const Study& study, const std::string& csv, const ErrorPanel& panel, bool has_key,
                  std::ostream& script) {
   script
       << "set xlabel " << in_quotes(panel.label) << "\nset title " << in_quotes(panel.title)
@@ -126,7 +126,7 @@ bool draw_study(const Study& study, const std::string& title, const std::filesys
   // Run times of machines differ: over that of the first law's finest run.
   const double unit = study.laws[0].runs.back().seconds;
   const char *steps = "steps", *time = "run time / that of the first law's finest run";
-  const Panel panels[] = {
+  const ErrorPanel panels[] = {
       {norm_u_L2, "error of displacements (u_L2)", steps_column, 1.0, steps},
       {norm_u_L2, "error of displacements (u_L2)", seconds_column, std::isfinite(unit) ? unit : 1.0, time},
       {norm_impulse, "error of the impulse history", steps_column, 1.0, steps},

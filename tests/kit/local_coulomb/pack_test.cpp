@@ -102,14 +102,18 @@ TEST(LocalCoulombPack, FindsTheSolutionOfTheExactSolver) {
 // How often the scalar path is taken: see docs/theory/local_coulomb.md.
 TEST(LocalCoulombPack, LeavesFewOfTheUsualProblems) {
   Draw draw(54);
-  int left = 0;
   constexpr int draws = 50000;
-  for (int k = 0; k < draws; ++k) {
-    local_coulomb p = draw.pressed_coupled(0.5);
-    p.mu[0] = p.mu[1] = 0.3;
-    left += !kit::solve_regular(p).found;
-  }
-  EXPECT_LT(left, draws / 100);
+  const auto left = [&draw](double floor) {
+    int count = 0;
+    for (int k = 0; k < draws; ++k) {
+      local_coulomb p = draw.pressed_coupled(floor);
+      p.mu[0] = p.mu[1] = 0.3;
+      count += !kit::solve_regular(p).found;
+    }
+    return count;
+  };
+  EXPECT_LT(left(0.5), draws / 300);
+  EXPECT_LT(left(0.05), draws / 20);  // strong coupling: a fifth without the quartic
 }
 
 TEST(Pack, ComputesWhatDoublesDo) {

@@ -66,7 +66,7 @@ class regular_contact {
     const V coupling = w1_ * s_.adjugate_1(w1_, w2_) + w2_ * s_.adjugate_2(w1_, w2_);
     const Mask is_weak = m_ * m_ * coupling * s_.trace() < det;
     const Mask is_fair = det > least_determinant * (s_.a11 * s_.a22);
-    const Mask regular = (sticks | is_weak) & is_fair & has_usual_scales();
+    const Mask regular = (sticks | is_weak | slides_once(start, det)) & is_fair & has_usual_scales();
     Mask active = regular & !sticks;
     const V alpha = multiplier(start, active);
     return checked(alpha, sticks, regular & !active);
@@ -96,6 +96,17 @@ class regular_contact {
     const V n1 = s.adjugate_1(c1_, c2_), n2 = s.adjugate_2(c1_, c2_);
     const V length = square_root(n1 * n1 + n2 * n2);
     return {s, s.determinant(), n1, n2, length, length * per_m_ - (w1_ * n1 + w2_ * n2)};
+  }
+
+  // need = n is |N| = m Q, N = N_0 + alpha c and Q = n det(alpha) + w.N, whose square is of fourth degree in
+  // alpha: with one change of sign in its coefficients it has one positive root (Descartes).
+  Mask slides_once(const trial& start, V det) const {
+    const V mm = m_ * m_, q1 = n_ * s_.trace() + (w1_ * c1_ + w2_ * c2_);
+    const V q0 = n_ * det + (w1_ * start.n1 + w2_ * start.n2);
+    const V p3 = n_ * q1, p2 = mm * (q1 * q1 + 2.0 * n_ * q0) - (c1_ * c1_ + c2_ * c2_);
+    const V p1 = mm * q1 * q0 - (c1_ * start.n1 + c2_ * start.n2);
+    const Mask turns = ((p3 < 0.0) & ((p2 > 0.0) | (p1 > 0.0))) | ((p2 < 0.0) & (p1 > 0.0));
+    return (m_ * absolute(q0) < start.length) & !turns;
   }
 
   // Newton's method on 1/need = 1/n from alpha = 0. Lanes that are done keep their alpha, so that none sees
