@@ -345,7 +345,7 @@ struct cohesive::in_phases : cohesive {
             shear = per_weight * (stop.r[1] * stop.r[1] + stop.r[2] * stop.r[2]);
     const V square = pull * pull + shear;
     V held = smaller(strength, shear_strength());
-    if (mixes()) held = larger(softening_at(select(square > 0.0, shear / square, 0.0)).strength, held);
+    if (mixes()) held = larger(softening_at(mix_of(pull * pull, shear, square)).strength, held);
     const V most = p.velocity_step * p.area * held;
     const auto is_clear = (square < 0x1p900) & (most * most > 0x1p-900);
     const auto stands = is_new & is_clear & (square <= most * most), unclear = is_new & !is_clear;
