@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -54,7 +55,7 @@ class Blocks {
     apply();
     add_up(outcome.sums);
     if (show_fault(outcome.sums)) find_fault(outcome.refusal);
-    if (!contacts_in_row_) scatter(batch);
+    if (!contacts_in_row_) scatter();
   }
 
  private:
@@ -145,20 +146,30 @@ class Blocks {
 
   // An array of all contacts from the block's first on, or what was gathered of it; null where it
   // is empty.
-  double* column(std::vector<double>& all, std::size_t width, double* room) const {
+  double* column(std::vector<double>& all, double* room) const {
     if (all.empty()) return nullptr;
-    if (contacts_in_row_) return &all[contact(0) * width];
-    for (std::ptrdiff_t i = 0; i < count_; ++i)
-      std::copy_n(&all[contact(i) * width], width, room + static_cast<std::size_t>(i) * width);
+    if (contacts_in_row_) return &all[contact(0)];
+    for (std::ptrdiff_t i = 0; i < count_; ++i) room[i] = all[contact(i)];
     return room;
+  }
+  // The same of the states.
+  double* states() {
+    if (contacts_in_row_) return at_.state.first(contact(0));
+    const std::size_t size = step_.law.info().state_size;
+    if (!state_room_) state_room_ = std::make_unique_for_overwrite<double[]>(size * block_size);
+    for (std::size_t c = 0; c < size; ++c)
+      for (std::ptrdiff_t i = 0; i < count_; ++i) state_in_room(i, c) = at_.state.at(contact(i), c);
+    return state_room_.get();
+  }
+  double& state_in_room(std::ptrdiff_t i, std::size_t c) {
+    return state_room_[c * block_size + static_cast<std::size_t>(i)];
   }
 
   ilaw_batch make_batch() {
     const ilaw_instance_info& info = step_.law.info();
-    const auto size = static_cast<std::int64_t>(info.state_size);
-    if (!contacts_in_row_) state_.resize(info.state_size * block_size);
-    double* const state = column(at_.state, info.state_size, state_.data());
-    delassus_ = column(at_.delassus, 1, delassus_room_.data());
+    double* const state = states();
+    const std::int64_t state_stride = contacts_in_row_ ? at_.state.stride() : block_size;
+    delassus_ = column(at_.delassus, delassus_room_.data());
     impulse_ = contacts_in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
     status_ = contacts_in_row_ ? &at_.status[contact(0)] : status_room_.data();
     ilaw_batch batch = empty_batch(step_.setup, step_.step.time, step_.step.dt);
@@ -170,9 +181,9 @@ class Blocks {
     batch.delassus = {delassus_, 1, 0};
     batch.gap = {gap_.data(), 1, 0};
     batch.normal = {normal_.data(), D, 1};
-    batch.area = {column(at_.area, 1, area_room_.data()), 1, 0};
-    batch.state_in = {state, size, 1};
-    batch.state_out = {state, size, 1};
+    batch.area = {column(at_.area, area_room_.data()), 1, 0};
+    batch.state_in = {state, 1, state_stride};
+    batch.state_out = {state, 1, state_stride};
     batch.impulse = {impulse_, D, 1};
     if (step_.gets_energies) batch.energy = {energy_.data(), 1, block_size};
     batch.status = status_;
@@ -187,7 +198,7 @@ class Blocks {
     if (!contacts_in_row_) parameter_room_.resize(count * block_size);
     parameters_.resize(count);
     for (std::size_t p = 0; p < count; ++p)
-      parameters_[p] = {column(at_.parameters[p], 1, parameter_room_.data() + p * block_size), 1, 0};
+      parameters_[p] = {column(at_.parameters[p], parameter_room_.data() + p * block_size), 1, 0};
     batch.per_node_parameters = parameters_.data();
   }
 
@@ -195,7 +206,7 @@ class Blocks {
 
   bool evaluate(const ilaw_batch& batch, ChunkOutcome& outcome) {
     std::optional<InputCopy> inputs;
-    if (step_.is_watched) inputs.emplace(batch, D, at_.parameters.size());
+    if (step_.is_watched) inputs.emplace(batch, D, step_.law.info());
     const Answer answer = step_.law.evaluate(batch);
     outcome.refusal.add(answer, static_cast<std::size_t>(count_), contacts_);
     if (const char* changed = inputs ? inputs->changed() : nullptr) outcome.refusal.add(overwriting(changed));
@@ -279,15 +290,14 @@ class Blocks {
     }
   }
 
-  void scatter(const ilaw_batch& batch) {
+  void scatter() {
     const std::size_t size = step_.law.info().state_size;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       std::copy_n(impulse_ + D * i, D, &at_.impulse[contact(i) * D]);
       at_.status[contact(i)] = status_[i];
     }
-    for (std::ptrdiff_t i = 0; size > 0 && i < count_; ++i)
-      std::copy_n(batch.state_out.values + static_cast<std::size_t>(i) * size, size,
-                  &at_.state[contact(i) * size]);
+    for (std::size_t c = 0; c < size; ++c)
+      for (std::ptrdiff_t i = 0; i < count_; ++i) at_.state.at(contact(i), c) = state_in_room(i, c);
   }
 
   const BlockStep& step_;
@@ -308,7 +318,8 @@ class Blocks {
   std::conditional_t<Turns, Vectors, std::array<double, 0>> turn_;  // velocities at rate 1
   std::array<double, ILAW_ENERGY_COUNT * block_size> energy_;       // part by part
   std::array<std::uint8_t, block_size> status_room_;
-  std::vector<double> state_, parameter_room_;
+  std::unique_ptr<double[]> state_room_;
+  std::vector<double> parameter_room_;
   std::vector<ilaw_input> parameters_;
 };
 
