@@ -218,9 +218,13 @@ class Blocks {
   void mark_touched(const ilaw_batch& batch) {
     if (at_.state.empty()) return;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      if (status_[i] != ILAW_FREE) {
+        at_.mark_acting(contact(i));
+        continue;
+      }
       const bool in_reach =
           is_in_reach(gap_[i], &normal_[D * i], batch.v_free.values + D * i, D, step_.step.dt);
-      at_.mark_touched(contact(i), status_[i] != ILAW_FREE, in_reach, step_.law.rests());
+      at_.mark_touched(contact(i), false, in_reach, step_.law.rests());
     }
   }
 

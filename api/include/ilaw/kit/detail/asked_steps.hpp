@@ -88,6 +88,12 @@ char* place_of(Packs& packs, int k) {
   return reinterpret_cast<char*>(&packs) + static_cast<std::size_t>(k) * sizeof(pack);
 }
 
+// Lane by lane: what goes through memory one by one is not there yet where it is read as a whole.
+template <int... K>
+lanes listed_lanes(const double* column, const int* nodes, std::integer_sequence<int, K...> /*lanes*/) {
+  return lanes{column[nodes[K]]...};
+}
+
 // The nodes whose problems make a pack. The last pack of a block is filled up with its first problem.
 struct nodes_of_pack {
   const int* nodes;
@@ -108,9 +114,8 @@ struct nodes_of_pack {
       const pack values = pack::load(column + nodes[0]);
       return filled == pack_size ? values : select(own_lanes(), values, column[nodes[0]]);
     }
-    double values[pack_size];
-    for (int j = 0; j < pack_size; ++j) values[j] = column[nodes[j]];
-    return pack::load(values);
+    return pack(
+        each<double>([&](int k) { return listed_lanes(column, nodes + k * register_size, each_lane); }));
   }
   void put(pack given, double* column) const {
     if (side_by_side) {
