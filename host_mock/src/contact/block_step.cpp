@@ -75,16 +75,17 @@ class Blocks {
   }
 
   void find_nodes() {
-    for (std::ptrdiff_t i = 0; i < count_; ++i) node_index_[i] = at_.node_index[contact(i)];
-    for (std::ptrdiff_t i = 0; i < count_; ++i)
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      node_index_[i] = at_.node_index[contact(i)];
       node_[i] = step_.setup.nodes[static_cast<std::size_t>(node_index_[i])];
+    }
     nodes_in_row_ = follow_each_other(node_.data(), count_);
   }
 
   void locate() {
     if constexpr (Partnered)
       locate_partners();
-    else if (!Turns && step_.flat)
+    else if (meets_plane())
       locate_at_plane();
     else
       step_.setup.counterpart->locate(node_index_.data(), count_, step_.step.u, step_.step.time,
@@ -97,7 +98,7 @@ class Blocks {
   void locate_at_plane() {
     flat_gaps<D>(step_.model, node_.data(), count_, step_.step.u, *step_.flat, gap_.data());
     for (; normals_ < count_; ++normals_)
-      for (int c = 0; c < D; ++c) normal_[D * normals_ + c] = step_.flat->normal[c];
+      for (int c = 0; c < D; ++c) normal_[c * block_size + normals_] = step_.flat->normal[c];
   }
 
   // Of the surface where it is touched: a gap offset is a body's own.
@@ -134,15 +135,20 @@ class Blocks {
   }
 
   // is_moving: whether the obstacle's velocity is not zero; rate: at which it turns.
-  const double* relative(const Dofs& v, const Components& obstacle, bool is_moving, double rate,
-                         Vectors& room) const {
-    if (What == Meets::obstacle && nodes_in_row_ && !is_moving) return &v[first_dof(0)];
+  ilaw_input relative(const Dofs& v, const Components& obstacle, bool is_moving, double rate,
+                      Vectors& room) const {
+    if (What == Meets::obstacle && nodes_in_row_ && !is_moving) return {&v[first_dof(0)], D, 1};
     for (std::ptrdiff_t i = 0; i < count_; ++i)
-      for (int c = 0; c < D; ++c) room[D * i + c] = component(v.data(), i, c) - obstacle[c];
-    if constexpr (Turns)
-      for (std::ptrdiff_t k = 0; k < D * count_; ++k) room[k] -= rate * turn_[k];
-    return room.data();
+      for (int c = 0; c < D; ++c) {
+        double& value = room[c * block_size + i];
+        value = component(v.data(), i, c) - obstacle[c];
+        if constexpr (Turns) value -= rate * turn_[D * i + c];
+      }
+    return in_columns(room);
   }
+  // Component by component, as laws work on them.
+  static ilaw_input in_columns(const Vectors& vectors) { return {vectors.data(), 1, block_size}; }
+  bool meets_plane() const { return What == Meets::obstacle && step_.flat; }
 
   // An array of all contacts from the block's first on, or what was gathered of it; null where it
   // is empty.
@@ -174,13 +180,13 @@ class Blocks {
     status_ = contacts_in_row_ ? &at_.status[contact(0)] : status_room_.data();
     ilaw_batch batch = empty_batch(step_.setup, step_.step.time, step_.step.dt);
     batch.node_count = count_;
-    batch.v_free = {relative(step_.v, obstacle_, moves_, step_.rates.after, v_free_), D, 1};
+    batch.v_free = relative(step_.v, obstacle_, moves_, step_.rates.after, v_free_);
     if ((info.inputs | (step_.gets_energies ? info.energy_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)
-      batch.v_previous = {
-          relative(step_.step.v_before, obstacle_before_, moved_, step_.rates.before, v_previous_), D, 1};
+      batch.v_previous =
+          relative(step_.step.v_before, obstacle_before_, moved_, step_.rates.before, v_previous_);
     batch.delassus = {delassus_, 1, 0};
     batch.gap = {gap_.data(), 1, 0};
-    batch.normal = {normal_.data(), D, 1};
+    batch.normal = meets_plane() ? in_columns(normal_) : ilaw_input{normal_.data(), D, 1};
     batch.area = {column(at_.area, area_room_.data()), 1, 0};
     batch.state_in = {state, 1, state_stride};
     batch.state_out = {state, 1, state_stride};
@@ -222,10 +228,17 @@ class Blocks {
         at_.mark_acting(contact(i));
         continue;
       }
-      const bool in_reach =
-          is_in_reach(gap_[i], &normal_[D * i], batch.v_free.values + D * i, D, step_.step.dt);
+      const Components n = vector_at(batch.normal, i), v = vector_at(batch.v_free, i);
+      const bool in_reach = is_in_reach(gap_[i], n.data(), v.data(), D, step_.step.dt);
       at_.mark_touched(contact(i), false, in_reach, step_.law.rests());
     }
+  }
+
+  static Components vector_at(const ilaw_input& vectors, std::ptrdiff_t i) {
+    Components components;
+    for (int c = 0; c < D; ++c)
+      components[c] = vectors.values[i * vectors.node_stride + c * vectors.component_stride];
+    return components;
   }
 
   void apply() {
