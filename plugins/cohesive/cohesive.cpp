@@ -293,6 +293,7 @@ struct cohesive::in_phases : cohesive {
   template <class V>
   using answer = solved<V>;
 
+  static constexpr bool asks_leave_state = true;
   // Bonds that surely stand still, at which their impulse does no positive work, and nodes that are free are
   // done.
   template <class Node>

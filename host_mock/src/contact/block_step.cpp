@@ -52,7 +52,7 @@ class Blocks {
     const ilaw_batch batch = make_batch();
     if (!evaluate(batch, outcome)) return;
     mark_touched(batch);
-    apply();
+    apply(outcome.sums);
     add_up(outcome.sums);
     if (show_fault(outcome.sums)) find_fault(outcome.refusal);
     if (!contacts_in_row_) scatter();
@@ -241,27 +241,53 @@ class Blocks {
     return components;
   }
 
-  void apply() {
-    double* const v = step_.v.data();
-    acts_ = false;
+  // Adds the impulses to the velocities, and up what they work over the step, r . (v_before + v)/2: no two
+  // contacts share a node.
+  void apply(ContactSums& sums) {
+    double work = sums.work, relative_work = sums.relative_work;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       const double* const r = impulse_ + D * i;
       bool acts = false;
       for (int c = 0; c < D; ++c) acts = acts || r[c] != 0.0;
       if (!acts) continue;
-      acts_ = true;
-      if constexpr (Partnered)
-        at_.point[contact(i)].for_each_node(node_[i], [&](int node, double weight) {
-          const double scale = weight / step_.model.mass()[Eigen::Index{D} * node];
-          for (int c = 0; c < D; ++c) v[Eigen::Index{D} * node + c] += scale * r[c];
-        });
-      else
-        for (int c = 0; c < D; ++c) v[first_dof(i) + c] += delassus_[i] * r[c];
+      push(i, r);
+      const Works works = works_of(i, r);
+      work += 0.5 * works.all;
+      relative_work += 0.5 * works.relative;
     }
+    sums.work = work;
+    sums.relative_work = relative_work;
+  }
+  void push(std::ptrdiff_t i, const double* r) {
+    double* const v = step_.v.data();
+    if constexpr (Partnered)
+      at_.point[contact(i)].for_each_node(node_[i], [&](int node, double weight) {
+        const double scale = weight / step_.model.mass()[Eigen::Index{D} * node];
+        for (int c = 0; c < D; ++c) v[Eigen::Index{D} * node + c] += scale * r[c];
+      });
+    else
+      for (int c = 0; c < D; ++c) v[first_dof(i) + c] += delassus_[i] * r[c];
+  }
+  // Twice what an impulse works, and relative to the obstacle.
+  struct Works {
+    double all = 0.0, relative = 0.0;
+  };
+  Works works_of(std::ptrdiff_t i, const double* r) const {
+    const double *const v = step_.v.data(), *const before = step_.step.v_before.data();
+    Works works;
+    for (int c = 0; c < D; ++c) {
+      const double sum = component(before, i, c) + component(v, i, c);
+      works.all += r[c] * sum;
+      if (stands_still_) continue;
+      works.relative += r[c] * (sum - (obstacle_[c] + obstacle_before_[c]));
+      if constexpr (Turns)
+        works.relative -= r[c] * (step_.rates.before + step_.rates.after) * turn_[D * i + c];
+    }
+    if (stands_still_) works.relative = works.all;
+    return works;
   }
 
   void add_up(ContactSums& sums) const {
-    add_work(sums);
     std::uint64_t statuses = 0;  // a byte each
     double penetration = sums.penetration;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
@@ -273,28 +299,6 @@ class Blocks {
       sums.statuses[k] += static_cast<std::int64_t>((statuses >> (8 * k)) & 0xff);
     for (std::size_t k = 0; step_.gets_energies && k < ILAW_ENERGY_COUNT; ++k)
       sums.add_energies(k, &energy_[k * block_size], count_);
-  }
-
-  // Over the step it is r . (v_before + v)/2.
-  void add_work(ContactSums& sums) const {
-    if (!acts_) return;
-    const double *const v = step_.v.data(), *const before = step_.step.v_before.data();
-    double work = sums.work, relative_work = sums.relative_work;
-    for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      double product = 0.0, relative_product = 0.0;
-      for (int c = 0; c < D; ++c) {
-        const double r = impulse_[D * i + c], sum = component(before, i, c) + component(v, i, c);
-        product += r * sum;
-        if (stands_still_) continue;
-        relative_product += r * (sum - (obstacle_[c] + obstacle_before_[c]));
-        if constexpr (Turns)
-          relative_product -= r * (step_.rates.before + step_.rates.after) * turn_[D * i + c];
-      }
-      work += 0.5 * product;
-      relative_work += 0.5 * (stands_still_ ? product : relative_product);
-    }
-    sums.work = work;
-    sums.relative_work = relative_work;
   }
 
   void find_fault(Refusal& refusal) const {
@@ -324,7 +328,6 @@ class Blocks {
   const std::int32_t* contacts_ = nullptr;
   std::ptrdiff_t count_ = 0;
   bool contacts_in_row_ = false, nodes_in_row_ = false;
-  bool acts_ = false;           // an impulse of the block is not zero
   std::ptrdiff_t normals_ = 0;  // nodes whose normal is already that of the plane
   // What this block works on: in the host's arrays or the rooms below.
   double *delassus_ = nullptr, *impulse_ = nullptr;

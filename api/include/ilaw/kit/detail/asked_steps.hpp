@@ -211,10 +211,17 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
 // The problems of a block; returns how many there are, and lists their nodes.
 template <class Form>
 int list_open(asked_block<Form>& asked, int nodes) {
+  constexpr int some = 8;  // most often none of them has one
+  const auto bits = [&asked](int i) { return std::bit_cast<std::uint64_t>(asked.open.values[i]); };
   int count = 0;
-  for (int i = 0; i < nodes; ++i) {
-    asked.nodes[count] = i;
-    count += asked.open.values[i] != 0.0 ? 1 : 0;
+  for (int first = 0; first < nodes; first += some) {
+    const int end = first + some < nodes ? first + some : nodes;
+    std::uint64_t found = 0;
+    for (int i = first; i < end; ++i) found |= bits(i);
+    for (int i = first; found != 0 && i < end; ++i) {
+      asked.nodes[count] = i;
+      count += bits(i) != 0 ? 1 : 0;
+    }
   }
   return count;
 }
@@ -231,14 +238,18 @@ int solve_open(const Laws& laws, const node_block<Law>& b, asked_block<typename 
   return solve_asked(laws.law, asked, count);
 }
 
+// Whether a form's asks() changes no state, so that a block may be asked twice from where it is.
+template <class Form>
+concept asks_leave_state = Form::asks_leave_state;
+
 // First as if no node had a problem, which is all where none has; then from the first to the last that have
 // one. Where those are many, the blocks after this one are not stepped so.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 int run_where_few_ask(const Laws& laws, const node_block<Law>& b, asked_block<typename Laws::form>& asked) {
   constexpr int few = 4;  // one in so many
   node_block<Law> own = b;
-  kept_state<Law> state;
-  state.keep(own);
+  [[maybe_unused]] kept_state<Law> state;
+  if constexpr (!asks_leave_state<typename Laws::form>) state.keep(own);
   ask_block<Law, Delassus, Frame, Layout, Scope>(laws, own, asked.open);
   const int count = list_open(asked, own.count);
   if (count == 0) return 0;
