@@ -82,9 +82,17 @@ struct bond {
     const double y = mixing_exponent;
     if (y == 1.0) return mix;
     if (y == 1.5) return {n * (1.0 + b + b * b) / (1.0 + b * square_root(b)), b * square_root(b)};
-    if (y == 2.0) return {n * (1.0 + b), b * b};
-    const V exponent = y * select(n < 0.5, log_one_plus(-n), log(b));
-    return {-exp_minus_one(exponent), exp(exponent)};
+    return y == 2.0 ? mode_mix<V>{n * (1.0 + b), b * b} : any_weights_of(mix);
+  }
+  // On its own, so that the loops take in what is shorter. The logarithm is that of 1 - n where b is near 1,
+  // with what the difference rounds off, as in log_one_plus.
+  template <class V>
+  [[gnu::noinline]] mode_mix<V> any_weights_of(mode_mix<V> mix) const {
+    const auto is_near = mix.normal < 0.5;
+    const V left = select(is_near, 1.0 - mix.normal, mix.shear);
+    const V rounded_off = select(is_near, ((1.0 - left) - mix.normal) / left, 0.0);
+    const exponentials<V> power = exponentials_of(mixing_exponent * (log(left) + rounded_off));
+    return {-power.minus_one, power.exp};
   }
 
   softening<double> softening_along(vector w, double size) const {

@@ -148,12 +148,6 @@ V exponential(V x) {
   const V result = (1.0 + e.p) * e.first * e.second;  // 1 is added last
   return select(x == x, result, x);
 }
-template <class V>
-V exponential_minus_one(V x) {
-  const exponential_parts<V> e = parts_of_exponential(x);
-  const V scale = e.first * e.second, result = e.p * scale + (scale - 1.0);
-  return select(x == x, result, x);
-}
 
 // ln x to 1 ulp: x = 2^k (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)), and ln(1 + f) = 2 artanh(s), s = f/(2 +
 // f), whose series to s^23 leaves less than 1e-18. Summed so that f, which is exact, is added last (after
@@ -192,11 +186,22 @@ V logarithm(V x) {
 inline double exp(double x) { return detail::exponential(x); }
 inline double log(double x) { return detail::logarithm(x); }
 
-// e^x - 1 for x <= 0 and ln(1 + x) for -1/2 <= x <= 1, to 2 ulp also where they are small.
+// e^x and, for x <= 0 and to 2 ulp also where it is small, e^x - 1.
+template <class V>
+struct exponentials {
+  V exp, minus_one;
+};
+template <class V>
+exponentials<V> exponentials_of(V x) {
+  const detail::exponential_parts<V> e = detail::parts_of_exponential(x);
+  const V whole = (1.0 + e.p) * e.first * e.second, scale = e.first * e.second;
+  return {select(x == x, whole, x), select(x == x, e.p * scale + (scale - 1.0), x)};
+}
 template <class V>
 V exp_minus_one(V x) {
-  return detail::exponential_minus_one(x);
+  return exponentials_of(x).minus_one;
 }
+// ln(1 + x) for -1/2 <= x <= 1, to 2 ulp also where it is small.
 // What the sum rounds off has its derivative for a factor.
 template <class V>
 V log_one_plus(V x) {

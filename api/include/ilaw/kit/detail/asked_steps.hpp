@@ -13,29 +13,34 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 template <class Struct>
 inline constexpr int doubles_in = static_cast<int>(sizeof(Struct) / sizeof(double));
 
-// A column of which a pack may be read or written from any node on.
-struct alignas(64) roomy_column {
-  double values[block_size + pack_size];
+// Columns behind each other in one array, so that a pack may be read from any node on.
+template <int Count>
+struct alignas(64) column_row {
+  double values[Count * block_size + pack_size];
+
+  double* operator[](int k) { return values + k * block_size; }
+  const double* operator[](int k) const { return values + k * block_size; }
 };
 
-// The problems of a block, and their answers, as columns; open: 1 where there is one, else 0.
+// The problems of a block, and their answers; open: 1 where there is one, else 0.
 template <class Form>
 struct asked_block {
   static constexpr int problems = doubles_in<problem_of_form<Form>>,
                        answers = doubles_in<answer_of_form<Form>>;
   column open;
-  roomy_column problem[problems], answer[answers];
+  column_row<problems> problem;
+  column_row<answers> answer;
   int nodes[block_size + pack_size];  // those with a problem, and room to fill up the last pack
 };
 
-template <class Struct, std::size_t... K>
-void to_columns(const Struct& values, roomy_column* columns, int i, std::index_sequence<K...>) {
+template <class Struct, class Columns, std::size_t... K>
+void to_columns(const Struct& values, Columns& columns, int i, std::index_sequence<K...>) {
   const auto doubles = std::bit_cast<std::array<double, sizeof...(K)>>(values);
-  ((columns[K].values[i] = doubles[K]), ...);
+  ((columns[static_cast<int>(K)][i] = doubles[K]), ...);
 }
-template <class Struct, std::size_t... K>
-Struct from_columns(const roomy_column* columns, int i, std::index_sequence<K...>) {
-  return std::bit_cast<Struct>(std::array<double, sizeof...(K)>{columns[K].values[i]...});
+template <class Struct, class Columns, std::size_t... K>
+Struct from_columns(const Columns& columns, int i, std::index_sequence<K...>) {
+  return std::bit_cast<Struct>(std::array<double, sizeof...(K)>{columns[static_cast<int>(K)][i]...});
 }
 template <class Struct>
 inline constexpr auto places = std::make_index_sequence<static_cast<std::size_t>(doubles_in<Struct>)>{};
@@ -109,21 +114,27 @@ struct nodes_of_pack {
     for (int j = 0; j < pack_size; ++j) lane[j] = j;
     return pack::load(lane) < pack(filled);
   }
-  pack of(const double* column) const {
+  // From a column to a pack's place, and back.
+  void read(const double* column, char* place) const {
     if (side_by_side) {
-      const pack values = pack::load(column + nodes[0]);
-      return filled == pack_size ? values : select(own_lanes(), values, column[nodes[0]]);
+      __builtin_memcpy(place, column + nodes[0], sizeof(pack));
+      if (filled == pack_size) return;
+      const pack own = select(own_lanes(), pack::load(column + nodes[0]), column[nodes[0]]);
+      __builtin_memcpy(place, &own, sizeof own);
+    } else {
+      for (int k = 0; k < pack_registers; ++k) {
+        const lanes part = listed_lanes(column, nodes + k * register_size, each_lane);
+        __builtin_memcpy(place + k * static_cast<int>(sizeof part), &part, sizeof part);
+      }
     }
-    return pack(
-        each<double>([&](int k) { return listed_lanes(column, nodes + k * register_size, each_lane); }));
   }
-  void put(pack given, double* column) const {
-    if (side_by_side) {
-      double* const own = column + nodes[0];
-      return (filled == pack_size ? given : select(own_lanes(), given, pack::load(own))).store(own);
-    }
+  void write(const char* place, double* column) const {
     double values[pack_size];
-    given.store(values);
+    if (side_by_side && filled == pack_size) {
+      __builtin_memcpy(column + nodes[0], place, sizeof(pack));
+      return;
+    }
+    __builtin_memcpy(values, place, sizeof values);
     for (int j = 0; j < filled; ++j) column[nodes[j]] = values[j];
   }
 };
@@ -137,17 +148,11 @@ template <class Form>
   for (int first = 0; first < count; first += pack_size) {
     const nodes_of_pack in_pack(asked.nodes + first, count - first);
     problem_type problem;
-    for (int k = 0; k < asked_block<Form>::problems; ++k) {
-      const pack given = in_pack.of(asked.problem[k].values);
-      __builtin_memcpy(place_of(problem, k), &given, sizeof given);
-    }
+    for (int k = 0; k < asked_block<Form>::problems; ++k)
+      in_pack.read(asked.problem[k], place_of(problem, k));
     answer_type answer{};
     const mask left = law.solve(problem, answer);
-    for (int k = 0; k < asked_block<Form>::answers; ++k) {
-      pack found;
-      __builtin_memcpy(&found, place_of(answer, k), sizeof found);
-      in_pack.put(found, asked.answer[k].values);
-    }
+    for (int k = 0; k < asked_block<Form>::answers; ++k) in_pack.write(place_of(answer, k), asked.answer[k]);
     for (int j = 0; any(left) && j < in_pack.filled; ++j) {
       if (!left[j]) continue;
       ++alone_count;
@@ -268,7 +273,7 @@ int run_asked(const Laws& laws, const node_block<Law>& b) {
     if (*b.in_full == 0) return run_where_few_ask<Law, Delassus, Frame, Layout, Scope>(laws, b, asked);
     --*b.in_full;
   } else {
-    for (roomy_column& c : asked.answer) c = {};
+    for (double& value : asked.answer.values) value = 0.0;
   }
   mark_block<Law, Delassus, Frame, Layout, reading<Scope>>(laws, b, asked);
   const int count = list_open(asked, b.count);
