@@ -14,6 +14,27 @@ inline constexpr double exponential = 1.0, camacho_ortiz = 2.0;
 // A rigid bond that breaks leaves at least this part of the free motion.
 inline constexpr double almost_nothing = 0x1p-100;
 
+// Shares of mode I and of shear, which is mode II, in the squared opening, and what the page weighs the modes
+// with; their sum is 1. Both are kept, since a large exponent or ratio of strengths makes much of a tiny one.
+template <class V>
+struct mode_mix {
+  V normal, shear;
+
+  // From the mode that has more of it: a difference of large numbers is none of a small rest.
+  V mean(double of_normal, double of_shear) const {
+    return select(shear > 0.5, of_shear + normal * (of_normal - of_shear),
+                  of_normal + shear * (of_shear - of_normal));
+  }
+};
+inline constexpr mode_mix<double> mode_1{1.0, 0.0}, mode_2{0.0, 1.0};
+
+template <class V>
+mode_mix<V> mix_of(V normal_square, V shear_square, V square) {
+  const auto moves = square > 0.0;
+  return {select(moves, normal_square / square, 1.0),
+          select(moves, smaller(shear_square / square, 1.0), 0.0)};
+}
+
 // The parameters of the law, and all that asks for nothing but them and the zone.
 struct bond {
   double shape;
@@ -36,40 +57,50 @@ struct bond {
   double shear_toughness() const { return toughness_2 > 0.0 ? toughness_2 : toughness; }
   double weight() const { return shape == camacho_ortiz ? shear_strength() / strength : 1.0; }
 
-  // Share of shear: part of the squared opening that is tangential.
-  static double shear_share(vector w, double size) {
-    const double part = size > 0.0 ? w.tangential_length() / size : 0.0;
-    return smaller(part * part, 1.0);
-  }
-
   bool mixes() const {
     return shape != camacho_ortiz && (shear_strength() != strength || shear_toughness() != toughness);
   }
+  static mode_mix<double> mix_along(vector w, double size) {
+    if (!(size > 0.0)) return {1.0, 0.0};
+    const double normal = w.n / size, shear = w.tangential_length() / size;
+    return {normal * normal, smaller(shear * shear, 1.0)};
+  }
   template <class V>
-  softening<V> softening_at(V shear) const {
-    const V part = select(shear > 0.0, power_of(shear), 0.0);
-    const V energy = toughness + part * (shear_toughness() - toughness);
+  softening<V> softening_at(mode_mix<V> mix) const {
+    const mode_mix<V> weights = weights_of(mix);
+    const V energy = weights.mean(toughness, shear_toughness());
     const double s1 = strength, s2 = shear_strength();
-    const V peak = select(part > 0.0, square_root(s1 * s1 + part * (s2 * s2 - s1 * s1)), s1);
+    const V peak = select(weights.shear > 0.0, square_root(weights.mean(s1 * s1, s2 * s2)), s1);
     const double full = softening<V>::fullness(shape == exponential);
     const V width = positive_part(energy / peak - 0.5 * peak * flexibility()) / full;
     return {peak, peak * flexibility(), width, shape == exponential};
   }
-  // The kit's power, whose exponent is the same in all lanes here.
+  // B^eta and 1 - B^eta: the kit's power, whose exponent is the same in all lanes here.
   template <class V>
-  V power_of(V shear) const {
+  mode_mix<V> weights_of(mode_mix<V> mix) const {
+    const V b = mix.shear, n = mix.normal;
     const double y = mixing_exponent;
-    if (y == 1.0) return shear;
-    if (y == 1.5) return shear * square_root(shear);
-    return y == 2.0 ? shear * shear : exp(y * log(shear));
+    if (y == 1.0) return mix;
+    if (y == 1.5) return {n * (1.0 + b + b * b) / (1.0 + b * square_root(b)), b * square_root(b)};
+    return y == 2.0 ? mode_mix<V>{n * (1.0 + b), b * b} : any_weights_of(mix);
+  }
+  // On its own, so that the loops take in what is shorter. The logarithm is that of 1 - n where b is near 1,
+  // with what the difference rounds off, as in log_one_plus.
+  template <class V>
+  [[gnu::noinline]] mode_mix<V> any_weights_of(mode_mix<V> mix) const {
+    const auto is_near = mix.normal < 0.5;
+    const V left = select(is_near, 1.0 - mix.normal, mix.shear);
+    const V rounded_off = select(is_near, ((1.0 - left) - mix.normal) / left, 0.0);
+    const exponentials<V> power = exponentials_of(mixing_exponent * (log(left) + rounded_off));
+    return {-power.minus_one, power.exp};
   }
 
   softening<double> softening_along(vector w, double size) const {
-    return softening_at(mixes() ? shear_share(w, size) : 0.0);
+    return softening_at(mixes() ? mix_along(w, size) : mode_1);
   }
 
   // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
-  double softness_scale() const { return softening_at(0.0).width / strength; }
+  double softness_scale() const { return softening_at(mode_1).width / strength; }
   secant<double> secant_of(double damage) const {
     return {1.0 - damage, flexibility() + (strength < infinity ? damage * softness_scale() : 0.0)};
   }
@@ -143,8 +174,8 @@ struct bond {
 
   // Of all mode mixes.
   double steepest() const {
-    const double opened = softening_at(0.0).steepest();
-    return mixes() ? larger(opened, softening_at(1.0).steepest()) : opened;
+    const double opened = softening_at(mode_1).steepest();
+    return mixes() ? larger(opened, softening_at(mode_2).steepest()) : opened;
   }
 
   // There is one solution where the softening is not steeper than the node gives way, c tr(H W) |T'| <= 1.
@@ -173,8 +204,8 @@ struct bond {
     const double distance = target - damage;
     if (!(distance > 0.0)) return damage;
     const double a = delay_exponent, decline = a * position_step / delay_time;
-    const double q = one_minus_exp(a * distance) * one_minus_exp(decline);
-    if (q < 0.5) return smaller(damage + minus_log_one_minus(q) / a, 1.0);
+    const double q = exp_minus_one(-a * distance) * exp_minus_one(-decline);
+    if (q < 0.5) return smaller(damage - log_one_plus(-q) / a, 1.0);
     const double ahead = a * distance - decline;
     const double left = ahead < 40.0 ? log((1.0 - exp(-decline)) + exp(ahead)) : ahead;
     return larger(damage, smaller(target - left / a, 1.0));

@@ -293,6 +293,7 @@ struct cohesive::in_phases : cohesive {
   template <class V>
   using answer = solved<V>;
 
+  static constexpr bool asks_leave_state = true;
   // Bonds that surely stand still, at which their impulse does no positive work, and nodes that are free are
   // done.
   template <class Node>
@@ -345,7 +346,7 @@ struct cohesive::in_phases : cohesive {
             shear = per_weight * (stop.r[1] * stop.r[1] + stop.r[2] * stop.r[2]);
     const V square = pull * pull + shear;
     V held = smaller(strength, shear_strength());
-    if (mixes()) held = larger(softening_at(select(square > 0.0, shear / square, 0.0)).strength, held);
+    if (mixes()) held = larger(softening_at(mix_of(pull * pull, shear, square)).strength, held);
     const V most = p.velocity_step * p.area * held;
     const auto is_clear = (square < 0x1p900) & (most * most > 0x1p-900);
     const auto stands = is_new & is_clear & (square <= most * most), unclear = is_new & !is_clear;
@@ -358,12 +359,15 @@ struct cohesive::in_phases : cohesive {
   static friction_answer<V> stopping(const problem<V>& p) {
     friction_problem<V> stop{};
     friction_answer<V> a{};
+    V before[3];
     for (int k = 0; k < 3; ++k) {
       stop.contact.h[k] = p.h[k];
       stop.contact.q[k] = p.v_free[k];
-      stop.rest[k] = p.v_previous[k];
+      before[k] = p.v_previous[k] + left_by_rounding * p.v_free[k];
       a.r[k] = -(p.v_free[k] / p.h[k]);
     }
+    const auto gains = a.r[0] * before[0] + (a.r[1] * before[1] + a.r[2] * before[2]) > 0.0;
+    for (int k = 0; k < 3; ++k) stop.rest[k] = select(gains, p.v_previous[k], 0.0);
     a.status = status::stick;
     take_off_positive_work(stop, a);
     return a;

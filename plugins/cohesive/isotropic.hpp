@@ -20,7 +20,7 @@ struct of_all_nodes {
   explicit of_all_nodes(const bond& b)
       : weight(b.weight()),
         steepest(b.steepest()),
-        opened(b.softening_at(0.0)),
+        opened(b.softening_at(mode_1)),
         flexibility(b.flexibility()),
         softness(b.strength < infinity ? b.softness_scale() : 0.0) {}
 };
@@ -110,8 +110,8 @@ class isotropic_step {
 
   softening<V> softening_of(const trial& m) const {
     if (!bond_.mixes()) return opened_;
-    const V square = m.size * m.size;
-    return bond_.softening_at(select(square > 0.0, smaller(m.shear / square, 1.0), 0.0));
+    const V n = m.opening[0], square = m.size * m.size;
+    return bond_.softening_at(mix_of(n * n, m.shear, square));
   }
   V excess(V kappa, const trial& m, const softening<V>& s) const {
     const V met = bond_.mixes() ? s.meets(now_) : opened_met_;

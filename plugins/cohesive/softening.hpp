@@ -26,16 +26,6 @@ V sinh_ratio(V z) {
   return select(z < 0.5, series, (exp(z) - exp(-z)) / (2.0 * z));
 }
 
-// 1 - exp(-x) and -ln(1 - q), to all digits also where they are small (W. Kahan; Goldberg 1991, theorem 4).
-inline double one_minus_exp(double x) {
-  const double e = exp(-x);
-  return e < 0.5 ? 1.0 - e : e < 1.0 ? (1.0 - e) * (x / -log(e)) : x;
-}
-inline double minus_log_one_minus(double q) {
-  const double left = 1.0 - q;
-  return left < 1.0 ? -log(left) * (q / (1.0 - left)) : q;
-}
-
 // The secant stiffness of a damaged bond, stiff / soft: rigid is soft = 0, broken is stiff = 0.
 template <class V>
 struct secant {

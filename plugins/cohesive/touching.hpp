@@ -24,7 +24,7 @@ struct stopped_bond {
     } else {
       pull = node.delassus.solve(node.v_free);
     }
-    work = normal_product(pull, node.v_previous) + tangential_product(pull, node.v_previous);
+    work = -doubled_work(node, -pull);
   }
 };
 

@@ -113,6 +113,23 @@ TEST(BirthAndDeath, LeaveTheStatusFree) {
         << "step " << step;
 }
 
+// Who looks on makes no contact: contacts have the order of their nodes, of which steps make use.
+TEST(Watched, NodesAreContactsInTheirOrder) {
+  json scene =
+      points_on_plane({point({0, 0, 0}, {0, 0, 0}), point({1, 0, 0}, {0, 0, 0}), point({2, 0, 0}, {0, 0, 0})},
+                      {{"law", "tie"}});
+  scene["output"] = {{"watch", {2, 1}}};
+  Scene run = scene_of(scene.dump());
+  Integrator integrator = integrator_of(run);
+  const auto folder = fresh_folder();
+  History history(run, integrator, folder);
+  history.add_row(integrator);
+  EXPECT_EQ(run.interfaces[0]->contact_count(), 0U);
+  integrator.step();
+  history.add_row(integrator);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(run.interfaces[0]->contact_at(k), k);
+}
+
 // The state that a bond was born with waits for its birth: pulled all the time, it breaks R_Y/F after it.
 TEST(BirthAndDeath, AgeNoState) {
   json scene =

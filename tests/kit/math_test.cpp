@@ -10,9 +10,11 @@
 namespace {
 
 using ilaw::kit::exp;
+using ilaw::kit::exp_minus_one;
 using ilaw::kit::infinity;
 using ilaw::kit::length;
 using ilaw::kit::log;
+using ilaw::kit::log_one_plus;
 using ilaw::kit::power;
 
 // The long double function of libm, rounded, is the reference.
@@ -54,6 +56,32 @@ TEST(Log, HasItsLimits) {
   EXPECT_TRUE(std::isnan(log(std::nan(""))));
 }
 
+// Relatively, however small they are.
+TEST(ExpMinusOne, IsWithinTwoUlpBelowZero) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> exponent(-300.0, 9.6), near_half(0.3, 1.5);
+  for (int i = 0; i < 200000; ++i) {
+    const double x = i % 2 ? -std::exp2(exponent(random)) : -near_half(random);
+    const auto expected = static_cast<double>(std::expm1(static_cast<long double>(x)));
+    const double ulp = std::nextafter(std::abs(expected), infinity) - std::abs(expected);
+    EXPECT_LE(std::abs(exp_minus_one(x) - expected), 2.0 * ulp) << x;
+  }
+  EXPECT_EQ(exp_minus_one(0.0), 0.0);
+  EXPECT_EQ(exp_minus_one(-infinity), -1.0);
+}
+
+TEST(LogOnePlus, IsWithinTwoUlp) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> exponent(-300.0, 0.0);
+  for (int i = 0; i < 200000; ++i) {
+    const double size = std::exp2(exponent(random)), x = i % 2 ? -0.5 * size : size;
+    const auto expected = static_cast<double>(std::log1p(static_cast<long double>(x)));
+    const double ulp = std::nextafter(std::abs(expected), infinity) - std::abs(expected);
+    EXPECT_LE(std::abs(log_one_plus(x) - expected), 2.0 * ulp) << x;
+  }
+  EXPECT_EQ(log_one_plus(0.0), 0.0);
+}
+
 TEST(Packs, GiveTheBitsOfADouble) {
   using ilaw::kit::pack, ilaw::kit::pack_size;
   std::mt19937_64 random(6);
@@ -61,13 +89,17 @@ TEST(Packs, GiveTheBitsOfADouble) {
   const double special[] = {0.0, -0.0, infinity, -infinity, std::nan(""), 1e-310, 5e-324, -1.0};
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
   for (int i = 0; i < 20000; ++i) {
-    double x[pack_size], exps[pack_size], logs[pack_size];
+    double x[pack_size], exps[pack_size], logs[pack_size], minus_one[pack_size], one_plus[pack_size];
     for (double& one : x) one = i < 8 ? special[i] : i % 2 ? uniform(random) : exp(uniform(random));
     exp(pack::load(x)).store(exps);
     log(pack::load(x)).store(logs);
+    exp_minus_one(pack::load(x)).store(minus_one);
+    log_one_plus(pack::load(x)).store(one_plus);
     for (int lane = 0; lane < pack_size; ++lane) {
       ASSERT_EQ(bits(exps[lane]), bits(exp(x[lane]))) << "seed 6, x = " << x[lane];
       ASSERT_EQ(bits(logs[lane]), bits(log(x[lane]))) << "seed 6, x = " << x[lane];
+      ASSERT_EQ(bits(minus_one[lane]), bits(exp_minus_one(x[lane]))) << "seed 6, x = " << x[lane];
+      ASSERT_EQ(bits(one_plus[lane]), bits(log_one_plus(x[lane]))) << "seed 6, x = " << x[lane];
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -51,10 +52,10 @@ class BlockWalk {
     const ilaw_batch batch = make_batch();
     if (!evaluate(batch, outcome)) return;
     mark_touched(batch);
-    apply();
+    apply(outcome.sums);
     add_up(outcome.sums);
     if (show_fault(outcome.sums)) find_fault(outcome.refusal);
-    if (!contacts_in_row_) scatter(batch);
+    if (!contacts_in_row_) scatter();
   }
 
  private:
@@ -74,16 +75,17 @@ class BlockWalk {
   }
 
   void find_nodes() {
-    for (std::ptrdiff_t i = 0; i < count_; ++i) node_index_[i] = at_.node_index[contact(i)];
-    for (std::ptrdiff_t i = 0; i < count_; ++i)
+    for (std::ptrdiff_t i = 0; i < count_; ++i) {
+      node_index_[i] = at_.node_index[contact(i)];
       node_[i] = step_.setup.nodes[static_cast<std::size_t>(node_index_[i])];
+    }
     nodes_in_row_ = follow_each_other(node_.data(), count_);
   }
 
   void locate() {
     if constexpr (Partnered)
       locate_partners();
-    else if (!Turns && step_.flat)
+    else if (meets_plane())
       locate_at_plane();
     else
       step_.setup.counterpart->locate(node_index_.data(), count_, step_.step.u, step_.step.time,
@@ -96,7 +98,7 @@ class BlockWalk {
   void locate_at_plane() {
     flat_gaps<D>(step_.model, node_.data(), count_, step_.step.u, *step_.flat, gap_.data());
     for (; normals_ < count_; ++normals_)
-      for (int c = 0; c < D; ++c) normal_[D * normals_ + c] = step_.flat->normal[c];
+      for (int c = 0; c < D; ++c) normal_[c * block_size + normals_] = step_.flat->normal[c];
   }
 
   // Of the surface where it is touched: a gap offset is a body's own.
@@ -133,46 +135,61 @@ class BlockWalk {
   }
 
   // is_moving: whether the obstacle's velocity is not zero; rate: at which it turns.
-  const double* relative(const Dofs& v, const Components& obstacle, bool is_moving, double rate,
-                         Vectors& room) const {
-    if (What == Meets::obstacle && nodes_in_row_ && !is_moving) return &v[first_dof(0)];
+  ilaw_input relative(const Dofs& v, const Components& obstacle, bool is_moving, double rate,
+                      Vectors& room) const {
+    if (What == Meets::obstacle && nodes_in_row_ && !is_moving) return {&v[first_dof(0)], D, 1};
     for (std::ptrdiff_t i = 0; i < count_; ++i)
-      for (int c = 0; c < D; ++c) room[D * i + c] = component(v.data(), i, c) - obstacle[c];
-    if constexpr (Turns)
-      for (std::ptrdiff_t k = 0; k < D * count_; ++k) room[k] -= rate * turn_[k];
-    return room.data();
+      for (int c = 0; c < D; ++c) {
+        double& value = room[c * block_size + i];
+        value = component(v.data(), i, c) - obstacle[c];
+        if constexpr (Turns) value -= rate * turn_[D * i + c];
+      }
+    return in_columns(room);
   }
+  // Component by component, as laws work on them.
+  static ilaw_input in_columns(const Vectors& vectors) { return {vectors.data(), 1, block_size}; }
+  bool meets_plane() const { return What == Meets::obstacle && step_.flat; }
 
   // An array of all contacts from the block's first on, or what was gathered of it; null where it
   // is empty.
-  double* column(std::vector<double>& all, std::size_t width, double* room) const {
+  double* column(std::vector<double>& all, double* room) const {
     if (all.empty()) return nullptr;
-    if (contacts_in_row_) return &all[contact(0) * width];
-    for (std::ptrdiff_t i = 0; i < count_; ++i)
-      std::copy_n(&all[contact(i) * width], width, room + static_cast<std::size_t>(i) * width);
+    if (contacts_in_row_) return &all[contact(0)];
+    for (std::ptrdiff_t i = 0; i < count_; ++i) room[i] = all[contact(i)];
     return room;
+  }
+  // The same of the states.
+  double* states() {
+    if (contacts_in_row_) return at_.state.first(contact(0));
+    const std::size_t size = step_.law.info().state_size;
+    if (!state_room_) state_room_ = std::make_unique_for_overwrite<double[]>(size * block_size);
+    for (std::size_t c = 0; c < size; ++c)
+      for (std::ptrdiff_t i = 0; i < count_; ++i) state_in_room(i, c) = at_.state.at(contact(i), c);
+    return state_room_.get();
+  }
+  double& state_in_room(std::ptrdiff_t i, std::size_t c) {
+    return state_room_[c * block_size + static_cast<std::size_t>(i)];
   }
 
   ilaw_batch make_batch() {
     const ilaw_instance_info& info = step_.law.info();
-    const auto size = static_cast<std::int64_t>(info.state_size);
-    if (!contacts_in_row_) state_.resize(info.state_size * block_size);
-    double* const state = column(at_.state, info.state_size, state_.data());
-    delassus_ = column(at_.delassus, 1, delassus_room_.data());
+    double* const state = states();
+    const std::int64_t state_stride = contacts_in_row_ ? at_.state.stride() : block_size;
+    delassus_ = column(at_.delassus, delassus_room_.data());
     impulse_ = contacts_in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
     status_ = contacts_in_row_ ? &at_.status[contact(0)] : status_room_.data();
     ilaw_batch batch = empty_batch(step_.setup, step_.step.time, step_.step.dt);
     batch.node_count = count_;
-    batch.v_free = {relative(step_.v, obstacle_, moves_, step_.rates.after, v_free_), D, 1};
+    batch.v_free = relative(step_.v, obstacle_, moves_, step_.rates.after, v_free_);
     if ((info.inputs | (step_.gets_energies ? info.energy_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)
-      batch.v_previous = {
-          relative(step_.step.v_before, obstacle_before_, moved_, step_.rates.before, v_previous_), D, 1};
+      batch.v_previous =
+          relative(step_.step.v_before, obstacle_before_, moved_, step_.rates.before, v_previous_);
     batch.delassus = {delassus_, 1, 0};
     batch.gap = {gap_.data(), 1, 0};
-    batch.normal = {normal_.data(), D, 1};
-    batch.area = {column(at_.area, 1, area_room_.data()), 1, 0};
-    batch.state_in = {state, size, 1};
-    batch.state_out = {state, size, 1};
+    batch.normal = meets_plane() ? in_columns(normal_) : ilaw_input{normal_.data(), D, 1};
+    batch.area = {column(at_.area, area_room_.data()), 1, 0};
+    batch.state_in = {state, 1, state_stride};
+    batch.state_out = {state, 1, state_stride};
     batch.impulse = {impulse_, D, 1};
     if (step_.gets_energies) batch.energy = {energy_.data(), 1, block_size};
     batch.status = status_;
@@ -187,7 +204,7 @@ class BlockWalk {
     if (!contacts_in_row_) parameter_room_.resize(count * block_size);
     parameters_.resize(count);
     for (std::size_t p = 0; p < count; ++p)
-      parameters_[p] = {column(at_.parameters[p], 1, parameter_room_.data() + p * block_size), 1, 0};
+      parameters_[p] = {column(at_.parameters[p], parameter_room_.data() + p * block_size), 1, 0};
     batch.per_node_parameters = parameters_.data();
   }
 
@@ -195,7 +212,7 @@ class BlockWalk {
 
   bool evaluate(const ilaw_batch& batch, ChunkOutcome& outcome) {
     std::optional<InputCopy> inputs;
-    if (step_.is_watched) inputs.emplace(batch, D, at_.parameters.size());
+    if (step_.is_watched) inputs.emplace(batch, D, step_.law.info());
     const Answer answer = step_.law.evaluate(batch);
     outcome.refusal.add(answer, static_cast<std::size_t>(count_), contacts_);
     if (const char* changed = inputs ? inputs->changed() : nullptr) outcome.refusal.add(overwriting(changed));
@@ -207,33 +224,70 @@ class BlockWalk {
   void mark_touched(const ilaw_batch& batch) {
     if (at_.state.empty()) return;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      const bool in_reach =
-          is_in_reach(gap_[i], &normal_[D * i], batch.v_free.values + D * i, D, step_.step.dt);
-      at_.mark_touched(contact(i), status_[i] != ILAW_FREE, in_reach, step_.law.rests());
+      if (status_[i] != ILAW_FREE) {
+        at_.mark_acting(contact(i));
+        continue;
+      }
+      const Components n = vector_at(batch.normal, i), v = vector_at(batch.v_free, i);
+      const bool in_reach = is_in_reach(gap_[i], n.data(), v.data(), D, step_.step.dt);
+      at_.mark_touched(contact(i), false, in_reach, step_.law.rests());
     }
   }
 
-  void apply() {
-    double* const v = step_.v.data();
-    acts_ = false;
+  static Components vector_at(const ilaw_input& vectors, std::ptrdiff_t i) {
+    Components components;
+    for (int c = 0; c < D; ++c)
+      components[c] = vectors.values[i * vectors.node_stride + c * vectors.component_stride];
+    return components;
+  }
+
+  // Adds the impulses to the velocities, and up what they work over the step, r . (v_before + v)/2: no two
+  // contacts share a node.
+  void apply(ContactSums& sums) {
+    double work = sums.work, relative_work = sums.relative_work;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       const double* const r = impulse_ + D * i;
       bool acts = false;
       for (int c = 0; c < D; ++c) acts = acts || r[c] != 0.0;
       if (!acts) continue;
-      acts_ = true;
-      if constexpr (Partnered)
-        at_.point[contact(i)].for_each_node(node_[i], [&](int node, double weight) {
-          const double scale = weight / step_.model.mass()[Eigen::Index{D} * node];
-          for (int c = 0; c < D; ++c) v[Eigen::Index{D} * node + c] += scale * r[c];
-        });
-      else
-        for (int c = 0; c < D; ++c) v[first_dof(i) + c] += delassus_[i] * r[c];
+      push(i, r);
+      const Works works = works_of(i, r);
+      work += 0.5 * works.all;
+      relative_work += 0.5 * works.relative;
     }
+    sums.work = work;
+    sums.relative_work = relative_work;
+  }
+  void push(std::ptrdiff_t i, const double* r) {
+    double* const v = step_.v.data();
+    if constexpr (Partnered)
+      at_.point[contact(i)].for_each_node(node_[i], [&](int node, double weight) {
+        const double scale = weight / step_.model.mass()[Eigen::Index{D} * node];
+        for (int c = 0; c < D; ++c) v[Eigen::Index{D} * node + c] += scale * r[c];
+      });
+    else
+      for (int c = 0; c < D; ++c) v[first_dof(i) + c] += delassus_[i] * r[c];
+  }
+  // Twice what an impulse works, and relative to the obstacle.
+  struct Works {
+    double all = 0.0, relative = 0.0;
+  };
+  Works works_of(std::ptrdiff_t i, const double* r) const {
+    const double *const v = step_.v.data(), *const before = step_.step.v_before.data();
+    Works works;
+    for (int c = 0; c < D; ++c) {
+      const double sum = component(before, i, c) + component(v, i, c);
+      works.all += r[c] * sum;
+      if (stands_still_) continue;
+      works.relative += r[c] * (sum - (obstacle_[c] + obstacle_before_[c]));
+      if constexpr (Turns)
+        works.relative -= r[c] * (step_.rates.before + step_.rates.after) * turn_[D * i + c];
+    }
+    if (stands_still_) works.relative = works.all;
+    return works;
   }
 
   void add_up(ContactSums& sums) const {
-    add_work(sums);
     std::uint64_t statuses = 0;  // a byte each
     double penetration = sums.penetration;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
@@ -247,28 +301,6 @@ class BlockWalk {
       sums.add_energies(k, &energy_[k * block_size], count_);
   }
 
-  // Over the step it is r . (v_before + v)/2.
-  void add_work(ContactSums& sums) const {
-    if (!acts_) return;
-    const double *const v = step_.v.data(), *const before = step_.step.v_before.data();
-    double work = sums.work, relative_work = sums.relative_work;
-    for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      double product = 0.0, relative_product = 0.0;
-      for (int c = 0; c < D; ++c) {
-        const double r = impulse_[D * i + c], sum = component(before, i, c) + component(v, i, c);
-        product += r * sum;
-        if (stands_still_) continue;
-        relative_product += r * (sum - (obstacle_[c] + obstacle_before_[c]));
-        if constexpr (Turns)
-          relative_product -= r * (step_.rates.before + step_.rates.after) * turn_[D * i + c];
-      }
-      work += 0.5 * product;
-      relative_work += 0.5 * (stands_still_ ? product : relative_product);
-    }
-    sums.work = work;
-    sums.relative_work = relative_work;
-  }
-
   void find_fault(Refusal& refusal) const {
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       std::array<double, ILAW_ENERGY_COUNT> energy{};
@@ -279,15 +311,14 @@ class BlockWalk {
     }
   }
 
-  void scatter(const ilaw_batch& batch) {
+  void scatter() {
     const std::size_t size = step_.law.info().state_size;
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       std::copy_n(impulse_ + D * i, D, &at_.impulse[contact(i) * D]);
       at_.status[contact(i)] = status_[i];
     }
-    for (std::ptrdiff_t i = 0; size > 0 && i < count_; ++i)
-      std::copy_n(batch.state_out.values + static_cast<std::size_t>(i) * size, size,
-                  &at_.state[contact(i) * size]);
+    for (std::size_t c = 0; c < size; ++c)
+      for (std::ptrdiff_t i = 0; i < count_; ++i) at_.state.at(contact(i), c) = state_in_room(i, c);
   }
 
   const BlockStep& step_;
@@ -297,7 +328,6 @@ class BlockWalk {
   const std::int32_t* contacts_ = nullptr;
   std::ptrdiff_t count_ = 0;
   bool contacts_in_row_ = false, nodes_in_row_ = false;
-  bool acts_ = false;           // an impulse of the block is not zero
   std::ptrdiff_t normals_ = 0;  // nodes whose normal is already that of the plane
   // What this block works on: in the host's arrays or the rooms below.
   double *delassus_ = nullptr, *impulse_ = nullptr;
@@ -308,7 +338,8 @@ class BlockWalk {
   std::conditional_t<Turns, Vectors, std::array<double, 0>> turn_;  // velocities at rate 1
   std::array<double, ILAW_ENERGY_COUNT * block_size> energy_;       // part by part
   std::array<std::uint8_t, block_size> status_room_;
-  std::vector<double> state_, parameter_room_;
+  std::unique_ptr<double[]> state_room_;
+  std::vector<double> parameter_room_;
   std::vector<ilaw_input> parameters_;
 };
 

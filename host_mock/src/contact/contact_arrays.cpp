@@ -19,30 +19,35 @@ ilaw_batch empty_batch(const InterfaceSetup& setup, double time, double dt) {
 
 ContactArrays::ContactArrays(int dimension, const ilaw_instance_info& info, std::size_t node_count,
                              bool partnered)
-    : parameters(info.per_node_parameter_count),
+    : state(info.state_size),
+      parameters(info.per_node_parameter_count),
       dimension_(dimension),
       state_size_(info.state_size),
       reads_area_((info.inputs & ILAW_INPUT_AREA) != 0),
       partnered_(partnered),
-      contact_index_(node_count, -1) {}
+      contact_index_(node_count, -1),
+      next_state_(info.state_size) {}
 
 void ContactArrays::add(const Entry& entry) {
   contact_index_[static_cast<std::size_t>(entry.node_index)] = static_cast<int>(count());
   node_index.push_back(entry.node_index);
   impulse.resize(count() * static_cast<std::size_t>(dimension_));
   delassus.push_back(entry.delassus);
-  state.insert(state.end(), entry.state.begin(), entry.state.end());
+  state.add(entry.state);
   if (reads_area_) area.push_back(entry.area);
   for (std::size_t p = 0; p < parameters.size(); ++p) parameters[p].push_back(entry.parameters[p]);
   status.push_back(ILAW_FREE);
   const int touched = entry.turns ? changed : 0;
   marks_.push_back(static_cast<std::uint8_t>(entry.must_be_evaluated ? awake | changed : touched));
   if (partnered_) point.emplace_back();
-  if (is_repeated_) make_room();
+  if (!is_repeated_) return;
+  next_state_.add(entry.state);
+  make_room();
 }
 
 void ContactArrays::evaluate_repeatedly() {
   is_repeated_ = true;
+  next_state_ = state;
   make_room();
 }
 
@@ -51,15 +56,11 @@ void ContactArrays::make_room() {
     vectors->resize(count() * static_cast<std::size_t>(dimension_));
   gap.resize(count());
   energy.resize(count() * ILAW_ENERGY_COUNT);
-  next_state_.resize(state.size());
 }
 
-void ContactArrays::accept_state(int contact) {
-  std::copy_n(&next_state_[first_state(contact)], state_size_, &state[first_state(contact)]);
-}
+void ContactArrays::accept_state(int contact) { state.take(static_cast<std::size_t>(contact), next_state_); }
 
 ilaw_batch ContactArrays::repeated_batch(const InterfaceSetup& setup, double time, double dt) {
-  const auto size = static_cast<std::int64_t>(state_size_);
   ilaw_batch batch = empty_batch(setup, time, dt);
   batch.area = {area.data(), 1, 1};
   batch.normal = {normal.data(), dimension_, 1};
@@ -70,8 +71,8 @@ ilaw_batch ContactArrays::repeated_batch(const InterfaceSetup& setup, double tim
   batch.v_previous = {v_previous.data(), dimension_, 1};
   batch.delassus = {delassus.data(), 1, 1};
   batch.gap = {gap.data(), 1, 1};
-  batch.state_in = {state.data(), size, 1};
-  batch.state_out = {next_state_.data(), size, 1};
+  batch.state_in = {state.first(0), 1, state.stride()};
+  batch.state_out = {next_state_.first(0), 1, next_state_.stride()};
   batch.impulse = {impulse.data(), dimension_, 1};
   batch.energy = {energy.data(), ILAW_ENERGY_COUNT, 1};
   batch.status = status.data();
@@ -95,8 +96,8 @@ void ContactArrays::save(std::ostream& out) const {
     if (!(marks_[k] & changed)) continue;
     nodes.push_back(node_index[k]);
     marks.push_back(marks_[k]);
-    const auto first = state.begin() + static_cast<std::ptrdiff_t>(k * state_size_);
-    states.insert(states.end(), first, first + static_cast<std::ptrdiff_t>(state_size_));
+    const std::vector<double> own = state.of(k);
+    states.insert(states.end(), own.begin(), own.end());
   }
   write_sized(out, nodes);
   write_sized(out, marks);
@@ -112,8 +113,9 @@ std::vector<int> ContactArrays::load_nodes(std::istream& in, std::size_t most) {
 
 void ContactArrays::load_state(std::istream& in) {
   marks_ = read_sized<std::uint8_t>(in, count());
-  state = read_sized<double>(in, count() * state_size_);
-  if (marks_.size() != count() || state.size() != count() * state_size_) refuse_damaged();
+  const std::vector<double> states = read_sized<double>(in, count() * state_size_);
+  if (marks_.size() != count() || states.size() != count() * state_size_) refuse_damaged();
+  for (std::size_t k = 0; k < states.size(); ++k) state.at(k / state_size_, k % state_size_) = states[k];
 }
 
 }  // namespace ilaw::host

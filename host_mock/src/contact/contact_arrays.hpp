@@ -8,6 +8,7 @@
 #pragma once
 
 #include "contact/interface_setup.hpp"
+#include "contact/state_columns.hpp"
 
 #include <ilaw/ilaw.h>
 
@@ -55,10 +56,11 @@ class ContactArrays {
   auto vector(const std::vector<double>& values, int contact) const {
     return Eigen::Map<const Vector>(&values[first_component(contact)], dimension_);
   }
-  std::size_t first_state(int contact) const { return static_cast<std::size_t>(contact) * state_size_; }
 
   // Whether it must be evaluated out of reach, too: it is neither fresh nor at rest.
   bool must_be_evaluated(std::size_t contact) const { return (marks_[contact] & awake) != 0; }
+  // After a step, where its status was not ILAW_FREE.
+  void mark_acting(std::size_t contact) { marks_[contact] |= awake | changed; }
   // After a step: acts, where its status was not ILAW_FREE; rests, where the law promises
   // ILAW_CAN_REST.
   void mark_touched(std::size_t contact, bool acts, bool in_reach, bool rests) {
@@ -89,7 +91,8 @@ class ContactArrays {
   // By contact_index; vectors have dimension components each, energy ILAW_ENERGY_COUNT.
   std::vector<int> node_index;
   std::vector<ContactPoint> point;  // where the counterpart has partners
-  std::vector<double> impulse, delassus, state;
+  std::vector<double> impulse, delassus;
+  StateColumns state;
   std::vector<double> area;                     // where the law reads it
   std::vector<std::vector<double>> parameters;  // that are given per node, as the law lists them
   std::vector<std::uint8_t> status;
@@ -113,7 +116,7 @@ class ContactArrays {
   bool reads_area_, partnered_, is_repeated_ = false;
   std::vector<int> contact_index_;  // by node_index
   std::vector<std::uint8_t> marks_;
-  std::vector<double> next_state_;
+  StateColumns next_state_;
   std::vector<ilaw_input> parameter_inputs_;
 };
 

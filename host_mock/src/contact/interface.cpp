@@ -240,7 +240,7 @@ void Interface::evaluate(const ContactList& contacts, const StepView& step) {
     part.node_count = end - first;
     ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
     std::optional<InputCopy> inputs;
-    if (is_watched) inputs.emplace(part, static_cast<std::size_t>(dimension_), contacts_.parameters.size());
+    if (is_watched) inputs.emplace(part, static_cast<std::size_t>(dimension_), info());
     const Answer answer = law_.evaluate(part);
     outcome.refusal.add(answer, contacts_.count());
     if (const char* changed = inputs ? inputs->changed() : nullptr) outcome.refusal.add(overwriting(changed));

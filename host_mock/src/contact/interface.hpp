@@ -77,7 +77,7 @@ class Interface {
   const ContactPoint& point(int contact_index) const;
   // Accepted state; entry: double of the node's state.
   double state(int contact_index, int entry) const {
-    return contacts_.state[contacts_.first_state(contact_index) + at(entry)];
+    return contacts_.state.at(at(contact_index), at(entry));
   }
   // Adds the contact's impulse to those per degree of freedom.
   void add_impulse(int contact_index, Dofs& impulse) const;
@@ -99,6 +99,9 @@ class Interface {
     return setup_.counterpart->contact_point(node_index, u, time).gap - setup_.gap_offset;
   }
   int contact_index_of(int node_index, const Dofs& u);  // makes a contact where there is none
+  // -1: none yet. Who looks on makes none: contacts then have the order of their nodes, which blocks need to
+  // work on them where they are.
+  int contact_at(int node_index) const { return contacts_.index_of(at(node_index)); }
   // The accepted state, without making a contact.
   std::vector<double> state_at(int node_index, const Dofs& u) const;
   // What the law says of a node at rest where it starts, before any step.

@@ -54,9 +54,7 @@ std::vector<double> Interface::first_state(int node_index, const Dofs& u) const 
 std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
   const int contact_index = contacts_.index_of(at(node_index));
   if (contact_index < 0) return first_state(node_index, u);
-  const auto first =
-      contacts_.state.begin() + static_cast<std::ptrdiff_t>(contacts_.first_state(contact_index));
-  return {first, first + static_cast<std::ptrdiff_t>(info().state_size)};
+  return contacts_.state.of(at(contact_index));
 }
 
 // The step has no size yet: at rest, no law's answer depends on it. A node that the law refuses is

@@ -37,16 +37,16 @@ Refusal overwriting(const char* input) {
   return {ILAW_BAD_LIBRARY, 0, -1, 0, text.data()};
 }
 
-InputCopy::InputCopy(const ilaw_batch& batch, std::size_t dimension, std::size_t parameter_count) {
+InputCopy::InputCopy(const ilaw_batch& batch, std::size_t dimension, const ilaw_instance_info& info) {
   for (std::int64_t i = 0; i < batch.node_count; ++i)
     entries_.push_back(static_cast<std::size_t>(batch.index ? batch.index[i] : i));
   inputs_ = {{"v_free", batch.v_free, dimension, {}}, {"v_previous", batch.v_previous, dimension, {}},
              {"delassus", batch.delassus, 1, {}},     {"gap", batch.gap, 1, {}},
              {"normal", batch.normal, dimension, {}}, {"area", batch.area, 1, {}}};
-  for (std::size_t p = 0; p < parameter_count; ++p)
+  for (std::size_t p = 0; p < info.per_node_parameter_count; ++p)
     inputs_.push_back({"a parameter per node", batch.per_node_parameters[p], 1, {}});
   if (batch.state_in.values != batch.state_out.values)
-    inputs_.push_back({"state_in", batch.state_in, static_cast<std::size_t>(batch.state_in.node_stride), {}});
+    inputs_.push_back({"state_in", batch.state_in, info.state_size, {}});
   for (Input& input : inputs_) input.values = read(input.from, input.components);
 }
 

@@ -31,7 +31,7 @@ class InputCopy {
   // its inputs does so at once; `ilaw check` looks at every call.
   static bool is_due(std::int64_t step) { return step % 1000 == 1; }
 
-  InputCopy(const ilaw_batch& batch, std::size_t dimension, std::size_t parameter_count);
+  InputCopy(const ilaw_batch& batch, std::size_t dimension, const ilaw_instance_info& info);
   // The name of the first input that changed; null where none did.
   const char* changed() const;
 

@@ -32,7 +32,7 @@ bool same_columns(const nlohmann::json& one, const nlohmann::json& other) {
 
 History::History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder)
     : scene_(scene), file_(folder / "history.csv"), table_(file_.stream()), forces_(scene, integrator) {
-  find_contacts(integrator);
+  find_contacts();
   find_motions(integrator);
   write_header();
 }
@@ -43,7 +43,7 @@ History::History(const Scene& scene, Integrator& integrator, const std::filesyst
       file_(folder / "history.csv", written),
       table_(file_.stream()),
       forces_(scene, integrator) {
-  find_contacts(integrator);
+  find_contacts();
   find_motions(integrator);
 }
 
@@ -58,15 +58,14 @@ void History::find_motions(Integrator& integrator) {
   }
 }
 
-void History::find_contacts(const Integrator& integrator) {
+void History::find_contacts() {
   for (int node : scene_.output.watch) {
     std::vector<Contact>& contacts = contacts_.emplace_back();
     for (const auto& interface : scene_.interfaces) {
       const auto found = std::find(interface->nodes().begin(), interface->nodes().end(), node);
       if (found == interface->nodes().end()) continue;
       const int node_index = static_cast<int>(found - interface->nodes().begin());
-      contacts.push_back({interface.get(), node_index,
-                          interface->contact_index_of(node_index, integrator.displacement()), ""});
+      contacts.push_back({interface.get(), node_index, ""});
     }
     const std::string name = "n" + std::to_string(node) + ".";
     for (Contact& contact : contacts)
@@ -106,12 +105,12 @@ void History::add_node(std::size_t watched, const Integrator& integrator, const 
     for (int c = 0; c < d; ++c) table_ << (*quantity)[node + c];
   for (const Contact& contact : contacts_[watched]) {
     const Interface& interface = *contact.interface;
-    const int status =
-        interface.is_active(contact.contact_index) ? interface.status(contact.contact_index) : int{ILAW_FREE};
+    const int contact_index = interface.contact_at(contact.node_index);
+    const int status = interface.is_active(contact_index) ? interface.status(contact_index) : int{ILAW_FREE};
     table_ << interface.gap_at(contact.node_index, integrator.displacement(), integrator.time()) << status;
-    for_each_state(interface.info(), [&](const std::string&, int entry) {
-      table_ << interface.state(contact.contact_index, entry);
-    });
+    const std::vector<double> state = interface.state_at(contact.node_index, integrator.displacement());
+    for_each_state(interface.info(),
+                   [&](const std::string&, int entry) { table_ << state[static_cast<std::size_t>(entry)]; });
   }
 }
 

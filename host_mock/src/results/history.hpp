@@ -41,10 +41,10 @@ class History {
   // A watched node in one interface.
   struct Contact {
     const Interface* interface;
-    int node_index, contact_index;
+    int node_index;
     std::string prefix;  // "n0." or, where the node has several, "n0.<interface>."
   };
-  void find_contacts(const Integrator& integrator);
+  void find_contacts();
   void find_motions(Integrator& integrator);
   void write_header();
   void add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse);

@@ -12,32 +12,32 @@ namespace {
 // A watched node in its contact.
 struct WatchedContact {
   const Interface* interface;
-  int contact_index;
+  int node_index;
   std::size_t watched;
 };
 
-std::vector<WatchedContact> watched_contacts(Scene& scene, const Dofs& u) {
+std::vector<WatchedContact> watched_contacts(const Scene& scene) {
   std::vector<WatchedContact> contacts;
   for (std::size_t w = 0; w < scene.output.watch.size(); ++w)
     for (const auto& interface : scene.interfaces) {
       const std::vector<int>& nodes = interface->nodes();
       const auto found = std::find(nodes.begin(), nodes.end(), scene.output.watch[w]);
       if (found != nodes.end())
-        contacts.push_back(
-            {interface.get(), interface->contact_index_of(static_cast<int>(found - nodes.begin()), u), w});
+        contacts.push_back({interface.get(), static_cast<int>(found - nodes.begin()), w});
     }
   return contacts;
 }
 
 void note_instants(const std::vector<WatchedContact>& contacts, double time, Trace& trace) {
   for (const WatchedContact& contact : contacts) {
-    if (!contact.interface->is_active(contact.contact_index)) continue;
+    const int contact_index = contact.interface->contact_at(contact.node_index);
+    if (!contact.interface->is_active(contact_index)) continue;
     ContactInstants& instants = trace.instants[contact.watched];
-    if (!contact.interface->impulse(contact.contact_index).isZero(0.0)) {
+    if (!contact.interface->impulse(contact_index).isZero(0.0)) {
       if (std::isnan(instants.first_impulse)) instants.first_impulse = time;
       instants.last_impulse = time;
     }
-    if (contact.interface->status(contact.contact_index) == ILAW_BROKEN) instants.last_rupture = time;
+    if (contact.interface->status(contact_index) == ILAW_BROKEN) instants.last_rupture = time;
   }
 }
 
@@ -124,7 +124,7 @@ Trace trace_of(Scene& scene) {
   const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
   ask_no_energies(scene.interfaces);
   Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
-  const std::vector<WatchedContact> contacts = watched_contacts(scene, integrator.displacement());
+  const std::vector<WatchedContact> contacts = watched_contacts(scene);
   Trace trace;
   trace.dt = scene.dt;
   trace.steps = scene.steps;

@@ -115,6 +115,30 @@ TEST(CohesiveProperties, FrictionGrowsAsTheBondBreaks) {
   EXPECT_GT(sticks, 3000);
 }
 
+// A bond that holds leaves a velocity of 0, short of rounding. What its impulse works on that is no work to
+// be taken off; on a motion it is.
+TEST(CohesiveProperties, WhatRoundsTakesNothingOffABond) {
+  Draw draw(16);
+  for (const double coupling : {0.0, 1e-13})
+    for (int k = 0; k < 2000; ++k) {
+      NodeRun node("cohesive", {{{"strength", 1e9}, {"toughness", 1e9}}, {}}, 1.0, ILAW_DELASSUS_FULL);
+      node.h = {1.0, 1.0, 1.0, 0.0, 0.0, coupling};
+      const Vector free = draw.vector(1.0);
+      const auto held = [&](double moved) {
+        for (std::size_t c = 0; c < 3; ++c) node.v_previous[c] = -moved * free[c];
+        EXPECT_EQ(node.step(free), ILAW_OK);
+        EXPECT_EQ(node.status, ILAW_BONDED);
+        return node.r;
+      };
+      const Vector resting = held(0.0);
+      ASSERT_EQ(held(0x1p-51 * draw.between(0.0, 4.0)), resting) << "draw " << k;
+      const Vector turning = held(0.1);
+      ASSERT_LT(std::hypot(turning[0], turning[1], turning[2]),
+                0.95 * std::hypot(resting[0], resting[1], resting[2]))
+          << "draw " << k;
+    }
+}
+
 // Strength inf: the node stops in one step, whatever else is given. No toughness, no strength, or broken:
 // coulomb with predictive activation, bit for bit.
 TEST(CohesiveProperties, LimitsAreTieAndCoulomb) {

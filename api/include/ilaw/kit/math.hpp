@@ -105,10 +105,16 @@ inline double length(double a, double b, double c) { return scaled_length_of(a, 
 
 namespace detail {
 
-// e^x to 1 ulp: x = k ln2 + s with |s| <= ln2/2 (Cody and Waite 1980), Taylor polynomial of degree 13 whose
-// remainder is below 5e-18, scaled by 2^k in two steps so that results below the normal range round once.
+// e^x = (1 + p) first second, two powers of two so that results below the normal range round once.
 template <class V>
-V exponential(V x) {
+struct exponential_parts {
+  V p, first, second;
+};
+
+// To 1 ulp: x = k ln2 + s with |s| <= ln2/2 (Cody and Waite 1980), p the Taylor polynomial of degree 13,
+// whose remainder is below 5e-18.
+template <class V>
+exponential_parts<V> parts_of_exponential(V x) {
   using bits = bits_of<V>;
   constexpr double log2e = 1.4426950408889634;
   constexpr double ln2_high = 6.93147180369123816490e-01;  // 32 bits: k * ln2_high is exact
@@ -129,13 +135,17 @@ V exponential(V x) {
   p = p * s + 1.0 / 24.0;
   p = p * s + 1.0 / 6.0;
   p = p * s + 0.5;
-  p = p * (s * s) + s;  // the small terms first, so that 1 is added last
+  p = p * (s * s) + s;  // the small terms first
   // 2^j from the bits of j + 1023 behind a 1 that is shifted out: no conversion, which few processors have in
   // vectors.
   const auto power_of_two = [](V j) { return bits::number(bits::in(j + (0x1p52 + 1023.0)) << 52); };
   const V half = (k * 0.5 + to_integer) - to_integer;
-  const V first = power_of_two(half), second = power_of_two(k - half);
-  const V result = (1.0 + p) * first * second;
+  return {p, power_of_two(half), power_of_two(k - half)};
+}
+template <class V>
+V exponential(V x) {
+  const exponential_parts<V> e = parts_of_exponential(x);
+  const V result = (1.0 + e.p) * e.first * e.second;  // 1 is added last
   return select(x == x, result, x);
 }
 
@@ -175,6 +185,29 @@ V logarithm(V x) {
 
 inline double exp(double x) { return detail::exponential(x); }
 inline double log(double x) { return detail::logarithm(x); }
+
+// e^x and, for x <= 0 and to 2 ulp also where it is small, e^x - 1.
+template <class V>
+struct exponentials {
+  V exp, minus_one;
+};
+template <class V>
+exponentials<V> exponentials_of(V x) {
+  const detail::exponential_parts<V> e = detail::parts_of_exponential(x);
+  const V whole = (1.0 + e.p) * e.first * e.second, scale = e.first * e.second;
+  return {select(x == x, whole, x), select(x == x, e.p * scale + (scale - 1.0), x)};
+}
+template <class V>
+V exp_minus_one(V x) {
+  return exponentials_of(x).minus_one;
+}
+// ln(1 + x) for -1/2 <= x <= 1, to 2 ulp also where it is small.
+// What the sum rounds off has its derivative for a factor.
+template <class V>
+V log_one_plus(V x) {
+  const V sum = 1.0 + x;
+  return detail::logarithm(sum) + (x - (sum - 1.0)) / sum;
+}
 
 // x^y for x >= 0, y > 0, within 1 + |y ln x| ulp; exact or correctly rounded where laws need it most.
 inline double power(double x, double y) {

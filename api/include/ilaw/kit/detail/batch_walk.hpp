@@ -117,8 +117,12 @@ class batch_walk {
   void keep_frames() {
     if (!made_.carries_frame) return;
     const bool history_moves = has_history<Law> && !(made_.capabilities() & ILAW_CAN_REST);
+    column moves;
     for (int i = 0; i < nodes_.count; ++i)
-      if (block_.refused[i] == 0.0 && (history_moves || block_.stirs[i] != 0.0)) keep_frame(i);
+      moves.values[i] = block_.refused[i] == 0.0 && (history_moves || block_.stirs[i] != 0.0) ? 1.0 : 0.0;
+    if (!nodes_.listed() && batch_.state_out.node_stride == 1) return keep_frames_in_columns(moves);
+    for (int i = 0; i < nodes_.count; ++i)
+      if (moves.values[i] != 0.0) keep_frame(i);
   }
 
   bool any_refused() const {
@@ -198,6 +202,15 @@ class batch_walk {
     const axis n = columns::get(block_.axes, i), t = columns::get(block_.axes + 3, i);
     const double entries[6] = {n.x, n.y, n.z, t.x, t.y, t.z};
     for (int k = 0; k < 6; ++k) at(batch_.state_out, nodes_.node(i), made_.frame_offset() + k) = entries[k];
+  }
+
+  void keep_frames_in_columns(const column& moves) {
+    for (int k = 0; k < 6; ++k) {
+      double* const frame = &at(batch_.state_out, nodes_.first, made_.frame_offset() + k);
+      const double* const now = block_.axes[k];
+#pragma omp simd
+      for (int i = 0; i < nodes_.count; ++i) frame[i] = moves.values[i] != 0.0 ? now[i] : frame[i];
+    }
   }
 
   const double* optional(const ilaw_input& input, bool read, column& room) {

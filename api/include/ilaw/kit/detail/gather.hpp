@@ -121,18 +121,19 @@ void separate_sixes(const Number* values, int count, column* room) {
 template <class Number>
 void gather_components_of(const Number* values, std::int64_t node_stride, std::int64_t component_stride,
                           int numbers, const node_range& nodes, column* room, const double** components) {
-  const bool in_rows = !nodes.listed() && node_stride == numbers && component_stride == 1;
+  const bool are_rows = !nodes.listed() && component_stride == 1;
+  const bool in_rows = are_rows && node_stride == numbers;
   const Number* rows = values + nodes.first * node_stride;
   for (int k = 0; k < numbers; ++k) components[k] = room[k].values;
-  if (in_rows && numbers == 2)
-    separate_pairs(rows, nodes.count, room[0].values, room[1].values);
-  else if (in_rows && numbers == 3)
-    separate_triples(rows, nodes.count, room[0].values, room[1].values, room[2].values);
-  else if (in_rows && numbers == 6)
-    separate_sixes(rows, nodes.count, room);
-  else
-    for (int k = 0; k < numbers; ++k)
-      components[k] = gather_of(values + k * component_stride, node_stride, nodes, room[k].values);
+  if (in_rows && numbers == 2) return separate_pairs(rows, nodes.count, room[0].values, room[1].values);
+  if (in_rows && numbers == 3)
+    return separate_triples(rows, nodes.count, room[0].values, room[1].values, room[2].values);
+  if (in_rows && numbers == 6) return separate_sixes(rows, nodes.count, room);
+  if constexpr (std::is_same_v<Number, double>)
+    if (are_rows && are_long(numbers))
+      return separate_rows(rows, node_stride, numbers, nodes.count, [room](int k) { return room[k].values; });
+  for (int k = 0; k < numbers; ++k)
+    components[k] = gather_of(values + k * component_stride, node_stride, nodes, room[k].values);
 }
 inline void gather_doubles(const ilaw_input& input, int numbers, const node_range& nodes, column* room,
                            const double** components) {
@@ -180,11 +181,13 @@ void scatter_of(Number* values, std::int64_t stride, const node_range& nodes, co
 template <class Number>
 void scatter_components_of(Number* values, std::int64_t node_stride, std::int64_t component_stride,
                            int numbers, const node_range& nodes, double* const* components) {
-  if (numbers == 3 && !nodes.listed() && node_stride == 3 && component_stride == 1)
-    interleave(components, nodes.count, values + 3 * nodes.first);
-  else
-    for (int k = 0; k < numbers; ++k)
-      scatter_of(values + k * component_stride, node_stride, nodes, components[k]);
+  const bool are_rows = !nodes.listed() && component_stride == 1;
+  Number* const rows = values + nodes.first * node_stride;
+  if (are_rows && numbers == 3 && node_stride == 3) return interleave(components, nodes.count, rows);
+  if constexpr (std::is_same_v<Number, double>)
+    if (are_rows && are_long(numbers)) return join_rows(components, numbers, nodes.count, rows, node_stride);
+  for (int k = 0; k < numbers; ++k)
+    scatter_of(values + k * component_stride, node_stride, nodes, components[k]);
 }
 inline void scatter_doubles(const ilaw_output& output, int numbers, const node_range& nodes,
                             double* const* components) {

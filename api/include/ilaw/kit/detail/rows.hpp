@@ -44,6 +44,72 @@ lanes row_of(lanes a, lanes b, lanes c, std::integer_sequence<int, K...> /*lanes
   return __builtin_shufflevector(found, c, ((from + K) % 3 == 2 ? (from + K) / 3 + register_size : K)...);
 }
 
+// Longer rows are turned into columns, and columns into rows, square by square; the last two squares of a row
+// may overlap.
+inline constexpr int square_size = register_size < 4 ? register_size : 4;
+struct square {
+  using line = double __attribute__((vector_size(8 * square_size)));
+  line lines[square_size];
+
+  // at(k): where line k stands.
+  template <class At>
+  static square from(At at) {
+    square s;
+    for (int k = 0; k < square_size; ++k) __builtin_memcpy(&s.lines[k], at(k), sizeof(line));
+    return s;
+  }
+  template <class At>
+  void put(At at) const {
+    for (int k = 0; k < square_size; ++k) __builtin_memcpy(at(k), &lines[k], sizeof(line));
+  }
+  square turned() const {
+#ifdef __AVX__
+    const line a = __builtin_shufflevector(lines[0], lines[1], 0, 4, 2, 6),
+               b = __builtin_shufflevector(lines[0], lines[1], 1, 5, 3, 7),
+               c = __builtin_shufflevector(lines[2], lines[3], 0, 4, 2, 6),
+               d = __builtin_shufflevector(lines[2], lines[3], 1, 5, 3, 7);
+    return {{__builtin_shufflevector(a, c, 0, 1, 4, 5), __builtin_shufflevector(b, d, 0, 1, 4, 5),
+             __builtin_shufflevector(a, c, 2, 3, 6, 7), __builtin_shufflevector(b, d, 2, 3, 6, 7)}};
+#else
+    return {{__builtin_shufflevector(lines[0], lines[1], 0, 2),
+             __builtin_shufflevector(lines[0], lines[1], 1, 3)}};
+#endif
+  }
+};
+
+// turn(i, c): what is done at the square whose first row and column these are. Returns how many rows had one.
+template <class Turn>
+int for_each_square(int rows, int numbers, Turn turn) {
+  int i = 0;
+  for (; i + square_size <= rows; i += square_size)
+    for (int c = 0; c < numbers; c += square_size)
+      turn(i, c + square_size <= numbers ? c : numbers - square_size);
+  return i;
+}
+// Rows of so many numbers, from one to the next a stride. column(c): where column c begins.
+inline bool are_long(int numbers) { return numbers >= square_size; }
+template <class Column>
+void separate_rows(const double* values, std::int64_t stride, int numbers, int count, Column column) {
+  int i = for_each_square(count, numbers, [&](int first, int c) {
+    const double* const corner = values + first * stride + c;
+    square::from([&](int k) { return corner + k * stride; }).turned().put([&](int k) {
+      return column(c + k) + first;
+    });
+  });
+  for (; i < count; ++i)
+    for (int c = 0; c < numbers; ++c) column(c)[i] = values[i * stride + c];
+}
+inline void join_rows(double* const* columns, int numbers, int count, double* values, std::int64_t stride) {
+  int i = for_each_square(count, numbers, [&](int first, int c) {
+    double* const corner = values + first * stride + c;
+    square::from([&](int k) { return columns[c + k] + first; }).turned().put([&](int k) {
+      return corner + k * stride;
+    });
+  });
+  for (; i < count; ++i)
+    for (int c = 0; c < numbers; ++c) values[i * stride + c] = columns[c][i];
+}
+
 template <class Number>
 void separate_pairs(const Number* __restrict__ values, int first, int count, double* __restrict__ a,
                     double* __restrict__ b) {
