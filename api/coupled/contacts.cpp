@@ -241,16 +241,16 @@ std::int32_t Contacts::evaluate(const std::vector<Motion>& of_trial) {
   return code;
 }
 
-Contacts::Misfit Contacts::misfit(const std::vector<Motion>& of_answer) const {
-  Misfit misfit{0.0, 0.0};
+Contacts::Residual Contacts::residual(const std::vector<Motion>& of_answer) const {
+  Residual residual{0.0, 0.0};
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     if (is_bad(k)) continue;
     const Vector own = split_response(k, answer_[k]);
-    misfit.difference =
-        std::fmax(misfit.difference, largest(relative(contacts_[k], of_answer) - own - v_free_[k]));
-    misfit.size = std::fmax(misfit.size, std::fmax(largest(own), largest(v_free_[k])));
+    residual.difference =
+        std::fmax(residual.difference, largest(relative(contacts_[k], of_answer) - own - v_free_[k]));
+    residual.size = std::fmax(residual.size, std::fmax(largest(own), largest(v_free_[k])));
   }
-  return misfit;
+  return residual;
 }
 
 void Contacts::extrapolate(double by) {

@@ -26,10 +26,10 @@ class Contacts {
   std::int32_t evaluate(const std::vector<Motion>& of_trial);
   // How far the velocities of the contacts are from those that the law answered to, and how large
   // velocities are.
-  struct Misfit {
+  struct Residual {
     double difference, size;
   };
-  Misfit misfit(const std::vector<Motion>& of_answer) const;
+  Residual residual(const std::vector<Motion>& of_answer) const;
   // The next trial: the answer, taken further by so much of its change.
   void extrapolate(double by);
 

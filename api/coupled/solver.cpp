@@ -84,9 +84,9 @@ std::int32_t Solver::iterate(const ilaw_coupled_options& options, ilaw_coupled_r
 
     std::array<double, 4> found{0.0, 0.0, code < 0 ? 1.0 : 0.0, counts_changed() ? 1.0 : 0.0};
     for (const Contacts& group : std::span(groups_).first(group_count_)) {
-      const Contacts::Misfit misfit = group.misfit(of_answer_);
-      found[0] = std::fmax(found[0], misfit.difference);
-      found[1] = std::fmax(found[1], misfit.size);
+      const Contacts::Residual residual = group.residual(of_answer_);
+      found[0] = std::fmax(found[0], residual.difference);
+      found[1] = std::fmax(found[1], residual.size);
     }
     if (exchange_) exchange_->largest(exchange_->context, found.data(), found.size());
     if (found[2] > 0.0) return code < 0 ? code : ILAW_INVALID_ARGUMENT;

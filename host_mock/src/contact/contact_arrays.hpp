@@ -75,7 +75,6 @@ class ContactArrays {
   // Where contacts share nodes a step evaluates each more than once: the arrays below "repeated"
   // are there, and states in and out are arrays of their own.
   void evaluate_repeatedly();
-  bool is_repeated() const { return is_repeated_; }
   // The state after the step becomes that before the next.
   void accept_state(int contact);
   // The arrays that evaluate takes, where contacts share nodes.
