@@ -359,15 +359,12 @@ struct cohesive::in_phases : cohesive {
   static friction_answer<V> stopping(const problem<V>& p) {
     friction_problem<V> stop{};
     friction_answer<V> a{};
-    V before[3];
     for (int k = 0; k < 3; ++k) {
       stop.contact.h[k] = p.h[k];
       stop.contact.q[k] = p.v_free[k];
-      before[k] = p.v_previous[k] + left_by_rounding * p.v_free[k];
+      stop.rest[k] = p.v_previous[k] + left_by_rounding * p.v_free[k];
       a.r[k] = -(p.v_free[k] / p.h[k]);
     }
-    const auto gains = a.r[0] * before[0] + (a.r[1] * before[1] + a.r[2] * before[2]) > 0.0;
-    for (int k = 0; k < 3; ++k) stop.rest[k] = select(gains, p.v_previous[k], 0.0);
     a.status = status::stick;
     take_off_positive_work(stop, a);
     return a;

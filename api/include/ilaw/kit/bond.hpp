@@ -16,20 +16,22 @@ vector whole_stopping_impulse(const Node& node) {
 // The part of v_free that may be left of it by rounding: v_free + H r, which is 0, is the velocity before of
 // a node that is held from step to step.
 inline constexpr double left_by_rounding = 0x1p-48;
-// Twice its work r.v^-, beyond what such a velocity makes of it.
+// v^- beyond that, and twice the work r.v^- that is left then: it grows from 0 as v^- does, with no jump.
+template <class Node>
+vector velocity_before(const Node& node) {
+  return node.v_previous + left_by_rounding * node.v_free;
+}
 template <class Node>
 double doubled_work(const Node& node, vector r) {
-  const vector before = node.v_previous + left_by_rounding * node.v_free;
+  const vector before = velocity_before(node);
   return normal_product(r, before) + tangential_product(r, before);
 }
 template <class Node>
 vector stopping_impulse(const Node& node) {
-  const vector r = whole_stopping_impulse(node), &u = node.v_previous;
-  const bool gains = doubled_work(node, r) > 0.0;
-  const vector before{gains ? u.n : 0.0, gains ? u.t1 : 0.0, gains ? u.t2 : 0.0};
+  const vector r = whole_stopping_impulse(node);
   friction_answer<double> answer{{r.n, r.t1, r.t2}, status::stick, not_refused};
   friction_problem<double> problem;
-  fill(problem, node.delassus, {0.0, node.v_free, before}, 0.0, 0.0);
+  fill(problem, node.delassus, {0.0, node.v_free, velocity_before(node)}, 0.0, 0.0);
   take_off_positive_work(problem, answer);
   return {answer.r[0], answer.r[1], answer.r[2]};
 }
