@@ -323,9 +323,9 @@ auto previous_for_energy(const node_block<Law>& b, int i, const Node& n) {
 }
 
 template <class Frame, class Layout, class Law, class Node>
-void store_motion(const node_block<Law>& b, int i, const Node& n, bool accepted) {
+void store_motion(const node_block<Law>& b, int i, const Node& n, bool accepted, axis v_free) {
   const auto v = n.v_free + n.delassus.times(n.impulse);
-  columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, Layout::get(b.v_free, i)));
+  columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, v_free));
   b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
 }
 
@@ -371,8 +371,13 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
 void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool valid = true) {
   auto [n, accepted] = step_node<Law, Delassus, Frame, Layout, Scope>(step, b, i);
   accepted = accepted & valid;
+  // Read before anything is written: compilers read it again beneath a mask, for which a column that was just
+  // written has to reach the cache first. Six numbers of H leave no register for it.
+  const axis v_free = Layout::get(b.v_free, i);
+  constexpr bool has_registers = Delassus::components < 6;
   Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
-  if constexpr (Scope >= scope::motion) store_motion<Frame, Layout>(b, i, n, accepted);
+  if constexpr (Scope >= scope::motion)
+    store_motion<Frame, Layout>(b, i, n, accepted, has_registers ? v_free : Layout::get(b.v_free, i));
   if constexpr (Scope == scope::outputs) store_energy<Frame, Layout>(b, i, n, accepted);
   if constexpr (has_window<Law>)
     keep_for_window(b, i, n);
