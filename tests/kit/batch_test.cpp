@@ -144,7 +144,7 @@ TEST_P(Contract, NodesThatAreNotUsualChangeNoOther) {
 
 // From some thousand nodes on, arrays are asked for ahead, and blocks are worked on in pieces.
 TEST_P(Contract, LargeBatchesGiveTheBitsOfListedNodes) {
-  constexpr std::int64_t n = 8192 + 64 + 21;
+  constexpr std::int64_t n = 16384 + 64 + 21;
   std::vector<std::int32_t> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), 0);
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL}) {

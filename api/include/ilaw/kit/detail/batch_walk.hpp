@@ -166,23 +166,32 @@ class batch_walk {
     return count;
   }
 
-  // All that is read or written where nodes follow each other.
+  // All that is read or written where nodes follow each other, if any of it is copied. Where that is little,
+  // in a loop without a state over (3,n) arrays in place, nothing else.
   void expect_arrays() {
-    const auto of_batch = [this](const auto& array, int numbers) {
-      expect(array, numbers, holds_floats(batch_), ahead_);
+    constexpr bool copies_little = in_place && !has_state<Law>;
+    has_ahead_ = false;
+    const auto add = [this](const auto& array, int numbers, bool of_floats) {
+      const bool is_copied = array.values && (array.node_stride != 1 || of_floats);
+      has_ahead_ = has_ahead_ || is_copied;
+      if (is_copied || !copies_little) expect(array, numbers, of_floats, ahead_);
     };
-    of_batch(batch_.v_free, dimension_);
+    const auto of_batch = [this, add](const auto& array, int numbers) {
+      add(array, numbers, holds_floats(batch_));
+    };
+    if constexpr (!copies_little) {
+      of_batch(batch_.v_free, dimension_);
+      of_batch(batch_.normal, dimension_);
+      of_batch(batch_.impulse, dimension_);
+    }
     of_batch(batch_.v_previous, dimension_);
     of_batch(batch_.delassus, delassus_numbers());
     for (const ilaw_input* one : {&batch_.gap, &batch_.gap_offset, &batch_.area}) of_batch(*one, 1);
-    of_batch(batch_.normal, dimension_);
     of_batch(batch_.tangent, dimension_);
-    expect(batch_.state_in, state_entries(), false, ahead_);
-    of_batch(batch_.impulse, dimension_);
+    add(batch_.state_in, state_entries(), false);
     of_batch(batch_.velocity, dimension_);
     of_batch(batch_.energy, ILAW_ENERGY_COUNT);
-    if (batch_.state_out.values != batch_.state_in.values)
-      expect(batch_.state_out, state_entries(), false, ahead_);
+    if (batch_.state_out.values != batch_.state_in.values) add(batch_.state_out, state_entries(), false);
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k) of_batch(batch_.per_node_parameters[k], 1);
   }
 

@@ -42,13 +42,14 @@ struct node_range {
   }
 };
 
-// Arrays that a batch reads or writes node by node, asked for a block ahead and some nodes at a time:
-// hardware prefetchers lose so many streams at block boundaries, and a processor that is asked for more lines
-// than it can wait for (some 16) does nothing else until they are there.
+// Arrays that a batch reads or writes node by node, asked for a block ahead and some nodes at a time, where
+// some of them are copied: a copy wants many lines at once, which hardware prefetchers bring too late, and a
+// processor that is asked for more lines than it can wait for (some 16) does nothing else until they are
+// there. Where all is worked on in place, lines are wanted evenly, and come sooner if nobody asks.
 class streams {
  public:
   static constexpr int nodes_at_once = 16;
-  static constexpr std::int64_t fewest_nodes = 8192;  // fewer are in the second cache, or may as well be
+  static constexpr std::int64_t fewest_nodes = 16384;  // fewer are in the second cache, or may as well be
 
   template <class Number>
   void add(const Number* values, std::int64_t numbers_of_node) {

@@ -323,9 +323,9 @@ auto previous_for_energy(const node_block<Law>& b, int i, const Node& n) {
 }
 
 template <class Frame, class Layout, class Law, class Node>
-void store_motion(const node_block<Law>& b, int i, const Node& n, bool accepted) {
+void store_motion(const node_block<Law>& b, int i, const Node& n, bool accepted, axis v_free) {
   const auto v = n.v_free + n.delassus.times(n.impulse);
-  columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, Layout::get(b.v_free, i)));
+  columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, v_free));
   b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
 }
 
@@ -340,16 +340,14 @@ void store_energy(const node_block<Law>& b, int i, const Node& n, bool accepted)
   b.energy[ILAW_ENERGY_STORED][i] = accepted ? e.stored : 0.0;
 }
 
-// Whether a form of a law works with the law's history in the step itself, which then runs node by node. One
-// that says it forgets runs in vector code.
+// Whether a form of a law works with its history in the step, node by node; one that forgets does not.
 template <class Law, class Form>
 inline constexpr bool remembers = has_history<Law> && !has_window<Law> && !requires {
   Form::forgets;
 };
 
 // Zero where the step left all as it was: a frame that moved on alone would make skipping such a node, which
-// its host may do out of reach, another motion. Summed, as comparisons of what was chosen would become
-// branches.
+// its host may do out of reach, another motion. Summed: comparisons of choices would become branches.
 template <class Law, class Node>
 double stirring(const Node& n, const state_t<Law>& before) {
   static_assert(status::free == 0.0);
@@ -371,8 +369,11 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
 void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool valid = true) {
   auto [n, accepted] = step_node<Law, Delassus, Frame, Layout, Scope>(step, b, i);
   accepted = accepted & valid;
+  const axis v_free = Layout::get(b.v_free, i);  // first: loads beneath a mask wait for what is being written
   Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
-  if constexpr (Scope >= scope::motion) store_motion<Frame, Layout>(b, i, n, accepted);
+  if constexpr (Scope >= scope::motion)  // six numbers of H leave no register for it
+    store_motion<Frame, Layout>(b, i, n, accepted,
+                                Delassus::components < 6 ? v_free : Layout::get(b.v_free, i));
   if constexpr (Scope == scope::outputs) store_energy<Frame, Layout>(b, i, n, accepted);
   if constexpr (has_window<Law>)
     keep_for_window(b, i, n);
