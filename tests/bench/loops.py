@@ -40,7 +40,7 @@ CASES = [
     ("penalty, implicit, friction", "penalty", spring(integration="implicit", friction=0.3),
      [["step_block", *LOCAL, "form<true", "kind)1>"]], 1.2),
     ("cohesive, holding", "cohesive", ["--parameters", HOLDING],
-     [["mark_block", "transverse", *LOCAL], ["finish_block", "transverse", *LOCAL]], 1.5),
+     [["ask_block", "transverse", *LOCAL]], 1.5),
 ]
 SKIPPED = 77  # what ctest is told where nothing can be counted
 SCOPE = "(scope)1"  # impulse and state, with the velocity before the step
