@@ -66,7 +66,8 @@ class regular_contact {
     const V coupling = w1_ * s_.adjugate_1(w1_, w2_) + w2_ * s_.adjugate_2(w1_, w2_);
     const Mask is_weak = m_ * m_ * coupling * s_.trace() < det;
     const Mask is_fair = det > least_determinant * (s_.a11 * s_.a22);
-    const Mask regular = (sticks | is_weak | slides_once(start, det)) & is_fair & has_usual_scales();
+    const Mask is_single = slides_once(start, det), has_scales = has_usual_scales();
+    const Mask regular = (sticks | is_weak | is_single) & is_fair & has_scales;
     Mask active = regular & !sticks;
     const V alpha = multiplier(start, active);
     return checked(alpha, sticks, regular & !active);
