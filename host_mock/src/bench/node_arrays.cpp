@@ -8,7 +8,7 @@
 namespace ilaw::host {
 namespace {
 
-constexpr double step = 1e-3;
+constexpr double time_step = 1e-3;
 // Steps before the first that is measured; in each, a node has the velocity of its next neighbour.
 constexpr std::int64_t steps_before = 16;
 
@@ -118,7 +118,7 @@ void NodeArrays::draw_node(Draw& draw, const BenchCase& bench_case, std::int64_t
   const double speed = draw.uniform(0.0, 1.0);
   const Vector3 v = {approaches ? -speed : speed, draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0)};
   const Vector3 before = {touches ? 0.0 : v[0], v[1], v[2]};
-  gap_[static_cast<std::size_t>(i)] = touches ? draw.uniform(-0.1 * step, 0.0) : draw.uniform(0.01, 0.1);
+  gap_[static_cast<std::size_t>(i)] = touches ? draw.uniform(-0.1 * time_step, 0.0) : draw.uniform(0.01, 0.1);
   std::array<Vector3, 3> axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   if (is_global_) axes = frame_of(draw.direction(static_cast<int>(dimension_)));
   for (std::int64_t c = 0; c < dimension_; ++c) {
@@ -151,7 +151,7 @@ ilaw_output NodeArrays::output(std::vector<double>& values, std::int64_t compone
 void NodeArrays::lay_out(const BenchCase& bench_case) {
   batch_.struct_size = sizeof batch_;
   batch_.node_count = nodes_;
-  batch_.velocity_step = batch_.position_step = step;
+  batch_.velocity_step = batch_.position_step = time_step;
   const std::uint32_t inputs = inputs_of(law_, bench_case);
   batch_.v_free = input(v_free_, dimension_);
   batch_.delassus = input(delassus_, delassus_components_);
@@ -176,12 +176,12 @@ void NodeArrays::reach_a_representative_state() {
   law_.initialise(batch_);
   const ilaw_input v_free = batch_.v_free;
   for (std::int64_t k = steps_before; k > 0; --k) {
-    batch_.time += step;
+    batch_.time += time_step;
     batch_.v_free.values = v_free.values + k * v_free.node_stride;
     evaluate();
   }
   batch_.v_free = v_free;
-  batch_.time += step;
+  batch_.time += time_step;
   first_state_ = state_;
 }
 
