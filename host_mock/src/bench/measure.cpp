@@ -6,6 +6,8 @@
 #include "bench/node_arrays.hpp"
 #include "bench/triad.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -87,6 +89,9 @@ void check_bench(const ilaw::library& library, const BenchCase& bench_case, std:
 
 BenchResult run_bench(const ilaw::library& library, const BenchCase& bench_case, std::int64_t nodes,
                       int repetitions) {
+  // Arrays one after another: large blocks each in pages of their own all begin at the same place of a page,
+  // and share few places of the caches.
+  mallopt(M_MMAP_MAX, 0);
   const BenchLaw law(library, bench_case);
   NodeArrays arrays(law, bench_case, nodes);
   BenchResult result;
