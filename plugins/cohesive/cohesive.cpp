@@ -362,7 +362,7 @@ struct cohesive::in_phases : cohesive {
     for (int k = 0; k < 3; ++k) {
       stop.contact.h[k] = p.h[k];
       stop.contact.q[k] = p.v_free[k];
-      stop.rest[k] = p.v_previous[k] + left_by_rounding * p.v_free[k];
+      stop.rest[k] = velocity_before(p.v_previous[k], p.v_free[k]);
       a.r[k] = -(p.v_free[k] / p.h[k]);
     }
     a.status = status::stick;

@@ -3,6 +3,7 @@
 #include "cli/commands.hpp"
 
 #include "base/exit_code.hpp"
+#include "base/words.hpp"
 #include "cli/child.hpp"
 #include "cli/terminal.hpp"
 
@@ -112,14 +113,14 @@ std::string unquoted(const json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-std::string joined(const json& values) {
-  std::string text;
-  for (const json& value : values) text += (text.empty() ? "" : ", ") + unquoted(value);
-  return text;
+std::string listed(const json& values) {
+  std::vector<std::string> words;
+  for (const json& value : values) words.push_back(unquoted(value));
+  return joined(words);
 }
 
 std::string range_of(const json& p) {
-  if (p.contains("choices")) return "one of " + joined(p["choices"]);
+  if (p.contains("choices")) return "one of " + listed(p["choices"]);
   const bool closed = p["infinity_allowed"].get<bool>() || p["maximum"] != "inf";
   return std::string(p["minimum_excluded"].get<bool>() ? "(" : "[") + unquoted(p["minimum"]) + ", " +
          unquoted(p["infinity_allowed"].get<bool>() ? json("inf") : p["maximum"]) + (closed ? "]" : ")");
@@ -130,16 +131,16 @@ Row row_of_parameter(const json& p) {
           unquoted(p["unit"]),
           range_of(p),
           p["required"].get<bool>() ? "required" : "default " + unquoted(p["default"]),
-          p["may_be"].empty() ? "constant" : "or " + joined(p["may_be"]),
+          p["may_be"].empty() ? "constant" : "or " + listed(p["may_be"]),
           unquoted(p["doc"])};
 }
 
 void print_law(const json& law) {
   std::printf("\n%s - %s\n  %s\n", unquoted(law["id"]).c_str(), unquoted(law["title"]).c_str(),
               unquoted(law["doc"]).c_str());
-  std::printf("  dimensions: %s; H: %s; may read: %s\n", joined(law["dimensions"]).c_str(),
-              joined(law["delassus_forms"]).c_str(), joined(law["inputs"]).c_str());
-  if (!law["capabilities"].empty()) std::printf("  can: %s\n", joined(law["capabilities"]).c_str());
+  std::printf("  dimensions: %s; H: %s; may read: %s\n", listed(law["dimensions"]).c_str(),
+              listed(law["delassus_forms"]).c_str(), listed(law["inputs"]).c_str());
+  if (!law["capabilities"].empty()) std::printf("  can: %s\n", listed(law["capabilities"]).c_str());
   std::printf("  parameters:\n");
   std::vector<Row> rows;
   for (const json& p : law["parameters"]) rows.push_back(row_of_parameter(p));

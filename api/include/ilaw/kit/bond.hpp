@@ -17,13 +17,13 @@ vector whole_stopping_impulse(const Node& node) {
 // a node that is held from step to step.
 inline constexpr double left_by_rounding = 0x1p-48;
 // v^- beyond that, and twice the work r.v^- that is left then: it grows from 0 as v^- does, with no jump.
-template <class Node>
-vector velocity_before(const Node& node) {
-  return node.v_previous + left_by_rounding * node.v_free;
+template <class V>
+V velocity_before(V v_previous, V v_free) {
+  return v_previous + left_by_rounding * v_free;
 }
 template <class Node>
 double doubled_work(const Node& node, vector r) {
-  const vector before = velocity_before(node);
+  const vector before = velocity_before(node.v_previous, node.v_free);
   return normal_product(r, before) + tangential_product(r, before);
 }
 template <class Node>
@@ -31,7 +31,7 @@ vector stopping_impulse(const Node& node) {
   const vector r = whole_stopping_impulse(node);
   friction_answer<double> answer{{r.n, r.t1, r.t2}, status::stick, not_refused};
   friction_problem<double> problem;
-  fill(problem, node.delassus, {0.0, node.v_free, velocity_before(node)}, 0.0, 0.0);
+  fill(problem, node.delassus, {0.0, node.v_free, velocity_before(node.v_previous, node.v_free)}, 0.0, 0.0);
   take_off_positive_work(problem, answer);
   return {answer.r[0], answer.r[1], answer.r[2]};
 }
