@@ -68,6 +68,8 @@ struct Layout {
   std::int64_t node_stride = 0, component_stride = 0;  // 0: AoS
   bool soa = false;
   bool separate_state = false, outputs = true, energy = true;  // energy: among the outputs
+  bool velocity = true;                                        // among them, too
+  bool previous_in_columns = false;                            // v_previous, whatever the others are in
   std::vector<std::int32_t> order{};                           // index list; empty: none
   std::int32_t index_base = 0;
   bool wide_index = false;  // of 64 bits
@@ -122,7 +124,7 @@ class Arrays {
         global_(global),
         wide_(layout.order.begin(), layout.order.end()),
         v_free_(nodes.count, nodes.d, layout),
-        v_previous_(nodes.count, nodes.d, layout),
+        v_previous_(nodes.count, nodes.d, layout.previous_in_columns ? Layout{.soa = true} : layout),
         h_(nodes.count, nodes.hc, layout),
         gap_(nodes.count, 1, layout),
         area_(nodes.count, 1, layout),
@@ -170,7 +172,7 @@ class Arrays {
     b.state_out = layout_.separate_state ? next.out() : state.out();
     b.impulse = r.out();
     if (layout_.outputs) {
-      b.velocity = v.out();
+      if (layout_.velocity) b.velocity = v.out();
       if (layout_.energy) b.energy = energy.out();
       b.status = status.data();
       b.status_stride = 1;

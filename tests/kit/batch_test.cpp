@@ -68,12 +68,34 @@ TEST_P(Contract, EveryFormOfHGivesTheSameBitsInAllLayoutsAndInstructionSets) {
         EXPECT_TRUE(run(law, nodes, {.soa = true}, global) == reference);
         EXPECT_TRUE(run(law, nodes, {.separate_state = true, .order = order}, global) == reference);
         EXPECT_EQ(run(law, nodes, {.outputs = false}, global).impulse, reference.impulse);
+        Results motion = run(law, nodes, {.energy = false}, global);
+        motion.energy = reference.energy;
+        EXPECT_TRUE(motion == reference);
         for (const char* level : {"baseline", "v3", "v4"}) {
           setenv("ILAW_ISA", level, 1);
           EXPECT_TRUE(run(made(), nodes, {}, global) == reference) << level;
         }
         unsetenv("ILAW_ISA");
       }
+}
+
+// Arrays of which some could be worked on in place, and others could not.
+TEST_P(Contract, LayoutsMayDifferFromArrayToArray) {
+  for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL}) {
+    const ilaw::interface law = make(frame);
+    const Nodes nodes(150);
+    const bool global = frame == ILAW_FRAME_GLOBAL;
+    const Results reference = run(law, nodes, {}, global);
+    for (const bool columns : {false, true})
+      for (const bool velocity : {false, true}) {
+        Results mixed =
+            run(law, nodes, {.energy = false, .velocity = velocity, .previous_in_columns = columns}, global);
+        mixed.energy = reference.energy;
+        if (!velocity) mixed.velocity = reference.velocity;
+        EXPECT_TRUE(mixed == reference)
+            << "frame " << frame << ", columns " << columns << ", velocity " << velocity;
+      }
+  }
 }
 
 TEST_P(Contract, EmptyBatchIsFine) {

@@ -104,7 +104,8 @@ class batch_walk {
   // Writes what the block computed to the host's arrays. Outputs that are absent are left out.
   void close() {
     if (!in_place) scatter_components(batch_.impulse, dimension_, nodes_, block_.impulse);
-    if (batch_.velocity.values) scatter_components(batch_.velocity, dimension_, nodes_, block_.velocity);
+    if (!in_place && batch_.velocity.values)
+      scatter_components(batch_.velocity, dimension_, nodes_, block_.velocity);
     if (batch_.energy.values) scatter_components(batch_.energy, ILAW_ENERGY_COUNT, nodes_, block_.energy);
     if (batch_.status) write_status();
     double* entries[states + 1] = {};
@@ -166,30 +167,29 @@ class batch_walk {
     return count;
   }
 
-  // All that is read or written where nodes follow each other, if any of it is copied. Where that is little,
-  // in a loop without a state over (3,n) arrays in place, nothing else.
+  // All that is read or written where nodes follow each other, if any of it is copied. Of a batch whose
+  // vectors stay where they are only what is copied: the rest comes sooner unasked.
   void expect_arrays() {
-    constexpr bool copies_little = in_place && !has_state<Law>;
     has_ahead_ = false;
     const auto add = [this](const auto& array, int numbers, bool of_floats) {
       const bool is_copied = array.values && (array.node_stride != 1 || of_floats);
       has_ahead_ = has_ahead_ || is_copied;
-      if (is_copied || !copies_little) expect(array, numbers, of_floats, ahead_);
+      if (is_copied || !in_place) expect(array, numbers, of_floats, ahead_);
     };
     const auto of_batch = [this, add](const auto& array, int numbers) {
       add(array, numbers, holds_floats(batch_));
     };
-    if constexpr (!copies_little) {
+    if constexpr (!in_place) {
       of_batch(batch_.v_free, dimension_);
+      of_batch(batch_.v_previous, dimension_);
       of_batch(batch_.normal, dimension_);
       of_batch(batch_.impulse, dimension_);
+      of_batch(batch_.velocity, dimension_);
     }
-    of_batch(batch_.v_previous, dimension_);
     of_batch(batch_.delassus, delassus_numbers());
     for (const ilaw_input* one : {&batch_.gap, &batch_.gap_offset, &batch_.area}) of_batch(*one, 1);
     of_batch(batch_.tangent, dimension_);
     add(batch_.state_in, state_entries(), false);
-    of_batch(batch_.velocity, dimension_);
     of_batch(batch_.energy, ILAW_ENERGY_COUNT);
     if (batch_.state_out.values != batch_.state_in.values) add(batch_.state_out, state_entries(), false);
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k) of_batch(batch_.per_node_parameters[k], 1);
@@ -241,7 +241,7 @@ class batch_walk {
         batch_.v_previous.values && ((reads & ILAW_INPUT_V_PREVIOUS) || batch_.energy.values);
     gather_in_layout(batch_.v_free, room_.v_free, block_.v_free);
     if (previous)
-      gather_vector(batch_.v_previous, dimension_, nodes_, room_.v_previous, block_.v_previous);
+      gather_in_layout(batch_.v_previous, room_.v_previous, block_.v_previous);
     else
       for (const double*& component : block_.v_previous) component = zeros.values;
     for (int c = 0; c < 3; ++c) block_.v_previous_of_energy[c] = block_.v_previous[c];
@@ -357,11 +357,8 @@ class batch_walk {
   }
 
   void aim_outputs() {
-    for (int c = 0; c < 3; ++c) {
-      block_.impulse[c] = in_place ? batch_.impulse.values + 3 * nodes_.first
-                                   : aim(batch_.impulse, c, c < dimension_, room_.impulse[c]);
-      block_.velocity[c] = aim(batch_.velocity, c, c < dimension_, room_.velocity[c]);
-    }
+    aim_vector(batch_.impulse, block_.impulse, room_.impulse);
+    aim_vector(batch_.velocity, block_.velocity, room_.velocity);
     for (int k = 0; k < ILAW_ENERGY_COUNT; ++k)
       block_.energy[k] = aim(batch_.energy, k, true, room_.energy[k]);
     block_.status = room_.status.values;
@@ -373,6 +370,11 @@ class batch_walk {
     }
   }
 
+  void aim_vector(const ilaw_output& output, double** components, column* room) {
+    for (int c = 0; c < 3; ++c)
+      components[c] = in_place && output.values ? output.values + 3 * nodes_.first
+                                                : aim(output, c, c < dimension_, room[c]);
+  }
   double* aim(const ilaw_output& output, int component, bool exists, column& room) {
     return exists && output.values ? target(output, component, nodes_, room.values) : room.values;
   }

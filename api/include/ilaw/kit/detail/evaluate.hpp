@@ -4,6 +4,7 @@
 
 #include <ilaw/float.h>
 #include <ilaw/kit/detail/batch_walk.hpp>
+#include <ilaw/kit/detail/interleaving.hpp>
 #include <ilaw/kit/detail/node_parameters.hpp>
 #include <ilaw/kit/detail/stable_step.hpp>
 #include <ilaw/kit/detail/wrong_batch.hpp>
@@ -25,16 +26,6 @@ inline std::int32_t refuse(ilaw_report* report, const char* reason,
                           .reason = reason,
                           .stable_velocity_step = infinity});
   return code;
-}
-
-// Whether the vectors that a kernel may read and write in place are (3,n) arrays. Where velocities are asked
-// as well, taking all vectors apart beforehand costs no more, and saves loops.
-template <class Law>
-bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
-  if (b.velocity.values || b.status || b.energy.values) return false;
-  const auto is_interleaved = [](const auto& a) { return a.node_stride == 3 && a.component_stride == 1; };
-  return made.dimension == 3 && !b.index && !b.index64 && !holds_floats(b) && is_interleaved(b.v_free) &&
-         is_interleaved(b.impulse) && (made.frame == ILAW_FRAME_LOCAL || is_interleaved(b.normal));
 }
 
 // What a walk found.
@@ -237,8 +228,6 @@ constexpr bool serves(std::uint32_t forms) {
   return (Law::card.delassus_forms & forms) != 0;
 }
 template <class Law>
-inline constexpr bool in_space = (Law::card.dimensions & ILAW_DIMENSION_3) != 0;
-template <class Law>
 inline constexpr bool has_varying_parameters = [] {
   for (const ilaw_parameter& p : description<Law>::parameters)
     if (p.may_be & ILAW_MAY_BE_PER_NODE) return true;
@@ -260,10 +249,13 @@ tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
   if constexpr (has_varying_parameters<Law>)
     if (made.per_node_count > 0) return walk_varying<Law, Delassus, Frame>(made, law, batch);
-  if constexpr (std::is_same_v<Delassus, transverse_delassus> && !std::is_same_v<Frame, stored_frame> &&
-                in_space<Law> && !is_for_old_processors)
-    if (all_interleaved(made, batch))
-      return walk_for_impulse<Law, Delassus, Frame, interleaved>(made, law, batch);
+  if constexpr (may_interleave<Law, Delassus, Frame>)
+    if (all_interleaved(made, batch)) {
+      if (!batch.velocity.values)
+        return walk_for_impulse<Law, Delassus, Frame, interleaved>(made, law, batch);
+      if constexpr (always_reads_previous<Law>)
+        return evaluate_walk<Law, Delassus, Frame, interleaved, scope::motion, false>::run(made, law, batch);
+    }
   return walk_in_columns<Law, Delassus, Frame>(made, law, batch);
 }
 

@@ -113,9 +113,17 @@ inline const double* gather(const ilaw_input& input, const node_range& nodes, do
 // code.
 template <class Number>
 void separate_sixes(const Number* values, int count, column* room) {
-  alignas(64) double parts[3][2 * block_size];
-  separate_triples(values, 2 * count, parts[0], parts[1], parts[2]);
-  for (int k = 0; k < 3; ++k) separate_pairs(parts[k], count, room[k].values, room[k + 3].values);
+  int i = 0;
+  if constexpr (std::is_same_v<Number, double>)
+    for (; i + register_size <= count; i += register_size) {
+      const triple_columns first(values + 6 * i), second(values + 6 * i + 3 * register_size);
+      for (int k = 0; k < 3; ++k) {
+        put_lanes(column_of<0>(first.columns[k], second.columns[k], each_lane), room[k].values + i);
+        put_lanes(column_of<1>(first.columns[k], second.columns[k], each_lane), room[k + 3].values + i);
+      }
+    }
+  for (; i < count; ++i)
+    for (int k = 0; k < 6; ++k) room[k].values[i] = values[6 * i + k];
 }
 
 // Gives the components of a block of nodes; where a node's are neighbours, in one pass over them.

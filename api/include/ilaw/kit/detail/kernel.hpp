@@ -138,7 +138,7 @@ inline constexpr bool always_reads_previous = [] {
 }();
 
 // Inputs as the law's card has them.
-template <class Law, scope Scope, class Basis>
+template <class Law, class Layout, scope Scope, class Basis>
 auto previous_of(const node_block<Law>& b, int i, const Basis& frame) {
   using vector_type = decltype(frame.to_local(axis{}));
   if constexpr (!reads_previous<Law>) {
@@ -146,7 +146,7 @@ auto previous_of(const node_block<Law>& b, int i, const Basis& frame) {
   } else if constexpr (Scope == scope::impulse) {
     return vector_type{};
   } else {
-    return frame.to_local(columns::get(b.v_previous, i));
+    return frame.to_local(Layout::get(b.v_previous, i));
   }
 }
 template <class Law>
@@ -196,7 +196,7 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
                                   .velocity_step = b.velocity_step,
                                   .position_step = b.position_step,
                                   .v_free = v_free,
-                                  .v_previous = previous_of<Law, Scope>(b, i, frame),
+                                  .v_previous = previous_of<Law, Layout, Scope>(b, i, frame),
                                   .delassus = frame.to_local(delassus_at<Delassus>(
                                       b.delassus, i, std::make_index_sequence<Delassus::components>{})),
                                   .gap = gap_of(b, i),
@@ -325,7 +325,7 @@ auto previous_for_energy(const node_block<Law>& b, int i, const Node& n) {
 template <class Frame, class Layout, class Law, class Node>
 void store_motion(const node_block<Law>& b, int i, const Node& n, bool accepted, axis v_free) {
   const auto v = n.v_free + n.delassus.times(n.impulse);
-  columns::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, v_free));
+  Layout::put(b.velocity, i, outgoing<Frame, Layout>(b.axes, i, v, accepted, v_free));
   b.status[i] = accepted ? n.status : double{ILAW_BAD_INPUT};
 }
 

@@ -141,17 +141,27 @@ void separate_triples(const Number* __restrict__ values, int first, int count, d
     c[i] = values[3 * i + 2];
   }
 }
+// As many rows of three as there are lanes.
+struct triple_columns {
+  lanes columns[3];
+
+  explicit triple_columns(const double* rows) {
+    const lanes u = lanes_at(rows), v = lanes_at(rows + register_size),
+                w = lanes_at(rows + 2 * register_size);
+    columns[0] = column_of<0>(u, v, w, each_lane);
+    columns[1] = column_of<1>(u, v, w, each_lane);
+    columns[2] = column_of<2>(u, v, w, each_lane);
+  }
+};
 template <class Number>
 void separate_triples(const Number* values, int count, double* a, double* b, double* c) {
   int i = 0;
   if constexpr (std::is_same_v<Number, double>)
     for (; i + register_size <= count; i += register_size) {
-      const double* rows = values + 3 * i;
-      const lanes u = lanes_at(rows), v = lanes_at(rows + register_size),
-                  w = lanes_at(rows + 2 * register_size);
-      put_lanes(column_of<0>(u, v, w, each_lane), a + i);
-      put_lanes(column_of<1>(u, v, w, each_lane), b + i);
-      put_lanes(column_of<2>(u, v, w, each_lane), c + i);
+      const triple_columns rows(values + 3 * i);
+      put_lanes(rows.columns[0], a + i);
+      put_lanes(rows.columns[1], b + i);
+      put_lanes(rows.columns[2], c + i);
     }
   separate_triples(values, i, count, a, b, c);
 }
