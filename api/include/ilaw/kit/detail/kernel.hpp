@@ -303,15 +303,6 @@ void store_state(const node_block<Law>& b, int i, const state_t<Law>& after, con
   ((b.state_out[K][i] = accepted ? next[K] : last[K]), ...);
 }
 
-// By its bits: of a choice GCC would make two stores, each beneath a mask. Old processors have no masks, and
-// choose faster.
-inline axis kept_if(bool condition, axis a) {
-  if constexpr (is_for_old_processors)
-    return {condition ? a.x : 0.0, condition ? a.y : 0.0, condition ? a.z : 0.0};
-  else
-    return {kit::kept_if(condition, a.x), kit::kept_if(condition, a.y), kit::kept_if(condition, a.z)};
-}
-
 // A vector in the axes of the batch; where the node is refused, what the host is to find instead.
 template <class Frame, class Layout>
 axis outgoing(const double* const* axes, int i, typename Frame::vector_type a, bool accepted,
