@@ -48,6 +48,7 @@ struct bond {
   double delay_time;
   double delay_exponent;
 
+  bool is_delayed() const { return delay_time > 0.0 && strength < infinity; }
   bool bonds() const { return strength > 0.0 && toughness > 0.0; }
   bool stores_more(double peak, double energy) const {
     return peak < infinity && energy > 0.0 && 0.5 * peak * peak * flexibility() > energy;
@@ -104,7 +105,8 @@ struct bond {
   secant<double> secant_of(double damage) const {
     return {1.0 - damage, flexibility() + (strength < infinity ? damage * softness_scale() : 0.0)};
   }
-  double damage_of(double opening, double traction) const {
+  template <class V>
+  V damage_of(V opening, V traction) const {
     return (opening - flexibility() * traction) / (opening + softness_scale() * traction);
   }
 
@@ -197,18 +199,27 @@ struct bond {
   // - d before the step: d grows by -ln(1 - q)/a, q = (1 - exp(-a z)) (1 - exp(-a h/tau_c)). It may be tiny:
   // a stiff bond of great toughness is soft already at a damage of 1e-16. Where q is large, the same is f -
   // ln(1 + (exp(a z) - 1) exp(-a h/tau_c))/a.
+  template <class V>
+  [[gnu::noinline]] V delayed_damage(V damage, V position_step, V size, const softening<V>& s) const {
+    const V progress = s.progress(size);
+    const auto softens = (progress < 1.0) & (progress > 0.0);
+    const V target = select(softens, damage_of(size, s.traction(size)), progress), distance = target - damage;
+    const auto grows = distance > 0.0;
+    if (!any(grows)) return damage;
+    const V a = delay_exponent, decline = a * position_step / delay_time;
+    const V q = exp_minus_one(select(grows, -a * distance, V(0.0))) * exp_minus_one(-decline);
+    const auto is_slow = q < 0.5;
+    V next = smaller(damage - log_one_plus(select(is_slow, -q, V(0.0))) / a, V(1.0));
+    if (any(grows & !is_slow)) {
+      const V ahead = a * distance - decline;
+      const V reached = log((1.0 - exp(-decline)) + exp(smaller(ahead, V(40.0))));
+      const V left = select(ahead < 40.0, reached, ahead);
+      next = select(is_slow, next, larger(damage, smaller(target - left / a, V(1.0))));
+    }
+    return select(grows, next, damage);
+  }
   double delayed_damage(double damage, double position_step, const motion& m) const {
-    const softening<double> s = softening_along(m.opening, m.size);
-    const double progress = s.progress(m.size);
-    const double target = progress < 1.0 && progress > 0.0 ? damage_of(m.size, s.traction(m.size)) : progress;
-    const double distance = target - damage;
-    if (!(distance > 0.0)) return damage;
-    const double a = delay_exponent, decline = a * position_step / delay_time;
-    const double q = exp_minus_one(-a * distance) * exp_minus_one(-decline);
-    if (q < 0.5) return smaller(damage - log_one_plus(-q) / a, 1.0);
-    const double ahead = a * distance - decline;
-    const double left = ahead < 40.0 ? log((1.0 - exp(-decline)) + exp(ahead)) : ahead;
-    return larger(damage, smaller(target - left / a, 1.0));
+    return delayed_damage<double>(damage, position_step, m.size, softening_along(m.opening, m.size));
   }
 };
 

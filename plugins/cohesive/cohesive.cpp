@@ -236,8 +236,7 @@ struct cohesive : bond {
         .drive = 0.5 * node.v_free + (1.0 / node.position_step) * (position + s.opening),
         .ground = ground_below(position.n, node.v_free.n, node.v_previous.n, node.position_step),
         .modes = Modes(node.delassus, w)};
-    const bool is_delayed = delay_time > 0.0 && strength < infinity;
-    settle(node, z, is_delayed ? delayed(s.damage, node.position_step, z) : at_once(s.damage, z));
+    settle(node, z, is_delayed() ? delayed(s.damage, node.position_step, z) : at_once(s.damage, z));
   }
 
   template <class Modes, class Node>
@@ -335,8 +334,7 @@ struct cohesive::in_phases : cohesive {
  private:
   template <class V>
   mask_of<V> solve_bonds(const problem<V>& p, mask_of<V> where, answer<V>& a) const {
-    const bool is_delayed = delay_time > 0.0 && strength < infinity;
-    if (!bonds() || is_delayed) return where;
+    if (!bonds()) return where;
     const isotropic_step<V> step(*this, all, p);
     const auto is_new = where & (p.damage == 0.0);
     if (stiffness < infinity || !any(is_new)) return step.solve(where, a);

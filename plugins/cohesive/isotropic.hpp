@@ -47,23 +47,24 @@ class isotropic_step {
     opened_met_ = opened_.meets(now_);
   }
 
-  // Says which of these lanes it leaves: those that may have several solutions, and extreme scales.
-  Mask solve(Mask where, solved<V>& a) const {
+  // Says which of these lanes it leaves: those that may have several solutions, and extreme scales. Flat: a
+  // pack that is passed to a function goes through memory.
+  [[gnu::flatten]] Mask solve(Mask where, solved<V>& a) const {
     const Mask is_soft = now_.soft > 0.0;
     const V most = select(is_soft, c_ * now_.stiff / now_.soft, 1.0 / almost_nothing);
+    const V first = select(is_soft, most, 0.0);
+    balanced found(first);
+    work_out(found);
     Mask holds = where & is_soft;
-    if (bond_.strength < infinity && any(holds)) holds = holds & is_below(at(most));
+    if (bond_.strength < infinity && any(holds)) holds = holds & is_below(found.motion);
     const Mask is_unique = c_ * (1.0 + 2.0 * ratio_) * all_.steepest <= 1.0;
     const Mask has_scale = (most < 2.0 / almost_nothing) & (c_ > 0x1p-900);
     const Mask softens = where & has_scale & is_unique & !holds;
-    V kappa = most;
-    if (any(softens)) kappa = select(softens, root(most, softens), most);
-    const trial found = at(kappa);
-    const softening<V> s = softening_of(found);
-    const V rest = excess(kappa, found, s), sum = found.size + from_;
+    if (any(softens)) find_balance(most, softens, found);
+    const V sum = found.motion.size + from_;
     const Mask is_found =
-        (absolute(rest) <= 0x1p-45 * (kappa + c_ * all_.steepest) * sum) & (sum > 0x1p-400) & (sum < 0x1p400);
-    leave(kappa, found, damage_after(found, s, holds), a);
+        (absolute(found.excess) <= 0x1p-45 * scale_of(found)) & (sum > 0x1p-200) & (sum < 0x1p200);
+    leave(found.kappa, found.motion, damage_after(found.motion, softening_of(found.motion), holds), a);
     return where & !(has_scale & (holds | (softens & is_found)));
   }
 
@@ -71,22 +72,30 @@ class isotropic_step {
   // What kappa makes of the node.
   struct trial {
     V left_n, left_t;  // parts of the motion that are left
-    Mask closed;
-    V opening[3], rub[2], shear, size;  // rub: tangential impulse of friction on the node that the bond holds
+    Mask closed = Mask(false);
+    V opening[3], shear, size;
+    V rub[2];  // tangential impulse of friction on the node that the bond holds
   };
-  [[gnu::always_inline]] trial at(V kappa) const {
-    const V *w = g_.opening, of_n = 1.0 + kappa, of_t = 1.0 + ratio_ * kappa, both = 1.0 / (of_n * of_t);
-    const V left_n = both * of_t, left_t = both * of_n;
-    const V free = left_n * drive_[0] - w[0];
-    const Mask closed = free < floor_;
-    trial m{left_n,     left_t,
-            closed,     {select(closed, floor_, free), left_t * drive_[1] - w[1], left_t * drive_[2] - w[2]},
-            {0.0, 0.0}, 0.0,
-            0.0};
-    if (bond_.friction > 0.0 && any(closed & (g_.damage > 0.0))) rub_closed(m, free);
+  // A trial kappa, what it makes of the node, and by how much it is more than the traction asks for.
+  struct balanced {
+    V kappa;
+    trial motion;
+    V excess = 0.0;
+    explicit balanced(V first) : kappa(first) {}
+  };
+  [[gnu::always_inline]] void work_out(balanced& x) const {
+    const V *w = g_.opening, of_n = 1.0 + x.kappa, of_t = 1.0 + ratio_ * x.kappa, both = 1.0 / (of_n * of_t);
+    trial& m = x.motion;
+    m.left_n = both * of_t;
+    m.left_t = both * of_n;
+    const V free = m.left_n * drive_[0] - w[0];
+    m.closed = free < floor_;
+    m.opening[0] = select(m.closed, floor_, free);
+    for (int k = 1; k < 3; ++k) m.opening[k] = m.left_t * drive_[k] - w[k];
+    m.rub[0] = m.rub[1] = 0.0;
+    if (bond_.friction > 0.0 && any(m.closed & (g_.damage > 0.0))) rub_closed(m, free);
     m.shear = shear_square(m.opening[1], m.opening[2]);
     m.size = size_of(m.opening[0], m.shear);
-    return m;
   }
   // See close in zone.hpp.
   [[gnu::noinline]] void rub_closed(trial& m, V free) const {
@@ -113,13 +122,24 @@ class isotropic_step {
     const V n = m.opening[0], square = m.size * m.size;
     return bond_.softening_at(mix_of(n * n, m.shear, square));
   }
-  V excess(V kappa, const trial& m, const softening<V>& s) const {
+  // On the way from w^- to w^+; with delay what the mean of the stiffnesses before and after makes of it.
+  V mean_traction(const trial& m) const {
+    const softening<V> s = softening_of(m);
+    if (bond_.is_delayed()) {
+      const secant<V> after = secant_of(delayed(m, s));
+      return 0.25 * (now_.stiff / now_.soft + after.stiff / after.soft) * (m.size + from_);
+    }
     const V met = bond_.mixes() ? s.meets(now_) : opened_met_;
-    return kappa * (m.size + from_) - 2.0 * c_ * s.mean_traction_on_path(now_, met, from_, m.size);
+    return s.mean_traction_on_path(now_, met, from_, m.size);
   }
-  V excess(V kappa, const trial& m) const { return excess(kappa, m, softening_of(m)); }
 
+  V delayed(const trial& m, const softening<V>& s) const {
+    return bond_.delayed_damage(g_.damage, g_.position_step, m.size, s);
+  }
+
+  // Whether the bond stays as it is.
   Mask is_below(const trial& m) const {
+    if (bond_.is_delayed()) return delayed(m, softening_of(m)) == g_.damage;
     if (!bond_.mixes()) return m.size <= opened_met_;
     const V pull = now_.stiff * m.size;
     const double least = smaller(bond_.strength, bond_.shear_strength());
@@ -127,39 +147,83 @@ class isotropic_step {
            (pull <= now_.soft * softening_of(m).traction(m.size));
   }
 
-  // Secants of (1 + kappa) excess, which is linear where a bilinear bond opens in one direction, inside the
-  // bracket; elsewhere the fixed point kappa = 2 c T/|w^+ + w^-|, which comes closer from below.
-  V root(V most, Mask active) const {
+  // What the excess is small beside.
+  V scale_of(const balanced& x) const { return (x.kappa + c_ * all_.steepest) * (x.motion.size + from_); }
+
+  // Newton's steps for (1 + kappa) excess, which is linear where a bilinear bond opens in one direction,
+  // inside the bracket; where its slope has no short form, secants after the first; elsewhere the fixed point
+  // kappa = 2 c T/|w^+ + w^-|, which comes closer from below. From the bond as it was, but not if that is
+  // stiff. A lane that is done keeps its kappa, so that its motion is the same when it is worked out again.
+  void find_balance(V most, Mask active, balanced& x) const {
     constexpr int most_steps = 24;
-    constexpr double close = 0x1p-54;  // of the product of two errors, which the next error is at most
-    const trial free = at(0.0);
-    V low = 0.0, high = most, before = 0.0, excess_before = excess(0.0, free);
-    const V sum = free.size + from_;
-    // Exact for the same bond, opened in one direction.
-    const V slope = sum * (1.0 - c_ * all_.steepest) + excess_before;
-    V kappa = smaller(-excess_before / select(slope > 0.0, slope, sum), most);
-    for (int k = 0; k < most_steps && any(active); ++k) {
-      const trial m = at(kappa);
-      const V e = excess(kappa, m), scaled = (1.0 + kappa) * e;
-      low = select(e < 0.0, kappa, low);
-      high = select(e < 0.0, high, kappa);
-      const V along = kappa - scaled * (kappa - before) / (scaled - excess_before);
-      const Mask inside = (along > low) & (along < high);
-      V next = along;
-      if (any(active & !inside)) {
-        const V nearer = smaller(larger(kappa - e / (m.size + from_), low), high);
-        next = select(inside, along, nearer);
-      }
-      const Mask moves = absolute(next - kappa) * absolute(kappa - before) > close * (kappa * kappa);
-      before = select(active, kappa, before);
-      excess_before = select(active, scaled, excess_before);
-      kappa = select(active, next, kappa);
-      active = active & moves;
+    constexpr double balanced_to = 0x1p-50,
+                     close = 0x1p-54;  // close: of a product of errors, see cohesive.md
+    const Mask is_far = active & (x.kappa > 1.0);
+    if (any(is_far)) {
+      x.kappa = select(is_far, 0.0, x.kappa);
+      work_out(x);
     }
-    return kappa;
+    V low = 0.0, high = most, before = most - x.kappa, scaled_before = 0.0;
+    for (int k = 0; k <= most_steps; ++k) {
+      const V mean = mean_traction(x.motion), sum = x.motion.size + from_;
+      x.excess = x.kappa * sum - 2.0 * c_ * mean;
+      active = active & (absolute(x.excess) > balanced_to * (x.kappa * sum));
+      if (!any(active)) return;
+      const V scaled = (1.0 + x.kappa) * x.excess;
+      slope s = slope_of(x, mean);
+      const Mask is_straight = has_slope(x.motion);
+      if (k > 0) {
+        s.rise = select(is_straight, s.rise, scaled - scaled_before);
+        s.way = select(is_straight, s.way, x.kappa - before);
+      }
+      const V along = x.kappa - scaled * s.way / s.rise;
+      low = select(x.excess < 0.0, x.kappa, low);
+      high = select(x.excess < 0.0, high, x.kappa);
+      const Mask inside = (along > low) & (along < high);
+      const V nearer = smaller(larger(x.kappa - x.excess / sum, low), high);
+      const V next = select(inside, along, nearer), step = absolute(next - x.kappa);
+      const V other = select(is_straight, step, absolute(x.kappa - before));
+      const Mask moves = step * other > close * (x.kappa * x.kappa);
+      before = select(active, x.kappa, before);
+      scaled_before = select(active, scaled, scaled_before);
+      x.kappa = select(active, next, x.kappa);
+      active = active & moves;
+      work_out(x);
+    }
+  }
+
+  // Of (1 + kappa) excess, as a quotient: y' = -along/y, and the mean traction on the way from f to y changes
+  // by (T - mean)/(y - f).
+  struct slope {
+    V rise, way;
+  };
+  slope slope_of(const balanced& x, V mean) const {
+    const trial& m = x.motion;
+    const V *y = m.opening, *d = drive_, one_more = 1.0 + x.kappa, sum = m.size + from_;
+    const V along_n = select(m.closed, 0.0, m.left_n * m.left_n * (d[0] * y[0]));
+    const V along_t = ratio_ * square_of_weight() * m.left_t * m.left_t * (d[1] * y[1] + d[2] * y[2]);
+    V way = m.size - from_, gain = -0.5 * all_.steepest;
+    if (has_short_slope()) {
+      const V end = opened_.onset + opened_.width, left = end - smaller(m.size, end);
+      const V traction = select(m.size < opened_met_, now_.stiff / now_.soft * m.size, all_.steepest * left);
+      const Mask moves = absolute(way) > 0x1p-26 * sum;
+      gain = select(moves, traction - mean, gain);
+      way = select(moves, way, 1.0);
+    } else {
+      way = 1.0;
+    }
+    return {m.size * way * (x.excess + one_more * sum) -
+                one_more * (along_n + along_t) * (x.kappa * way - 2.0 * c_ * gain),
+            m.size * way};
+  }
+  bool has_short_slope() const { return !(bond_.mixes() || opened_.exponential || bond_.is_delayed()); }
+  Mask has_slope(const trial& m) const {
+    if (!has_short_slope()) return Mask(false);
+    return bond_.friction > 0.0 ? !(m.closed & (g_.damage > 0.0)) : Mask(true);
   }
 
   V damage_after(const trial& m, const softening<V>& s, Mask holds) const {
+    if (bond_.is_delayed()) return select(holds, g_.damage, delayed(m, s));
     const V traction = s.traction(m.size);
     const V reached = (m.size - all_.flexibility * traction) / (m.size + all_.softness * traction);
     return select(holds | !(m.size > s.onset), g_.damage, larger(g_.damage, reached));

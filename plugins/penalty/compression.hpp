@@ -12,6 +12,8 @@
 #include <ilaw/kit/node.hpp>
 #include <ilaw/kit/pack.hpp>
 
+#include <bit>
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 
@@ -37,13 +39,13 @@ inline double damping_ratio(double restitution) {
 }
 
 // plain: linear, neither rigid nor, where it is implicit, with damper or restitution. smooth: the same
-// without friction.
-enum class spring_kind { smooth, plain, linear, smooth_hertz, hertz, any };
+// without friction. rigid_plain: plain, with a rigid tangential spring.
+enum class spring_kind { smooth, plain, rigid_plain, linear, smooth_hertz, hertz, any };
 constexpr bool is_smooth(spring_kind kind) {
   return kind == spring_kind::smooth || kind == spring_kind::smooth_hertz;
 }
 constexpr bool is_plain(spring_kind kind) {
-  return kind == spring_kind::smooth || kind == spring_kind::plain;
+  return kind == spring_kind::smooth || kind == spring_kind::plain || kind == spring_kind::rigid_plain;
 }
 constexpr bool is_hertz(spring_kind kind) {
   return kind == spring_kind::smooth_hertz || kind == spring_kind::hertz;
@@ -101,6 +103,15 @@ struct normal_spring {
            (by_ratio * reached + given * (1.0 + 0.5 * step * damping * delassus));
   }
 };
+
+// select, by the bits where it is of doubles: GCC makes two divisions of a quotient of two choices if
+// something later depends on their condition.
+inline double chosen(bool m, double a, double b) {
+  if constexpr (kit::detail::is_for_old_processors) return kit::select(m, a, b);  // without masks slower
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(kit::kept_if(m, a)) |
+                               std::bit_cast<std::uint64_t>(kit::kept_if(!m, b)));
+}
+inline kit::pack chosen(kit::mask m, kit::pack a, kit::pack b) { return select(m, a, b); }
 
 // A number that is zero for sure: what it multiplies is not computed.
 struct none {
@@ -171,7 +182,7 @@ struct compression {
     const V over = kit::select(linear > 0.0, 2.0 * constant, root - linear);
     const V under = kit::select(linear > 0.0, linear + root, 2.0 * give);
 
-    const V r = kit::select(opens, over, closed) / kit::select(opens, under, resists);
+    const V r = chosen(opens, over, closed) / chosen(opens, under, resists);
     const V stretch = step * (0.5 + part);
     const V opening = r * stretch + 0.5 * step * indentation * damping;
     return {r, kit::select(opens, V(1.0), V(0.0)), V(0.0),

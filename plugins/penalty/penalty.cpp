@@ -177,12 +177,18 @@ struct penalty {
         !is_out_of_reach(node) & (node.gap + 0.5 * node.position_step * node.v_previous.n <= 0.0);
     return (node.state.indentation > 0.0) | enters;
   }
+  // Whether a stick is rigid: known of plain springs before their loop, each of which leaves something out.
+  template <spring_kind Kind>
+  bool sticks_rigidly() const {
+    if constexpr (is_plain(Kind)) return Kind == spring_kind::rigid_plain;
+    return tangential_stiffness == infinity;
+  }
   // q + H/2 r is the mean velocity of what slips.
-  template <class Node>
+  template <spring_kind Kind, class Node>
   vector sliding_velocity(const Node& node) const {
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2};
     const double turned = penalty_law::turned_part(node.v_free, node.v_previous),
-                 held = tangential_stiffness < infinity ? 1.0 : turned;
+                 held = sticks_rigidly<Kind>() ? turned : 1.0;
     return 0.5 * (node.v_free + held * node.v_previous) + (2.0 / node.velocity_step) * spring;
   }
   template <class Node>
@@ -218,15 +224,16 @@ struct penalty {
       store<Kind>(node, indentation, {});
     } else {
       const double softness = 0.5 * node.delassus.tangential() + softness_of(node);
-      const bool slides = rub(node, impulse, sliding_velocity(node), softness);
-      store<Kind>(node, indentation, strained(node, slides));
+      const bool slides = rub(node, impulse, sliding_velocity<Kind>(node), softness);
+      store<Kind>(node, indentation, strained<Kind>(node, slides));
     }
   }
 
   // What the step leaves in the tangential spring. One that sticks moves along; one that slides keeps no more
   // than its force holds, in the direction of its end.
-  template <class Node>
+  template <spring_kind Kind, class Node>
   vector strained(const Node& node, bool slides) const {
+    if constexpr (Kind == spring_kind::rigid_plain) return {};
     const double h = node.velocity_step, per_impulse = 1.0 / (h * tangential_stiffness);
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2}, r = node.impulse;
     const vector v = node.v_free + node.delassus.times(r);
@@ -302,10 +309,16 @@ struct penalty::form : penalty {
   template <class Node>
   double stable_velocity_step(const Node& node) const {
     if constexpr (Kind == spring_kind::any) return penalty::stable_velocity_step(node);
-    if constexpr (Kind == spring_kind::smooth)
-      return penalty_law::stable_step(node.delassus.normal(), stiffness, damping);
+    if constexpr (Kind == spring_kind::smooth) return stable_step_at(step_falls_with(node));
     if constexpr (is_linear(Kind)) return stable_with(node, stiffness);
     return stable_with(node, 1.5 * stiffness * square_root(positive_part(-node.gap)));
+  }
+  template <class Node>
+  double step_falls_with(const Node& node) const requires(Kind == spring_kind::smooth) {
+    return node.delassus.normal();
+  }
+  double stable_step_at(double delassus) const {
+    return penalty_law::stable_step(delassus, stiffness, damping);
   }
 
   // What has a root to find is solved in packs: springs that are not linear, and friction where H has more
@@ -335,7 +348,7 @@ struct penalty::form : penalty {
     open.delassus = node.delassus.normal();
     open.indentation = indentation_of(node);
     if constexpr (!is_smooth(Kind) && !has_transverse_delassus<Node>) {
-      const vector q = sliding_velocity(node);
+      const vector q = sliding_velocity<Kind>(node);
       const double softness = softness_of(node);
       local_coulomb entries{};
       fill(entries, node.delassus);
@@ -373,7 +386,7 @@ struct penalty::form : penalty {
     } else {
       node.impulse = {a.impulse, a.t1, a.t2};
       const bool slides = tell(node, a.outcome != penalty_law::sticks);
-      store<Kind>(node, a.indentation, strained(node, slides));
+      store<Kind>(node, a.indentation, strained<Kind>(node, slides));
     }
   }
 };
@@ -387,6 +400,8 @@ void penalty::in_form(Run run) const {
     implicit ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
   };
   if (is_soft && !rubs && !(implicit && loses)) return run_kind.template operator()<spring_kind::smooth>();
+  if (is_soft && implicit && !loses && tangential_stiffness == infinity)
+    return run(form<true, spring_kind::rigid_plain>{*this, ratio});
   if (is_soft && implicit && !loses) return run(form<true, spring_kind::plain>{*this, ratio});
   if (exponent == 1.0 || stiffness == infinity) return run_kind.template operator()<spring_kind::linear>();
   if (exponent == 1.5 && implicit && !rubs) return run(form<true, spring_kind::smooth_hertz>{*this, ratio});

@@ -55,20 +55,22 @@ class rubbing_node {
     if constexpr (!IsPlain) normal_.damping = spring.damper(p.delassus);
   }
 
-  // The normal spring alone. Returns the lanes that it did not solve.
-  Mask press(rubbed<V>& a) const {
+  // The normal spring alone. Returns the lanes that it did not solve. Flat, as below: a pack that is passed
+  // to a function goes through memory.
+  [[gnu::flatten]] Mask press(rubbed<V>& a) const {
     const auto found = respond(V(1.0), p_.free, p_.delassus);
     a = {found.impulse, V(0.0), V(0.0), next(found, p_.free), V(sticks)};
     return !((found.impulse < kit::infinity) & has_usual_scales(p_.delassus, p_.delassus));
   }
 
   // With friction.
-  Mask solve(rubbed<V>& a) const {
+  [[gnu::flatten]] Mask solve(rubbed<V>& a) const {
     const Mask pushes = this->pushes();
-    const trial start = at(0.0);
-    const Mask holds = start.length <= friction_ * start.held();
-    const Mask regular = is_regular(start, holds);
-    const trial end = multiplier(start, pushes & regular & !holds);
+    trial end;
+    work_out(0.0, end);
+    const Mask holds = end.length <= friction_ * end.held();
+    const Mask regular = is_regular(end, holds);
+    find_multiplier(pushes & regular & !holds, end);
     const V over = kit::select(holds, V(1.0), friction_ * end.normal.impulse);
     const V factor = kit::select(pushes, over / kit::select(holds, end.det, end.length), V(0.0));
     const V r = kit::select(pushes, end.normal.impulse, V(0.0));
@@ -123,14 +125,21 @@ class rubbing_node {
     solution normal;
     V held() const { return normal.impulse * det; }
   };
-  trial at(V alpha) const {
-    const V s11 = p_.a11 + alpha, s22 = p_.a22 + alpha, a12 = p_.a12, det = s11 * s22 - a12 * a12;
-    const V g1 = s22 * p_.q1 - a12 * p_.q2, g2 = s11 * p_.q2 - a12 * p_.q1;
-    const V m1 = s22 * p_.c1 - a12 * p_.c2, m2 = s11 * p_.c2 - a12 * p_.c1;
-    const V coupling = 0.5 * (p_.c1 * m1 + p_.c2 * m2), condensed = det * p_.delassus - coupling;
-    const solution normal = respond(det, det * p_.free - (p_.c1 * g1 + p_.c2 * g2), condensed);
-    const V half = 0.5 * normal.impulse, n1 = g1 + half * m1, n2 = g2 + half * m2;
-    return {det, s11, s22, n1, n2, kit::square_root(n1 * n1 + n2 * n2), condensed, coupling, normal};
+  // In place, since copies of so many packs take as long as what is worked out.
+  void work_out(V alpha, trial& x) const {
+    const V a12 = p_.a12;
+    x.s11 = p_.a11 + alpha;
+    x.s22 = p_.a22 + alpha;
+    x.det = x.s11 * x.s22 - a12 * a12;
+    const V g1 = x.s22 * p_.q1 - a12 * p_.q2, g2 = x.s11 * p_.q2 - a12 * p_.q1;
+    const V m1 = x.s22 * p_.c1 - a12 * p_.c2, m2 = x.s11 * p_.c2 - a12 * p_.c1;
+    x.coupling = 0.5 * (p_.c1 * m1 + p_.c2 * m2);
+    x.condensed = x.det * p_.delassus - x.coupling;
+    x.normal = respond(x.det, x.det * p_.free - (p_.c1 * g1 + p_.c2 * g2), x.condensed);
+    const V half = 0.5 * x.normal.impulse;
+    x.n1 = g1 + half * m1;
+    x.n2 = g2 + half * m2;
+    x.length = kit::square_root(x.n1 * x.n1 + x.n2 * x.n2);
   }
 
   // Weak coupling, also of a rigid spring, and fair condition: |r_T| - mu r_N falls with alpha, by Cauchy and
@@ -151,7 +160,7 @@ class rubbing_node {
   // Newton's method from alpha = 0 on 1/need = 1/n, where need = |r_T|/mu + w.r_T, n = r_N + w.r_T, and w is
   // what the spring, as it stands, makes of c: linear in alpha where A is a multiple of I and the spring is
   // linear. Lanes that are done keep their alpha, so that none sees its neighbours.
-  trial multiplier(trial x, Mask active) const {
+  void find_multiplier(Mask active, trial& x) const {
     V alpha = 0.0;
     for (int k = 0; k < most_steps && kit::any(active); ++k) {
       const double mu = friction_;
@@ -166,10 +175,9 @@ class rubbing_node {
       const V over = kit::select(bounded, x.length * whole - lifted, V(1.0));
       const V step = excess * x.det * x.length * pace * over / (slope * kit::select(bounded, target, V(1.0)));
       alpha = kit::select(active, kit::positive_part(alpha + step), alpha);
-      x = at(alpha);
+      work_out(alpha, x);
       active = active & !meets(x);
     }
-    return x;
   }
 
   rubbing<V> p_;

@@ -38,7 +38,7 @@ CASES = [
     ("penalty, implicit", "penalty", spring(integration="implicit"),
      [["step_block", *LOCAL, "form<true", "kind)0>"]], 1.2),
     ("penalty, implicit, friction", "penalty", spring(integration="implicit", friction=0.3),
-     [["step_block", *LOCAL, "form<true", "kind)1>"]], 1.2),
+     [["step_block", *LOCAL, "form<true", "kind)2>"]], 1.2),
     ("cohesive, holding", "cohesive", ["--parameters", HOLDING],
      [["ask_block", "transverse", *LOCAL]], 1.5),
 ]

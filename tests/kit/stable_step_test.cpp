@@ -49,25 +49,32 @@ TEST(StableStep, OfAnExplicitSpringIsWhereItsMotionBeginsToGrow) {
     }
 }
 
+// Of springs without friction, whose step falls with H alone, the largest H is looked for; of others each
+// node's step.
 TEST(StableStep, IsTheSmallestOfTheBatchAndOfAllSprings) {
-  Parameters parameters = springs(1000.0, 0.0);
-  parameters.numbers["friction"] = 0.3;
-  parameters.numbers["tangential_stiffness"] = 4000.0;
-  const ilaw::interface law = make_law("penalty", SetupBuilder(parameters));
-  const double gap[] = {1.0, -1.0, 0.0};
-  double h[] = {0.5, 2.0, 1.0};
-  SmallBatch nodes(3, {}, law.info().state_size);
-  nodes.b.delassus = {h, 1, 1};
-  nodes.b.gap = {gap, 1, 1};
-  const double& stable_step = nodes.report.stable_velocity_step;
-  ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_OK);
-  EXPECT_DOUBLE_EQ(stable_step, 2.0 / std::sqrt(4000.0 * 2.0));
-  h[1] = std::nan("");  // bad nodes do not count
-  ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_BAD_NODES);
-  EXPECT_DOUBLE_EQ(stable_step, 2.0 / std::sqrt(4000.0));
-  nodes.b.velocity_step = -1.0;
-  ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_INVALID_ARGUMENT);
-  EXPECT_EQ(stable_step, inf_value);
+  for (const auto& [friction, stiffest] : {std::pair{0.3, 4000.0}, {0.0, 1000.0}}) {
+    Parameters parameters = springs(1000.0, 0.0);
+    parameters.numbers["friction"] = friction;
+    parameters.numbers["tangential_stiffness"] = 4000.0;
+    const ilaw::interface law = make_law("penalty", SetupBuilder(parameters));
+    const double gap[] = {1.0, -1.0, 0.0};
+    double h[] = {0.5, 2.0, 1.0};
+    SmallBatch nodes(3, {}, law.info().state_size);
+    nodes.b.delassus = {h, 1, 1};
+    nodes.b.gap = {gap, 1, 1};
+    const double& stable_step = nodes.report.stable_velocity_step;
+    ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_OK);
+    EXPECT_DOUBLE_EQ(stable_step, 2.0 / std::sqrt(stiffest * 2.0));
+    h[1] = std::nan("");  // bad nodes do not count
+    ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_BAD_NODES);
+    EXPECT_DOUBLE_EQ(stable_step, 2.0 / std::sqrt(stiffest));
+    h[0] = h[2] = -1.0;
+    ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_BAD_NODES);
+    EXPECT_EQ(stable_step, inf_value);
+    nodes.b.velocity_step = -1.0;
+    ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_INVALID_ARGUMENT);
+    EXPECT_EQ(stable_step, inf_value);
+  }
 }
 
 TEST(StableStep, IsInfiniteForLawsThatNeedNone) {

@@ -36,6 +36,8 @@
 //   struct law::plain : law {                             behind the law
 //     static constexpr bool forgets = true;               where the law has a history: this step needs none
 //     static constexpr bool is_always_stable = true;      limits no step, so that none is worked out
+//     template <class Node> double step_falls_with(const Node&) const    the one number that the stable step
+//     double stable_step_at(double) const                                falls with, and the step at it
 //     static constexpr bool needs_previous = true;        inputs() then always has v_previous
 //     template <class Node> void step(Node&) const;
 //   };

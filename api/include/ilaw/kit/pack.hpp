@@ -167,13 +167,13 @@ class pack {
 };
 
 // The same words for a double (math.hpp) and for a pack.
-inline pack select(mask m, pack a, pack b) {
+[[gnu::always_inline]] inline pack select(mask m, pack a, pack b) {
   return pack(detail::each<double>(
       [&](int k) { return m.values().part[k] ? a.values().part[k] : b.values().part[k]; }));
 }
 
 inline bool any(bool m) { return m; }
-inline bool any(mask m) {
+[[gnu::always_inline]] inline bool any(mask m) {
   using bytes = signed char __attribute__((vector_size(register_size)));
   std::uint64_t found = 0;
   auto all = m.values().part[0];
@@ -183,7 +183,7 @@ inline bool any(mask m) {
   return found != 0;
 }
 
-inline pack absolute(pack x) {
+[[gnu::always_inline]] inline pack absolute(pack x) {
   constexpr std::uint64_t all_but_sign = 0x7FFFFFFFFFFFFFFF;
   return pack(x.bits() & bit_pack(all_but_sign));
 }
@@ -210,13 +210,15 @@ inline registers<double>::one root_of(registers<double>::one x) {
 
 }  // namespace detail
 
-inline pack square_root(pack x) {
+[[gnu::always_inline]] inline pack square_root(pack x) {
   return pack(detail::each<double>([&](int k) { return detail::root_of(x.values().part[k]); }));
 }
-inline pack larger(pack a, pack b) { return select(a > b, a, b); }
-inline pack smaller(pack a, pack b) { return select(a < b, a, b); }
-inline pack positive_part(pack x) { return select(x > 0.0, x, 0.0); }
-inline pack halfway(pack low, pack high) { return pack(low.bits() + ((high.bits() - low.bits()) >> 1)); }
+[[gnu::always_inline]] inline pack larger(pack a, pack b) { return select(a > b, a, b); }
+[[gnu::always_inline]] inline pack smaller(pack a, pack b) { return select(a < b, a, b); }
+[[gnu::always_inline]] inline pack positive_part(pack x) { return select(x > 0.0, x, 0.0); }
+[[gnu::always_inline]] inline pack halfway(pack low, pack high) {
+  return pack(low.bits() + ((high.bits() - low.bits()) >> 1));
+}
 
 namespace detail {
 

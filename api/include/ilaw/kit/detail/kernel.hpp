@@ -352,8 +352,8 @@ template <class Law, class Node>
 double stirring(const Node& n, const state_t<Law>& before) {
   static_assert(status::free == 0.0);
   const double acts = absolute(n.impulse.n) + (absolute(n.impulse.t1) + absolute(n.impulse.t2)) + n.status;
-  const double changes = kept_if(!same_bits<Law>(n.state, before), 1.0);
-  return acts + changes + kept_if(!is_out_of_reach(n), 1.0);
+  const double changes = kit::kept_if(!same_bits<Law>(n.state, before), 1.0);
+  return acts + changes + kit::kept_if(!is_out_of_reach(n), 1.0);
 }
 
 template <class Law, class Node>
@@ -370,7 +370,7 @@ void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool 
   auto [n, accepted] = step_node<Law, Delassus, Frame, Layout, Scope>(step, b, i);
   accepted = accepted & valid;
   const axis v_free = Layout::get(b.v_free, i);  // first: loads beneath a mask wait for what is being written
-  Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
+  Layout::put(b.impulse, i, kept_if(accepted, Frame::template at<Layout>(b.axes, i).to_global(n.impulse)));
   if constexpr (Scope >= scope::motion)  // six numbers of H leave no register for it
     store_motion<Frame, Layout>(b, i, n, accepted,
                                 Delassus::components < 6 ? v_free : Layout::get(b.v_free, i));
