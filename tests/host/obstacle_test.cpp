@@ -1,11 +1,16 @@
 // Obstacles against closed forms of their distances; prescribed motion and damping.
 #include "model/obstacle.hpp"
 
+#include "contact/counterpart.hpp"
 #include "host_runner.hpp"
+#include "model/points.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <memory>
+#include <numeric>
 #include <random>
+#include <vector>
 
 namespace ilaw::host::testing {
 namespace {
@@ -27,6 +32,27 @@ TEST(Plane, MeasuresAlongItsNormalWhateverItsLength) {
   const RigidSurface surface = plane.at(Vector3d(-4, 7, 1), 0.0);
   EXPECT_EQ(surface.gap, -2.0);
   EXPECT_EQ(Vector3d(surface.normal), Vector3d(0, 0, 1));
+}
+
+// Of many nodes at once they are found another way, by one component where the normal lies along an axis.
+TEST(Plane, GivesManyNodesTheGapsOfEachToTheBit) {
+  std::mt19937_64 random(7);
+  const std::vector<PointMass> points(9, {1.0, 1.0, random_vector(random), Vector::Zero(3), Vector()});
+  const Points model(3, points);
+  std::vector<int> nodes(points.size());
+  std::iota(nodes.begin(), nodes.end(), 0);
+  for (const Vector3d& normal : {Vector3d(1, 0, 0), Vector3d(0, -3, 0), Vector3d(0, 0, 1), Vector3d(0, 0, -1),
+                                 Vector3d(1, 0, -2), Vector3d(0, 1, 1), Vector3d(1, 2, 3)}) {
+    const Motion motion(Vector(random_vector(random)));
+    const RigidCounterpart plane(model, nodes,
+                                 std::make_unique<Plane>(random_vector(random), normal, motion));
+    const Dofs u = Dofs::Random(27);
+    std::vector<double> gaps(nodes.size());
+    plane.gap_bounds(0, 9, u, 0.3, gaps.data());
+    for (const int node : nodes)
+      EXPECT_EQ(gaps[static_cast<std::size_t>(node)], plane.contact_point(node, u, 0.3).gap)
+          << normal.transpose() << ", node " << node;
+  }
 }
 
 TEST(Sphere, MeasuresFromItsCenterInsideAndOutside) {

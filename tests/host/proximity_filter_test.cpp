@@ -209,6 +209,20 @@ TEST(ProximityFilter, AxesOfAStateTurnWithTheNormalOutOfReach) {
   EXPECT_GT(touched, 0);
 }
 
+// Torn off in the first steps and free from then on: what rests is not asked again.
+TEST(ProximityFilter, LeavesOutBondsThatBroke) {
+  const Tally tally = expect_same_bits(json::parse(R"({
+    "model": {"type": "points", "dimension": 2, "points": [
+      {"mass": 1, "position": [0, 0], "velocity": [0, 10]}, {"mass": 1, "position": [1, 0], "velocity": [0, 10]},
+      {"mass": 1, "position": [2, 0], "velocity": [0, 10]}]},
+    "time": {"dt": 1e-3, "end": 0.1},
+    "interfaces": [{"law": "cohesive", "nodes": "all",
+                    "parameters": {"shape": "bilinear", "strength": 1.0, "toughness": 1e-3},
+                    "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}]})"));
+  EXPECT_GT(tally.active, 0);
+  EXPECT_LT(tally.active, tally.skipped);
+}
+
 // Two points fly towards each other: they close twice as fast as either flies. From every distance, so that
 // some meet just when the horizon ends.
 TEST(ProximityFilter, SeesBothBodiesFly) {

@@ -2,6 +2,7 @@
 #include "contact/block_step.hpp"
 
 #include "contact/law_faults.hpp"
+#include "contact/next_block.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,16 +14,6 @@
 
 namespace ilaw::host {
 namespace {
-
-constexpr std::ptrdiff_t block_size = 192;  // below 256: add_up counts in bytes
-
-// Whether values count up by one.
-bool follow_each_other(const std::int32_t* values, std::ptrdiff_t count) {
-  std::int32_t difference = 0;
-  for (std::ptrdiff_t i = 0; i < count; ++i)
-    difference |= values[i] - values[0] - static_cast<std::int32_t>(i);
-  return difference == 0;
-}
 
 enum class Meets { obstacle, turning_obstacle, partners };
 
@@ -42,18 +33,18 @@ class BlockWalk {
     if (!(step.law.outputs() & ILAW_OUTPUT_STATUS)) status_room_.fill(ILAW_FREE);
   }
 
-  // in_row: whether the contacts follow each other.
-  void solve(const std::int32_t* contacts, std::ptrdiff_t count, bool in_row, ChunkOutcome& outcome) {
-    contacts_ = contacts;
-    count_ = count;
-    contacts_in_row_ = in_row;
-    find_nodes();
+  void solve(const Block& block, ChunkOutcome& outcome) {
+    contacts_ = block.contacts.index;
+    node_ = block.contacts.nodes;
+    count_ = block.contacts.count;
+    contacts_in_row_ = block.in_row;
+    nodes_in_row_ = follow_each_other(node_, count_);
     locate();
     const ilaw_batch batch = make_batch();
     if (!evaluate(batch, outcome)) return;
-    mark_touched(batch);
+    mark_touched(batch, count_statuses(outcome.sums));
     apply(outcome.sums);
-    add_up(outcome.sums);
+    add_dissipation(outcome.sums);
     if (show_fault(outcome.sums)) find_fault(outcome.refusal);
     if (!contacts_in_row_) scatter();
   }
@@ -70,17 +61,7 @@ class BlockWalk {
     (std::make_index_sequence<D>());
   }
   std::size_t contact(std::ptrdiff_t i) const { return static_cast<std::size_t>(contacts_[i]); }
-  Eigen::Index first_dof(std::ptrdiff_t i) const {
-    return Eigen::Index{D} * node_[static_cast<std::size_t>(i)];
-  }
-
-  void find_nodes() {
-    for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      node_index_[i] = at_.node_index[contact(i)];
-      node_[i] = step_.setup.nodes[static_cast<std::size_t>(node_index_[i])];
-    }
-    nodes_in_row_ = follow_each_other(node_.data(), count_);
-  }
+  Eigen::Index first_dof(std::ptrdiff_t i) const { return Eigen::Index{D} * node_[i]; }
 
   void locate() {
     if constexpr (Partnered)
@@ -88,15 +69,23 @@ class BlockWalk {
     else if (meets_plane())
       locate_at_plane();
     else
-      step_.setup.counterpart->locate(node_index_.data(), count_, step_.step.u, step_.step.time,
-                                      {gap_.data(), normal_.data()});
+      locate_at_obstacle();
     if constexpr (Turns) find_turns();
-    for (std::ptrdiff_t i = 0; i < count_; ++i) gap_[i] -= step_.setup.gap_offset;
+    if (const double offset = step_.setup.gap_offset; offset != 0.0)
+      for (std::ptrdiff_t i = 0; i < count_; ++i) gap_[i] -= offset;
+  }
+  int node_index(std::ptrdiff_t i) const { return at_.node_index[contact(i)]; }
+
+  void locate_at_obstacle() {
+    std::array<std::int32_t, block_size> node_indices;
+    for (std::ptrdiff_t i = 0; i < count_; ++i) node_indices[i] = node_index(i);
+    step_.setup.counterpart->locate(node_indices.data(), count_, step_.step.u, step_.step.time,
+                                    {gap_.data(), normal_.data()});
   }
 
   // All nodes have the plane's normal: it is written once.
   void locate_at_plane() {
-    flat_gaps<D>(step_.model, node_.data(), count_, step_.step.u, *step_.flat, gap_.data());
+    flat_gaps<D>(step_.model, node_, count_, step_.step.u, *step_.flat, gap_.data());
     for (; normals_ < count_; ++normals_)
       for (int c = 0; c < D; ++c) normal_[c * block_size + normals_] = step_.flat->normal[c];
   }
@@ -106,7 +95,7 @@ class BlockWalk {
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       const RigidSurface there{gap_[i], Eigen::Map<const Vector>(&normal_[D * i], D)};
       const Vector turn =
-          step_.setup.counterpart->unit_turn(node_index_[i], step_.step.u, step_.step.time, there);
+          step_.setup.counterpart->unit_turn(node_index(i), step_.step.u, step_.step.time, there);
       std::copy_n(turn.data(), D, &turn_[D * i]);
     }
   }
@@ -114,7 +103,7 @@ class BlockWalk {
   void locate_partners() {
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       ContactPoint& point = at_.point[contact(i)];
-      point = step_.setup.counterpart->contact_point(node_index_[i], step_.step.u, step_.step.time);
+      point = step_.setup.counterpart->contact_point(node_index(i), step_.step.u, step_.step.time);
       gap_[i] = point.gap;
       for (int c = 0; c < D; ++c) normal_[D * i + c] = point.normal[c];
       at_.delassus[contact(i)] = point.delassus(step_.model, node_[i]);
@@ -137,13 +126,20 @@ class BlockWalk {
   // is_moving: whether the obstacle's velocity is not zero; rate: at which it turns.
   ilaw_input relative(const Dofs& v, const Components& obstacle, bool is_moving, double rate,
                       Vectors& room) const {
-    if (What == Meets::obstacle && nodes_in_row_ && !is_moving) return {&v[first_dof(0)], D, 1};
+    if (What == Meets::obstacle && !is_moving) return seen_at_rest(v, room);
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       for (int c = 0; c < D; ++c) {
         double& value = room[c * block_size + i];
         value = component(v.data(), i, c) - obstacle[c];
         if constexpr (Turns) value -= rate * turn_[D * i + c];
       }
+    return in_columns(room);
+  }
+  ilaw_input seen_at_rest(const Dofs& v, Vectors& room) const {
+    if (nodes_in_row_) return {&v[first_dof(0)], D, 1};
+    const double* const all = v.data();
+    for (std::ptrdiff_t i = 0; i < count_; ++i)
+      for (int c = 0; c < D; ++c) room[c * block_size + i] = all[first_dof(i) + c];
     return in_columns(room);
   }
   // Component by component, as laws work on them.
@@ -221,11 +217,26 @@ class BlockWalk {
     return outcome.refusal.code == ILAW_OK;
   }
 
-  void mark_touched(const ilaw_batch& batch) {
+  // Returns how many contacts are free. Most often all have the first one's status, and one round will do;
+  // broken libraries' statuses do not come here.
+  std::ptrdiff_t count_statuses(ContactSums& sums) const {
+    std::ptrdiff_t free = 0, others = count_;
+    for (std::uint8_t k = status_[0]; others > 0; k = (k + 1) % ILAW_STATUS_COUNT) {
+      std::uint8_t found = 0;
+      for (std::ptrdiff_t i = 0; i < count_; ++i) found += status_[i] == k ? 1 : 0;
+      sums.statuses[k] += found;
+      others -= found;
+      if (k == ILAW_FREE) free = found;
+    }
+    return free;
+  }
+
+  void mark_touched(const ilaw_batch& batch, std::ptrdiff_t free) {
     if (at_.state.empty()) return;
+    if (free == 0 && contacts_in_row_) return at_.mark_acting(contact(0), count_);
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       if (status_[i] != ILAW_FREE) {
-        at_.mark_acting(contact(i));
+        at_.mark_acting(contact(i), 1);
         continue;
       }
       const Components n = vector_at(batch.normal, i), v = vector_at(batch.v_free, i);
@@ -242,38 +253,49 @@ class BlockWalk {
   }
 
   // Adds the impulses to the velocities, and up what they work over the step, r . (v_before + v)/2: no two
-  // contacts share a node.
+  // contacts share a node. Sums wait for their last addition: together they do so once.
   void apply(ContactSums& sums) {
-    double work = sums.work, relative_work = sums.relative_work;
+    double* const v = step_.v.data();
+    const double* const before = step_.step.v_before.data();
+    const double* const energies = step_.gets_energies ? &energy_[ILAW_ENERGY_STORED * block_size] : nullptr;
+    double work = sums.work, relative_work = sums.relative_work, penetration = sums.penetration,
+           stored = sums.energy[ILAW_ENERGY_STORED];
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      const double* const r = impulse_ + D * i;
+      penetration = -gap_[i] > penetration ? -gap_[i] : penetration;
+      if (energies) stored += energies[i];
+      Components r;
       bool acts = false;
-      for (int c = 0; c < D; ++c) acts = acts || r[c] != 0.0;
+      for (int c = 0; c < D; ++c) {
+        r[c] = impulse_[D * i + c];
+        acts = acts || r[c] != 0.0;
+      }
       if (!acts) continue;
-      push(i, r);
-      const Works works = works_of(i, r);
+      push(i, r, v);
+      const Works works = works_of(i, r, before, v);
       work += 0.5 * works.all;
       relative_work += 0.5 * works.relative;
     }
     sums.work = work;
     sums.relative_work = relative_work;
+    sums.penetration = penetration;
+    sums.energy[ILAW_ENERGY_STORED] = stored;
   }
-  void push(std::ptrdiff_t i, const double* r) {
-    double* const v = step_.v.data();
+  void push(std::ptrdiff_t i, const Components& r, double* v) {
     if constexpr (Partnered)
       at_.point[contact(i)].for_each_node(node_[i], [&](int node, double weight) {
         const double scale = weight / step_.model.mass()[Eigen::Index{D} * node];
         for (int c = 0; c < D; ++c) v[Eigen::Index{D} * node + c] += scale * r[c];
       });
-    else
-      for (int c = 0; c < D; ++c) v[first_dof(i) + c] += delassus_[i] * r[c];
+    else {
+      const double inverse_mass = delassus_[i];
+      for (int c = 0; c < D; ++c) v[first_dof(i) + c] += inverse_mass * r[c];
+    }
   }
   // Twice what an impulse works, and relative to the obstacle.
   struct Works {
     double all = 0.0, relative = 0.0;
   };
-  Works works_of(std::ptrdiff_t i, const double* r) const {
-    const double *const v = step_.v.data(), *const before = step_.step.v_before.data();
+  Works works_of(std::ptrdiff_t i, const Components& r, const double* before, const double* v) const {
     Works works;
     for (int c = 0; c < D; ++c) {
       const double sum = component(before, i, c) + component(v, i, c);
@@ -287,18 +309,9 @@ class BlockWalk {
     return works;
   }
 
-  void add_up(ContactSums& sums) const {
-    std::uint64_t statuses = 0;  // a byte each
-    double penetration = sums.penetration;
-    for (std::ptrdiff_t i = 0; i < count_; ++i) {
-      statuses += std::uint64_t{1} << (8 * status_[i]);
-      penetration = -gap_[i] > penetration ? -gap_[i] : penetration;
-    }
-    sums.penetration = penetration;
-    for (std::size_t k = 0; k < ILAW_STATUS_COUNT; ++k)
-      sums.statuses[k] += static_cast<std::int64_t>((statuses >> (8 * k)) & 0xff);
-    for (std::size_t k = 0; step_.gets_energies && k < ILAW_ENERGY_COUNT; ++k)
-      sums.add_energies(k, &energy_[k * block_size], count_);
+  void add_dissipation(ContactSums& sums) const {
+    for (std::size_t k = 0; step_.gets_energies && k < ILAW_ENERGY_STORED; ++k)
+      sums.add_dissipation(k, &energy_[k * block_size], count_);
   }
 
   void find_fault(Refusal& refusal) const {
@@ -325,14 +338,13 @@ class BlockWalk {
   ContactArrays& at_;
   const Components obstacle_, obstacle_before_;
   const bool moves_, moved_, stands_still_;  // the obstacle, in the coming step and before
-  const std::int32_t* contacts_ = nullptr;
+  const std::int32_t *contacts_ = nullptr, *node_ = nullptr;
   std::ptrdiff_t count_ = 0;
   bool contacts_in_row_ = false, nodes_in_row_ = false;
   std::ptrdiff_t normals_ = 0;  // nodes whose normal is already that of the plane
   // What this block works on: in the host's arrays or the rooms below.
   double *delassus_ = nullptr, *impulse_ = nullptr;
   std::uint8_t* status_ = nullptr;
-  std::array<std::int32_t, block_size> node_index_, node_;
   Column gap_, delassus_room_, area_room_;
   Vectors v_free_, v_previous_, normal_, impulse_room_;
   std::conditional_t<Turns, Vectors, std::array<double, 0>> turn_;  // velocities at rate 1
@@ -343,50 +355,32 @@ class BlockWalk {
   std::vector<ilaw_input> parameters_;
 };
 
-struct Block {
-  std::ptrdiff_t count;
-  bool in_row;  // its contacts follow each other
-};
-
-// The contacts that make the next block: those that follow each other, where they are enough to be
-// worth a call of the law; what does not is copied to and fro.
-Block next_block(const std::int32_t* contacts, std::ptrdiff_t count) {
-  constexpr std::ptrdiff_t enough = 24;
-  count = std::min(block_size, count);
-  if (follow_each_other(contacts, count)) return {count, true};
-  std::ptrdiff_t row = 1;
-  while (contacts[row] == contacts[row - 1] + 1) ++row;
-  return row >= enough ? Block{row, true} : Block{count, false};
-}
-
 template <int D, Meets What>
-void solve_blocks(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count,
-                  ChunkOutcome& outcome) {
+void solve_blocks(const BlockStep& step, NearContacts contacts, ChunkOutcome& outcome) {
   BlockWalk<D, What> blocks(step);
-  for (Block block{}; count > 0; contacts += block.count, count -= block.count) {
-    block = next_block(contacts, count);
-    blocks.solve(contacts, block.count, block.in_row, outcome);
+  while (contacts.count > 0) {
+    const Block block = next_block(contacts);
+    blocks.solve(block, outcome);
+    contacts.leave_out(block.contacts.count);
   }
 }
 
 template <int D>
-void solve_in(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count,
-              ChunkOutcome& outcome) {
+void solve_in(const BlockStep& step, const NearContacts& contacts, ChunkOutcome& outcome) {
   if (!step.contacts.point.empty())
-    solve_blocks<D, Meets::partners>(step, contacts, count, outcome);
+    solve_blocks<D, Meets::partners>(step, contacts, outcome);
   else if (step.setup.counterpart->turns())
-    solve_blocks<D, Meets::turning_obstacle>(step, contacts, count, outcome);
+    solve_blocks<D, Meets::turning_obstacle>(step, contacts, outcome);
   else
-    solve_blocks<D, Meets::obstacle>(step, contacts, count, outcome);
+    solve_blocks<D, Meets::obstacle>(step, contacts, outcome);
 }
 
 }  // namespace
 
-void solve_chunk(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count,
-                 ChunkOutcome& outcome) {
+void solve_chunk(const BlockStep& step, const NearContacts& contacts, ChunkOutcome& outcome) {
   const int d = step.model.dimension();
-  if (d == 1) return solve_in<1>(step, contacts, count, outcome);
-  return d == 2 ? solve_in<2>(step, contacts, count, outcome) : solve_in<3>(step, contacts, count, outcome);
+  if (d == 1) return solve_in<1>(step, contacts, outcome);
+  return d == 2 ? solve_in<2>(step, contacts, outcome) : solve_in<3>(step, contacts, outcome);
 }
 
 }  // namespace ilaw::host

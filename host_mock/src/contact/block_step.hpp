@@ -39,8 +39,19 @@ struct ChunkOutcome {
 // Nodes of an interface whose contacts a thread takes at a time.
 constexpr std::ptrdiff_t contact_chunk = 2048;
 
+// Some contacts, by contact_index, and the nodes of the model that they are of.
+struct NearContacts {
+  const std::int32_t *index, *nodes;
+  std::ptrdiff_t count;
+
+  void leave_out(std::ptrdiff_t first) {
+    index += first;
+    nodes += first;
+    count -= first;
+  }
+};
+
 // Adds what becomes of the contacts to outcome.
-void solve_chunk(const BlockStep& step, const std::int32_t* contacts, std::ptrdiff_t count,
-                 ChunkOutcome& outcome);
+void solve_chunk(const BlockStep& step, const NearContacts& contacts, ChunkOutcome& outcome);
 
 }  // namespace ilaw::host

@@ -59,8 +59,11 @@ class ContactArrays {
 
   // Whether it must be evaluated out of reach, too: it is neither fresh nor at rest.
   bool must_be_evaluated(std::size_t contact) const { return (marks_[contact] & awake) != 0; }
-  // After a step, where its status was not ILAW_FREE.
-  void mark_acting(std::size_t contact) { marks_[contact] |= awake | changed; }
+  // After a step, of contacts that follow each other, where no status was ILAW_FREE.
+  void mark_acting(std::size_t first, std::ptrdiff_t count) {
+    std::uint8_t* const marks = &marks_[first];
+    for (std::ptrdiff_t i = 0; i < count; ++i) marks[i] |= awake | changed;
+  }
   // After a step: acts, where its status was not ILAW_FREE; rests, where the law promises
   // ILAW_CAN_REST.
   void mark_touched(std::size_t contact, bool acts, bool in_reach, bool rests) {

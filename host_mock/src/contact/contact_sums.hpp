@@ -41,28 +41,31 @@ struct ContactSums {
     for (std::size_t k = 0; k < ILAW_ENERGY_STORED; ++k)
       least_dissipation = parts[k] < least_dissipation ? parts[k] : least_dissipation;
   }
-  // The same, of one part for some contacts. Most often all are zero, and none has a sign: neither
-  // then changes a sum or the least, and seeing it takes no chain of additions.
-  void add_energies(std::size_t part, const double* values, std::ptrdiff_t count) {
+  // Of one part that is dissipated, for some contacts. Most often all are zero, and none has a sign:
+  // neither then changes a sum or the least, and seeing it takes no chain of additions.
+  void add_dissipation(std::size_t part, const double* values, std::ptrdiff_t count) {
     constexpr std::ptrdiff_t some = 16;
-    const std::uint64_t bits = bits_of(values, 0, count);
-    if (bits << 1 == 0) return;
     double sum = energy[part];
+    std::uint64_t bits = 0;
     for (std::ptrdiff_t first = 0; first < count; first += some) {
       const std::ptrdiff_t end = std::min(count, first + some);
-      if (bits_of(values, first, end) << 1 == 0) continue;
+      // Of so many that the compiler knows the number: no loop.
+      const std::uint64_t these =
+          end - first == some ? bits_of(values + first, some) : bits_of(values + first, end - first);
+      bits |= these;
+      if (these << 1 == 0) continue;
       for (std::ptrdiff_t i = first; i < end; ++i) sum += values[i];
     }
     energy[part] = sum;
-    if (part == ILAW_ENERGY_STORED || bits >> 63 == 0) return;
+    if (bits >> 63 == 0) return;
     for (std::ptrdiff_t i = 0; i < count; ++i)
       least_dissipation = values[i] < least_dissipation ? values[i] : least_dissipation;
   }
 
  private:
-  static std::uint64_t bits_of(const double* values, std::ptrdiff_t first, std::ptrdiff_t end) {
+  static std::uint64_t bits_of(const double* values, std::ptrdiff_t count) {
     std::uint64_t bits = 0;
-    for (std::ptrdiff_t i = first; i < end; ++i) bits |= std::bit_cast<std::uint64_t>(values[i]);
+    for (std::ptrdiff_t i = 0; i < count; ++i) bits |= std::bit_cast<std::uint64_t>(values[i]);
     return bits;
   }
 };

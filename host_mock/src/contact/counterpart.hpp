@@ -46,6 +46,18 @@ struct Located {
   double *gaps, *normals;
 };
 
+// The axis along which a vector lies; D where it is none.
+template <std::size_t D>
+std::size_t axis_of(const std::array<double, D>& vector) {
+  std::size_t axis = D;
+  for (std::size_t c = 0; c < D; ++c) {
+    if (vector[c] == 0.0) continue;
+    if (axis < D) return D;
+    axis = c;
+  }
+  return axis;
+}
+
 // Gaps of some nodes to a plane, in the order of operations of Plane.
 template <int D>
 void flat_gaps(const Model& model, const std::int32_t* nodes, std::ptrdiff_t count, const Dofs& u,
@@ -57,6 +69,13 @@ void flat_gaps(const Model& model, const std::int32_t* nodes, std::ptrdiff_t cou
     displacement[c] = flat.displacement[k];
     point[c] = flat.point[k];
     normal[c] = flat.normal[k];
+  }
+  if (const std::size_t c = axis_of(normal); c < D) {  // else it would add zeros alone
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const std::size_t k = D * static_cast<std::size_t>(nodes[i]) + c;
+      gaps[i] = 0.0 + (start[k] + moved[k] - displacement[c] - point[c]) * normal[c];
+    }
+    return;
   }
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const std::size_t first = D * static_cast<std::size_t>(nodes[i]);

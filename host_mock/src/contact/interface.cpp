@@ -80,13 +80,17 @@ void Interface::refresh_near(const StepView& step) {
     if (proximity_.may_touch(far_[chunk])) look_at(chunk, step);
   });
   near_.clear();
+  near_nodes_.clear();
   chunk_starts_.clear();
   for (std::size_t c = 0; c < far_.size(); ++c) {
     chunk_starts_.push_back(static_cast<std::ptrdiff_t>(near_.size()));
     if (far_[c].gap_bound > 0.0) continue;
     const std::size_t first = c * contact_chunk, end = std::min(first + contact_chunk, is_near_.size());
-    for (std::size_t k = first; k < end; ++k)
-      if (is_near_[k]) near_.push_back(contact_index_of(static_cast<int>(k), step.u));
+    for (std::size_t k = first; k < end; ++k) {
+      if (!is_near_[k]) continue;
+      near_.push_back(contact_index_of(static_cast<int>(k), step.u));
+      near_nodes_.push_back(setup_.nodes[k]);
+    }
   }
   chunk_starts_.push_back(static_cast<std::ptrdiff_t>(near_.size()));
 }
@@ -174,7 +178,8 @@ void Interface::solve(const StepView& step, Dofs& v) {
     const std::ptrdiff_t* const range = &chunk_starts_[static_cast<std::size_t>(c)];
     ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
     outcome = {};
-    if (range[1] > range[0]) solve_chunk(blocks, near_.data() + range[0], range[1] - range[0], outcome);
+    const std::ptrdiff_t first = range[0], count = range[1] - first;
+    if (count > 0) solve_chunk(blocks, {near_.data() + first, near_nodes_.data() + first, count}, outcome);
   });
   Refusal refusal = outcomes_.front().refusal;
   sums_ = outcomes_.front().sums;

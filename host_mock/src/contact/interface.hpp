@@ -137,7 +137,7 @@ class Interface {
   ProximityFilter proximity_;
   double closing_ = 0.0;  // how far a gap may close in the coming step
   bool acts_ = false;     // between birth and death
-  ContactList near_;
+  ContactList near_, near_nodes_;  // contacts, and the nodes that they are of
   const ContactList none_;
   std::vector<std::ptrdiff_t> chunk_starts_;  // in near_, and its end
   std::vector<std::uint8_t> is_near_;         // by node_index, at the last refresh
