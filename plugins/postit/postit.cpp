@@ -132,10 +132,8 @@ struct postit {
 
   window_in_step window_in(step_interval step) const { return {duration, buckets, step}; }
   // A rupture clears the window; what it then holds is the impulse of this step.
-  static void record(const stepped_impulse& given, const window_in_step& sums, const history& own) {
-    if (given.status == status::broken) sums.clear(own);
-    sums.add(own, given.impulse);
-  }
+  static bool adds_to_window(double /*s*/) { return true; }
+  static bool clears_window(double s) { return s == status::broken; }
 
  private:
   // (<-S_N>/R_Y)^2 + (<|S_T| - mu <S_N>>/(lambda R_Y))^2, which exceeds 1 at rupture.

@@ -92,10 +92,8 @@ struct tie {
 
   window_in_step window_in(step_interval step) const { return {duration, buckets, step}; }
   // A broken bond needs no window any more.
-  static void record(const stepped_impulse& given, const window_in_step& sums, const history& own) {
-    if (given.status == status::bonded) sums.add(own, given.impulse);
-    if (given.status == status::broken) sums.clear(own);
-  }
+  static bool adds_to_window(double s) { return s == status::bonded; }
+  static bool clears_window(double s) { return s == status::broken; }
 
  private:
   // Pull and shear count alike, a press does not: nothing is torn by it.

@@ -311,6 +311,11 @@ axis outgoing(const double* const* axes, int i, typename Frame::vector_type a, b
   return {accepted ? out.x : otherwise.x, accepted ? out.y : otherwise.y, accepted ? out.z : otherwise.z};
 }
 
+// The same, or zero: by bits, since of a choice GCC may make two sets of stores, one for each outcome.
+inline axis zero_unless(bool accepted, axis a) {
+  return {kit::kept_if(accepted, a.x), kit::kept_if(accepted, a.y), kit::kept_if(accepted, a.z)};
+}
+
 // The velocity before the step, of a node whose law may never read it.
 template <class Law, class Frame, class Layout, class Node>
 auto previous_for_energy(const node_block<Law>& b, int i, const Node& n) {
@@ -370,7 +375,7 @@ void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool 
   auto [n, accepted] = step_node<Law, Delassus, Frame, Layout, Scope>(step, b, i);
   accepted = accepted & valid;
   const axis v_free = Layout::get(b.v_free, i);  // first: loads beneath a mask wait for what is being written
-  Layout::put(b.impulse, i, outgoing<Frame, Layout>(b.axes, i, n.impulse, accepted, {0.0, 0.0, 0.0}));
+  Layout::put(b.impulse, i, zero_unless(accepted, Frame::template at<Layout>(b.axes, i).to_global(n.impulse)));
   if constexpr (Scope >= scope::motion)  // six numbers of H leave no register for it
     store_motion<Frame, Layout>(b, i, n, accepted,
                                 Delassus::components < 6 ? v_free : Layout::get(b.v_free, i));
