@@ -20,6 +20,10 @@ constexpr axis cross(axis a, axis b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 constexpr bool unit(axis a) { return __builtin_fabs(dot(a, a) - 1.0) <= unit_tolerance; }
+// A vector or zero: by bits, since of a choice GCC may make two sets of stores, one for each outcome.
+inline axis zero_unless(bool accepted, axis a) {
+  return {kit::kept_if(accepted, a.x), kit::kept_if(accepted, a.y), kit::kept_if(accepted, a.z)};
+}
 
 // A tangent of a unit normal without branch or square root (Duff et al. 2017, Building an orthonormal basis).
 inline axis any_tangent(axis n) {

@@ -74,8 +74,8 @@ void write_windows(const Laws& laws, const node_block<Law>& block, window_column
       const window_in_step window = window_at(laws, b, i);
       if (given.clears.values[i] != 0.0) window.clear(b.history_of(i));
       if (given.adds.values[i] != 0.0)
-        window.add(b.history_of(i), {given.impulse[0].values[i], given.impulse[1].values[i],
-                                     given.impulse[2].values[i]});
+        window.add(b.history_of(i),
+                   {given.impulse[0].values[i], given.impulse[1].values[i], given.impulse[2].values[i]});
     }
   }
 }
