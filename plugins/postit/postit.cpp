@@ -132,33 +132,34 @@ struct postit {
 
   window_in_step window_in(step_interval step) const { return {duration, buckets, step}; }
   // A rupture clears the window; what it then holds is the impulse of this step.
-  static void record(const stepped_impulse& given, const window_in_step& sums, const history& own) {
-    if (given.status == status::broken) sums.clear(own);
-    sums.add(own, given.impulse);
-  }
+  static bool adds_to_window(double /*s*/) { return true; }
+  static bool clears_window(double s) { return s == status::broken; }
 
  private:
-  // (<-S_N>/R_Y)^2 + (<|S_T| - mu <S_N>>/(lambda R_Y))^2, which exceeds 1 at rupture.
-  double criterion(vector sum, double adhesion) const {
-    const double pull = positive_part(-sum.n) / adhesion;
-    const double held_by_friction = friction_limit(friction, sum.n);
-    const double shear =
-        positive_part(sum.tangential_length() - held_by_friction) / (tangent_influence * adhesion);
-    return pull * pull + shear * shear;
+  // <-S_N>^2 + (<|S_T| - mu <S_N>>/lambda)^2 <= R_Y^2 times a factor, without a division by R_Y: both sides
+  // are brought near 1 by a power of two. False where S has overflowed.
+  bool is_within(vector sum, double adhesion, double factor) const {
+    constexpr double largest = std::numeric_limits<double>::max();
+    const double scale = power_scale_of(adhesion).down, limit = scale * adhesion;
+    const vector s = scale * sum;
+    const double pull = positive_part(-s.n), held_by_friction = friction_limit(friction, s.n);
+    const double length = square_root(s.t1 * s.t1 + s.t2 * s.t2);
+    const double shear = positive_part(length - held_by_friction) * smaller(1.0 / tangent_influence, largest);
+    return pull * pull + shear * shear <= factor * (limit * limit);
   }
 
   template <class Node>
   bool holds(const Node& node, vector trial) const {
     const double adhesion = node.state.adhesion;
-    return (adhesion > 0.0) & (criterion(node.earlier + trial, adhesion) <= at_the_limit);
+    return (adhesion > 0.0) & is_within(node.earlier + trial, adhesion, at_the_limit);
   }
 
   // The part of the trial impulse that takes the sum to the limit; bisection to the last bit.
   double held_part(vector earlier, vector trial, double adhesion) const {
     double holds = 0.0, breaks = 1.0;
-    if (criterion(earlier, adhesion) > 1.0) return 0.0;
+    if (!is_within(earlier, adhesion, 1.0)) return 0.0;
     for (double middle = 0.5; middle > holds && middle < breaks; middle = 0.5 * (holds + breaks))
-      (criterion(earlier + middle * trial, adhesion) <= 1.0 ? holds : breaks) = middle;
+      (is_within(earlier + middle * trial, adhesion, 1.0) ? holds : breaks) = middle;
     return holds;
   }
 

@@ -27,7 +27,8 @@
 //   template <class Node> void record(const Node&, history) const   writes once the step is accepted
 // A history that is a window is read and written for the law, which then runs in vector code (window.hpp):
 //   window_in_step window_in(step_interval) const;        gives node.earlier
-//   void record(const stepped_impulse&, const window_in_step&, const history&) const   takes the impulse in
+//   static bool adds_to_window(double status);            whether a step that gave this status is taken in,
+//   static bool clears_window(double status);             and whether the window is emptied before that
 //
 // Forms. Where parameters turn parts of the step off, loops without those parts vectorise. A form is a struct
 // declared in the law and, once the law is complete, derived from it; its step gives the same bits as the

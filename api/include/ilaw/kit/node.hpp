@@ -83,8 +83,15 @@ struct transverse_delassus {
   }
   vector times(vector r) const { return {n * r.n, t * r.t1, t * r.t2}; }
   projected_vector times(projected_vector r) const { return {n * r.n, t * r.x, t * r.y, t * r.z}; }
-  vector solve(vector v) const { return {v.n / n, v.t1 / t, v.t2 / t}; }
-  projected_vector solve(projected_vector v) const { return {v.n / n, v.x / t, v.y / t, v.z / t}; }
+  // One division for the tangential parts. All forms multiply by an inverse, so that their bits are the same.
+  vector solve(vector v) const {
+    const double by_n = 1.0 / n, by_t = 1.0 / t;
+    return {by_n * v.n, by_t * v.t1, by_t * v.t2};
+  }
+  projected_vector solve(projected_vector v) const {
+    const double by_n = 1.0 / n, by_t = 1.0 / t;
+    return {by_n * v.n, by_t * v.x, by_t * v.y, by_t * v.z};
+  }
 };
 
 struct diagonal_delassus {
@@ -106,7 +113,7 @@ struct diagonal_delassus {
     return defect_unless(scale * trace * (b * c + a * c + a * b) <= largest_condition * (a * b * c));
   }
   vector times(vector r) const { return {n * r.n, t1 * r.t1, t2 * r.t2}; }
-  vector solve(vector v) const { return {v.n / n, v.t1 / t1, v.t2 / t2}; }
+  vector solve(vector v) const { return {1.0 / n * v.n, 1.0 / t1 * v.t1, 1.0 / t2 * v.t2}; }
 };
 
 struct full_delassus {
@@ -118,9 +125,10 @@ struct full_delassus {
   double tangential() const { return t11; }
   double anisotropy() const { return absolute(t11 - t22) + absolute(n1) + absolute(n2) + absolute(t12); }
 
-  // LDL^T: pivots and multipliers. H is positive definite exactly when the pivots are positive.
+  // LDL^T: pivots, the inverse of two, which are divided by once, and multipliers. H is positive definite
+  // exactly when the pivots are positive.
   struct factors {
-    double d0, d1, d2, l10, l20, l21;
+    double d0, d1, d2, by_d0, by_d1, l10, l20, l21;
 
     // Without a division: tr(H^-1) is the sum of these products over that of the pivots.
     double condition_defect(double trace) const {
@@ -131,16 +139,16 @@ struct full_delassus {
     }
   };
   factors factorise() const {
-    const double l10 = n1 / nn, l20 = n2 / nn;
-    const double d1 = t11 - l10 * n1;
-    const double l21 = (t12 - l20 * n1) / d1;
-    return {nn, d1, (t22 - l20 * n2) - l21 * (t12 - l20 * n1), l10, l20, l21};
+    const double by_d0 = 1.0 / nn, l10 = n1 * by_d0, l20 = n2 * by_d0;
+    const double d1 = t11 - l10 * n1, by_d1 = 1.0 / d1;
+    const double rest = t12 - l20 * n1, l21 = rest * by_d1;
+    return {nn, d1, (t22 - l20 * n2) - l21 * rest, by_d0, by_d1, l10, l20, l21};
   }
   double positive_defect() const {
     const factors f = factorise();
-    return defect(f.d0) + defect(f.d1) + defect(f.d2) + defect(f.l21) +
-           defect_unless(f.d0 >= smallest_delassus) + defect_unless(f.d1 >= smallest_delassus) +
-           defect_unless(f.d2 >= smallest_delassus) + f.condition_defect(nn + t11 + t22);
+    // What is not finite is not within the condition: it leaves no number to compare, or a trace of inf.
+    return defect_unless(smaller(f.d0, smaller(f.d1, f.d2)) >= smallest_delassus) +
+           f.condition_defect(nn + t11 + t22);
   }
   vector times(vector r) const {
     return {nn * r.n + n1 * r.t1 + n2 * r.t2, n1 * r.n + t11 * r.t1 + t12 * r.t2,
@@ -156,9 +164,9 @@ struct full_delassus {
     const factors f = factorise();
     const double y1 = v.t1 - f.l10 * v.n;
     const double y2 = (v.t2 - f.l20 * v.n) - f.l21 * y1;
-    const double x2 = y2 / f.d2;
-    const double x1 = y1 / f.d1 - f.l21 * x2;
-    return {(v.n / f.d0 - f.l10 * x1) - f.l20 * x2, x1, x2};
+    const double x2 = 1.0 / f.d2 * y2;
+    const double x1 = y1 * f.by_d1 - f.l21 * x2;
+    return {(v.n * f.by_d0 - f.l10 * x1) - f.l20 * x2, x1, x2};
   }
 };
 

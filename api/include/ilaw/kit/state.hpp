@@ -95,7 +95,10 @@ struct state_variable {
     return whole || minimum > -std::numeric_limits<double>::max() ||
            maximum < std::numeric_limits<double>::max();
   }
+  // Of a value that is finite.
   bool may_be(double value) const {
+    if (whole && minimum == 0.0 && maximum == 1.0) return value * value == value;
+    if (!whole && maximum == std::numeric_limits<double>::max()) return value >= minimum;
     const bool inside = (value >= minimum) & (value <= maximum);
     return whole ? inside & is_whole(value) : inside;
   }

@@ -23,7 +23,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/gather.hpp>
 #include <ilaw/kit/detail/window_grid.hpp>
 #include <ilaw/kit/node.hpp>
 
@@ -37,7 +36,7 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 inline constexpr double window_slack = 1e-9;
 
 // A window in one step. What is the same at all nodes is worked out once.
-class window_in_step : detail::window_grid {
+class window_in_step : protected detail::window_grid {
  public:
   using window_grid::window_grid;
 
@@ -64,66 +63,13 @@ class window_in_step : detail::window_grid {
     return checked(edge_at(k).sum(middle, current, read(own, at(oldest)), next));
   }
 
-  // The same for the nodes of a block, whose histories own(i) gives, and what of it add() needs again. What
-  // was written in the newest bucket or before it is summed in vector code.
-  struct block_reading {
-    detail::column sum[3], refused, stamp, middle[3];
-  };
-  template <class OwnHistory>
-  void before(int count, OwnHistory own, block_reading& r) const {
-    const auto in_row = [&own](int i) { return neighbours<const double>{own(i).values}; };
-    if (count > 0 && own(0).stride == 1)
-      before_in(count, in_row, r);
-    else
-      before_in(count, own, r);
-  }
-
- private:
-  template <class OwnHistory>
-  void before_in(int count, OwnHistory own, block_reading& r) const {
-    parts p;
-    int others[detail::block_size], other_count = 0;
-    if (has_grid_ && is_short_) {
-      const std::int64_t latest = at(place_), oldest = at(after(place_)), next = at(after(after(place_)));
-      for (int i = 0; i < count; ++i) {
-        const auto h = own(i);
-        r.stamp.values[i] = h[0];
-        put(read(h, middle_sum), i, r.middle);
-        put(read(h, latest), i, p.current);
-        put(read(h, oldest), i, p.oldest);
-        put(read(h, next), i, p.next);
-        others[other_count] = i;
-        other_count += h[0] == stamp_ ? 0 : 1;
-      }
-      other_count = read_older(others, other_count, own, r, p);
-      sum_parts(count, r, p, edge_);
-    } else {
-      for (; other_count < count; ++other_count) others[other_count] = other_count;
-    }
-    for (int k = 0; k < other_count; ++k) {
-      const int i = others[k];
-      const reading alone = before(own(i));
-      r.stamp.values[i] = empty;
-      put(alone.sum, i, r.sum);
-      r.refused.values[i] = alone.refused;
-    }
-  }
-
- public:
-  // Tells add() what before() read of node i, whose turn it is.
-  void recall(const block_reading& r, int i) {
-    read_ = &r;
-    node_ = i;
-  }
-
   // Takes the step's own impulse in. The history is one that before() did not refuse.
   void add(const history& own, vector impulse) const {
-    if (duration_ == 0.0 || (impulse.n == 0.0 && impulse.t1 == 0.0 && impulse.t2 == 0.0)) return;
+    if (duration_ == 0.0 || is_zero(impulse)) return;
     if (has_grid_ && own[0] == stamp_ && begin_ >= now_)
       write(own, at(place_), read(own, at(place_)) + impulse);
     else if (const double turns = has_grid_ ? turns_since(own[0]) : -1.0; turns > 0.0)
-      own.stride == 1 ? open_and_add(neighbours<double>{own.values}, impulse, turns)
-                      : open_and_add(own, impulse, turns);
+      open_and_add(own, impulse, turns, opened_middle(own, turns));
     else
       add_elsewhere(own, impulse);
   }
@@ -136,9 +82,10 @@ class window_in_step : detail::window_grid {
 
   bool forgets() const { return duration_ == 0.0; }
 
- private:
+ protected:
   // The history: number of the newest bucket, sum of the middle ones, and a ring of B + 1 buckets.
   friend class window;
+  static bool is_zero(vector a) { return a.n == 0.0 && a.t1 == 0.0 && a.t2 == 0.0; }
   static reading checked(vector sum) { return {sum, defect(sum) == 0.0 ? not_refused : impossible_state}; }
 
   // By how many buckets the newest one lies before that of this step, up to B, for which the rest of a
@@ -150,62 +97,23 @@ class window_in_step : detail::window_grid {
     return counts && floor_of(turns) == turns ? turns : -1.0;
   }
 
-  // What is read of the nodes of a block beside their middle sums, as columns.
-  struct parts {
-    detail::column current[3], oldest[3], next[3];
-  };
-  // Mends what was read of nodes whose newest bucket lies further back. Returns how many are left in the
-  // list, which are to be read alone.
-  template <class OwnHistory>
-  int read_older(int* nodes, int node_count, OwnHistory own, block_reading& r, parts& p) const {
-    const std::int64_t next = after(after(place_));
-    int left = 0;
-    for (int k = 0; k < node_count; ++k) {
-      const int i = nodes[k];
-      const double turns = turns_since(r.stamp.values[i]);
-      nodes[left] = i;
-      left += turns < 0.0 ? 1 : 0;
-      const bool counts = (turns > 0.0) & (turns <= buckets_);
-      const auto middle_count = static_cast<std::int64_t>(buckets_ - turns);
-      put(counts ? sum_from(own(i), next, middle_count) : vector{}, i, r.middle);
-      put({}, i, p.current);
-      if (!counts) put({}, i, p.oldest);
-      if (!counts || turns == buckets_) put({}, i, p.next);
-    }
-    return left;
-  }
-  static vector vector_at(const detail::column (&c)[3], int i) {
-    return {c[0].values[i], c[1].values[i], c[2].values[i]};
-  }
-  static void put(vector a, int i, detail::column (&c)[3]) {
-    c[0].values[i] = a.n;
-    c[1].values[i] = a.t1;
-    c[2].values[i] = a.t2;
-  }
-  // The parts are not const: GCC 12 thinks of a block without nodes, and warns that they are not initialised.
-  [[gnu::noinline, gnu::flatten]] static void sum_parts(int count, block_reading& r, parts& p, edge given) {
-#pragma omp simd
-    for (int i = 0; i < count; ++i)
-      put_sum(r, i, given, vector_at(p.current, i), vector_at(p.oldest, i), vector_at(p.next, i));
-  }
-  static void put_sum(block_reading& r, int i, edge given, vector current, vector oldest, vector next) {
-    const vector s = given.sum(vector_at(r.middle, i), current, oldest, next);
-    put(s, i, r.sum);
-    r.refused.values[i] = defect(s) == 0.0 ? not_refused : impossible_state;
-  }
-
   template <class History>
   vector opened_middle(const History& own, double turns) const {
     if (turns > buckets_) return {};
     return sum_from(own, after(after(place_)), static_cast<std::int64_t>(buckets_ - turns));
   }
 
-  // Where the newest bucket lies `turns` before that of the step, which is opened with those between.
+  // Where the newest bucket lies `turns` before that of the step, which is opened with those between; middle
+  // is the sum of the middle buckets then, without the impulse.
+  void open_and_add(const history& own, vector impulse, double turns, vector middle) const {
+    if (own.stride == 1)
+      open_in(neighbours<double>{own.values}, impulse, turns, middle);
+    else
+      open_in(own, impulse, turns, middle);
+  }
   template <class History>
-  [[gnu::noinline]] void open_and_add(const History& own, vector impulse, double turns) const {
-    const bool is_known = read_ && own[0] == read_->stamp.values[node_] && turns <= buckets_;
+  [[gnu::noinline]] void open_in(const History& own, vector impulse, double turns, vector middle) const {
     const auto opened = static_cast<std::int64_t>(turns), oldest = after(place_);
-    vector middle = is_known ? vector_at(read_->middle, node_) : opened_middle(own, turns);
     for (std::int64_t j = 0, place = place_; j < opened; ++j, place = previous(place))
       write(own, at(place), {});
     vector left = impulse;
@@ -255,9 +163,6 @@ class window_in_step : detail::window_grid {
       write(own, at(place), read(own, at(place)) + part);
     }
   }
-
-  const block_reading* read_ = nullptr;
-  int node_ = 0;
 };
 
 class window {
@@ -286,16 +191,10 @@ class window {
 };
 
 // Whether a law's history is a window: the kit reads it ahead of the steps of a block, as node.earlier, and
-// has the law record what they gave. So the steps themselves run in vector code.
+// takes in what they gave. So the steps themselves run in vector code.
 template <class Law>
 concept has_window = requires(const Law& law, step_interval step) {
   { law.window_in(step) } -> std::same_as<window_in_step>;
-};
-
-// What a step gave a law's window to record.
-struct stepped_impulse {
-  vector impulse;
-  double status;
 };
 
 }  // namespace ilaw::kit

@@ -259,7 +259,7 @@ int run_where_few_ask(const Laws& laws, const node_block<Law>& b, asked_block<ty
   const int count = list_open(asked, own.count);
   if (count == 0) return 0;
   const span open = open_nodes(asked, count);
-  if (few * (open.end - open.first) > own.count) *b.in_full = alike;
+  if (few * (open.end - open.first) > own.count) b.in_full->left = alike;
   const int alone_count = solve_open<Law, Delassus, Frame, Layout, Scope>(laws, own, asked, count);
   finish_nodes<Law, Delassus, Frame, Layout, Scope>(laws, own, open, asked);
   return alone_count;
@@ -270,8 +270,8 @@ int run_asked(const Laws& laws, const node_block<Law>& b) {
   using form = typename Laws::form;
   asked_block<form> asked;
   if constexpr (!answers_every_node<form> && !remembers<Law, form>) {
-    if (*b.in_full == 0) return run_where_few_ask<Law, Delassus, Frame, Layout, Scope>(laws, b, asked);
-    --*b.in_full;
+    if (b.in_full->left == 0) return run_where_few_ask<Law, Delassus, Frame, Layout, Scope>(laws, b, asked);
+    --b.in_full->left;
   } else {
     for (double& value : asked.answer.values) value = 0.0;
   }

@@ -350,8 +350,16 @@ class batch_walk {
   // History and frame are worked on in state_out, which therefore starts as state_in.
   void copy_unnamed_state() {
     if (batch_.state_in.values == batch_.state_out.values) return;
-    const auto size = static_cast<std::int64_t>(made_.state_size);
-    for (std::int64_t c = made_.history_offset(); c < size; ++c)
+    const auto first = static_cast<std::int64_t>(made_.history_offset()),
+               size = static_cast<std::int64_t>(made_.state_size);
+    if (batch_.state_in.component_stride == 1 && batch_.state_out.component_stride == 1) {
+      const auto bytes = static_cast<std::size_t>(size - first) * sizeof(double);
+      for (int i = 0; bytes > 0 && i < nodes_.count; ++i)
+        __builtin_memcpy(&at(batch_.state_out, nodes_.node(i), first),
+                         &at(batch_.state_in, nodes_.node(i), first), bytes);
+      return;
+    }
+    for (std::int64_t c = first; c < size; ++c)
       for (int i = 0; i < nodes_.count; ++i)
         at(batch_.state_out, nodes_.node(i), c) = at(batch_.state_in, nodes_.node(i), c);
   }
@@ -384,7 +392,7 @@ class batch_walk {
   block_room<Law>& room_;
   int dimension_;
   bool is_initial_ = false, has_ahead_ = false;
-  int in_full_ = 0;
+  full_blocks in_full_;
   streams ahead_;
   node_range nodes_{};
   node_block<Law> block_;

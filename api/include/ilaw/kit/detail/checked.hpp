@@ -158,13 +158,13 @@ concept records_a_node = requires(const Law& law, const plain_node<Law>& n, hist
   law.record(n, own);
 };
 template <class Law>
-concept records_sums = has_window<Law> &&
-    requires(const Law& law, const stepped_impulse& given, const window_in_step& sums, history own) {
-  law.record(given, sums, own);
+concept has_window_rightly = has_window<Law> && requires(double status) {
+  { Law::adds_to_window(status) } -> std::same_as<bool>;
+  { Law::clears_window(status) } -> std::same_as<bool>;
 };
 template <class Law>
 inline constexpr bool records_rightly =
-    !names_history_variable<Law> || records_a_node<Law> || records_sums<Law>;
+    !names_history_variable<Law> || records_a_node<Law> || has_window_rightly<Law>;
 
 // What needs no description yet: names.
 template <class Law>

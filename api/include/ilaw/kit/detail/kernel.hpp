@@ -12,6 +12,11 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
+// How many of the next blocks are not tried first, see try_first, and after the next one that fails.
+struct full_blocks {
+  int left = 0, after_next = 1;
+};
+
 // A block of nodes as columns. Pointers may lead into the host's arrays.
 template <class Law>
 struct node_block {
@@ -44,7 +49,7 @@ struct node_block {
   double* stirs;     // 0 where a carried frame stays as it was
   double* given[3];  // of laws with a window: the impulse for it, in the local frame,
   double* reached;   // and the status
-  int* in_full;      // how many of the next blocks are not tried first, see try_first
+  full_blocks* in_full;
 
   std::int64_t history_offset(int i) const {
     return (history_nodes ? history_nodes[i] : i) * history_node_stride;
@@ -375,7 +380,7 @@ void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool 
     store_motion<Frame, Layout>(b, i, n, accepted,
                                 Delassus::components < 6 ? v_free : Layout::get(b.v_free, i));
   if constexpr (Scope == scope::outputs) store_energy<Frame, Layout>(b, i, n, accepted);
-  if constexpr (has_window<Law>)
+  if constexpr (has_window<Law> && !requires { Form::forgets; })
     keep_for_window(b, i, n);
   else if constexpr (remembers<Law, Form>)
     if (accepted) law.record(n, b.history_of(i));
@@ -386,15 +391,6 @@ void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool 
       store_state<Law>(b, i, n.state, before, accepted, std::make_index_sequence<state_doubles<Law>>{});
   }
   b.refused[i] = accepted ? 0.0 : 1.0;
-}
-
-// Calls run with the form of a law that its parameters ask for: a struct with a shorter step.
-template <class Law, class Run>
-void in_its_form(const Law& law, Run run) {
-  if constexpr (requires { law.in_form(run); })
-    law.in_form(run);
-  else
-    run(law);
 }
 
 }  // namespace ilaw::kit::detail

@@ -7,6 +7,15 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
+// Calls run with the form of a law that its parameters ask for: a struct with a shorter step.
+template <class Law, class Run>
+void in_its_form(const Law& law, Run run) {
+  if constexpr (requires { law.in_form(run); })
+    law.in_form(run);
+  else
+    run(law);
+}
+
 template <class Form>
 using problem_of_form = typename Form::template problem<double>;
 template <class Form>

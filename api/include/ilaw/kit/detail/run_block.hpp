@@ -4,13 +4,15 @@
 #pragma once
 
 #include <ilaw/kit/detail/run_steps.hpp>
+#include <ilaw/kit/detail/window_block.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // What a block keeps between its windows and its steps.
 struct window_columns {
-  window_in_step::block_reading earlier;
-  column given[3], reached;
+  window_block::block_reading earlier;
+  given_impulses given;
+  column reached;
 };
 
 // The law's window at node i, in the step of a block.
@@ -18,13 +20,17 @@ template <class Laws, class Law>
 window_in_step window_at(const Laws& laws, const node_block<Law>& b, int i) {
   return laws.at(i).window_in(interval_of(b));
 }
+template <class Law>
+histories histories_of(const node_block<Law>& b) {
+  return {b.history_values, b.history_node_stride, b.history_component_stride, b.history_nodes};
+}
 
 // The windows of laws that forget stay zero.
 template <class Law>
 void aim_at(window_columns& kept, node_block<Law>& b, bool forgets) {
   for (int c = 0; c < 3; ++c) {
     if (!forgets) b.earlier[c] = kept.earlier.sum[c].values;
-    b.given[c] = kept.given[c].values;
+    b.given[c] = kept.given.impulse[c].values;
   }
   if (!forgets) b.earlier_refused = kept.earlier.refused.values;
   b.reached = kept.reached.values;
@@ -43,27 +49,33 @@ void read_window(const Form& law, const node_block<Law>& b, int i, window_column
 // The windows of a block before its steps. Parameters per node may give each node another window.
 template <class Law, class Laws>
 void read_windows(const Laws& laws, const node_block<Law>& b, window_columns& kept) {
-  const auto own = [&b](int i) { return const_history(b.history_of(i)); };
   if constexpr (is_one_law<Laws>) {
-    window_at(laws, b, 0).before(b.count, own, kept.earlier);
+    window_block(window_at(laws, b, 0)).before(histories_of(b), b.count, kept.earlier);
   } else {
     for (int i = 0; i < b.count; ++i) read_window(laws.at(i), b, i, kept);
   }
 }
 
 template <class Law, class Laws>
-void write_windows(const Laws& laws, const node_block<Law>& block, const window_columns& kept) {
+void write_windows(const Laws& laws, const node_block<Law>& block, window_columns& kept) {
   const node_block<Law> b = block;  // a copy, so that no store can alias it
-  window_in_step first = window_at(laws, b, 0);
+  given_impulses& given = kept.given;
+#pragma omp simd
   for (int i = 0; i < b.count; ++i) {
-    if (b.refused[i] != 0.0) continue;
-    const stepped_impulse stepped{{kept.given[0].values[i], kept.given[1].values[i], kept.given[2].values[i]},
-                                  kept.reached.values[i]};
-    if constexpr (is_one_law<Laws>) {
-      first.recall(kept.earlier, i);
-      laws.law.record(stepped, first, b.history_of(i));
-    } else {
-      laws.law.record(stepped, window_at(laws, b, i), b.history_of(i));
+    const bool good = b.refused[i] == 0.0;
+    const double status = kept.reached.values[i];
+    given.adds.values[i] = good & Law::adds_to_window(status) ? 1.0 : 0.0;
+    given.clears.values[i] = good & Law::clears_window(status) ? 1.0 : 0.0;
+  }
+  if constexpr (is_one_law<Laws>) {
+    window_block(window_at(laws, b, 0)).add(histories_of(b), b.count, given, kept.earlier);
+  } else {
+    for (int i = 0; i < b.count; ++i) {
+      const window_in_step window = window_at(laws, b, i);
+      if (given.clears.values[i] != 0.0) window.clear(b.history_of(i));
+      if (given.adds.values[i] != 0.0)
+        window.add(b.history_of(i),
+                   {given.impulse[0].values[i], given.impulse[1].values[i], given.impulse[2].values[i]});
     }
   }
 }

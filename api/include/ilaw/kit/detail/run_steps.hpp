@@ -49,11 +49,12 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
   over_nodes<Law, typename Laws::form>(b, run);
 }
 
-// Where a block had to be stepped in full, those after it are at once: neighbours are often alike.
+// Where a block had to be stepped in full, the next one is at once, where the try after that fails the next
+// two, and so on: neighbours are often alike.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 void try_first(const Laws& laws, const node_block<Law>& b) {
-  if (*b.in_full > 0) {
-    --*b.in_full;
+  if (b.in_full->left > 0) {
+    --b.in_full->left;
     return step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
   }
   column left;
@@ -63,8 +64,12 @@ void try_first(const Laws& laws, const node_block<Law>& b) {
   try_block<Law, Delassus, Frame, Layout, Scope>(laws, own, left);
   std::uint64_t bits = 0;  // of 0.0 and 1.0
   for (int i = 0; i < b.count; ++i) bits |= std::bit_cast<std::uint64_t>(left.values[i]);
-  if (bits == 0) return;
-  *b.in_full = alike;
+  if (bits == 0) {
+    b.in_full->after_next = 1;
+    return;
+  }
+  b.in_full->left = b.in_full->after_next;
+  b.in_full->after_next = b.in_full->left < alike ? 2 * b.in_full->left : alike;
   step_block<Law, Delassus, Frame, Layout, Scope>(laws, own);
 }
 

@@ -136,8 +136,13 @@ class window_grid {
   static vector limited_difference(vector bucket, vector next) {
     const vector difference = next - bucket;
     const double most = 2.0 * absolute(bucket.n);
-    const double allowed = 2.0 * bucket.tangential_length(), found = difference.tangential_length();
-    const double factor = found > allowed ? allowed / found : 1.0;
+    const double largest = larger(larger(absolute(bucket.t1), absolute(bucket.t2)),
+                                  larger(absolute(difference.t1), absolute(difference.t2)));
+    const double scale = power_scale_of(largest).down;
+    const vector a = scale * bucket, b = scale * difference;
+    const double allowed = 4.0 * tangential_product(a, a), found = tangential_product(b, b);
+    const bool is_steep = found > allowed;
+    const double factor = square_root((is_steep ? allowed : 1.0) / (is_steep ? found : 1.0));
     return {smaller(larger(difference.n, -most), most), factor * difference.t1, factor * difference.t2};
   }
 
