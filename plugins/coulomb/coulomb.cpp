@@ -85,9 +85,9 @@ struct coulomb : friction_in_packs {
   using form_of_nodes = plain;
   bool has_form_of_nodes() const {
     // Joined as numbers: of truths the loop that asks this would make branches.
-    const double falling = kinetic_friction < friction ? 1.0 : 0.0;
+    const double falls_to = kinetic_friction < friction ? 1.0 : 0.0;
     const double apart = absolute(second() - friction) > 0.0 ? 1.0 : 0.0;
-    return falling + apart == 0.0;
+    return falls_to + apart == 0.0;
   }
 
   // Nodes whose tangents have no name cannot tell them apart: for them one coefficient is all.

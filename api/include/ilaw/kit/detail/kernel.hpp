@@ -217,7 +217,7 @@ double input_defect(const Node& n, double found) {
   if constexpr ((Law::card.inputs & reads_gap) != 0) found = defect(n.gap, found);
   if constexpr (reads_previous<Law> && Scope != scope::impulse) found = defect(n.v_previous, found);
   if constexpr ((Law::card.inputs & reads_area) != 0)
-    found = defect_unless(n.area >= 0.0, defect(n.area, found));
+    found = defect(n.area, found) + defect_unless(n.area >= 0.0);
   return found;
 }
 
