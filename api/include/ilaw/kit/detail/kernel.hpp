@@ -262,10 +262,10 @@ stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int
   // In place: a copy of a node is one that GCC may not take apart.
   stepped<Law, Delassus, Frame> s{load_node<Law, Delassus, Frame, Layout, Scope>(b, i), false};
   auto& n = s.result;
-  const double before = incoming_state_defect<Law>(n.state);
+  const double before = incoming_state_defect<Law>(n.state), inputs = input_defect<Law, Scope>(n, 0.0);
   step(n);
   // In the host's axes a component may be as large as the whole vector: it must be a number there, too.
-  const double found = overflow_defect(n.impulse, b.impulse_guard, input_defect<Law, Scope>(n, 0.0));
+  const double found = overflow_defect(n.impulse, b.impulse_guard, inputs);
   // Of what there is: GCC keeps additions of zero.
   double given = status_defect(n.status);
   if constexpr (!may_pull<Law>) given += pull_defect<Law>(n);
