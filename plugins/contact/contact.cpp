@@ -28,6 +28,8 @@ struct contact {
   static constexpr parameter<contact> parameters[] = {restitution_parameter(&contact::restitution),
                                                       activation_parameter(&contact::activation)};
 
+  static constexpr bool skips_out_of_reach = true;
+
   template <class Node>
   void step(Node& node) const {
     const contact_condition condition = contact_at(node, restitution, activation);

@@ -73,6 +73,7 @@ struct coulomb : friction_in_packs {
 
   // What is not asked is free.
   static constexpr bool answers_every_node = true;
+  static constexpr bool skips_out_of_reach = true;
 
   // One coefficient at all speeds, or one of each tangent, or one that falls: what keeps their loops free of
   // all that follows.
@@ -83,8 +84,10 @@ struct coulomb : friction_in_packs {
   void in_form(Run run) const;
   using form_of_nodes = plain;
   bool has_form_of_nodes() const {
-    const bool falls_anywhere = falls(), is_elliptical = tells_tangents_apart();
-    return !(falls_anywhere | is_elliptical);
+    // Joined as numbers: of truths the loop that asks this would make branches.
+    const double falls_to = kinetic_friction < friction ? 1.0 : 0.0;
+    const double apart = absolute(second() - friction) > 0.0 ? 1.0 : 0.0;
+    return falls_to + apart == 0.0;
   }
 
   // Nodes whose tangents have no name cannot tell them apart: for them one coefficient is all.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 
 namespace ilaw::testing {
@@ -162,6 +163,34 @@ TEST_P(Contract, NodesThatAreNotUsualChangeNoOther) {
             << "without outputs, frame " << frame << ", SoA " << soa << ", apart " << separate_state;
       }
   }
+}
+
+// Blocks of nodes out of reach may take a shorter way. Here they do, and among others they do not: two blocks
+// in flight, in the second one node that closes within the step, then two that touch.
+TEST_P(Contract, NodesInFlightGetWhatTheyGetAmongOthers) {
+  constexpr std::size_t block = 64, n = 4 * block, closing = block + 5, bad = 7;
+  std::vector<std::int32_t> mixed(n);
+  for (std::size_t i = 0; i < n; ++i) mixed[i] = static_cast<std::int32_t>(i % 4 * block + i / 4);
+  for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
+    for (const auto& [form, components] :
+         {std::pair{ILAW_DELASSUS_SCALAR, 1}, {ILAW_DELASSUS_DIAGONAL, 3}, {ILAW_DELASSUS_FULL, 6}}) {
+      const bool global = frame == ILAW_FRAME_GLOBAL;
+      if (!(make(frame).law().delassus_forms & static_cast<std::uint32_t>(form))) continue;
+      const ilaw::interface law = make(frame, static_cast<std::uint32_t>(form));
+      Nodes nodes(n, 3, components);
+      std::fill_n(nodes.gap.begin(), 2 * block, 0.5);
+      nodes.gap[closing] = 1e-6;
+      for (std::size_t c = 0; c < 3; ++c)
+        nodes.v_free[3 * closing + c] = global ? -nodes.normal[3 * closing + c] : (c == 0 ? -1.0 : 0.0);
+      nodes.v_previous[3 * bad] = std::numeric_limits<double>::quiet_NaN();
+      for (Layout apart :
+           {Layout{}, Layout{.energy = false}, Layout{.outputs = false}, Layout{.soa = true}}) {
+        const Results alone = run(law, nodes, apart, global);
+        apart.order = mixed;
+        EXPECT_TRUE(run(law, nodes, apart, global) == alone)
+            << "frame " << frame << ", form " << form << ", outputs " << apart.outputs << apart.energy;
+      }
+    }
 }
 
 // From some thousand nodes on, arrays are asked for ahead, and blocks are worked on in pieces.

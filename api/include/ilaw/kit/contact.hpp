@@ -32,14 +32,14 @@ constexpr contact_condition contact_leaving_at(double target, double slack, doub
 template <class Node>
 contact_condition contact_at(const Node& node, double restitution, double activation) {
   const double rebound = -restitution * node.v_previous.n;
-  const double rate = 1.0 / node.position_step;  // the same for all nodes: divided once
-  const double arrival = -positive_part(node.gap) * rate;
-  const double predicted = rebound > 0.0 ? rebound : arrival;
-  // Where the gap is positive this is next_gap, to the last bit.
-  const double ahead = positive_part(node.gap) + node.position_step * node.v_free.n;
+  // The same for all nodes, and zero for moreau: where v_N^- >= 0 no target from -e v_N^- to 0 changes excess
+  // or rest.
   const bool predicts = activation == predictive;
-  return contact_leaving_at(predicts ? predicted : rebound, predicts ? ahead : node.gap, node.v_free.n,
-                            node.v_previous.n);
+  const double step = predicts ? node.position_step : 0.0, rate = predicts ? -1.0 / node.position_step : 0.0;
+  const double open = positive_part(node.gap), arrival = open * rate;
+  // Where the gap is positive this is next_gap, to the last bit.
+  const double ahead = open + step * node.v_free.n;
+  return contact_leaving_at(rebound > 0.0 ? rebound : arrival, ahead, node.v_free.n, node.v_previous.n);
 }
 
 }  // namespace ilaw::kit

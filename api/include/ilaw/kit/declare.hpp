@@ -15,6 +15,10 @@
 //   static constexpr bool rests_by_parameters = true;     ILAW_CAN_REST is for capabilities() to promise: it
 //   is
 //                                                         not promised where parameters vary
+//   static constexpr bool skips_out_of_reach = true;      the step gives such nodes (see node.hpp) no impulse
+//   and
+//                                                         the status free, and refuses none: where all are,
+//                                                         the kit does so in its place
 //   template <class Node> bool try_step(Node&) const      the usual case; true: the same as step, bit for bit
 //   template <class Node> double stable_velocity_step(const Node&) const   if it limits the step: by how much
 //                                                         at this node, whatever its state; see ilaw_report

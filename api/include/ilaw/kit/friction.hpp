@@ -60,17 +60,19 @@ inline constexpr double sticking_part = 1.0 - 0x1p-46;
 // than it costs to stop that from behind.
 template <class V>
 struct turning {
-  V square, along, impact;  // q_T^2, q_T.rest_T, h_T r_N rest_N: times a power of two, against overflow
+  // q_T^2, q_T.rest_T, h_T r_N rest_N: against overflow, times a power of two, down, and the first times its
+  // square.
+  V square, along, impact, down;
 
   auto gains() const { return along < impact; }
 };
 template <class V>
 turning<V> turning_of(V h_t, V normal, scaled_length<V> speed, V along, V rest_n) {
-  return {speed.square, along, h_t * (speed.down * normal) * (speed.down * rest_n)};
+  return {speed.square, along, h_t * (speed.down * normal) * rest_n, speed.down};
 }
 template <class V>
 fraction<V> stopping_part(turning<V> t) {
-  const fraction<V> part = root_of_work(t.square, -(t.square + t.along), t.impact);
+  const fraction<V> part = root_of_work(t.square, -(t.square + t.down * t.along), t.down * t.impact);
   const auto gains = t.gains();
   const auto far = part.under == infinity;  // v^- is so much larger than q that nothing is left
   return {select(gains, select(far, V(0.0), part.over), V(1.0)), select(gains & !far, part.under, V(1.0))};
@@ -83,9 +85,10 @@ struct rubbing_factor {
   mask_of<V> moves;
   V status;  // where the contact is pressed
 };
+// speed: down |q_T|.
 template <class V>
-rubbing_factor<V> rub(V h_t, V normal, V speed, fraction<V> part, V friction) {
-  const V limit = friction_limit(friction, normal), under = h_t * part.under;
+rubbing_factor<V> rub(V h_t, V normal, V speed, fraction<V> part, V friction, V down) {
+  const V limit = down * friction_limit(friction, normal), under = h_t * part.under;
   const auto slips = speed * part.over > limit * under;
   // Before the division, of which GCC would else make two; a choice between numbers, not between truths.
   const auto turns = part.over < sticking_part * part.under;
@@ -100,9 +103,9 @@ template <class V>
 rubbing_factor<V> rub_from(V h_t, V normal, const V* q, const V* rest, V friction) {
   const scaled_length<V> speed = scaled_length_of(q[1], q[2]);
   const V down = speed.down;
-  const V along = (down * q[1]) * (down * rest[1]) + (down * q[2]) * (down * rest[2]);
+  const V along = (down * q[1]) * rest[1] + (down * q[2]) * rest[2];
   const turning<V> turns = turning_of(h_t, normal, speed, along, rest[0]);
-  return rub(h_t, normal, speed.length(), stopping_part(turns), friction);
+  return rub(h_t, normal, speed.root(), stopping_part(turns), friction, down);
 }
 
 template <class Vector>
@@ -111,10 +114,11 @@ struct friction_result {
   bool slips;
   double status;  // where the contact is pressed
 };
+// speed: down |q_T|.
 template <class Delassus, class Vector>
 friction_result<Vector> rub_along(const Delassus& delassus, double normal, Vector q, double speed,
-                                  fraction<double> part, double friction) {
-  const auto found = rub(delassus.tangential(), normal, speed, part, friction);
+                                  fraction<double> part, double friction, double down = 1.0) {
+  const auto found = rub(delassus.tangential(), normal, speed, part, friction, down);
   // From zero, so that what does not rub gets 0, and not -0.
   friction_result<Vector> result{Vector{} - found.factor * q, found.moves, found.status};
   result.impulse.n = normal;
@@ -128,7 +132,7 @@ double pressing_impulse(const Delassus& delassus, const contact_problem<Vector>&
 template <class Delassus, class Vector>
 turning<double> turning_at(const Delassus& delassus, double normal, const contact_problem<Vector>& contact,
                            scaled_length<double> speed) {
-  const double along = tangential_product(speed.down * contact.q, speed.down * contact.rest);
+  const double along = tangential_product(speed.down * contact.q, contact.rest);
   return turning_of(delassus.tangential(), normal, speed, along, contact.rest.n);
 }
 
@@ -142,7 +146,7 @@ friction_result<Vector> solve_contact_friction(const Delassus& delassus,
   const double normal = pressing_impulse(delassus, contact);
   const auto speed = contact.q.scaled_tangential_length();
   const auto part = stopping_part(turning_at(delassus, normal, contact, speed));
-  return rub_along(delassus, normal, contact.q, speed.length(), part, friction);
+  return rub_along(delassus, normal, contact.q, speed.root(), part, friction, speed.down);
 }
 
 template <class Node, class Vector>
@@ -162,7 +166,7 @@ template <class Node, class Vector>
 bool try_isotropic_friction(Node& node, const contact_problem<Vector>& contact, double friction) {
   const double normal = pressing_impulse(node.delassus, contact);
   const auto speed = contact.q.scaled_tangential_length();
-  give(node, rub_along(node.delassus, normal, contact.q, speed.length(), {}, friction));
+  give(node, rub_along(node.delassus, normal, contact.q, speed.root(), {}, friction, speed.down));
   return !turning_at(node.delassus, normal, contact, speed).gains();
 }
 

@@ -57,12 +57,15 @@ inline constexpr double smallest_delassus = std::numeric_limits<double>::min();
 // definite. It lies between the condition number and nine times that.
 inline constexpr double largest_condition = 0x1p43;
 
-// Checks give a defect: 0.0 where all is well, NaN where not. Defects add up, and need no branch and no
-// logical operation, which compilers vectorise less reliably than arithmetic.
-constexpr double defect(double x) { return x - x; }
-constexpr double defect(vector a) { return defect(a.n) + defect(a.t1) + defect(a.t2); }
-constexpr double defect(projected_vector a) { return defect(a.n) + defect(a.x) + defect(a.y) + defect(a.z); }
-constexpr double defect_unless(bool good) { return good ? 0.0 : std::numeric_limits<double>::quiet_NaN(); }
+// Checks give a defect: zero where all is well, NaN where not. They need no branch and no logical operation,
+// which compilers vectorise less reliably than arithmetic. Defects add up; found, what checks before gave, is
+// handed on for less: one product for each number, since zero times what is not finite is NaN.
+constexpr double defect(double x, double found = 0.0) { return found * x; }
+constexpr double defect(vector a, double found = 0.0) { return found * a.n * a.t1 * a.t2; }
+constexpr double defect(projected_vector a, double found = 0.0) { return found * a.n * a.x * a.y * a.z; }
+constexpr double defect_unless(bool good, double found = 0.0) {
+  return good ? found : std::numeric_limits<double>::quiet_NaN();
+}
 
 // The forms of H, with the same operations: H r, H^-1 v, and the defect of one that is not finite and, by
 // largest_condition, positive definite. anisotropy() is zero where closed forms for H = diag(h_N, h_T, h_T)
@@ -75,11 +78,11 @@ struct transverse_delassus {
   double normal() const { return n; }
   double tangential() const { return t; }
   double anisotropy() const { return 0.0; }
-  // tr(H) tr(H^-1) = 5 + 2 (n/t + t/n) here. What is not finite leaves n - t so.
-  double positive_defect() const {
-    constexpr double largest_ratio = 0.5 * largest_condition;
-    const double low = smaller(n, t), high = larger(n, t);
-    return defect(n - t) + defect_unless((low >= smallest_delassus) & (high <= largest_ratio * low));
+  // tr(H) tr(H^-1) = 5 + 2 (n/t + t/n) here. What is not finite leaves n - t so, and is no number or large.
+  double positive_defect(double found = 0.0) const {
+    constexpr double least_ratio = 2.0 / largest_condition;
+    const double low = smaller(n, t), apart = absolute(n - t);
+    return defect_unless(least_ratio * apart <= low - smallest_delassus, found);
   }
   vector times(vector r) const { return {n * r.n, t * r.t1, t * r.t2}; }
   projected_vector times(projected_vector r) const { return {n * r.n, t * r.x, t * r.y, t * r.z}; }
@@ -102,15 +105,11 @@ struct diagonal_delassus {
   double normal() const { return n; }
   double tangential() const { return t1; }
   double anisotropy() const { return absolute(t1 - t2); }
-  double positive_defect() const {
-    return defect(n) + defect(t1) + defect(t2) + defect_unless(n >= smallest_delassus) +
-           defect_unless(t1 >= smallest_delassus) + defect_unless(t2 >= smallest_delassus) +
-           condition_defect();
-  }
-  double condition_defect() const {
+  double positive_defect(double found = 0.0) const {
     const double trace = n + t1 + t2, scale = power_scale_of(trace).down;
-    const double a = scale * n, b = scale * t1, c = scale * t2;
-    return defect_unless(scale * trace * (b * c + a * c + a * b) <= largest_condition * (a * b * c));
+    const double a = scale * n, b = scale * t1, c = scale * t2, low = smaller(smaller(n, t1), t2);
+    const bool is_fair = scale * trace * (b * c + a * c + a * b) <= largest_condition * (a * b * c);
+    return defect_unless((low >= smallest_delassus) & is_fair, found);
   }
   vector times(vector r) const { return {n * r.n, t1 * r.t1, t2 * r.t2}; }
   vector solve(vector v) const { return {1.0 / n * v.n, 1.0 / t1 * v.t1, 1.0 / t2 * v.t2}; }
@@ -131,11 +130,11 @@ struct full_delassus {
     double d0, d1, d2, by_d0, by_d1, l10, l20, l21;
 
     // Without a division: tr(H^-1) is the sum of these products over that of the pivots.
-    double condition_defect(double trace) const {
+    bool is_fair(double trace) const {
       const double scale = power_scale_of(trace).down, l = l10 * l21 - l20;
       const double a = scale * d0, b = scale * d1, c = scale * d2;
       const double products = b * c + (1.0 + l10 * l10) * (a * c) + (1.0 + l21 * l21 + l * l) * (a * b);
-      return defect_unless(scale * trace * products <= largest_condition * (a * b * c));
+      return scale * trace * products <= largest_condition * (a * b * c);
     }
   };
   factors factorise() const {
@@ -144,11 +143,11 @@ struct full_delassus {
     const double rest = t12 - l20 * n1, l21 = rest * by_d1;
     return {nn, d1, (t22 - l20 * n2) - l21 * rest, by_d0, by_d1, l10, l20, l21};
   }
-  double positive_defect() const {
+  double positive_defect(double found = 0.0) const {
     const factors f = factorise();
-    // What is not finite is not within the condition: it leaves no number to compare, or a trace of inf.
-    return defect_unless(smaller(f.d0, smaller(f.d1, f.d2)) >= smallest_delassus) +
-           f.condition_defect(nn + t11 + t22);
+    // What is not finite is not fair: it leaves no number to compare, or a trace of inf.
+    const double low = smaller(smaller(f.d0, f.d1), f.d2);
+    return defect_unless((low >= smallest_delassus) & f.is_fair(nn + t11 + t22), found);
   }
   vector times(vector r) const {
     return {nn * r.n + n1 * r.t1 + n2 * r.t2, n1 * r.n + t11 * r.t1 + t12 * r.t2,

@@ -141,7 +141,7 @@ struct nodes_of_pack {
 
 // Solves the problems of a block in packs. Returns how many were left to be solved alone.
 template <class Form>
-[[gnu::noinline]] int solve_asked(const Form& law, asked_block<Form>& asked, int count) {
+[[gnu::noinline, gnu::flatten]] int solve_asked(const Form& law, asked_block<Form>& asked, int count) {
   using problem_type = typename Form::template problem<pack>;
   using answer_type = typename Form::template answer<pack>;
   int alone_count = 0;

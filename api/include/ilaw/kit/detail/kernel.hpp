@@ -217,14 +217,13 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
 }
 
 template <class Law, scope Scope, class Node>
-double input_defect(const Node& n) {
-  double sum =
-      defect(n.v_free) + n.delassus.positive_defect();  // of what there is: GCC keeps additions of zero
-  if constexpr ((Law::card.inputs & reads_gap) != 0) sum += defect(n.gap);
-  if constexpr (reads_previous<Law> && Scope != scope::impulse) sum += defect(n.v_previous);
-  if constexpr ((Law::card.inputs & reads_area) != 0) sum += defect(n.area) + defect_unless(n.area >= 0.0);
-  if constexpr (has_state<Law>) sum += incoming_state_defect<Law>(n.state);
-  return sum;
+double input_defect(const Node& n, double found) {
+  found = defect(n.v_free, n.delassus.positive_defect(found));
+  if constexpr ((Law::card.inputs & reads_gap) != 0) found = defect(n.gap, found);
+  if constexpr (reads_previous<Law> && Scope != scope::impulse) found = defect(n.v_previous, found);
+  if constexpr ((Law::card.inputs & reads_area) != 0)
+    found = defect(n.area, found) + defect_unless(n.area >= 0.0);
+  return found;
 }
 
 // What a law may not give: a status that ilaw.h does not have, a pull or an impulse out of reach that its
@@ -253,8 +252,8 @@ inline double size_of(projected_vector a) {
   return (absolute(a.n) + absolute(a.x)) + (absolute(a.y) + absolute(a.z));
 }
 template <class Vector>
-double overflow_defect(Vector impulse, double guard) {
-  return defect(guard * size_of(impulse));
+double overflow_defect(Vector impulse, double guard, double found = 0.0) {
+  return defect(guard * size_of(impulse), found);
 }
 template <class Node>
 double distance_defect(const Node& n) {
@@ -268,16 +267,17 @@ stepped<Law, Delassus, Frame> step_node(Step step, const node_block<Law>& b, int
   // In place: a copy of a node is one that GCC may not take apart.
   stepped<Law, Delassus, Frame> s{load_node<Law, Delassus, Frame, Layout, Scope>(b, i), false};
   auto& n = s.result;
-  const double before = input_defect<Law, Scope>(n);
+  const double before = incoming_state_defect<Law>(n.state), inputs = input_defect<Law, Scope>(n, 0.0);
   step(n);
   // In the host's axes a component may be as large as the whole vector: it must be a number there, too.
-  double sum = before + status_defect(n.status);
-  if constexpr (!may_pull<Law>) sum += pull_defect<Law>(n);
-  if constexpr (has_state<Law>) sum += state_defect<Law>(n.state);
-  if constexpr (!may_act_anywhere<Law>) sum += distance_defect(n);
-  sum += overflow_defect(n.impulse, b.impulse_guard);
+  const double found = overflow_defect(n.impulse, b.impulse_guard, inputs);
+  // Of what there is: GCC keeps additions of zero.
+  double given = status_defect(n.status);
+  if constexpr (!may_pull<Law>) given += pull_defect<Law>(n);
+  if constexpr (!may_act_anywhere<Law>) given += distance_defect(n);
+  if constexpr (has_state<Law>) given += before + state_defect<Law>(n.state);
   // One comparison: of two, where refused was chosen, GCC makes branches, and no vector code.
-  s.accepted = sum + n.refused == 0.0;
+  s.accepted = found + given == -n.refused;
   return s;
 }
 

@@ -24,10 +24,18 @@ struct law_per_node {
   auto in_form_of_nodes() const {
     return law_per_node<Law, typename Law::form_of_nodes>{{law}, parameters, valid};
   }
-  bool have_form_of_nodes(int count) const {
-    int others = 0;
-    for (int i = 0; i < count; ++i) others += at(i).has_form_of_nodes() ? 0 : 1;
-    return others == 0;
+  // On its own, and from copies, lest it be no vector code.
+  [[gnu::noinline, gnu::flatten]] bool have_form_of_nodes(int count) const {
+    const law_per_node laws = *this;
+    const auto differs = [](const law_per_node& own, int i) {
+      return own.at(i).has_form_of_nodes() ? 0.0 : 1.0;
+    };
+    column others;
+#pragma omp simd
+    for (int i = 0; i < count; ++i) others.values[i] = differs(laws, i);
+    std::uint64_t bits = 0;
+    for (int i = 0; i < count; ++i) bits |= std::bit_cast<std::uint64_t>(others.values[i]);
+    return bits == 0;
   }
 
  private:
@@ -92,20 +100,23 @@ class node_parameters {
   }
 
   void take(std::uint32_t k, const node_range& nodes) {
-    const ilaw_parameter& p = *made_.per_node[k];
-    double* own = values_[position_of(k)].values;
-    const double* given = gather(batch_.per_node_parameters[k], nodes, own);
+    const parameter_range range(*made_.per_node[k]);
+    double *const own = values_[position_of(k)].values, *const valid = valid_.values;
+    const double* const given = gather(batch_.per_node_parameters[k], nodes, own);
+#pragma omp simd
     for (int i = 0; i < nodes.count; ++i) {
       own[i] = given[i];
-      valid_.values[i] = in_range(p, own[i]) ? valid_.values[i] : 0.0;
+      valid[i] = range.has(given[i]) ? valid[i] : 0.0;
     }
   }
 
   // Elsewhere the law stays as it was.
   void keep_valid(int parameter, int nodes) {
     const double otherwise = law_.*Law::parameters[parameter].member;
-    double* own = values_[parameter].values;
-    for (int i = 0; i < nodes; ++i) own[i] = valid_.values[i] != 0.0 ? own[i] : otherwise;
+    double* const own = values_[parameter].values;
+    const double* const valid = valid_.values;
+#pragma omp simd
+    for (int i = 0; i < nodes; ++i) own[i] = valid[i] != 0.0 ? own[i] : otherwise;
   }
 
   const instance<Law>& made_;

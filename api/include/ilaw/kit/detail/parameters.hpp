@@ -68,11 +68,20 @@ struct time_table {
   }
 };
 
-inline bool in_range(const ilaw_parameter& p, double value) {
-  if (value == infinity) return p.infinity_allowed != 0;
-  if (!(value <= p.maximum)) return false;
-  return p.minimum_excluded ? value > p.minimum : value >= p.minimum;
-}
+// What a parameter may be, without a branch: the loops over nodes ask it, too.
+struct parameter_range {
+  double minimum, excluded, maximum, beyond;
+
+  explicit parameter_range(const ilaw_parameter& p)
+      : minimum(p.minimum),
+        excluded(p.minimum_excluded ? p.minimum : std::numeric_limits<double>::quiet_NaN()),
+        maximum(smaller(p.maximum, std::numeric_limits<double>::max())),
+        beyond(p.infinity_allowed ? infinity : std::numeric_limits<double>::quiet_NaN()) {}
+  bool has(double value) const {
+    return (value >= minimum) & (value != excluded) & ((value <= maximum) | (value == beyond));
+  }
+};
+inline bool in_range(const ilaw_parameter& p, double value) { return parameter_range(p).has(value); }
 
 inline void add_range(message& text, const ilaw_parameter& p) {
   text.add("%s%g, ", p.minimum_excluded ? "(" : "[", p.minimum);

@@ -73,12 +73,66 @@ void try_first(const Laws& laws, const node_block<Law>& b) {
   step_block<Law, Delassus, Frame, Layout, Scope>(laws, own);
 }
 
+// Whether a law leaves nodes out of reach alone whatever else they are, so that its step need not run.
+template <class Law>
+inline constexpr bool skips_out_of_reach = [] {
+  if constexpr (requires { Law::skips_out_of_reach; }) {
+    static_assert(!may_act_anywhere<Law>, "skips_out_of_reach is for laws without a state that act in reach");
+    return Law::skips_out_of_reach;
+  }
+  return false;
+}();
+
+// Whether the step need not run at a block of nodes out of reach. Not in axes where +0 may turn into -0.
+template <class Law, class Frame, class Laws>
+inline constexpr bool may_fly = !is_for_old_processors && is_one_law<Laws> && skips_out_of_reach<Law> &&
+                                !std::is_same_v<Frame, stored_frame>;
+
+// Whether no gap is closed. The first few most often tell where nodes touch.
+template <int Nodes>
+bool are_open(const double* gap, const double* offset) {
+  std::uint64_t closed = 0;
+  for (int i = 0; i < Nodes; ++i) closed |= gap[i] - offset[i] > 0.0 ? 0U : 1U;
+  return closed == 0;
+}
+template <class Law>
+bool may_be_in_flight(const node_block<Law>& b) {
+  constexpr int first = 8;
+  return b.count == block_size && are_open<first>(b.gap, b.gap_offset) &&
+         are_open<block_size>(b.gap, b.gap_offset);
+}
+
+// All nodes as if they were out of reach. False: one of them is not, and they are to be stepped.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope>
+[[gnu::noinline, gnu::flatten]] void fly_block(const node_block<Law>& b, column& reached) {
+  const auto run = [&reached](const node_block<Law>& own, int i) {
+    const auto step = [&reached, i](auto& node) {
+      reached.values[i] = is_out_of_reach(node) ? 0.0 : 1.0;
+      node.impulse = {};
+      node.status = status::free;
+    };
+    run_node<Law, Delassus, Frame, Layout, Scope>(0, own, i, step);
+  };
+  over_nodes<Law, Law>(b, run);
+}
+template <class Law, class Delassus, class Frame, class Layout, scope Scope>
+bool are_in_flight(const node_block<Law>& b) {
+  if (!may_be_in_flight(b)) return false;
+  column reached;
+  fly_block<Law, Delassus, Frame, Layout, Scope>(b, reached);
+  std::uint64_t bits = 0;  // of 0.0 and 1.0
+  for (int i = 0; i < block_size; ++i) bits |= std::bit_cast<std::uint64_t>(reached.values[i]);
+  return bits == 0;
+}
+
 // Returns how many nodes were solved one by one, as ilaw/profile.h counts them.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 int run_steps(const Laws& laws, const node_block<Law>& b) {
   using form = typename Laws::form;
   static_assert(tries_rightly<form, node_in<Law, Delassus, Frame>>(),
                 "try_step must be template <class Node> bool try_step(Node& node) const");
+  if constexpr (may_fly<Law, Frame, Laws>)
+    if (are_in_flight<Law, Delassus, Frame, Layout, Scope>(b)) return 0;
   if constexpr (asks_first<form, node_in<Law, Delassus, Frame>>) {
     return run_asked<Law, Delassus, Frame, Layout, Scope>(laws, b);
   } else {
