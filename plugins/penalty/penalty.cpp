@@ -211,8 +211,7 @@ struct penalty {
     if constexpr (!is_plain(Kind)) normal.damping = spring.damper(delassus);
     const auto found = normal.linear();
     const bool acts = acts_on(node);
-    const double moved = normal.next(found.impulse, found.opens);
-    give<Kind>(node, kept_if(acts, found.impulse), kept_if(acts, moved));
+    give<Kind>(node, kept_if(acts, found.impulse), kept_if(acts, normal.next(found.impulse, found.opens)));
   }
 
   // Gives the node what its normal spring gives, and what friction makes of it.
@@ -236,8 +235,7 @@ struct penalty {
     if constexpr (Kind == spring_kind::rigid_plain) return {};
     const double h = node.velocity_step, per_impulse = 1.0 / (h * tangential_stiffness);
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2}, r = node.impulse;
-    const vector v = node.v_free + node.delassus.times(r);
-    const vector moved = spring + (0.5 * h) * (node.v_previous + v);
+    const vector v = node.v_free + node.delassus.times(r), moved = spring + (0.5 * h) * (node.v_previous + v);
     const double most = per_impulse * friction_limit(friction, r.n), length = moved.tangential_length();
     const bool is_stiff = h * h * tangential_stiffness * node.delassus.tangential() > 4.0;
     const double kept = (slides & (length > most)) ? most / length : 1.0;
@@ -347,19 +345,8 @@ struct penalty::form : penalty {
     open.previous = node.v_previous.n;
     open.delassus = node.delassus.normal();
     open.indentation = indentation_of(node);
-    if constexpr (!is_smooth(Kind) && !has_transverse_delassus<Node>) {
-      const vector q = sliding_velocity<Kind>(node);
-      const double softness = softness_of(node);
-      local_coulomb entries{};
-      fill(entries, node.delassus);
-      open.c1 = entries.h[3];
-      open.c2 = entries.h[4];
-      open.a11 = 0.5 * entries.h[1] + softness;
-      open.a22 = 0.5 * entries.h[2] + softness;
-      open.a12 = 0.5 * entries.h[5];
-      open.q1 = q.t1;
-      open.q2 = q.t2;
-    }
+    if constexpr (!is_smooth(Kind) && !has_transverse_delassus<Node>)
+      penalty_law::couple(open, node.delassus, sliding_velocity<Kind>(node), softness_of(node));
     const bool acts = acts_on(node);
     answered(node, {});
     return acts;
@@ -385,8 +372,7 @@ struct penalty::form : penalty {
       give<Kind>(node, a.impulse, a.indentation);
     } else {
       node.impulse = {a.impulse, a.t1, a.t2};
-      const bool slides = tell(node, a.outcome != penalty_law::sticks);
-      store<Kind>(node, a.indentation, strained<Kind>(node, slides));
+      store<Kind>(node, a.indentation, strained<Kind>(node, tell(node, a.outcome != penalty_law::sticks)));
     }
   }
 };

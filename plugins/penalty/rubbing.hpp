@@ -19,6 +19,19 @@ struct rubbing {
   V a11, a22, a12;  // A = H_T/2 + 2/(h^2 k_T); zero where the normal spring alone is asked for
   V q1, q2;         // q + c r_N/2 + A r_T is the mean velocity of what slips
 };
+// What an H that couples the tangents makes of the spring in them, whose softness is 2/(h^2 k_T).
+template <class Delassus>
+void couple(rubbing<double>& open, const Delassus& delassus, kit::vector q, double softness) {
+  kit::local_coulomb entries{};
+  fill(entries, delassus);
+  open.c1 = entries.h[3];
+  open.c2 = entries.h[4];
+  open.a11 = 0.5 * entries.h[1] + softness;
+  open.a22 = 0.5 * entries.h[2] + softness;
+  open.a12 = 0.5 * entries.h[5];
+  open.q1 = q.t1;
+  open.q2 = q.t2;
+}
 template <class V>
 struct rubbed {
   V impulse, t1, t2, indentation, outcome;

@@ -3,38 +3,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/kit/detail/block_room.hpp>
 #include <ilaw/kit/detail/instance.hpp>
 #include <ilaw/kit/detail/kernel.hpp>
 #include <ilaw/kit/detail/tangent_columns.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
-
-// Columns of a block that are copies: where the host's arrays are not consecutive, or are turned to the local
-// frame.
-template <class Law>
-struct block_room {
-  static constexpr int states = state_doubles<Law>;
-  column v_free[3], v_previous[3], delassus[6], gap, gap_offset, area, normal[3], tangent[3];
-  column impulse[3], velocity[3], energy[ILAW_ENERGY_COUNT], status, refused, stirs;
-  column state_in[states + 1], state_out[states + 1];
-  column first_tangent[3], second_tangent[3], frame_before[6], finite_previous[3];
-  std::int64_t nodes[has_history<Law> ? block_size : 1];  // where history is, of listed nodes
-};
-
-// Entry of the host's state that holds double k of struct state; -1: a component beyond the dimension.
-template <class Law>
-int state_entry(int k, int dimension) {
-  int entry = 0;
-  if constexpr (has_state<Law>)
-    for (std::size_t v = 0; v < std::size(Law::state_variables); ++v) {
-      const auto& member = Law::state_variables[v].member;
-      const int component = k - state_places<Law>[v];
-      if (component >= 0 && component < member.doubles())
-        return component < member.components(dimension) ? entry + component : -1;
-      entry += member.components(dimension);
-    }
-  return -1;
-}
 
 template <class Law, class Layout>
 class batch_walk {

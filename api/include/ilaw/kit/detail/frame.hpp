@@ -21,8 +21,8 @@ constexpr axis cross(axis a, axis b) {
 }
 constexpr bool unit(axis a) { return __builtin_fabs(dot(a, a) - 1.0) <= unit_tolerance; }
 
-// By its bits: of a choice GCC makes two sets of stores, each beneath a mask. Old processors have no masks, and
-// choose faster.
+// By its bits: of a choice GCC makes two sets of stores, each beneath a mask. Old processors have no masks,
+// and choose faster.
 inline axis kept_if(bool condition, axis a) {
   if constexpr (is_for_old_processors)
     return {condition ? a.x : 0.0, condition ? a.y : 0.0, condition ? a.z : 0.0};
