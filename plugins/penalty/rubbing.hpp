@@ -9,6 +9,8 @@
 
 #include "compression.hpp"
 
+#include <ilaw/kit/friction.hpp>
+
 namespace penalty_law {
 
 template <class V>

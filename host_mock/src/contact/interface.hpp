@@ -135,8 +135,8 @@ class Interface {
   Law law_;
   ContactArrays contacts_;
   ProximityFilter proximity_;
-  double closing_ = 0.0;  // how far a gap may close in the coming step
-  bool acts_ = false;     // between birth and death
+  double closing_ = 0.0;           // how far a gap may close in the coming step
+  bool acts_ = false;              // between birth and death
   ContactList near_, near_nodes_;  // contacts, and the nodes that they are of
   const ContactList none_;
   std::vector<std::ptrdiff_t> chunk_starts_;  // in near_, and its end

@@ -8,17 +8,14 @@
 //   struct state { ... };                                 named memory, and
 //   static constexpr state_variable<state> state_variables[];   its description, see state.hpp
 //   std::uint32_t inputs() const;                         what these parameters read (default: card.inputs)
-//   static constexpr std::uint32_t always_reads;          what inputs() has among them for all parameters:
-//   the
-//                                                         loops without it are not compiled (default: none)
+//   static constexpr std::uint32_t always_reads;          what inputs() has for all parameters (default:
+//                                                         none): loops without it are not compiled
 //   std::uint32_t capabilities() const;                   what these parameters can do (default: the card's)
-//   static constexpr bool rests_by_parameters = true;     ILAW_CAN_REST is for capabilities() to promise: it
-//   is
-//                                                         not promised where parameters vary
-//   static constexpr bool skips_out_of_reach = true;      the step gives such nodes (see node.hpp) no impulse
-//   and
-//                                                         the status free, and refuses none: where all are,
-//                                                         the kit does so in its place
+//   static constexpr bool rests_by_parameters = true;     capabilities() promises ILAW_CAN_REST, and nobody
+//                                                         does where parameters vary
+//   static constexpr bool skips_out_of_reach = true;      the step frees such nodes (see node.hpp) without an
+//                                                         impulse and refuses none: where all are so, the kit
+//                                                         does it
 //   template <class Node> bool try_step(Node&) const      the usual case; true: the same as step, bit for bit
 //   template <class Node> double stable_velocity_step(const Node&) const   if it limits the step: by how much
 //                                                         at this node, whatever its state; see ilaw_report

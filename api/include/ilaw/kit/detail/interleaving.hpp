@@ -22,8 +22,8 @@ bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
          is_interleaved(b.impulse) && may_be(b.v_previous) && may_be(b.velocity) &&
          (made.frame == ILAW_FRAME_LOCAL || is_interleaved(b.normal));
 }
-// For which laws they are worth their loops: one that asks first reads its nodes several times, for which an H
-// with much of its own to solve wants columns.
+// For which laws they are worth their loops. One that asks first reads its nodes several times, which columns
+// serve better where H leaves much to solve.
 template <class Law, class Delassus, class Frame>
 inline constexpr bool may_interleave =
     in_space<Law> && !is_for_old_processors && !std::is_same_v<Frame, stored_frame> &&
