@@ -64,8 +64,8 @@ void write_windows(const Laws& laws, const node_block<Law>& block, window_column
   for (int i = 0; i < b.count; ++i) {
     const bool good = b.refused[i] == 0.0;
     const double status = kept.reached.values[i];
-    given.adds.values[i] = good & Law::adds_to_window(status) ? 1.0 : 0.0;
-    given.clears.values[i] = good & Law::clears_window(status) ? 1.0 : 0.0;
+    given.adds.values[i] = (good & Law::adds_to_window(status)) ? 1.0 : 0.0;
+    given.clears.values[i] = (good & Law::clears_window(status)) ? 1.0 : 0.0;
   }
   if constexpr (is_one_law<Laws>) {
     window_block(window_at(laws, b, 0)).add(histories_of(b), b.count, given, kept.earlier);

@@ -129,7 +129,7 @@ class window_block : public window_in_step {
     for (int i = 0; i < count; ++i) {
       const double stamp = r.head[0].values[i];
       nodes[found] = i;
-      found += (stamp == stamp_) | (stamp == empty) ? 0 : 1;
+      found += ((stamp == stamp_) | (stamp == empty)) ? 0 : 1;
     }
     return found;
   }
@@ -198,7 +198,7 @@ class window_block : public window_in_step {
       r.current[1].values[i] = is_added ? current.n + impulse.n : current.n;
       r.current[2].values[i] = is_added ? current.t1 + impulse.t1 : current.t1;
       r.current[3].values[i] = is_added ? current.t2 + impulse.t2 : current.t2;
-      given.adds.values[i] = is_added | !is_there ? 0.0 : adds;
+      given.adds.values[i] = (is_added | !is_there) ? 0.0 : adds;
       done |= std::bit_cast<std::uint64_t>(is_added ? 1.0 : 0.0);
     }
     return done != 0;
