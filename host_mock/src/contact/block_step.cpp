@@ -217,11 +217,11 @@ class BlockWalk {
     return outcome.refusal.code == ILAW_OK;
   }
 
-  // Returns how many contacts are free. Most often all have the first one's status, and one round will do;
-  // broken libraries' statuses do not come here.
+  // Returns how many contacts are free. Most often all have the first one's status, and one round will do.
   std::ptrdiff_t count_statuses(ContactSums& sums) const {
     std::ptrdiff_t free = 0, others = count_;
-    for (std::uint8_t k = status_[0]; others > 0; k = (k + 1) % ILAW_STATUS_COUNT) {
+    for (int round = 0; others > 0 && round < ILAW_STATUS_COUNT; ++round) {
+      const auto k = static_cast<std::uint8_t>((status_[0] + round) % ILAW_STATUS_COUNT);
       std::uint8_t found = 0;
       for (std::ptrdiff_t i = 0; i < count_; ++i) found += status_[i] == k ? 1 : 0;
       sums.statuses[k] += found;
