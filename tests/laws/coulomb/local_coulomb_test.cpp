@@ -193,6 +193,19 @@ TEST(KineticFriction, AboveTheStaticOneDoesNothing) {
   }
 }
 
+// Of two coefficients the kinetic one lies between, the smaller stays what it is, at rest and however fast.
+TEST(KineticFriction, LeavesTheSmallerOfTwoCoefficientsAsItIs) {
+  for (const double decay : {0.7, inf_value}) {
+    NodeRun node("coulomb",
+                 {{{"friction", 0.5}, {"friction_2", 0.1}, {"kinetic_friction", 0.2}, {"decay", decay}}, {}});
+    for (const double speed : {0.0, 2.0, 5000.0}) {
+      node.v_previous = {0.0, 0.0, -speed};
+      ASSERT_EQ(node.step({-1.0, 0.0, -8.0}), ILAW_OK) << "decay " << decay << ", speed " << speed;
+      EXPECT_NEAR(node.r[2], 0.1, 4 * ulp) << "decay " << decay << ", speed " << speed;
+    }
+  }
+}
+
 // Mass m on a spring k, pressed with N on a belt of speed V. It sticks until k x = mu N, then slips about x_k
 // = mu_k N/k as x = x_k + A cos(wt) + (V/w) sin(wt), A = (mu - mu_k) N/k, w^2 = k/m, until its speed is V
 // again: that is when tan(wt/2) = -A w/V, at x_k - A. Period: 2 A/V + (2 pi - 2 atan(A w/V))/w.
