@@ -200,6 +200,19 @@ struct history_without_size {
   void record(const Node&, history) const {}
 };
 
+// record must be template <class Node> void record(const Node& node, history own) const; a window has static
+// bool adds_to_window(double status) and clears_window(double status) in its place
+struct window_that_is_never_emptied {
+  double a;
+  CARD;
+  PARAMETER(window_that_is_never_emptied);
+  STEP;
+  static constexpr history_card history_variable{.name = "past"};
+  std::int64_t history_size() const { return window::doubles(a, 4.0); }
+  window_in_step window_in(step_interval step) const { return {a, 4.0, step}; }
+  static bool adds_to_window(double) { return true; }
+};
+
 // solve and solve_alone must be static, and their problem carry the parameters: they may come per node
 struct solve_with_a_parameter {
   double a;
@@ -247,4 +260,5 @@ SEEN(mutable_initialise);
 SEEN(mutable_step);
 SEEN(no_step);
 SEEN(history_without_size);
+SEEN(window_that_is_never_emptied);
 SEEN(solve_with_a_parameter);

@@ -249,8 +249,10 @@ struct checked_members {
   ILAW_KIT_CHECK(has_history, has_history_rightly<Law>,
                  "a history is static constexpr history_card history_variable, std::int64_t history_size() "
                  "const and record");
-  ILAW_KIT_CHECK(has_record, records_rightly<Law>,
-                 "record must be template <class Node> void record(const Node& node, history own) const");
+  ILAW_KIT_CHECK(
+      has_record, records_rightly<Law>,
+      "record must be template <class Node> void record(const Node& node, history own) const; a window "
+      "has static bool adds_to_window(double status) and clears_window(double status) in its place");
 
   static constexpr bool passes =
       has_texts && reads_known_inputs && serves_something && gives_members && has_one_each && describes_all &&
