@@ -29,6 +29,7 @@ struct contact {
                                                       activation_parameter(&contact::activation)};
 
   static constexpr bool skips_out_of_reach = true;
+  using form_of_floats = contact;
 
   template <class Node>
   void step(Node& node) const {

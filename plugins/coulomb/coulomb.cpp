@@ -83,6 +83,7 @@ struct coulomb : friction_in_packs {
   template <class Run>
   void in_form(Run run) const;
   using form_of_nodes = plain;
+  using form_of_floats = plain;
   bool has_form_of_nodes() const {
     // Joined as numbers: of truths the loop that asks this would make branches.
     const double falls_to = kinetic_friction < friction ? 1.0 : 0.0;

@@ -74,6 +74,7 @@ struct tie {
 
   // Without a limit and memory: nothing to sum.
   struct unbreakable;
+  using form_of_floats = unbreakable;
   template <class Run>
   void in_form(Run run) const;
 

@@ -28,6 +28,7 @@ class FloatBatch {
     b.v_free = input(of.v_free, d);
     b.delassus = input(of.delassus, of_delassus);
     b.gap = input(of.gap, 1);
+    b.gap_offset = input(of.gap_offset, 1);
     b.v_previous = input(of.v_previous, d);
     b.area = input(of.area, 1);
     b.normal = input(of.normal, d);
@@ -74,9 +75,21 @@ class FloatBatch {
   std::vector<float> impulse_, velocity_, energy_;
 };
 
+void expect_same_report(const ilaw_report& a, const ilaw_report& b) {
+  EXPECT_EQ(a.bad_count, b.bad_count);
+  EXPECT_EQ(a.first_bad_node, b.first_bad_node);
+  EXPECT_STREQ(a.reason, b.reason);
+  EXPECT_EQ(a.stable_velocity_step, b.stable_velocity_step);
+}
+
 class Floats : public ::testing::TestWithParam<LawCase> {
  protected:
-  // Some steps in doubles and in floats, each with a state of its own.
+  static ilaw::interface made(int d, std::uint32_t form, std::uint32_t frame) {
+    return make_tested_law(GetParam().law,
+                           SetupBuilder(GetParam().parameters, static_cast<std::uint32_t>(d), form, frame));
+  }
+
+  // Some steps in doubles and in floats, each with a state of its own; in the second one gaps have offsets.
   static void expect_doubles_rounded(const ilaw::interface& law, Nodes nodes, const Layout& layout,
                                      bool global) {
     for (auto* values :
@@ -90,10 +103,18 @@ class Floats : public ::testing::TestWithParam<LawCase> {
     std::vector<double> v_free = nodes.v_free;
     for (int step = 1; step <= 3; ++step) {
       ASSERT_EQ(doubles.state.get(), floats.state.get()) << "step " << step;
-      const ilaw_batch batch = doubles.batch(v_free, step * 1e-3);
-      const FloatBatch mirrored(floats.batch(v_free, step * 1e-3), nodes.count, nodes.d, nodes.hc);
-      ASSERT_EQ(of_floats.evaluate(law.instance(), &mirrored.b, nullptr), law.evaluate(batch))
+      const auto batch_of = [&](Arrays& arrays) {
+        ilaw_batch batch = arrays.batch(v_free, step * 1e-3);
+        if (step == 2) batch.gap_offset = batch.area;
+        return batch;
+      };
+      const ilaw_batch batch = batch_of(doubles);
+      const FloatBatch mirrored(batch_of(floats), nodes.count, nodes.d, nodes.hc);
+      ilaw_report report{}, float_report{};
+      report.struct_size = float_report.struct_size = sizeof report;
+      ASSERT_EQ(of_floats.evaluate(law.instance(), &mirrored.b, &float_report), law.evaluate(batch, &report))
           << "step " << step;
+      expect_same_report(float_report, report);
       ASSERT_EQ(mirrored.difference_from(batch), "") << "step " << step;
       ASSERT_EQ(doubles.status, floats.status) << "step " << step;
       if (layout.separate_state) std::swap(doubles.state, doubles.next);
@@ -113,9 +134,7 @@ TEST_P(Floats, AreTheDoublesRounded) {
                                               {2, ILAW_DELASSUS_TRANSVERSE, 2},
                                               {3, ILAW_DELASSUS_FULL, 6}}) {
       SCOPED_TRACE(::testing::Message() << d << "D, form " << form << ", frame " << frame);
-      const ilaw::interface law =
-          make_tested_law(GetParam().law, SetupBuilder(GetParam().parameters, static_cast<std::uint32_t>(d),
-                                                       static_cast<std::uint32_t>(form), frame));
+      const ilaw::interface law = made(d, static_cast<std::uint32_t>(form), frame);
       const Nodes nodes(130, d, components);
       const bool global = frame == ILAW_FRAME_GLOBAL;
       for (const Layout& layout :
@@ -126,7 +145,36 @@ TEST_P(Floats, AreTheDoublesRounded) {
     }
 }
 
+// Where no energies are asked, floats may be read and written in place. A block of nodes is far away, and
+// some nodes are refused.
+TEST_P(Floats, ThatStayWhereTheyAreAreTheDoublesRounded) {
+  for (const char* level : {"baseline", "v3", "v4"}) {
+    setenv("ILAW_ISA", level, 1);
+    for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
+      for (const int components : {1, 2}) {
+        const std::uint32_t form = components == 1 ? ILAW_DELASSUS_SCALAR : ILAW_DELASSUS_TRANSVERSE;
+        SCOPED_TRACE(::testing::Message() << level << ", form " << form << ", frame " << frame);
+        const ilaw::interface law = made(3, form, frame);
+        Nodes nodes(203, 3, components);
+        std::fill_n(nodes.gap.begin() + 64, 64, 2.0);
+        nodes.v_free[3 * 5 + 1] = nodes.v_previous[3 * 131] = inf_value;
+        nodes.delassus[static_cast<std::size_t>(components) * 70] = -1.0;
+        const bool global = frame == ILAW_FRAME_GLOBAL;
+        for (const Layout& layout :
+             {Layout{.energy = false}, Layout{.outputs = false}, Layout{.soa = true, .energy = false},
+              Layout{.soa = true, .separate_state = true, .outputs = false},
+              Layout{.energy = false, .previous_in_columns = true},
+              Layout{.energy = false, .velocity = false}})
+          expect_doubles_rounded(law, nodes, layout, global);
+      }
+  }
+  unsetenv("ILAW_ISA");
+}
+
 INSTANTIATE_TEST_SUITE_P(Laws, Floats, ::testing::ValuesIn(law_cases("contract")), name_of_case);
+// Its form of floats is none of those cases.
+INSTANTIATE_TEST_SUITE_P(Unbreakable, Floats, ::testing::Values(LawCase{"tie", "tie_unbreakable", {}, {}}),
+                         name_of_case);
 
 // One closed node of coulomb, friction per node.
 struct FloatNode {

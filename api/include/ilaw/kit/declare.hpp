@@ -51,6 +51,9 @@
 // in_form itself, as penalty does. A law may name one form for blocks of such nodes all of which have it:
 //   using form_of_nodes = plain;
 //   bool has_form_of_nodes() const;
+// and one, or itself where it has no forms, whose loops are compiled for arrays of float as well (float.h):
+//   using form_of_floats = plain;
+// They are as fast as their bytes allow; other forms copy such arrays block by block.
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once

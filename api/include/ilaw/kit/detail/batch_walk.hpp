@@ -14,7 +14,7 @@ template <class Law, class Layout>
 class batch_walk {
  public:
   static constexpr int states = state_doubles<Law>;
-  static constexpr bool in_place = std::is_same_v<Layout, interleaved>;
+  static constexpr bool in_place = is_in_place<Layout>, of_floats = is_of_floats<Layout>;
 
   batch_walk(const instance<Law>& made, const ilaw_batch& batch, block_room<Law>& room)
       : made_(made), batch_(batch), room_(room), dimension_(static_cast<int>(made.dimension)) {
@@ -59,7 +59,7 @@ class batch_walk {
     if (!is_finite(area) || area < 0.0) return "the area is not a finite number >= 0";
     if (made_.carries_frame && !unit(columns::get(block_.axes, i))) return "the normal is not a unit vector";
     initial_node<state_t<Law>, Law::card.inputs> fresh{
-        .time = batch_.time, .area = area_of<Law>(block_.area, i), .state = {}};
+        .time = batch_.time, .area = area_of<Law, Layout>(block_.area, i), .state = {}};
     if constexpr (initialises<Law>) law.initialise(fresh);
     if (state_defect<Law>(fresh.state) != 0.0) return "the state overflows";
     if constexpr (has_state<Law>) {
@@ -116,6 +116,17 @@ class batch_walk {
             static_cast<int>(left < block_size ? left : block_size),
             holds_floats(batch_)};
   }
+  // Where component c of the block's first node stands in an array of the layout's numbers.
+  template <class Array>
+  auto where(const Array& a, int c) const {
+    const auto first = Layout::in(a.values) + nodes_.first * a.node_stride + c * a.component_stride;
+    return reinterpret_cast<decltype(a.values)>(first);
+  }
+  // What is read where an array is absent.
+  static const double* none() {
+    static constexpr typename Layout::number absent[block_size] = {};
+    return reinterpret_cast<const double*>(absent);
+  }
   static const double& at(const ilaw_input& a, std::int64_t node, std::int64_t c) {
     return a.values[node * a.node_stride + c * a.component_stride];
   }
@@ -145,10 +156,10 @@ class batch_walk {
   // vectors stay where they are only what is copied: the rest comes sooner unasked.
   void expect_arrays() {
     has_ahead_ = false;
-    const auto add = [this](const auto& array, int numbers, bool of_floats) {
-      const bool is_copied = array.values && (array.node_stride != 1 || of_floats);
+    const auto add = [this](const auto& array, int numbers, bool holds_floats) {
+      const bool is_copied = array.values && (array.node_stride != 1 || (holds_floats && !of_floats));
       has_ahead_ = has_ahead_ || is_copied;
-      if (is_copied || !in_place) expect(array, numbers, of_floats, ahead_);
+      if (is_copied || !in_place) expect(array, numbers, holds_floats, ahead_);
     };
     const auto of_batch = [this, add](const auto& array, int numbers) {
       add(array, numbers, holds_floats(batch_));
@@ -197,13 +208,14 @@ class batch_walk {
   }
 
   const double* optional(const ilaw_input& input, bool read, column& room) {
-    return read && input.values ? gather(input, nodes_, room.values) : zeros.values;
+    if (!read || !input.values) return none();
+    return of_floats ? where(input, 0) : gather(input, nodes_, room.values);
   }
 
   // Vectors that may stay interleaved where the layout says so.
   void gather_in_layout(const ilaw_input& input, column* room, const double** components) {
     if constexpr (in_place) {
-      components[0] = input.values + 3 * nodes_.first;
+      for (int c = 0; c < 3; ++c) components[c] = where(input, c);
     } else {
       gather_vector(input, dimension_, nodes_, room, components);
     }
@@ -243,7 +255,10 @@ class batch_walk {
   // Missing dimensions are padded so that H stays positive definite; see delassus orders in ilaw.h.
   void gather_delassus() {
     const double* given[6];
-    gather_components(batch_.delassus, delassus_numbers(), nodes_, room_.delassus, given);
+    if constexpr (of_floats)
+      for (int k = 0; k < delassus_numbers(); ++k) given[k] = where(batch_.delassus, k);
+    else
+      gather_components(batch_.delassus, delassus_numbers(), nodes_, room_.delassus, given);
     const double** h = block_.delassus;
     if (made_.is_transverse()) {  // two columns are read; a scalar is both
       h[0] = given[0];
@@ -354,8 +369,7 @@ class batch_walk {
 
   void aim_vector(const ilaw_output& output, double** components, column* room) {
     for (int c = 0; c < 3; ++c)
-      components[c] = in_place && output.values ? output.values + 3 * nodes_.first
-                                                : aim(output, c, c < dimension_, room[c]);
+      components[c] = in_place && output.values ? where(output, c) : aim(output, c, c < dimension_, room[c]);
   }
   double* aim(const ilaw_output& output, int component, bool exists, column& room) {
     return exists && output.values ? target(output, component, nodes_, room.values) : room.values;

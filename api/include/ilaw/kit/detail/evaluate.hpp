@@ -120,10 +120,6 @@ const char* refusal_reason(const Law& law, const block_of_one<Law>& b, int i, bo
   return result_reason<Law>(stepped, b.impulse_guard);
 }
 
-// A form whose inputs always have v_previous is not compiled without it.
-template <class Form>
-concept needs_previous = Form::needs_previous;
-
 // The whole of a batch; Varying: with parameters per node.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, bool Varying>
 struct evaluate_walk {
@@ -154,7 +150,7 @@ struct evaluate_walk {
                          batch_walk<Law, Layout>& walk, tally& found) {
     if constexpr (limits_step<Law> && !Varying) {
       in_its_form(law, [&walk, &found]<class Form>(const Form& form) {
-        if constexpr (!always_stable<Form>)
+        if constexpr (is_run<Law, Form, Layout, Scope>() && !always_stable<Form>)
           found.stable_velocity_step =
               smaller(found.stable_velocity_step,
                       least_stable_step<Law, Delassus, Frame, Layout, Scope>(form, walk.block()));
@@ -180,7 +176,7 @@ struct evaluate_walk {
   static int run_form(const Law& law, const node_block<Law>& block) {
     int one_by_one = 0;
     in_its_form(law, [&block, &one_by_one]<class Form>(const Form& form) {
-      if constexpr (Scope != scope::impulse || !needs_previous<Form>)
+      if constexpr (is_run<Law, Form, Layout, Scope>())
         one_by_one = run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
     });
     return one_by_one;
@@ -244,17 +240,28 @@ tally walk_varying(const instance<Law>& made, const Law& law, const ilaw_batch& 
   return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
 }
 
+template <class Law, class Delassus, class Frame, class Layout>
+tally walk_in_place(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
+  if constexpr (always_reads_previous<Law>)
+    if (batch.velocity.values)
+      return evaluate_walk<Law, Delassus, Frame, Layout, scope::motion, false>::run(made, law, batch);
+  return walk_for_impulse<Law, Delassus, Frame, Layout>(made, law, batch);
+}
+
 template <class Law, class Delassus, class Frame>
 tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
   if constexpr (has_varying_parameters<Law>)
     if (made.per_node_count > 0) return walk_varying<Law, Delassus, Frame>(made, law, batch);
   if constexpr (may_interleave<Law, Delassus, Frame>)
-    if (all_interleaved(made, batch)) {
-      if (!batch.velocity.values)
-        return walk_for_impulse<Law, Delassus, Frame, interleaved>(made, law, batch);
-      if constexpr (always_reads_previous<Law>)
-        return evaluate_walk<Law, Delassus, Frame, interleaved, scope::motion, false>::run(made, law, batch);
+    if (asks_little<Law>(batch) && stand_in<interleaved>(made, batch))
+      return walk_in_place<Law, Delassus, Frame, interleaved>(made, law, batch);
+  if constexpr (may_stay_floats<Law, Delassus, Frame>)
+    if (asks_little<Law>(batch) && are_scalars_in_columns(batch) && has_form_of_floats(law)) {
+      if (stand_in<rows_of_float>(made, batch))
+        return walk_in_place<Law, Delassus, Frame, rows_of_float>(made, law, batch);
+      if (stand_in<columns_of_float>(made, batch))
+        return walk_in_place<Law, Delassus, Frame, columns_of_float>(made, law, batch);
     }
   return walk_in_columns<Law, Delassus, Frame>(made, law, batch);
 }

@@ -76,24 +76,60 @@ struct basis {
   }
 };
 
+// The numbers that a loop reads and writes in a block: doubles, or floats that stay in the host's arrays.
+// Those are doubles once they are read, and rounded once as they are written.
+template <class Number>
+struct numbers_of {
+  using number = Number;
+  static const Number* in(const double* values) { return reinterpret_cast<const Number*>(values); }
+  static Number* in(double* values) { return reinterpret_cast<Number*>(values); }
+  static double at(const double* values, int i) { return in(values)[i]; }
+};
+
 // Where the three components of vector i stand: in three columns, or interleaved as in a (3,n) array, from
-// one pointer so that the compiler sees that they are neighbours.
-struct columns {
-  static axis get(const double* const* c, int i) { return {c[0][i], c[1][i], c[2][i]}; }
+// one pointer so that the compiler sees that they are neighbours. has: whether vectors of the host stand so.
+template <class Number>
+struct columns_of : numbers_of<Number> {
+  static axis get(const double* const* c, int i) {
+    return {columns_of::at(c[0], i), columns_of::at(c[1], i), columns_of::at(c[2], i)};
+  }
   static void put(double* const* c, int i, axis a) {
-    c[0][i] = a.x;
-    c[1][i] = a.y;
-    c[2][i] = a.z;
+    columns_of::in(c[0])[i] = static_cast<Number>(a.x);
+    columns_of::in(c[1])[i] = static_cast<Number>(a.y);
+    columns_of::in(c[2])[i] = static_cast<Number>(a.z);
+  }
+  template <class Array>
+  static bool has(const Array& a) {
+    return a.node_stride == 1;
   }
 };
-struct interleaved {
-  static axis get(const double* const* c, int i) { return {c[0][3 * i], c[0][3 * i + 1], c[0][3 * i + 2]}; }
+template <class Number>
+struct interleaved_of : numbers_of<Number> {
+  static axis get(const double* const* c, int i) {
+    const Number* const rows = interleaved_of::in(c[0]);
+    return {rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]};
+  }
   static void put(double* const* c, int i, axis a) {
-    c[0][3 * i] = a.x;
-    c[0][3 * i + 1] = a.y;
-    c[0][3 * i + 2] = a.z;
+    Number* const rows = interleaved_of::in(c[0]);
+    rows[3 * i] = static_cast<Number>(a.x);
+    rows[3 * i + 1] = static_cast<Number>(a.y);
+    rows[3 * i + 2] = static_cast<Number>(a.z);
+  }
+  template <class Array>
+  static bool has(const Array& a) {
+    return a.node_stride == 3 && a.component_stride == 1;
   }
 };
+struct columns : columns_of<double> {};
+struct interleaved : interleaved_of<double> {};
+struct columns_of_float : columns_of<float> {};
+struct rows_of_float : interleaved_of<float> {};
+
+template <class Layout>
+inline constexpr bool is_of_floats = std::is_same_v<typename Layout::number, float>;
+// Whether vectors are read and written in the host's arrays, and never copied.
+template <class Layout>
+inline constexpr bool is_in_place = is_of_floats<Layout> || std::is_same_v<Layout, interleaved>;
 
 // The three ways in which a kernel gets its frames: none needed, from the normals alone, or stored. axes:
 // three columns of the normal, then three each of the tangents where they are stored.

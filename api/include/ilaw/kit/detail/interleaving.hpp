@@ -1,5 +1,6 @@
-// interleaving.hpp - which batches are worked on in (3,n) arrays where they are: nothing of their vectors is
-// copied, and a core computes one node while it waits for the lines of others.
+// interleaving.hpp - which batches are worked on where they are, in (3,n) arrays and, if they hold floats, in
+// columns: nothing of their vectors is copied, and a core computes one node while it waits for the lines of
+// others.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,16 +12,25 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 template <class Law>
 inline constexpr bool in_space = (Law::card.dimensions & ILAW_DIMENSION_3) != 0;
 
-// Whether the vectors that a kernel may read and write in place are (3,n) arrays, and no more is asked than
-// the kernels of such arrays give: impulses, or velocities and statuses besides.
+// Whether no more is asked than the kernels of such arrays give: impulses, or velocities and statuses
+// besides.
 template <class Law>
-bool all_interleaved(const instance<Law>& made, const ilaw_batch& b) {
-  if (b.energy.values || (b.status && !b.velocity.values)) return false;
-  const auto is_interleaved = [](const auto& a) { return a.node_stride == 3 && a.component_stride == 1; };
-  const auto may_be = [is_interleaved](const auto& a) { return !a.values || is_interleaved(a); };
-  return made.dimension == 3 && !b.index && !b.index64 && !holds_floats(b) && is_interleaved(b.v_free) &&
-         is_interleaved(b.impulse) && may_be(b.v_previous) && may_be(b.velocity) &&
-         (made.frame == ILAW_FRAME_LOCAL || is_interleaved(b.normal));
+bool asks_little(const ilaw_batch& b) {
+  if (b.energy.values) return false;
+  return b.velocity.values ? always_reads_previous<Law> : !b.status;
+}
+// Whether the vectors that a kernel may read and write in place stand as a layout has them.
+template <class Layout, class Law>
+bool stand_in(const instance<Law>& made, const ilaw_batch& b) {
+  const auto may_be = [](const auto& a) { return !a.values || Layout::has(a); };
+  return made.dimension == 3 && !b.index && !b.index64 && holds_floats(b) == is_of_floats<Layout> &&
+         Layout::has(b.v_free) && Layout::has(b.impulse) && may_be(b.v_previous) && may_be(b.velocity) &&
+         (made.frame == ILAW_FRAME_LOCAL || Layout::has(b.normal));
+}
+// Of floats nothing is copied: numbers of the nodes one after another.
+inline bool are_scalars_in_columns(const ilaw_batch& b) {
+  const auto may_be = [](const auto& a) { return !a.values || a.node_stride == 1; };
+  return may_be(b.delassus) && may_be(b.gap) && may_be(b.gap_offset) && may_be(b.area);
 }
 // For which laws they are worth their loops. One that asks first reads its nodes several times, which columns
 // serve better where H leaves much to solve.
@@ -28,5 +38,31 @@ template <class Law, class Delassus, class Frame>
 inline constexpr bool may_interleave =
     in_space<Law> && !is_for_old_processors && !std::is_same_v<Frame, stored_frame> &&
     (std::is_same_v<Delassus, transverse_delassus> || !asks_first<Law, node_in<Law, Delassus, Frame>>);
+
+// Floats stay where they are in one form of a law, the one that it names for them, and with an H of two
+// numbers at most: every loop more is compiled for two layouts, two frames and each instruction set.
+template <class Law, class Delassus, class Frame>
+concept may_stay_floats = requires {
+  typename Law::form_of_floats;
+}
+&&may_interleave<Law, Delassus, Frame>&& std::is_same_v<Delassus, transverse_delassus> &&
+    !asks_first<typename Law::form_of_floats, node_in<Law, Delassus, Frame>>;
+template <class Law>
+bool has_form_of_floats(const Law& law) {
+  bool has = false;
+  in_its_form(law,
+              [&has]<class Form>(const Form&) { has = std::is_same_v<Form, typename Law::form_of_floats>; });
+  return has;
+}
+
+// Which forms have a loop: one whose inputs always have v_previous has none without it.
+template <class Form>
+concept needs_previous = Form::needs_previous;
+template <class Law, class Form, class Layout, scope Scope>
+constexpr bool is_run() {
+  if constexpr (is_of_floats<Layout>)
+    if constexpr (!std::is_same_v<Form, typename Law::form_of_floats>) return false;
+  return Scope != scope::impulse || !needs_previous<Form>;
+}
 
 }  // namespace ilaw::kit::detail

@@ -71,9 +71,9 @@ struct stepped {
   bool accepted;
 };
 
-template <class Delassus, std::size_t... K>
+template <class Delassus, class Layout, std::size_t... K>
 Delassus delassus_at(const double* const* columns, int i, std::index_sequence<K...>) {
-  const double components[] = {columns[K][i]...};
+  const double components[] = {Layout::at(columns[K], i)...};
   return Delassus::from(components);
 }
 
@@ -154,17 +154,17 @@ auto previous_of(const node_block<Law>& b, int i, const Basis& frame) {
     return frame.to_local(Layout::get(b.v_previous, i));
   }
 }
-template <class Law>
+template <class Law, class Layout>
 auto gap_of(const node_block<Law>& b, int i) {
   if constexpr ((Law::card.inputs & reads_gap) != 0)
-    return b.gap[i] - b.gap_offset[i];
+    return Layout::at(b.gap, i) - Layout::at(b.gap_offset, i);
   else
     return undeclared_input<reads_gap>{};
 }
-template <class Law>
+template <class Law, class Layout>
 auto area_of(const double* areas, int i) {
   if constexpr ((Law::card.inputs & reads_area) != 0)
-    return areas[i];
+    return Layout::at(areas, i);
   else
     return undeclared_input<reads_area>{};
 }
@@ -202,10 +202,10 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
                                   .position_step = b.position_step,
                                   .v_free = v_free,
                                   .v_previous = previous_of<Law, Layout, Scope>(b, i, frame),
-                                  .delassus = frame.to_local(delassus_at<Delassus>(
+                                  .delassus = frame.to_local(delassus_at<Delassus, Layout>(
                                       b.delassus, i, std::make_index_sequence<Delassus::components>{})),
-                                  .gap = gap_of(b, i),
-                                  .area = area_of<Law>(b.area, i),
+                                  .gap = gap_of<Law, Layout>(b, i),
+                                  .area = area_of<Law, Layout>(b.area, i),
                                   .history = history_of(b, i),
                                   .earlier = earlier_of(b, i),
                                   .impulse = {},

@@ -89,17 +89,17 @@ inline constexpr bool may_fly = !is_for_old_processors && is_one_law<Laws> && sk
                                 !std::is_same_v<Frame, stored_frame>;
 
 // Whether no gap is closed. The first few most often tell where nodes touch.
-template <int Nodes>
+template <class Layout, int Nodes>
 bool are_open(const double* gap, const double* offset) {
   std::uint64_t closed = 0;
-  for (int i = 0; i < Nodes; ++i) closed |= gap[i] - offset[i] > 0.0 ? 0U : 1U;
+  for (int i = 0; i < Nodes; ++i) closed |= Layout::at(gap, i) - Layout::at(offset, i) > 0.0 ? 0U : 1U;
   return closed == 0;
 }
-template <class Law>
+template <class Layout, class Law>
 bool may_be_in_flight(const node_block<Law>& b) {
   constexpr int first = 8;
-  return b.count == block_size && are_open<first>(b.gap, b.gap_offset) &&
-         are_open<block_size>(b.gap, b.gap_offset);
+  return b.count == block_size && are_open<Layout, first>(b.gap, b.gap_offset) &&
+         are_open<Layout, block_size>(b.gap, b.gap_offset);
 }
 
 // All nodes as if they were out of reach. False: one of them is not, and they are to be stepped.
@@ -117,7 +117,7 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope>
 }
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
 bool are_in_flight(const node_block<Law>& b) {
-  if (!may_be_in_flight(b)) return false;
+  if (!may_be_in_flight<Layout>(b)) return false;
   column reached;
   fly_block<Law, Delassus, Frame, Layout, Scope>(b, reached);
   std::uint64_t bits = 0;  // of 0.0 and 1.0
