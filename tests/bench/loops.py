@@ -17,7 +17,8 @@ import sys
 
 FRICTION = '{"friction": 0.3}'
 KINETIC = '{"friction": 0.3, "kinetic_friction": 0.2, "decay": 1.0}'
-LOCAL = ["local_frame", "interleaved"]
+LOCAL = ["local_frame", "interleaved,"]
+FLOATS = ["local_frame", "rows_of_float"]
 HOLDING = '{"strength": 1e12, "toughness": 1e12}'
 
 
@@ -29,6 +30,9 @@ def spring(**more):
 CASES = [
     ("contact", "contact", [], [["step_block", "transverse", *LOCAL]], 1.2),
     ("contact, full $H$", "contact", ["--delassus", "full"], [["step_block", "full_", "local_frame"]], 1.3),
+    # 0.6 of what doubles are allowed, for half of the bytes.
+    ("contact, floats", "contact", ["--float"], [["step_block", "transverse", *FLOATS]], 1.44),
+    ("coulomb, floats", "coulomb", ["--parameters", FRICTION, "--float"], [["try_block", *FLOATS, "::plain"]], 1.44),
     ("coulomb", "coulomb", ["--parameters", FRICTION], [["try_block", *LOCAL, "::plain"]], 1.2),
     ("coulomb, kinetic", "coulomb", ["--parameters", KINETIC], [["try_block", *LOCAL, "::falling"]], 2.0),
     ("tie", "tie", [], [["try_block", "transverse", *LOCAL]], 1.2),
@@ -88,14 +92,15 @@ def loop_of(library, words):
 def row(case, given, folder, dividers):
     what, law, options, functions, bar = case
     loop = [instruction for words in functions for instruction in loop_of(folder / f"{law}.so", words)]
-    divisions = sum(w.startswith("vdivpd") for w in loop)
-    roots = sum(w.startswith("vsqrtpd") for w in loop)
+    packs = 2 if any(w.startswith("vcvtps2pd") for w in loop) else 1  # a vector of floats has sixteen nodes
+    divisions = sum(w.startswith("vdivpd") for w in loop) // packs
+    roots = sum(w.startswith("vsqrtpd") for w in loop) // packs
     busy = (divisions * dividers[0] + roots * dividers[1]) / 8.0
     result = json.loads(output_of(given.ilaw, "bench", law, *options, "--nodes", "2000", "--repetitions",
                                   str(given.repetitions), "--json"))[0]
     size = result["bytes_per_node"]
     print(f"| {what} | {size:.0f} | {bar * size / given.triad:.1f} | {result['ns_per_node']:.1f} | "
-          f"{busy:.1f} ({divisions} + {roots}) | {len(loop) / 8.0:.0f} |", flush=True)
+          f"{busy:.1f} ({divisions} + {roots}) | {len(loop) / (8.0 * packs):.0f} |", flush=True)
 
 
 def main():
