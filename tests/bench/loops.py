@@ -4,7 +4,8 @@
     ILAW_PATH=build/release/lib/ilaw tests/bench/loops.py build/release/bin/ilaw build/release/bin/ilaw_bench_dividers
 
 Time in cache by `ilaw bench`; instructions, divisions and roots are counted in the loop that the case runs
-through at level v4: the longest one of each function that is named by its words.
+through at level v4: the longest one of each function that is named by its words. "pipes": what its arithmetic takes
+at least where none waits for another, by the times that the second program measures.
 """
 import argparse
 import functools
@@ -85,6 +86,17 @@ def loop_of(library, words):
     raise SystemExit(f"{library}: no function of {', '.join(words)} has a loop with vectors of eight doubles")
 
 
+def works(instruction):
+    """Whether it takes a pipe of vector arithmetic: no load or store, and no copy of a register."""
+    is_move = re.match(r"vmov\w+\s", instruction) and ("(" in instruction or "{" not in instruction)
+    return instruction.startswith("v") and "zmm" in instruction and not is_move and "broadcast" not in instruction
+
+
+def busy_pipes(loop, product, bits):
+    products = sum(bool(re.match(r"vmulpd|vcmp\w*pd", w)) for w in loop)
+    return max(products * product, sum(map(works, loop)) * bits) / 8.0
+
+
 def row(case, given, folder, dividers):
     what, law, options, functions, bar = case
     loop = [instruction for words in functions for instruction in loop_of(folder / f"{law}.so", words)]
@@ -95,7 +107,8 @@ def row(case, given, folder, dividers):
                                   str(given.repetitions), "--json"))[0]
     size = result["bytes_per_node"]
     print(f"| {what} | {size:.0f} | {bar * size / given.triad:.1f} | {result['ns_per_node']:.1f} | "
-          f"{busy:.1f} ({divisions} + {roots}) | {len(loop) / 8.0:.0f} |", flush=True)
+          f"{busy:.1f} ({divisions} + {roots}) | {busy_pipes(loop, *dividers[2:]):.1f} | {len(loop) / 8.0:.0f} |",
+          flush=True)
 
 
 def main():
@@ -109,8 +122,8 @@ def main():
     if not dividers:
         print("this processor has no vectors of eight doubles")
         return SKIPPED
-    print("| case | bytes | aim, ns | in cache, ns | dividers, ns | instructions |")
-    print("| --- | --- | --- | --- | --- | --- |")
+    print("| case | bytes | aim, ns | in cache, ns | dividers, ns | pipes, ns | instructions |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
     for case in CASES:
         row(case, given, pathlib.Path(os.environ["ILAW_PATH"]), dividers)
     return 0

@@ -29,9 +29,9 @@ inline lanes kept_lanes_at(const double* values) {
 }
 inline void put_lanes(lanes v, double* values) { __builtin_memcpy(values, &v, sizeof v); }
 
-// Three vectors a, b, c of rows of so many numbers: in each lane one of them, and one alone, has a number of the
-// group, which is one column of rows of three, or two of rows of six. So they are chosen without being moved,
-// which costs processors less than moving them, and are moved together.
+// Three vectors a, b, c of rows of so many numbers: in each lane one of them, and one alone, has a number of
+// the group, which is one column of rows of three, or two of rows of six. So they are chosen without being
+// moved, which costs processors less than moving them, and are moved together.
 template <int Numbers, int Group>
 constexpr int holder_of(int lane) {
   int vector = 0;
@@ -80,8 +80,8 @@ lanes column_of(lanes first, lanes second, std::integer_sequence<int, K...> /*la
 template <int Column, int... K>
 lanes column_of_six(lanes low, lanes high, std::integer_sequence<int, K...> /*lanes*/) {
   constexpr int half = register_size / 2;
-  return __builtin_shufflevector(
-      low, high, (K / half * register_size + (6 * (K % half) + Column) % register_size)...);
+  return __builtin_shufflevector(low, high,
+                                 (K / half * register_size + (6 * (K % half) + Column) % register_size)...);
 }
 
 // The way back for rows of three: column c with its numbers in the lanes in which they stand in the rows.
