@@ -92,22 +92,29 @@ def works(instruction):
     return instruction.startswith("v") and "zmm" in instruction and not is_move and "broadcast" not in instruction
 
 
+def nodes_of(loop):
+    """Eight, or sixteen where a vector of floats makes it two of doubles (run_steps.hpp)."""
+    return 16 if any(re.match(r"v\w+ps\s", w) and "zmm" in w for w in loop) else 8
+
+
 def busy_pipes(loop, product, bits):
+    """A product or comparison takes a pipe that multiplies, and the rest no less than a choice of bits."""
     products = sum(bool(re.match(r"vmulpd|vcmp\w*pd", w)) for w in loop)
-    return max(products * product, sum(map(works, loop)) * bits) / 8.0
+    return max(products * product, sum(map(works, loop)) * bits) / nodes_of(loop)
 
 
 def row(case, given, folder, dividers):
     what, law, options, functions, bar = case
     loop = [instruction for words in functions for instruction in loop_of(folder / f"{law}.so", words)]
-    divisions = sum(w.startswith("vdivpd") for w in loop)
-    roots = sum(w.startswith("vsqrtpd") for w in loop)
+    nodes = nodes_of(loop)
+    divisions = sum(w.startswith("vdivpd") for w in loop) * 8 // nodes
+    roots = sum(w.startswith("vsqrtpd") for w in loop) * 8 // nodes
     busy = (divisions * dividers[0] + roots * dividers[1]) / 8.0
     result = json.loads(output_of(given.ilaw, "bench", law, *options, "--nodes", "2000", "--repetitions",
                                   str(given.repetitions), "--json"))[0]
     size = result["bytes_per_node"]
     print(f"| {what} | {size:.0f} | {bar * size / given.triad:.1f} | {result['ns_per_node']:.1f} | "
-          f"{busy:.1f} ({divisions} + {roots}) | {busy_pipes(loop, *dividers[2:]):.1f} | {len(loop) / 8.0:.0f} |",
+          f"{busy:.1f} ({divisions} + {roots}) | {busy_pipes(loop, *dividers[2:]):.1f} | {len(loop) / nodes:.0f} |",
           flush=True)
 
 
