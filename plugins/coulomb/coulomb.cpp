@@ -158,6 +158,7 @@ struct coulomb::elliptical : coulomb {
 };
 
 struct coulomb::falling : coulomb {
+  static constexpr bool takes_two_packs = true;
   template <class Node>
   void step(Node& node) const requires has_transverse_delassus<Node> {
     apply_isotropic_friction(node, contact(node), fallen(friction, left(node)));

@@ -131,7 +131,7 @@ struct tie {
 };
 
 struct tie::unbreakable : tie {
-  static constexpr bool forgets = true;
+  static constexpr bool forgets = true, takes_two_packs = true;
   template <class Node>
   void step(Node& node) const {
     const vector trial = stopping_impulse(node);

@@ -4,7 +4,8 @@
     ILAW_PATH=build/release/lib/ilaw tests/bench/loops.py build/release/bin/ilaw build/release/bin/ilaw_bench_dividers
 
 Time in cache by `ilaw bench`; instructions, divisions and roots are counted in the loop that the case runs
-through at level v4: the longest one of each function that is named by its words.
+through at level v4: the longest one of each function that is named by its words. "pipes": what its arithmetic takes
+at least where none waits for another, by the times that the second program measures.
 """
 import argparse
 import functools
@@ -32,8 +33,8 @@ CASES = [
     ("contact, full $H$", "contact", ["--delassus", "full"], [["step_block", "full_", "local_frame"]], 1.3),
     # 0.6 of what doubles are allowed, for half of the bytes.
     ("contact, floats", "contact", ["--float"], [["step_block", "transverse", *FLOATS]], 1.44),
-    ("coulomb, floats", "coulomb", ["--parameters", FRICTION, "--float"], [["try_block", *FLOATS, "::plain"]], 1.44),
     ("coulomb", "coulomb", ["--parameters", FRICTION], [["try_block", *LOCAL, "::plain"]], 1.2),
+    ("coulomb, floats", "coulomb", ["--parameters", FRICTION, "--float"], [["try_block", *FLOATS, "::plain"]], 1.44),
     ("coulomb, kinetic", "coulomb", ["--parameters", KINETIC], [["try_block", *LOCAL, "::falling"]], 2.0),
     ("tie", "tie", [], [["try_block", "transverse", *LOCAL]], 1.2),
     ("tie, full $H$", "tie", ["--delassus", "full"], [["try_block", "full_", "local_frame"]], 1.3),
@@ -89,18 +90,36 @@ def loop_of(library, words):
     raise SystemExit(f"{library}: no function of {', '.join(words)} has a loop with vectors of eight doubles")
 
 
+def works(instruction):
+    """Whether it takes a pipe of vector arithmetic: no load or store, and no copy of a register."""
+    is_move = re.match(r"vmov\w+\s", instruction) and ("(" in instruction or "{" not in instruction)
+    return instruction.startswith("v") and "zmm" in instruction and not is_move and "broadcast" not in instruction
+
+
+def nodes_of(loop):
+    """Eight, or sixteen where a vector of floats makes it two of doubles (run_steps.hpp)."""
+    return 16 if any(re.match(r"vcvtps2pd|v\w+ps\s", w) and "zmm" in w for w in loop) else 8
+
+
+def busy_pipes(loop, product, bits):
+    """A product or comparison takes a pipe that multiplies, and the rest no less than a choice of bits."""
+    products = sum(bool(re.match(r"vmulpd|vcmp\w*pd", w)) for w in loop)
+    return max(products * product, sum(map(works, loop)) * bits) / nodes_of(loop)
+
+
 def row(case, given, folder, dividers):
     what, law, options, functions, bar = case
     loop = [instruction for words in functions for instruction in loop_of(folder / f"{law}.so", words)]
-    packs = 2 if any(w.startswith("vcvtps2pd") for w in loop) else 1  # a vector of floats has sixteen nodes
-    divisions = sum(w.startswith("vdivpd") for w in loop) // packs
-    roots = sum(w.startswith("vsqrtpd") for w in loop) // packs
+    nodes = nodes_of(loop)
+    divisions = sum(w.startswith("vdivpd") for w in loop) * 8 // nodes
+    roots = sum(w.startswith("vsqrtpd") for w in loop) * 8 // nodes
     busy = (divisions * dividers[0] + roots * dividers[1]) / 8.0
     result = json.loads(output_of(given.ilaw, "bench", law, *options, "--nodes", "2000", "--repetitions",
                                   str(given.repetitions), "--json"))[0]
     size = result["bytes_per_node"]
     print(f"| {what} | {size:.0f} | {bar * size / given.triad:.1f} | {result['ns_per_node']:.1f} | "
-          f"{busy:.1f} ({divisions} + {roots}) | {len(loop) / (8.0 * packs):.0f} |", flush=True)
+          f"{busy:.1f} ({divisions} + {roots}) | {busy_pipes(loop, *dividers[2:]):.1f} | {len(loop) / nodes:.0f} |",
+          flush=True)
 
 
 def main():
@@ -114,8 +133,8 @@ def main():
     if not dividers:
         print("this processor has no vectors of eight doubles")
         return SKIPPED
-    print("| case | bytes | aim, ns | in cache, ns | dividers, ns | instructions |")
-    print("| --- | --- | --- | --- | --- | --- |")
+    print("| case | bytes | aim, ns | in cache, ns | dividers, ns | pipes, ns | instructions |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
     for case in CASES:
         row(case, given, pathlib.Path(os.environ["ILAW_PATH"]), dividers)
     return 0

@@ -109,18 +109,22 @@ inline const double* gather(const ilaw_input& input, const node_range& nodes, do
   return gather_of(as_floats(input.values), input.node_stride, nodes, room);
 }
 
-// Rows of six numbers as twice as many of three, then pairs of those: of six at once compilers make no vector
-// code.
+// Of rows of six numbers compilers make no vector code.
+template <int Pair>
+void put_pair(const vectors_of_rows& low, const vectors_of_rows& high, column* room, int i) {
+  const lanes a = low.pair<Pair>(), b = high.pair<Pair>();
+  put_lanes(column_of_six<2 * Pair>(a, b, each_lane), room[2 * Pair].values + i);
+  put_lanes(column_of_six<2 * Pair + 1>(a, b, each_lane), room[2 * Pair + 1].values + i);
+}
 template <class Number>
 void separate_sixes(const Number* values, int count, column* room) {
   int i = 0;
   if constexpr (std::is_same_v<Number, double>)
     for (; i + register_size <= count; i += register_size) {
-      const triple_columns first(values + 6 * i), second(values + 6 * i + 3 * register_size);
-      for (int k = 0; k < 3; ++k) {
-        put_lanes(column_of<0>(first.columns[k], second.columns[k], each_lane), room[k].values + i);
-        put_lanes(column_of<1>(first.columns[k], second.columns[k], each_lane), room[k + 3].values + i);
-      }
+      const vectors_of_rows low(values + 6 * i), high(values + 6 * i + 3 * register_size);
+      put_pair<0>(low, high, room, i);
+      put_pair<1>(low, high, room, i);
+      put_pair<2>(low, high, room, i);
     }
   for (; i < count; ++i)
     for (int k = 0; k < 6; ++k) room[k].values[i] = values[6 * i + k];

@@ -19,29 +19,88 @@ inline lanes lanes_at(const double* values) {
   __builtin_memcpy(&v, values, sizeof v);
   return v;
 }
+// The same where it is used more than once: GCC would read it again each time.
+inline lanes kept_lanes_at(const double* values) {
+  lanes v = lanes_at(values);
+#if defined(__GNUC__) && defined(__x86_64__)
+  asm("" : "+v"(v));
+#endif
+  return v;
+}
 inline void put_lanes(lanes v, double* values) { __builtin_memcpy(values, &v, sizeof v); }
+
+// Three vectors a, b, c of rows of so many numbers: in each lane one of them, and one alone, has a number of
+// the group, which is one column of rows of three, or two of rows of six. So they are chosen without being
+// moved, which costs processors less than moving them, and are moved together.
+template <int Numbers, int Group>
+constexpr int holder_of(int lane) {
+  int vector = 0;
+  while ((vector * register_size + lane) % Numbers / (Numbers / 3) != Group) ++vector;
+  return vector;
+}
+template <int Numbers, int Group, int... K>
+lanes chosen_lanes(lanes a, lanes b, lanes c, std::integer_sequence<int, K...> /*lanes*/) {
+  const lanes found =
+      __builtin_shufflevector(a, b, (holder_of<Numbers, Group>(K) == 1 ? K + register_size : K)...);
+  return __builtin_shufflevector(found, c, (holder_of<Numbers, Group>(K) == 2 ? K + register_size : K)...);
+}
+
+// Three vectors, read once each.
+struct vectors_of_rows {
+  lanes a, b, c;
+
+  explicit vectors_of_rows(const double* rows)
+      : a(kept_lanes_at(rows)),
+        b(kept_lanes_at(rows + register_size)),
+        c(kept_lanes_at(rows + 2 * register_size)) {}
+  // Of as many rows of three as there are lanes.
+  template <int Column>
+  lanes column() const {
+    return whole_column<Column>(chosen_lanes<3, Column>(a, b, c, each_lane), each_lane);
+  }
+  // Of half as many rows of six: two columns, side by side.
+  template <int Pair>
+  lanes pair() const {
+    return chosen_lanes<6, Pair>(a, b, c, each_lane);
+  }
+
+ private:
+  template <int Column, int... K>
+  static lanes whole_column(lanes found, std::integer_sequence<int, K...> /*lanes*/) {
+    return __builtin_shufflevector(found, found, (3 * K + Column) % register_size...);
+  }
+};
 
 // Column c of as many rows of two as there are lanes.
 template <int Column, int... K>
 lanes column_of(lanes first, lanes second, std::integer_sequence<int, K...> /*lanes*/) {
   return __builtin_shufflevector(first, second, 2 * K + Column...);
 }
-// The same of rows of three: from the first two vectors, then from the third.
+// The same of rows of six, from the pairs in which it is.
 template <int Column, int... K>
-lanes column_of(lanes first, lanes second, lanes third, std::integer_sequence<int, K...> /*lanes*/) {
-  constexpr int both = 2 * register_size;
-  const lanes found =
-      __builtin_shufflevector(first, second, (3 * K + Column < both ? 3 * K + Column : -1)...);
-  return __builtin_shufflevector(found, third,
-                                 (3 * K + Column < both ? K : 3 * K + Column - both + register_size)...);
+lanes column_of_six(lanes low, lanes high, std::integer_sequence<int, K...> /*lanes*/) {
+  constexpr int half = register_size / 2;
+  return __builtin_shufflevector(low, high,
+                                 (K / half * register_size + (6 * (K % half) + Column) % register_size)...);
 }
-// Vector v of the rows that three columns make.
+
+// The way back for rows of three: column c with its numbers in the lanes in which they stand in the rows.
+template <int Column>
+constexpr int row_in_lane(int lane) {
+  int row = 0;
+  while ((3 * row + Column) % register_size != lane) ++row;
+  return row;
+}
+template <int Column, int... K>
+lanes moved_to_rows(lanes column, std::integer_sequence<int, K...> /*lanes*/) {
+  return __builtin_shufflevector(column, column, row_in_lane<Column>(K)...);
+}
+// Vector v of the rows, from its columns as they were moved.
 template <int Vector, int... K>
 lanes row_of(lanes a, lanes b, lanes c, std::integer_sequence<int, K...> /*lanes*/) {
   constexpr int from = Vector * register_size;
-  const lanes found = __builtin_shufflevector(
-      a, b, ((from + K) % 3 == 2 ? -1 : (from + K) / 3 + (from + K) % 3 * register_size)...);
-  return __builtin_shufflevector(found, c, ((from + K) % 3 == 2 ? (from + K) / 3 + register_size : K)...);
+  const lanes found = __builtin_shufflevector(a, b, ((from + K) % 3 == 1 ? K + register_size : K)...);
+  return __builtin_shufflevector(found, c, ((from + K) % 3 == 2 ? K + register_size : K)...);
 }
 
 // Longer rows are turned into columns, and columns into rows, square by square; the last two squares of a row
@@ -51,15 +110,17 @@ struct square {
   using line = double __attribute__((vector_size(8 * square_size)));
   line lines[square_size];
 
-  // at(k): where line k stands.
+  // at(k): where line k stands. Unrolled, or GCC keeps the lines in memory, in halves.
   template <class At>
-  static square from(At at) {
+  [[gnu::always_inline]] static square from(At at) {
     square s;
+#pragma GCC unroll 4
     for (int k = 0; k < square_size; ++k) __builtin_memcpy(&s.lines[k], at(k), sizeof(line));
     return s;
   }
   template <class At>
-  void put(At at) const {
+  [[gnu::always_inline]] void put(At at) const {
+#pragma GCC unroll 4
     for (int k = 0; k < square_size; ++k) __builtin_memcpy(at(k), &lines[k], sizeof(line));
   }
   square turned() const {
@@ -89,7 +150,7 @@ int for_each_square(int rows, int numbers, Turn turn) {
 // Rows of so many numbers, from one to the next a stride. column(c): where column c begins.
 inline bool are_long(int numbers) { return numbers >= square_size; }
 template <class Column>
-void separate_rows(const double* values, std::int64_t stride, int numbers, int count, Column column) {
+void separate_rows_of(const double* values, std::int64_t stride, int numbers, int count, Column column) {
   int i = for_each_square(count, numbers, [&](int first, int c) {
     const double* const corner = values + first * stride + c;
     square::from([&](int k) { return corner + k * stride; }).turned().put([&](int k) {
@@ -99,7 +160,8 @@ void separate_rows(const double* values, std::int64_t stride, int numbers, int c
   for (; i < count; ++i)
     for (int c = 0; c < numbers; ++c) column(c)[i] = values[i * stride + c];
 }
-inline void join_rows(double* const* columns, int numbers, int count, double* values, std::int64_t stride) {
+inline void join_rows_of(double* const* columns, int numbers, int count, double* values,
+                         std::int64_t stride) {
   int i = for_each_square(count, numbers, [&](int first, int c) {
     double* const corner = values + first * stride + c;
     square::from([&](int k) { return columns[c + k] + first; }).turned().put([&](int k) {
@@ -108,6 +170,17 @@ inline void join_rows(double* const* columns, int numbers, int count, double* va
   });
   for (; i < count; ++i)
     for (int c = 0; c < numbers; ++c) values[i * stride + c] = columns[c][i];
+}
+
+// Rows of four behind each other take half of the time where compilers know it.
+template <class Column>
+void separate_rows(const double* values, std::int64_t stride, int numbers, int count, Column column) {
+  if (numbers == 4 && stride == 4) return separate_rows_of(values, 4, 4, count, column);
+  separate_rows_of(values, stride, numbers, count, column);
+}
+inline void join_rows(double* const* columns, int numbers, int count, double* values, std::int64_t stride) {
+  if (numbers == 4 && stride == 4) return join_rows_of(columns, 4, count, values, 4);
+  join_rows_of(columns, numbers, count, values, stride);
 }
 
 template <class Number>
@@ -141,27 +214,15 @@ void separate_triples(const Number* __restrict__ values, int first, int count, d
     c[i] = values[3 * i + 2];
   }
 }
-// As many rows of three as there are lanes.
-struct triple_columns {
-  lanes columns[3];
-
-  explicit triple_columns(const double* rows) {
-    const lanes u = lanes_at(rows), v = lanes_at(rows + register_size),
-                w = lanes_at(rows + 2 * register_size);
-    columns[0] = column_of<0>(u, v, w, each_lane);
-    columns[1] = column_of<1>(u, v, w, each_lane);
-    columns[2] = column_of<2>(u, v, w, each_lane);
-  }
-};
 template <class Number>
 void separate_triples(const Number* values, int count, double* a, double* b, double* c) {
   int i = 0;
   if constexpr (std::is_same_v<Number, double>)
     for (; i + register_size <= count; i += register_size) {
-      const triple_columns rows(values + 3 * i);
-      put_lanes(rows.columns[0], a + i);
-      put_lanes(rows.columns[1], b + i);
-      put_lanes(rows.columns[2], c + i);
+      const vectors_of_rows rows(values + 3 * i);
+      put_lanes(rows.column<0>(), a + i);
+      put_lanes(rows.column<1>(), b + i);
+      put_lanes(rows.column<2>(), c + i);
     }
   separate_triples(values, i, count, a, b, c);
 }
@@ -182,7 +243,9 @@ void interleave(double* const* components, int count, Number* values) {
   int i = 0;
   if constexpr (std::is_same_v<Number, double>)
     for (; i + register_size <= count; i += register_size) {
-      const lanes u = lanes_at(a + i), v = lanes_at(b + i), w = lanes_at(c + i);
+      const lanes u = moved_to_rows<0>(lanes_at(a + i), each_lane),
+                  v = moved_to_rows<1>(lanes_at(b + i), each_lane),
+                  w = moved_to_rows<2>(lanes_at(c + i), each_lane);
       double* rows = values + 3 * i;
       put_lanes(row_of<0>(u, v, w, each_lane), rows);
       put_lanes(row_of<1>(u, v, w, each_lane), rows + register_size);

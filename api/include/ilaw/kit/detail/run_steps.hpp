@@ -38,8 +38,30 @@ template <class Law, class Frame, scope Scope>
 inline constexpr bool is_worth_a_try = !is_for_old_processors && Scope < scope::outputs &&
                                        (!std::is_same_v<Frame, stored_frame> || Law::card.names_tangents);
 
+// What is left of a block: 1 where the try was not all. Floats make GCC write two vectors of doubles at once
+// for each operation, so that two chains of divisions and roots go on side by side; worth it where they are
+// long, and where there are registers.
+template <class Number>
+struct alignas(64) left_nodes {
+  using bits = std::conditional_t<sizeof(Number) == sizeof(float), std::uint32_t, std::uint64_t>;
+  Number values[block_size];
+
+  bool any(int count) const {
+    bits found = 0;  // of 0.0 and 1.0
+    for (int i = 0; i < count; ++i) found |= std::bit_cast<bits>(values[i]);
+    return found != 0;
+  }
+};
+template <class Form>
+inline constexpr bool takes_two_packs = register_size == 8 && requires {
+  Form::takes_two_packs;
+};
+template <class Form>
+using left_by = left_nodes<std::conditional_t<takes_two_packs<Form>, float, double>>;
+
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
-[[gnu::noinline, gnu::flatten]] void try_block(const Laws& laws, const node_block<Law>& b, column& left) {
+[[gnu::noinline, gnu::flatten]] void try_block(const Laws& laws, const node_block<Law>& b,
+                                               left_by<typename Laws::form>& left) {
   const Laws l = laws;
   const auto run = [&l, &left](const node_block<Law>& own, int i) {
     const auto& law = l.at(i);
@@ -57,14 +79,12 @@ void try_first(const Laws& laws, const node_block<Law>& b) {
     --b.in_full->left;
     return step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
   }
-  column left;
+  left_by<typename Laws::form> left;
   node_block<Law> own = b;
   kept_state<Law> state;
   state.keep(own);
   try_block<Law, Delassus, Frame, Layout, Scope>(laws, own, left);
-  std::uint64_t bits = 0;  // of 0.0 and 1.0
-  for (int i = 0; i < b.count; ++i) bits |= std::bit_cast<std::uint64_t>(left.values[i]);
-  if (bits == 0) {
+  if (!left.any(b.count)) {
     b.in_full->after_next = 1;
     return;
   }
