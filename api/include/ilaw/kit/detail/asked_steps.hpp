@@ -129,13 +129,11 @@ struct nodes_of_pack {
     }
   }
   void write(const char* place, double* column) const {
-    double values[pack_size];
-    if (side_by_side && filled == pack_size) {
+    constexpr int one = sizeof(double);
+    if (side_by_side && filled == pack_size)
       __builtin_memcpy(column + nodes[0], place, sizeof(pack));
-      return;
-    }
-    __builtin_memcpy(values, place, sizeof values);
-    for (int j = 0; j < filled; ++j) column[nodes[j]] = values[j];
+    else
+      for (int j = 0; j < filled; ++j) __builtin_memcpy(column + nodes[j], place + j * one, one);
   }
 };
 

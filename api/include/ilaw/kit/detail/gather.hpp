@@ -6,6 +6,7 @@
 #include <ilaw/ilaw.h>
 #include <ilaw/kit/detail/rows.hpp>
 
+#include <bit>
 #include <cstdint>
 #include <type_traits>
 
@@ -20,6 +21,13 @@ struct alignas(64) column {
 };
 
 inline constexpr column zeros{};
+
+// Whether any of some numbers that are 0.0 or 1.0 is 1: by their bits, since sums of integers vectorise.
+inline bool any_one(const double* values, int count) {
+  std::uint64_t bits = 0;
+  for (int i = 0; i < count; ++i) bits |= std::bit_cast<std::uint64_t>(values[i]);
+  return bits != 0;
+}
 
 // In the flags of a batch, once checked: its arrays, but those of the state, hold floats (ilaw/float.h). No
 // host can set it, since every flag of a host's is refused.

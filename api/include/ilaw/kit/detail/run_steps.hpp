@@ -62,9 +62,7 @@ void try_first(const Laws& laws, const node_block<Law>& b) {
   kept_state<Law> state;
   state.keep(own);
   try_block<Law, Delassus, Frame, Layout, Scope>(laws, own, left);
-  std::uint64_t bits = 0;  // of 0.0 and 1.0
-  for (int i = 0; i < b.count; ++i) bits |= std::bit_cast<std::uint64_t>(left.values[i]);
-  if (bits == 0) {
+  if (!any_one(left.values, b.count)) {
     b.in_full->after_next = 1;
     return;
   }
@@ -120,9 +118,7 @@ bool are_in_flight(const node_block<Law>& b) {
   if (!may_be_in_flight(b)) return false;
   column reached;
   fly_block<Law, Delassus, Frame, Layout, Scope>(b, reached);
-  std::uint64_t bits = 0;  // of 0.0 and 1.0
-  for (int i = 0; i < block_size; ++i) bits |= std::bit_cast<std::uint64_t>(reached.values[i]);
-  return bits == 0;
+  return !any_one(reached.values, block_size);
 }
 
 // Returns how many nodes were solved one by one, as ilaw/profile.h counts them.
