@@ -144,11 +144,11 @@ struct bond {
   template <class Zone>
   [[gnu::noinline]] outcome softened(double damage_before, secant<double> now, share stiffest,
                                      const Zone& z) const {
-    const double from = z.size(z.opening);
+    const double from = z.size(z.opening), secant_stiffness = now.stiffness();
     const auto excess = [&](share trial) {
       const motion m = z.at(trial);
       const softening<double> s = softening_along(m.opening, m.size);
-      const double traction = s.mean_traction_on_path(now, s.meets(now), from, m.size);
+      const double traction = s.mean_traction_on_path(secant_stiffness, s.meets(now), from, m.size);
       return trial.stiffness() * (m.size + from) - 2.0 * z.compliance_scale * traction;
     };
     const share found = balance(stiffest, excess);
@@ -162,10 +162,10 @@ struct bond {
   template <class Zone>
   [[gnu::noinline]] outcome delayed(double damage, double position_step, const Zone& z) const {
     const secant<double> before = secant_of(damage);
-    const double stiffness_before = before.stiff / before.soft;
+    const double stiffness_before = before.stiffness();
     const auto excess = [&](share trial) {
       const secant<double> after = secant_of(delayed_damage(damage, position_step, z.at(trial)));
-      const double mean = 0.5 * (stiffness_before + after.stiff / after.soft);
+      const double mean = 0.5 * (stiffness_before + after.stiffness());
       return trial.stiffness() - z.compliance_scale * mean;
     };
     const share stiffest = z.of(before);

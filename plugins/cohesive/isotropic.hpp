@@ -42,6 +42,7 @@ class isotropic_step {
     c_ = 0.25 * step * g.velocity_step * g.area * g.h[0];
     ratio_ = square_of_weight() * g.h[1] / g.h[0];
     now_ = secant_of(g.damage);
+    stiffness_ = now_.stiffness();
     const softening<double>& s = all.opened;
     opened_ = {s.strength, s.onset, s.width, s.exponential};
     opened_met_ = opened_.meets(now_);
@@ -127,10 +128,10 @@ class isotropic_step {
     const softening<V> s = softening_of(m);
     if (bond_.is_delayed()) {
       const secant<V> after = secant_of(delayed(m, s));
-      return 0.25 * (now_.stiff / now_.soft + after.stiff / after.soft) * (m.size + from_);
+      return 0.25 * (stiffness_ + after.stiffness()) * (m.size + from_);
     }
     const V met = bond_.mixes() ? s.meets(now_) : opened_met_;
-    return s.mean_traction_on_path(now_, met, from_, m.size);
+    return s.mean_traction_on_path(stiffness_, met, from_, m.size);
   }
 
   V delayed(const trial& m, const softening<V>& s) const {
@@ -180,8 +181,9 @@ class isotropic_step {
       low = select(x.excess < 0.0, x.kappa, low);
       high = select(x.excess < 0.0, high, x.kappa);
       const Mask inside = (along > low) & (along < high);
-      const V nearer = smaller(larger(x.kappa - x.excess / sum, low), high);
-      const V next = select(inside, along, nearer), step = absolute(next - x.kappa);
+      V next = along;
+      if (any(!inside)) next = select(inside, along, smaller(larger(x.kappa - x.excess / sum, low), high));
+      const V step = absolute(next - x.kappa);
       const V other = select(is_straight, step, absolute(x.kappa - before));
       const Mask moves = step * other > close * (x.kappa * x.kappa);
       before = select(active, x.kappa, before);
@@ -205,7 +207,7 @@ class isotropic_step {
     V way = m.size - from_, gain = -0.5 * all_.steepest;
     if (has_short_slope()) {
       const V end = opened_.onset + opened_.width, left = end - smaller(m.size, end);
-      const V traction = select(m.size < opened_met_, now_.stiff / now_.soft * m.size, all_.steepest * left);
+      const V traction = select(m.size < opened_met_, stiffness_ * m.size, all_.steepest * left);
       const Mask moves = absolute(way) > 0x1p-26 * sum;
       gain = select(moves, traction - mean, gain);
       way = select(moves, way, 1.0);
@@ -276,6 +278,7 @@ class isotropic_step {
   V ground_, floor_;    // lowest next position, and lowest opening
   V from_, c_, ratio_;  // |w^-|
   secant<V> now_;
+  V stiffness_;  // its
   softening<V> opened_;
   V opened_met_;
 };

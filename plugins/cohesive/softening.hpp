@@ -30,6 +30,8 @@ V sinh_ratio(V z) {
 template <class V>
 struct secant {
   V stiff, soft;
+
+  V stiffness() const { return stiff / soft; }  // infinite where rigid
 };
 
 template <class V>
@@ -73,12 +75,12 @@ struct softening {
   }
 
   // Mean traction on the way from one opening to another, either of them the larger, of a bond that had at
-  // the first the secant that the softening meets at met. Where modes change, it may have had more there than
-  // this curve allows.
-  V mean_traction_on_path(secant<V> s, V met, V from, V to) const {
+  // the first the secant stiffness, infinite where it is rigid, that the softening meets at met. Where modes
+  // change, it may have had more there than this curve allows.
+  V mean_traction_on_path(V stiffness, V met, V from, V to) const {
     const V low = smaller(from, to), high = larger(from, to), reached = larger(met, low);
-    const V rate = 0.5 * s.stiff / s.soft;
-    const V elastic = select(s.soft > 0.0, rate * (from + to), strength);
+    const V rate = 0.5 * stiffness;
+    const V elastic = select(rate < infinity, rate * (from + to), strength);
     const V elastic_work = select(reached > low, rate * (low + reached) * (reached - low), 0.0);
     const V end = onset + width, a = smaller(reached, end), b = smaller(high, end);
     const V below = select(a < end, mean_traction(a, b), 0.0);

@@ -113,26 +113,6 @@ inline double chosen(bool m, double a, double b) {
 }
 inline kit::pack chosen(kit::mask m, kit::pack a, kit::pack b) { return select(m, a, b); }
 
-// A number that is zero for sure: what it multiplies is not computed.
-struct none {
-  template <class V>
-  friend none operator*(V /*x*/, none) {
-    return {};
-  }
-  template <class V>
-  friend none operator*(none, V /*x*/) {
-    return {};
-  }
-  template <class V>
-  friend V operator+(V x, none) {
-    return x;
-  }
-  template <class V>
-  friend V operator-(V x, none) {
-    return x;
-  }
-};
-
 // IsPlain: linear, not rigid, without damper or restitution. The same numbers with less to compute.
 template <class V, bool IsPlain = false>
 struct compression {
@@ -142,7 +122,7 @@ struct compression {
   V free, previous;  // v_free, v^-
   V delassus;
   V indentation;                                 // x
-  std::conditional_t<IsPlain, none, V> damping;  // c
+  std::conditional_t<IsPlain, kit::sure_zero, V> damping;  // c
 
   // opens: 1 where the way ends open, else 0; end: x'. The impulse falls by gain/(1 + gain H) where v_free
   // grows by 1; pace: scale (1 + gain H), gain times as much as it is where the spring opens.
@@ -245,19 +225,19 @@ struct compression {
  private:
   auto lead() const {
     if constexpr (IsPlain)
-      return none{};
+      return kit::sure_zero{};
     else
       return spring.lead;
   }
   auto if_rigid(double x) const {
     if constexpr (IsPlain)
-      return none{};
+      return kit::sure_zero{};
     else
       return spring.is_rigid() ? x : 0.0;
   }
   auto leading_part(V scale, V v_free, V h) const {
     if constexpr (IsPlain)
-      return none{};
+      return kit::sure_zero{};
     else
       return kit::select(leads(scale, v_free, h), V(spring.lead), V(0.0));
   }

@@ -195,7 +195,7 @@ class rubbing_node {
     }
   }
 
-  rubbing<V> p_;
+  const rubbing<V>& p_;
   double friction_;
   compression<V, IsPlain> normal_;
   V trace_;

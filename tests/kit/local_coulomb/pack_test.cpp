@@ -19,7 +19,8 @@ using kit::pack_size;
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 // Problems of all kinds beside each other: weak and strong coupling,
-// ill-conditioned, ellipses, held axes, no friction, opening and not a number.
+// ill-conditioned, ellipses, held axes, no friction, opening and not a number;
+// without coupling, and at rest along a tangent.
 std::vector<local_coulomb> mixed_problems(unsigned seed, int count) {
   Draw draw(seed);
   std::vector<local_coulomb> problems(static_cast<std::size_t>(count));
@@ -33,6 +34,8 @@ std::vector<local_coulomb> mixed_problems(unsigned seed, int count) {
     p.mu[0] = p.mu[1] = draw.decade(-2.0, 1.0);
     if (k % 3 == 2) p.mu[1] = draw.decade(-2.0, 1.0);
     if (k % 11 == 10) p.mu[k % 2] = k % 4 < 2 ? 0.0 : kit::infinity;
+    if (k % 6 == 5) p.h[3] = p.h[4] = p.h[5] = k % 4 < 2 ? 0.0 : -0.0;
+    if (k % 17 == 16) p.q[1 + k % 2] = k % 4 < 2 ? 0.0 : -0.0;
     if (k % 13 == 12) p.q[0] = k % 2 ? -p.q[0] : std::numeric_limits<double>::quiet_NaN();
     problems[static_cast<std::size_t>(k)] = p;
   }

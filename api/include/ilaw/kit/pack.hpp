@@ -235,6 +235,28 @@ struct bits_of<pack> {
 inline pack exp(pack x) { return detail::exponential(x); }
 inline pack log(pack x) { return detail::logarithm(x); }
 
+// A number that is zero for sure: what it multiplies is not worked out, which changes no bit but the sign of
+// a zero.
+struct sure_zero {
+  friend sure_zero operator*(sure_zero, sure_zero) { return {}; }
+  template <class V>
+  friend sure_zero operator*(V /*x*/, sure_zero) {
+    return {};
+  }
+  template <class V>
+  friend sure_zero operator*(sure_zero, V /*x*/) {
+    return {};
+  }
+  template <class V>
+  friend V operator+(V x, sure_zero) {
+    return x;
+  }
+  template <class V>
+  friend V operator-(V x, sure_zero) {
+    return x;
+  }
+};
+
 // What a comparison of V gives.
 template <class V>
 using mask_of = decltype(V{} < V{});

@@ -62,7 +62,7 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
 void keep_problem(const Laws& laws, const node_block<Law>& b, asked_block<typename Laws::form>& asked,
                   int i) {
   problem_of_form<typename Laws::form> problem{};
-  ask_node<Law, Delassus, Frame, Layout, Scope>(laws, b, i, problem);
+  asked.open.values[i] = ask_node<Law, Delassus, Frame, Layout, Scope>(laws, b, i, problem) ? 1.0 : 0.0;
   to_columns(problem, asked.problem, i, places<problem_of_form<typename Laws::form>>);
 }
 
@@ -129,15 +129,20 @@ struct nodes_of_pack {
     }
   }
   void write(const char* place, double* column) const {
-    double values[pack_size];
-    if (side_by_side && filled == pack_size) {
+    constexpr int one = sizeof(double);
+    if (side_by_side && filled == pack_size)
       __builtin_memcpy(column + nodes[0], place, sizeof(pack));
-      return;
-    }
-    __builtin_memcpy(values, place, sizeof values);
-    for (int j = 0; j < filled; ++j) column[nodes[j]] = values[j];
+    else
+      for (int j = 0; j < filled; ++j) __builtin_memcpy(column + nodes[j], place + j * one, one);
   }
 };
+
+// Number by number: of all at once compilers make a loop over bytes, which takes long to begin.
+template <class Struct>
+void clear(Struct& packs) {
+  for (int k = 0; k < static_cast<int>(sizeof packs / sizeof(pack)); ++k)
+    __builtin_memset(place_of(packs, k), 0, sizeof(pack));
+}
 
 // Solves the problems of a block in packs. Returns how many were left to be solved alone.
 template <class Form>
@@ -150,7 +155,8 @@ template <class Form>
     problem_type problem;
     for (int k = 0; k < asked_block<Form>::problems; ++k)
       in_pack.read(asked.problem[k], place_of(problem, k));
-    answer_type answer{};
+    answer_type answer;
+    clear(answer);
     const mask left = law.solve(problem, answer);
     for (int k = 0; k < asked_block<Form>::answers; ++k) in_pack.write(place_of(answer, k), asked.answer[k]);
     for (int j = 0; any(left) && j < in_pack.filled; ++j) {
@@ -235,12 +241,10 @@ span open_nodes(const asked_block<Form>& asked, int count) {
   return {asked.nodes[0], asked.nodes[count - 1] + 1};
 }
 
-// Returns how many were solved alone.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
-int solve_open(const Laws& laws, const node_block<Law>& b, asked_block<typename Laws::form>& asked,
-               int count) {
-  keep_problems<Law, Delassus, Frame, Layout, reading<Scope>>(laws, b, open_nodes(asked, count), asked);
-  return solve_asked(laws.law, asked, count);
+// Whether so many of a block have a problem that those after it are asked at once for all of theirs.
+inline bool are_many(span open, int nodes) {
+  constexpr int few = 4;  // one in so many
+  return few * (open.end - open.first) > nodes;
 }
 
 // Whether a form's asks() changes no state, so that a block may be asked twice from where it is.
@@ -251,7 +255,6 @@ concept asks_leave_state = Form::asks_leave_state;
 // one. Where those are many, the blocks after this one are not stepped so.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 int run_where_few_ask(const Laws& laws, const node_block<Law>& b, asked_block<typename Laws::form>& asked) {
-  constexpr int few = 4;  // one in so many
   node_block<Law> own = b;
   [[maybe_unused]] kept_state<Law> state;
   if constexpr (!asks_leave_state<typename Laws::form>) state.keep(own);
@@ -259,10 +262,29 @@ int run_where_few_ask(const Laws& laws, const node_block<Law>& b, asked_block<ty
   const int count = list_open(asked, own.count);
   if (count == 0) return 0;
   const span open = open_nodes(asked, count);
-  if (few * (open.end - open.first) > own.count) b.in_full->left = alike;
-  const int alone_count = solve_open<Law, Delassus, Frame, Layout, Scope>(laws, own, asked, count);
+  if (are_many(open, own.count)) b.in_full->left = alike;
+  keep_problems<Law, Delassus, Frame, Layout, reading<Scope>>(laws, own, open, asked);
+  const int alone_count = solve_asked(laws.law, asked, count);
   finish_nodes<Law, Delassus, Frame, Layout, Scope>(laws, own, open, asked);
   return alone_count;
+}
+
+// Lists the problems of a block and keeps them; returns how many there are. Asked twice, once who has one and
+// once which, where they are few.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+int list_problems(const Laws& laws, const node_block<Law>& b, asked_block<typename Laws::form>& asked) {
+  if (b.in_full->left > 0) {
+    --b.in_full->left;
+    keep_problems<Law, Delassus, Frame, Layout, Scope>(laws, b, {0, b.count}, asked);
+    return list_open(asked, b.count);
+  }
+  mark_block<Law, Delassus, Frame, Layout, Scope>(laws, b, asked);
+  const int count = list_open(asked, b.count);
+  if (count == 0) return 0;
+  const span open = open_nodes(asked, count);
+  if (are_many(open, b.count)) b.in_full->left = alike;
+  keep_problems<Law, Delassus, Frame, Layout, Scope>(laws, b, open, asked);
+  return count;
 }
 
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
@@ -271,14 +293,11 @@ int run_asked(const Laws& laws, const node_block<Law>& b) {
   asked_block<form> asked;
   if constexpr (!answers_every_node<form> && !remembers<Law, form>) {
     if (b.in_full->left == 0) return run_where_few_ask<Law, Delassus, Frame, Layout, Scope>(laws, b, asked);
-    --b.in_full->left;
   } else {
     for (double& value : asked.answer.values) value = 0.0;
   }
-  mark_block<Law, Delassus, Frame, Layout, reading<Scope>>(laws, b, asked);
-  const int count = list_open(asked, b.count);
-  const int alone_count =
-      count > 0 ? solve_open<Law, Delassus, Frame, Layout, Scope>(laws, b, asked, count) : 0;
+  const int count = list_problems<Law, Delassus, Frame, Layout, reading<Scope>>(laws, b, asked);
+  const int alone_count = solve_asked(laws.law, asked, count);
   finish_nodes<Law, Delassus, Frame, Layout, Scope>(laws, b, {0, b.count}, asked);
   return alone_count;
 }

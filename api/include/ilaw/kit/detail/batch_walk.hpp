@@ -100,11 +100,7 @@ class batch_walk {
       if (moves.values[i] != 0.0) keep_frame(i);
   }
 
-  bool any_refused() const {
-    std::uint64_t bits = 0;  // an integer reduction vectorises; refused is 0.0 or 1.0
-    for (int i = 0; i < nodes_.count; ++i) bits |= std::bit_cast<std::uint64_t>(block_.refused[i]);
-    return bits != 0;
-  }
+  bool any_refused() const { return any_one(block_.refused, nodes_.count); }
 
  private:
   node_range range(std::int64_t first) const {

@@ -6,6 +6,7 @@
 #include <ilaw/ilaw.h>
 #include <ilaw/kit/detail/rows.hpp>
 
+#include <bit>
 #include <cstdint>
 #include <type_traits>
 
@@ -20,6 +21,15 @@ struct alignas(64) column {
 };
 
 inline constexpr column zeros{};
+
+// Whether any of some numbers that are 0.0 or 1.0 is 1: by their bits, since sums of integers vectorise.
+template <class Number>
+bool any_one(const Number* values, int count) {
+  using bits = std::conditional_t<sizeof(Number) == sizeof(float), std::uint32_t, std::uint64_t>;
+  bits found = 0;
+  for (int i = 0; i < count; ++i) found |= std::bit_cast<bits>(values[i]);
+  return found != 0;
+}
 
 // In the flags of a batch, once checked: its arrays, but those of the state, hold floats (ilaw/float.h). No
 // host can set it, since every flag of a host's is refused.

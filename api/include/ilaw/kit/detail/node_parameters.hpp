@@ -33,9 +33,7 @@ struct law_per_node {
     column others;
 #pragma omp simd
     for (int i = 0; i < count; ++i) others.values[i] = differs(laws, i);
-    std::uint64_t bits = 0;
-    for (int i = 0; i < count; ++i) bits |= std::bit_cast<std::uint64_t>(others.values[i]);
-    return bits == 0;
+    return !any_one(others.values, count);
   }
 
  private:

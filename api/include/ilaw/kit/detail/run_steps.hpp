@@ -43,14 +43,7 @@ inline constexpr bool is_worth_a_try = !is_for_old_processors && Scope < scope::
 // long, and where there are registers.
 template <class Number>
 struct alignas(64) left_nodes {
-  using bits = std::conditional_t<sizeof(Number) == sizeof(float), std::uint32_t, std::uint64_t>;
   Number values[block_size];
-
-  bool any(int count) const {
-    bits found = 0;  // of 0.0 and 1.0
-    for (int i = 0; i < count; ++i) found |= std::bit_cast<bits>(values[i]);
-    return found != 0;
-  }
 };
 template <class Form>
 inline constexpr bool takes_two_packs = register_size == 8 && requires {
@@ -84,7 +77,7 @@ void try_first(const Laws& laws, const node_block<Law>& b) {
   kept_state<Law> state;
   state.keep(own);
   try_block<Law, Delassus, Frame, Layout, Scope>(laws, own, left);
-  if (!left.any(b.count)) {
+  if (!any_one(left.values, b.count)) {
     b.in_full->after_next = 1;
     return;
   }
@@ -140,9 +133,7 @@ bool are_in_flight(const node_block<Law>& b) {
   if (!may_be_in_flight<Layout>(b)) return false;
   column reached;
   fly_block<Law, Delassus, Frame, Layout, Scope>(b, reached);
-  std::uint64_t bits = 0;  // of 0.0 and 1.0
-  for (int i = 0; i < block_size; ++i) bits |= std::bit_cast<std::uint64_t>(reached.values[i]);
-  return bits == 0;
+  return !any_one(reached.values, block_size);
 }
 
 // Returns how many nodes were solved one by one, as ilaw/profile.h counts them.
