@@ -1,6 +1,7 @@
 // What the host takes per node and step beside the law alone, in the same run.
 //
-//   ilaw_bench_host [--law NAME] [--points N...] [--threads N...] [--repetitions K] [--out FILE.csv]
+//   ilaw_bench_host [--law NAME] [--situation NAME] [--points N...] [--threads N...] [--repetitions K]
+//                   [--out FILE.csv]
 //   ilaw_bench_host --read N
 //
 // Points under gravity on a plane, or over it: all in flight and far, half of them touching, all
@@ -8,12 +9,15 @@
 // impulse alone, "law+" with status and energies, as the host asks. "step" is a step of the host,
 // "interface" what it takes longer than that of a host without interface. Each repetition times all
 // of these in turn; medians are printed, of the processor's time with one thread, which others on
-// the machine disturb little, else of the clock on the wall.
+// the machine disturb little, else of the clock on the wall. "triad" is what the memory gave to as
+// many threads in between (bench/triad.hpp), in arrays as large as a vector of all points.
 //
 // --read writes a scene of N points, reads it as `ilaw run` does, and says how long that took and the largest
 // memory that the process has held.
 #include "base/clock.hpp"
 #include "base/csv.hpp"
+#include "base/large_pages.hpp"
+#include "bench/triad.hpp"
 #include "scene/scene.hpp"
 #include "step/integrator.hpp"
 
@@ -142,6 +146,9 @@ class LawCase {
     batch_.state_in = {state_.data(), size, 1};
     batch_.state_out = {state_.data(), size, 1};
     batch_.status_stride = 1;
+    for (const std::vector<double>* values :
+         {&v_free_, &v_previous_, &normal_, &impulse_, &gap_, &delassus_, &energy_, &state_})
+      keep_in_large_pages(*values);
     if (law_.initialise(batch_) != ILAW_OK) throw std::runtime_error("initialise refused");
   }
 
@@ -165,11 +172,30 @@ class LawCase {
   ilaw_batch batch_{};
 };
 
+// A triad for each thread.
+class Memory {
+ public:
+  Memory(std::size_t count, int threads)
+      : triads_(static_cast<std::size_t>(threads), Triad(3 * count / static_cast<std::size_t>(threads) + 1)) {
+  }
+
+  // GB/s of all together.
+  double run() {
+    const double start = now();
+#pragma omp parallel for schedule(static)
+    for (std::size_t t = 0; t < triads_.size(); ++t) triads_[t].run();
+    return 1e-9 * triads_.front().bytes() * static_cast<double>(triads_.size()) / (now() - start);
+  }
+
+ private:
+  std::vector<Triad> triads_;
+};
+
 struct Options {
   std::vector<std::size_t> points{1, 10, 100, 1000, 100000, 1000000};
   std::vector<int> threads{1};
   int repetitions = 7;
-  std::string law, out;
+  std::string law, situation, out;
   std::size_t read = 0;
 };
 
@@ -178,34 +204,39 @@ void measure(const Subject& subject, Situation situation, std::size_t count, int
   omp_set_num_threads(threads);
   HostCase host(&subject, situation, count), alone(nullptr, situation, count);
   LawCase law(subject, situation, count);
+  Memory memory(count, threads);
   const long steps = std::max(3L, 200000L / static_cast<long>(count));
   host.run(20);
   alone.run(20);
   law.run(3, true);
-  std::vector<double> interface, whole, bare, full;
+  std::vector<double> interface, whole, bare, full, triad;
   for (int k = 0; k < options.repetitions; ++k) {
     whole.push_back(host.run(steps));
     interface.push_back(whole.back() - alone.run(steps));
     bare.push_back(law.run(steps, false));
     full.push_back(law.run(steps, true));
+    triad.push_back(memory.run());
   }
   const double law_time = median(full);
   std::printf("%8zu %-8s %-6s %d thread%s  law %7.2f  law+ %7.2f  interface %8.2f  step %8.2f ns", count,
               subject.law, name_of[static_cast<int>(situation)], threads, threads > 1 ? "s" : " ",
               median(bare), law_time, median(interface), median(whole));
-  std::printf(law_time > 1e-2 ? "  interface/law+ %6.2f\n" : "\n", median(interface) / law_time);
+  if (law_time > 1e-2) std::printf("  interface/law+ %6.2f", median(interface) / law_time);
+  std::printf(count >= 100000 ? "  triad %5.1f GB/s\n" : "\n",
+              median(triad));  // of fewer it tells the caches
   std::fflush(stdout);
   if (!csv) return;
-  CsvWriter row(*csv, 8);
+  CsvWriter row(*csv, 9);
   row << std::to_string(count) << subject.law << name_of[static_cast<int>(situation)] << threads
-      << median(bare) << law_time << median(interface) << median(whole);
+      << median(bare) << law_time << median(interface) << median(whole) << median(triad);
   row.end_row();
 }
 
 int measure_all(const Options& options) {
   std::unique_ptr<std::ofstream> csv;
   if (!options.out.empty()) csv = std::make_unique<std::ofstream>(options.out);
-  if (csv) *csv << "points,law,situation,threads,law_ns,law_with_outputs_ns,interface_ns,step_ns\n";
+  if (csv)
+    *csv << "points,law,situation,threads,law_ns,law_with_outputs_ns,interface_ns,step_ns,triad_gb_per_s\n";
   const auto with = [](std::map<std::string, double> numbers) {
     Arguments arguments;
     arguments.numbers = std::move(numbers);
@@ -219,7 +250,8 @@ int measure_all(const Options& options) {
     for (const Subject& subject : subjects)
       for (const Situation situation : {Situation::flight, Situation::half, Situation::all})
         for (const int threads : options.threads)
-          if (options.law.empty() || options.law == subject.law)
+          if ((options.law.empty() || options.law == subject.law) &&
+              (options.situation.empty() || options.situation == name_of[static_cast<int>(situation)]))
             measure(subject, situation, count, threads, options, csv.get());
   return 0;
 }
@@ -253,11 +285,13 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app("Time per node and step of the host, beside the law alone");
   app.add_option("--law", options.law, "This law alone");
+  app.add_option("--situation", options.situation, "This situation alone: flight, half or all");
   app.add_option("--points", options.points, "Points in a scene")->expected(1, 8)->capture_default_str();
   app.add_option("--threads", options.threads, "Threads")->expected(1, 4)->capture_default_str();
   app.add_option("--repetitions", options.repetitions, "Medians are over so many")->capture_default_str();
   app.add_option("--out", options.out, "CSV file to write as well");
   app.add_option("--read", options.read, "Read a scene of so many points instead");
   CLI11_PARSE(app, argc, argv);
+  place_arrays_one_after_another();
   return options.read > 0 ? measure_reading(options.read) : measure_all(options);
 }

@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-COLUMNS = {"law": "law_with_outputs_ns", "interface": "interface_ns", "step": "step_ns"}
+COLUMNS = {"law": "law_with_outputs_ns", "interface": "interface_ns", "step": "step_ns", "triad": "triad_gb_per_s"}
 
 
 def measured(program, given):
@@ -25,7 +25,7 @@ def measured(program, given):
                        check=True, stdout=subprocess.DEVNULL)
         with out.open() as rows:
             return {(int(row["points"]), row["law"], row["situation"], int(row["threads"])):
-                    {name: float(row[column]) for name, column in COLUMNS.items()} for row in csv.DictReader(rows)}
+                    {name: float(row.get(column, "nan")) for name, column in COLUMNS.items()} for row in csv.DictReader(rows)}
 
 
 def medians(runs):
@@ -66,11 +66,15 @@ def show(after, before):
 
 
 def show_threads(after):
-    rows = [[case[1], f"{case[0]:g}", case[2], str(case[3]), f"{after[case[:3] + (1,)]['step'] / numbers['step']:.2f}"]
-            for case, numbers in after.items() if case[3] > 1 and case[:3] + (1,) in after]
+    rows = []
+    for case, numbers in after.items():
+        one = after.get(case[:3] + (1,))
+        if case[3] > 1 and one:
+            rows.append([case[1], f"{case[0]:g}", case[2], str(case[3]), f"{one['step'] / numbers['step']:.2f}",
+                         f"{numbers['triad'] / one['triad']:.2f}"])
     if rows:
         print()
-        table(["law", "points", "situation", "threads", "times as fast"], rows)
+        table(["law", "points", "situation", "threads", "times as fast", "the triad"], rows)
 
 
 def main():

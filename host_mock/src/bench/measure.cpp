@@ -2,11 +2,10 @@
 #include "bench/measure.hpp"
 
 #include "base/clock.hpp"
+#include "base/large_pages.hpp"
 #include "bench/bench_law.hpp"
 #include "bench/node_arrays.hpp"
 #include "bench/triad.hpp"
-
-#include <malloc.h>
 
 #include <algorithm>
 #include <array>
@@ -89,9 +88,7 @@ void check_bench(const ilaw::library& library, const BenchCase& bench_case, std:
 
 BenchResult run_bench(const ilaw::library& library, const BenchCase& bench_case, std::int64_t nodes,
                       int repetitions) {
-  // Arrays one after another: large blocks each in pages of their own all begin at the same place of a page,
-  // and share few places of the caches.
-  mallopt(M_MMAP_MAX, 0);
+  place_arrays_one_after_another();
   const BenchLaw law(library, bench_case);
   NodeArrays arrays(law, bench_case, nodes);
   BenchResult result;

@@ -5,6 +5,7 @@
 
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
+#include "base/large_pages.hpp"
 #include "base/scene_error.hpp"
 #include "cli/guard.hpp"
 #include "cli/progress.hpp"
@@ -282,6 +283,7 @@ int report(const Scene& scene, const Integrator& integrator, const RunRecord& re
 }
 
 int run(const RunOptions& options) {
+  place_arrays_one_after_another();
   set_threads(options.threads);
   guard_against_laws();
   warn_of_search_path();

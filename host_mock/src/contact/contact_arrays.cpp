@@ -2,6 +2,7 @@
 #include "contact/contact_arrays.hpp"
 
 #include "base/bytes.hpp"
+#include "base/large_pages.hpp"
 
 #include <algorithm>
 
@@ -78,6 +79,11 @@ ilaw_batch ContactArrays::repeated_batch(const InterfaceSetup& setup, double tim
   batch.status = status.data();
   batch.status_stride = 1;
   return batch;
+}
+
+void ContactArrays::keep_in_large_pages() const {
+  for (const std::vector<double>* values : {&impulse, &delassus, &area, &state.values()})
+    host::keep_in_large_pages(*values);
 }
 
 std::size_t ContactArrays::bytes_per_contact() const {

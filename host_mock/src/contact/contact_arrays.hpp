@@ -83,6 +83,9 @@ class ContactArrays {
   // The arrays that evaluate takes, where contacts share nodes.
   ilaw_batch repeated_batch(const InterfaceSetup& setup, double time, double dt);
 
+  // Once more contacts are there, what a step reads and writes of them.
+  void keep_in_large_pages() const;
+
   std::size_t bytes_per_contact() const;
   // Contacts whose state may differ from what it started as.
   void save(std::ostream& out) const;

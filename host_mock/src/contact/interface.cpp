@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/interface.hpp"
 
+#include "base/large_pages.hpp"
 #include "base/parallel.hpp"
 #include "base/running_law.hpp"
 #include "contact/law_faults.hpp"
@@ -79,6 +80,7 @@ void Interface::refresh_near(const StepView& step) {
     const auto chunk = static_cast<std::size_t>(c);
     if (proximity_.may_touch(far_[chunk])) look_at(chunk, step);
   });
+  const std::size_t known = contacts_.count();
   near_.clear();
   near_nodes_.clear();
   chunk_starts_.clear();
@@ -93,6 +95,10 @@ void Interface::refresh_near(const StepView& step) {
     }
   }
   chunk_starts_.push_back(static_cast<std::ptrdiff_t>(near_.size()));
+  if (contacts_.count() == known) return;
+  contacts_.keep_in_large_pages();
+  host::keep_in_large_pages(near_);
+  host::keep_in_large_pages(near_nodes_);
 }
 
 // Touched contacts stay near: only fresh ones, and those at rest, are known to do nothing at a

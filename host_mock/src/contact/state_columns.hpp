@@ -21,6 +21,8 @@ class StateColumns {
   double* first(std::size_t contact) { return empty() ? nullptr : &values_[contact]; }
   std::int64_t stride() const { return static_cast<std::int64_t>(room_); }
 
+  const std::vector<double>& values() const { return values_; }
+
   void add(const std::vector<double>& state) {
     if (count_ == room_) grow();
     for (std::size_t c = 0; c < numbers_; ++c) at(count_, c) = state[c];

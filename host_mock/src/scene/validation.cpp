@@ -59,7 +59,8 @@ std::string array_in_words(const json& part) {
   if (!least.is_null() && !most.is_null() && least != most) count += " to " + most.dump();
   const json items = part.contains("items") ? resolved(part["items"]) : json::object();
   if (count.empty() && !items.contains("type")) return "array";
-  return "array of" + count + " " + items.value("type", std::string("entrie")) + "s";
+  return "array of" + count + " " +
+         (items.contains("type") ? items["type"].get<std::string>() + "s" : "entries");
 }
 
 // "object with model, time".

@@ -43,7 +43,7 @@ bool Accounts::is_wrong(const Model& model, const CoupledContacts::Outcome& outc
 }
 
 void Accounts::add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step) {
-  if (step.external_impulse) energy_.add_external(*step.external_impulse, step.v_before, step.v);
+  energy_.add_external(step.external_work);
   if (step.damping_impulse) energy_.add_damping(*step.damping_impulse, step.v_before, step.v);
   if (!model.is_linear()) energy_.add_internal(step.internal_impulse, step.v_before, step.v);
   double stored = 0.0;

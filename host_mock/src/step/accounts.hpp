@@ -30,7 +30,8 @@ struct Tally {
 
 // A step that is done: its impulses per degree of freedom, and the velocities at its ends.
 struct StepRecord {
-  const Dofs *external_impulse, *damping_impulse;  // null: none
+  long double external_work;
+  const Dofs* damping_impulse;  // null: none
   const Dofs &internal_impulse, &v_before, &v;
 };
 

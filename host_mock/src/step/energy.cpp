@@ -18,12 +18,17 @@ long double kinetic_sum(const Model& model, const Dofs& v) {
   return twice / 2;
 }
 
+long double twice_the_work(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after, Eigen::Index first,
+                           Eigen::Index end) {
+  long double sum = 0;
+  for (Eigen::Index i = first; i < end; ++i)
+    sum += static_cast<long double>(impulse[i]) * (static_cast<long double>(v_before[i]) + v_after[i]);
+  return sum;
+}
+
 long double work(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after) {
   const auto twice = [&](Eigen::Index first, Eigen::Index end) {
-    long double sum = 0;
-    for (Eigen::Index i = first; i < end; ++i)
-      sum += static_cast<long double>(impulse[i]) * (static_cast<long double>(v_before[i]) + v_after[i]);
-    return sum;
+    return twice_the_work(impulse, v_before, v_after, first, end);
   };
   return over_parts(impulse.size(), twice, std::plus<>()) / 2;
 }
@@ -48,8 +53,8 @@ void EnergyBalance::note_size(Sum energy) {
   sums_.largest = std::max(sums_.largest, std::abs(static_cast<double>(energy)));
 }
 
-void EnergyBalance::add_external(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after) {
-  sums_.external_work += work(impulse, v_before, v_after);
+void EnergyBalance::add_external(long double work) {
+  sums_.external_work += work;
   note_size(sums_.external_work);
 }
 
@@ -98,6 +103,24 @@ EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs
   report.least_dissipation = sums_.least_dissipation;
   report.reaction_work = static_cast<double>(sums_.relative_work + parts);
   return report;
+}
+
+WorkAndSpeed work_and_speed(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after,
+                            Eigen::Index dimension) {
+  struct Part {
+    long double twice;
+    double square;
+  };
+  const Part sum = over_parts(
+      v_after.size(),
+      [&](Eigen::Index first, Eigen::Index end) {
+        const double square = largest_square(v_after, dimension, first, end);
+        return Part{impulse.size() == 0 ? 0 : twice_the_work(impulse, v_before, v_after, first, end), square};
+      },
+      [](const Part& a, const Part& b) {
+        return Part{a.twice + b.twice, std::max(a.square, b.square)};
+      });
+  return {sum.twice / 2, std::sqrt(sum.square)};
 }
 
 double kinetic_energy(const Model& model, const Dofs& v) {

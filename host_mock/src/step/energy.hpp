@@ -32,8 +32,8 @@ class EnergyBalance {
   // The state (U_0, V_{1/2}) and U_1 that follows from it.
   void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v);
 
+  void add_external(long double work);
   // Impulses of a step, per degree of freedom, with the velocities at its ends.
-  void add_external(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);
   void add_damping(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);
   void add_internal(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);
   // Work of an interface on the bodies: in all, and relative to moving obstacles, to compare with
@@ -68,6 +68,14 @@ class EnergyBalance {
   Sums sums_;
   std::array<Sum, ILAW_ENERGY_COUNT> by_law_{};
 };
+
+// The work of an impulse over a step, and the largest speed at its end: one pass over the velocities.
+struct WorkAndSpeed {
+  long double work;
+  double speed;
+};
+WorkAndSpeed work_and_speed(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after,
+                            Eigen::Index dimension);
 
 double kinetic_energy(const Model& model, const Dofs& v);
 // About the origin: one component in 2D, three in 3D, none in 1D.

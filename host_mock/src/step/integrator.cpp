@@ -49,21 +49,27 @@ struct WildMotion {
 void Integrator::step() {
   const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
   RunningLaw::set_step(steps_ + 1);
-  move();  // u = u + h v
   Laps laps(timed_steps());
-  sum_forces(times);                      // f = f_ext - f_int(u), without any contact force
-  const double speed_free = kick(times);  // v_free = v + (h/m) f
+  v_before_.swap(v_);       // v is written anew from here on
+  double speed_free = 0.0;  // the largest, of v_free
+  if (forces_are_steady_) {
+    speed_free = move_and_kick();  // as below: nothing lies between both
+  } else {
+    move();                    // u = u + h v
+    sum_forces(times);         // f = f_ext - f_int(u), without any contact force
+    speed_free = kick(times);  // v_free = v + (h/m) f
+  }
   check_motion(speed_free, times.after);  // before the laws see it, too: they must not be blamed
   laps.add_to(force_ticks_);
   add_reactions(times.after, speed_free);  // r = law(v_free, 1/m, gap, state), v = v_free + r/m
   laps.add_to(interface_ticks_);
-  speed_before_ = largest_speed(v_, model_.dimension());
+  const WorkAndSpeed external = work_and_speed(external_impulse_, v_before_, v_, model_.dimension());
+  speed_before_ = external.speed;
   check_motion(speed_before_, times.after);
   ++steps_;
-  accounts_.add_step(
-      model_, interfaces_,
-      {loads_.empty() ? nullptr : &external_impulse_,
-       damping_impulse_.size() == 0 ? nullptr : &damping_impulse_, internal_impulse_, v_before_, v_});
+  accounts_.add_step(model_, interfaces_,
+                     {external.work, damping_impulse_.size() == 0 ? nullptr : &damping_impulse_,
+                      internal_impulse_, v_before_, v_});
 }
 
 // Reading the clock takes a good part of a step with few nodes: after the first steps, one in some is
@@ -76,14 +82,26 @@ int Integrator::timed_steps() const {
 }
 
 void Integrator::move() {
-  for_each_part(u_.size(), [u = u_.data(), before = v_before_.data(), v = v_.data(), h = dt_](
-                               Eigen::Index first, Eigen::Index end) {
+  for_each_part(u_.size(),
+                [u = u_.data(), v = v_before_.data(), h = dt_](Eigen::Index first, Eigen::Index end) {
+#pragma omp simd
+                  for (Eigen::Index i = first; i < end; ++i) u[i] += h * v[i];
+                });
+}
+
+// Each node at once, where forces are the same in all steps: memory gives and takes it once.
+double Integrator::move_and_kick() {
+  return std::sqrt(largest_of_parts(v_.size(), [&](Eigen::Index first, Eigen::Index end) {
+    double *const u = u_.data(), *const v = v_.data();
+    const double *const before = v_before_.data(), *const gain = gain_.data(), h = dt_;
+    const bool pushed = !loads_.empty();
 #pragma omp simd
     for (Eigen::Index i = first; i < end; ++i) {
-      before[i] = v[i];
-      u[i] += h * v[i];
+      u[i] += h * before[i];
+      v[i] = pushed ? before[i] + gain[i] : before[i];
     }
-  });
+    return largest_square(v_, model_.dimension(), first, end);
+  }));
 }
 
 // As impulses: shocks have no force. What no load changes is summed once.
@@ -113,13 +131,14 @@ double Integrator::kick(StepTimes step) {
     for (Eigen::Index i = first; deformed && i < end; ++i) internal_impulse_[i] *= dt_;
     if (pushed && deformed)
       for (Eigen::Index i = first; i < end; ++i)
-        v_[i] += (external_impulse_[i] + internal_impulse_[i]) * inverse_mass_[i];
-    else if (pushed || deformed) {
+        v_[i] = v_before_[i] + (external_impulse_[i] + internal_impulse_[i]) * inverse_mass_[i];
+    else {
       double* const v = v_.data();
+      const double* const before = v_before_.data();
       const double* const impulse = (pushed ? external_impulse_ : internal_impulse_).data();
       const double* const inverse = inverse_mass_.data();
 #pragma omp simd
-      for (Eigen::Index i = first; i < end; ++i) v[i] += impulse[i] * inverse[i];
+      for (Eigen::Index i = first; i < end; ++i) v[i] = before[i] + impulse[i] * inverse[i];
     }
     return largest_square(v_, d, first, end);
   }));

@@ -68,6 +68,7 @@ class Integrator {
  private:
   // How many steps the time of the coming one stands for.
   int timed_steps() const;
+  double move_and_kick();
   void move();
   void sum_forces(StepTimes step);
   double kick(StepTimes step);
@@ -82,12 +83,14 @@ class Integrator {
   std::optional<CoupledContacts> coupled_;  // where contacts share nodes
   double dt_;
   bool loads_are_steady_;
+  bool forces_are_steady_;                // loads are, and there are no others
   std::vector<std::size_t> correcting_;   // loads in the order in which they correct velocities
   std::vector<Dofs> kept_load_impulses_;  // by load; empty where nobody asks
   std::int64_t steps_ = 0;
   double speed_before_ = 0.0;  // the largest of v_
   Dofs u_, v_, v_before_, external_impulse_, damping_impulse_, internal_impulse_;
-  Dofs inverse_mass_;
+  Dofs inverse_mass_;  // where forces change
+  Dofs gain_;          // of the velocities in a step, where they do not; empty without loads
   Accounts accounts_;
   TickLength tick_length_;
   std::int64_t force_ticks_ = 0, interface_ticks_ = 0;

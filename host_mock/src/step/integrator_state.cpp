@@ -1,6 +1,7 @@
 // What surrounds the steps: how a run starts, what is read of it, and where it can go on from.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/bytes.hpp"
+#include "base/large_pages.hpp"
 #include "step/dof_loops.hpp"
 #include "step/integrator.hpp"
 
@@ -33,6 +34,7 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       dt_(dt),
       loads_are_steady_(
           std::all_of(loads.begin(), loads.end(), [](const auto& load) { return load->is_steady(); })),
+      forces_are_steady_(loads_are_steady_ && !model.has_internal_forces()),
       correcting_(order_of_corrections(loads)),
       kept_load_impulses_(loads.size()),
       u_(model.initial_displacement()),
@@ -40,11 +42,13 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       v_before_(v_),
       external_impulse_(Dofs::Zero(loads.empty() ? 0 : u_.size())),
       internal_impulse_(Dofs::Zero(model.has_internal_forces() ? u_.size() : 0)),
-      inverse_mass_(model.mass().cwiseInverse()) {
+      inverse_mass_(forces_are_steady_ ? Dofs() : Dofs(model.mass().cwiseInverse())) {
   if (share_nodes(model_, interfaces_)) coupled_.emplace(model_, interfaces_);
   Dofs force = Dofs::Zero(u_.size());
   for (const auto& load : loads_) load->add_force(0.0, u_, force);
   if (loads_are_steady_ && !loads_.empty()) external_impulse_ = dt_ * force;
+  if (forces_are_steady_ && !loads_.empty())
+    gain_ = external_impulse_.cwiseProduct(model_.mass().cwiseInverse());
   model_.add_internal_forces(u_, force);
   v_ += 0.5 * dt_ * force.cwiseQuotient(model_.mass());
   for (const std::size_t k : correcting_) loads_[k]->start(dt_, {u_, v_before_}, v_);
@@ -53,6 +57,10 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
   damping_impulse_ = Dofs::Zero(damped ? u_.size() : 0);
   accounts_.start(model_, u_, u_ + dt_ * v_, v_);
   speed_before_ = largest_speed(v_, model_.dimension());
+  keep_in_large_pages(model_.position());
+  for (const Dofs* dofs : {&u_, &v_, &v_before_, &external_impulse_, &damping_impulse_, &internal_impulse_,
+                           &inverse_mass_, &gain_})
+    keep_in_large_pages(*dofs);
 }
 
 Dofs Integrator::interface_impulse() const {
