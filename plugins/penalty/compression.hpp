@@ -121,7 +121,7 @@ struct compression {
   normal_spring spring;
   V free, previous;  // v_free, v^-
   V delassus;
-  V indentation;                                 // x
+  V indentation;                                           // x
   std::conditional_t<IsPlain, kit::sure_zero, V> damping;  // c
 
   // opens: 1 where the way ends open, else 0; end: x'. The impulse falls by gain/(1 + gain H) where v_free
