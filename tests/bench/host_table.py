@@ -25,7 +25,8 @@ def measured(program, given):
                        check=True, stdout=subprocess.DEVNULL)
         with out.open() as rows:
             return {(int(row["points"]), row["law"], row["situation"], int(row["threads"])):
-                    {name: float(row.get(column, "nan")) for name, column in COLUMNS.items()} for row in csv.DictReader(rows)}
+                    {name: float(row.get(column, "nan")) for name, column in COLUMNS.items()}
+                    for row in csv.DictReader(rows)}
 
 
 def medians(runs):
