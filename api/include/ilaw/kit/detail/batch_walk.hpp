@@ -16,10 +16,12 @@ class batch_walk {
   static constexpr int states = state_doubles<Law>;
   static constexpr bool in_place = is_in_place<Layout>, of_floats = is_of_floats<Layout>;
 
-  batch_walk(const instance<Law>& made, const ilaw_batch& batch, block_room<Law>& room)
+  // is_read_again: whether a block is gone through several times.
+  batch_walk(const instance<Law>& made, const ilaw_batch& batch, block_room<Law>& room,
+             bool is_read_again = false)
       : made_(made), batch_(batch), room_(room), dimension_(static_cast<int>(made.dimension)) {
     has_ahead_ = batch_.node_count >= streams::fewest_nodes && !batch_.index && !batch_.index64;
-    if (has_ahead_) expect_arrays();
+    if (has_ahead_) expect_arrays(is_read_again);
   }
 
   // Fills the columns of the block that starts at position first.
@@ -149,18 +151,19 @@ class batch_walk {
   }
 
   // All that is read or written where nodes follow each other, if any of it is copied. Of a batch whose
-  // vectors stay where they are only what is copied: the rest comes sooner unasked.
-  void expect_arrays() {
-    has_ahead_ = false;
-    const auto add = [this](const auto& array, int numbers, bool holds_floats) {
+  // vectors stay where they are, and are read once, only what is copied: the rest comes sooner unasked.
+  void expect_arrays(bool is_read_again) {
+    const bool all = !in_place || is_read_again;
+    has_ahead_ = in_place && is_read_again;
+    const auto add = [this, all](const auto& array, int numbers, bool holds_floats) {
       const bool is_copied = array.values && (array.node_stride != 1 || (holds_floats && !of_floats));
       has_ahead_ = has_ahead_ || is_copied;
-      if (is_copied || !in_place) expect(array, numbers, holds_floats, ahead_);
+      if (is_copied || all) expect(array, numbers, holds_floats, ahead_);
     };
     const auto of_batch = [this, add](const auto& array, int numbers) {
       add(array, numbers, holds_floats(batch_));
     };
-    if constexpr (!in_place) {
+    if (all) {
       of_batch(batch_.v_free, dimension_);
       of_batch(batch_.v_previous, dimension_);
       of_batch(batch_.normal, dimension_);

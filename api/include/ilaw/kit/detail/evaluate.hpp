@@ -125,7 +125,7 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, boo
 struct evaluate_walk {
   static tally run(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
     block_room<Law> room;
-    batch_walk<Law, Layout> walk(made, batch, room);
+    batch_walk<Law, Layout> walk(made, batch, room, asks(law));
     using parameters_of_nodes = std::conditional_t<Varying, node_parameters<Law>, same_parameters>;
     [[maybe_unused]] parameters_of_nodes parameters(made, law, batch);
     tally found;
@@ -145,6 +145,13 @@ struct evaluate_walk {
   }
 
  private:
+  static bool asks(const Law& law) {
+    bool found = false;
+    in_its_form(law,
+                [&]<class Form>(const Form&) { found = asks_first<Form, node_in<Law, Delassus, Frame>>; });
+    return found;
+  }
+
   // The smallest stable step of the block's good nodes, for laws that limit it.
   static void limit_step(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
                          batch_walk<Law, Layout>& walk, tally& found) {
