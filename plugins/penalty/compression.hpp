@@ -96,10 +96,10 @@ struct normal_spring {
   // The damper of the step. By weights, since GCC vectorises no choice that is the same at all nodes.
   template <class V>
   V damper(V delassus) const {
-    const double by_ratio = ratio > 0.0 ? 1.0 : 0.0, given = 1.0 - by_ratio;
-    const V pace = step * kit::square_root(soft()) * kit::square_root(delassus);
-    const V reached = step * delassus * (1.0 + (0.25 + 0.5 * ratio) * pace);
-    return (2.0 * ratio * pace + damping) /
+    const double by_ratio = ratio > 0.0 ? 1.0 : 0.0, given = 1.0 - by_ratio, stiff = kit::square_root(soft());
+    const V root = kit::square_root(delassus),
+            reached = root * (1.0 + (0.25 + 0.5 * ratio) * (step * stiff * root));
+    return (2.0 * ratio * stiff + damping) /
            (by_ratio * reached + given * (1.0 + 0.5 * step * damping * delassus));
   }
 };
@@ -133,14 +133,21 @@ struct compression {
   V mean_velocity(V v) const { return 0.5 * (previous + v); }
   V travel(V v) const { return spring.step * (mean_velocity(v) + lead() * kit::positive_part(v - previous)); }
 
+  // In lengths that a power of two has brought to [2, 4), so that their squares stay within the range of
+  // numbers. Not so H, which no length measures: times what brings up that of a node at rest it is infinite.
   solution linear() const {
     const V most = kit::larger(spring.step * (kit::absolute(free) + kit::absolute(previous)), indentation);
-    const V scale = kit::power_scale_of(most).down;
-    return linear(scale, scale * free, scale * delassus);
+    const auto scale = kit::power_scale_of(most);
+    compression scaled = *this;
+    scaled.previous = scale.down * previous;
+    scaled.indentation = scale.down * indentation;
+    solution found = scaled.linear(V(1.0), scale.down * free, delassus);
+    found.impulse = 0.5 * found.impulse * scale.up;
+    return found;
   }
 
-  // p = 1, for v_free and H times `scale` as they are given: so they need not be divided by a determinant,
-  // and a power of two keeps squares of lengths from overflow. One division and one square root.
+  // p = 1, for v_free and H times `scale` as they are given: so they need not be divided by a determinant.
+  // One division and one square root.
   solution linear(V scale, V v_free, V h) const {
     const double step = spring.step, k = spring.soft();
     const auto rigid = if_rigid(1.0), never = if_rigid(kit::infinity);

@@ -279,7 +279,8 @@ struct penalty {
     if constexpr (is_smooth(Kind)) {
       tell(node, false);
     } else {
-      const double shear = friction > 0.0 ? h * tangential_stiffness : 0.0;
+      // One too soft for 1/shear to be a number is none.
+      const double rate = h * tangential_stiffness, shear = friction > 0.0 && rate >= 0x1p-1022 ? rate : 0.0;
       rub(node, node.impulse.n, shear * spring, 1.0);
       const double per_impulse = shear > 0.0 ? 1.0 / shear : 0.0;
       const double moves = shear > 0.0 ? node.position_step : 0.0;
@@ -315,9 +316,7 @@ struct penalty::form : penalty {
   double step_falls_with(const Node& node) const requires(Kind == spring_kind::smooth) {
     return node.delassus.normal();
   }
-  double stable_step_at(double delassus) const {
-    return penalty_law::stable_step(delassus, stiffness, damping);
-  }
+  double stable_step_at(double h) const { return penalty_law::stable_step(h, stiffness, damping); }
 
   // What has a root to find is solved in packs: springs that are not linear, and friction where H has more
   // than one tangential entry.
