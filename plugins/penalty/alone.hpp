@@ -97,12 +97,21 @@ struct any_compression : compression<double> {
   }
 };
 
-// The tangential impulse for a normal one that is known, by the closed form: one tangential entry, no
-// coupling.
+// The tangential impulse -q/softness for a normal one that is known, within the cone.
 template <class Vector>
-kit::friction_result<Vector> rub_apart(double normal, Vector q, double softness, double friction) {
-  const kit::diagonal_delassus delassus{1.0, softness, softness};
-  return rub_along(delassus, kit::positive_part(normal), q, q.tangential_length(), {}, friction);
+struct rubbed_apart {
+  Vector impulse;
+  bool slips;
+};
+template <class Vector>
+rubbed_apart<Vector> rub_apart(double normal, Vector q, double softness, double friction) {
+  const auto speed = q.scaled_tangential_length();
+  const double length = speed.root(), limit = speed.down * kit::friction_limit(friction, normal);
+  const bool slips = length > limit * softness;
+  const double factor = chosen(slips, limit, 1.0) / chosen(slips, length, softness);
+  Vector impulse = Vector{} - factor * q;  // from zero, so that what does not rub gets 0, and not -0
+  impulse.n = normal;
+  return {impulse, slips};
 }
 
 class node_alone {

@@ -131,50 +131,61 @@ struct compression {
   };
 
   V mean_velocity(V v) const { return 0.5 * (previous + v); }
-  V travel(V v) const { return spring.step * (mean_velocity(v) + lead() * kit::positive_part(v - previous)); }
+  V travel(V v) const {
+    if constexpr (IsPlain) return 0.5 * spring.step * (previous + v);
+    return spring.step * (mean_velocity(v) + lead() * kit::positive_part(v - previous));
+  }
 
-  // In lengths that a power of two has brought to [2, 4), so that their squares stay within the range of
-  // numbers. Not so H, which no length measures: times what brings up that of a node at rest it is infinite.
+  // With lengths that a power of two brings to [2, 4) where they are squared, so that squares stay within the
+  // range of numbers. Not so H, which no length measures: times what brings up that of a node at rest it is
+  // infinite.
   solution linear() const {
     const V most = kit::larger(spring.step * (kit::absolute(free) + kit::absolute(previous)), indentation);
-    const auto scale = kit::power_scale_of(most);
-    compression scaled = *this;
-    scaled.previous = scale.down * previous;
-    scaled.indentation = scale.down * indentation;
-    solution found = scaled.linear(V(1.0), scale.down * free, delassus);
-    found.impulse = 0.5 * found.impulse * scale.up;
-    return found;
+    return linear(V(1.0), free, delassus, kit::power_scale_of(most));
   }
 
   // p = 1, for v_free and H times `scale` as they are given: so they need not be divided by a determinant.
-  // One division and one square root.
-  solution linear(V scale, V v_free, V h) const {
-    const double step = spring.step, k = spring.soft();
-    const auto rigid = if_rigid(1.0), never = if_rigid(kit::infinity);
-    const V before = scale * previous, x = scale * indentation, sum = v_free + before;
-    const auto part = leading_part(scale, v_free, h);
-
-    // Closed to the end, all is linear.
-    const V start = 0.5 * sum + part * (v_free - before), gain = h * (0.5 + part);
-    const V way = step * start, give = step * gain;
-    const V drive = step * (k * (x - 0.5 * way) - 0.5 * damping * sum) - rigid * start;
-    const V closed = kit::positive_part(drive);
-    const V resists = (1.0 - rigid) * scale + 0.5 * step * (k * give + damping * h) + rigid * gain;
-    const Mask opens = give * closed > (x - way) * resists + never;
+  // One division, of what gives r/2, and one square root. What is the same at all nodes is multiplied first.
+  solution linear(V scale, V v_free, V h, kit::power_scale<V> lengths = {1.0, 2.0}) const {
+    const double step = spring.step;
+    const auto closed = stay_closed(scale, v_free, h);
+    const Mask opens = closed.opening > 0.0;
 
     // If that lets it open, r travel = h x <k x/2 - c vbar>, a quadratic equation.
-    const V linear = way + 0.5 * step * indentation * damping * h;
-    const V constant = 0.5 * step * indentation * kit::positive_part(k * x - damping * sum);
-    const V root = kit::square_root(linear * linear + 4.0 * give * constant);
-    const V over = kit::select(linear > 0.0, 2.0 * constant, root - linear);
-    const V under = kit::select(linear > 0.0, linear + root, 2.0 * give);
+    const V held = kit::positive_part(closed.held - 0.5 * step * damping * closed.sum);
+    const V x = lengths.down * indentation, linear = closed.way + 0.5 * step * indentation * damping * h;
+    const V way = lengths.down * linear, rest = lengths.down * held;
+    const V root = kit::square_root(way * way + closed.give * (x * rest));
+    const V over = kit::select(linear > 0.0, x * held, (root - way) * (0.5 * lengths.up));
+    const V under = kit::select(linear > 0.0, way + root, closed.give);
 
-    const V r = chosen(opens, over, closed) / chosen(opens, under, resists);
-    const V stretch = step * (0.5 + part);
-    const V opening = r * stretch + 0.5 * step * indentation * damping;
+    const V half = chosen(opens, over, closed.over) / chosen(opens, under, closed.under), r = half + half;
+    const V stretch = step * (0.5 + closed.part), opening = r * stretch + 0.5 * step * indentation * damping;
     return {r, kit::select(opens, V(1.0), V(0.0)), V(0.0),
-            kit::select(opens, opening, 0.5 * step * (k * stretch + damping)),
-            kit::select(opens, root, resists)};
+            kit::select(opens, opening, 0.5 * step * (spring.soft() * stretch + damping)),
+            kit::select(opens, root, closed.under)};
+  }
+
+  // Closed to the end, all is linear: r/2 = over/under, where that does not let it open.
+  struct closed_spring {
+    V over, under, held, way, sum, give;
+    std::conditional_t<IsPlain, kit::sure_zero, V> part;
+    V opening;  // positive where it does; no truth, of which GCC would make branches
+  };
+  closed_spring stay_closed() const { return stay_closed(V(1.0), free, delassus); }
+  closed_spring stay_closed(V scale, V v_free, V h) const {
+    const double step = spring.step, push = 0.5 * step * spring.soft();
+    const auto rigid = if_rigid(1.0), never = if_rigid(kit::infinity);
+    const V before = scale * previous, x = scale * indentation, sum = v_free + before, held = push * x;
+    const auto part = leading_part(scale, v_free, h);
+    const V way = 0.5 * step * sum + step * part * (v_free - before),
+            give = 2.0 * step * h * (1.0 + 2.0 * part);
+    const V drive = held - 0.5 * push * way - 0.25 * step * damping * sum -
+                    rigid * (0.25 * sum + 0.5 * part * (v_free - before));
+    const V over = kit::positive_part(drive), open = x - way;
+    const V resists =
+        (1.0 - rigid) * scale + 0.25 * push * give + 0.5 * step * damping * h + rigid * (h * (0.5 + part));
+    return {over, resists, held, way, sum, give, part, give * over - (open + open) * resists - never};
   }
 
   // Whether a linear spring pushes in the free step, without a division.

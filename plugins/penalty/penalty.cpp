@@ -149,9 +149,8 @@ struct penalty {
   double potential(double penetration) const {
     return kept_if(stiffness < infinity, penalty_law::potential<Kind>(stiffness, exponent, penetration));
   }
-  double tangential_potential(vector slip, vector other) const {
-    return kept_if(tangential_stiffness < infinity,
-                   0.5 * tangential_stiffness * tangential_product(slip, other));
+  double tangential_potential(vector a, vector b) const {
+    return kept_if(tangential_stiffness < infinity, 0.5 * tangential_stiffness * tangential_product(a, b));
   }
 
   // Gives the node a normal impulse that is known already, and the tangential one -q/softness within the
@@ -183,17 +182,19 @@ struct penalty {
     if constexpr (is_plain(Kind)) return Kind == spring_kind::rigid_plain;
     return tangential_stiffness == infinity;
   }
-  // q + H/2 r is the mean velocity of what slips.
+  // q + H/2 r is the mean velocity of what slips. Twice that, and twice what the spring adds to H/2.
   template <spring_kind Kind, class Node>
   vector sliding_velocity(const Node& node) const {
-    const vector spring{0.0, node.state.spring.t1, node.state.spring.t2};
-    const double turned = penalty_law::turned_part(node.v_free, node.v_previous),
-                 held = sticks_rigidly<Kind>() ? turned : 1.0;
-    return 0.5 * (node.v_free + held * node.v_previous) + (2.0 / node.velocity_step) * spring;
+    const bool rigid = sticks_rigidly<Kind>();  // then no spring is strained
+    const double turned = penalty_law::turned_part(node.v_free, node.v_previous), held = rigid ? turned : 1.0;
+    const vector sum = node.v_free + held * node.v_previous;
+    if constexpr (Kind == spring_kind::rigid_plain) return sum;
+    return sum + kept_if(!rigid, 4.0 / node.velocity_step) *
+                     vector{0.0, node.state.spring.t1, node.state.spring.t2};
   }
   template <class Node>
   double softness_of(const Node& node) const {
-    return 2.0 / node.velocity_step / (node.velocity_step * tangential_stiffness);
+    return 4.0 / node.velocity_step / (node.velocity_step * tangential_stiffness);
   }
   template <class Node>
   double indentation_of(const Node& node) const {
@@ -222,7 +223,7 @@ struct penalty {
       tell(node, false);
       store<Kind>(node, indentation, {});
     } else {
-      const double softness = 0.5 * node.delassus.tangential() + softness_of(node);
+      const double softness = node.delassus.tangential() + softness_of(node);
       const bool slides = rub(node, impulse, sliding_velocity<Kind>(node), softness);
       store<Kind>(node, indentation, strained<Kind>(node, slides));
     }
@@ -345,7 +346,7 @@ struct penalty::form : penalty {
     open.delassus = node.delassus.normal();
     open.indentation = indentation_of(node);
     if constexpr (!is_smooth(Kind) && !has_transverse_delassus<Node>)
-      penalty_law::couple(open, node.delassus, sliding_velocity<Kind>(node), softness_of(node));
+      penalty_law::couple(open, node.delassus, 0.5 * sliding_velocity<Kind>(node), 0.5 * softness_of(node));
     const bool acts = acts_on(node);
     answered(node, {});
     return acts;

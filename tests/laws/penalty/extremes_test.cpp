@@ -111,5 +111,24 @@ TEST(PenaltyExtremes, ImpulsesGrowWithTheSpeeds) {
   }
 }
 
+// A rigid tangential spring has no slip: one that a state has of another spring counts nowhere.
+TEST(PenaltyExtremes, ARigidTangentialSpringHasNoSlip) {
+  for (const Given& more : {Given{}, {{"damping", 7.0}}, {{"exponent", 1.5}}, {{"exponent", 2.3}}})
+    for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_FULL}) {
+      Given numbers = more;
+      numbers.insert({{"stiffness", 1e4}, {"friction", 0.4}});
+      const auto impulse_with = [&](double slip) {
+        NodeRun node("penalty", {numbers, {{"integration", "implicit"}}}, 1e-2, form);
+        node.h = {1.0, 1.3, 0.8, 0.2, -0.1, 0.15};
+        node.state = {0.01, 0.0, slip, -slip};
+        node.v_previous = {-0.1, 0.02, 0.01};
+        EXPECT_EQ(node.step({-0.1, 0.02, 0.01}), ILAW_OK);
+        EXPECT_EQ(node.state[2], 0.0);
+        return node.r;
+      };
+      EXPECT_EQ(impulse_with(1e-3), impulse_with(0.0)) << numbers.size() << " parameters, form " << form;
+    }
+}
+
 }  // namespace
 }  // namespace ilaw::testing
