@@ -14,6 +14,9 @@ inline constexpr double exponential = 1.0, camacho_ortiz = 2.0;
 // A rigid bond that breaks leaves at least this part of the free motion.
 inline constexpr double almost_nothing = 0x1p-100;
 
+// The scale of damage is at least this part of what shear is soft by, which leaves 43 bits to its traction.
+inline constexpr double softest_shear = 0x1p-10;
+
 // Shares of mode I and of shear, which is mode II, in the squared opening, and what the page weighs the modes
 // with; their sum is 1. Both are kept, since a large exponent or ratio of strengths makes much of a tiny one.
 template <class V>
@@ -101,7 +104,15 @@ struct bond {
   }
 
   // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
-  double softness_scale() const { return softening_at(mode_1).width / strength; }
+  // Close to 1 it has only 53 bits, of which a shear that is much softer would leave none.
+  double softness_scale() const {
+    const double opened = softness_at(mode_1);
+    return mixes() ? larger(opened, softest_shear * softness_at(mode_2)) : opened;
+  }
+  double softness_at(mode_mix<double> mode) const {
+    const softening<double> s = softening_at(mode);
+    return s.width / s.strength;
+  }
   secant<double> secant_of(double damage) const {
     return {1.0 - damage, flexibility() + (strength < infinity ? damage * softness_scale() : 0.0)};
   }
@@ -126,16 +137,16 @@ struct bond {
   outcome at_once(double damage, const Zone& z) const {
     const secant<double> now = secant_of(damage);
     const share stiffest = z.of(now);
-    if (strength == infinity || holds(z, now, stiffest)) return {stiffest, damage};
+    if (strength == infinity || holds(z, damage, now, stiffest)) return {stiffest, damage};
     return softened(damage, now, {stiffest.taken, larger(stiffest.left, almost_nothing)}, z);
   }
 
   template <class Zone>
-  bool holds(const Zone& z, secant<double> now, share elastic) const {
+  bool holds(const Zone& z, double damage, secant<double> now, share elastic) const {
     if (!(now.soft > 0.0)) return false;  // see stands_still
     const motion m = z.at(elastic);
     const double pull = now.stiff * m.size;
-    return (now.stiff == 1.0 && pull <= now.soft * smaller(strength, shear_strength())) ||
+    return (damage == 0.0 && pull <= now.soft * smaller(strength, shear_strength())) ||
            pull <= now.soft * softening_along(m.opening, m.size).traction(m.size);
   }
 

@@ -149,6 +149,9 @@ struct cohesive : bond {
     if (stores_more(shear_strength(), shear_toughness()))
       return "parameter 'toughness_2' is below 'strength_2'^2/(2 'stiffness'), the energy that the bond "
              "stores in shear when its strength is reached (0: the same as 'toughness' and 'strength')";
+    if (bonds() && mixes() && softness_scale() == infinity)
+      return "parameter 'strength_2' is too small: 'toughness_2'/'strength_2'^2, which damage is measured by, "
+             "overflows";
     return nullptr;
   }
 

@@ -144,7 +144,7 @@ class isotropic_step {
     if (!bond_.mixes()) return m.size <= opened_met_;
     const V pull = now_.stiff * m.size;
     const double least = smaller(bond_.strength, bond_.shear_strength());
-    return ((now_.stiff == 1.0) & (pull <= now_.soft * least)) |
+    return ((g_.damage == 0.0) & (pull <= now_.soft * least)) |
            (pull <= now_.soft * softening_of(m).traction(m.size));
   }
 

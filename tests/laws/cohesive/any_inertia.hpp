@@ -75,22 +75,32 @@ struct Curve {
   };
   Mode mode(double shear) const {
     const double part = shape == "camacho_ortiz" || shear == 0.0 ? 0.0 : std::pow(shear, eta);
-    const double strength = std::sqrt(s1 * s1 + part * (s2 * s2 - s1 * s1)), onset = strength * flexibility;
+    const auto between = [part](double one, double two) {  // nothing is left of a difference where one is tiny
+      return part > 0.5 ? two + (1.0 - part) * (one - two) : one + part * (two - one);
+    };
+    const double strength = std::sqrt(between(s1 * s1, s2 * s2)), onset = strength * flexibility;
     const double full = shape == "exponential" ? 0.125 - std::exp(-8.0) / -std::expm1(-8.0) : 0.5;
-    return {strength, onset, ((g1 + part * (g2 - g1)) / strength - 0.5 * onset) / full};
+    return {strength, onset, (between(g1, g2) / strength - 0.5 * onset) / full};
   }
   double traction(const Mode& m, double y) const {
     const double p = std::clamp((y - m.onset) / m.width, 0.0, 1.0);
     return m.strength *
            (shape == "exponential" ? (std::exp(-8.0 * p) - std::exp(-8.0)) / -std::expm1(-8.0) : 1.0 - p);
   }
-  double secant(double damage) const {
-    const Mode m = mode(0.0);
-    return (1.0 - damage) / (flexibility + damage * m.width / m.strength);
+  // b of the page.
+  double softness() const {
+    const Mode opened = mode(0.0), sheared = mode(1.0);
+    return std::max(opened.width / opened.strength, sheared.width / sheared.strength / 1024.0);
   }
+  // Damage of a bond whose mode I alone would call it so much.
+  double spent(double alone) const {
+    const Mode opened = mode(0.0);
+    const double k = (1.0 - alone) / (flexibility + alone * opened.width / opened.strength);
+    return (1.0 - k * flexibility) / (1.0 + k * softness());
+  }
+  double secant(double damage) const { return (1.0 - damage) / (flexibility + damage * softness()); }
   double damage_of(double y, double traction) const {
-    const Mode m = mode(0.0);
-    return (y - flexibility * traction) / (y + m.width / m.strength * traction);
+    return (y - flexibility * traction) / (y + softness() * traction);
   }
   double size(const Vector& w) const { return std::hypot(w[0], weight * w[1], weight * w[2]); }
   double shear(const Vector& w) const {
@@ -168,7 +178,7 @@ struct Problem {
       : inertia(draw, decades), curve(of), step(draw.power_of_ten(-3.0, -1.0)) {
     const double last = draw.between(0.0, 1.0) < 0.3 ? draw.between(0.7, 1.4) * step : step;
     velocity_step = 0.5 * (last + step);
-    damage = draw.between(0.05, 0.95);
+    damage = curve.spent(draw.between(0.05, 0.95));
     const double reach =
         0.6 * curve.meets(damage) * std::min(curve.s2 / curve.s1, 1.0) / std::max(curve.weight, 1.0);
     opening = draw.vector(reach);

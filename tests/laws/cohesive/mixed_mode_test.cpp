@@ -65,5 +65,46 @@ TEST(CohesiveMixedMode, KeepsItsDigitsForAnyExponentAndStrengths) {
   }
 }
 
+// Damage is one number for all modes: however far apart their strengths and toughnesses are, each mode
+// softens to its end step by step, in packs and one by one, and takes its toughness.
+TEST(CohesiveMixedMode, TakesTheToughnessOfAModeHoweverFarTheOtherIs) {
+  for (const double ratio : {1e-18, 1e-9, 1e-5, 1e-2, 1e2, 1e5, 1e9, 1e18})
+    for (const bool is_tough : {false, true})
+      for (const double stiffness : {inf_value, 1e3})
+        for (const double coupling : {0.0, 1e-13})
+          for (const Vector& direction : {Vector{1, 0, 0}, Vector{0, 0.6, -0.8}}) {
+            const double strength_2 = is_tough ? 1.0 : ratio, toughness_2 = is_tough ? ratio : 1.0;
+            const double strength = direction[0] > 0.0 ? 1.0 : strength_2,
+                         toughness = direction[0] > 0.0 ? 1.0 : toughness_2;
+            const double rigid = 1e3 * (1.0 + strength_2 * strength_2 / toughness_2);
+            NodeRun node("cohesive",
+                         {{{"strength", 1.0},
+                           {"strength_2", strength_2},
+                           {"toughness", 1.0},
+                           {"toughness_2", toughness_2},
+                           {"stiffness", stiffness * rigid}},
+                          {{"shape", "bilinear"}}},
+                         1.0, ILAW_DELASSUS_FULL);
+            const double light = 1e-30 * toughness / (strength * strength);
+            node.h = {light, light, light, 0.0, 0.0, coupling * light};
+            const double end = 2.0 * toughness / strength, speed = end / 300.0;
+            Vector v = direction;
+            for (double& each : v) each *= speed;
+            double work = 0.0, rupture = 0.0;
+            for (int k = 0; k < 320; ++k) {
+              const Vector before = node.v;
+              ASSERT_EQ(node.step(v), ILAW_OK) << node.report.reason;
+              for (std::size_t c = 0; c < 3; ++c) work -= 0.5 * node.r[c] * (before[c] + node.v[c]);
+              rupture += node.energy[ILAW_ENERGY_RUPTURE];
+            }
+            EXPECT_EQ(node.named("damage"), 1.0)
+                << ratio << is_tough << stiffness << coupling << direction[0];
+            EXPECT_NEAR(rupture, toughness, 1e-11 * toughness)
+                << "ratio " << ratio << (is_tough ? " of toughness" : " of strength") << ", stiffness "
+                << stiffness << ", coupling " << coupling << ", opening " << direction[0];
+            EXPECT_NEAR(work, rupture, 1e-11 * toughness);
+          }
+}
+
 }  // namespace
 }  // namespace ilaw::testing

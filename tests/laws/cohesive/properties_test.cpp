@@ -324,6 +324,10 @@ TEST(CohesiveProperties, BadParametersAreRefusedByName) {
       bond({{"delay_time", 1.0}}),
       "law 'cohesive': parameter 'delay_time' > 0 needs a finite 'stiffness': the opening of a rigid bond says "
       "nothing of its load; found stiffness = inf, delay_time = 1");
+  EXPECT_EQ(
+      bond({{"strength_2", 1e-160}}),
+      "law 'cohesive': parameter 'strength_2' is too small: 'toughness_2'/'strength_2'^2, which damage is "
+      "measured by, overflows; found strength_2 = 1e-160, toughness_2 = 0");
   EXPECT_NE(bond({{"delay_time", inf_value}}), "");
   EXPECT_NE(bond({{"mixing_exponent", 0.0}}), "");
   EXPECT_NE(bond({}, "trilinear"), "");
