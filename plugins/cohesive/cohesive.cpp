@@ -1,5 +1,6 @@
 // Cohesive zones: a bond that softens, with contact, friction and bounded damage rate. See cohesive.md.
 #include "bond.hpp"
+#include "coupled.hpp"
 #include "gathered.hpp"
 #include "isotropic.hpp"
 #include "touching.hpp"
@@ -318,14 +319,15 @@ struct cohesive::in_phases : cohesive {
     return (bonded & !holds) | (!bonded & rubs);
   }
 
-  // In packs: where H is transverse, bonds that need no counting of solutions, and nodes that touch.
+  // In packs: bonds that need no counting of solutions, and, where H is transverse, nodes that touch.
   template <class V>
   [[gnu::noinline]] mask_of<V> solve(const problem<V>& p, answer<V>& a) const {
     const V* h = p.h;
     const auto transverse = (h[3] == 0.0) & (h[4] == 0.0) & (h[5] == 0.0) & (h[1] == h[2]);
     const auto bonded = (p.damage < 1.0) & (p.area > 0.0);
-    auto left = !transverse;
-    if (any(bonded)) left = left | solve_bonds(p, bonded & transverse, a);
+    mask_of<V> left = !(transverse | bonded);
+    if (any(bonded & transverse)) left = left | solve_bonds(p, bonded & transverse, a);
+    if (any(bonded & !transverse)) left = left | solve_coupled_bonds(p, bonded & !transverse, a);
     if (any(!bonded)) touch_in_packs(p, friction, !bonded, a);
     return left;
   }
@@ -355,20 +357,17 @@ struct cohesive::in_phases : cohesive {
     leave_bond(p, stop.r, V(status::bonded), stands, a);
     return left | unclear;
   }
-  // stopping_impulse for a transverse H.
+  // But for rigid ones that have not been opened.
   template <class V>
-  static friction_answer<V> stopping(const problem<V>& p) {
-    friction_problem<V> stop{};
-    friction_answer<V> a{};
-    for (int k = 0; k < 3; ++k) {
-      stop.contact.h[k] = p.h[k];
-      stop.contact.q[k] = p.v_free[k];
-      stop.rest[k] = velocity_before(p.v_previous[k], p.v_free[k]);
-      a.r[k] = -(p.v_free[k] / p.h[k]);
-    }
-    a.status = status::stick;
-    take_off_positive_work(stop, a);
-    return a;
+  [[gnu::noinline]] mask_of<V> solve_coupled_bonds(const problem<V>& p, mask_of<V> where,
+                                                   answer<V>& a) const {
+    if (!bonds()) return where;
+    const auto is_new = stiffness < infinity ? mask_of<V>(false) : where & (p.damage == 0.0);
+    answer<V> found{};
+    const coupled_step<V> step(*this, all, p);
+    const mask_of<V> left = step.solve(where & !is_new, found);
+    choose_answer(where, found, a);
+    return left | is_new;
   }
 };
 

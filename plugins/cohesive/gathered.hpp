@@ -74,6 +74,20 @@ void leave_bond(const gathered<V>& g, const V (&impulse)[3], V status, mask_of<V
   s.status = select(where, status, s.status);
 }
 
+// Another answer, where it is one.
+template <class V>
+void choose_answer(mask_of<V> where, const solved<V>& other, solved<V>& s) {
+  for (int k = 0; k < 3; ++k) {
+    s.impulse[k] = select(where, other.impulse[k], s.impulse[k]);
+    s.position[k] = select(where, other.position[k], s.position[k]);
+    s.opening[k] = select(where, other.opening[k], s.opening[k]);
+  }
+  for (const auto member :
+       {&solved<V>::damage, &solved<V>::stored, &solved<V>::normal_gain, &solved<V>::tangential_gain,
+        &solved<V>::rupture, &solved<V>::status, &solved<V>::refused})
+    s.*member = select(where, other.*member, s.*member);
+}
+
 template <class Node>
 void leave(const Node& node, solved<double>& s) {
   keep(node.impulse, s.impulse);

@@ -28,6 +28,22 @@ struct stopped_bond {
   }
 };
 
+// stopping_impulse for a transverse H.
+template <class V>
+friction_answer<V> stopping(const gathered<V>& p) {
+  friction_problem<V> stop{};
+  friction_answer<V> a{};
+  for (int k = 0; k < 3; ++k) {
+    stop.contact.h[k] = p.h[k];
+    stop.contact.q[k] = p.v_free[k];
+    stop.rest[k] = velocity_before(p.v_previous[k], p.v_free[k]);
+    a.r[k] = -(p.v_free[k] / p.h[k]);
+  }
+  a.status = status::stick;
+  take_off_positive_work(stop, a);
+  return a;
+}
+
 template <class V>
 void touch_in_packs(const gathered<V>& g, double friction, mask_of<V> where, solved<V>& a) {
   const V *v = g.v_free, *u = g.v_previous;
