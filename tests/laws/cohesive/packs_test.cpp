@@ -119,6 +119,26 @@ Nodes drawn_nodes(Draw& draw, const Curve& curve, std::size_t count, double coup
   return nodes;
 }
 
+TEST(CohesivePacks, AreTheSameOnAllInstructionSets) {
+  Draw draw(43);
+  for (int k = 0; k < 40 && !HasFailure(); ++k) {
+    const Parameters parameters = any_bond(draw);
+    const Nodes given = drawn_nodes(draw, Curve(parameters), 150, 0.5);
+    std::vector<Nodes> all;
+    for (const char* level : {"baseline", "v3", "v4"}) {
+      setenv("ILAW_ISA", level, 1);
+      const ilaw::interface law = make_law("cohesive", SetupBuilder(parameters, 3, ILAW_DELASSUS_FULL));
+      const ilaw_batch b = all.emplace_back(given).batch();
+      static_cast<void>(law.evaluate(b));
+    }
+    unsetenv("ILAW_ISA");
+    for (std::size_t i = 0; i < 150; ++i) {
+      EXPECT_TRUE(same_bits(all[0].at(i), all[1].at(i))) << "bond " << k << ", node " << i << ", v3";
+      EXPECT_TRUE(same_bits(all[0].at(i), all[2].at(i))) << "bond " << k << ", node " << i << ", v4";
+    }
+  }
+}
+
 // Returns the share of nodes that were solved one by one.
 double give_their_bits_in_any_company(double coupled) {
   Draw draw(42);
