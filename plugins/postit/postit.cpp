@@ -31,7 +31,8 @@ struct postit {
           "under "
           "pressure, each time less after a rupture; contact with Coulomb friction where it is not bonded.",
       .inputs = reads_gap | reads_v_previous | reads_area,
-      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST};
+      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST,
+      .state_version = 2};
 
   static constexpr const char* references[] = {
       "LaMCoS / Michelin, 2024, Post-it tests (slides), after hal-04146784: parameters, tests, windowed "

@@ -56,22 +56,23 @@ class window_in_step : protected detail::window_grid {
     // A host whose position step is not the next one may fall back by a part of its last step.
     if (now_ < newest - 1.0) return {{}, time_before_history};
     if (!is_short_ || k - newest > buckets_) return {};
-    const std::int64_t latest = place_of(k), oldest = after(latest);
-    const vector middle = k == newest ? read(own, middle_sum) : sum_between(own, k, newest);
-    const vector current = k == newest ? read(own, at(latest)) : vector{};
-    const vector next = k - buckets_ + 1.0 <= newest ? read(own, at(after(oldest))) : vector{};
-    return checked(edge_at(k).sum(middle, current, read(own, at(oldest)), next));
+    const edge e = edge_at(k);
+    if (k == newest)
+      return checked(e.sum(read(own, middle_sum), read(own, current), read(own, oldest_bucket),
+                           read(own, oldest_slope)));
+    const turned t = turn(own, k, k - newest);
+    const vector middle = t.middle, oldest = t.oldest;
+    return checked(e.sum(middle, {}, oldest, limited_difference(oldest, vector(t.next))));
   }
 
   // Takes the step's own impulse in. The history is one that before() did not refuse.
   void add(const history& own, vector impulse) const {
     if (duration_ == 0.0 || is_zero(impulse)) return;
-    if (has_grid_ && own[0] == stamp_ && begin_ >= now_)
-      write(own, at(place_), read(own, at(place_)) + impulse);
-    else if (const double turns = has_grid_ ? turns_since(own[0]) : -1.0; turns > 0.0)
-      open_and_add(own, impulse, turns, opened_middle(own, turns));
-    else
-      add_elsewhere(own, impulse);
+    if (duration_ == infinity) return write(own, 0, read(own, 0) + impulse);
+    if (!has_grid_) return;
+    if (own[0] == stamp_ && begin_ >= now_) return write(own, current, read(own, current) + impulse);
+    const double k = newest_with_step(own[0]), turns = turns_since(own[0]);
+    add_in(own, impulse, k, turns, turns > 0.0 ? turn(own, k, turns) : turned{});
   }
 
   // An empty window is one without a newest bucket; what else its history holds does not count.
@@ -83,85 +84,68 @@ class window_in_step : protected detail::window_grid {
   bool forgets() const { return duration_ == 0.0; }
 
  protected:
-  // The history: number of the newest bucket, sum of the middle ones, and a ring of B + 1 buckets.
   friend class window;
   static bool is_zero(vector a) { return a.n == 0.0 && a.t1 == 0.0 && a.t2 == 0.0; }
   static reading checked(vector sum) { return {sum, defect(sum) == 0.0 ? not_refused : impossible_state}; }
 
-  // By how many buckets the newest one lies before that of this step, up to B, for which the rest of a
-  // history counts; B + 1 where it is empty, -1 where it is something else.
+  // The newest bucket once a step is taken in, and by how many it then lies behind the one before; more than
+  // B where that was empty, or nothing of it counts.
+  double newest_with_step(double stamp) const {
+    return stamp == empty ? now_ : larger(now_, bucket_of(stamp));
+  }
   double turns_since(double stamp) const {
-    if (stamp == empty) return buckets_ + 1.0;
-    const double turns = now_ - bucket_of(stamp);
-    const bool counts = (turns >= 0.0) & (turns <= buckets_);  // false for NaN
-    return counts && floor_of(turns) == turns ? turns : -1.0;
+    return stamp == empty ? buckets_ + 1.0
+                          : smaller(newest_with_step(stamp) - bucket_of(stamp), buckets_ + 1.0);
   }
 
-  template <class History>
-  vector opened_middle(const History& own, double turns) const {
-    if (turns > buckets_) return {};
-    return sum_from(own, after(after(place_)), static_cast<std::int64_t>(buckets_ - turns));
-  }
-
-  // Where the newest bucket lies `turns` before that of the step, which is opened with those between; middle
-  // is the sum of the middle buckets then, without the impulse.
-  void open_and_add(const history& own, vector impulse, double turns, vector middle) const {
+  // Bucket k becomes the newest, or is it still; t: what turn() makes of the others, without the impulse.
+  void add_in(const history& own, vector impulse, double k, double turns, const turned& t) const {
     if (own.stride == 1)
-      open_in(neighbours<double>{own.values}, impulse, turns, middle);
+      add_where(neighbours<double>{own.values}, impulse, k, turns, t);
     else
-      open_in(own, impulse, turns, middle);
+      add_where(own, impulse, k, turns, t);
   }
   template <class History>
-  [[gnu::noinline]] void open_in(const History& own, vector impulse, double turns, vector middle) const {
-    const auto opened = static_cast<std::int64_t>(turns), oldest = after(place_);
-    for (std::int64_t j = 0, place = place_; j < opened; ++j, place = previous(place))
-      write(own, at(place), {});
-    vector left = impulse;
-    std::int64_t place = place_ - static_cast<std::int64_t>(now_ - shares_.first);
-    place = place < 0 ? place + ring_size() : place;
-    for (double j = shares_.first; j < now_; j += 1.0, place = after(place)) {
-      const vector part = (j == shares_.first ? shares_.of_first : shares_.of_others) * impulse;
-      left = left - part;
-      write(own, at(place), read(own, at(place)) + part);
-      if (place != oldest) middle = middle + part;
-    }
-    const vector last = shares_.is_whole ? left : shares_.of_last * impulse;
-    write(own, at(place_), read(own, at(place_)) + last);
+  [[gnu::noinline]] void add_where(const History& own, vector impulse, double k, double turns,
+                                   const turned& t) const {
+    vector middle = turns > 0.0 ? t.middle : read(own, middle_sum);
+    if (turns > 0.0) open(own, k, turns, t.oldest);
+    spread(own, impulse, k, middle);
     write(own, middle_sum, middle);
-    own[0] = stamp_;
-  }
-  // Where the step lies in other buckets than the newest, or in several.
-  [[gnu::noinline]] void add_elsewhere(const history& own, vector impulse) const {
-    if (duration_ == infinity) return write(own, 0, read(own, 0) + impulse);
-    if (!has_grid_) return;
-    const double newest = own[0] == empty ? now_ - buckets_ - 1.0 : bucket_of(own[0]);
-    const double k = larger(now_, newest);
-    clear_between(own, newest, k);
-    spread(own, impulse, k);
-    write(own, middle_sum, sum_between(own, k, k));
+    const double oldest = k - buckets_;
+    write(own, oldest_slope,
+          limited_difference(read(own, oldest_bucket), read(own, index_of(oldest + 1.0, k))));
     own[0] = stamp_of(k);
   }
-
-  // Opens the buckets after newest up to k.
-  void clear_between(const history& own, double newest, double k) const {
-    const double first = larger(newest + 1.0, k - buckets_);
-    std::int64_t place = place_of(first);
-    for (double j = first; j <= k; j += 1.0, place = after(place)) write(own, at(place), {});
+  // Closes the newest bucket and opens those up to k, of which it is so many away.
+  template <class History>
+  void open(const History& own, double k, double turns, vector oldest) const {
+    const vector last = read(own, current);
+    std::int64_t place = place_of(k - 1.0);
+    double j = 1.0;
+    for (; j < turns && j < buckets_; j += 1.0, place = previous(place)) write(own, at(place), {});
+    if (turns < buckets_) write(own, at(place), last);
+    write(own, oldest_bucket, oldest);
+    write(own, current, {});
   }
-
   // Over the buckets that the step covers, as far as tau reaches; the last takes what is left, so that the
   // whole arrives. The step may end before bucket k.
-  void spread(const history& own, vector impulse, double k) const {
-    const bool is_whole = begin_ >= k - buckets_;
-    const double first = is_whole ? floor_of(begin_) : k - buckets_;
+  template <class History>
+  void spread(const History& own, vector impulse, double k, vector& middle) const {
+    const shares s = k == now_ ? shares_ : shares_at(k);
     vector left = impulse;
-    std::int64_t place = place_of(first);
-    for (double j = first; j <= now_; j += 1.0, place = after(place)) {
-      const double overlap = smaller(j + 1.0, end_) - larger(j, begin_);
-      const vector part = is_whole && j == now_ ? left : (overlap / (end_ - begin_)) * impulse;
+    for (double j = s.first; j < now_; j += 1.0) {
+      const vector part = (j == s.first ? s.of_first : s.of_others) * impulse;
       left = left - part;
-      write(own, at(place), read(own, at(place)) + part);
+      put_in(own, part, j, k, middle);
     }
+    put_in(own, s.is_whole ? left : s.of_last * impulse, now_, k, middle);
+  }
+  template <class History>
+  void put_in(const History& own, vector part, double j, double k, vector& middle) const {
+    const std::int64_t index = index_of(j, k);
+    write(own, index, read(own, index) + part);
+    if (index >= first_bucket) middle = middle + part;
   }
 };
 
@@ -173,7 +157,7 @@ class window {
   static std::int64_t doubles(double duration, double buckets) {
     if (duration == 0.0) return 0;
     if (duration == infinity) return 3;
-    return window_in_step::first_bucket + 3 * (static_cast<std::int64_t>(buckets) + 1);
+    return window_in_step::first_bucket + 3 * (static_cast<std::int64_t>(buckets) - 1);
   }
 
   window(double duration, double buckets) : duration_(duration), buckets_(buckets) {}

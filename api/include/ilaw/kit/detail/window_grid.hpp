@@ -3,11 +3,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/kit/detail/rows.hpp>
 #include <ilaw/kit/node.hpp>
 
 #include <cstdint>
+#include <limits>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// A register of doubles, worked on by the words for one (math.hpp).
+using lane_mask = decltype(lanes{} < lanes{});
+using lane_bits = registers<std::uint64_t>::one;
+inline lanes larger(lanes a, lanes b) { return a > b ? a : b; }
+inline lanes smaller(lanes a, lanes b) { return a < b ? a : b; }
+inline lanes absolute(lanes x) {
+  return reinterpret_cast<lanes>(reinterpret_cast<lane_bits>(x) & (~std::uint64_t{0} >> 1));
+}
+inline lanes square_root(lanes x) { return root_of(x); }
+inline bool any_lane(lane_mask m) {
+  std::int64_t found = 0;
+  for (int k = 0; k < register_size; ++k) found |= m[k];
+  return found != 0;
+}
+inline double down_scale_of(double largest) { return power_scale_of(largest).down; }
+inline lanes down_scale_of(lanes largest) {
+  constexpr std::uint64_t exponent_bits = 0x7FF0000000000000;
+  const auto sum = reinterpret_cast<lane_bits>(largest + std::numeric_limits<double>::min());
+  return reinterpret_cast<lanes>(exponent_bits - (sum & exponent_bits));
+}
+using kit::absolute;
+using kit::larger;
+using kit::smaller;
+using kit::square_root;
 
 // What is the same at all nodes is worked out once.
 class window_grid {
@@ -21,8 +48,8 @@ class window_grid {
         now_(on_grid(end_) ? floor_of(end_) : 0.0),
         has_grid_(duration > 0.0 && duration < infinity && on_grid(end_)),
         is_short_(step.length < duration),
-        ring_size_(static_cast<std::int64_t>(buckets) + 1),
-        place_(has_grid_ ? place_of(now_) : 0),
+        ring_size_(static_cast<std::int64_t>(buckets) - 1),
+        place_(has_grid_ ? place_of(now_ - 1.0) : 0),
         edge_(edge_at(now_)),
         shares_(has_grid_ ? shares_at(now_) : shares{}),
         stamp_(stamp_of(now_)) {}
@@ -36,7 +63,52 @@ class window_grid {
     Number& operator[](std::int64_t k) const { return values[k]; }
   };
 
-  static constexpr std::int64_t middle_sum = 1, first_bucket = 4;
+  // Three numbers behind one that does not count: a vector of a history, behind what stands before it.
+  struct row {
+    static constexpr int lines = 4 / square_size;
+    square::line line[lines];
+
+    static row at(const double* four) {
+      row r;
+      __builtin_memcpy(&r, four, sizeof r);
+      return r;
+    }
+    void put(double* four) const { __builtin_memcpy(four, this, sizeof *this); }
+    double operator[](int k) const { return line[k / square_size][k % square_size]; }
+    operator vector() const { return {(*this)[1], (*this)[2], (*this)[3]}; }
+    friend row operator+(row a, const row& b) {
+      for (int k = 0; k < lines; ++k) a.line[k] += b.line[k];
+      return a;
+    }
+    friend row operator-(row a, const row& b) {
+      for (int k = 0; k < lines; ++k) a.line[k] -= b.line[k];
+      return a;
+    }
+    friend row operator*(double s, row a) {
+      for (int k = 0; k < lines; ++k) a.line[k] *= s;
+      return a;
+    }
+  };
+  template <class Number>
+  static row row_at(const neighbours<Number>& own, std::int64_t k) {
+    return row::at(own.values + k - 1);
+  }
+  static row row_at(const const_history& own, std::int64_t k) {
+    const double four[] = {0.0, own[k], own[k + 1], own[k + 2]};
+    return row::at(four);
+  }
+  static void put_row(const neighbours<double>& own, std::int64_t k, row r) {
+    r.line[0][0] = own[k - 1];
+    r.put(own.values + k - 1);
+  }
+  static void put_row(const history& own, std::int64_t k, const row& r) {
+    for (int c = 0; c < 3; ++c) own[k + c] = r[c + 1];
+  }
+
+  // What every step needs stands in front: the number of the newest bucket, which is open, its sum, that of
+  // the middle ones, the oldest bucket and the slope in it. Behind are the middle buckets, as a ring.
+  static constexpr std::int64_t current = 1, middle_sum = 4, oldest_bucket = 7, oldest_slope = 10,
+                                first_bucket = 13, head_size = first_bucket;
   // Numbers of buckets that a double and a cast hold with room to spare. A grid finer than that is finer than
   // the clock: no step lies within tau of another.
   static constexpr double largest_number = 0x1p51;
@@ -61,68 +133,60 @@ class window_grid {
     own[k + 2] = sum.t2;
   }
 
-  // Places in the ring: bucket j stands at j modulo B + 1, so that the next bucket to open takes that of the
-  // oldest.
-  std::int64_t ring_size() const { return ring_size_; }
+  // Places in the ring: bucket j stands at j modulo B - 1, so that the bucket that closes takes the place of
+  // the one that becomes the oldest.
   std::int64_t place_of(double bucket) const {
-    const double size = buckets_ + 1.0;
+    const double size = buckets_ - 1.0;
+    if (size < 1.0) return 0;
     const double place = bucket - floor_of(bucket * (1.0 / size)) * size;  // the quotient may be one off
     return static_cast<std::int64_t>(place < 0.0 ? place + size : (place < size ? place : place - size));
   }
-  std::int64_t after(std::int64_t place) const { return place + 1 < ring_size() ? place + 1 : 0; }
-  std::int64_t previous(std::int64_t place) const { return place > 0 ? place - 1 : ring_size() - 1; }
+  std::int64_t after(std::int64_t place) const { return place + 1 < ring_size_ ? place + 1 : 0; }
+  std::int64_t previous(std::int64_t place) const { return place > 0 ? place - 1 : ring_size_ - 1; }
   static std::int64_t at(std::int64_t place) { return first_bucket + 3 * place; }
+  // Where bucket j stands while k is the newest.
+  std::int64_t index_of(double j, double k) const {
+    return j == k ? current : (j == k - buckets_ ? oldest_bucket : at(place_of(j)));
+  }
 
-  // The sum of the buckets between the oldest and k, of which those after newest are not open yet.
+  // What a bucket that opens makes of the others: their sum, the oldest and the one after it.
+  struct turned {
+    row middle{}, oldest{}, next{};
+  };
+  // Bucket k is the newest, so many after the one that was.
   template <class History>
-  vector sum_between(const History& own, double k, double newest) const {
-    const double first = (k - buckets_) + 1.0;
-    const auto count = static_cast<std::int64_t>(smaller(k - 1.0, newest) - first) + 1;
-    return sum_from(own, place_of(first), count);
+  turned turn(const History& own, double k, double turns) const {
+    return turn_at(own, k == now_ ? place_ : place_of(k - 1.0), turns);
   }
-  // In two runs of neighbours.
+  // Where the oldest bucket will be that of this place.
   template <class History>
-  vector sum_from(const History& own, std::int64_t place, std::int64_t count) const {
-    const std::int64_t room = ring_size() - place, before_end = count < room ? count : room;
-    return sum_of(own, place, before_end) + sum_of(own, 0, count - before_end);
+  turned turn_at(const History& own, std::int64_t place, double turns) const {
+    if (turns > buckets_) return {};
+    const row last = row_at(own, current);
+    if (turns == buckets_) return {.oldest = last};
+    const std::int64_t next = after(place), count = ring_size_ - static_cast<std::int64_t>(turns);
+    return {sum_from(own, next, count) + last, row_at(own, at(place)),
+            count > 0 ? row_at(own, at(next)) : last};
   }
-  // Two sums, of every other bucket, that do not wait for each other; of neighbours in memory in vector code.
+  // In the order in which they stand, whichever is the first of them.
   template <class History>
-  static vector sum_of(const History& own, std::int64_t place, std::int64_t count) {
-    if (own.stride == 1) return sum_of_neighbours(own.values + at(place), count);
-    vector even, odd;
-    const std::int64_t end = at(place + count);
-    std::int64_t k = at(place);
-    for (; k + 3 < end; k += 6) {
-      even = even + read(own, k);
-      odd = odd + read(own, k + 3);
-    }
-    return k < end ? (even + read(own, k)) + odd : even + odd;
-  }
-  static vector sum_of_neighbours(const double* values, std::int64_t count) {
-    two_doubles a{}, b{}, c{};
-    std::int64_t k = 0;
-    for (; k + 1 < count; k += 2, values += 6) {
-      a += two_at(values);
-      b += two_at(values + 2);
-      c += two_at(values + 4);
-    }
-    const vector even{a[0], a[1], b[0]}, odd{b[1], c[0], c[1]};
-    return k < count ? (even + vector{values[0], values[1], values[2]}) + odd : even + odd;
-  }
-  using two_doubles = double __attribute__((vector_size(16)));
-  static two_doubles two_at(const double* values) {
-    two_doubles both;
-    __builtin_memcpy(&both, values, sizeof both);
-    return both;
+  row sum_from(const History& own, std::int64_t place, std::int64_t count) const {
+    const std::int64_t beyond = place + count - ring_size_, end = beyond > 0 ? ring_size_ : place + count;
+    row sum{};
+    for (std::int64_t q = 0; q < beyond; ++q) sum = sum + row_at(own, at(q));
+    for (std::int64_t q = place; q < end; ++q) sum = sum + row_at(own, at(q));
+    return sum;
   }
 
   // What counts of the oldest bucket: the part that tau still covers, and its correction by the slope.
   struct edge {
     double part, slope;
 
-    vector sum(vector middle, vector current, vector oldest, vector next) const {
-      return (middle + current) + (part * oldest + slope * limited_difference(oldest, next));
+    // Of vectors, or of rows that hold them.
+    template <class Vector>
+    Vector sum(const Vector& middle, const Vector& newest, const Vector& oldest,
+               const Vector& difference) const {
+      return (middle + newest) + (part * oldest + slope * difference);
     }
   };
   // A step may have begun within the oldest bucket or the next, which are then filled up to there.
@@ -133,17 +197,19 @@ class window_grid {
     const double part = smaller(1.0, begin_ < oldest + 1.0 ? live / (filled - oldest) : live);
     return {part, begin_ < oldest + 2.0 ? 0.0 : 0.5 * part * (1.0 - part)};
   }
-  static vector limited_difference(vector bucket, vector next) {
-    const vector difference = next - bucket;
-    const double most = 2.0 * absolute(bucket.n);
-    const double largest = larger(larger(absolute(bucket.t1), absolute(bucket.t2)),
-                                  larger(absolute(difference.t1), absolute(difference.t2)));
-    const double scale = power_scale_of(largest).down;
-    const vector a = scale * bucket, b = scale * difference;
-    const double allowed = 4.0 * tangential_product(a, a), found = tangential_product(b, b);
-    const bool is_steep = found > allowed;
-    const double factor = square_root((is_steep ? allowed : 1.0) / (is_steep ? found : 1.0));
-    return {smaller(larger(difference.n, -most), most), factor * difference.t1, factor * difference.t2};
+  // Of doubles, or of a register of them.
+  template <class Vector>
+  static Vector limited_difference(const Vector& bucket, const Vector& next) {
+    const auto n = next.n - bucket.n, t1 = next.t1 - bucket.t1, t2 = next.t2 - bucket.t2;
+    const auto most = 2.0 * absolute(bucket.n);
+    const auto scale = down_scale_of(
+        larger(larger(absolute(bucket.t1), absolute(bucket.t2)), larger(absolute(t1), absolute(t2))));
+    const auto a1 = scale * bucket.t1, a2 = scale * bucket.t2, b1 = scale * t1, b2 = scale * t2;
+    const auto allowed = 4.0 * (a1 * a1 + a2 * a2), found = b1 * b1 + b2 * b2;
+    const auto is_steep = found > allowed;
+    const auto one = 0.0 * scale + 1.0;
+    const auto factor = square_root((is_steep ? allowed : one) / (is_steep ? found : one));
+    return {smaller(larger(n, -most), most), factor * t1, factor * t2};
   }
 
   // How a step is spread over the buckets that it covers, as far as tau reaches: from bucket first, which
@@ -162,7 +228,7 @@ class window_grid {
 
   double duration_, buckets_, per_width_, end_, begin_, now_;
   bool has_grid_, is_short_;
-  std::int64_t ring_size_, place_;  // of bucket now_
+  std::int64_t ring_size_, place_;  // of bucket now_ - 1, where now_ - B stood before
   edge edge_;
   shares shares_;
   double stamp_;  // of bucket now_
