@@ -377,9 +377,15 @@ TEST(Checkpoint, OfAnotherLawOrStateVersionIsRefused) {
   };
   const std::uint32_t version = scene.interfaces[0]->info().state_version;
   EXPECT_EQ(refusal_of("state_version", version), "");
-  for (const auto& [key, value] : std::map<std::string, json>{
-           {"state_version", version + 1}, {"state_size", 1}, {"version", "0.0.1"}, {"law", "tie"}})
-    EXPECT_NE(refusal_of(key, value).find("is of other laws"), std::string::npos) << key;
+  for (const auto& [key, value] : std::multimap<std::string, json>{{"state_version", version + 1},
+                                                                   {"state_version", version - 1},
+                                                                   {"state_size", 1},
+                                                                   {"version", "0.0.1"},
+                                                                   {"law", "tie"}}) {
+    const std::string reason = refusal_of(key, value);
+    EXPECT_NE(reason.find("is of other laws"), std::string::npos) << reason;
+    EXPECT_NE(reason.find("/0/" + key + " is now "), std::string::npos) << reason;
+  }
 }
 
 }  // namespace

@@ -66,9 +66,13 @@ TEST(Window, StandsInAStateInTheOrderOfVersion2) {
     w.step_to(k + 0.75, 0.5, {given[0], given[1], given[2]});
   }
   std::vector<double> expected = {8.0};  // the newest bucket is the eighth from time 0 on
-  for (const std::vector<double>& three :
-       {impulse_in(7.0), {15.0, 30.0, -77.0}, impulse_in(3.0), {1.0, 2.0, -7.0}, impulse_in(6.0),
-        impulse_in(4.0), impulse_in(5.0)})
+  for (const std::vector<double>& three : {impulse_in(7.0),
+                                           {15.0, 30.0, -77.0},
+                                           impulse_in(3.0),
+                                           {1.0, 2.0, -7.0},
+                                           impulse_in(6.0),
+                                           impulse_in(4.0),
+                                           impulse_in(5.0)})
     expected.insert(expected.end(), three.begin(), three.end());
   EXPECT_EQ(w.history, expected);
 }

@@ -75,12 +75,22 @@ std::string first_difference(const json& a, const json& b, const std::string& po
   return pointer;
 }
 
+// Where two values are not the same, and what is there now.
+std::string differences(const json& was, const json& is) {
+  std::string all;
+  for (const json& change : json::diff(was, is))
+    all += (all.empty() ? "" : ", ") + change.at("path").get<std::string>() + " is now " +
+           change.value("value", json()).dump();
+  return all;
+}
+
 void check_identity(const json& found, const json& expected) {
   for (const auto& [part, other] :
        {std::pair{"format", "of another format"}, std::pair{"program", "of another version of the program"},
         std::pair{"laws", "of other laws, or of other versions of them"}})
-    if (found.value(part, json()) != expected[part])
-      throw std::runtime_error("is " + std::string(other) + ", expected the very run that is to be resumed");
+    if (const json was = found.value(part, json()); was != expected[part])
+      throw std::runtime_error("is " + std::string(other) + " (" + differences(was, expected[part]) +
+                               "), expected the very run that is to be resumed");
   const json was = cause_of(found.at("scene")), is = cause_of(expected.at("scene"));
   if (was != is)
     throw std::runtime_error("is of another scene: " + first_difference(was, is, "") +

@@ -271,8 +271,8 @@ class window_block : public window_in_step {
     c[2].values[i] = a.t2;
   }
 
-  // What nodes whose newest bucket is that of the step add to it, behind nothing for the stamp; those are done
-  // then. Nothing is -0, which changes no number. Returns whether there are any.
+  // What nodes whose newest bucket is that of the step add to it, behind nothing for the stamp; those are
+  // done then. Nothing is -0, which changes no number. Returns whether there are any.
   [[gnu::noinline, gnu::flatten]] static bool choose_added(int count, given_impulses& given,
                                                            const column& stamps, column* added,
                                                            double newest) {
