@@ -46,18 +46,21 @@ void read_window(const Form& law, const node_block<Law>& b, int i, window_column
   kept.earlier.refused.values[i] = earlier.refused;
 }
 
-// The windows of a block before its steps. Parameters per node may give each node another window.
+// The windows of a block before its steps. Parameters per node may give each node another window; else all
+// have that of the first.
 template <class Law, class Laws>
-void read_windows(const Laws& laws, const node_block<Law>& b, window_columns& kept) {
+void read_windows(const Laws& laws, const node_block<Law>& b, const window_block& first,
+                  window_columns& kept) {
   if constexpr (is_one_law<Laws>) {
-    window_block(window_at(laws, b, 0)).before(histories_of(b), b.count, kept.earlier);
+    first.before(histories_of(b), b.count, kept.earlier);
   } else {
     for (int i = 0; i < b.count; ++i) read_window(laws.at(i), b, i, kept);
   }
 }
 
 template <class Law, class Laws>
-void write_windows(const Laws& laws, const node_block<Law>& block, window_columns& kept) {
+void write_windows(const Laws& laws, const node_block<Law>& block, const window_block& first,
+                   window_columns& kept) {
   const node_block<Law> b = block;  // a copy, so that no store can alias it
   given_impulses& given = kept.given;
 #pragma omp simd
@@ -68,7 +71,7 @@ void write_windows(const Laws& laws, const node_block<Law>& block, window_column
     given.clears.values[i] = (good & Law::clears_window(status)) ? 1.0 : 0.0;
   }
   if constexpr (is_one_law<Laws>) {
-    window_block(window_at(laws, b, 0)).add(histories_of(b), b.count, given, kept.earlier);
+    first.add(histories_of(b), b.count, given, kept.earlier);
   } else {
     for (int i = 0; i < b.count; ++i) {
       const window_in_step window = window_at(laws, b, i);
@@ -87,11 +90,12 @@ int run_block(const Laws& laws, const node_block<Law>& b) {
   if constexpr (has_window<Law>) {
     window_columns kept;
     node_block<Law> own = b;
-    const bool forgets = is_one_law<Laws> && window_at(laws, b, 0).forgets();
+    const window_block first(window_at(laws, b, 0));
+    const bool forgets = is_one_law<Laws> && first.forgets();
     aim_at(kept, own, forgets);
-    if (!forgets) read_windows(laws, own, kept);
+    if (!forgets) read_windows(laws, own, first, kept);
     const int one_by_one = run_steps<Law, Delassus, Frame, Layout, Scope>(laws, own);
-    if (!forgets) write_windows(laws, own, kept);
+    if (!forgets) write_windows(laws, own, first, kept);
     return one_by_one;
   } else {
     return run_steps<Law, Delassus, Frame, Layout, Scope>(laws, b);

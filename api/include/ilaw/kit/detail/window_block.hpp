@@ -3,10 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/gather.hpp>
 #include <ilaw/kit/window.hpp>
 
-#include <bit>
 #include <limits>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -32,32 +30,6 @@ void with_rows(const histories& own, Turn turn) {
     turn([first, stride](int i) { return first + i * stride; });
 }
 
-// Three numbers of as many nodes as a register holds. A pack (pack.hpp) is two, which these short loops would
-// pass through memory.
-struct lane_vector {
-  lanes n, t1, t2;
-
-  static lane_vector at(const column* c, int i) {
-    return {lanes_at(c[0].values + i), lanes_at(c[1].values + i), lanes_at(c[2].values + i)};
-  }
-  void put(column* c, int i) const {
-    put_lanes(n, c[0].values + i);
-    put_lanes(t1, c[1].values + i);
-    put_lanes(t2, c[2].values + i);
-  }
-  friend lane_vector operator+(const lane_vector& a, const lane_vector& b) {
-    return {a.n + b.n, a.t1 + b.t1, a.t2 + b.t2};
-  }
-  friend lane_vector operator-(const lane_vector& a, const lane_vector& b) {
-    return {a.n - b.n, a.t1 - b.t1, a.t2 - b.t2};
-  }
-  friend lane_vector operator*(double s, const lane_vector& a) { return {s * a.n, s * a.t1, s * a.t2}; }
-  friend lane_vector select(lane_mask m, const lane_vector& a, const lane_vector& b) {
-    return {m ? a.n : b.n, m ? a.t1 : b.t1, m ? a.t2 : b.t2};
-  }
-  lane_mask is_there() const { return (n != 0.0) | (t1 != 0.0) | (t2 != 0.0); }
-};
-
 // What the steps of a block gave: impulses, and 1 or 0 for windows that take them in, and for those that are
 // emptied before.
 struct given_impulses {
@@ -68,15 +40,14 @@ class window_block : public window_in_step {
  public:
   explicit window_block(const window_in_step& window) : window_in_step(window) {}
 
-  // The sums before the step, and what of them add() needs again: stamps, and the windows that are turned
-  // where the step opens a bucket, one after another.
+  // The sums before the step, and what of them add() needs again: stamps, and of the nodes where the step
+  // opens the next bucket, one after another, the sums of the middle buckets and the slopes.
   struct rows {
     alignas(64) double of[block_size][4];
   };
   struct block_reading {
     column sum[3], refused, stamp;
-    column turns;
-    rows middle, oldest, slope;
+    rows middle, slope;
     int nodes[block_size], opens;  // of those
   };
   void before(const histories& own, int count, block_reading& r) const {
@@ -85,16 +56,17 @@ class window_block : public window_in_step {
       for (int i = 0; i < count; ++i) read_alone(own, i, r);
       return;
     }
-    if (own.component_stride == 1)
+    const newest_buckets are = read_stamps(own, count, r.stamp);
+    if (are.of_the_step && own.component_stride == 1)
       with_rows(own, [=, this, &r](auto row_of) { sum_rows(count, row_of, edge_, r); });
-    else
+    else if (are.of_the_step)
       sum_columns(count, own, edge_, r);
-    for (int i = count; i < block_size; ++i) r.stamp.values[i] = empty;
-    if (!check_sums(count, r, stamp_)) read_older(own, count, r);
+    check_sums(count, r, stamp_);
+    if (are.others) read_older(own, count, r);
   }
 
   // Takes the impulses of a step in. The histories are those that before() read.
-  void add(const histories& own, int count, given_impulses& given, block_reading& r) const {
+  void add(const histories& own, int count, given_impulses& given, const block_reading& r) const {
     for (int i = count; i < block_size; ++i) given.adds.values[i] = given.clears.values[i] = 0.0;
     if (is_together(own)) {
       constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -102,7 +74,7 @@ class window_block : public window_in_step {
       if (choose_added(count, given, r.stamp, added, begin_ >= now_ ? stamp_ : none))
         add_all(own, count, added);
     }
-    if (r.opens > 0 && buckets_ > 2.0 && shares_.first >= now_ - 1.0) {
+    if (r.opens > 0 && shares_.first >= now_ - 1.0) {
       if (own.component_stride == 1)
         with_rows(own, [=, this, &given, &r](auto row_of) {
           open_listed(count, given, r, [=](int i) { return neighbours<double>{row_of(i)}; });
@@ -123,25 +95,57 @@ class window_block : public window_in_step {
   }
 
   void read_alone(const histories& own, int i, block_reading& r) const {
-    const reading alone = window_in_step::before(const_history(own.at(i)));
+    const reading alone = own.component_stride == 1
+                              ? window_in_step::before(neighbours<const double>{own.of(i)})
+                              : window_in_step::before(const_history(own.at(i)));
     put(alone.sum, i, r.sum);
     r.refused.values[i] = alone.refused;
   }
 
-  // The sums of all nodes as if the bucket of the step were open, each behind its stamp.
+  // Whether nodes have the bucket of the step, or another one.
+  struct newest_buckets {
+    bool of_the_step, others;
+  };
+  newest_buckets read_stamps(const histories& own, int count, column& stamps) const {
+    with_rows(own, [=, &stamps](auto row_of) {
+      for (int i = 0; i < count; ++i) stamps.values[i] = row_of(i)[0];
+    });
+    for (int i = count; i < block_size; ++i) stamps.values[i] = empty;
+    lane_mask now{}, others{};
+    for (int i = 0; i < count; i += register_size) {
+      const lanes stamp = lanes_at(stamps.values + i);
+      now = now | (stamp == stamp_);
+      others = others | ((stamp != stamp_) & (stamp != empty));
+    }
+    return {any_lane(now), any_lane(others)};
+  }
+
+  // As many rows as make a square, to columns from place i on.
+  static void separate(const row* from, int i, column* const* to) {
+    for (int c = 0; c < row::lines; ++c) {
+      square s;
+#pragma GCC unroll 4
+      for (int k = 0; k < square_size; ++k) s.lines[k] = from[k].line[c];
+      s.turned().put([&](int k) { return to[c * square_size + k]->values + i; });
+    }
+  }
+
+  // The sums of all nodes as if the bucket of the step were open.
   template <class RowOf>
   [[gnu::noinline, gnu::flatten]] static void sum_rows(int count, RowOf row_of, edge given,
                                                        block_reading& r) {
-    rows sums;
-    for (int i = 0; i < count; ++i) {
-      const neighbours<const double> own{row_of(i)};
-      row sum = given.sum(row_at(own, middle_sum), row_at(own, current), row_at(own, oldest_bucket),
-                          row_at(own, oldest_slope));
-      sum.line[0][0] = own[0];
-      sum.put(sums.of[i]);
+    column unused;
+    column* const columns[] = {&unused, r.sum, r.sum + 1, r.sum + 2};
+    for (int i = 0; i < count; i += square_size) {
+      row sums[square_size];
+#pragma GCC unroll 4
+      for (int k = 0; k < square_size; ++k) {
+        const neighbours<const double> own{row_of(i + k < count ? i + k : count - 1)};
+        sums[k] = given.sum(row_at(own, middle_sum), row_at(own, current), row_at(own, oldest_bucket),
+                            row_at(own, oldest_slope));
+      }
+      separate(sums, i, columns);
     }
-    column* const columns[] = {&r.stamp, r.sum, r.sum + 1, r.sum + 2};
-    separate_rows(sums.of[0], 4, 4, count, [&columns](int k) { return columns[k]->values; });
   }
   [[gnu::noinline, gnu::flatten]] static void sum_columns(int count, const histories& own, edge given,
                                                           block_reading& r) {
@@ -152,28 +156,21 @@ class window_block : public window_in_step {
       const double* const v = first + k * stride + i;
       return {lanes_at(v), lanes_at(v + stride), lanes_at(v + 2 * stride)};
     };
-    for (; i + register_size <= count; i += register_size) {
-      put_lanes(lanes_at(first + i), r.stamp.values + i);
+    for (; i + register_size <= count; i += register_size)
       given.sum(at(middle_sum), at(current), at(oldest_bucket), at(oldest_slope)).put(r.sum, i);
-    }
     for (; i < count; ++i) {
       const const_history alone = own.at(i);
-      r.stamp.values[i] = alone[0];
       put(given.sum(read(alone, middle_sum), read(alone, current), read(alone, oldest_bucket),
                     read(alone, oldest_slope)),
           i, r.sum);
     }
   }
-  // Where no bucket is open nothing counts. Returns whether all others have the bucket of the step.
-  [[gnu::noinline, gnu::flatten]] static bool check_sums(int count, block_reading& r, double newest) {
-    lane_mask others{};
+  // Where no bucket is open nothing counts; other nodes are read later.
+  [[gnu::noinline, gnu::flatten]] static void check_sums(int count, block_reading& r, double newest) {
     for (int i = 0; i < count; i += register_size) {
-      const lanes stamp = lanes_at(r.stamp.values + i);
-      const lane_mask is_empty = stamp == empty;
-      put_sum(select(is_empty, lane_vector{}, lane_vector::at(r.sum, i)), i, r.sum, r.refused);
-      others = others | ((stamp != newest) & ~is_empty);
+      const lane_mask is_of_the_step = lanes_at(r.stamp.values + i) == newest;
+      put_sum(select(is_of_the_step, lane_vector::at(r.sum, i), lane_vector{}), i, r.sum, r.refused);
     }
-    return !any_lane(others);
   }
   static void put_sum(const lane_vector& sum, int i, column* sums, column& refused) {
     sum.put(sums, i);
@@ -181,55 +178,74 @@ class window_block : public window_in_step {
     put_lanes(zero * sum.n * sum.t1 * sum.t2 == zero ? zero : zero + impossible_state, refused.values + i);
   }
 
-  // Nodes whose newest bucket is not that of the step.
+  // Nodes whose newest bucket is not that of the step: together where it is the one before, as most often.
   void read_older(const histories& own, int count, block_reading& r) const {
-    int others[block_size], other_count = 0;
-    for (int i = 0; i < count; ++i) {
-      const double stamp = r.stamp.values[i];
-      others[other_count] = i;
-      other_count += (stamp != stamp_) & (stamp != empty) ? 1 : 0;
+    const double before = buckets_ > 2.0 ? stamp_of(now_ - 1.0) : std::numeric_limits<double>::quiet_NaN();
+    marks one_back, further;
+    lane_mask any_further{};
+    for (int i = 0; i < count; i += register_size) {
+      const lanes stamp = lanes_at(r.stamp.values + i);
+      const lane_mask is_before = stamp == before,
+                      is_further = (stamp != before) & (stamp != stamp_) & (stamp != empty);
+      one_back.put(is_before, i);
+      further.put(is_further, i);
+      any_further = any_further | is_further;
     }
+    if (any_lane(any_further)) {
+      int others[block_size];
+      const int other_count = further.list(count, others);
+      for (int k = 0; k < other_count; ++k) read_alone(own, others[k], r);
+    }
+    r.opens = one_back.list(count, r.nodes);
+    if (r.opens == 0) return;
+    turned_columns t;
     if (own.component_stride == 1)
-      with_rows(own, [=, this, &r](auto row_of) {
-        turn_listed(others, other_count, r, [=](int i) { return neighbours<const double>{row_of(i)}; });
+      with_rows(own, [=, this, &r, &t](auto row_of) {
+        turn_listed(r, t, [=](int i) { return neighbours<const double>{row_of(i)}; });
       });
     else
-      turn_listed(others, other_count, r, [&own](int i) { return const_history(own.at(i)); });
-    for (int k = 0; r.opens < other_count && k < other_count; ++k)
-      if (turns_ahead(r.stamp.values[others[k]]) < 0.0) read_alone(own, others[k], r);
-    column sum[3], refused;
-    sum_turned(r, edge_, sum, refused);
-    for (int k = 0; k < r.opens; ++k) {
-      put(vector_at(sum, k), r.nodes[k], r.sum);
-      r.refused.values[r.nodes[k]] = refused.values[k];
-    }
+      turn_listed(r, t, [&own](int i) { return const_history(own.at(i)); });
+    sum_turned(count, r, t, edge_);
   }
-  // Most of them are one bucket back.
+  // Behind one that does not count.
+  struct turned_columns {
+    column middle[4], oldest[4], next[4];
+  };
+  // Several at once; the last of them again where there are not so many.
   template <class HistoryOf>
-  [[gnu::noinline]] void turn_listed(const int* nodes, int count, block_reading& r,
-                                     HistoryOf history_of) const {
-    const window_block window = *this;  // a copy, so that no store can alias it
-    const double before = stamp_of(now_ - 1.0);
-    constexpr int ahead = 8;
-    int opens = 0;
-    for (int k = 0; k < count; ++k) {
-      const int i = nodes[k];
-      if (k + ahead < count) window.expect_ring(history_of(nodes[k + ahead]));
-      const double stamp = r.stamp.values[i], turns = stamp == before ? 1.0 : turns_ahead(stamp);
-      if (turns < 0.0) continue;
-      const auto own = history_of(i);
-      const turned t = turns == 1.0 ? window.turn_at(own, window.place_, 1.0) : turn_further(own, turns);
-      r.nodes[opens] = i;
-      r.turns.values[opens] = turns;
-      t.middle.put(r.middle.of[opens]);
-      t.oldest.put(r.oldest.of[opens]);
-      t.next.put(r.slope.of[opens++]);
+  [[gnu::noinline, gnu::flatten]] void turn_listed(block_reading& r, turned_columns& to,
+                                                   HistoryOf history_of) const {
+    constexpr int ahead = 2 * square_size;
+    const std::int64_t place = place_, next = after(place), end = ring_size_;
+    const int opens = r.opens, *const nodes = r.nodes;
+    column* const middles[] = {to.middle, to.middle + 1, to.middle + 2, to.middle + 3};
+    column* const oldests[] = {to.oldest, to.oldest + 1, to.oldest + 2, to.oldest + 3};
+    column* const nexts[] = {to.next, to.next + 1, to.next + 2, to.next + 3};
+    for (int k = 0; k < opens; k += square_size) {
+      decltype(history_of(0)) own[square_size];
+      row middle[square_size]{}, oldest[square_size], following[square_size];
+#pragma GCC unroll 4
+      for (int j = 0; j < square_size; ++j) {
+        own[j] = history_of(nodes[k + j < opens ? k + j : opens - 1]);
+        if (k + j + ahead < opens) expect_ring(history_of(nodes[k + j + ahead]));
+      }
+      const auto add = [&](std::int64_t index) {
+#pragma GCC unroll 4
+        for (int j = 0; j < square_size; ++j) middle[j] = middle[j] + row_at(own[j], index);
+      };
+      for (std::int64_t q = 0; q < place; ++q) add(at(q));
+      for (std::int64_t q = place + 1; q < end; ++q) add(at(q));
+      add(current);
+#pragma GCC unroll 4
+      for (int j = 0; j < square_size; ++j) {
+        oldest[j] = row_at(own[j], at(place));
+        following[j] = row_at(own[j], at(next));
+        middle[j].put(r.middle.of[k + j]);
+      }
+      separate(middle, k, middles);
+      separate(oldest, k, oldests);
+      separate(following, k, nexts);
     }
-    r.opens = opens;
-  }
-  template <class History>
-  [[gnu::noinline]] turned turn_further(const History& own, double turns) const {
-    return turn_at(own, place_, turns);
   }
   // Asks for what is summed soon.
   void expect_ring(const neighbours<const double>& own) const {
@@ -238,29 +254,28 @@ class window_block : public window_in_step {
     for (std::int64_t k = 0; k < numbers; k += line) __builtin_prefetch(own.values + first_bucket + k);
   }
   void expect_ring(const const_history& /*in columns*/) const {}
-  // -1: the newest bucket is none that lies before that of the step.
-  double turns_ahead(double stamp) const {
-    return is_stamp(stamp) && bucket_of(stamp) < now_ ? turns_since(stamp) : -1.0;
-  }
-  [[gnu::noinline, gnu::flatten]] static void sum_turned(block_reading& r, edge given, column* sum,
-                                                         column& refused) {
-    column middle[4], oldest[4], slope[4];
-    const auto separate = [&r](const rows& from, column* to) {
-      separate_rows(from.of[0], 4, 4, r.opens, [to](int k) { return to[k].values; });
-    };
-    separate(r.middle, middle);
-    separate(r.oldest, oldest);
-    separate(r.slope, slope);
+  [[gnu::noinline, gnu::flatten]] static void sum_turned(int count, block_reading& r, turned_columns& t,
+                                                         edge given) {
+    column some_refused;
+    const bool are_all = r.opens == count;
+    column* const sums = are_all ? r.sum : t.middle + 1;
+    column& refused = are_all ? r.refused : some_refused;
     for (int i = 0; i < r.opens; i += register_size) {
-      const lane_vector first = lane_vector::at(oldest + 1, i),
-                        difference = limited_difference(first, lane_vector::at(slope + 1, i));
-      difference.put(slope + 1, i);
-      put_sum(given.sum(lane_vector::at(middle + 1, i), lane_vector{}, first, difference), i, sum, refused);
+      const lane_vector first = lane_vector::at(t.oldest + 1, i),
+                        difference = limited_difference(first, lane_vector::at(t.next + 1, i));
+      difference.put(t.next + 1, i);
+      put_sum(given.sum(lane_vector::at(t.middle + 1, i), lane_vector{}, first, difference), i, sums,
+              refused);
     }
-    join(slope[0], slope + 1, r.opens, r.slope);
+    join(t.next + 1, r.opens, r.slope);
+    for (int k = 0; k < r.opens && !are_all; ++k) {
+      put(vector_at(sums, k), r.nodes[k], r.sum);
+      r.refused.values[r.nodes[k]] = refused.values[k];
+    }
   }
-  static void join(column& front, column* from, int count, rows& to) {
-    double* const columns[] = {front.values, from[0].values, from[1].values, from[2].values};
+  // Three columns, to rows behind one that does not count.
+  static void join(column* from, int count, rows& to) {
+    double* const columns[] = {from[0].values, from[0].values, from[1].values, from[2].values};
     join_rows(columns, 4, count, to.of[0], 4);
   }
 
@@ -321,34 +336,32 @@ class window_block : public window_in_step {
     return any_lane(left);
   }
 
-  // At nodes whose newest bucket lies before that of the step, which lies in this one and that before.
+  // At nodes whose newest bucket is the one before that of the step, which lies in those two.
   template <class HistoryOf>
-  [[gnu::noinline]] void open_listed(int count, given_impulses& given, const block_reading& r,
-                                     HistoryOf history_of) const {
+  [[gnu::noinline, gnu::flatten]] void open_listed(int count, given_impulses& given, const block_reading& r,
+                                                   HistoryOf history_of) const {
     const bool is_cut = shares_.first < now_;
     const double of_first = shares_.of_first, stamp = stamp_;
     const std::int64_t closed = at(place_);
-    column none{};
-    rows impulses;
-    join(none, given.impulse, count, impulses);
+    marks takes;
+    for (int i = 0; i < count; i += register_size)
+      takes.put(lanes_at(given.adds.values + i) > lanes_at(given.clears.values + i), i);
+    int listed[block_size], listed_count = 0;
     for (int k = 0; k < r.opens; ++k) {
-      const int i = r.nodes[k];
-      if (given.adds.values[i] == 0.0 || given.clears.values[i] != 0.0) continue;
+      listed[listed_count] = k;
+      listed_count -= static_cast<int>(takes.of[r.nodes[k]]);
+    }
+    rows impulses;
+    join(given.impulse, count, impulses);
+    for (int l = 0; l < listed_count; ++l) {
+      const int k = listed[l], i = r.nodes[k];
       given.adds.values[i] = 0.0;
       const auto own = history_of(i);
       const row impulse = row::at(impulses.of[i]), middle = row::at(r.middle.of[k]),
-                oldest = row::at(r.oldest.of[k]);
-      if (const double turns = r.turns.values[k]; turns != 1.0) {
-        add_where(own, impulse, now_, turns, {middle, oldest, {}});
-        continue;
-      }
-      const row part = of_first * impulse, last = row_at(own, current);
-      own[0] = stamp;
-      put_row(own, current, row{} + (is_cut ? impulse - part : impulse));
-      put_row(own, middle_sum, is_cut ? middle + part : middle);
-      put_row(own, oldest_bucket, oldest);
-      put_row(own, oldest_slope, row::at(r.slope.of[k]));
+                oldest = row_at(own, closed), last = row_at(own, current), part = of_first * impulse;
       put_row(own, closed, is_cut ? last + part : last);
+      put_head(own, stamp, row{} + (is_cut ? impulse - part : impulse), is_cut ? middle + part : middle,
+               oldest, row::at(r.slope.of[k]));
     }
   }
   [[gnu::noinline]] void add_alone(const history& own, int i, const given_impulses& given) const {

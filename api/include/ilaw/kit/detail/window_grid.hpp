@@ -3,38 +3,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/rows.hpp>
+#include <ilaw/kit/detail/window_lanes.hpp>
 #include <ilaw/kit/node.hpp>
 
 #include <cstdint>
-#include <limits>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
-
-// A register of doubles, worked on by the words for one (math.hpp).
-using lane_mask = decltype(lanes{} < lanes{});
-using lane_bits = registers<std::uint64_t>::one;
-inline lanes larger(lanes a, lanes b) { return a > b ? a : b; }
-inline lanes smaller(lanes a, lanes b) { return a < b ? a : b; }
-inline lanes absolute(lanes x) {
-  return reinterpret_cast<lanes>(reinterpret_cast<lane_bits>(x) & (~std::uint64_t{0} >> 1));
-}
-inline lanes square_root(lanes x) { return root_of(x); }
-inline bool any_lane(lane_mask m) {
-  std::int64_t found = 0;
-  for (int k = 0; k < register_size; ++k) found |= m[k];
-  return found != 0;
-}
-inline double down_scale_of(double largest) { return power_scale_of(largest).down; }
-inline lanes down_scale_of(lanes largest) {
-  constexpr std::uint64_t exponent_bits = 0x7FF0000000000000;
-  const auto sum = reinterpret_cast<lane_bits>(largest + std::numeric_limits<double>::min());
-  return reinterpret_cast<lanes>(exponent_bits - (sum & exponent_bits));
-}
-using kit::absolute;
-using kit::larger;
-using kit::smaller;
-using kit::square_root;
 
 // What is the same at all nodes is worked out once.
 class window_grid {
@@ -112,6 +86,24 @@ class window_grid {
   // Numbers of buckets that a double and a cast hold with room to spare. A grid finer than that is finer than
   // the clock: no step lies within tau of another.
   static constexpr double largest_number = 0x1p51;
+
+  static void put_head(const history& own, double stamp, const row& newest, const row& middle,
+                       const row& oldest, const row& slope) {
+    own[0] = stamp;
+    put_row(own, current, newest);
+    put_row(own, middle_sum, middle);
+    put_row(own, oldest_bucket, oldest);
+    put_row(own, oldest_slope, slope);
+  }
+  // Each row over the end of the one in front of it, but with the stamp in front of the first.
+  static void put_head(const neighbours<double>& own, double stamp, row newest, const row& middle,
+                       const row& oldest, const row& slope) {
+    newest.line[0][0] = stamp;
+    slope.put(own.values + oldest_slope - 1);
+    oldest.put(own.values + oldest_bucket - 1);
+    middle.put(own.values + middle_sum - 1);
+    newest.put(own.values + current - 1);
+  }
 
   // The newest bucket is kept as a number other than zero, so that zeros are an empty window.
   static constexpr double empty = 0.0;

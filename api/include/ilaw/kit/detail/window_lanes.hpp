@@ -1,0 +1,79 @@
+// window_lanes.hpp - what the windows of a block of nodes (window_block.hpp) are worked on by: registers of
+// doubles, vectors of them, and lists of nodes.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/gather.hpp>
+#include <ilaw/kit/node.hpp>
+
+#include <cstdint>
+#include <limits>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// A register of doubles, worked on by the words for one (math.hpp).
+using lane_mask = decltype(lanes{} < lanes{});
+using lane_bits = registers<std::uint64_t>::one;
+inline lanes larger(lanes a, lanes b) { return a > b ? a : b; }
+inline lanes smaller(lanes a, lanes b) { return a < b ? a : b; }
+inline lanes absolute(lanes x) {
+  return reinterpret_cast<lanes>(reinterpret_cast<lane_bits>(x) & (~std::uint64_t{0} >> 1));
+}
+inline lanes square_root(lanes x) { return root_of(x); }
+inline bool any_lane(lane_mask m) {
+  std::int64_t found = 0;
+  for (int k = 0; k < register_size; ++k) found |= m[k];
+  return found != 0;
+}
+inline double down_scale_of(double largest) { return power_scale_of(largest).down; }
+inline lanes down_scale_of(lanes largest) {
+  constexpr std::uint64_t exponent_bits = 0x7FF0000000000000;
+  const auto sum = reinterpret_cast<lane_bits>(largest + std::numeric_limits<double>::min());
+  return reinterpret_cast<lanes>(exponent_bits - (sum & exponent_bits));
+}
+using kit::absolute;
+using kit::larger;
+using kit::smaller;
+using kit::square_root;
+
+// Three numbers of as many nodes as a register holds. A pack (pack.hpp) is two, which these short loops would
+// pass through memory.
+struct lane_vector {
+  lanes n, t1, t2;
+
+  static lane_vector at(const column* c, int i) {
+    return {lanes_at(c[0].values + i), lanes_at(c[1].values + i), lanes_at(c[2].values + i)};
+  }
+  void put(column* c, int i) const {
+    put_lanes(n, c[0].values + i);
+    put_lanes(t1, c[1].values + i);
+    put_lanes(t2, c[2].values + i);
+  }
+  friend lane_vector operator+(const lane_vector& a, const lane_vector& b) {
+    return {a.n + b.n, a.t1 + b.t1, a.t2 + b.t2};
+  }
+  friend lane_vector operator-(const lane_vector& a, const lane_vector& b) {
+    return {a.n - b.n, a.t1 - b.t1, a.t2 - b.t2};
+  }
+  friend lane_vector operator*(double s, const lane_vector& a) { return {s * a.n, s * a.t1, s * a.t2}; }
+  friend lane_vector select(lane_mask m, const lane_vector& a, const lane_vector& b) {
+    return {m ? a.n : b.n, m ? a.t1 : b.t1, m ? a.t2 : b.t2};
+  }
+  lane_mask is_there() const { return (n != 0.0) | (t1 != 0.0) | (t2 != 0.0); }
+};
+
+// Nodes that are marked.
+struct marks {
+  alignas(64) std::int64_t of[block_size];
+
+  void put(lane_mask m, int i) { __builtin_memcpy(of + i, &m, sizeof m); }
+  int list(int count, int* nodes) const {
+    int found = 0;
+    for (int i = 0; i < count; ++i) {
+      nodes[found] = i;
+      found -= static_cast<int>(of[i]);
+    }
+    return found;
+  }
+};
+}  // namespace ilaw::kit::detail
