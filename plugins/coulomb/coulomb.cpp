@@ -132,6 +132,11 @@ struct coulomb : friction_in_packs {
 };
 
 struct coulomb::plain : coulomb {
+  // What most contacts are: the usual one then has a shorter step.
+  struct inelastic;
+  using form_of_try = inelastic;
+  bool has_form_of_try() const { return restitution == 0.0 && tangential_restitution == 0.0; }
+
   template <class Node>
   void step(Node& node) const requires has_transverse_delassus<Node> {
     apply_isotropic_friction(node, contact(node), friction);
@@ -143,6 +148,15 @@ struct coulomb::plain : coulomb {
   template <class Node>
   bool asks(Node& node, friction_problem<double>& open) const requires(!has_transverse_delassus<Node>) {
     return ask_friction(node, contact(node), friction, open);
+  }
+};
+
+struct coulomb::plain::inelastic : plain {
+  template <class Node>
+  bool try_step(Node& node) const requires has_transverse_delassus<Node> {
+    const contact_condition condition = inelastic_contact_at(node, activation);
+    return try_isotropic_friction(node, contact_problem_of(condition, node.v_free, node.v_previous),
+                                  friction);
   }
 };
 

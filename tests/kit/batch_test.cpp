@@ -150,6 +150,12 @@ TEST_P(Contract, NodesThatAreNotUsualChangeNoOther) {
     for (const std::size_t i : {5, 200, 201, 930})
       for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) nodes.v_previous[c] = 2.0 * other[c] - nodes.v_free[c];
     const bool global = frame == ILAW_FRAME_GLOBAL;
+    for (const std::size_t i : {18, 403}) {  // which close within the step
+      nodes.gap[i] = 1e-6;
+      for (std::size_t c = 0; c < 3; ++c)
+        nodes.v_free[3 * i + c] = nodes.v_previous[3 * i + c] =
+            global ? -nodes.normal[3 * i + c] : (c == 0 ? -1.0 : 0.0);
+    }
     const Results in_full = run(law, nodes, {}, global);  // as it is where energies are asked for
     for (const bool soa : {false, true})
       for (const bool separate_state : {false, true}) {

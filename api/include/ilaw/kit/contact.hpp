@@ -29,9 +29,11 @@ constexpr contact_condition contact_leaving_at(double target, double slack, doub
 // predictive: where the next gap would not be positive, v_N >= -g/h, so that it is never negative. An impact
 // with restitution leaves with -e v_N^- at once, which is larger. A gap that is negative already must not
 // grow; pushing it out would create energy.
+struct activated_contact {
+  double slack, arrival;
+};
 template <class Node>
-contact_condition contact_at(const Node& node, double restitution, double activation) {
-  const double rebound = -restitution * node.v_previous.n;
+activated_contact activated(const Node& node, double activation) {
   // The same for all nodes, and zero for moreau: where v_N^- >= 0 no target from -e v_N^- to 0 changes excess
   // or rest.
   const bool predicts = activation == predictive;
@@ -39,7 +41,19 @@ contact_condition contact_at(const Node& node, double restitution, double activa
   const double open = positive_part(node.gap), arrival = open * rate;
   // Where the gap is positive this is next_gap, to the last bit.
   const double ahead = open + step * node.v_free.n;
-  return contact_leaving_at(rebound > 0.0 ? rebound : arrival, ahead, node.v_free.n, node.v_previous.n);
+  return {ahead, arrival};
+}
+template <class Node>
+contact_condition contact_at(const Node& node, double restitution, double activation) {
+  const double rebound = -restitution * node.v_previous.n;
+  const activated_contact a = activated(node, activation);
+  return contact_leaving_at(rebound > 0.0 ? rebound : a.arrival, a.slack, node.v_free.n, node.v_previous.n);
+}
+// The same without restitution, to the last bit.
+template <class Node>
+contact_condition inelastic_contact_at(const Node& node, double activation) {
+  const activated_contact a = activated(node, activation);
+  return contact_leaving_at(a.arrival, a.slack, node.v_free.n, node.v_previous.n);
 }
 
 }  // namespace ilaw::kit

@@ -54,6 +54,9 @@
 // and one, or itself where it has no forms, whose loops are compiled for arrays of float as well (float.h):
 //   using form_of_floats = plain;
 // They are as fast as their bytes allow; other forms copy such arrays block by block.
+// A form may name another with a shorter try_step, of which nothing else is compiled:
+//   using form_of_try = shorter;
+//   bool has_form_of_try() const;
 //
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once

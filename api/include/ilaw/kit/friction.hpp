@@ -24,17 +24,21 @@ struct contact_problem {
   Vector q, rest;
 };
 
-// For v_free as given, which may contain what other impulses of the step have done. Tangential restitution is
-// the part of v_T^- that a sticking contact reverses.
+// For v_free as given, which may contain what other impulses of the step have done.
+template <class Vector>
+contact_problem<Vector> contact_problem_of(contact_condition condition, Vector v_free,
+                                           std::type_identity_t<Vector> v_previous) {
+  v_free.n = condition.excess;
+  v_previous.n = condition.rest;
+  return {condition.slack, v_free, v_previous};
+}
+// Tangential restitution is the part of v_T^- that a sticking contact reverses.
 template <class Vector>
 contact_problem<Vector> contact_problem_of(contact_condition condition, Vector v_free,
                                            std::type_identity_t<Vector> v_previous,
-                                           double tangential_restitution = 0.0) {
-  auto q = v_free + tangential_restitution * v_previous;
-  auto rest = (1.0 - tangential_restitution) * v_previous;
-  q.n = condition.excess;
-  rest.n = condition.rest;
-  return {condition.slack, q, rest};
+                                           double tangential_restitution) {
+  return contact_problem_of(condition, v_free + tangential_restitution * v_previous,
+                            (1.0 - tangential_restitution) * v_previous);
 }
 
 // A number in [0, 1], not yet divided.

@@ -64,26 +64,48 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
   over_nodes<Law, typename Laws::form>(b, run);
 }
 
+// The try of the form that a form names for it, where the parameters allow that one.
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+void try_in_form(const Laws& laws, const node_block<Law>& b, left_by<typename Laws::form>& left) {
+  using form = typename Laws::form;
+  if constexpr (is_one_law<Laws> && requires { typename form::form_of_try; }) {
+    if (laws.law.has_form_of_try()) {
+      const one_law<typename form::form_of_try> shorter{{laws.law}};
+      return try_block<Law, Delassus, Frame, Layout, Scope>(shorter, b, left);
+    }
+  }
+  try_block<Law, Delassus, Frame, Layout, Scope>(laws, b, left);
+}
+
 // Where a block had to be stepped in full, the next one is at once, where the try after that fails the next
 // two, and so on: neighbours are often alike.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
-void try_first(const Laws& laws, const node_block<Law>& b) {
-  if (b.in_full->left > 0) {
-    --b.in_full->left;
-    return step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
-  }
+void try_or_step(const Laws& laws, const node_block<Law>& b) {
   left_by<typename Laws::form> left;
-  node_block<Law> own = b;
-  kept_state<Law> state;
-  state.keep(own);
-  try_block<Law, Delassus, Frame, Layout, Scope>(laws, own, left);
+  try_in_form<Law, Delassus, Frame, Layout, Scope>(laws, b, left);
   if (!any_one(left.values, b.count)) {
     b.in_full->after_next = 1;
     return;
   }
   b.in_full->left = b.in_full->after_next;
   b.in_full->after_next = b.in_full->left < alike ? 2 * b.in_full->left : alike;
-  step_block<Law, Delassus, Frame, Layout, Scope>(laws, own);
+  step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
+}
+template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
+void try_first(const Laws& laws, const node_block<Law>& b) {
+  if (b.in_full->left > 0) {
+    --b.in_full->left;
+    return step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
+  }
+  if constexpr (has_state<Law>) {
+    node_block<Law> own = b;
+    kept_state<Law> state;
+    state.keep(own);
+    try_or_step<Law, Delassus, Frame, Layout, Scope>(laws, own);
+  } else {
+    // Not a copy: its vectors would wait until the pointers just written one by one are in the cache.
+    try_or_step<Law, Delassus, Frame, Layout, Scope>(laws, b);
+  }
 }
 
 // Whether a law leaves nodes out of reach alone whatever else they are, so that its step need not run.
