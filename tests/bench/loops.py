@@ -34,7 +34,8 @@ CASES = [
     # 0.6 of what doubles are allowed, for half of the bytes.
     ("contact, floats", "contact", ["--float"], [["step_block", "transverse", *FLOATS]], 1.44),
     ("coulomb", "coulomb", ["--parameters", FRICTION], [["try_block", *LOCAL, "::inelastic"]], 1.2),
-    ("coulomb, floats", "coulomb", ["--parameters", FRICTION, "--float"], [["try_block", *FLOATS, "::inelastic"]], 1.44),
+    ("coulomb, floats", "coulomb", ["--parameters", FRICTION, "--float"],
+     [["try_block", *FLOATS, "::inelastic"]], 1.44),
     ("coulomb, kinetic", "coulomb", ["--parameters", KINETIC], [["try_block", *LOCAL, "::falling"]], 2.0),
     ("tie", "tie", [], [["try_block", "transverse", *LOCAL]], 1.2),
     ("tie, full $H$", "tie", ["--delassus", "full"], [["try_block", "full_", "local_frame"]], 1.3),
