@@ -75,7 +75,8 @@ struct Curve {
   };
   Mode mode(double shear) const {
     const double part = shape == "camacho_ortiz" || shear == 0.0 ? 0.0 : std::pow(shear, eta);
-    const auto between = [part](double one, double two) {  // nothing is left of a difference where one is tiny
+    const auto between = [part](double one,
+                                double two) {  // nothing is left of a difference where one is tiny
       return part > 0.5 ? two + (1.0 - part) * (one - two) : one + part * (two - one);
     };
     const double strength = std::sqrt(between(s1 * s1, s2 * s2)), onset = strength * flexibility;
