@@ -125,7 +125,7 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, boo
 struct evaluate_walk {
   static tally run(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
     block_room<Law> room;
-    batch_walk<Law, Layout> walk(made, batch, room, asks(law));
+    batch_walk<Law, Layout> walk(made, batch, room, is_asked_first<Delassus, Frame>(law));
     using parameters_of_nodes = std::conditional_t<Varying, node_parameters<Law>, same_parameters>;
     [[maybe_unused]] parameters_of_nodes parameters(made, law, batch);
     tally found;
@@ -145,13 +145,6 @@ struct evaluate_walk {
   }
 
  private:
-  static bool asks(const Law& law) {
-    bool found = false;
-    in_its_form(law,
-                [&]<class Form>(const Form&) { found = asks_first<Form, node_in<Law, Delassus, Frame>>; });
-    return found;
-  }
-
   // The smallest stable step of the block's good nodes, for laws that limit it.
   static void limit_step(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
                          batch_walk<Law, Layout>& walk, tally& found) {
@@ -237,13 +230,16 @@ inline constexpr bool has_varying_parameters = [] {
   return false;
 }();
 
-// With parameters per node. Without energies where they would be much of the work.
+// With parameters per node. Without what is not asked for where it would be much of the work.
 template <class Law, class Delassus, class Frame>
 tally walk_varying(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
   if constexpr (std::is_same_v<Delassus, transverse_delassus> && !std::is_same_v<Frame, stored_frame> &&
-                always_reads_previous<Law>)
+                always_reads_previous<Law>) {
+    if (!batch.energy.values && !batch.velocity.values && !batch.status)
+      return evaluate_walk<Law, Delassus, Frame, columns, scope::with_previous, true>::run(made, law, batch);
     if (!batch.energy.values)
       return evaluate_walk<Law, Delassus, Frame, columns, scope::motion, true>::run(made, law, batch);
+  }
   return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
 }
 

@@ -55,6 +55,14 @@ bool has_form_of_floats(const Law& law) {
   return has;
 }
 
+// Whether the form of a law asks its nodes first, and so goes through them several times.
+template <class Delassus, class Frame, class Law>
+bool is_asked_first(const Law& law) {
+  bool is = false;
+  in_its_form(law, [&is]<class Form>(const Form&) { is = asks_first<Form, node_in<Law, Delassus, Frame>>; });
+  return is;
+}
+
 // Which forms have a loop: one whose inputs always have v_previous has none without it.
 template <class Form>
 concept needs_previous = Form::needs_previous;
