@@ -79,7 +79,7 @@ class coupled_step : public pack_step<V, coupled_step<V>, coupled_response<V>> {
     multiply(m.adjugate, heavy_, sum);
     for (V& each : sum) each = m.inverse * each;
     const V* w = this->g_.opening;
-    m.closed = sum[0] - w[0] < this->floor_;
+    m.closed = sum[0] - w[0] < this->below_;
     m.contact = 0.0;
     if (any(m.closed)) close(m, sum);
     m.opening[0] = select(m.closed, this->floor_, sum[0] - w[0]);

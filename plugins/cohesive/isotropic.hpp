@@ -37,7 +37,7 @@ class isotropic_step : public pack_step<V, isotropic_step<V>, isotropic_response
     m.left_n = both * of_t;
     m.left_t = both * of_n;
     const V free = m.left_n * d[0] - w[0];
-    m.closed = free < this->floor_;
+    m.closed = free < this->below_;
     m.opening[0] = select(m.closed, this->floor_, free);
     for (int k = 1; k < 3; ++k) m.opening[k] = m.left_t * d[k] - w[k];
     m.rub[0] = m.rub[1] = 0.0;

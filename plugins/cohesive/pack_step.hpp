@@ -37,6 +37,7 @@ class pack_step {
     const auto leaves = step * (u[0] - rounding) > x_[0] - lowest;  // see ground_below
     ground_ = select(leaves, x_[0] - step * u[0], lowest);
     floor_ = 0.5 * (x_[0] + ground_);
+    below_ = 0.5 * (x_[0] + below(x_[0], ground_));
     for (int k = 0; k < 3; ++k) drive_[k] = 0.5 * step * v[k] + (x_[k] + w[k]);
     from_ = size_of(w[0], shear_square(w[1], w[2]));
     c_ = 0.25 * step * g.velocity_step * g.area * g.h[0];
@@ -229,9 +230,9 @@ class pack_step {
   const bond& bond_;
   const of_all_nodes& all_;
   const gathered<V>& g_;
-  V x_[3], drive_[3];  // position at the time of the impulse; w^+ + w^- without bond and contact
-  V ground_, floor_;   // lowest next position, and lowest opening
-  V from_, c_;         // |w^-|
+  V x_[3], drive_[3];         // position at the time of the impulse; w^+ + w^- without bond and contact
+  V ground_, floor_, below_;  // lowest next position, lowest opening, and what is below it
+  V from_, c_;                // |w^-|
   secant<V> now_;
   V stiffness_;  // its
   softening<V> opened_;

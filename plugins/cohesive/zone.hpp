@@ -45,6 +45,13 @@ struct pressed_node {
   double status, refused;
 };
 
+// What of a next position is below the ground and not rounding of it: a stiff bond would take the difference
+// for an opening, and store what nobody has put in.
+template <class V>
+V below(V position, V ground) {
+  return ground - 0x1p-49 * (absolute(position) + absolute(ground));
+}
+
 template <class Modes>
 struct zone {
   vector position, opening;  // relative position at the time of the impulse; w^-
@@ -67,7 +74,7 @@ struct zone {
 
   motion at(share s) const {
     motion m{.opening = position_step * modes.left(s, drive) - opening, .contact = {}};
-    if (next_position(m).n < ground) close(s, m);
+    if (next_position(m).n < below(position.n, ground)) close(s, m);
     m.size = size(m.opening);
     return m;
   }
