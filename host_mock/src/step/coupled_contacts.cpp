@@ -80,12 +80,13 @@ void CoupledContacts::iterate(const StepView& step, double speed, Dofs& v, Outco
     if (outcome.sweeps == 1) out_of_reach_ = most_growth * found.size;
     if (found.size > out_of_reach_) return;
   }
-  if (!(outcome.residual > tolerance)) return;
+  if (!(outcome.residual > tolerance)) return round_anew(all, outcome);
   outcome.residual = 0.0;
   int most = outcome.sweeps;
   for (const ContactGroup& island : islands_of(acting_)) {
-    Outcome found{outcome.sweeps, residual(island, speed, v).relative(), 0.0};
+    Outcome found{outcome.sweeps, residual(island, speed, v).relative(), 0.0, outcome.largest};
     accelerate({island, step, speed, v}, found);
+    round_anew({island, step, speed, v}, found);
     most = std::max(most, found.sweeps);
     outcome.residual = std::max(outcome.residual, found.residual);
   }
@@ -96,6 +97,7 @@ CoupledContacts::Residual CoupledContacts::sweep(const Sweeping& on, Outcome& ou
   for (const auto& [interface, contacts] : on.group) answer(*interface, contacts, on.step, on.v);
   const Residual found = residual(on.group, on.speed, on.v);
   outcome.residual = found.relative();
+  outcome.largest = std::max(outcome.largest, found.size);
   ++outcome.sweeps;
   return found;
 }
@@ -111,15 +113,32 @@ void CoupledContacts::accelerate(const Sweeping& on, Outcome& outcome) {
     if (outcome.sweeps > first && outcome.sweeps % 2 == 0) {
       const Dofs image = scaled_impulses(on.group);
       const Dofs next = image + anderson.correction(image, image - impulses_before);
-      impulses_before = try_from(on, next) ? next : image;
+      impulses_before = try_from(on, next, outcome) ? next : image;
     }
     if (sweep(on, outcome).size > out_of_reach_) return;
   }
 }
 
-bool CoupledContacts::try_from(const Sweeping& on, const Dofs& scaled) {
+// Impulses that were large on the way and cancelled each other have left their rounding in v, which all laws
+// may agree on: it is put together anew from where they ended, and swept on. Not where they still are large.
+void CoupledContacts::round_anew(const Sweeping& on, Outcome& outcome) {
+  constexpr double much = tolerance / std::numeric_limits<double>::epsilon();
+  const auto has_rounded = [&] {
+    const double size = residual(on.group, on.speed, on.v).size;
+    return outcome.largest > much * size && !(size > run_away * out_of_reach_ / most_growth);
+  };
+  while (!(outcome.residual > tolerance) && outcome.sweeps < most_sweeps && has_rounded()) {
+    outcome.largest = 0.0;
+    if (!try_from(on, scaled_impulses(on.group), outcome)) return;
+    do sweep(on, outcome);
+    while (outcome.residual > tolerance && outcome.sweeps < most_sweeps);
+  }
+}
+
+bool CoupledContacts::try_from(const Sweeping& on, const Dofs& scaled, Outcome& outcome) {
   if (!is_in_reach(on.group, scaled)) return false;
   move_to(on.group, scaled, on.v);
+  outcome.largest = std::max(outcome.largest, residual(on.group, on.speed, on.v).size);
   return true;
 }
 
@@ -137,14 +156,14 @@ void CoupledContacts::search(const Sweeping& on, Outcome& outcome) {
   double left = 1.0;  // of a sweep from start + t way, along the way
   const auto sweep_from = [&](double t) {
     const Dofs from = start + t * way;
-    if (!try_from(on, from)) return false;
+    if (!try_from(on, from, outcome)) return false;
     sweep(on, outcome);
     left = (scaled_impulses(on.group) - from).dot(way) / way.squaredNorm();
     return true;
   };
   double low = 0.0, left_low = 1.0, high = longer;
   for (; !is_over(); high *= longer) {
-    if (!sweep_from(high)) return void(try_from(on, image));
+    if (!sweep_from(high)) return void(try_from(on, image, outcome));
     if (!(left > 0.0)) break;
     low = high;
     left_low = left;
@@ -270,7 +289,7 @@ void CoupledContacts::load(std::istream& in) {
 // for; or they go on until one of them breaks, and begin anew. A long column, which more sweeps
 // would solve, does neither: it is told by its length.
 std::string CoupledContacts::explain(const Dofs& v, const Outcome& outcome) const {
-  constexpr double run_away = 1e6, beyond_rounding = 1e-6;
+  constexpr double beyond_rounding = 1e-6;
   const double speed = out_of_reach_ / most_growth;  // of the first sweep
   const Disagreement found = disagreement(v);
   if (!found.interface) return "";

@@ -29,7 +29,8 @@ class CoupledContacts {
   struct Outcome {
     int sweeps;
     double residual;
-    double energy;  // that laws may account for wrongly, as they do not agree on velocities
+    double energy;         // that laws may account for wrongly, as they do not agree on velocities
+    double largest = 0.0;  // velocity that an impulse made on the way
   };
   // Opens the step in all interfaces, and takes v from v_free to the velocities that fulfil all
   // laws.
@@ -47,6 +48,8 @@ class CoupledContacts {
 
   // No impulse may make a speed larger than that many times the first: it would be all rounding.
   static constexpr double most_growth = 0x1p50;
+  // From so many times the first speed on laws push each other up.
+  static constexpr double run_away = 1e6;
 
   // So few contacts are solved by the sweeps there are, if they can be.
   static constexpr std::size_t few = 50;
@@ -73,9 +76,10 @@ class CoupledContacts {
   void iterate(const StepView& step, double speed, Dofs& v, Outcome& outcome);
   void accelerate(const Sweeping& on, Outcome& outcome);
   void search(const Sweeping& on, Outcome& outcome);
+  void round_anew(const Sweeping& on, Outcome& outcome);
   // Evaluates every contact once, each against the impulses of the others.
   static Residual sweep(const Sweeping& on, Outcome& outcome);
-  bool try_from(const Sweeping& on, const Dofs& scaled);
+  bool try_from(const Sweeping& on, const Dofs& scaled, Outcome& outcome);
   static void answer(Interface& interface, const ContactList& contacts, const StepView& step, Dofs& v);
   static Residual residual(const ContactGroup& group, double speed, const Dofs& v);
   bool is_in_reach(const ContactGroup& group, const Dofs& scaled) const;
