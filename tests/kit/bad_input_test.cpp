@@ -27,7 +27,7 @@ TEST_P(BadInput, IsRefusedAtItsNodeOnly) {
   const SetupBuilder setup(served.parameters, 3, ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL);
   const ilaw::interface law = make_law(served.law, setup);
   const bool reads = spoilt.input == 0 || (law.info().inputs & spoilt.input);
-  Nodes nodes(130);
+  Nodes nodes(270);
   nodes.gap[70] = -1e-3;
   const Results good = run(law, nodes, {}, true, 1);
   spoilt.spoil(nodes);
@@ -44,7 +44,7 @@ TEST_P(BadInput, IsRefusedAtItsNodeOnly) {
     EXPECT_EQ(bad.report.bad_count, 1);
     EXPECT_EQ(bad.report.first_bad_node, 70);
     EXPECT_STREQ(bad.report.reason, spoilt.reason);
-    for (std::size_t i = 0; i < 130; ++i) {
+    for (std::size_t i = 0; i < 270; ++i) {
       EXPECT_EQ(bad.status[i], i == 70 ? int{ILAW_BAD_INPUT} : int{good.status[i]}) << "i " << i;
       for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_EQ(bad.impulse[3 * i + c], i == 70 ? 0.0 : good.impulse[3 * i + c])
@@ -159,14 +159,14 @@ TEST(EnergyOutput, DoesNotChangeTheMotionWhereThePreviousVelocityIsNone) {
   for (const auto& [name, ignored, parameters, more] : served) {
     const ilaw::interface law = make_tested_law(name, SetupBuilder(parameters));
     if (law.info().inputs & ILAW_INPUT_V_PREVIOUS) continue;
-    Nodes nodes(130);
+    Nodes nodes(270);
     for (std::size_t k = 0; k < nodes.v_previous.size(); k += 5) nodes.v_previous[k] = nan_value;
     nodes.v_previous[6] = inf_value;
     const Results with = run(law, nodes, {}, false), without = run(law, nodes, {.outputs = false}, false);
     EXPECT_EQ(with.code, ILAW_OK) << name << ": " << (with.report.reason ? with.report.reason : "");
     EXPECT_EQ(with.impulse, without.impulse) << name;
     EXPECT_EQ(with.state, without.state) << name;
-    for (std::size_t i = 0; i < 130; ++i) {
+    for (std::size_t i = 0; i < 270; ++i) {
       if (!std::isfinite(nodes.v_previous[3 * i] + nodes.v_previous[3 * i + 1] +
                          nodes.v_previous[3 * i + 2])) {
         EXPECT_EQ(with.energy[4 * i] + with.energy[4 * i + 1] + with.energy[4 * i + 2], 0.0) << name << i;

@@ -60,8 +60,8 @@ TEST_P(Contract, EveryFormOfHGivesTheSameBitsInAllLayoutsAndInstructionSets) {
         const auto made = [&, form_of_h = static_cast<std::uint32_t>(form)] {
           return make(frame, form_of_h, static_cast<std::uint32_t>(d));
         };
-        const Nodes nodes(130, d, components);
-        std::vector<std::int32_t> order(130);
+        const Nodes nodes(270, d, components);
+        std::vector<std::int32_t> order(270);
         std::iota(order.begin(), order.end(), 0);
         std::shuffle(order.begin(), order.end(), std::mt19937(7));
         const ilaw::interface law = made();
@@ -174,7 +174,7 @@ TEST_P(Contract, NodesThatAreNotUsualChangeNoOther) {
 // Blocks of nodes out of reach may take a shorter way. Here they do, and among others they do not: two blocks
 // in flight, in the second one node that closes within the step, then two that touch.
 TEST_P(Contract, NodesInFlightGetWhatTheyGetAmongOthers) {
-  constexpr std::size_t block = 64, n = 4 * block, closing = block + 5, bad = 7;
+  constexpr std::size_t block = 128, n = 4 * block, closing = block + 5, bad = 7;
   std::vector<std::int32_t> mixed(n);
   for (std::size_t i = 0; i < n; ++i) mixed[i] = static_cast<std::int32_t>(i % 4 * block + i / 4);
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})

@@ -126,7 +126,7 @@ class Floats : public ::testing::TestWithParam<LawCase> {
 };
 
 TEST_P(Floats, AreTheDoublesRounded) {
-  std::vector<std::int32_t> order(130);
+  std::vector<std::int32_t> order(270);
   std::iota(order.begin(), order.end(), 1);
   std::shuffle(order.begin(), order.end(), std::mt19937(7));
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
@@ -135,7 +135,7 @@ TEST_P(Floats, AreTheDoublesRounded) {
                                               {3, ILAW_DELASSUS_FULL, 6}}) {
       SCOPED_TRACE(::testing::Message() << d << "D, form " << form << ", frame " << frame);
       const ilaw::interface law = made(d, static_cast<std::uint32_t>(form), frame);
-      const Nodes nodes(130, d, components);
+      const Nodes nodes(270, d, components);
       const bool global = frame == ILAW_FRAME_GLOBAL;
       for (const Layout& layout :
            {Layout{}, Layout{.soa = true, .separate_state = true}, Layout{.node_stride = 2, .outputs = false},
@@ -155,10 +155,10 @@ TEST_P(Floats, ThatStayWhereTheyAreAreTheDoublesRounded) {
         const std::uint32_t form = components == 1 ? ILAW_DELASSUS_SCALAR : ILAW_DELASSUS_TRANSVERSE;
         SCOPED_TRACE(::testing::Message() << level << ", form " << form << ", frame " << frame);
         const ilaw::interface law = made(3, form, frame);
-        Nodes nodes(203, 3, components);
-        std::fill_n(nodes.gap.begin() + 64, 64, 2.0);
-        nodes.v_free[3 * 5 + 1] = nodes.v_previous[3 * 131] = inf_value;
-        nodes.delassus[static_cast<std::size_t>(components) * 70] = -1.0;
+        Nodes nodes(403, 3, components);
+        std::fill_n(nodes.gap.begin() + 128, 128, 2.0);
+        nodes.v_free[3 * 5 + 1] = nodes.v_previous[3 * 261] = inf_value;
+        nodes.delassus[static_cast<std::size_t>(components) * 140] = -1.0;
         const bool global = frame == ILAW_FRAME_GLOBAL;
         for (const Layout& layout :
              {Layout{.energy = false}, Layout{.outputs = false}, Layout{.soa = true, .energy = false},

@@ -294,7 +294,8 @@ int run_asked(const Laws& laws, const node_block<Law>& b) {
   if constexpr (!answers_every_node<form> && !remembers<Law, form>) {
     if (b.in_full->left == 0) return run_where_few_ask<Law, Delassus, Frame, Layout, Scope>(laws, b, asked);
   } else {
-    for (double& value : asked.answer.values) value = 0.0;
+    for (int k = 0; k < asked_block<form>::answers; ++k)
+      for (int i = 0; i < b.count; ++i) asked.answer[k][i] = 0.0;
   }
   const int count = list_problems<Law, Delassus, Frame, Layout, reading<Scope>>(laws, b, asked);
   const int alone_count = solve_asked(laws.law, asked, count);

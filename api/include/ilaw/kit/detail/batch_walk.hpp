@@ -3,33 +3,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/block_room.hpp>
-#include <ilaw/kit/detail/instance.hpp>
+#include <ilaw/kit/detail/ahead.hpp>
 #include <ilaw/kit/detail/kernel.hpp>
 #include <ilaw/kit/detail/tangent_columns.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-template <class Law, class Layout>
+// Length: of its blocks, at most.
+template <class Law, class Layout, int Length>
 class batch_walk {
+  using column = column_to<Length>;
+
  public:
   static constexpr int states = state_doubles<Law>;
   static constexpr bool in_place = is_in_place<Layout>, of_floats = is_of_floats<Layout>;
 
-  // is_read_again: whether a block is gone through several times.
-  batch_walk(const instance<Law>& made, const ilaw_batch& batch, block_room<Law>& room,
-             bool is_read_again = false)
-      : made_(made), batch_(batch), room_(room), dimension_(static_cast<int>(made.dimension)) {
-    has_ahead_ = batch_.node_count >= streams::fewest_nodes && !batch_.index && !batch_.index64;
-    if (has_ahead_) expect_arrays(is_read_again);
-  }
+  batch_walk(const instance<Law>& made, const ilaw_batch& batch, block_room<Law, Length>& room,
+             const streams* ahead)
+      : made_(made),
+        batch_(batch),
+        room_(room),
+        dimension_(static_cast<int>(made.dimension)),
+        ahead_(ahead) {}
 
   // Fills the columns of the block that starts at position first.
   void open(std::int64_t first) {
     nodes_ = range(first);
     block_.count = nodes_.count;
-    block_.next = first + block_size;
-    block_.ahead = has_ahead_ && block_.next < batch_.node_count ? &ahead_ : nullptr;
+    block_.next = first + Length;
+    block_.ahead = block_.next < batch_.node_count ? ahead_ : nullptr;
     block_.time = batch_.time;
     block_.velocity_step = batch_.velocity_step;
     block_.position_step = batch_.position_step;
@@ -87,7 +89,7 @@ class batch_walk {
     double* entries[states + 1] = {};
     for (int k = 0; k < states; ++k)
       if (const int entry = state_entry<Law>(k, dimension_); entry >= 0) entries[entry] = block_.state_out[k];
-    scatter_doubles(batch_.state_out, state_entries(), nodes_, entries);
+    scatter_doubles(batch_.state_out, state_entries<Law>(dimension_), nodes_, entries);
   }
 
   // The frame of an accepted step becomes the frame to carry on from.
@@ -111,7 +113,7 @@ class batch_walk {
             batch_.index64,
             first,
             batch_.index_base,
-            static_cast<int>(left < block_size ? left : block_size),
+            static_cast<int>(left < Length ? left : Length),
             holds_floats(batch_)};
   }
   // Where component c of the block's first node stands in an array of the layout's numbers.
@@ -122,7 +124,7 @@ class batch_walk {
   }
   // What is read where an array is absent.
   static const double* none() {
-    static constexpr typename Layout::number absent[block_size] = {};
+    static constexpr typename Layout::number absent[Length] = {};
     return reinterpret_cast<const double*>(absent);
   }
   static const double& at(const ilaw_input& a, std::int64_t node, std::int64_t c) {
@@ -130,53 +132,6 @@ class batch_walk {
   }
   static double& at(const ilaw_output& a, std::int64_t node, std::int64_t c) {
     return a.values[node * a.node_stride + c * a.component_stride];
-  }
-
-  int delassus_numbers() const {
-    switch (made_.delassus_form) {
-      case ILAW_DELASSUS_SCALAR:
-        return 1;
-      case ILAW_DELASSUS_TRANSVERSE:
-        return dimension_ > 1 ? 2 : 1;
-      case ILAW_DELASSUS_DIAGONAL:
-        return dimension_;
-      default:
-        return dimension_ * (dimension_ + 1) / 2;
-    }
-  }
-  int state_entries() const {
-    int count = 0;
-    for (int k = 0; k < states; ++k) count += state_entry<Law>(k, dimension_) >= 0 ? 1 : 0;
-    return count;
-  }
-
-  // All that is read or written where nodes follow each other, if any of it is copied. Of a batch whose
-  // vectors stay where they are, and are read once, only what is copied: the rest comes sooner unasked.
-  void expect_arrays(bool is_read_again) {
-    const bool all = !in_place || is_read_again;
-    has_ahead_ = in_place && is_read_again;
-    const auto add = [this, all](const auto& array, int numbers, bool holds_floats) {
-      const bool is_copied = array.values && (array.node_stride != 1 || (holds_floats && !of_floats));
-      has_ahead_ = has_ahead_ || is_copied;
-      if (is_copied || all) expect(array, numbers, holds_floats, ahead_);
-    };
-    const auto of_batch = [this, add](const auto& array, int numbers) {
-      add(array, numbers, holds_floats(batch_));
-    };
-    if (all) {
-      of_batch(batch_.v_free, dimension_);
-      of_batch(batch_.v_previous, dimension_);
-      of_batch(batch_.normal, dimension_);
-      of_batch(batch_.impulse, dimension_);
-      of_batch(batch_.velocity, dimension_);
-    }
-    of_batch(batch_.delassus, delassus_numbers());
-    for (const ilaw_input* one : {&batch_.gap, &batch_.gap_offset, &batch_.area}) of_batch(*one, 1);
-    of_batch(batch_.tangent, dimension_);
-    add(batch_.state_in, state_entries(), false);
-    of_batch(batch_.energy, ILAW_ENERGY_COUNT);
-    if (batch_.state_out.values != batch_.state_in.values) add(batch_.state_out, state_entries(), false);
-    for (std::uint32_t k = 0; k < made_.per_node_count; ++k) of_batch(batch_.per_node_parameters[k], 1);
   }
 
   void write_status() const {
@@ -255,13 +210,15 @@ class batch_walk {
   void gather_delassus() {
     const double* given[6];
     if constexpr (of_floats)
-      for (int k = 0; k < delassus_numbers(); ++k) given[k] = where(batch_.delassus, k);
+      for (int k = 0; k < delassus_numbers(made_.delassus_form, dimension_); ++k)
+        given[k] = where(batch_.delassus, k);
     else
-      gather_components(batch_.delassus, delassus_numbers(), nodes_, room_.delassus, given);
+      gather_components(batch_.delassus, delassus_numbers(made_.delassus_form, dimension_), nodes_,
+                        room_.delassus, given);
     const double** h = block_.delassus;
     if (made_.is_transverse()) {  // two columns are read; a scalar is both
       h[0] = given[0];
-      h[1] = given[delassus_numbers() - 1];
+      h[1] = given[delassus_numbers(made_.delassus_form, dimension_) - 1];
       return;
     }
     for (int e = 0; e < 3; ++e) h[e] = given[e < dimension_ ? e : 0];
@@ -315,7 +272,7 @@ class batch_walk {
   void open_state() {
     if (batch_.state_in.values) {
       const double* entries[states + 1];
-      gather_doubles(batch_.state_in, state_entries(), nodes_, room_.state_in, entries);
+      gather_doubles(batch_.state_in, state_entries<Law>(dimension_), nodes_, room_.state_in, entries);
       for (int k = 0; k < states; ++k) {
         const int entry = state_entry<Law>(k, dimension_);
         block_.state_in[k] = entry >= 0 ? entries[entry] : zeros.values;
@@ -376,11 +333,11 @@ class batch_walk {
 
   const instance<Law>& made_;
   const ilaw_batch& batch_;
-  block_room<Law>& room_;
+  block_room<Law, Length>& room_;
   int dimension_;
-  bool is_initial_ = false, has_ahead_ = false;
+  const streams* ahead_;
+  bool is_initial_ = false;
   full_blocks in_full_;
-  streams ahead_;
   node_range nodes_{};
   node_block<Law> block_;
 };

@@ -123,13 +123,25 @@ const char* refusal_reason(const Law& law, const block_of_one<Law>& b, int i, bo
 // The whole of a batch; Varying: with parameters per node.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, bool Varying>
 struct evaluate_walk {
+  // In long blocks where nothing of what lies in memory is copied, and no more is asked than hosts most often
+  // do: each length is a walk more to compile.
   static tally run(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
-    block_room<Law> room;
-    batch_walk<Law, Layout> walk(made, batch, room, is_asked_first<Delassus, Frame>(law));
+    const arrays_ahead<Law, Layout> ahead(made, batch, is_asked_first<Delassus, Frame>(law));
+    if constexpr (!Varying && Scope < scope::outputs && !std::is_same_v<Frame, stored_frame>)
+      if (!ahead.get()) return run_in<block_size>(made, law, batch, nullptr);
+    return run_in<short_block>(made, law, batch, ahead.get());
+  }
+
+ private:
+  template <int Length>
+  static tally run_in(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
+                      const streams* ahead) {
+    block_room<Law, Length> room;
+    batch_walk<Law, Layout, Length> walk(made, batch, room, ahead);
     using parameters_of_nodes = std::conditional_t<Varying, node_parameters<Law>, same_parameters>;
     [[maybe_unused]] parameters_of_nodes parameters(made, law, batch);
     tally found;
-    for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
+    for (std::int64_t first = 0; first < batch.node_count; first += Length) {
       walk.open(first);
       if constexpr (Varying)
         found.one_by_one += run_varying(parameters.of(walk.nodes()), walk.block());
@@ -144,10 +156,10 @@ struct evaluate_walk {
     return found;
   }
 
- private:
   // The smallest stable step of the block's good nodes, for laws that limit it.
-  static void limit_step(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
-                         batch_walk<Law, Layout>& walk, tally& found) {
+  template <class Walk>
+  static void limit_step(const instance<Law>& made, const Law& law, const ilaw_batch& batch, Walk& walk,
+                         tally& found) {
     if constexpr (limits_step<Law> && !Varying) {
       in_its_form(law, [&walk, &found]<class Form>(const Form& form) {
         if constexpr (is_run<Law, Form, Layout, Scope>() && !always_stable<Form>)
@@ -182,9 +194,9 @@ struct evaluate_walk {
     return one_by_one;
   }
 
+  template <class Walk>
   [[gnu::noinline, gnu::cold]] static void explain(const instance<Law>& made, const Law& law,
-                                                   const ilaw_batch& batch, batch_walk<Law, Layout>& walk,
-                                                   tally& found) {
+                                                   const ilaw_batch& batch, Walk& walk, tally& found) {
     for (int i = 0; i < walk.nodes().count; ++i) {
       if (walk.block().refused[i] == 0.0) continue;
       Law own = law;
@@ -360,10 +372,10 @@ std::int32_t evaluate(const ilaw_instance* opaque, const Batch* given, ilaw_repo
 template <class Law>
 [[gnu::noinline]] tally initialise_nodes(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
-  block_room<Law> room;
-  batch_walk<Law, columns> walk(made, batch, room);
+  block_room<Law, short_block> room;
+  batch_walk<Law, columns, short_block> walk(made, batch, room, nullptr);
   tally found;
-  for (std::int64_t first = 0; first < batch.node_count; first += block_size) {
+  for (std::int64_t first = 0; first < batch.node_count; first += short_block) {
     walk.open_initial(first);
     for (int i = 0; i < walk.nodes().count; ++i) {
       Law own = law;

@@ -12,15 +12,24 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// Nodes worked on together: enough to fill vectors and hide loop overhead, few enough to stay in the first
-// cache.
-inline constexpr int block_size = 64;
+// Nodes worked on together, at most: enough to fill vectors and to hide what a block costs besides its nodes,
+// few enough to stay in the first cache. Fewer where arrays in memory are copied: the copy and the work on it
+// add up, and less is gained by more of either at once.
+inline constexpr int block_size = 128, short_block = 64;
 
-struct alignas(64) column {
-  double values[block_size];
+template <int Length>
+struct alignas(64) column_to {
+  double values[Length];
 };
+struct column : column_to<block_size> {};
 
 inline constexpr column zeros{};
+
+// How many numbers of a column are read, where it is read by packs.
+inline int in_whole_packs(int count) {
+  static_assert(block_size % pack_size == 0);
+  return (count + pack_size - 1) / pack_size * pack_size;
+}
 
 // Whether any of some numbers that are 0.0 or 1.0 is 1: by their bits, since sums of integers vectorise.
 template <class Number>
@@ -61,11 +70,15 @@ class streams {
   static constexpr int nodes_at_once = 16;
   static constexpr std::int64_t fewest_nodes = 16384;  // fewer are in the second cache, or may as well be
 
+  // An array, where few numbers of a node lie apart.
   template <class Number>
-  void add(const Number* values, std::int64_t numbers_of_node) {
-    if (count_ == most) return;
-    streams_[count_++] = {reinterpret_cast<const char*>(values),
-                          numbers_of_node * std::int64_t{sizeof(Number)}};
+  void add(const Number* values, std::int64_t node_stride, std::int64_t component_stride, int numbers) {
+    constexpr std::int64_t widest = 8;
+    if (node_stride < 1 || node_stride > widest) return;
+    const int parts = component_stride == 1 ? 1 : numbers;
+    for (int k = 0; k < parts && count_ < most; ++k)
+      streams_[count_++] = {reinterpret_cast<const char*>(values + k * component_stride),
+                            node_stride * std::int64_t{sizeof(Number)}};
   }
 
   void ask(std::int64_t node) const {
@@ -120,14 +133,14 @@ inline const double* gather(const ilaw_input& input, const node_range& nodes, do
 }
 
 // Of rows of six numbers compilers make no vector code.
-template <int Pair>
-void put_pair(const vectors_of_rows& low, const vectors_of_rows& high, column* room, int i) {
+template <int Pair, class Column>
+void put_pair(const vectors_of_rows& low, const vectors_of_rows& high, Column* room, int i) {
   const lanes a = low.pair<Pair>(), b = high.pair<Pair>();
   put_lanes(column_of_six<2 * Pair>(a, b, each_lane), room[2 * Pair].values + i);
   put_lanes(column_of_six<2 * Pair + 1>(a, b, each_lane), room[2 * Pair + 1].values + i);
 }
-template <class Number>
-void separate_sixes(const Number* values, int count, column* room) {
+template <class Number, class Column>
+void separate_sixes(const Number* values, int count, Column* room) {
   int i = 0;
   if constexpr (std::is_same_v<Number, double>)
     for (; i + register_size <= count; i += register_size) {
@@ -141,9 +154,9 @@ void separate_sixes(const Number* values, int count, column* room) {
 }
 
 // Gives the components of a block of nodes; where a node's are neighbours, in one pass over them.
-template <class Number>
+template <class Number, class Column>
 void gather_components_of(const Number* values, std::int64_t node_stride, std::int64_t component_stride,
-                          int numbers, const node_range& nodes, column* room, const double** components) {
+                          int numbers, const node_range& nodes, Column* room, const double** components) {
   const bool are_rows = !nodes.listed() && component_stride == 1;
   const bool in_rows = are_rows && node_stride == numbers;
   const Number* rows = values + nodes.first * node_stride;
@@ -158,21 +171,24 @@ void gather_components_of(const Number* values, std::int64_t node_stride, std::i
   for (int k = 0; k < numbers; ++k)
     components[k] = gather_of(values + k * component_stride, node_stride, nodes, room[k].values);
 }
-inline void gather_doubles(const ilaw_input& input, int numbers, const node_range& nodes, column* room,
-                           const double** components) {
+template <class Column>
+void gather_doubles(const ilaw_input& input, int numbers, const node_range& nodes, Column* room,
+                    const double** components) {
   gather_components_of(input.values, input.node_stride, input.component_stride, numbers, nodes, room,
                        components);
 }
-inline void gather_components(const ilaw_input& input, int numbers, const node_range& nodes, column* room,
-                              const double** components) {
+template <class Column>
+void gather_components(const ilaw_input& input, int numbers, const node_range& nodes, Column* room,
+                       const double** components) {
   if (!nodes.of_floats) return gather_doubles(input, numbers, nodes, room, components);
   gather_components_of(as_floats(input.values), input.node_stride, input.component_stride, numbers, nodes,
                        room, components);
 }
 
 // The three components of a block of vectors.
-inline void gather_vector(const ilaw_input& input, int dimension, const node_range& nodes, column* room,
-                          const double** components) {
+template <class Column>
+void gather_vector(const ilaw_input& input, int dimension, const node_range& nodes, Column* room,
+                   const double** components) {
   gather_components(input, dimension, nodes, room, components);
   for (int k = dimension; k < 3; ++k) components[k] = zeros.values;
 }
@@ -222,21 +238,6 @@ inline void scatter_components(const ilaw_output& output, int numbers, const nod
   if (!nodes.of_floats) return scatter_doubles(output, numbers, nodes, components);
   scatter_components_of(as_floats(output.values), output.node_stride, output.component_stride, numbers, nodes,
                         components);
-}
-
-// Adds an input or output to what is asked for ahead, where few numbers of a node lie apart.
-template <class Array>
-void expect(const Array& array, int numbers, bool of_floats, streams& ahead) {
-  constexpr std::int64_t widest = 8;
-  const auto add = [&](std::int64_t at, std::int64_t numbers_of_node) {
-    if (of_floats)
-      ahead.add(as_floats(array.values) + at, numbers_of_node);
-    else
-      ahead.add(array.values + at, numbers_of_node);
-  };
-  if (!array.values || array.node_stride < 1 || array.node_stride > widest) return;
-  if (array.component_stride == 1) return add(0, array.node_stride);
-  for (int k = 0; k < numbers; ++k) add(k * array.component_stride, array.node_stride);
 }
 
 }  // namespace ilaw::kit::detail

@@ -124,17 +124,17 @@ inline constexpr bool may_fly = !is_for_old_processors && is_one_law<Laws> && sk
                                 !std::is_same_v<Frame, stored_frame>;
 
 // Whether no gap is closed. The first few most often tell where nodes touch.
-template <class Layout, int Nodes>
-bool are_open(const double* gap, const double* offset) {
+template <class Layout>
+bool are_open(const double* gap, const double* offset, int nodes) {
   std::uint64_t closed = 0;
-  for (int i = 0; i < Nodes; ++i) closed |= Layout::at(gap, i) - Layout::at(offset, i) > 0.0 ? 0U : 1U;
+  for (int i = 0; i < nodes; ++i) closed |= Layout::at(gap, i) - Layout::at(offset, i) > 0.0 ? 0U : 1U;
   return closed == 0;
 }
 template <class Layout, class Law>
 bool may_be_in_flight(const node_block<Law>& b) {
   constexpr int first = 8;
-  return b.count == block_size && are_open<Layout, first>(b.gap, b.gap_offset) &&
-         are_open<Layout, block_size>(b.gap, b.gap_offset);
+  return b.count >= first && are_open<Layout>(b.gap, b.gap_offset, first) &&
+         are_open<Layout>(b.gap, b.gap_offset, b.count);
 }
 
 // All nodes as if they were out of reach. False: one of them is not, and they are to be stepped.
@@ -155,7 +155,7 @@ bool are_in_flight(const node_block<Law>& b) {
   if (!may_be_in_flight<Layout>(b)) return false;
   column reached;
   fly_block<Law, Delassus, Frame, Layout, Scope>(b, reached);
-  return !any_one(reached.values, block_size);
+  return !any_one(reached.values, b.count);
 }
 
 // Returns how many nodes were solved one by one, as ilaw/profile.h counts them.

@@ -27,18 +27,17 @@ double rank_of_step(const Form& law, const node_block<Law>& b, int i) {
 // The smallest stable step of a block's good nodes, by the form that its loop ran with.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Form>
 [[gnu::noinline, gnu::flatten]] double least_stable_step(const Form& form, const node_block<Law>& b) {
-  static_assert(block_size % pack_size == 0);
   const Form law = form;
   const node_block<Law> own = b;
   column ranks;
-  for (double& rank : ranks.values) rank = infinity;
+  for (int i = own.count; i < in_whole_packs(own.count); ++i) ranks.values[i] = infinity;
 #pragma omp simd
   for (int i = 0; i < own.count; ++i) {
     const double rank = rank_of_step<Law, Delassus, Frame, Layout, Scope>(law, own, i);
     ranks.values[i] = own.refused[i] == 0.0 ? rank : infinity;
   }
   pack least = infinity;
-  for (int i = 0; i < block_size; i += pack_size) least = smaller(pack::load(ranks.values + i), least);
+  for (int i = 0; i < own.count; i += pack_size) least = smaller(pack::load(ranks.values + i), least);
   double smallest = infinity;
   for (int lane = 0; lane < pack_size; ++lane) smallest = smaller(least[lane], smallest);
   if constexpr (falls_with_one_number<Form, node_in<Law, Delassus, Frame>>)

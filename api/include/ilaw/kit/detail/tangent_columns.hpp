@@ -10,7 +10,8 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 // Tangents of a block's nodes, as columns to be written. Each loop stands alone, as vector code.
 class tangent_columns {
  public:
-  tangent_columns(column* first, column* second) {
+  template <class Column>
+  tangent_columns(Column* first, Column* second) {
     for (int c = 0; c < 3; ++c) {
       first_[c] = first[c].values;
       second_[c] = second[c].values;

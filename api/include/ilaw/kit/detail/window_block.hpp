@@ -67,7 +67,7 @@ class window_block : public window_in_step {
 
   // Takes the impulses of a step in. The histories are those that before() read.
   void add(const histories& own, int count, given_impulses& given, const block_reading& r) const {
-    for (int i = count; i < block_size; ++i) given.adds.values[i] = given.clears.values[i] = 0.0;
+    for (int i = count; i < in_whole_packs(count); ++i) given.adds.values[i] = given.clears.values[i] = 0.0;
     if (is_together(own)) {
       constexpr double none = std::numeric_limits<double>::quiet_NaN();
       column added[4];
@@ -110,7 +110,7 @@ class window_block : public window_in_step {
     with_rows(own, [=, &stamps](auto row_of) {
       for (int i = 0; i < count; ++i) stamps.values[i] = row_of(i)[0];
     });
-    for (int i = count; i < block_size; ++i) stamps.values[i] = empty;
+    for (int i = count; i < in_whole_packs(count); ++i) stamps.values[i] = empty;
     lane_mask now{}, others{};
     for (int i = 0; i < count; i += register_size) {
       const lanes stamp = lanes_at(stamps.values + i);
