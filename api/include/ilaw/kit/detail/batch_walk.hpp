@@ -208,17 +208,16 @@ class batch_walk {
 
   // Missing dimensions are padded so that H stays positive definite; see delassus orders in ilaw.h.
   void gather_delassus() {
-    const double* given[6];
+    const int numbers = delassus_numbers(made_.delassus_form, dimension_);
+    const double* given[6] = {};
     if constexpr (of_floats)
-      for (int k = 0; k < delassus_numbers(made_.delassus_form, dimension_); ++k)
-        given[k] = where(batch_.delassus, k);
+      for (int k = 0; k < numbers; ++k) given[k] = where(batch_.delassus, k);
     else
-      gather_components(batch_.delassus, delassus_numbers(made_.delassus_form, dimension_), nodes_,
-                        room_.delassus, given);
+      gather_components(batch_.delassus, numbers, nodes_, room_.delassus, given);
     const double** h = block_.delassus;
     if (made_.is_transverse()) {  // two columns are read; a scalar is both
       h[0] = given[0];
-      h[1] = given[delassus_numbers(made_.delassus_form, dimension_) - 1];
+      h[1] = given[numbers - 1];
       return;
     }
     for (int e = 0; e < 3; ++e) h[e] = given[e < dimension_ ? e : 0];
