@@ -132,6 +132,8 @@ struct postit {
   }
 
   window_in_step window_in(step_interval step) const { return {duration, buckets, step}; }
+  // Neither bonded nor waiting for a rupture to count: out of reach it stays so.
+  static bool rests(const state& s) { return (s.adhesion == 0.0) & (s.grace == 0.0); }
   // A rupture clears the window; what it then holds is the impulse of this step.
   static bool adds_to_window(double /*s*/) { return true; }
   static bool clears_window(double s) { return s == status::broken; }

@@ -16,6 +16,7 @@
 //   static constexpr bool skips_out_of_reach = true;      the step frees such nodes (see node.hpp) without an
 //                                                         impulse and refuses none: where all are so, the kit
 //                                                         does it
+//   static bool rests(const state&);                      the same of nodes with such a state
 //   template <class Node> bool try_step(Node&) const      the usual case; true: the same as step, bit for bit
 //   template <class Node> double stable_velocity_step(const Node&) const   if it limits the step: by how much
 //                                                         at this node, whatever its state; see ilaw_report

@@ -108,22 +108,33 @@ void try_first(const Laws& laws, const node_block<Law>& b) {
   }
 }
 
-// Whether a law leaves nodes out of reach alone whatever else they are, so that its step need not run.
+// Whether a law leaves nodes out of reach alone whatever else they are, so that its step need not run, or
+// those of them whose state rests.
+template <class Law>
+inline constexpr bool rests_by_state = requires(const state_t<Law>& state) {
+  Law::rests(state);
+};
 template <class Law>
 inline constexpr bool skips_out_of_reach = [] {
   if constexpr (requires { Law::skips_out_of_reach; }) {
     static_assert(!may_act_anywhere<Law>, "skips_out_of_reach is for laws without a state that act in reach");
     return Law::skips_out_of_reach;
   }
-  return false;
+  return rests_by_state<Law>;
 }();
+template <class Law>
+bool rests(const state_t<Law>& state) {
+  if constexpr (rests_by_state<Law>) return Law::rests(state);
+  return true;
+}
 
 // Whether the step need not run at a block of nodes out of reach. Not in axes where +0 may turn into -0.
 template <class Law, class Frame, class Laws>
 inline constexpr bool may_fly = !is_for_old_processors && is_one_law<Laws> && skips_out_of_reach<Law> &&
                                 !std::is_same_v<Frame, stored_frame>;
 
-// Whether no gap is closed. The first few most often tell where nodes touch.
+// Whether no gap is closed. The first few most often tell where nodes touch, and the first state who is
+// bonded.
 template <class Layout>
 bool are_open(const double* gap, const double* offset, int nodes) {
   std::uint64_t closed = 0;
@@ -134,15 +145,15 @@ template <class Layout, class Law>
 bool may_be_in_flight(const node_block<Law>& b) {
   constexpr int first = 8;
   return b.count >= first && are_open<Layout>(b.gap, b.gap_offset, first) &&
-         are_open<Layout>(b.gap, b.gap_offset, b.count);
+         rests<Law>(incoming_state(b, 0)) && are_open<Layout>(b.gap, b.gap_offset, b.count);
 }
 
-// All nodes as if they were out of reach. False: one of them is not, and they are to be stepped.
+// All nodes as if they were out of reach and at rest; reached: 1 where one is not, and is to be stepped.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
 [[gnu::noinline, gnu::flatten]] void fly_block(const node_block<Law>& b, column& reached) {
   const auto run = [&reached](const node_block<Law>& own, int i) {
     const auto step = [&reached, i](auto& node) {
-      reached.values[i] = is_out_of_reach(node) ? 0.0 : 1.0;
+      reached.values[i] = is_out_of_reach(node) & rests<Law>(node.state) ? 0.0 : 1.0;
       node.impulse = {};
       node.status = status::free;
     };
