@@ -203,15 +203,21 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
   over_nodes<Law, typename Laws::form>(b, nodes, run);
 }
 
+// Whether a form's asks() changes no state, so that a block may be asked twice from where it is.
+template <class Form>
+concept asks_leave_state = Form::asks_leave_state;
+
 // All nodes as if none had a problem, and who has one.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
-[[gnu::noinline, gnu::flatten]] void ask_block(const Laws& laws, const node_block<Law>& b, column& open) {
+[[gnu::noinline, gnu::flatten]] void ask_block(const Laws& laws, const node_block<Law>& b, column& open,
+                                               kept_state<Law, Layout>& before) {
   using form = typename Laws::form;
   const Laws l = laws;
-  const auto run = [&l, &open](const node_block<Law>& own, int i) {
+  const auto run = [&l, &open, &before](const node_block<Law>& own, int i) {
     const auto& law = l.at(i);
-    const auto step = [&law, &open, i](auto& node) {
+    const auto step = [&law, &open, &before, i](auto& node) {
       problem_of_form<form> problem{};
+      if constexpr (!asks_leave_state<form>) before.keep(i, node.state);
       open.values[i] = law.asks(node, problem) ? 1.0 : 0.0;
     };
     run_node<Law, Delassus, Frame, Layout, Scope>(law, own, i, step, l.is_valid(i));
@@ -247,25 +253,20 @@ inline bool are_many(span open, int nodes) {
   return few * (open.end - open.first) > nodes;
 }
 
-// Whether a form's asks() changes no state, so that a block may be asked twice from where it is.
-template <class Form>
-concept asks_leave_state = Form::asks_leave_state;
-
 // First as if no node had a problem, which is all where none has; then from the first to the last that have
 // one. Where those are many, the blocks after this one are not stepped so.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 int run_where_few_ask(const Laws& laws, const node_block<Law>& b, asked_block<typename Laws::form>& asked) {
-  node_block<Law> own = b;
-  [[maybe_unused]] kept_state<Law> state;
-  if constexpr (!asks_leave_state<typename Laws::form>) state.keep(own);
-  ask_block<Law, Delassus, Frame, Layout, Scope>(laws, own, asked.open);
-  const int count = list_open(asked, own.count);
+  kept_state<Law, Layout> before;
+  ask_block<Law, Delassus, Frame, Layout, Scope>(laws, b, asked.open, before);
+  const int count = list_open(asked, b.count);
   if (count == 0) return 0;
   const span open = open_nodes(asked, count);
-  if (are_many(open, own.count)) b.in_full->left = alike;
-  keep_problems<Law, Delassus, Frame, Layout, reading<Scope>>(laws, own, open, asked);
+  if (are_many(open, b.count)) b.in_full->left = alike;
+  if constexpr (!asks_leave_state<typename Laws::form>) before.put_back(b, open);
+  keep_problems<Law, Delassus, Frame, Layout, reading<Scope>>(laws, b, open, asked);
   const int alone_count = solve_asked(laws.law, asked, count);
-  finish_nodes<Law, Delassus, Frame, Layout, Scope>(laws, own, open, asked);
+  finish_nodes<Law, Delassus, Frame, Layout, Scope>(laws, b, open, asked);
   return alone_count;
 }
 

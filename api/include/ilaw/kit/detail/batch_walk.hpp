@@ -86,6 +86,7 @@ class batch_walk {
       scatter_components(batch_.velocity, dimension_, nodes_, block_.velocity);
     if (batch_.energy.values) scatter_components(batch_.energy, ILAW_ENERGY_COUNT, nodes_, block_.energy);
     if (batch_.status) write_status();
+    if (has_state_rows<Layout>) return;
     double* entries[states + 1] = {};
     for (int k = 0; k < states; ++k)
       if (const int entry = state_entry<Law>(k, dimension_); entry >= 0) entries[entry] = block_.state_out[k];
@@ -269,7 +270,9 @@ class batch_walk {
   }
 
   void open_state() {
-    if (batch_.state_in.values) {
+    if (has_state_rows<Layout>) {
+      block_.state_in[0] = where(batch_.state_in, 0);
+    } else if (batch_.state_in.values) {
       const double* entries[states + 1];
       gather_doubles(batch_.state_in, state_entries<Law>(dimension_), nodes_, room_.state_in, entries);
       for (int k = 0; k < states; ++k) {
@@ -316,6 +319,10 @@ class batch_walk {
     block_.status = room_.status.values;
     block_.refused = room_.refused.values;
     block_.stirs = room_.stirs.values;
+    if (has_state_rows<Layout>) {
+      block_.state_out[0] = where(batch_.state_out, 0);
+      return;
+    }
     for (int k = 0; k < states; ++k) {
       const int entry = state_entry<Law>(k, dimension_);
       block_.state_out[k] = aim(batch_.state_out, entry, entry >= 0, room_.state_out[k]);

@@ -34,26 +34,4 @@ inline int delassus_numbers(std::uint32_t form, int dimension) {
   }
 }
 
-// Entry of the host's state that holds double k of struct state; -1: a component beyond the dimension.
-template <class Law>
-int state_entry(int k, int dimension) {
-  int entry = 0;
-  if constexpr (has_state<Law>)
-    for (std::size_t v = 0; v < std::size(Law::state_variables); ++v) {
-      const auto& member = Law::state_variables[v].member;
-      const int component = k - state_places<Law>[v];
-      if (component >= 0 && component < member.doubles())
-        return component < member.components(dimension) ? entry + component : -1;
-      entry += member.components(dimension);
-    }
-  return -1;
-}
-
-template <class Law>
-int state_entries(int dimension) {
-  int count = 0;
-  for (int k = 0; k < state_doubles<Law>; ++k) count += state_entry<Law>(k, dimension) >= 0 ? 1 : 0;
-  return count;
-}
-
 }  // namespace ilaw::kit::detail

@@ -122,6 +122,7 @@ struct interleaved_of : numbers_of<Number> {
 };
 struct columns : columns_of<double> {};
 struct interleaved : interleaved_of<double> {};
+struct interleaved_with_state : interleaved {};  // whose state is a row, too
 struct columns_of_float : columns_of<float> {};
 struct rows_of_float : interleaved_of<float> {};
 
@@ -129,7 +130,9 @@ template <class Layout>
 inline constexpr bool is_of_floats = std::is_same_v<typename Layout::number, float>;
 // Whether vectors are read and written in the host's arrays, and never copied.
 template <class Layout>
-inline constexpr bool is_in_place = is_of_floats<Layout> || std::is_same_v<Layout, interleaved>;
+inline constexpr bool is_in_place = is_of_floats<Layout> || std::is_base_of_v<interleaved, Layout>;
+template <class Layout>
+inline constexpr bool has_state_rows = std::is_same_v<Layout, interleaved_with_state>;
 
 // The three ways in which a kernel gets its frames: none needed, from the normals alone, or stored. axes:
 // three columns of the normal, then three each of the tangents where they are stored.

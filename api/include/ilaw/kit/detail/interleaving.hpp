@@ -27,6 +27,19 @@ bool stand_in(const instance<Law>& made, const ilaw_batch& b) {
          Layout::has(b.v_free) && Layout::has(b.impulse) && may_be(b.v_previous) && may_be(b.velocity) &&
          (made.frame == ILAW_FRAME_LOCAL || Layout::has(b.normal));
 }
+// A state of a few numbers and nothing else may stay in its rows: of longer ones compilers make no vector
+// code.
+template <class Law>
+inline constexpr bool may_have_state_rows = [] {
+  if constexpr (has_state<Law>) return row_of_state<Law> > 1 && row_of_state<Law> <= 4;
+  return false;
+}();
+template <class Law>
+bool state_stands_in_rows(const instance<Law>& made, const ilaw_batch& b) {
+  constexpr int numbers = row_of_state<Law>;
+  const auto are_rows = [](const auto& a) { return a.node_stride == numbers && a.component_stride == 1; };
+  return made.state_size == numbers && b.state_in.values && are_rows(b.state_in) && are_rows(b.state_out);
+}
 // Of floats nothing is copied: numbers of the nodes one after another.
 inline bool are_scalars_in_columns(const ilaw_batch& b) {
   const auto may_be = [](const auto& a) { return !a.values || a.node_stride == 1; };

@@ -33,7 +33,7 @@ struct node_block {
   const double* v_previous_of_energy[3];  // as the host gave it
   const double* delassus[6];
   const double *gap, *gap_offset, *area;
-  const double* state_in[states + 1];  // one more than needed: no array of length zero
+  const double* state_in[states + 1];  // one more than needed: no array of length zero; rows: the first alone
   double* history_values;              // in state_out, of the block's first node (of node 0 with an index)
   std::int64_t history_node_stride, history_component_stride;
   const std::int64_t* history_nodes;  // null: consecutive
@@ -77,9 +77,51 @@ Delassus delassus_at(const double* const* columns, int i, std::index_sequence<K.
   return Delassus::from(components);
 }
 
-template <class Law, std::size_t... K>
-state_t<Law> state_at(const double* const* columns, int i, std::index_sequence<K...>) {
-  return std::bit_cast<state_t<Law>>(std::array<double, sizeof...(K)>{columns[K][i]...});
+// Entry of the host's state that holds double k of struct state; -1: a component beyond the dimension.
+template <class Law>
+constexpr int state_entry(int k, int dimension) {
+  int entry = 0;
+  if constexpr (has_state<Law>)
+    for (std::size_t v = 0; v < std::size(Law::state_variables); ++v) {
+      const auto& member = Law::state_variables[v].member;
+      const int component = k - state_places<Law>[v];
+      if (component >= 0 && component < member.doubles())
+        return component < member.components(dimension) ? entry + component : -1;
+      entry += member.components(dimension);
+    }
+  return -1;
+}
+
+template <class Law>
+constexpr int state_entries(int dimension) {
+  int count = 0;
+  for (int k = 0; k < state_doubles<Law>; ++k) count += state_entry<Law>(k, dimension) >= 0 ? 1 : 0;
+  return count;
+}
+
+// Double K of the state of node i: in a column of its own or, in space, in a row of all that the host stores.
+template <class Law>
+inline constexpr int row_of_state = state_entries<Law>(3);
+template <class Law, class Layout, int K>
+double state_number(const double* const* state, int i) {
+  if constexpr (!has_state_rows<Layout>)
+    return state[K][i];
+  else if constexpr (constexpr int entry = state_entry<Law>(K, 3); entry >= 0)
+    return state[0][row_of_state<Law> * i + entry];
+  else
+    return 0.0;
+}
+template <class Law, class Layout, int K>
+void put_state_number(double* const* state, int i, double value) {
+  if constexpr (!has_state_rows<Layout>)
+    state[K][i] = value;
+  else if constexpr (constexpr int entry = state_entry<Law>(K, 3); entry >= 0)
+    state[0][row_of_state<Law> * i + entry] = value;
+}
+template <class Law, class Layout, std::size_t... K>
+state_t<Law> state_at(const double* const* state, int i, std::index_sequence<K...>) {
+  return std::bit_cast<state_t<Law>>(
+      std::array<double, sizeof...(K)>{state_number<Law, Layout, static_cast<int>(K)>(state, i)...});
 }
 
 // Of a state that comes in: finite, and every scalar what its variable may be.
@@ -183,10 +225,10 @@ double refused_before(const node_block<Law>& b, int i) {
   if constexpr (has_window<Law>) return b.earlier_refused[i];
   return not_refused;
 }
-template <class Law>
+template <class Law, class Layout>
 state_t<Law> incoming_state(const node_block<Law>& b, int i) {
   if constexpr (has_state<Law>)
-    return state_at<Law>(b.state_in, i, std::make_index_sequence<state_doubles<Law>>{});
+    return state_at<Law, Layout>(b.state_in, i, std::make_index_sequence<state_doubles<Law>>{});
   else
     return {};
 }
@@ -212,7 +254,7 @@ node_in<Law, Delassus, Frame> load_node(const node_block<Law>& b, int i) {
                                   .state = {},
                                   .refused = refused_before(b, i)};
   // Assigned, not initialised: then GCC takes the struct apart, as vector code needs.
-  if constexpr (has_state<Law>) n.state = incoming_state(b, i);
+  if constexpr (has_state<Law>) n.state = incoming_state<Law, Layout>(b, i);
   return n;
 }
 
@@ -300,12 +342,12 @@ energy_split split_energy(const Node& n, Vector v_previous, Vector v) {
 }
 
 // Number by number: a choice between structs is a branch, which does not vectorise.
-template <class Law, std::size_t... K>
+template <class Law, class Layout, std::size_t... K>
 void store_state(const node_block<Law>& b, int i, const state_t<Law>& after, const state_t<Law>& before,
                  bool accepted, std::index_sequence<K...>) {
   const auto next = std::bit_cast<std::array<double, sizeof...(K)>>(after);
   const auto last = std::bit_cast<std::array<double, sizeof...(K)>>(before);
-  ((b.state_out[K][i] = accepted ? next[K] : last[K]), ...);
+  (put_state_number<Law, Layout, static_cast<int>(K)>(b.state_out, i, accepted ? next[K] : last[K]), ...);
 }
 
 // A vector in the axes of the batch; where the node is refused, what the host is to find instead.
@@ -388,7 +430,8 @@ void run_node(const Form& law, const node_block<Law>& b, int i, Step step, bool 
     const state_t<Law> before = load_node<Law, Delassus, Frame, Layout, Scope>(b, i).state;
     if constexpr (can_carry<Law, Frame>) b.stirs[i] = stirring<Law>(n, before);
     if constexpr (has_state<Law>)
-      store_state<Law>(b, i, n.state, before, accepted, std::make_index_sequence<state_doubles<Law>>{});
+      store_state<Law, Layout>(b, i, n.state, before, accepted,
+                               std::make_index_sequence<state_doubles<Law>>{});
   }
   b.refused[i] = accepted ? 0.0 : 1.0;
 }

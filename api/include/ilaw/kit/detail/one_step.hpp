@@ -120,17 +120,31 @@ void over_nodes(const node_block<Law>& b, Step step) {
 // Where a block had to be stepped in full, those after it are at once: neighbours are often alike.
 inline constexpr int alike = 8;
 
-// A state that a block works on in place, kept for a second step from the same beginning.
-template <class Law>
+// The states that a block came with, kept for a second step from the same beginning: by its first step, which
+// has them at hand, and put back where they are worked on in place.
+template <class Law, class Layout>
 struct kept_state {
   column values[node_block<Law>::states + 1];
 
-  void keep(node_block<Law>& b) {
-    for (int k = 0; k < node_block<Law>::states; ++k) {
-      if (b.state_in[k] != b.state_out[k]) continue;
-      for (int i = 0; i < b.count; ++i) values[k].values[i] = b.state_in[k][i];
-      b.state_in[k] = values[k].values;
-    }
+  void keep(int i, const state_t<Law>& state) {
+    if constexpr (has_state<Law>) keep_all(i, state, every_double);
+  }
+  void put_back(const node_block<Law>& b, span nodes) const {
+    if constexpr (has_state<Law>) put_all(b, nodes, every_double);
+  }
+
+ private:
+  static constexpr auto every_double = std::make_index_sequence<state_doubles<Law>>{};
+
+  template <std::size_t... K>
+  void keep_all(int i, const state_t<Law>& state, std::index_sequence<K...> /*doubles*/) {
+    const auto doubles = std::bit_cast<std::array<double, sizeof...(K)>>(state);
+    ((values[K].values[i] = doubles[K]), ...);
+  }
+  template <std::size_t... K>
+  void put_all(const node_block<Law>& b, span nodes, std::index_sequence<K...> /*doubles*/) const {
+    for (int i = nodes.first; i < nodes.end; ++i)
+      (put_state_number<Law, Layout, static_cast<int>(K)>(b.state_out, i, values[K].values[i]), ...);
   }
 };
 

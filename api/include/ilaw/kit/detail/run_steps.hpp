@@ -54,11 +54,15 @@ using left_by = left_nodes<std::conditional_t<takes_two_packs<Form>, float, doub
 
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 [[gnu::noinline, gnu::flatten]] void try_block(const Laws& laws, const node_block<Law>& b,
-                                               left_by<typename Laws::form>& left) {
+                                               left_by<typename Laws::form>& left,
+                                               kept_state<Law, Layout>& before) {
   const Laws l = laws;
-  const auto run = [&l, &left](const node_block<Law>& own, int i) {
+  const auto run = [&l, &left, &before](const node_block<Law>& own, int i) {
     const auto& law = l.at(i);
-    const auto step = [&law, &left, i](auto& node) { left.values[i] = law.try_step(node) ? 0.0 : 1.0; };
+    const auto step = [&law, &left, &before, i](auto& node) {
+      before.keep(i, node.state);
+      left.values[i] = law.try_step(node) ? 0.0 : 1.0;
+    };
     run_node<Law, Delassus, Frame, Layout, Scope>(law, own, i, step, l.is_valid(i));
   };
   over_nodes<Law, typename Laws::form>(b, run);
@@ -66,48 +70,38 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
 
 // The try of the form that a form names for it, where the parameters allow that one.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
-void try_in_form(const Laws& laws, const node_block<Law>& b, left_by<typename Laws::form>& left) {
+void try_in_form(const Laws& laws, const node_block<Law>& b, left_by<typename Laws::form>& left,
+                 kept_state<Law, Layout>& before) {
   using form = typename Laws::form;
   if constexpr (is_one_law<Laws> && requires { typename form::form_of_try; }) {
     if (laws.law.has_form_of_try()) {
       const one_law<typename form::form_of_try> shorter{{laws.law}};
-      return try_block<Law, Delassus, Frame, Layout, Scope>(shorter, b, left);
+      return try_block<Law, Delassus, Frame, Layout, Scope>(shorter, b, left, before);
     }
   }
-  try_block<Law, Delassus, Frame, Layout, Scope>(laws, b, left);
+  try_block<Law, Delassus, Frame, Layout, Scope>(laws, b, left, before);
 }
 
 // Where a block had to be stepped in full, the next one is at once, where the try after that fails the next
 // two, and so on: neighbours are often alike.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
-void try_or_step(const Laws& laws, const node_block<Law>& b) {
-  left_by<typename Laws::form> left;
-  try_in_form<Law, Delassus, Frame, Layout, Scope>(laws, b, left);
-  if (!any_one(left.values, b.count)) {
-    b.in_full->after_next = 1;
-    return;
-  }
-  b.in_full->left = b.in_full->after_next;
-  b.in_full->after_next = b.in_full->left < alike ? 2 * b.in_full->left : alike;
-  step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
-}
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 void try_first(const Laws& laws, const node_block<Law>& b) {
   if (b.in_full->left > 0) {
     --b.in_full->left;
     return step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
   }
-  if constexpr (has_state<Law>) {
-    node_block<Law> own = b;
-    kept_state<Law> state;
-    state.keep(own);
-    try_or_step<Law, Delassus, Frame, Layout, Scope>(laws, own);
-  } else {
-    // Not a copy: its vectors would wait until the pointers just written one by one are in the cache.
-    try_or_step<Law, Delassus, Frame, Layout, Scope>(laws, b);
+  left_by<typename Laws::form> left;
+  kept_state<Law, Layout> before;
+  try_in_form<Law, Delassus, Frame, Layout, Scope>(laws, b, left, before);
+  if (!any_one(left.values, b.count)) {
+    b.in_full->after_next = 1;
+    return;
   }
+  b.in_full->left = b.in_full->after_next;
+  b.in_full->after_next = b.in_full->left < alike ? 2 * b.in_full->left : alike;
+  before.put_back(b, {0, b.count});
+  step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
 }
-
 // Whether a law leaves nodes out of reach alone whatever else they are, so that its step need not run, or
 // those of them whose state rests.
 template <class Law>
@@ -145,7 +139,7 @@ template <class Layout, class Law>
 bool may_be_in_flight(const node_block<Law>& b) {
   constexpr int first = 8;
   return b.count >= first && are_open<Layout>(b.gap, b.gap_offset, first) &&
-         rests<Law>(incoming_state(b, 0)) && are_open<Layout>(b.gap, b.gap_offset, b.count);
+         rests<Law>(incoming_state<Law, Layout>(b, 0)) && are_open<Layout>(b.gap, b.gap_offset, b.count);
 }
 
 // All nodes as if they were out of reach and at rest; reached: 1 where one is not, and is to be stepped.
