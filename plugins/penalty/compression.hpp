@@ -196,13 +196,16 @@ struct compression {
 
   // x' of a linear spring, and where it is stiff from its force, which then is the more accurate.
   V next(V impulse, V opens) const {
-    const double step = spring.step, k = spring.soft();
     const V v = free + delassus * impulse;
     const V moved = kit::positive_part(indentation - travel(v));
+    const double step = spring.step, k = spring.soft();
     const V pressed = 2.0 / (k * step) * impulse + 2.0 / k * (damping * mean_velocity(v)) - indentation;
-    const Mask by_force = (step * step * k * delassus > 4.0) & (impulse > 0.0);
-    const V closed = kit::select(by_force, kit::positive_part(pressed), moved);
+    const V closed = kit::select(is_told_by_force(impulse), kit::positive_part(pressed), moved);
     return (1.0 - if_rigid(1.0)) * (1.0 - opens) * closed;
+  }
+  Mask is_told_by_force(V impulse) const {
+    const double step = spring.step;
+    return (step * step * spring.soft() * delassus > 4.0) & (impulse > 0.0);
   }
 
   // p = 3/2, lead 0, for the same scaled numbers. With q = h^2 k H/5, B = 1 + h c H/2, a = sqrt(x) and

@@ -153,8 +153,7 @@ struct penalty {
     return kept_if(tangential_stiffness < infinity, 0.5 * tangential_stiffness * tangential_product(a, b));
   }
 
-  // Gives the node a normal impulse that is known already, and the tangential one -q/softness within the
-  // cone. Says whether it slides.
+  // Gives the node a known normal impulse and the tangential one -q/softness in the cone; says if it slides.
   template <class Node>
   bool rub(Node& node, double normal, vector q, double softness) const {
     const auto result = penalty_law::rub_apart(normal, q, softness, friction);
@@ -347,7 +346,7 @@ struct penalty::form : penalty {
     open.indentation = indentation_of(node);
     if constexpr (!is_smooth(Kind) && !has_transverse_delassus<Node>)
       penalty_law::couple(open, node.delassus, 0.5 * sliding_velocity<Kind>(node), 0.5 * softness_of(node));
-    const bool acts = acts_on(node);
+    const bool acts = acts_on(node) & penalty_law::may_push<is_plain(Kind)>(open);
     answered(node, {});
     return acts;
   }
@@ -382,13 +381,14 @@ void penalty::in_form(Run run) const {
   const double ratio = restitution < 1.0 ? penalty_law::damping_ratio(restitution) : 0.0;
   const bool loses = restitution < 1.0 || damping > 0.0, is_soft = exponent == 1.0 && stiffness < infinity;
   const bool implicit = integration == implicitly, rubs = friction > 0.0;
+  const bool keeps = is_soft && implicit && !loses && stiffness > 0.0;
   const auto run_kind = [&]<spring_kind Kind>() {
     implicit ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
   };
   if (is_soft && !rubs && !(implicit && loses)) return run_kind.template operator()<spring_kind::smooth>();
-  if (is_soft && implicit && !loses && tangential_stiffness == infinity)
+  if (keeps && tangential_stiffness == infinity)
     return run(form<true, spring_kind::rigid_plain>{*this, ratio});
-  if (is_soft && implicit && !loses) return run(form<true, spring_kind::plain>{*this, ratio});
+  if (keeps) return run(form<true, spring_kind::plain>{*this, ratio});
   if (exponent == 1.0 || stiffness == infinity) return run_kind.template operator()<spring_kind::linear>();
   if (exponent == 1.5 && implicit && !rubs) return run(form<true, spring_kind::smooth_hertz>{*this, ratio});
   if (exponent == 1.5) return run_kind.template operator()<spring_kind::hertz>();

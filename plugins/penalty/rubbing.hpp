@@ -1,10 +1,11 @@
-// rubbing.hpp - normal spring and friction where H couples them, for a node or a pack of them. Sliding with
-// the multiplier alpha, (A + alpha I) r_T = -(q + c r_N/2), makes the normal spring one with
+// rubbing.hpp - normal spring and friction where H couples them, for a node or a pack of them. What sticks
+// has r_T = -A^-1 (q + c r_N/2), which leaves a normal spring with
 //
-//     v_free' = v_free - c.(A + alpha I)^-1 q,    H' = H_NN - c.(A + alpha I)^-1 c/2,
+//     v_free' = v_free - c.A^-1 q,    H' = H_NN - c.A^-1 c/2.
 //
-// whose impulse has its closed form (compression.hpp): |r_T| = mu r_N is one equation for alpha, and sticking
-// is alpha = 0. penalty.md derives it. What is not regular is left to the solvers of alone.hpp.
+// What slides along a unit vector e has r_T = -mu r_N e, and a normal spring with H' = H_NN - mu c.e; that
+// the slip is along e is one equation for its angle. penalty.md derives it. What is not regular is left to
+// the solvers of alone.hpp.
 #pragma once
 
 #include "compression.hpp"
@@ -50,6 +51,14 @@ template <class V>
 struct pressed {
   V impulse, indentation;
 };
+// False where a plain spring that is not without stiffness gives nothing: it would not push in the free step.
+template <bool IsPlain, class Problem>
+auto may_push(const Problem& p) {
+  if constexpr (IsPlain)
+    return (p.indentation > 0.0) | (p.free + p.previous < 0.0);
+  else
+    return true;
+}
 // Outcomes.
 inline constexpr double sticks = 0.0, slides = 1.0, has_none = 2.0;
 
@@ -74,34 +83,36 @@ class rubbing_node {
   // to a function goes through memory.
   [[gnu::flatten]] Mask press(rubbed<V>& a) const {
     const auto found = respond(V(1.0), p_.free, p_.delassus);
-    a = {found.impulse, V(0.0), V(0.0), next(found, p_.free), V(sticks)};
-    return !((found.impulse < kit::infinity) & has_usual_scales(p_.delassus, p_.delassus));
+    a = {found.impulse, V(0.0), V(0.0), next(Mask(true), found, p_.free), V(sticks)};
+    return !((found.impulse < kit::infinity) & has_usual_scales(p_.delassus));
   }
 
   // With friction.
   [[gnu::flatten]] Mask solve(rubbed<V>& a) const {
     const Mask pushes = this->pushes();
-    trial end;
-    work_out(0.0, end);
-    const Mask holds = end.length <= friction_ * end.held();
-    const Mask regular = is_regular(end, holds);
-    find_multiplier(pushes & regular & !holds, end);
-    const V over = kit::select(holds, V(1.0), friction_ * end.normal.impulse);
-    const V factor = kit::select(pushes, over / kit::select(holds, end.det, end.length), V(0.0));
-    const V r = kit::select(pushes, end.normal.impulse, V(0.0));
-    const V t1 = -end.n1 * factor, t2 = -end.n2 * factor;
-    const V free = p_.free + (p_.c1 * t1 + p_.c2 * t2);
-    const V moved = kit::positive_part(p_.indentation - normal_.travel(p_.free));
-    const V indentation = kit::select(pushes, next(end.normal, free), moved);
-    a = {r, t1, t2, indentation, kit::select(holds, V(sticks), V(slides))};
-    const Mask is_met = meets(end), plain = is_plain(), usual = has_usual_scales(p_.a11, p_.a22);
-    const Mask found = (holds | is_met) & regular & (r > 0.0);
-    return plain | !usual | (pushes & !found);
+    trial stuck;
+    work_out(stuck);
+    const V held = friction_ * stuck.held(), none = 0.0;
+    const Mask holds = stuck.length <= held, regular = is_regular(stuck, holds);
+    const Mask slips = pushes & regular & !holds;
+    slide end{};
+    Mask found(false);
+    if (kit::any(slips)) found = find_slide(slips, stuck, held, end);
+    if (kit::any(pushes & holds)) {
+      stay(holds, stuck, end);
+      found = found | (holds & regular);
+    }
+    const V t1 = kit::select(pushes, end.t1, none), t2 = kit::select(pushes, end.t2, none);
+    const V r = kit::select(pushes, end.normal.impulse, none), free = p_.free - (p_.c1 * t1 + p_.c2 * t2);
+    end.normal.impulse = r;
+    a = {r, none - t1, none - t2, next(pushes, end.normal, free), kit::select(holds, V(sticks), V(slides))};
+    return is_plain() | !has_usual_scales(p_.a11) | (pushes & !(found & (r > 0.0)));
   }
 
  private:
   using solution = typename compression<V, IsPlain>::solution;
-  static constexpr double tolerance = 0x1p-46, least_determinant = 0x1p-20;
+  static constexpr double close = IsPlain ? 0x1p-26 : 0x1p-40;  // a step so small is the last
+  static constexpr double least_determinant = 0x1p-20;
   static constexpr int most_steps = 16;
 
   solution respond(V scale, V free, V delassus) const {
@@ -110,50 +121,56 @@ class rubbing_node {
     else
       return normal_.hertz(scale, free, delassus);
   }
-  V next(const solution& found, V free) const {
-    if constexpr (!IsLinear) return found.end;
+  // x', where it pushes. Of a plain spring as compression has it, whether it opens told by its way.
+  V next(Mask pushes, const solution& found, V free) const {
     compression<V, IsPlain> moved = normal_;
     moved.free = free;
-    return moved.next(found.impulse, found.opens);
+    if constexpr (IsPlain) {
+      const V r = found.impulse, left = p_.indentation - moved.travel(free + p_.delassus * r);
+      const V pressed = 2.0 / (normal_.spring.stiffness * normal_.spring.step) * r - p_.indentation;
+      return kit::positive_part(kit::select(moved.is_told_by_force(r) & (left > 0.0), pressed, left));
+    } else {
+      const V end = IsLinear ? moved.next(found.impulse, found.opens) : found.end;
+      return kit::select(pushes, end, kit::positive_part(p_.indentation - normal_.travel(p_.free)));
+    }
   }
 
   // Lanes without coupling and with one tangential entry have a closed form, that of a scalar H.
   Mask is_plain() const { return (p_.c1 == 0.0) & (p_.c2 == 0.0) & (p_.a12 == 0.0) & (p_.a11 == p_.a22); }
-  // Whether no product on the way overflows or underflows.
-  Mask has_usual_scales(V t11, V t22) const {
+  // Whether no product on the way overflows or underflows. What is allowed for H bounds t22, too.
+  Mask has_usual_scales(V t11) const {
     constexpr double scale = 0x1p80;
-    const V least = kit::smaller(kit::smaller(t11, t22), p_.delassus);
-    const V most = kit::larger(kit::larger(t11, t22), p_.delassus);
+    const double per_step = 1.0 / normal_.spring.step;
     const V speed = kit::absolute(p_.free) + kit::absolute(p_.previous) + kit::absolute(p_.q1) +
-                    kit::absolute(p_.q2) + p_.indentation / normal_.spring.step;
-    return (least > 1.0 / scale) & (most < scale) & (speed > 1.0 / scale) & (speed < scale);
+                    kit::absolute(p_.q2) + p_.indentation * per_step;
+    return (t11 < scale) & (p_.delassus > 1.0 / scale) & (speed > 1.0 / scale) & (speed < scale);
   }
   // Whether the spring pushes in the free step. If not, no impulse is the solution.
   Mask pushes() const {
+    if constexpr (IsPlain) return may_push<true>(p_);
     if constexpr (IsLinear) return normal_.linear_pushes();
     return respond(V(1.0), p_.free, p_.delassus).impulse > 0.0;
   }
 
-  // All without their division by the determinant: r_T = -(n1, n2)/det.
+  // What sticks, without the division by the determinant of A: r_T = -A^-1 b = -(n1, n2)/det.
   struct trial {
-    V det, s11, s22, n1, n2, length, condensed, coupling;
+    V det, b1, b2, n1, n2, length, condensed, coupling;
     solution normal;
     V held() const { return normal.impulse * det; }
   };
   // In place, since copies of so many packs take as long as what is worked out.
-  void work_out(V alpha, trial& x) const {
-    const V a12 = p_.a12;
-    x.s11 = p_.a11 + alpha;
-    x.s22 = p_.a22 + alpha;
-    x.det = x.s11 * x.s22 - a12 * a12;
-    const V g1 = x.s22 * p_.q1 - a12 * p_.q2, g2 = x.s11 * p_.q2 - a12 * p_.q1;
-    const V m1 = x.s22 * p_.c1 - a12 * p_.c2, m2 = x.s11 * p_.c2 - a12 * p_.c1;
+  void work_out(trial& x) const {
+    const V a11 = p_.a11, a22 = p_.a22, a12 = p_.a12;
+    x.det = a11 * a22 - a12 * a12;
+    const V m1 = a22 * p_.c1 - a12 * p_.c2, m2 = a11 * p_.c2 - a12 * p_.c1;
     x.coupling = 0.5 * (p_.c1 * m1 + p_.c2 * m2);
     x.condensed = x.det * p_.delassus - x.coupling;
-    x.normal = respond(x.det, x.det * p_.free - (p_.c1 * g1 + p_.c2 * g2), x.condensed);
+    x.normal = respond(x.det, x.det * p_.free - (m1 * p_.q1 + m2 * p_.q2), x.condensed);
     const V half = 0.5 * x.normal.impulse;
-    x.n1 = g1 + half * m1;
-    x.n2 = g2 + half * m2;
+    x.b1 = p_.q1 + half * p_.c1;
+    x.b2 = p_.q2 + half * p_.c2;
+    x.n1 = a22 * x.b1 - a12 * x.b2;
+    x.n2 = a11 * x.b2 - a12 * x.b1;
     x.length = kit::square_root(x.n1 * x.n1 + x.n2 * x.n2);
   }
 
@@ -166,33 +183,87 @@ class rubbing_node {
            (x.condensed > least_determinant * (x.det * p_.delassus));
   }
 
-  // Whether |r_T| is mu r_N.
-  Mask meets(const trial& x) const {
-    const V held = friction_ * x.held();
-    return kit::absolute(x.length - held) <= tolerance * held;
+  // Sliding along the unit vector e: r_T = -(t1, t2).
+  struct slide {
+    V e1, e2, t1, t2;
+    solution normal;
+  };
+  void stay(Mask holds, const trial& stuck, slide& x) const {
+    const V inverse = 1.0 / stuck.det;
+    x.t1 = kit::select(holds, stuck.n1 * inverse, x.t1);
+    x.t2 = kit::select(holds, stuck.n2 * inverse, x.t2);
+    x.normal.impulse = kit::select(holds, stuck.normal.impulse, x.normal.impulse);
+    if constexpr (IsPlain) return;
+    x.normal.opens = kit::select(holds, stuck.normal.opens, x.normal.opens);
+    x.normal.end = kit::select(holds, stuck.normal.end, x.normal.end);
   }
-
-  // Newton's method from alpha = 0 on 1/need = 1/n, where need = |r_T|/mu + w.r_T, n = r_N + w.r_T, and w is
-  // what the spring, as it stands, makes of c: linear in alpha where A is a multiple of I and the spring is
-  // linear. Lanes that are done keep their alpha, so that none sees its neighbours.
-  void find_multiplier(Mask active, trial& x) const {
-    V alpha = 0.0;
-    for (int k = 0; k < most_steps && kit::any(active); ++k) {
-      const double mu = friction_;
-      const V gain = x.normal.gain, pace = x.normal.pace, held = mu * x.held();
-      const V y1 = x.s22 * x.n1 - p_.a12 * x.n2, y2 = x.s11 * x.n2 - p_.a12 * x.n1;
-      const V bends = gain * (p_.c1 * y1 + p_.c2 * y2), excess = x.length - held;
-      const V slope = (x.n1 * y1 + x.n2 * y2) * pace +
-                      bends * (0.5 * (p_.c1 * y1 + p_.c2 * y2) - mu * (x.det * x.length));
-      const V whole = pace + gain * x.coupling, lifted = mu * x.det * gain * (p_.c1 * x.n1 + p_.c2 * x.n2);
-      const V target = held * whole - lifted;
-      const Mask bounded = target > 0.0;
-      const V over = kit::select(bounded, x.length * whole - lifted, V(1.0));
-      const V step = excess * x.det * x.length * pace * over / (slope * kit::select(bounded, target, V(1.0)));
-      alpha = kit::select(active, kit::positive_part(alpha + step), alpha);
-      work_out(alpha, x);
-      active = active & !meets(x);
+  // What motion and normal spring disagree by at an impulse r, and how that changes with r and with v_free.
+  // Plain springs by polynomials, which take no division; for others r is found first, and is what agrees.
+  struct disagreement {
+    V amount, by_impulse, by_speed;
+  };
+  disagreement compare(V h, solution& normal) const {
+    if constexpr (!IsPlain) {
+      normal = respond(V(1.0), p_.free, h);
+      return {V(0.0), normal.pace, normal.gain};
+    } else {
+      const double step = normal_.spring.step, k = normal_.spring.stiffness;
+      const V r = normal.impulse, x = p_.indentation, v = (p_.free + p_.previous) + h * r;
+      const Mask opens = 0.5 * step * v > x;
+      const V by_speed = kit::select(opens, r, V(0.25 * step * step * k));
+      const V given = kit::select(opens, k * x * x, step * k * x - r);
+      return {by_speed * v - given, by_speed * h + kit::select(opens, v, V(1.0)), by_speed};
     }
+  }
+  // Between the directions of what sticks and of its q + c r_N/2, where A would be a multiple of I.
+  void start_slide(const trial& stuck, V held, slide& x) const {
+    const V lacks = 0.5 * trace_ * (stuck.length - held);
+    x.e1 = held * stuck.n1 + lacks * stuck.b1;
+    x.e2 = held * stuck.n2 + lacks * stuck.b2;
+    const V inverse = 1.0 / kit::square_root(x.e1 * x.e1 + x.e2 * x.e2);
+    x.e1 = x.e1 * inverse;
+    x.e2 = x.e2 * inverse;
+    if constexpr (IsPlain) x.normal = respond(V(1.0), p_.free, slid_delassus(x));
+  }
+  V slid_delassus(const slide& x) const { return p_.delassus - friction_ * (p_.c1 * x.e1 + p_.c2 * x.e2); }
+
+  // Newton's method for the angle of e, and for r_N where the spring is plain. Lanes that are done keep what
+  // they have, so that none sees its neighbours. Says who is done.
+  Mask find_slide(Mask active, const trial& stuck, V held, slide& x) const {
+    Mask found(false);
+    start_slide(stuck, held, x);
+    const double mu = friction_;
+    const V a11 = mu * p_.a11, a22 = mu * p_.a22, a12 = mu * p_.a12, c1 = mu * p_.c1, c2 = mu * p_.c2;
+    for (int k = 0; k < most_steps && kit::any(active); ++k) {
+      const V e1 = x.e1, e2 = x.e2, a1 = a11 * e1 + a12 * e2, a2 = a12 * e1 + a22 * e2;
+      const V z1 = 0.5 * p_.c1 - a1, z2 = 0.5 * p_.c2 - a2;
+      solution normal = x.normal;
+      const disagreement spring = compare(p_.delassus - (c1 * e1 + c2 * e2), normal);
+      const V r = normal.impulse, y1 = p_.q1 + r * z1, y2 = p_.q2 + r * z2, along = e1 * y1 + e2 * y2;
+      const V across = e1 * y2 - e2 * y1, by_impulse = e1 * z2 - e2 * z1;
+      const V by_turn = r * ((e1 * a1 + e2 * a2) - (a11 + a22)) - along;
+      const V spring_by_turn = spring.by_speed * r * (c1 * e2 - c2 * e1);
+      const V inverse = 1.0 / (by_turn * spring.by_impulse - by_impulse * spring_by_turn);
+      const V turn = (by_impulse * spring.amount - across * spring.by_impulse) * inverse;
+      const V more = (spring_by_turn * across - by_turn * spring.amount) * inverse;
+      const V t = kit::larger(kit::smaller(turn, V(0.5)), V(-0.5));
+      const V u1 = e1 - t * e2, u2 = e2 + t * e1, square = u1 * u1 + u2 * u2, unit = 1.5 - 0.5 * square;
+      x.e1 = kit::select(active, u1 * unit, e1);
+      x.e2 = kit::select(active, u2 * unit, e2);
+      x.normal.impulse = kit::select(active, kit::larger(r + more, 0.5 * r), x.normal.impulse);
+      const Mask done = (kit::absolute(turn) <= close) & (kit::absolute(more) <= close * r) &
+                        (kit::absolute(square - 1.0) <= 0.25 * close);
+      found = found | (active & done & (along > 0.0));
+      active = active & !done;
+    }
+    finish(x);
+    return found;
+  }
+  void finish(slide& x) const {
+    if constexpr (!IsPlain) x.normal = respond(V(1.0), p_.free, slid_delassus(x));
+    const V rubs = friction_ * x.normal.impulse;
+    x.t1 = rubs * x.e1;
+    x.t2 = rubs * x.e2;
   }
 
   const rubbing<V>& p_;
