@@ -83,7 +83,7 @@ class rubbing_node {
   // to a function goes through memory.
   [[gnu::flatten]] Mask press(rubbed<V>& a) const {
     const auto found = respond(V(1.0), p_.free, p_.delassus);
-    a = {found.impulse, V(0.0), V(0.0), next(Mask(true), found, p_.free), V(sticks)};
+    a = {found.impulse, V(0.0), V(0.0), next(found, p_.free), V(sticks)};
     return !((found.impulse < kit::infinity) & has_usual_scales(p_.delassus));
   }
 
@@ -105,7 +105,7 @@ class rubbing_node {
     const V t1 = kit::select(pushes, end.t1, none), t2 = kit::select(pushes, end.t2, none);
     const V r = kit::select(pushes, end.normal.impulse, none), free = p_.free - (p_.c1 * t1 + p_.c2 * t2);
     end.normal.impulse = r;
-    a = {r, none - t1, none - t2, next(pushes, end.normal, free), kit::select(holds, V(sticks), V(slides))};
+    a = {r, none - t1, none - t2, end_of(pushes, end.normal, free), kit::select(holds, V(sticks), V(slides))};
     return is_plain() | !has_usual_scales(p_.a11) | (pushes & !(found & (r > 0.0)));
   }
 
@@ -121,17 +121,25 @@ class rubbing_node {
     else
       return normal_.hertz(scale, free, delassus);
   }
-  // x', where it pushes. Of a plain spring as compression has it, whether it opens told by its way.
-  V next(Mask pushes, const solution& found, V free) const {
+  compression<V, IsPlain> moving_by(V free) const {
     compression<V, IsPlain> moved = normal_;
     moved.free = free;
+    return moved;
+  }
+  V next(const solution& found, V free) const {
+    if constexpr (!IsLinear) return found.end;
+    return moving_by(free).next(found.impulse, found.opens);
+  }
+  // x' of all. Of a plain spring as compression has it, but that whether it opens is told by its way.
+  V end_of(Mask pushes, const solution& found, V free) const {
     if constexpr (IsPlain) {
+      const auto moved = moving_by(free);
       const V r = found.impulse, left = p_.indentation - moved.travel(free + p_.delassus * r);
       const V pressed = 2.0 / (normal_.spring.stiffness * normal_.spring.step) * r - p_.indentation;
       return kit::positive_part(kit::select(moved.is_told_by_force(r) & (left > 0.0), pressed, left));
     } else {
-      const V end = IsLinear ? moved.next(found.impulse, found.opens) : found.end;
-      return kit::select(pushes, end, kit::positive_part(p_.indentation - normal_.travel(p_.free)));
+      const V left = kit::positive_part(p_.indentation - normal_.travel(p_.free));
+      return kit::select(pushes, next(found, free), left);
     }
   }
 
