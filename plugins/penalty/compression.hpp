@@ -75,11 +75,13 @@ inline double stable_step(double delassus, double tangent, double damping) {
 }
 
 // How much of the velocity before a step counts for the mean of a rigid tangential spring: what of it the
-// free velocity has turned round, so that stopping it does no work.
+// free velocity has turned round, so that stopping it does no work. A little more, as rounding may leave
+// velocities along v^-, which then do none either.
 template <class Vector>
 double turned_part(Vector v_free, Vector v_previous) {
+  constexpr double more_than_rounding = 1.0 + 0x1p-48;
   const double speed = tangential_product(v_previous, v_previous);
-  const double turned = 0.0 - tangential_product(v_free, v_previous);
+  const double turned = 0.0 - more_than_rounding * tangential_product(v_free, v_previous);
   return turned > 0.0 ? turned / kit::larger(turned, speed) : 0.0;
 }
 
