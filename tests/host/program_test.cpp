@@ -50,7 +50,8 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
   EXPECT_EQ(missing.code, 2);
   EXPECT_EQ(missing.output, "ilaw: nowhere.json: no such file, expected a scene\n");
   EXPECT_FALSE(std::filesystem::exists(folder / "a"));
-  EXPECT_EQ(run_program("run " + ball + " --out " + ball).code, 2);
+  EXPECT_NE(run_program("run " + ball + " --out " + ball).output.find("expected a folder (Not a directory)"),
+            std::string::npos);
   for (const char* command : {"run ", "converge "}) {  // a folder in which nobody can make a file
     const Outcome unwritable = run_program(command + ball + " --out /proc");
     EXPECT_EQ(unwritable.code, 2);
@@ -324,6 +325,12 @@ TEST(Program, DrawsAHistory) {
   EXPECT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_EQ(text_of(folder / "history.png").substr(1, 3), "PNG");
   EXPECT_NE(text_of(folder / "history.svg").find("<svg"), std::string::npos);
+  // Elsewhere, if asked to.
+  std::filesystem::create_directories(folder / "pictures");
+  const std::string elsewhere = "plot " + folder.string() + " --out " + (folder / "pictures").string();
+  ASSERT_EQ(run_program(elsewhere).code, 0);
+  EXPECT_EQ(text_of(folder / "pictures" / "history.png").substr(1, 3), "PNG");
+  EXPECT_EQ(run_program(elsewhere + "/nowhere").code, 2);
 }
 
 TEST(Program, ListsAndDescribesLaws) {

@@ -106,14 +106,15 @@ bool is_still(int descriptor, const std::filesystem::path& file) {
 // ---- the folder -----------------------------------------------------------------------------------------
 
 HeldFolder::HeldFolder(const std::filesystem::path& folder) : lock_(folder / "ilaw.lock") {
-  std::error_code ignored;
-  std::filesystem::create_directories(folder, ignored);
+  std::error_code unmade;
+  std::filesystem::create_directories(folder, unmade);
   for (;;) {
     Descriptor lock(lock_, O_RDWR | O_CREAT);
-    if (lock.number() < 0)
+    if (lock.number() < 0) {
+      const std::string why = unmade ? unmade.message() : lock_.string() + ": " + reason_of(errno);
       throw FolderError("--out " + folder.string() +
-                        ": found a file or a place that cannot be written, expected a folder (" +
-                        lock_.string() + ": " + reason_of(errno) + ")");
+                        ": found a file or a place that cannot be written, expected a folder (" + why + ")");
+    }
     // A file system without locks holds nobody back.
     if (flock(lock.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       throw FolderError("--out " + folder.string() + ": in use by " + holder_of(lock.number()) +

@@ -67,9 +67,10 @@ int refuse(const std::filesystem::path& history, const char* found) {
   return exit_bad_input;
 }
 
-// Reads history.csv and summary.json of a run's folder and writes history.png and history.svg
-// beside them.
-int plot_history(const std::filesystem::path& results, const std::vector<std::string>& panels) {
+// Reads history.csv and summary.json of a run's folder and writes history.png and history.svg,
+// beside them if nothing else is asked for.
+int plot_history(const PlotOptions& options) {
+  const std::filesystem::path results = options.folders.front();
   // gnuplot takes file names that begin with < or | for commands: an absolute path never does.
   const std::filesystem::path folder = std::filesystem::absolute(results).lexically_normal();
   const std::filesystem::path history = folder / "history.csv";
@@ -82,16 +83,19 @@ int plot_history(const std::filesystem::path& results, const std::vector<std::st
   if (columns.names.size() < 2) return refuse(history, "no column besides time");
 
   Caption caption = read_caption(folder);
-  caption.panels = panels;
-  if (const std::string mistake = unknown_panel(panels, panel_names(columns, caption.every));
+  caption.panels = options.panels;
+  if (const std::string mistake = unknown_panel(caption.panels, panel_names(columns, caption.every));
       !mistake.empty()) {
     complain(mistake);
     return exit_bad_input;
   }
-  if (!draw_by_gnuplot(folder / "history.gnuplot",
-                       [&](std::ostream& script) { write_picture(script, folder, columns, caption); }))
+  const std::filesystem::path drawn = options.out.empty() ? results : std::filesystem::path(options.out);
+  const std::filesystem::path pictures = std::filesystem::absolute(drawn).lexically_normal();
+  if (!draw_by_gnuplot(pictures / "history.gnuplot", [&](std::ostream& script) {
+        write_picture(script, folder, pictures, columns, caption);
+      }))
     return exit_failed;
-  std::printf("%s\n%s\n", (results / "history.png").c_str(), (results / "history.svg").c_str());
+  std::printf("%s\n%s\n", (drawn / "history.png").c_str(), (drawn / "history.svg").c_str());
   return exit_done;
 }
 
@@ -153,8 +157,13 @@ int plot_columns(const PlotOptions& options) {
 }
 
 int plot(const PlotOptions& options) {
+  std::error_code ignored;
+  if (!options.out.empty() && !std::filesystem::is_directory(options.out, ignored)) {
+    complain("--out " + options.out + ": found no such folder, expected one that exists");
+    return exit_bad_input;
+  }
   const bool history = options.folders.size() == 1 && options.y.empty() && options.x == "time";
-  if (history) return plot_history(options.folders.front(), options.panels);
+  if (history) return plot_history(options);
   if (options.panels.empty()) return plot_columns(options);
   complain("--panels: found with several folders or --x, expected one folder; --y chooses columns there");
   return exit_bad_input;

@@ -325,8 +325,8 @@ std::vector<std::string> panel_names(const Columns& columns, int every) {
   return names;
 }
 
-void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& found,
-                   const Caption& caption) {
+void write_picture(std::ostream& script, const std::filesystem::path& folder,
+                   const std::filesystem::path& pictures, const Columns& found, const Caption& caption) {
   Columns columns = found;
   const std::vector<Panel> panels = chosen(panels_of(columns, caption.every), caption.panels);
   // Ruptures between rows belong into the key, too.
@@ -338,7 +338,7 @@ void write_picture(std::ostream& script, const std::filesystem::path& folder, co
            << "set grid linewidth 1 linecolor rgb '#d0d0d0'\nset xrange [*<0:*] noextend\n"
            << "set offsets graph 0, graph 0, graph 0.06, graph 0.06\nset format x ''\nset format y '%.4g'\n"
            << "set ytics noenhanced font ',10'\n";
-    draw(script, terminal, folder / ("history." + std::string(kind)), panels, columns, caption.title);
+    draw(script, terminal, pictures / ("history." + std::string(kind)), panels, columns, caption.title);
   }
 }
 

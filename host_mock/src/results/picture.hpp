@@ -23,13 +23,13 @@ struct Columns {
   std::map<int, int> statuses;  // of those that occur, in how many rows and columns
 };
 
-// A script that draws folder/history.csv as folder/history.png and .svg: panels over a common time
+// A script that draws folder/history.csv as history.png and .svg in pictures: panels over a common time
 // for gap, displacement, velocity, impulse and its running sum, each state variable of the laws, as
 // far as these are not zero throughout, resultants, energies, and the status as a band per node. Of
 // more than six nodes their least, median and largest values are drawn, and how many have which
-// status. folder is absolute.
-void write_picture(std::ostream& script, const std::filesystem::path& folder, const Columns& columns,
-                   const Caption& caption);
+// status. Both folders are absolute.
+void write_picture(std::ostream& script, const std::filesystem::path& folder,
+                   const std::filesystem::path& pictures, const Columns& columns, const Caption& caption);
 
 // The panels of such a picture from top to bottom, by the names on their left.
 std::vector<std::string> panel_names(const Columns& columns, int every);
