@@ -321,7 +321,8 @@ Vector Interface::surface_velocity(int contact_index, const Vector& velocity, do
 // ---- the last step --------------------------------------------------------------------------------------
 
 bool Interface::is_active(int contact_index) const {
-  return std::find(active().begin(), active().end(), contact_index) != active().end();
+  if (contact_index < 0 || active().empty()) return false;
+  return is_near_[at(node_index_of(contact_index))] != 0;
 }
 
 const ContactPoint& Interface::point(int contact_index) const {
