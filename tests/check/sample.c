@@ -50,7 +50,7 @@ static ilaw_parameter wear = {sizeof(ilaw_parameter),
                               "1",
                               "Thousandths of friction that each closure takes.",
                               0.0,
-                              100.0,
+                              0x1p53, /* the next whole number is no double */
                               1.0,
                               0,
                               0,

@@ -62,11 +62,14 @@ void missing(const Subject& subject) {
 void range(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
     if (is_choice(p)) return false;
+    // Of whole numbers the next ones, which beyond 2^53 are further off.
     const bool whole = p.kind == ILAW_PARAMETER_COUNT;
-    const double below = whole ? p.minimum - 1.0 : p.minimum - 1e-9 * std::max(1.0, std::abs(p.minimum));
+    const double below = whole ? std::min(p.minimum - 1.0, std::nextafter(p.minimum, -infinity))
+                               : p.minimum - 1e-9 * std::max(1.0, std::abs(p.minimum));
     expect_refused(trial, with(trial.values, number(p, below)));
     if (p.minimum_excluded) expect_refused(trial, with(trial.values, number(p, p.minimum)));
-    const double above = whole ? p.maximum + 1.0 : std::nextafter(p.maximum, infinity);
+    const double next = std::nextafter(p.maximum, infinity);
+    const double above = whole ? std::max(p.maximum + 1.0, next) : next;
     if (above < infinity) expect_refused(trial, with(trial.values, number(p, above)));
     return true;
   });
