@@ -136,9 +136,10 @@ void CoupledContacts::round_anew(const Sweeping& on, Outcome& outcome) {
 }
 
 bool CoupledContacts::try_from(const Sweeping& on, const Dofs& scaled, Outcome& outcome) {
-  if (!is_in_reach(on.group, scaled)) return false;
+  const double largest = largest_made(on.group, scaled);
+  if (!(scaled.allFinite() && largest <= out_of_reach_)) return false;
   move_to(on.group, scaled, on.v);
-  outcome.largest = std::max(outcome.largest, residual(on.group, on.speed, on.v).size);
+  outcome.largest = std::max(outcome.largest, largest);
   return true;
 }
 
@@ -329,16 +330,17 @@ Dofs CoupledContacts::scaled_impulses(const ContactGroup& group) {
   return Eigen::Map<const Dofs>(scaled.data(), static_cast<Eigen::Index>(scaled.size()));
 }
 
-// Whether what impulses make of velocities is worth more than its rounding.
-bool CoupledContacts::is_in_reach(const ContactGroup& group, const Dofs& scaled) const {
+// The largest velocity that one of them makes.
+double CoupledContacts::largest_made(const ContactGroup& group, const Dofs& scaled) const {
+  double largest = 0.0;
   Eigen::Index next = 0;
   for (const auto& [interface, contacts] : group)
     for (const std::int32_t contact : contacts) {
-      const double root = std::sqrt(interface->delassus(contact));
-      for (const Eigen::Index end = next + dimension_; next < end; ++next)
-        if (!(root * std::abs(scaled[next]) <= out_of_reach_)) return false;  // nor is what is no number
+      const double most = scaled.segment(next, dimension_).cwiseAbs().maxCoeff();
+      largest = std::max(largest, std::sqrt(interface->delassus(contact)) * most);
+      next += dimension_;
     }
-  return true;
+  return largest;
 }
 
 // From v_free anew: what large impulses would leave of each other is rounding.

@@ -82,7 +82,7 @@ class CoupledContacts {
   bool try_from(const Sweeping& on, const Dofs& scaled, Outcome& outcome);
   static void answer(Interface& interface, const ContactList& contacts, const StepView& step, Dofs& v);
   static Residual residual(const ContactGroup& group, double speed, const Dofs& v);
-  bool is_in_reach(const ContactGroup& group, const Dofs& scaled) const;
+  double largest_made(const ContactGroup& group, const Dofs& scaled) const;
   static Vector since_answer(const Interface& interface, std::int32_t contact, const Dofs& v);
   Disagreement disagreement(const Dofs& v) const;
   double energy_of_left() const;
