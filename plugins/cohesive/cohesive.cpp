@@ -175,7 +175,7 @@ struct cohesive : bond {
     else if (!bonds())
       break_at_once(node);
     else if (!(stiffness == infinity && node.state.damage == 0.0 && stands_still(node)))
-      step_bond(node);
+      step_bond(node, given);
     leave(node, found);
   }
 
@@ -203,31 +203,20 @@ struct cohesive : bond {
   }
 
   template <class Node>
-  void step_bond(Node& node) const {
+  void step_bond(Node& node, const gathered<double>& given) const {
     if (is_anisotropic(node.delassus))
-      solve_bond<coupled_modes>(node);
+      solve_bond<coupled_modes>(node, given);
     else
-      solve_bond<isotropic_modes>(node);
-  }
-
-  // Where a bond is that has not been moved: it is made where the node is now. Its work r.(v^- + v)/2 and the
-  // energy that it stores, r.v/2, then differ by r.v^-/2 < 0, an impact. That is positive where the node
-  // turns round within the step, as on a stiff spring: there the bond was made half a step before, at l
-  // v^-/2.
-  template <class Node>
-  static vector start(const Node& node) {
-    const vector &p = node.state.position, &w = node.state.opening, &v = node.v_free, &u = node.v_previous;
-    const bool is_new = length(p.n, p.t1, p.t2) + length(w.n, w.t1, w.t2) == 0.0;
-    const double half = 0.5 * node.position_step, normal = is_new && v.n * u.n < 0.0 ? half : 0.0;
-    const double tangential = is_new && tangential_product(v, u) < 0.0 ? half : 0.0;
-    return p + vector{normal * u.n, tangential * u.t1, tangential * u.t2};
+      solve_bond<isotropic_modes>(node, given);
   }
 
   template <class Modes, class Node>
-  void solve_bond(Node& node) const {
+  void solve_bond(Node& node, const gathered<double>& given) const {
     const auto& s = node.state;
     const double w = weight();
-    const vector position = start(node);
+    double place[3];
+    place_bond(given, place);
+    const vector position = kept(place);
     const zone<Modes> z{
         .position = position,
         .opening = s.opening,
@@ -265,7 +254,7 @@ struct cohesive : bond {
   // No bond: contact and friction, by the gap. What the bond remembers stays as it was when it broke.
   template <class Node>
   static auto contact(const Node& node) {
-    return contact_problem_of(contact_at(node, 0.0, predictive), node.v_free, node.v_previous);
+    return contact_problem_of(inelastic_contact_at(node, predictive), node.v_free, node.v_previous);
   }
   template <class Node>
   void touch(Node& node) const {

@@ -32,10 +32,8 @@ class pack_step {
 
   pack_step(const bond& b, const of_all_nodes& all, const gathered<V>& g) : bond_(b), all_(all), g_(g) {
     const V *v = g.v_free, *u = g.v_previous, *w = g.opening, step = g.position_step;
-    place_bond();
-    const V rounding = 0x1p-48 * (absolute(v[0]) + absolute(u[0])), lowest = smaller(x_[0], 0.0);
-    const auto leaves = step * (u[0] - rounding) > x_[0] - lowest;  // see ground_below
-    ground_ = select(leaves, x_[0] - step * u[0], lowest);
+    place_bond(g, x_);
+    ground_ = ground_below(x_[0], v[0], u[0], step);
     floor_ = 0.5 * (x_[0] + ground_);
     below_ = 0.5 * (x_[0] + below(x_[0], ground_));
     for (int k = 0; k < 3; ++k) drive_[k] = 0.5 * step * v[k] + (x_[k] + w[k]);
@@ -192,20 +190,6 @@ class pack_step {
     const V traction = s.traction(m.size);
     const V reached = (m.size - all_.flexibility * traction) / (m.size + all_.softness * traction);
     return select(holds | !(m.size > s.onset), g_.damage, larger(g_.damage, reached));
-  }
-
-  // Where the bond is, see start in cohesive.cpp.
-  void place_bond() {
-    const V *p = g_.position, *w = g_.opening, *v = g_.v_free, *u = g_.v_previous;
-    V moved = 0.0;
-    for (int k = 0; k < 3; ++k) moved = moved + (absolute(p[k]) + absolute(w[k]));
-    const Mask is_new = moved == 0.0;
-    const V half = 0.5 * g_.position_step;
-    const V normal = select(is_new & (v[0] * u[0] < 0.0), half, 0.0);
-    const V tangential = select(is_new & (v[1] * u[1] + v[2] * u[2] < 0.0), half, 0.0);
-    x_[0] = p[0] + normal * u[0];
-    x_[1] = p[1] + tangential * u[1];
-    x_[2] = p[2] + tangential * u[2];
   }
 
   void leave(V kappa, const trial& m, V damage, solved<V>& a) const {

@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "gathered.hpp"
 #include "modes.hpp"
 #include "root.hpp"
 #include "softening.hpp"
@@ -110,10 +111,29 @@ struct zone {
 
 // The lowest next position: where the bond was made, or as deep as the node is. A node that was leaving turns
 // round at most at the speed with which it left (see contact_leaving_at), which matters where steps differ.
-inline double ground_below(double position, double v_free, double v_previous, double position_step) {
-  const double rounding = 0x1p-48 * (absolute(v_free) + absolute(v_previous));
-  const double lowest = smaller(position, 0.0), returned = position - position_step * v_previous;
-  return position_step * (v_previous - rounding) > position - lowest ? returned : lowest;
+template <class V>
+[[gnu::always_inline]] inline V ground_below(V position, V v_free, V v_previous, V position_step) {
+  const V rounding = 0x1p-48 * (absolute(v_free) + absolute(v_previous)), lowest = smaller(position, 0.0);
+  const auto leaves = position_step * (v_previous - rounding) > position - lowest;
+  return select(leaves, position - position_step * v_previous, lowest);
+}
+
+// Where the bond is at the time of the impulse. One that has not been moved is made where the node is now.
+// Its work r.(v^- + v)/2 and the energy that it stores, r.v/2, then differ by r.v^-/2 < 0, an impact. That is
+// positive where the node turns round within the step, as on a stiff spring: there the bond was made half a
+// step before, at l v^-/2.
+template <class V>
+[[gnu::always_inline]] inline void place_bond(const gathered<V>& g, V (&place)[3]) {
+  const V *p = g.position, *w = g.opening, *v = g.v_free, *u = g.v_previous;
+  V moved = 0.0;
+  for (int k = 0; k < 3; ++k) moved = moved + (absolute(p[k]) + absolute(w[k]));
+  const auto is_new = moved == 0.0;
+  const V half = 0.5 * g.position_step;
+  const V normal = select(is_new & (v[0] * u[0] < 0.0), half, 0.0);
+  const V tangential = select(is_new & (v[1] * u[1] + v[2] * u[2] < 0.0), half, 0.0);
+  place[0] = p[0] + normal * u[0];
+  place[1] = p[1] + tangential * u[1];
+  place[2] = p[2] + tangential * u[2];
 }
 
 }  // namespace ILAW_KIT_LEVEL
