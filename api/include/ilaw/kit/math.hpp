@@ -75,7 +75,7 @@ power_scale<V> power_scale_of(V largest) {
   using bits = detail::bits_of<V>;
   constexpr std::uint64_t exponent_bits = 0x7FF0000000000000;
   // A sum, of which compilers make one instruction, and of the choice of the larger one four.
-  const auto exponent = bits::in(largest + V(std::numeric_limits<double>::min())) & bits::of(exponent_bits);
+  const auto exponent = bits::in(largest + std::numeric_limits<double>::min()) & bits::of(exponent_bits);
   return {bits::number(bits::of(exponent_bits) - exponent), bits::number(exponent)};
 }
 

@@ -172,25 +172,37 @@ class pack {
       [&](int k) { return m.values().part[k] ? a.values().part[k] : b.values().part[k]; }));
 }
 
-inline bool any(bool m) { return m; }
-[[gnu::always_inline]] inline bool any(mask m) {
+// The words of math.hpp for one register, which those for a pack are made of.
+namespace detail {
+
+using one_register = registers<double>::one;
+using register_mask = decltype(one_register{} < one_register{});
+
+[[gnu::always_inline]] inline bool any_lane(register_mask m) {
   using bytes = signed char __attribute__((vector_size(register_size)));
   std::uint64_t found = 0;
-  auto all = m.values().part[0];
-  for (int k = 1; k < pack_registers; ++k) all = all | m.values().part[k];
-  const bytes narrow = __builtin_convertvector(all, bytes);
+  const bytes narrow = __builtin_convertvector(m, bytes);
   __builtin_memcpy(&found, &narrow, sizeof narrow);
   return found != 0;
 }
 
-[[gnu::always_inline]] inline pack absolute(pack x) {
+// The bits of one register; see bits_of in math.hpp.
+template <>
+struct bits_of<one_register> {
+  using type = registers<std::uint64_t>::one;
+  static type in(one_register x) { return reinterpret_cast<type>(x); }
+  static type of(std::uint64_t all) { return all - type{}; }
+  static one_register number(type bits) { return reinterpret_cast<one_register>(bits); }
+};
+
+}  // namespace detail
+
+[[gnu::always_inline]] inline detail::one_register absolute(detail::one_register x) {
+  using bits = detail::bits_of<detail::one_register>;
   constexpr std::uint64_t all_but_sign = 0x7FFFFFFFFFFFFFFF;
-  return pack(x.bits() & bit_pack(all_but_sign));
+  return bits::number(bits::in(x)&all_but_sign);
 }
-
-namespace detail {
-
-inline registers<double>::one root_of(registers<double>::one x) {
+[[gnu::always_inline]] inline detail::one_register square_root(detail::one_register x) {
 #if defined(__AVX512F__) && defined(__clang__)
   constexpr int current_rounding = 4;
   return __builtin_ia32_sqrtpd512(x, current_rounding);
@@ -207,11 +219,21 @@ inline registers<double>::one root_of(registers<double>::one x) {
   return x;
 #endif
 }
+inline detail::one_register larger(detail::one_register a, detail::one_register b) { return a > b ? a : b; }
+inline detail::one_register smaller(detail::one_register a, detail::one_register b) { return a < b ? a : b; }
 
-}  // namespace detail
+inline bool any(bool m) { return m; }
+[[gnu::always_inline]] inline bool any(mask m) {
+  auto all = m.values().part[0];
+  for (int k = 1; k < pack_registers; ++k) all = all | m.values().part[k];
+  return detail::any_lane(all);
+}
 
+[[gnu::always_inline]] inline pack absolute(pack x) {
+  return pack(detail::each<double>([&](int k) { return absolute(x.values().part[k]); }));
+}
 [[gnu::always_inline]] inline pack square_root(pack x) {
-  return pack(detail::each<double>([&](int k) { return detail::root_of(x.values().part[k]); }));
+  return pack(detail::each<double>([&](int k) { return square_root(x.values().part[k]); }));
 }
 [[gnu::always_inline]] inline pack larger(pack a, pack b) { return select(a > b, a, b); }
 [[gnu::always_inline]] inline pack smaller(pack a, pack b) { return select(a < b, a, b); }

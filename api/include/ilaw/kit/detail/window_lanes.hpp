@@ -7,34 +7,16 @@
 #include <ilaw/kit/node.hpp>
 
 #include <cstdint>
-#include <limits>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// A register of doubles, worked on by the words for one (math.hpp).
-using lane_mask = decltype(lanes{} < lanes{});
-using lane_bits = registers<std::uint64_t>::one;
-inline lanes larger(lanes a, lanes b) { return a > b ? a : b; }
-inline lanes smaller(lanes a, lanes b) { return a < b ? a : b; }
-inline lanes absolute(lanes x) {
-  return reinterpret_cast<lanes>(reinterpret_cast<lane_bits>(x) & (~std::uint64_t{0} >> 1));
+using lane_mask = register_mask;
+
+// Of a double, or of a register of them.
+template <class V>
+V down_scale_of(V largest) {
+  return power_scale_of(largest).down;
 }
-inline lanes square_root(lanes x) { return root_of(x); }
-inline bool any_lane(lane_mask m) {
-  std::int64_t found = 0;
-  for (int k = 0; k < register_size; ++k) found |= m[k];
-  return found != 0;
-}
-inline double down_scale_of(double largest) { return power_scale_of(largest).down; }
-inline lanes down_scale_of(lanes largest) {
-  constexpr std::uint64_t exponent_bits = 0x7FF0000000000000;
-  const auto sum = reinterpret_cast<lane_bits>(largest + std::numeric_limits<double>::min());
-  return reinterpret_cast<lanes>(exponent_bits - (sum & exponent_bits));
-}
-using kit::absolute;
-using kit::larger;
-using kit::smaller;
-using kit::square_root;
 
 // Three numbers of as many nodes as a register holds. A pack (pack.hpp) is two, which these short loops would
 // pass through memory.
