@@ -6,7 +6,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bash host_mock/setup.sh
 echo "build: build/release"
 cmake --preset release -DILAW_TESTS=OFF >/dev/null
-cmake --build --preset release -- --quiet
+quiet=()
+[ -t 1 ] || quiet=(-- --quiet)  # on a terminal ninja shows how far it is
+cmake --build --preset release "${quiet[@]}"
 
 for scene in host_mock/scenes/*.json plugins/*/*.json; do
   results=build/release/demo/$(basename "$scene" .json)

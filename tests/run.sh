@@ -73,5 +73,7 @@ if [ -n "$expression" ]; then
     echo "no test is known to be called $expression before the build: builds all"
   fi
 fi
-cmake --build --preset release "${targets[@]}" -- --quiet
+quiet=()
+[ -t 1 ] || quiet=(-- --quiet)  # on a terminal ninja shows how far it is
+cmake --build --preset release "${targets[@]}" "${quiet[@]}"
 exec ctest --test-dir build/release --no-tests=error --output-on-failure -j "$(nproc)" "$@"
