@@ -139,7 +139,7 @@ template <class Law>
 double state_defect(const state_t<Law>& state) {
   double sum = 0.0;
   if constexpr (has_state<Law>)
-    for (double s : std::bit_cast<std::array<double, state_doubles<Law>>>(state)) sum += defect(s);
+    for (double s : std::bit_cast<std::array<double, state_doubles<Law>>>(state)) sum = defect(s, sum);
   return sum;
 }
 template <class Law>
