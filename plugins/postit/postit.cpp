@@ -139,16 +139,22 @@ struct postit {
   static bool clears_window(double s) { return s == status::broken; }
 
  private:
+  // -S_N <= R_Y times the root of a factor near 1: what an infinite lambda leaves of the criterion below.
+  static double margin_of_pull(double sum_n, double adhesion, double factor) {
+    return sum_n + (0.5 + 0.5 * factor) * adhesion;
+  }
   // <-S_N>^2 + (<|S_T| - mu <S_N>>/lambda)^2 <= R_Y^2 times a factor, without a division by R_Y: both sides
   // are brought near 1 by a power of two. False where S has overflowed.
   bool is_within(vector sum, double adhesion, double factor) const {
     constexpr double largest = std::numeric_limits<double>::max();
+    const double of_pull = margin_of_pull(sum.n, adhesion, factor);
     const double scale = power_scale_of(adhesion).down, limit = scale * adhesion;
     const vector s = scale * sum;
     const double pull = positive_part(-s.n), held_by_friction = friction_limit(friction, s.n);
     const double length = square_root(s.t1 * s.t1 + s.t2 * s.t2);
     const double shear = positive_part(length - held_by_friction) * smaller(1.0 / tangent_influence, largest);
-    return pull * pull + shear * shear <= factor * (limit * limit);
+    const double of_both = factor * (limit * limit) - (pull * pull + shear * shear);
+    return chosen(tangent_influence == infinity, of_pull, of_both) >= 0.0;
   }
 
   template <class Node>
@@ -176,8 +182,8 @@ struct postit {
                     holds ? trial.t2 : node.impulse.t2};
     node.status = holds ? status::bonded : (breaks ? status::broken : node.status);
     count_rupture(node.state, node.velocity_step, breaks, holds, is_free);
-    node.state.adhesion = breaks ? 0.0 : node.state.adhesion;
-    heal<Wears>(node, was_bonded, breaks);
+    const double summed = breaks ? 0.0 : node.earlier.n;
+    heal<Wears>(node, summed, was_bonded, breaks);
   }
 
   // Sliding under pressure bonds and breaks in every step. A rupture counts only if the node was free since
@@ -185,29 +191,32 @@ struct postit {
   void count_rupture(state& s, double step, bool breaks, bool holds, bool is_free) const {
     const double whole = smaller(larger(duration, step), std::numeric_limits<double>::max());
     const double rest = s.grace - step, left = rest > window_slack * step ? rest : 0.0;
-    s.ruptures = s.ruptures + ((breaks & (s.grace == 0.0)) ? 1.0 : 0.0);
-    const double held = holds ? left : (is_free ? 0.0 : s.grace);
-    s.grace = breaks ? whole : held;
+    s.ruptures = s.ruptures + kept_if(breaks & (s.grace == 0.0), 1.0);
+    const double held = chosen(holds, left, kept_if(!is_free, s.grace));
+    s.grace = chosen(breaks, whole, held);
   }
 
   // Pressing bonds: R_Y = max(R_Y, min(eta(b) <S_N>, R_Y,max)). A rupture has cleared the window.
   template <bool Wears, class Node>
-  void heal(Node& node, bool was_bonded, bool breaks) const {
+  void heal(Node& node, double summed, bool was_bonded, bool breaks) const {
     double efficiency = 1.0;
     if constexpr (Wears) efficiency = exp(-node.state.ruptures / efficiency_decrease);
     const double limit = adhesion_limit * node.area;  // not a number: inf, and no area is read
-    const double summed = breaks ? 0.0 : node.earlier.n;
-    const double pressed = efficiency * positive_part(summed + node.impulse.n);
-    const double gained = limit < pressed ? limit : pressed;
-    const bool presses = node.impulse.n > 0.0, forms = !was_bonded & presses & (gained > 0.0);
-    node.state.adhesion = presses ? larger(node.state.adhesion, gained) : node.state.adhesion;
-    node.status = forms ? status::healed : node.status;
+    const double pressed = efficiency * (summed + node.impulse.n);
+    const double gained = kept_if(node.impulse.n > 0.0, limit < pressed ? limit : pressed);
+    node.state.adhesion = larger(gained, kept_if(!breaks, node.state.adhesion));
+    node.status = !was_bonded & (gained > 0.0) ? status::healed : node.status;
   }
 };
 
 // Nodes that touch are asked for their friction, for any H; a transverse H has a closed form.
 template <bool Saturated, bool Wears>
 struct postit::form : postit, friction_in_packs {
+  // What only a pull breaks has a shorter step in the usual case.
+  struct pulled;
+  using form_of_try = pulled;
+  bool has_form_of_try() const { return tangent_influence == infinity; }
+
   template <class Node>
   void step(Node& node) const requires(Saturated || has_transverse_delassus<Node>) {
     const vector trial = stopping_impulse(node);
@@ -245,6 +254,45 @@ struct postit::form : postit, friction_in_packs {
   void answered(Node& node, const friction_answer<double>& a) const {
     give_friction(node, a);
     settle<Wears>(node, {}, false);
+  }
+};
+
+// A bond is asked for the impulse that stops it, another node for contact and friction: one division gives
+// the normal part of either, and one the tangential part. Not usual is what asks for both, a bond that breaks
+// while it is pressed. Choices are by bits where GCC would else make branches of them.
+template <bool Saturated, bool Wears>
+struct postit::form<Saturated, Wears>::pulled : form {
+  template <class Node>
+  bool try_step(Node& node) const requires has_transverse_delassus<Node> {
+    const bool was_bonded = node.state.adhesion > 0.0;
+    const auto contact = plain_contact(node, node.v_free);
+    const double of_normal = (was_bonded ? 1.0 : -contact.q.n) / node.delassus.normal();
+    const double pressed = kept_if(!was_bonded & (contact.slack <= 0.0), positive_part(of_normal));
+    const auto speed = contact.q.scaled_tangential_length();
+    const auto rubs =
+        rub(node.delassus.tangential(), pressed, was_bonded ? 0.0 : speed.root(), {}, friction, speed.down);
+    const double from = kept_if(was_bonded, -0.0);  // the trial's zeros are -0
+    const vector r{-(of_normal * node.v_free.n), from - rubs.factor * node.v_free.t1,
+                   from - rubs.factor * node.v_free.t2};
+    const auto turns = turning_at(node.delassus, pressed, contact, speed);
+    const double gain = was_bonded ? doubled_work(node, r) : turns.impact - turns.along;
+    const double closed = pressed > 0.0 ? rubs.status : status::free;
+    const bool breaks = settle_pulled(node, r, pressed, closed);
+    return larger(gain, kept_if(breaks, -contact.q.n)) <= 0.0;
+  }
+
+ private:
+  template <class Node>
+  bool settle_pulled(Node& node, vector r, double pressed, double closed) const {
+    const double adhesion = node.state.adhesion;
+    const bool is_carried = margin_of_pull(node.earlier.n + r.n, adhesion, at_the_limit) >= 0.0;
+    const bool was_bonded = adhesion > 0.0, holds = was_bonded & is_carried,
+               breaks = was_bonded & !is_carried;
+    node.impulse = {chosen(holds, r.n, pressed), kept_if(!breaks, r.t1), kept_if(!breaks, r.t2)};
+    node.status = was_bonded ? (is_carried ? status::bonded : status::broken) : closed;
+    count_rupture(node.state, node.velocity_step, breaks, holds, !(pressed > 0.0));
+    heal<Wears>(node, node.earlier.n, was_bonded, breaks);
+    return breaks;
   }
 };
 
