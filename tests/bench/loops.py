@@ -39,7 +39,7 @@ CASES = [
     ("coulomb, kinetic", "coulomb", ["--parameters", KINETIC], [["try_block", *LOCAL, "::falling"]], 2.0),
     ("tie", "tie", [], [["try_block", "transverse", *LOCAL]], 1.2),
     ("tie, full $H$", "tie", ["--delassus", "full"], [["try_block", "full_", "local_frame"]], 1.3),
-    ("postit, no memory", "postit", ["--parameters", FRICTION], [["try_block", *LOCAL, "<false, false>"]], 1.5),
+    ("postit, no memory", "postit", ["--parameters", FRICTION], [["try_block", *LOCAL, "<false, false>::pulled"]], 1.5),
     ("penalty, explicit", "penalty", spring(), [["step_block", "transverse", *LOCAL, "form<false", "kind)0>"]], 1.2),
     ("penalty, implicit", "penalty", spring(integration="implicit"),
      [["step_block", "transverse", *LOCAL, "form<true", "kind)0>"]], 1.2),

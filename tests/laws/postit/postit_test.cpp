@@ -2,6 +2,7 @@
 #include "support/numbers.hpp"
 #include "support/rupture_instants.hpp"
 
+#include <cstring>
 #include <random>
 #include <vector>
 
@@ -181,6 +182,31 @@ TEST(Postit, ARuptureUnderPressureHealsByItsOwnStepAlone) {
   // The window begins anew with that press.
   EXPECT_EQ(node.push({-0.03, -node.v[1], 0}), ILAW_BONDED);
   EXPECT_NEAR(node.named("adhesion"), std::exp(-0.1) * 0.08, 1e-15);
+}
+
+// A press that holds a bond against later pulls leaves the window while the node is pressed again: the bond
+// breaks, and contact is left. Where no energies are asked the kit tries the usual step, which this is not.
+TEST(Postit, ABondThatBreaksUnderPressureGivesContactTriedOrNot) {
+  const Parameters parameters{{{"memory", 0.01}, {"friction", 0.3}, {"buckets", 4.0}}, {}};
+  Glued node(parameters, 1e-3), tried(parameters, 1e-3);
+  int broken_under_pressure = 0;
+  for (int k = 0; k < 16; ++k) {
+    const Vector push = k == 0 ? Vector{-1.0, 0, 0} : Vector{k < 9 ? 0.2 : -0.01, 0.002, 0};
+    tried.v_previous = node.v_previous;
+    node.push(push);
+    tried.gap = node.gap;
+    tried.time = node.time;
+    tried.v_free = node.v_free;
+    ilaw_batch b = tried.batch();
+    b.state_in = {tried.state.data(), 0, 1};
+    b.state_out = {tried.state.data(), 0, 1};
+    b.impulse = {tried.r.data(), 0, 1};
+    ASSERT_EQ(tried.interface.evaluate(b), ILAW_OK);
+    ASSERT_EQ(std::memcmp(tried.r.data(), node.r.data(), sizeof node.r), 0) << "k " << k;
+    ASSERT_EQ(tried.state, node.state) << "k " << k;
+    broken_under_pressure += node.status == ILAW_BROKEN && node.r[0] > 0.0 ? 1 : 0;
+  }
+  EXPECT_EQ(broken_under_pressure, 1);
 }
 
 // Presses that add up to more than a double holds: the one that would make the adhesion infinite is refused.
