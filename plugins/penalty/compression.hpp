@@ -106,13 +106,9 @@ struct normal_spring {
   }
 };
 
-// select, by the bits where it is of doubles: GCC makes two divisions of a quotient of two choices if
-// something later depends on their condition.
-inline double chosen(bool m, double a, double b) {
-  if constexpr (kit::detail::is_for_old_processors) return kit::select(m, a, b);  // without masks slower
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(kit::kept_if(m, a)) |
-                               std::bit_cast<std::uint64_t>(kit::kept_if(!m, b)));
-}
+// Of doubles by their bits: GCC makes two divisions of a quotient of two choices if something later depends
+// on their condition.
+using kit::chosen;
 inline kit::pack chosen(kit::mask m, kit::pack a, kit::pack b) { return select(m, a, b); }
 
 // IsPlain: linear, not rigid, without damper or restitution. The same numbers with less to compute.
