@@ -171,6 +171,7 @@ TEST(Ending, OfTheProcessIsAFinding) {
     EXPECT_EQ(checked.outcomes[0].finding.seen.substr(0, expected.size()), expected) << breaks;
     EXPECT_FALSE(checked.outcomes[0].finding.setting.empty()) << breaks;
     EXPECT_EQ(checked.outcomes[1].why, "needs functions-return") << breaks;
+    EXPECT_NE(text_of(checked).find("not judged, sample: needs functions-return: "), std::string::npos);
   }
 }
 

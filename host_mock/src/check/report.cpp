@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace ilaw::check {
 namespace {
@@ -46,6 +48,20 @@ std::size_t count(const Checked& checked, Verdict verdict) {
                     [verdict](const Outcome& outcome) { return outcome.verdict == verdict; }));
 }
 
+// The rules that were not judged, by law and reason.
+std::string text_of_not_judged(const Checked& checked) {
+  std::map<std::pair<std::string, std::string>, std::string> rules;
+  for (const Outcome& outcome : checked.outcomes) {
+    if (outcome.verdict != Verdict::not_judged) continue;
+    std::string& listed = rules[{outcome.law, outcome.why}];
+    listed += (listed.empty() ? "" : ", ") + outcome.rule;
+  }
+  std::string text;
+  for (const auto& [of, listed] : rules)
+    text += "  not judged, " + of.first + (of.first.empty() ? "" : ": ") + of.second + ": " + listed + "\n";
+  return text;
+}
+
 ordered_json number_or_text(double value) {
   if (std::isfinite(value)) return value;
   return std::isnan(value) ? "nan" : value > 0.0 ? "inf" : "-inf";
@@ -67,7 +83,7 @@ std::string text_of(const Checked& checked) {
           std::to_string(count(checked, Verdict::broken)) + " broken, " +
           std::to_string(count(checked, Verdict::not_judged)) + " not judged (seed " +
           std::to_string(checked.seed) + ")\n";
-  return text;
+  return text + text_of_not_judged(checked);
 }
 
 std::string json_of(const Checked& checked) {
