@@ -346,9 +346,9 @@ struct penalty::form : penalty {
     open.indentation = indentation_of(node);
     if constexpr (!is_smooth(Kind) && !has_transverse_delassus<Node>)
       penalty_law::couple(open, node.delassus, 0.5 * sliding_velocity<Kind>(node), 0.5 * softness_of(node));
-    const bool acts = acts_on(node) & penalty_law::may_push<is_plain(Kind)>(open);
+    const bool acts = acts_on(node), may_push = penalty_law::may_push<is_plain(Kind)>(open);
     answered(node, {});
-    return acts;
+    return acts & may_push;
   }
   template <class Problem, class Answer>
   auto solve(const Problem& p, Answer& a) const {

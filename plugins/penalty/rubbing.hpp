@@ -106,7 +106,8 @@ class rubbing_node {
     const V r = kit::select(pushes, end.normal.impulse, none), free = p_.free - (p_.c1 * t1 + p_.c2 * t2);
     end.normal.impulse = r;
     a = {r, none - t1, none - t2, end_of(pushes, end.normal, free), kit::select(holds, V(sticks), V(slides))};
-    return is_plain() | !has_usual_scales(p_.a11) | (pushes & !(found & (r > 0.0)));
+    const Mask plain = is_plain(), usual = has_usual_scales(p_.a11), is_found = found & (r > 0.0);
+    return plain | !usual | (pushes & !is_found);
   }
 
  private:
@@ -259,8 +260,8 @@ class rubbing_node {
       x.e1 = kit::select(active, u1 * unit, e1);
       x.e2 = kit::select(active, u2 * unit, e2);
       x.normal.impulse = kit::select(active, kit::larger(r + more, 0.5 * r), x.normal.impulse);
-      const Mask done = (kit::absolute(turn) <= close) & (kit::absolute(more) <= close * r) &
-                        (kit::absolute(square - 1.0) <= 0.25 * close);
+      const Mask turned = kit::absolute(turn) <= close, pressed = kit::absolute(more) <= close * r,
+                 is_unit = kit::absolute(square - 1.0) <= 0.25 * close, done = turned & pressed & is_unit;
       found = found | (active & done & (along > 0.0));
       active = active & !done;
     }

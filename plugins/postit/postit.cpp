@@ -205,7 +205,8 @@ struct postit {
     const double pressed = efficiency * (summed + node.impulse.n);
     const double gained = kept_if(node.impulse.n > 0.0, limit < pressed ? limit : pressed);
     node.state.adhesion = larger(gained, kept_if(!breaks, node.state.adhesion));
-    node.status = !was_bonded & (gained > 0.0) ? status::healed : node.status;
+    const bool forms = !was_bonded & (gained > 0.0);
+    node.status = forms ? status::healed : node.status;
   }
 };
 

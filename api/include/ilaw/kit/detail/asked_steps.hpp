@@ -213,9 +213,9 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope, cla
                                                kept_state<Law, Layout>& before) {
   using form = typename Laws::form;
   const Laws l = laws;
-  const auto run = [&l, &open, &before](const node_block<Law>& own, int i) {
+  const auto run = [&](const node_block<Law>& own, int i) {
     const auto& law = l.at(i);
-    const auto step = [&law, &open, &before, i](auto& node) {
+    const auto step = [&, i](auto& node) {
       problem_of_form<form> problem{};
       if constexpr (!asks_leave_state<form>) before.keep(i, node.state);
       open.values[i] = law.asks(node, problem) ? 1.0 : 0.0;

@@ -190,7 +190,7 @@ tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
     if (made.per_node_count > 0) return walk_varying<Law, Delassus, Frame>(made, law, batch);
   if constexpr (may_interleave<Law, Delassus, Frame>)
     if (asks_little<Law>(batch) && stand_in<interleaved>(made, batch)) {
-      if constexpr (may_have_state_rows<Law>)
+      if constexpr (may_have_state_rows<Law, Delassus>)
         if (state_stands_in_rows(made, batch))
           return walk_in_place<Law, Delassus, Frame, interleaved_with_state>(made, law, batch);
       return walk_in_place<Law, Delassus, Frame, interleaved>(made, law, batch);

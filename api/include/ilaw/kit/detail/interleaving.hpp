@@ -28,10 +28,11 @@ bool stand_in(const instance<Law>& made, const ilaw_batch& b) {
          (made.frame == ILAW_FRAME_LOCAL || Layout::has(b.normal));
 }
 // A state of a few numbers and nothing else may stay in its rows: of longer ones compilers make no vector
-// code.
-template <class Law>
+// code, and where H has more than two numbers it is copied in any case.
+template <class Law, class Delassus>
 inline constexpr bool may_have_state_rows = [] {
-  if constexpr (has_state<Law>) return row_of_state<Law> > 1 && row_of_state<Law> <= 4;
+  if constexpr (has_state<Law> && std::is_same_v<Delassus, transverse_delassus>)
+    return row_of_state<Law> > 1 && row_of_state<Law> <= 4;
   return false;
 }();
 template <class Law>

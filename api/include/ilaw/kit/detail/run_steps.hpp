@@ -147,7 +147,8 @@ template <class Law, class Delassus, class Frame, class Layout, scope Scope>
 [[gnu::noinline, gnu::flatten]] void fly_block(const node_block<Law>& b, column& reached) {
   const auto run = [&reached](const node_block<Law>& own, int i) {
     const auto step = [&reached, i](auto& node) {
-      reached.values[i] = (is_out_of_reach(node) & rests<Law>(node.state)) ? 0.0 : 1.0;
+      const bool is_far = is_out_of_reach(node), is_at_rest = rests<Law>(node.state);
+      reached.values[i] = (is_far & is_at_rest) ? 0.0 : 1.0;
       node.impulse = {};
       node.status = status::free;
     };
