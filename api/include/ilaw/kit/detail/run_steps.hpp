@@ -102,6 +102,7 @@ void try_first(const Laws& laws, const node_block<Law>& b) {
   before.put_back(b, {0, b.count});
   step_block<Law, Delassus, Frame, Layout, Scope>(laws, b);
 }
+
 // Whether a law leaves nodes out of reach alone whatever else they are, so that its step need not run, or
 // those of them whose state rests.
 template <class Law>
