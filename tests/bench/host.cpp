@@ -293,5 +293,10 @@ int main(int argc, char** argv) {
   app.add_option("--read", options.read, "Read a scene of so many points instead");
   CLI11_PARSE(app, argc, argv);
   place_arrays_one_after_another();
-  return options.read > 0 ? measure_reading(options.read) : measure_all(options);
+  try {
+    return options.read > 0 ? measure_reading(options.read) : measure_all(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ilaw_bench_host: %s\n", error.what());
+    return 2;
+  }
 }
