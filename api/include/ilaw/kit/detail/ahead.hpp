@@ -1,4 +1,4 @@
-// ahead.hpp - arrays of a batch that are asked for before they are needed.
+// ahead.hpp - which arrays of a batch are asked for ahead.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -43,9 +43,8 @@ class arrays_ahead {
 
   template <class Array>
   void expect(const Array& array, int numbers) {
-    if (!array.values) return;
     if (!holds_floats_) return expect_doubles(array, numbers);
-    if (add(array.node_stride != 1 || !is_of_floats<Layout>))
+    if (array.values && add(array.node_stride != 1 || !is_of_floats<Layout>))
       streams_.add(as_floats(array.values), array.node_stride, array.component_stride, numbers);
   }
   template <class Array>

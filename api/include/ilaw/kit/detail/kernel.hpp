@@ -7,6 +7,7 @@
 #include <ilaw/kit/detail/frame.hpp>
 #include <ilaw/kit/detail/gather.hpp>
 #include <ilaw/kit/detail/node_state.hpp>
+#include <ilaw/kit/detail/streams.hpp>
 #include <ilaw/kit/window.hpp>
 
 #include <bit>
