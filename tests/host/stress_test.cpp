@@ -259,5 +259,20 @@ TEST(StressCommand, SaysWhatItFoundByItsExitCode) {
   EXPECT_EQ(run_program("stress --scenes 0").code, 2);
 }
 
+// A scene that stopped, or came close to a bound, can be looked at: its file gives the same run.
+TEST(StressCommand, WritesEveryScene) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const std::filesystem::path folder = fresh_folder();
+  const std::string few = "stress --law contact --law tie --seed 40 --scenes 3 --steps 50 --write ";
+  EXPECT_EQ(run_program(few + folder.string()).code, 0);
+  const LawBook laws({"contact", "tie"});
+  for (const std::uint64_t seed : {40, 41, 42}) {
+    const LawBook::Entry& first = laws.all()[seed % 2];
+    const auto file = folder / (std::string(first.law->id) + "_" + std::to_string(seed) + ".json");
+    EXPECT_EQ(read_scene_source(file), random_scene(laws, first, seed, {50, 20})) << file;
+  }
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace ilaw::host::testing

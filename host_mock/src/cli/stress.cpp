@@ -40,8 +40,9 @@ void print_finding(const char* ending, const StressFinding& finding) {
 }
 
 int run_stress(const StressSetup& setup) {
-  std::optional<HeldFolder> held;
-  if (!setup.keep.empty()) held.emplace(setup.keep);
+  std::optional<HeldFolder> kept, written;
+  if (!setup.keep.empty()) kept.emplace(setup.keep);
+  if (!setup.write.empty()) written.emplace(setup.write);
   guard_against_laws();
   StressReport report;
   try {
@@ -81,6 +82,7 @@ void add_stress(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_option("--keep", setup->keep,
                       "Folder for scenes that failed, made as small as they still fail");
+  command->add_option("--write", setup->write, "Folder for every scene, as it is run; not that of --keep");
   command->footer(
       "Exit codes: 0 all scenes fulfil them, or were refused or stopped with a reason; 1 a scene does not;\n"
       "2 bad usage, or a library that cannot be opened.\n"

@@ -29,6 +29,14 @@ void add(StressRow& row, const StressVerdict& verdict) {
   row.worst.worst_bound = std::max(row.worst.worst_bound, figures.worst_bound);
 }
 
+std::filesystem::path write(const json& scene, const std::string& name, const std::filesystem::path& folder) {
+  std::filesystem::path path = folder / (name + ".json");
+  AtomicFile file(path);
+  file.stream() << scene.dump(1) << '\n';
+  file.commit();
+  return path;
+}
+
 // The same invariant must fail: another failure may be another mistake.
 std::filesystem::path keep(const json& scene, const StressVerdict& verdict, const std::string& name,
                            const std::filesystem::path& folder) {
@@ -41,11 +49,7 @@ std::filesystem::path keep(const json& scene, const StressVerdict& verdict, cons
   };
   json small = shrink(scene, fails, most_tries);
   small["doc"] = last.reason;
-  std::filesystem::path path = folder / (name + ".json");
-  AtomicFile file(path);
-  file.stream() << small.dump(1) << '\n';
-  file.commit();
-  return path;
+  return write(small, name, folder);
 }
 
 }  // namespace
@@ -58,6 +62,8 @@ StressReport stress(const StressSetup& setup, const std::function<void(std::int6
     const std::uint64_t seed = setup.seed + static_cast<std::uint64_t>(i);
     const std::size_t which = static_cast<std::size_t>(seed % laws.all().size());
     const json scene = random_scene(laws, laws.all()[which], seed, setup.size);
+    const std::string name = report.rows[which].law + "_" + std::to_string(seed);
+    if (!setup.write.empty()) write(scene, name, setup.write);
     const StressVerdict verdict = stress_scene(scene);
     add(report.rows[which], verdict);
     if (verdict.ending == StressEnding::stopped)
@@ -65,7 +71,7 @@ StressReport stress(const StressSetup& setup, const std::function<void(std::int6
     if (verdict.ending == StressEnding::failed) {
       StressFinding failure{seed, report.rows[which].law, verdict.reason, {}};
       if (!setup.keep.empty() && report.failures.size() < most_kept)
-        failure.file = keep(scene, verdict, failure.law + "_" + std::to_string(seed), setup.keep);
+        failure.file = keep(scene, verdict, name, setup.keep);
       report.failures.push_back(std::move(failure));
     }
     progress(i + 1);

@@ -18,7 +18,8 @@ struct StressSetup {
   std::uint64_t seed = 1;         // of the first scene; the others follow
   std::int64_t scenes = 100;
   StressSize size;
-  std::filesystem::path keep;  // where failures are written, made smaller; empty: nowhere
+  std::filesystem::path keep;   // where failures are written, made smaller; empty: nowhere
+  std::filesystem::path write;  // where every scene is written before it is run; empty: nowhere
 };
 
 // Of one law, that of the first interface.
