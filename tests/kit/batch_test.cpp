@@ -215,6 +215,24 @@ TEST_P(Contract, LargeBatchesGiveTheBitsOfListedNodes) {
   }
 }
 
+// Rows of more nodes than caches hold are worked on in other blocks than those of fewer.
+class ManyRows : public Contract {};
+TEST_P(ManyRows, GiveTheBitsOfListedNodes) {
+  constexpr std::int64_t n = 131072 + 64 + 21;
+  std::vector<std::int32_t> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), 0);
+  const ilaw::interface law = make(ILAW_FRAME_LOCAL);
+  const Nodes nodes(n);
+  for (const bool outputs : {false, true})
+    EXPECT_TRUE(run(law, nodes, {.outputs = outputs, .energy = false}, false) ==
+                run(law, nodes, {.order = order, .outputs = outputs, .energy = false}, false))
+        << "outputs " << outputs;
+}
+INSTANTIATE_TEST_SUITE_P(Laws, ManyRows,
+                         ::testing::Values(LawCase{"tie", "tie", {}, {}},
+                                           LawCase{"penalty", "penalty", {{"stiffness", 1e6}}, {}}),
+                         name_of_case);
+
 TEST_P(Contract, InstructionSetsGiveTheSameBits) {
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
     for (const bool outputs : {false, true}) {
