@@ -240,6 +240,84 @@ struct solve_with_a_parameter {
   void answered(Node&, const answer<double>&) const {}
 };
 
+// step must take its node by reference: template <class Node> void step(Node& node) const
+struct step_of_a_copy {
+  double a;
+  CARD;
+  PARAMETER(step_of_a_copy);
+  template <class Node>
+  void step(Node node) const {
+    node.impulse.n = a;
+  }
+};
+
+// a card that serves a diagonal H serves a full one, too: in the host's axes it is full
+struct diagonal_alone {
+  double a;
+  static constexpr law_card card{
+      .id = "wrong", .title = "A law", .doc = "A mistake.", .delassus_forms = ILAW_DELASSUS_DIAGONAL};
+  static constexpr const char* references[] = {"none"};
+  PARAMETER(diagonal_alone);
+  STEP;
+};
+
+// What laws in pack form have, but for what asks and answers.
+#define SOLVE                                                      \
+  template <class V>                                               \
+  struct problem {                                                 \
+    V x;                                                           \
+  };                                                               \
+  template <class V>                                               \
+  struct answer {                                                  \
+    V y;                                                           \
+  };                                                               \
+  template <class V>                                               \
+  static mask_of<V> solve(const problem<V>& p, answer<V>& found) { \
+    found.y = p.x;                                                 \
+    return mask_of<V>(false);                                      \
+  }                                                                \
+  static void solve_alone(const problem<double>&, answer<double>&) {}
+
+// asks must be template <class Node> bool asks(Node& node, problem<double>& open) const
+struct mutable_asks {
+  double a;
+  CARD;
+  PARAMETER(mutable_asks);
+  SOLVE
+  template <class Node>
+  bool asks(Node&, problem<double>&) {
+    return true;
+  }
+  template <class Node>
+  void answered(Node&, const answer<double>&) const {}
+};
+
+// answered must be template <class Node> void answered(Node& node, const answer<double>& a) const
+struct mutable_answered {
+  double a;
+  CARD;
+  PARAMETER(mutable_answered);
+  SOLVE
+  template <class Node>
+  bool asks(Node&, problem<double>&) const {
+    return true;
+  }
+  template <class Node>
+  void answered(Node&, const answer<double>&) {}
+};
+
+// answered must be template <class Node> void answered(Node& node, const answer<double>& a) const
+struct never_answered {
+  double a;
+  CARD;
+  PARAMETER(never_answered);
+  SOLVE
+  template <class Node>
+  bool asks(Node&, problem<double>&) const {
+    return true;
+  }
+};
+
 // The compiler looks at each.
 #define SEEN(law) auto* const seen_##law = &detail::library_of<law>::describe
 SEEN(larger_state);
@@ -262,3 +340,8 @@ SEEN(no_step);
 SEEN(history_without_size);
 SEEN(window_that_is_never_emptied);
 SEEN(solve_with_a_parameter);
+SEEN(step_of_a_copy);
+SEEN(diagonal_alone);
+SEEN(mutable_asks);
+SEEN(mutable_answered);
+SEEN(never_answered);

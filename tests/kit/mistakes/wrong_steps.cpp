@@ -77,6 +77,34 @@ struct changes_as_it_tries {
   }
 };
 
+// the members of problem and answer must all be of type V
+struct problem_with_a_number {
+  double a;
+  CARD;
+  PARAMETER(problem_with_a_number);
+  template <class V>
+  struct problem {
+    V x;
+    double number;
+  };
+  template <class V>
+  struct answer {
+    V y;
+  };
+  template <class Node>
+  bool asks(Node&, problem<double>&) const {
+    return true;
+  }
+  template <class V>
+  static mask_of<V> solve(const problem<V>& p, answer<V>& found) {
+    found.y = p.x;
+    return mask_of<V>(false);
+  }
+  static void solve_alone(const problem<double>&, answer<double>&) {}
+  template <class Node>
+  void answered(Node&, const answer<double>&) const {}
+};
+
 // The compiler looks at each.
 #define SEEN(law) auto* const seen_##law = &detail::library_of<law>::describe
 SEEN(gap_not_declared);
@@ -84,3 +112,4 @@ SEEN(area_not_declared);
 SEEN(contact_without_v_previous);
 SEEN(writes_v_free);
 SEEN(changes_as_it_tries);
+SEEN(problem_with_a_number);

@@ -22,9 +22,21 @@ struct alignas(64) column_row {
   const double* operator[](int k) const { return values + k * block_size; }
 };
 
+// Stands for V, with a size that no other member has.
+struct any_v {
+  double numbers[3];
+  friend bool operator<(const any_v&, const any_v&);  // as mask_of wants it
+};
+template <class Form>
+inline constexpr bool are_of_v = sizeof(typename Form::template problem<any_v>) ==
+                                     3 * sizeof(problem_of_form<Form>) &&
+                                 sizeof(typename Form::template answer<any_v>) ==
+                                     3 * sizeof(answer_of_form<Form>);
+
 // The problems of a block, and their answers; open: 1 where there is one, else 0.
 template <class Form>
 struct asked_block {
+  static_assert(are_of_v<Form>, "the members of problem and answer must all be of type V");
   static constexpr int problems = doubles_in<problem_of_form<Form>>,
                        answers = doubles_in<answer_of_form<Form>>;
   column open;

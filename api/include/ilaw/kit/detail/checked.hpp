@@ -30,6 +30,7 @@ ILAW_KIT_NAME(history_size);
 ILAW_KIT_NAME(record);
 ILAW_KIT_NAME(step);
 ILAW_KIT_NAME(asks);
+ILAW_KIT_NAME(answered);
 ILAW_KIT_NAME(initialise);
 ILAW_KIT_NAME(inputs);
 ILAW_KIT_NAME(capabilities);
@@ -113,6 +114,38 @@ constexpr bool steps_as_const() {
   using node_type = plain_node<Law>;
   if constexpr (requires(Law & law, node_type & n) { law.step(n); })
     return requires(const Law& law, node_type& n) { law.step(n); };
+  return true;
+}
+// What takes a copy of its node, or one that it may not write, changes nothing.
+template <class Law>
+constexpr bool steps_its_node() {
+  using node_type = plain_node<Law>;
+  return !requires(const Law& law, node_type& n) { law.step(static_cast<node_type&&>(n)); };
+}
+// Of laws in pack form. Where asks is for other nodes than plain ones, it is left to them.
+template <class Law>
+constexpr bool asks_rightly() {
+  using node_type = plain_node<Law>;
+  if constexpr (names_asks<Law>) {
+    using open_problem = typename Law::template problem<double>;
+    if constexpr (requires(Law & law, node_type & n, open_problem & p) { law.asks(n, p); })
+      return requires(const Law& law, node_type& n, open_problem& p) {
+        { law.asks(n, p) } -> std::same_as<bool>;
+      }
+    &&!requires(const Law& law, node_type& n, open_problem& p) { law.asks(static_cast<node_type&&>(n), p); };
+  }
+  return true;
+}
+template <class Law>
+constexpr bool answers_rightly() {
+  using node_type = plain_node<Law>;
+  if constexpr (names_asks<Law>)
+    return requires(const Law& law, node_type& n, const typename Law::template answer<double>& a) {
+      law.answered(n, a);
+    }
+  &&!requires(const Law& law, node_type& n, const typename Law::template answer<double>& a) {
+    law.answered(static_cast<node_type&&>(n), a);
+  };
   return true;
 }
 // With parameters per node there is no law that a pack of nodes could ask.
@@ -219,6 +252,10 @@ struct checked_members {
                  ".inputs of the card are reads_gap, reads_v_previous and reads_area, joined by |");
   ILAW_KIT_CHECK(serves_something, Law::card.dimensions != 0 && Law::card.delassus_forms != 0,
                  "the card of a law serves at least one dimension and one form of H");
+  ILAW_KIT_CHECK(serves_turned,
+                 !(Law::card.delassus_forms & ILAW_DELASSUS_DIAGONAL) ||
+                     (Law::card.delassus_forms & ILAW_DELASSUS_FULL),
+                 "a card that serves a diagonal H serves a full one, too: in the host's axes it is full");
   ILAW_KIT_CHECK(gives_members, members_are_given<Law>(),
                  "a parameter needs .member = &Law::name and .name = \"name\"");
   ILAW_KIT_CHECK(has_one_each, members_differ<Law>(),
@@ -232,6 +269,13 @@ struct checked_members {
                  "vector or tangential_vector");
   ILAW_KIT_CHECK(steps_const, steps_as_const<Law>(),
                  "step must be const: template <class Node> void step(Node& node) const");
+  ILAW_KIT_CHECK(steps_node, steps_its_node<Law>(),
+                 "step must take its node by reference: template <class Node> void step(Node& node) const");
+  ILAW_KIT_CHECK(has_asks, asks_rightly<Law>(),
+                 "asks must be template <class Node> bool asks(Node& node, problem<double>& open) const");
+  ILAW_KIT_CHECK(
+      has_answered, answers_rightly<Law>(),
+      "answered must be template <class Node> void answered(Node& node, const answer<double>& a) const");
   ILAW_KIT_CHECK(has_solve, solves_rightly<Law>(),
                  "solve and solve_alone must be static, and their problem carry the parameters: "
                  "they may come per node");
@@ -254,10 +298,11 @@ struct checked_members {
       "record must be template <class Node> void record(const Node& node, history own) const; a window "
       "has static bool adds_to_window(double status) and clears_window(double status) in its place");
 
-  static constexpr bool passes =
-      has_texts && reads_known_inputs && serves_something && gives_members && has_one_each && describes_all &&
-      gives_state_members && describes_state && steps_const && has_solve && has_initialise && has_inputs &&
-      has_capabilities && has_conflict && has_form && has_stable_step && has_history && has_record;
+  static constexpr bool passes = has_texts && reads_known_inputs && serves_something && serves_turned &&
+                                 gives_members && has_one_each && describes_all && gives_state_members &&
+                                 describes_state && steps_const && steps_node && has_asks && has_answered &&
+                                 has_solve && has_initialise && has_inputs && has_capabilities &&
+                                 has_conflict && has_form && has_stable_step && has_history && has_record;
 };
 
 template <class Law>

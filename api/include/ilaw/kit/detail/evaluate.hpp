@@ -214,7 +214,7 @@ tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
 // A diagonal H turned out of its axes is full.
 template <class Law>
 tally walk_turned(const instance<Law>& made, const ilaw_batch& batch) {
-  if constexpr (serves<Law>(ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL))
+  if constexpr (serves<Law>(ILAW_DELASSUS_FULL))
     if (!made.is_transverse()) return walk_as<Law, full_delassus, stored_frame>(made, batch);
   if constexpr (serves<Law>(ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE)) {
     if constexpr (needs_no_tangents<Law>() && in_space<Law>)
