@@ -54,6 +54,7 @@ class BlockWalk {
   using Column = std::array<double, block_size>;
   using Vectors = std::array<double, D * block_size>;
   using Components = std::array<double, D>;
+  using TurnVectors = std::conditional_t<Turns, Vectors, std::array<double, 0>>;
 
   // One by one: a loop over so few becomes a call of memmove.
   static Components components(const Vector& vector) {
@@ -94,9 +95,12 @@ class BlockWalk {
   void find_turns() {
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       const RigidSurface there{gap_[i], Eigen::Map<const Vector>(&normal_[D * i], D)};
-      const Vector turn =
+      const SurfaceTurn turn =
           step_.setup.counterpart->unit_turn(node_index(i), step_.step.u, step_.step.time, there);
-      std::copy_n(turn.data(), D, &turn_[D * i]);
+      for (int c = 0; c < D; ++c) {
+        turn_before_[D * i + c] = turn.at(step_.rates.before, c);
+        turn_after_[D * i + c] = turn.at(step_.rates.after, c);
+      }
     }
   }
 
@@ -123,15 +127,15 @@ class BlockWalk {
     return value;
   }
 
-  // is_moving: whether the obstacle's velocity is not zero; rate: at which it turns.
-  ilaw_input relative(const Dofs& v, const Components& obstacle, bool is_moving, double rate,
+  // is_moving: whether the obstacle's velocity is not zero; turn: velocities of a surface that turns.
+  ilaw_input relative(const Dofs& v, const Components& obstacle, bool is_moving, const TurnVectors& turn,
                       Vectors& room) const {
     if (What == Meets::obstacle && !is_moving) return seen_at_rest(v, room);
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       for (int c = 0; c < D; ++c) {
         double& value = room[c * block_size + i];
         value = component(v.data(), i, c) - obstacle[c];
-        if constexpr (Turns) value -= rate * turn_[D * i + c];
+        if constexpr (Turns) value -= turn[D * i + c];
       }
     return in_columns(room);
   }
@@ -174,12 +178,11 @@ class BlockWalk {
     delassus_ = column(at_.delassus, delassus_room_.data());
     impulse_ = contacts_in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
     status_ = contacts_in_row_ ? &at_.status[contact(0)] : status_room_.data();
-    ilaw_batch batch = empty_batch(step_.setup, step_.step.time, step_.step.dt);
+    ilaw_batch batch = empty_batch(step_.tangent, step_.step.time, step_.step.dt);
     batch.node_count = count_;
-    batch.v_free = relative(step_.v, obstacle_, moves_, step_.rates.after, v_free_);
+    batch.v_free = relative(step_.v, obstacle_, moves_, turn_after_, v_free_);
     if ((info.inputs | (step_.gets_energies ? info.energy_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)
-      batch.v_previous =
-          relative(step_.step.v_before, obstacle_before_, moved_, step_.rates.before, v_previous_);
+      batch.v_previous = relative(step_.step.v_before, obstacle_before_, moved_, turn_before_, v_previous_);
     batch.delassus = {delassus_, 1, 0};
     batch.gap = {gap_.data(), 1, 0};
     batch.normal = meets_plane() ? in_columns(normal_) : ilaw_input{normal_.data(), D, 1};
@@ -302,8 +305,7 @@ class BlockWalk {
       works.all += r[c] * sum;
       if (stands_still_) continue;
       works.relative += r[c] * (sum - (obstacle_[c] + obstacle_before_[c]));
-      if constexpr (Turns)
-        works.relative -= r[c] * (step_.rates.before + step_.rates.after) * turn_[D * i + c];
+      if constexpr (Turns) works.relative -= r[c] * (turn_before_[D * i + c] + turn_after_[D * i + c]);
     }
     if (stands_still_) works.relative = works.all;
     return works;
@@ -347,8 +349,8 @@ class BlockWalk {
   std::uint8_t* status_ = nullptr;
   Column gap_, delassus_room_, area_room_;
   Vectors v_free_, v_previous_, normal_, impulse_room_;
-  std::conditional_t<Turns, Vectors, std::array<double, 0>> turn_;  // velocities at rate 1
-  std::array<double, ILAW_ENERGY_COUNT * block_size> energy_;       // part by part
+  TurnVectors turn_before_, turn_after_;                       // velocities of the surface
+  std::array<double, ILAW_ENERGY_COUNT * block_size> energy_;  // part by part
   std::array<std::uint8_t, block_size> status_room_;
   std::unique_ptr<double[]> state_room_;
   std::vector<double> parameter_room_;

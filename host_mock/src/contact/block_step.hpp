@@ -23,7 +23,7 @@ struct BlockStep {
   ContactArrays& contacts;
   const StepView& step;
   const FlatSurface* flat;  // the obstacle, where it is a plane
-  const Vector &obstacle_velocity, &obstacle_velocity_before;
+  const Vector &obstacle_velocity, &obstacle_velocity_before, &tangent;
   TurningRates rates;
   Dofs& v;  // v_free, then what the impulses make of it
   bool gets_energies;

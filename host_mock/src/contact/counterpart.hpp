@@ -36,9 +36,9 @@ struct ContactPoint {
   double delassus(const Model& model, int node) const;
 };
 
-// How fast a rigid counterpart turns before and after a time; means over the steps there.
+// How fast a rigid counterpart turns in the steps before and after a time.
 struct TurningRates {
-  double before = 0.0, after = 0.0;
+  TurningRate before, after;
 };
 
 // Gaps of some contacts, and normals, of as many components each as the model has dimensions.
@@ -115,10 +115,12 @@ class Counterpart {
   virtual TurningRates rates(double /*time*/, double /*dt*/) const { return {}; }
   // Whether its velocity, how it turns and where it is flat are the same in all steps.
   virtual bool stands_still() const { return true; }
-  virtual Vector unit_turn(int /*node_index*/, const Dofs& /*u*/, double /*time*/,
-                           const RigidSurface& /*there*/) const {
+  virtual SurfaceTurn unit_turn(int /*node_index*/, const Dofs& /*u*/, double /*time*/,
+                                const RigidSurface& /*there*/) const {
     return {};
   }
+  // A direction that turns with it.
+  virtual Vector turned(const Vector& direction, double /*time*/) const { return direction; }
   // Nodes that may be partners; empty for rigid counterparts.
   virtual const std::vector<int>& partners() const = 0;
   // Whether two contacts may have a partner in common.
@@ -139,10 +141,14 @@ class RigidCounterpart : public Counterpart {
   Vector velocity(double from, double to) const override { return obstacle_->velocity(from, to); }
   bool turns() const override { return obstacle_->turns(); }
   TurningRates rates(double time, double dt) const override {
-    return {obstacle_->rate(time - dt, time), obstacle_->rate(time, time + dt)};
+    return {obstacle_->rate_before(time, dt), obstacle_->rate_after(time, dt)};
   }
-  Vector unit_turn(int node_index, const Dofs& u, double time, const RigidSurface& there) const override {
+  SurfaceTurn unit_turn(int node_index, const Dofs& u, double time,
+                        const RigidSurface& there) const override {
     return obstacle_->unit_velocity(position(node_index, u), there, time);
+  }
+  Vector turned(const Vector& direction, double time) const override {
+    return obstacle_->turned(direction, time);
   }
   bool stands_still() const override { return obstacle_->stands_still(); }
   const std::vector<int>& partners() const override { return none_; }

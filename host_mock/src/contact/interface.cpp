@@ -19,16 +19,26 @@ namespace {
 // rest on a spring have them, at gaps as small.
 constexpr double least_speed = 0x1p-500;
 
+// On a plane that turns about its normal the law cannot see what its tangential memory has to turn with.
+InterfaceSetup with_tangent(InterfaceSetup setup, const Model& model) {
+  const Counterpart& counterpart = *setup.counterpart;
+  if (!counterpart.turns() || !counterpart.keeps_normal() || setup.tangent.size() > 0) return setup;
+  const Law law(setup.library, setup.law, setup.arguments, {}, model.dimension());
+  if (law.carries_axes()) setup.tangent = across(counterpart.flat_at(0.0)->normal);
+  return setup;
+}
+
 }  // namespace
 
 Interface::Interface(InterfaceSetup setup, const Model& model)
-    : setup_(std::move(setup)),
+    : setup_(with_tangent(std::move(setup), model)),
       model_(model),
       dimension_(model.dimension()),
       law_(setup_.library, setup_.law, setup_.arguments, setup_.tangent, dimension_),
       contacts_(dimension_, law_.info(), setup_.nodes.size(), !setup_.counterpart->partners().empty()),
       obstacle_velocity_(Vector::Zero(dimension_)),
-      obstacle_velocity_before_(obstacle_velocity_) {}
+      obstacle_velocity_before_(obstacle_velocity_),
+      tangent_(setup_.tangent) {}
 
 void Interface::check(const Refusal& refusal) const {
   if (refusal.code != ILAW_OK)
@@ -140,6 +150,7 @@ void Interface::follow_obstacle(const StepView& step) {
   obstacle_speed_ = obstacle_velocity_.norm();
   if (counterpart.turns()) rates_ = counterpart.rates(step.time, step.dt);
   flat_ = counterpart.flat_at(step.time);
+  tangent_ = counterpart.turned(setup_.tangent, step.time);
   obstacle_is_known_ = counterpart.stands_still();
 }
 
@@ -174,6 +185,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
                          flat_ ? &*flat_ : nullptr,
                          obstacle_velocity_,
                          obstacle_velocity_before_,
+                         tangent_,
                          rates_,
                          v,
                          energies,
@@ -202,16 +214,20 @@ void Interface::open_step(const StepView& step) {
   choose_active(step);
   sums_ = {};
   const bool turns = setup_.counterpart->turns();
-  if (turns) contacts_.turn.resize(contacts_.normal.size());
+  for (std::vector<double>* turn : {&contacts_.turn_before, &contacts_.turn_after})
+    if (turns) turn->resize(contacts_.normal.size());
   for (const std::int32_t contact_index : active()) {
     const std::size_t k = at(contact_index);
     const ContactPoint point = setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);
     contacts_.gap[k] = point.gap - setup_.gap_offset;
     contacts_.vector(contacts_.normal, contact_index) = point.normal;
     contacts_.vector(contacts_.impulse, contact_index).setZero();
-    if (turns)
-      contacts_.vector(contacts_.turn, contact_index) = setup_.counterpart->unit_turn(
-          contacts_.node_index[k], step.u, step.time, {point.gap, point.normal});
+    if (turns) {
+      const SurfaceTurn turn = setup_.counterpart->unit_turn(contacts_.node_index[k], step.u, step.time,
+                                                             {point.gap, point.normal});
+      contacts_.vector(contacts_.turn_before, contact_index) = turn.at(rates_.before);
+      contacts_.vector(contacts_.turn_after, contact_index) = turn.at(rates_.after);
+    }
     if (point.partner_count == 0) continue;
     contacts_.delassus[k] = point.delassus(model_, node_of(contact_index));
     contacts_.point[k] = point;
@@ -232,14 +248,14 @@ void Interface::gather(const ContactList& contacts, const Dofs& v, const StepVie
                          relative(k, v) - surface_velocity(k) - delassus(k) * impulse(k);
                      contacts_.vector(contacts_.v_previous, k) =
                          relative(k, step.v_before) -
-                         surface_velocity(k, obstacle_velocity_before_, rates_.before);
+                         surface_velocity(k, obstacle_velocity_before_, contacts_.turn_before);
                      contacts_.vector(contacts_.previous_impulse, k) = impulse(k);
                    }
                  });
 }
 
 void Interface::evaluate(const ContactList& contacts, const StepView& step) {
-  ilaw_batch batch = contacts_.repeated_batch(setup_, step.time, step.dt);
+  ilaw_batch batch = contacts_.repeated_batch(tangent_, step.time, step.dt);
   if (!asks_energies_) batch.energy = {};
   const auto count = static_cast<std::ptrdiff_t>(contacts.size());
   outcomes_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), {});
@@ -287,14 +303,14 @@ void Interface::start_from(int contact_index, const Vector& impulse) {
 
 void Interface::accept(const StepView& step, const Dofs& v) {
   Refusal unknown;
-  const Vector velocity = obstacle_velocity_ + obstacle_velocity_before_;
   for (const std::int32_t contact_index : active()) {
     const std::size_t k = at(contact_index);
     unknown.add_unknown(&contacts_.status[k], &contact_index, 1);
     check(unknown);
     const Vector sum = relative(contact_index, step.v_before) + relative(contact_index, v);
     sums_.work += 0.5 * impulse(contact_index).dot(sum);
-    const Vector drift = surface_velocity(contact_index, velocity, rates_.before + rates_.after);
+    const Vector drift = surface_velocity(contact_index, obstacle_velocity_, contacts_.turn_after) +
+                         surface_velocity(contact_index, obstacle_velocity_before_, contacts_.turn_before);
     sums_.relative_work += 0.5 * impulse(contact_index).dot(sum - drift);
     sums_.penetration = std::max(sums_.penetration, -gap(contact_index));
     ++sums_.statuses[contacts_.status[k]];
@@ -313,9 +329,10 @@ void Interface::accept(const StepView& step, const Dofs& v) {
       check({ILAW_BAD_LIBRARY, 0, contact_index, 0, fault});
 }
 
-Vector Interface::surface_velocity(int contact_index, const Vector& velocity, double rate) const {
-  if (contacts_.turn.empty()) return velocity;
-  return velocity + rate * contacts_.vector(contacts_.turn, contact_index);
+Vector Interface::surface_velocity(int contact_index, const Vector& velocity,
+                                   const std::vector<double>& turn) const {
+  if (turn.empty()) return velocity;
+  return velocity + contacts_.vector(turn, contact_index);
 }
 
 // ---- the last step --------------------------------------------------------------------------------------

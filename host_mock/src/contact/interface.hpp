@@ -87,7 +87,7 @@ class Interface {
   const Vector& obstacle_velocity_before() const { return obstacle_velocity_before_; }
   // Only where contacts share nodes: of the obstacle's surface where a contact is.
   Vector surface_velocity(int contact_index) const {
-    return surface_velocity(contact_index, obstacle_velocity_, rates_.after);
+    return surface_velocity(contact_index, obstacle_velocity_, contacts_.turn_after);
   }
   // Only where contacts share nodes.
   auto normal(int contact_index) const { return contacts_.vector(contacts_.normal, contact_index); }
@@ -115,7 +115,7 @@ class Interface {
 
  private:
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
-  Vector surface_velocity(int contact_index, const Vector& velocity, double rate) const;
+  Vector surface_velocity(int contact_index, const Vector& velocity, const std::vector<double>& turn) const;
   // Whether the state of a contact that is out of reach changes: axes follow the normal.
   bool axes_turn() const;
   bool may_skip() const;
@@ -143,6 +143,7 @@ class Interface {
   std::vector<std::uint8_t> is_near_;         // by node_index, at the last refresh
   std::vector<FarNodes> far_;                 // by chunk of nodes; no bound where some are near
   Vector obstacle_velocity_, obstacle_velocity_before_;
+  Vector tangent_;  // turned with the obstacle
   double obstacle_speed_ = 0.0, obstacle_speed_before_ = 0.0;
   TurningRates rates_;
   std::optional<FlatSurface> flat_;

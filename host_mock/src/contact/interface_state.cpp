@@ -39,7 +39,7 @@ std::vector<double> Interface::first_state(int node_index, const Dofs& u) const 
   const std::vector<double> parameters = parameters_of(node_index);
   const std::vector<ilaw_input> inputs = inputs_of(parameters);
   const Vector normal = setup_.counterpart->contact_point(node_index, u, 0.0).normal;
-  ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
+  ilaw_batch batch = empty_batch(setup_.tangent, 0.0, 1.0);
   batch.node_count = 1;
   batch.area = {&setup_.areas[at(node_index)], 1, 1};
   batch.normal = {normal.data(), dimension_, 1};
@@ -71,7 +71,7 @@ int Interface::status_at_start(int node_index, const Dofs& u) const {
                delassus = point.delassus(model_, nodes()[at(node_index)]);
   const auto size = static_cast<std::int64_t>(state.size());
   std::uint8_t status = ILAW_FREE;
-  ilaw_batch batch = empty_batch(setup_, 0.0, 1.0);
+  ilaw_batch batch = empty_batch(setup_.tangent, 0.0, 1.0);
   batch.node_count = 1;
   batch.v_free = batch.v_previous = {rest.data(), dimension_, 1};
   batch.delassus = {&delassus, 1, 1};

@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
+
 namespace ilaw::host {
 namespace {
 
@@ -14,7 +16,8 @@ RigidSurface round_surface(const Vector& from_center, double radius, const Vecto
   return {distance - radius, from_center / distance};
 }
 
-// A direction across an axis: that of the coordinate least along it.
+}  // namespace
+
 Vector across(const Vector& axis) {
   Eigen::Index least = 0;
   axis.cwiseAbs().minCoeff(&least);
@@ -22,15 +25,32 @@ Vector across(const Vector& axis) {
   return (unit - unit.dot(axis) * axis).normalized();
 }
 
-}  // namespace
-
-Vector Turning::unit_velocity(const Vector& arm) const {
-  Eigen::Vector3d r = Eigen::Vector3d::Zero();
-  r.head(arm.size()) = arm;
-  return axis_.cross(r).head(arm.size());
+Vector Turning::turned(const Vector& direction, double time) const {
+  const double angle = angles_ ? angles_->at(time)[0] - angles_->at(0.0)[0] : rate_ * time;
+  return Eigen::AngleAxisd(angle, axis_) * Eigen::Vector3d(direction);
 }
 
-Vector Obstacle::unit_velocity(const Vector& x, const RigidSurface& there, double time) const {
+Vector Obstacle::turned(const Vector& direction, double time) const {
+  return turning_ && direction.size() == 3 ? turning_->turned(direction, time) : direction;
+}
+
+SurfaceTurn Turning::unit_velocity(const Vector& arm) const {
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();
+  r.head(arm.size()) = arm;
+  const Eigen::Vector3d along = axis_.cross(r);
+  return {along.head(arm.size()), axis_.cross(along).head(arm.size())};
+}
+
+// On a plane a point that is held goes round a circle: its way in a step is a chord, which leads to where the
+// plane carries it. On a round surface that would lead below it.
+TurningRate Obstacle::rate(double from, double to, double side) const {
+  const double rate = turning_->rate(from, to), dt = to - from, angle = rate * dt;
+  if (!is_flat()) return {rate, 0.0};
+  const double half = std::sin(0.5 * angle);
+  return {std::sin(angle) / dt, side * 2.0 * half * half / dt};
+}
+
+SurfaceTurn Obstacle::unit_velocity(const Vector& x, const RigidSurface& there, double time) const {
   const Vector touched = x - there.gap * there.normal;
   return turning_->unit_velocity(touched - motion_.displacement(time) - pivot());
 }

@@ -30,6 +30,20 @@ class Motion {
   std::optional<Table> path_;
 };
 
+// How fast a turning surface moves in a step, in parts of what SurfaceTurn has.
+struct TurningRate {
+  double along = 0.0, inward = 0.0;
+};
+// Velocities of a place at rate 1: around the axis, and that once more, which points at the axis.
+struct SurfaceTurn {
+  Vector along, inward;
+
+  double at(TurningRate rate, Eigen::Index c) const {
+    return rate.along * along[c] + rate.inward * inward[c];
+  }
+  Vector at(TurningRate rate) const { return rate.along * along + rate.inward * inward; }
+};
+
 // How something rigid turns about an axis: at a constant rate, or through angles that are piecewise
 // linear in time.
 class Turning {
@@ -41,14 +55,19 @@ class Turning {
   double rate(double from, double to) const {
     return angles_ ? (angles_->at(to)[0] - angles_->at(from)[0]) / (to - from) : rate_;
   }
-  // The velocity at rate 1 of what is there, seen from the axis; in 2D the axis is across the plane.
-  Vector unit_velocity(const Vector& arm) const;
+  // A direction in space, as it has turned since time 0.
+  Vector turned(const Vector& direction, double time) const;
+  // Of what is there, seen from the axis; in 2D the axis is across the plane.
+  SurfaceTurn unit_velocity(const Vector& arm) const;
 
  private:
   Eigen::Vector3d axis_;
   double rate_ = 0.0;
   std::optional<Table> angles_;
 };
+
+// A unit vector across another one: that of the coordinate least along it.
+Vector across(const Vector& axis);
 
 struct RigidSurface {
   double gap;     // signed distance, > 0 outside
@@ -73,10 +92,13 @@ class Obstacle {
   Vector velocity(double from, double to) const { return motion_.velocity(from, to); }
   // Whether its surface moves along itself, beside that, and how fast; mean, between two times.
   bool turns() const { return turning_.has_value(); }
-  double rate(double from, double to) const { return turning_->rate(from, to); }
+  TurningRate rate_before(double time, double dt) const { return rate(time - dt, time, -1.0); }
+  TurningRate rate_after(double time, double dt) const { return rate(time, time + dt, 1.0); }
   bool stands_still() const { return !turns() && motion_.stands_still(); }
-  // The velocity of its surface at rate 1, at the place with that gap and normal.
-  Vector unit_velocity(const Vector& x, const RigidSurface& there, double time) const;
+  // In space.
+  Vector turned(const Vector& direction, double time) const;
+  // Of its surface, at the place with that gap and normal.
+  SurfaceTurn unit_velocity(const Vector& x, const RigidSurface& there, double time) const;
   // Whether the normal is the same everywhere.
   virtual bool is_flat() const { return false; }
   // Where it is flat.
@@ -86,6 +108,7 @@ class Obstacle {
   const Motion& motion() const { return motion_; }
 
  private:
+  TurningRate rate(double from, double to, double side) const;
   // The obstacle where it is at time 0.
   virtual RigidSurface shape_at(const Vector& x) const = 0;
   // A point of the axis that it turns about, at time 0.
