@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <fstream>
+#include <regex>
 
 namespace ilaw::host::testing {
 namespace {
@@ -132,6 +134,121 @@ TEST(Bench, LeavesATableAndAPicture) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_TRUE(std::filesystem::exists(folder / "bench.png"));
   EXPECT_NE(text_of(folder / "bench.svg").find("coulomb"), std::string::npos);
+}
+
+struct PanelEdges {
+  double left, right;
+};
+
+// Of the first picture in a script, in pixels.
+std::vector<PanelEdges> panels_in(const std::string& script) {
+  std::smatch found;
+  EXPECT_TRUE(std::regex_search(script, found, std::regex("size ([0-9.]+),")));
+  const double width = std::stod(found[1]);
+  const std::string picture = script.substr(0, script.find("unset multiplot"));
+  const std::regex edges("set lmargin at screen ([0-9.e-]+)\nset rmargin at screen ([0-9.e-]+)\n");
+  std::vector<PanelEdges> panels;
+  for (std::sregex_iterator k(picture.begin(), picture.end(), edges), end; k != end; ++k)
+    panels.push_back({std::stod((*k)[1]) * width, std::stod((*k)[2]) * width});
+  EXPECT_LE(panels.empty() ? 0.0 : panels.back().right, width);
+  return panels;
+}
+
+std::string file_of_cases(const std::filesystem::path& folder, const json& entries) {
+  std::ofstream(folder / "cases.json") << json{{"benchmarks", entries}};
+  return "--cases " + (folder / "cases.json").string();
+}
+
+// Labels stand once, and take nothing from the panels beside them, however long they are.
+TEST(Bench, DrawsPanelsBesideTheirLabels) {
+  for (const std::size_t letters : {10, 90, 300}) {
+    const auto folder = fresh_folder();
+    const json entry = {{"law", "contact"}, {"what", std::string(letters, 'x')}};
+    std::string nodes = " --nodes";
+    for (std::size_t count = 1; count <= 3; ++count) {
+      nodes += " " + std::to_string(10 * count);
+      const Outcome outcome = run_program("bench " + file_of_cases(folder, json::array({entry})) + nodes +
+                                          " --repetitions 1 --out " + (folder / "out").string());
+      ASSERT_EQ(outcome.code, 0) << outcome.output;
+      const std::string script = text_of(folder / "out/bench.gnuplot");
+      const std::vector<PanelEdges> panels = panels_in(script);
+      ASSERT_EQ(panels.size(), count) << script;
+      double before = 7.0 * static_cast<double>(std::min<std::size_t>(letters, 100));
+      for (const PanelEdges& panel : panels) {
+        EXPECT_GT(panel.left, before);
+        EXPECT_GT(panel.right - panel.left, 300.0);
+        before = panel.right + 20.0;  // numbers of the axis reach beyond its end
+      }
+      const std::string svg = text_of(folder / "out/bench.svg");
+      const std::size_t first = svg.find("contact: xxx");
+      EXPECT_NE(first, std::string::npos);
+      EXPECT_EQ(svg.find("contact: xxx", first + 1), std::string::npos);
+    }
+  }
+}
+
+// As on the command line: all laws of the library.
+TEST(Bench, TakesThePathOfALibraryInAFileOfCases) {
+  const auto folder = fresh_folder();
+  for (const json& entry : {json{{"law", ILAW_VISCOUS_C}}, json{{"library", ILAW_VISCOUS_C}},
+                            json{{"library", ILAW_VISCOUS_C}, {"law", "viscous"}}}) {
+    const json results = measured(file_of_cases(folder, json::array({entry})) + " --nodes 20");
+    ASSERT_EQ(results.size(), 1U) << entry;
+    EXPECT_EQ(results[0]["law"], "viscous");
+    EXPECT_EQ(results[0]["library"], ILAW_VISCOUS_C);
+  }
+}
+
+TEST(Bench, NamesTheEntryOfAFileThatItRefuses) {
+  const auto folder = fresh_folder();
+  const std::pair<json, const char*> refusals[] = {
+      {{{"law", "no_such_law"}}, "no_such_law"},
+      {{{"law", "x.so"}}, "the path of a file has a '/', as ./x.so"},
+      {{{"law", "viscous"}, {"library", "contact"}}, "found no law 'viscous' in "},
+      {{{"law", ILAW_VISCOUS_C}, {"library", "contact"}}, "expected the name of a law of 'library'"},
+      {{{"law", "contact"}, {"touching", 2}}, "touching: found 2, expected a number from 0 to 1"},
+      {{{"law", "contact"}, {"pressed", "all"}}, "must be number, but is string"},
+      {{{"law", "contact"}, {"layout", "zigzag"}}, "layout: found 'zigzag', expected one of aos, soa"},
+      {{{"law", ILAW_VISCOUS_C}, {"delassus", "full"}}, "found H full, which it does not serve"}};
+  for (const auto& [entry, said] : refusals) {
+    const json entries = json::array({{{"law", "contact"}}, entry});
+    const Outcome outcome = run_program("bench " + file_of_cases(folder, entries) + " --nodes 20");
+    EXPECT_EQ(outcome.code, 2) << entry;
+    const std::size_t where = outcome.output.find("cases.json: /benchmarks/1: ");
+    EXPECT_NE(where, std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find(said, std::min(where, outcome.output.size())), std::string::npos)
+        << outcome.output;
+  }
+}
+
+// Of any command, an option that takes a number wants a finite one of its range.
+TEST(Options, RefuseWhatIsNoNumberOfTheirRange) {
+  const std::pair<const char*, const char*> options[] = {
+      {"bench contact --touching", "from 0 to 1"},
+      {"bench contact --pressed", "from 0 to 1"},
+      {"check contact --limit", "from 0.1 to 3600"},
+      {"converge scene.json --out x --factor", "from 1.01 to 10"},
+      {"study scene.json --out x --factor", "from 1.01 to 10"}};
+  for (const auto& [command, allowed] : options)
+    for (const char* value : {"nan", "-nan", "inf", "-1", "4000", "many", "0.5x"}) {
+      const std::string text = command, option = text.substr(text.rfind(' ') + 1);
+      const Outcome outcome = run_program(text + "=" + value);
+      const std::string said = option + ": found '" + value + "', expected a number ";
+      EXPECT_EQ(outcome.code, 2) << text << " " << value;
+      EXPECT_NE(outcome.output.find(said + allowed), std::string::npos) << text << ": " << outcome.output;
+    }
+}
+
+// A law would take another one without a word.
+TEST(Environment, AnInstructionSetThatNoLawKnowsIsRefused) {
+  for (const char* value : {"", "V3", "avx2", "v2", "v5", "v3 "}) {
+    const Outcome outcome = run_program("list", std::string("ILAW_ISA='") + value + "' ");
+    EXPECT_EQ(outcome.code, 2) << value;
+    EXPECT_EQ(outcome.output, std::string("ilaw: ILAW_ISA: found '") + value +
+                                  "', expected one of baseline, v3, v4, or no such variable\n");
+  }
+  for (const char* value : {"baseline", "v3", "v4"})
+    EXPECT_EQ(run_program("list", std::string("ILAW_ISA=") + value + " ").code, 0) << value;
 }
 
 TEST(Bench, RefusesWhatCannotBeMeasured) {

@@ -47,14 +47,29 @@ std::vector<std::string> words_in(const json& entry, const char* key) {
   return words;
 }
 
+double share_in(const json& entry, const char* key, double usual) {
+  const double share = entry.value(key, usual);
+  if (share >= 0.0 && share <= 1.0) return share;
+  throw BenchRefusal(std::string(key) + ": found " + short_text(share) + ", expected a number from 0 to 1");
+}
+
+// A law with a '/' is the path of a library, as on the command line.
+void read_law(const json& entry, const std::string& law_of_folder, BenchCase& bench_case) {
+  bench_case.law = entry.value("law", entry.contains("library") ? "" : law_of_folder);
+  bench_case.library = entry.value("library", bench_case.law);
+  if (bench_case.law.find('/') == std::string::npos) return;
+  if (entry.contains("library"))
+    throw BenchRefusal("law: found '" + bench_case.law + "', expected the name of a law of 'library'");
+  bench_case.law.clear();
+}
+
 std::vector<BenchCase> cases_of_entry(const json& entry, const std::string& law_of_folder) {
   BenchCase base;
-  base.law = entry.value("law", law_of_folder);
-  base.library = entry.value("library", base.law);
+  read_law(entry, law_of_folder, base);
   base.what = entry.value("what", "");
   base.parameters = entry.value("parameters", json::object());
-  base.touching = entry.value("touching", base.touching);
-  base.pressed = entry.value("pressed", base.pressed);
+  base.touching = share_in(entry, "touching", base.touching);
+  base.pressed = share_in(entry, "pressed", base.pressed);
   std::vector<std::vector<std::string>> words;
   for (const BenchWords& option : bench_words()) words.push_back(words_in(entry, option.key));
   return combinations(base, words);
@@ -110,19 +125,24 @@ std::vector<BenchCase> combinations(const BenchCase& base,
 std::vector<BenchCase> read_bench_cases(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) throw BenchRefusal(file.string() + ": no such file, expected one of cases (JSON)");
+  std::string where = file.string() + ": ";
   try {
     const std::string law = std::filesystem::absolute(file).parent_path().filename();
     std::vector<BenchCase> cases;
     const json sections = json::parse(stream);
-    for (const json& entry : sections.at("benchmarks")) {
-      const std::vector<BenchCase> more = cases_of_entry(entry, law);
-      cases.insert(cases.end(), more.begin(), more.end());
+    const json& entries = sections.at("benchmarks");
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      where = file.string() + ": /benchmarks/" + std::to_string(k) + ": ";
+      for (BenchCase& one : cases_of_entry(entries.at(k), law)) {
+        one.entry = where;
+        cases.push_back(std::move(one));
+      }
     }
     return cases;
   } catch (const json::exception& error) {
-    throw BenchRefusal(file.string() + ": " + error.what());
+    throw BenchRefusal(where + error.what());
   } catch (const BenchRefusal& refusal) {
-    throw BenchRefusal(file.string() + ": " + refusal.what());
+    throw BenchRefusal(where + refusal.what());
   }
 }
 

@@ -22,6 +22,7 @@ class BenchRefusal : public std::runtime_error {
 struct BenchCase {
   std::string library, law;  // library: name or path; law empty: every law of the library
   std::string what;          // in words; empty: the parameters say it
+  std::string entry;         // of a file of cases, to begin messages with; empty: of the command line
   // As in a scene; {"per_node": value} gives all nodes that value, one each.
   nlohmann::json parameters = nlohmann::json::object();
   // Words of bench_words below.
@@ -46,8 +47,9 @@ std::string text_of(const BenchCase& bench_case);
 // One case per combination of words, each of which may be a list; throws BenchRefusal.
 std::vector<BenchCase> combinations(const BenchCase& base,
                                     const std::vector<std::vector<std::string>>& words_of_options);
-// The section "benchmarks" of a JSON file. An entry without "law" is of the law that the file's folder is
-// named after. Throws BenchRefusal.
+// The section "benchmarks" of a JSON file. An entry whose "law" is a path, or that has a "library" alone, is
+// of all laws of that library; one with neither of the law that the file's folder is named after. Throws
+// BenchRefusal.
 std::vector<BenchCase> read_bench_cases(const std::filesystem::path& file);
 
 }  // namespace ilaw::host

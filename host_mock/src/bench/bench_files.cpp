@@ -31,20 +31,76 @@ std::string quoted(const std::string& text) {
   return '"' + cell + '"';
 }
 
-// A panel per number of nodes: the ratios as bars, upwards from the last case.
-void write_panels(const std::vector<BenchResult>& results, const std::string& csv, std::ostream& script) {
+// Labels longer than this are cut: with room for any, the panels would be lost beside them.
+constexpr std::size_t most_letters = 110;
+
+// Pixels of the picture: the labels stand once, left of panels that share their rows.
+struct Sheet {
+  static constexpr double letter = 8.0, panel_width = 400.0, between = 40.0, row = 24.0, above = 40.0,
+                          below = 70.0;
+
+  std::size_t panels, rows;
+  double label_width;
+
+  double width() const { return left_of(panels); }
+  double height() const { return above + row * static_cast<double>(rows) + below; }
+  double left_of(std::size_t panel) const {
+    return label_width + static_cast<double>(panel) * (panel_width + between);
+  }
+};
+
+std::size_t letters_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::size_t rows_of(const std::vector<BenchResult>& results, std::int64_t nodes) {
+  return static_cast<std::size_t>(std::count_if(
+      results.begin(), results.end(), [&](const BenchResult& result) { return result.nodes == nodes; }));
+}
+
+Sheet sheet_for(const std::vector<BenchResult>& results) {
+  std::size_t letters = 0;
+  for (const BenchResult& result : results)
+    letters = std::max(letters, letters_of(result.bench_case.law + ": " + text_of(result.bench_case)));
+  return {sizes_of(results).size(), rows_of(results, results.front().nodes),
+          Sheet::letter * static_cast<double>(std::min(letters, most_letters) + 3)};
+}
+
+// The mark at 1 stays in sight where all are faster.
+double longest_bar(const std::vector<BenchResult>& results, std::int64_t nodes) {
+  double longest = 1.0;
+  for (const BenchResult& result : results)
+    if (result.nodes == nodes) longest = std::max(longest, result.ratio);
+  return longest;
+}
+
+void write_common(const Sheet& sheet, std::ostream& script) {
   script
-      << "set style fill solid 0.8\nset boxwidth 0.8\nset grid xtics\nset border 1\nset tics nomirror\nset xrange [0:*]\n"
-         "set key off\nset xlabel 'time over that of the bytes at the triad''s bandwidth'\n"
-         "set arrow from 1, graph 0 to 1, graph 1 nohead dashtype 2\n";
+      << "set style fill solid 0.8\nset boxwidth 0.8\nset grid xtics\nset border 3\nset tics nomirror\n"
+         "set ytics scale 0\nset key off\nset xlabel 'time over that of the bytes at the triad''s bandwidth'\n"
+         "set arrow from 1, graph 0 to 1, graph 1 nohead front dashtype 2\n"
+         "label(law, name) = strlen(law.name) > "
+      << most_letters - 2 << " ? (law.': '.name)[1:" << most_letters << "].'...' : law.': '.name\n"
+      << "set tmargin at screen " << 1.0 - Sheet::above / sheet.height() << "\nset bmargin at screen "
+      << Sheet::below / sheet.height() << "\nset yrange [" << -static_cast<double>(sheet.rows)
+      << " - 0.5:-0.5]\n";
+}
+
+// A panel per number of nodes: the ratios as bars, downwards from the first case.
+void write_panels(const std::vector<BenchResult>& results, const Sheet& sheet, const std::string& csv,
+                  std::ostream& script) {
+  std::size_t panel = 0;
   for (const std::int64_t nodes : sizes_of(results)) {
-    const auto rows = std::count_if(results.begin(), results.end(),
-                                    [&](const BenchResult& result) { return result.nodes == nodes; });
-    script << "row = 0\nset title '" << nodes << " nodes'\nset yrange [" << -rows << ".5:0.5]\nplot " << csv
-           << " skip 1 using (0):($" << nodes_column << " == " << nodes
-           << " ? (row = row - 1, row) : NaN):(0):" << '(' << '$' << ratio_column
-           << "):(row - 0.4):(row + 0.4):ytic(strcol(" << law_column << ").': '.strcol(" << law_column + 1
-           << ")) with boxxyerror linecolor rgb '#0072B2'\n";
+    const double left = sheet.left_of(panel);
+    script << "set lmargin at screen " << left / sheet.width() << "\nset rmargin at screen "
+           << (left + Sheet::panel_width) / sheet.width()
+           << "\nset xrange [0:" << 1.05 * longest_bar(results, nodes) << "]\nrow = 0\nset title '" << nodes
+           << " nodes'\nplot " << csv << " skip 1 using (0):($" << nodes_column << " == " << nodes
+           << " ? (row = row - 1, row) : NaN):(0):($" << ratio_column << "):(row - 0.4):(row + 0.4)";
+    if (panel == 0) script << ":ytic(label(strcol(" << law_column << "), strcol(" << law_column + 1 << ")))";
+    script << " with boxxyerror linecolor rgb '#0072B2'\nset format y ''\nset ytics autofreq\n";
+    ++panel;
   }
 }
 
@@ -91,14 +147,16 @@ void write_bench(const std::vector<BenchResult>& results, const std::filesystem:
 }
 
 bool draw_bench(const std::vector<BenchResult>& results, const std::filesystem::path& folder) {
-  const std::size_t panels = sizes_of(results).size(), rows = results.size() / panels + 1;
+  const Sheet sheet = sheet_for(results);
   return draw_by_gnuplot(folder / "bench.gnuplot", [&](std::ostream& script) {
     for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
-      script << "reset\nset datafile separator comma\nset terminal " << terminal << " size " << 700 * panels
-             << ',' << 120 + 24 * rows << " font 'sans,11' noenhanced background rgb 'white'\nset output "
-             << drawn_name(folder / (std::string("bench") + kind)) << "\nset multiplot layout 1," << panels
-             << "\n";
-      write_panels(results, in_quotes((folder / "bench.csv").string()), script);
+      script << "reset\nset encoding utf8\nset datafile separator comma\nset terminal " << terminal
+             << " size " << sheet.width() << ',' << sheet.height()
+             << " font 'sans,11' noenhanced background rgb 'white'\nset output "
+             << drawn_name(folder / (std::string("bench") + kind)) << "\n";
+      write_common(sheet, script);
+      script << "set multiplot\n";
+      write_panels(results, sheet, in_quotes((folder / "bench.csv").string()), script);
       script << "unset multiplot\nunset output\n";
     }
   });

@@ -3,6 +3,7 @@
 
 #include "base/running_law.hpp"
 #include "base/scene_error.hpp"
+#include "base/words.hpp"
 #include "contact/law_setup.hpp"
 #include "scene/arguments.hpp"
 
@@ -55,6 +56,13 @@ void check_form(const ilaw_law& law, const BenchCase& bench_case) {
 
 }  // namespace
 
+std::vector<std::string> laws_of(const ilaw::library& library) {
+  std::vector<std::string> laws;
+  for (std::uint32_t k = 0; k < library.plugin().law_count; ++k)
+    laws.emplace_back(library.plugin().laws[k]->id);
+  return laws;
+}
+
 BenchCase with_required_parameters(BenchCase bench_case, const ilaw_law& law) {
   for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
     const ilaw_parameter& p = *law.parameters[k];
@@ -67,7 +75,9 @@ BenchCase with_required_parameters(BenchCase bench_case, const ilaw_law& law) {
 BenchLaw::BenchLaw(const ilaw::library& library, const BenchCase& bench_case)
     : name_(bench_case.law), path_(library.path()) {
   const ilaw_law* law = library.law(bench_case.law);
-  if (!law) throw BenchRefusal("found no law '" + bench_case.law + "' in " + path_);
+  if (!law)
+    throw BenchRefusal("found no law '" + bench_case.law + "' in " + path_ + ", expected one of " +
+                       joined(laws_of(library)));
   check_form(*law, bench_case);
   if (bench_case.floats && law->extension)
     floats_ = static_cast<const ilaw_float_functions*>(law->extension(ILAW_FLOAT));

@@ -14,6 +14,8 @@
 
 namespace ilaw::host {
 
+std::vector<std::string> laws_of(const ilaw::library& library);
+
 // A case with every parameter that its law requires: where one is missing, a plain value of its range is
 // taken, so that any law can be measured.
 BenchCase with_required_parameters(BenchCase bench_case, const ilaw_law& law);

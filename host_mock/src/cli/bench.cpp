@@ -52,14 +52,42 @@ json parameters_of(const BenchOptions& options) {
 }
 
 // Of a library or of the one law in it that is asked for.
-std::vector<std::string> laws_of(const ilaw::library& library, const std::string& wanted) {
-  std::vector<std::string> laws;
-  for (std::uint32_t k = 0; k < library.plugin().law_count; ++k) {
-    const std::string id = library.plugin().laws[k]->id;
-    if (wanted.empty() || id == wanted) laws.push_back(id);
+std::vector<std::string> laws_asked_for(const ilaw::library& library, const std::string& wanted) {
+  if (wanted.empty()) return laws_of(library);
+  if (library.law(wanted)) return {wanted};
+  throw BenchRefusal("--law: found '" + wanted + "', which is not in " + library.path());
+}
+
+// What is refused of a case of a file names the entry.
+template <class Work>
+auto naming_entry(const BenchCase& bench_case, Work&& work) {
+  try {
+    return work();
+  } catch (const BenchRefusal& refusal) {
+    throw BenchRefusal(bench_case.entry + refusal.what());
+  } catch (const ilaw::error& refusal) {
+    throw BenchRefusal(bench_case.entry + refusal.what());
   }
-  if (laws.empty()) throw BenchRefusal("--law: found '" + wanted + "', which is not in " + library.path());
-  return laws;
+}
+
+// A case for each law of the library where it names none.
+std::vector<BenchCase> with_laws(BenchCase bench_case, Libraries& libraries) {
+  if (!bench_case.law.empty()) return {bench_case};
+  std::vector<BenchCase> cases;
+  for (const std::string& law : laws_of(libraries.open(bench_case.library))) {
+    bench_case.law = law;
+    cases.push_back(bench_case);
+  }
+  return cases;
+}
+
+std::vector<BenchCase> cases_of_file(const std::string& file, const std::string& wanted,
+                                     Libraries& libraries) {
+  std::vector<BenchCase> cases;
+  for (const BenchCase& entry : read_bench_cases(file))
+    for (const BenchCase& one : naming_entry(entry, [&] { return with_laws(entry, libraries); }))
+      if (wanted.empty() || one.law == wanted) cases.push_back(one);
+  return cases;
 }
 
 std::vector<BenchCase> cases_of(const BenchOptions& options, Libraries& libraries) {
@@ -68,19 +96,22 @@ std::vector<BenchCase> cases_of(const BenchOptions& options, Libraries& librarie
   base.parameters = parameters_of(options);
   for (const std::string& name : options.laws) {
     base.library = name;
-    for (const std::string& law : laws_of(libraries.open(name), options.base.law)) {
+    for (const std::string& law : laws_asked_for(libraries.open(name), options.base.law)) {
       base.law = law;
       const std::vector<BenchCase> more = combinations(base, options.words);
       cases.insert(cases.end(), more.begin(), more.end());
     }
   }
-  for (const std::string& file : options.case_files)
-    for (const BenchCase& one : read_bench_cases(file))
-      if (options.base.law.empty() || one.law == options.base.law) cases.push_back(one);
+  for (const std::string& file : options.case_files) {
+    const std::vector<BenchCase> more = cases_of_file(file, options.base.law, libraries);
+    cases.insert(cases.end(), more.begin(), more.end());
+  }
   if (cases.empty()) throw BenchRefusal("found nothing to measure, expected a law, a library or --cases");
   for (BenchCase& one : cases)
-    if (const ilaw_law* law = libraries.open(one.library).law(one.law))
-      one = with_required_parameters(one, *law);
+    naming_entry(one, [&] {
+      if (const ilaw_law* law = libraries.open(one.library).law(one.law))
+        one = with_required_parameters(one, *law);
+    });
   return cases;
 }
 
@@ -120,7 +151,8 @@ int bench(const BenchOptions& options) {
   try {
     cases = cases_of(options, libraries);
     for (const BenchCase& one : cases)
-      for (const std::int64_t nodes : options.nodes) check_bench(libraries.open(one.library), one, nodes);
+      for (const std::int64_t nodes : options.nodes)
+        naming_entry(one, [&] { check_bench(libraries.open(one.library), one, nodes); });
   } catch (const BenchRefusal& refusal) {
     complain(refusal.what());
     return exit_bad_input;
@@ -174,10 +206,10 @@ void add_bench(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   add_words(*command, *options);
   command->add_option("--touching", options->base.touching, "Share of the nodes whose gap is closed")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(number_from(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--pressed", options->base.pressed, "Share of those that approach")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(number_from(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--parameters", options->parameters,
                       "In JSON, as in a scene; {\"per_node\": value} gives it per node. Where one is missing "

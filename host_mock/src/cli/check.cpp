@@ -75,7 +75,7 @@ void add_check(CLI::App& app, Action& chosen) {
       ->add_option("--seed", options->check.seed, "Of the random numbers: the same seed, the same findings")
       ->capture_default_str();
   command->add_option("--limit", options->check.limits.seconds, "Seconds for each rule and law")
-      ->check(CLI::Range(0.1, 3600.0))
+      ->check(number_from(0.1, 3600.0))
       ->capture_default_str();
   command->add_flag("--json", options->as_json, "Print an array of objects, one for each rule and law");
   command->add_option("--junit", options->junit, "Write a report in JUnit's XML, too");

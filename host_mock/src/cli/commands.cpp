@@ -11,6 +11,17 @@
 
 namespace ilaw::host {
 
+CLI::Validator number_from(double least, double most) {
+  const std::string allowed = text_of("from %g", least) + text_of(" to %g", most);
+  const auto complaint = [=](const std::string& found) {
+    double value = 0.0;
+    const bool is_number = CLI::detail::lexical_cast(found, value);
+    if (is_number && value >= least && value <= most) return std::string();
+    return "found '" + found + "', expected a number " + allowed;
+  };
+  return {complaint, allowed};
+}
+
 void add_threads(CLI::App& command, int& threads) {
   command.add_option("--threads", threads, "Threads; any number gives the same bits")
       ->check(CLI::Range(1, 1024))
@@ -29,7 +40,8 @@ Sweep SweepOptions::over(Sweep said) const {
 void add_sweep(CLI::App& command, SweepOptions& options, const std::string& levels,
                const CLI::Range& allowed) {
   command.add_option("--levels", options.levels, levels)->check(allowed);
-  command.add_option("--factor", options.factor, "Refinement from run to run")->check(CLI::Range(1.01, 10.0));
+  command.add_option("--factor", options.factor, "Refinement from run to run")
+      ->check(number_from(1.01, 10.0));
   command.add_option("--refine", options.refine, "time, or mesh (with the time step)")
       ->check(CLI::IsMember({"time", "mesh"}));
 }

@@ -28,6 +28,9 @@ void add_check(CLI::App& app, Action& chosen);
 void add_stress(CLI::App& app, Action& chosen);
 void add_bench(CLI::App& app, Action& chosen);
 
+// A finite number of a range, both ends included; CLI::Range lets nan pass.
+CLI::Validator number_from(double least, double most);
+
 // The option --threads, for commands that run scenes.
 void add_threads(CLI::App& command, int& threads);
 void set_threads(int threads);

@@ -75,6 +75,7 @@ int run_command(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   ilaw::host::open_standard_streams();
+  if (!ilaw::host::knows_instruction_set()) return ilaw::host::exit_bad_input;
   const int code = ilaw::host::after_output(run_command(argc, argv));
   ilaw::host::end_guard();
   return code;

@@ -65,6 +65,16 @@ void warn_of_search_path() {
   }
 }
 
+bool knows_instruction_set() {
+  const char* found = std::getenv("ILAW_ISA");
+  if (!found) return true;
+  for (const char* known : {"baseline", "v3", "v4"})
+    if (std::string_view(found) == known) return true;
+  complain(std::string("ILAW_ISA: found '") + found +
+           "', expected one of baseline, v3, v4, or no such variable");
+  return false;
+}
+
 int after_output(int code) {
   errno = 0;
   const bool had_failed = std::ferror(stdout) != 0;

@@ -21,6 +21,9 @@ void complain(std::string_view text);
 // Of folders in ILAW_PATH that the loader leaves out.
 void warn_of_search_path();
 
+// Complains of an instruction set in ILAW_ISA that no law knows: a law would take another one in silence.
+bool knows_instruction_set();
+
 // code, or exit_failed where stdout did not take all that was printed.
 int after_output(int code);
 
