@@ -194,7 +194,7 @@ void report_null(const Subject& subject) {
 }
 
 void report_clean(const Subject& subject) {
-  for_trials(subject, [](const Trial& trial, Draw& draw) {
+  for_trials_per_node_too(subject, [](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw, {5, 2}, true);
     for (const Results& found : run(trial, script)) {
       if (found.code != ILAW_OK) continue;
@@ -214,7 +214,7 @@ void report_clean(const Subject& subject) {
 
 // The largest stable step of a batch is the smallest of its nodes.
 void stable_step(const Subject& subject) {
-  for_trials(
+  for_trials_per_node_too(
       subject,
       [](const Trial& trial, Draw& draw) {
         const Script script = draw_script(trial, draw, {5, 1}, true);

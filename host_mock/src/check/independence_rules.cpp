@@ -10,7 +10,7 @@ namespace {
 
 // The script in this layout gives the bits of the plain one.
 void in_layout(const Subject& subject, const Layout& layout, const char* how) {
-  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+  for_trials_per_node_too(subject, [&](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw);
     expect_same(trial, script, run(trial, script), run(trial, script, layout), how);
     return true;
@@ -32,7 +32,7 @@ void list_64(const Subject& subject) {
     in_layout(subject, {.list = List::of_64_bits, .index_base = base, .spare = 4}, "by a list of 64 bits");
 }
 void in_place(const Subject& subject) {
-  for_trials(
+  for_trials_per_node_too(
       subject,
       [](const Trial& trial, Draw& draw) {
         if (trial.info.state_size == 0) return false;
@@ -44,35 +44,8 @@ void in_place(const Subject& subject) {
       "the law has no state");
 }
 
-// The results of some nodes alone, as they are among all.
-void expect_part(const Trial& trial, const Script& script, const std::vector<Results>& all,
-                 const std::vector<std::size_t>& nodes, const char* how) {
-  Layout layout;
-  layout.nodes = nodes;
-  const std::vector<Results> part = run(trial, script, layout);
-  const std::size_t d = script[0].dimension, s = trial.info.state_size;
-  for (std::size_t k = 0; k < script.size(); ++k)
-    for (std::size_t j = 0; j < nodes.size(); ++j) {
-      const auto same = [&](const std::vector<double>& a, const std::vector<double>& b, std::size_t width) {
-        return a.empty() || std::equal(a.begin() + static_cast<std::ptrdiff_t>(nodes[j] * width),
-                                       a.begin() + static_cast<std::ptrdiff_t>((nodes[j] + 1) * width),
-                                       b.begin() + static_cast<std::ptrdiff_t>(j * width));
-      };
-      const bool equal = same(all[k].impulse, part[k].impulse, d) && same(all[k].state, part[k].state, s) &&
-                         same(all[k].velocity, part[k].velocity, d) &&
-                         same(all[k].energy, part[k].energy, ILAW_ENERGY_COUNT) &&
-                         (all[k].status.empty() || all[k].status[nodes[j]] == part[k].status[j]);
-      if (!equal)
-        fail(trial, script[k], nodes[j],
-             std::string(how) + ", step " + std::to_string(k) + ": node " + std::to_string(nodes[j]) +
-                 " got the impulse " + text_of(part[k].vector(part[k].impulse, j, d), d) + ", among all " +
-                 text_of(all[k].vector(all[k].impulse, nodes[j], d), d),
-             "the same bits");
-    }
-}
-
 void order(const Subject& subject) {
-  for_trials(subject, [](const Trial& trial, Draw& draw) {
+  for_trials_per_node_too(subject, [](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw);
     std::vector<std::size_t> nodes;
     for (std::size_t i = script[0].count; i-- > 0;) nodes.push_back(i);
@@ -84,7 +57,7 @@ void order(const Subject& subject) {
 }
 
 void parts(const Subject& subject) {
-  for_trials(subject, [](const Trial& trial, Draw& draw) {
+  for_trials_per_node_too(subject, [](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw, {13, 3});
     const std::vector<Results> all = run(trial, script);
     for (std::size_t i = 0; i < 4; ++i) expect_part(trial, script, all, {3 * i}, "alone");
@@ -95,7 +68,7 @@ void parts(const Subject& subject) {
 
 // Many nodes take other loops than few.
 void large_batch(const Subject& subject) {
-  for_trials(subject, [](const Trial& trial, Draw& draw) {
+  for_trials_per_node_too(subject, [](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw, {300, 1});
     const std::vector<Results> all = run(trial, script);
     for (const std::size_t i : {std::size_t{0}, std::size_t{65}, std::size_t{150}, std::size_t{299}})
@@ -105,7 +78,7 @@ void large_batch(const Subject& subject) {
 }
 
 void outputs(const Subject& subject) {
-  for_trials(subject, [](const Trial& trial, Draw& draw) {
+  for_trials_per_node_too(subject, [](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw);
     const std::vector<Results> all = run(trial, script);
     for (const std::uint32_t asked : {0U, std::uint32_t{ILAW_OUTPUT_VELOCITY},
@@ -120,7 +93,7 @@ void outputs(const Subject& subject) {
 void shared_value(const Subject& subject) {
   constexpr std::vector<double> Inputs::*shared[] = {&Inputs::delassus, &Inputs::area, &Inputs::normal,
                                                      &Inputs::tangent};
-  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+  for_trials_per_node_too(subject, [&](const Trial& trial, Draw& draw) {
     Inputs in = draw_script(trial, draw, {5, 1})[0];
     Inputs first_alone = in;
     for (const auto array : shared) {
@@ -147,7 +120,7 @@ void shared_value(const Subject& subject) {
 }
 
 void gap_offset(const Subject& subject) {
-  for_trials(
+  for_trials_per_node_too(
       subject,
       [](const Trial& trial, Draw& draw) {
         if (!trial.reads(ILAW_INPUT_GAP)) return false;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/inputs.hpp"
 
+#include "check/sandbox.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -77,6 +79,31 @@ Inputs empty_inputs(const Trial& trial, std::size_t count) {
   return in;
 }
 
+// Most values are of the size of the constant, so that nodes differ, but not in all that happens to them.
+double draw_near(const ilaw_parameter& p, double constant, Draw& draw) {
+  const double value = constant * draw.within(0.5, 2.0);
+  const bool anywhere = draw.one_in(4) || !std::isfinite(constant) || constant == 0.0;
+  if (anywhere || p.kind == ILAW_PARAMETER_COUNT || !in_range(p, value)) return draw_value(p, draw).number;
+  return value;
+}
+
+// Parameters of a node that the law accepts as constants, or those of the trial.
+void draw_parameters(Inputs& in, std::size_t node, const Trial& trial, Draw& draw) {
+  constexpr int attempts = 8;
+  const auto set = [&](const auto& value_of) {
+    for (std::uint32_t k = 0; k < trial.info.per_node_parameter_count; ++k) {
+      const char* name = trial.info.per_node_parameters[k];
+      in.per_node[k][node] =
+          value_of(*parameter_of(trial.law, name), number_of(trial.law, trial.values, name));
+    }
+  };
+  for (int k = 0; k < attempts; ++k) {
+    set([&](const ilaw_parameter& p, double constant) { return draw_near(p, constant, draw); });
+    if (create(trial.law, trial.setup, constants_of(trial, in, node))) return;
+  }
+  set([](const ilaw_parameter&, double constant) { return constant; });
+}
+
 // What belongs to the nodes and stays.
 void draw_fixed(Inputs& in, const Trial& trial, Draw& draw) {
   const bool has_offset = draw.one_in(2);
@@ -87,9 +114,9 @@ void draw_fixed(Inputs& in, const Trial& trial, Draw& draw) {
     if (!in.normal.empty()) in.set_vector(in.normal, i, axes[0]);
     if (!in.tangent.empty()) in.set_vector(in.tangent, i, axes[1]);
   }
-  for (std::uint32_t k = 0; k < trial.info.per_node_parameter_count; ++k)
-    for (double& value : in.per_node[k])
-      value = number_of(trial.law, trial.values, trial.info.per_node_parameters[k]);
+  if (trial.info.per_node_parameter_count == 0) return;
+  for (std::size_t i = 0; i < in.count; ++i) draw_parameters(in, i, trial, draw);
+  set_setting(trial.text());  // which create has changed
 }
 
 void draw_motion(Inputs& in, bool isotropic, bool without_force, Draw& draw) {
@@ -108,6 +135,13 @@ void draw_motion(Inputs& in, bool isotropic, bool without_force, Draw& draw) {
 }
 
 }  // namespace
+
+Values constants_of(const Trial& trial, const Inputs& in, std::size_t node) {
+  Values values = trial.values;
+  for (std::uint32_t k = 0; k < trial.info.per_node_parameter_count; ++k)
+    values = with(values, {trial.info.per_node_parameters[k], ILAW_VALUE_NUMBER, in.per_node[k][node]});
+  return values;
+}
 
 Matrix transposed(const Matrix& m) {
   return {Vector{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};

@@ -43,8 +43,11 @@ struct ScriptSize {
   std::size_t nodes = 13, steps = 5;
 };
 // Random nodes with motions and gaps of one size, most of them near contact. H is a multiple of the identity
-// where "isotropic" says so, or the law can be given no other.
+// where "isotropic" says so, or the law can be given no other. Parameters per node differ from node to node.
 Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size = {}, bool isotropic = false);
+
+// The parameters of the trial with those of one node as constants.
+Values constants_of(const Trial& trial, const Inputs& in, std::size_t node);
 
 // Axes of a node: rows are normal and tangents, right-handed.
 Matrix draw_axes(std::size_t dimension, Draw& draw);

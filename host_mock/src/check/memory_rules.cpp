@@ -11,7 +11,7 @@ using Flush = GuardedPages::Flush;
 
 // A fault ends the process, and is the finding of the rule.
 void between_guards(const Subject& subject, const GuardedPages::Guarded& guarded, std::uint32_t outputs) {
-  for_trials(subject, [&](const Trial& trial, Draw& draw) {
+  for_trials_per_node_too(subject, [&](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw, {13, 2});
     for (const Flush flush : {Flush::with_the_end, Flush::with_the_beginning})
       for (const Layout& layout :
@@ -38,7 +38,7 @@ void unneeded(const Subject& subject) {
 }
 
 void beside(const Subject& subject) {
-  for_trials(subject, [](const Trial& trial, Draw& draw) {
+  for_trials_per_node_too(subject, [](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw, {13, 2});
     for (const List list : {List::none, List::of_32_bits, List::of_64_bits}) {
       const Layout layout{.order = Order::spread, .list = list, .spare = list == List::none ? 0U : 6U};

@@ -231,6 +231,27 @@ void table_constant(const Subject& subject) {
       "no parameter may be a table");
 }
 
+// Some nodes, each with its own values as constants, as they are among nodes with others.
+bool expect_own_constants(const Trial& trial, Draw& draw) {
+  const std::optional<Values> values = given_per_node(trial);
+  if (!values) return false;
+  const Trial varied(trial.law, trial.setup, *values);
+  const Script script = draw_script(varied, draw, {13, 3});
+  const std::vector<Results> all = run(varied, script);
+  bool judged = false;
+  for (const std::size_t node : {0U, 2U, 5U, 7U, 12U}) {
+    const Values own = constants_of(varied, script[0], node);
+    const bool has_infinite =
+        std::any_of(own.begin(), own.end(), [](const Value& v) { return std::isinf(v.number); });
+    if (has_infinite) continue;  // as a constant it may be another law
+    const Trial alone(trial.law, trial.setup, own);
+    if (alone.info.state_size != varied.info.state_size) continue;
+    expect_part(alone, script, all, {node}, "with its values as constants");
+    judged = true;
+  }
+  return judged;
+}
+
 void node_constant(const Subject& subject) {
   for_trials(
       subject,
@@ -241,7 +262,7 @@ void node_constant(const Subject& subject) {
           if (may_be(p, ILAW_MAY_BE_PER_NODE) && in_range(p, number_of(trial.law, trial.values, p.name)))
             judged = expect_no_change(trial, {p.name, ILAW_VALUE_PER_NODE}, draw) || judged;
         }
-        return judged;
+        return expect_own_constants(trial, draw) || judged;
       },
       "no parameter may be given per node");
 }
@@ -337,7 +358,8 @@ std::vector<Rule> parameter_rules() {
            "ilaw.h, ilaw_argument.values", Needs::instance, table_shape},
           {"table-constant", "A table of one value gives the bits of that value.", "ilaw.h, ILAW_VALUE_TABLE",
            Needs::motion, table_constant},
-          {"per-node-constant", "One value at all nodes gives the bits of that value.",
+          {"per-node-constant",
+           "A value per node gives the bits that it gives as a constant, whatever other nodes have.",
            "ilaw.h, ILAW_VALUE_PER_NODE", Needs::motion, node_constant},
           {"per-node-range", "A value per node that is out of range is bad input at its node.",
            "ilaw.h, ILAW_VALUE_PER_NODE", Needs::motion, node_range}};

@@ -12,6 +12,25 @@ constexpr std::size_t trials_wanted = 24;
 
 Draw draw_of(const Subject& subject, std::size_t trial) { return Draw(subject.seed * 1000003U + trial); }
 
+using Look = std::function<bool(const Trial& trial, Draw& draw)>;
+
+// Whether one could be judged.
+bool look_at_trials(const Subject& subject, const Look& look) {
+  const std::vector<Setup> setups = setups_of(subject.law);
+  const std::size_t count = std::max(setups.size(), trials_wanted);
+  bool judged = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Setup& setup = setups[k % setups.size()];
+    Draw draw = draw_of(subject, k);
+    const std::optional<Values> values = draw_values(subject.law, setup, draw);
+    if (!values) continue;
+    const Trial trial(subject.law, setup, *values);
+    set_setting(trial.text());
+    judged = look(trial, draw) || judged;
+  }
+  return judged;
+}
+
 }  // namespace
 
 const std::vector<Rule>& rules() {
@@ -28,21 +47,20 @@ const std::vector<Rule>& rules() {
   return all;
 }
 
-void for_trials(const Subject& subject, const std::function<bool(const Trial& trial, Draw& draw)>& look,
-                const char* otherwise) {
-  const std::vector<Setup> setups = setups_of(subject.law);
-  const std::size_t count = std::max(setups.size(), trials_wanted);
-  bool judged = false;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Setup& setup = setups[k % setups.size()];
-    Draw draw = draw_of(subject, k);
-    const std::optional<Values> values = draw_values(subject.law, setup, draw);
-    if (!values) continue;
-    const Trial trial(subject.law, setup, *values);
-    set_setting(trial.text());
-    judged = look(trial, draw) || judged;
-  }
-  if (!judged) throw NotJudged{otherwise};
+void for_trials(const Subject& subject, const Look& look, const char* otherwise) {
+  if (!look_at_trials(subject, look)) throw NotJudged{otherwise};
+}
+
+void for_trials_per_node_too(const Subject& subject, const Look& look, const char* otherwise) {
+  const auto look_twice = [&](const Trial& trial, Draw& draw) {
+    const bool judged = look(trial, draw);
+    const std::optional<Values> values = given_per_node(trial);
+    if (!values) return judged;
+    const Trial varied(trial.law, trial.setup, *values);
+    set_setting(varied.text());
+    return look(varied, draw) || judged;
+  };
+  if (!look_at_trials(subject, look_twice)) throw NotJudged{otherwise};
 }
 
 Trial any_trial(const Subject& subject) {

@@ -59,6 +59,11 @@ std::vector<Rule> symmetry_rules();
 void for_trials(const Subject& subject, const std::function<bool(const Trial& trial, Draw& draw)>& look,
                 const char* otherwise = "the law accepted no parameters");
 
+// As for_trials, and each trial again with what may be given per node given so.
+void for_trials_per_node_too(const Subject& subject,
+                             const std::function<bool(const Trial& trial, Draw& draw)>& look,
+                             const char* otherwise = "the law accepted no parameters");
+
 // Some parameters that the law accepts, in the first setup that it serves.
 Trial any_trial(const Subject& subject);
 

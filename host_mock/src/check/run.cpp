@@ -306,4 +306,30 @@ void expect_same(const Trial& trial, const Script& script, const std::vector<Res
            "the same bits");
 }
 
+void expect_part(const Trial& trial, const Script& script, const std::vector<Results>& all,
+                 const std::vector<std::size_t>& nodes, const char* how) {
+  Layout layout;
+  layout.nodes = nodes;
+  const std::vector<Results> part = run(trial, script, layout);
+  const std::size_t d = script[0].dimension, s = trial.info.state_size;
+  for (std::size_t k = 0; k < script.size(); ++k)
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
+      const auto same = [&](const std::vector<double>& a, const std::vector<double>& b, std::size_t width) {
+        return a.empty() || std::equal(a.begin() + static_cast<std::ptrdiff_t>(nodes[j] * width),
+                                       a.begin() + static_cast<std::ptrdiff_t>((nodes[j] + 1) * width),
+                                       b.begin() + static_cast<std::ptrdiff_t>(j * width), same_bits);
+      };
+      const bool equal = same(all[k].impulse, part[k].impulse, d) && same(all[k].state, part[k].state, s) &&
+                         same(all[k].velocity, part[k].velocity, d) &&
+                         same(all[k].energy, part[k].energy, ILAW_ENERGY_COUNT) &&
+                         (all[k].status.empty() || all[k].status[nodes[j]] == part[k].status[j]);
+      if (!equal)
+        fail(trial, script[k], nodes[j],
+             std::string(how) + ", step " + std::to_string(k) + ": node " + std::to_string(nodes[j]) +
+                 " got the impulse " + text_of(part[k].vector(part[k].impulse, j, d), d) + ", among all " +
+                 text_of(all[k].vector(all[k].impulse, nodes[j], d), d),
+             "the same bits");
+    }
+}
+
 }  // namespace ilaw::check

@@ -119,6 +119,9 @@ std::optional<Difference> difference(const Results& a, const Results& b, std::ui
 void expect_same(const Trial& trial, const Script& script, const std::vector<Results>& expected,
                  const std::vector<Results>& found, const std::string& how,
                  std::uint32_t outputs = all_outputs);
+// Throws the finding where some nodes of a script get other results in a batch of their own than among "all".
+void expect_part(const Trial& trial, const Script& script, const std::vector<Results>& all,
+                 const std::vector<std::size_t>& nodes, const char* how);
 [[noreturn]] void fail(const Trial& trial, const Inputs& in, std::size_t node, const std::string& seen,
                        const std::string& allowed);
 std::string text_of(double value);

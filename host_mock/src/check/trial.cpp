@@ -239,4 +239,19 @@ std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw&
   return std::nullopt;
 }
 
+std::optional<Values> given_per_node(const Trial& trial) {
+  Values values = trial.values;
+  bool varies = false;
+  for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
+    const ilaw_parameter& p = *trial.law.parameters[k];
+    if (p.kind == ILAW_PARAMETER_CHOICE || !(p.may_be & ILAW_MAY_BE_PER_NODE)) continue;
+    const double constant = number_of(trial.law, trial.values, p.name);
+    const Values more = with(values, {p.name, ILAW_VALUE_PER_NODE, constant});
+    if (!create(trial.law, trial.setup, more)) continue;
+    values = more;
+    varies = true;
+  }
+  return varies ? std::optional(values) : std::nullopt;
+}
+
 }  // namespace ilaw::check

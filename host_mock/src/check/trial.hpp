@@ -118,5 +118,8 @@ std::vector<Setup> setups_of(const ilaw_law& law);
 Value draw_value(const ilaw_parameter& p, Draw& draw);
 // Draws values until the law accepts them in a setup; none where it accepts nothing.
 std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw& draw);
+// With all parameters given per node that may be, and go together with the others so; what each was stays as
+// its number. None where there is no such parameter.
+std::optional<Values> given_per_node(const Trial& trial);
 
 }  // namespace ilaw::check
