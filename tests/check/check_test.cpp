@@ -122,6 +122,7 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
       {"call-refused: silent", ", gave no reason"},
       {"report-null: refused", "without a report evaluate returned -"},
       {"report-clean: step", "stable_velocity_step nan"},
+      {"report-clean: step beside bad", "stable_velocity_step nan"},
       {"report-clean: negative step", "stable_velocity_step -0.5"},
       {"report-clean: step per node", "stable_velocity_step nan"},
       {"batch-order: pack", "in reverse order, step "},

@@ -139,6 +139,7 @@ static int32_t step_all(const ilaw_instance* made, const ilaw_batch* b, ilaw_rep
     report->reason = breaks("bad-input-report") ? NULL : reason;
     report->stable_velocity_step = breaks("stable-step") ? b->area.values[0] : INFINITY;
     if (breaks("report-clean: step")) report->stable_velocity_step = NAN;
+    if (breaks("report-clean: step beside bad") && bad > 0) report->stable_velocity_step = NAN;
     if (breaks("report-clean: negative step")) report->stable_velocity_step = -0.5;
     if (breaks("report-clean: step per node") && made->damping.per_node) report->stable_velocity_step = NAN;
     if (breaks("sizes-long: report") && report->struct_size > sizeof *report)

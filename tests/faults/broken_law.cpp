@@ -65,6 +65,8 @@ std::int32_t answer(const ilaw_batch& batch, ilaw_report& report) {
   if (breaks("nan_impulse")) batch.impulse.values[last * batch.impulse.node_stride] = std::nan("");
   if (breaks("rounding")) std::fesetround(FE_UPWARD);
   if (breaks("traps")) feenableexcept(FE_DIVBYZERO);
+  if (breaks("nan_step")) report.stable_velocity_step = std::nan("");
+  if (breaks("negative_step")) report.stable_velocity_step = -0.5;
   if (breaks("code")) return 57;
   if (breaks("negative_code")) return ILAW_UNSUPPORTED;
   report.bad_count = 1;

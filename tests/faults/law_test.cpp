@@ -60,6 +60,8 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"negative_energy", "node 1: found a dissipated energy of -0.5, expected none below 0"},
         Broken{"nan_energy", "node 1: found the energy nan, expected a number"},
         Broken{"nan_impulse", "node 1: found the impulse nan, expected a finite one"},
+        Broken{"nan_step", "it reported the stable step nan s, expected none below 0"},
+        Broken{"negative_step", "it reported the stable step -0.500000 s, expected none below 0"},
         Broken{"v_free", "it wrote to its input v_free"}, Broken{"gap", "it wrote to its input gap"},
         Broken{"rounding", "it changed how the processor rounds"},
         Broken{"traps", "it changed how the processor rounds"},

@@ -57,6 +57,9 @@ Answer answer_of(const ilaw_batch& batch, Call call) {
     before.restore();
     return broken("it changed how the processor rounds, traps or flushes, expected all as it was");
   }
+  // NaN is smaller than no step: it would pass for no limit at all.
+  if (const double step = answer.report.stable_velocity_step; !(step >= 0.0))
+    return broken("it reported the stable step " + std::to_string(step) + " s, expected none below 0");
   if (answer.code == ILAW_OK) return answer;
   if (answer.code > ILAW_BAD_NODES || answer.code < ILAW_OUT_OF_MEMORY)
     return broken("it returned the code " + std::to_string(answer.code) + ", which ABI 1 does not know");
