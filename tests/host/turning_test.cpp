@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <Eigen/Geometry>
+#include <complex>
 #include <random>
 
 namespace ilaw::host::testing {
