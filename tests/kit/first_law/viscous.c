@@ -49,7 +49,8 @@ static int32_t create(const ilaw_setup* setup, ilaw_instance** instance, char* m
   if (!(*instance = malloc(sizeof **instance))) return ILAW_OUT_OF_MEMORY;
   (*instance)->viscosity = value;
   (*instance)->dimension = setup->dimension;
-  (*instance)->inputs = ILAW_INPUT_GAP | ILAW_INPUT_AREA | (setup->frame ? ILAW_INPUT_NORMAL : 0);
+  (*instance)->inputs =
+      ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA | (setup->frame ? ILAW_INPUT_NORMAL : 0);
   return ILAW_OK;
 }
 
@@ -84,8 +85,8 @@ static const char* wrong_arrays(const ilaw_instance* law, const ilaw_batch* b) {
       !(b->position_step > 0.0 && isfinite(b->position_step)))
     return "a step is not finite and > 0";
   if (b->node_count == 0) return NULL;
-  if (!b->v_free.values || !b->delassus.values || !b->gap.values || !b->area.values || !b->impulse.values ||
-      (law->inputs & ILAW_INPUT_NORMAL && !b->normal.values))
+  if (!b->v_free.values || !b->delassus.values || !b->gap.values || !b->area.values ||
+      !b->v_previous.values || !b->impulse.values || (law->inputs & ILAW_INPUT_NORMAL && !b->normal.values))
     return "an array is missing";
   if (b->node_count > 1 &&
       (b->impulse.node_stride == 0 || (b->velocity.values && b->velocity.node_stride == 0) ||
@@ -94,9 +95,23 @@ static const char* wrong_arrays(const ilaw_instance* law, const ilaw_batch* b) {
   return NULL;
 }
 
-/* r = -h c A/(1 + h c A H) v_free where the gap is closed; why not, where the input is bad. */
+/* The largest part s <= 1 of r = factor v_free that adds no energy: s r.(v^- + v_free + s H r) <= 0. */
+static double dissipative_part(const ilaw_batch* b, int64_t i, uint32_t dimension, double h, double factor) {
+  const double *v = of(&b->v_free, i), *before = of(&b->v_previous, i);
+  double work = 0.0, own = 0.0;
+  for (uint32_t c = 0; c < dimension; ++c) {
+    const double free = v[c * b->v_free.component_stride], r = factor * free;
+    work += r * (before[c * b->v_previous.component_stride] + free);
+    own += r * (h * r);
+  }
+  if (!(work + own > 0.0)) return 1.0;
+  const double part = -work / own;
+  return part > 0.0 ? part : 0.0;
+}
+
+/* r = -h c A/(1 + h c A H) v_free where the gap is closed, or that part; why not, where the input is bad. */
 static const char* step(const ilaw_instance* law, const ilaw_batch* b, int64_t i, uint8_t* status) {
-  const double* v = of(&b->v_free, i);
+  const double *v = of(&b->v_free, i), *before = of(&b->v_previous, i);
   const double h = *of(&b->delassus, i), area = *of(&b->area, i);
   const double gap = *of(&b->gap, i) - (b->gap_offset.values ? *of(&b->gap_offset, i) : 0.0);
   const char* bad = !(h > 0.0 && isfinite(h))          ? "H is not positive"
@@ -106,13 +121,15 @@ static const char* step(const ilaw_instance* law, const ilaw_batch* b, int64_t i
   double length = 0.0;
   for (uint32_t c = 0; c < law->dimension; ++c) {
     if (!isfinite(v[c * b->v_free.component_stride])) bad = "v_free is not finite";
+    if (!isfinite(before[c * b->v_previous.component_stride])) bad = "v_previous is not finite";
     if (b->normal.values && law->inputs & ILAW_INPUT_NORMAL)
       length += of(&b->normal, i)[c * b->normal.component_stride] *
                 of(&b->normal, i)[c * b->normal.component_stride];
   }
   if (law->inputs & ILAW_INPUT_NORMAL && !(fabs(length - 1.0) <= 1e-6)) bad = "normal is not a unit vector";
   const double damping = gap <= 0.0 ? b->velocity_step * law->viscosity * area : 0.0;
-  const double factor = -damping / (1.0 + damping * h);
+  const double whole = -damping / (1.0 + damping * h);
+  const double factor = bad ? 0.0 : whole * dissipative_part(b, i, law->dimension, h, whole);
   for (uint32_t c = 0; c < law->dimension && !bad; ++c)
     if (!isfinite(factor * v[c * b->v_free.component_stride])) bad = "the impulse overflows";
   for (uint32_t c = 0; c < law->dimension; ++c) {
@@ -164,24 +181,25 @@ static int32_t evaluate(const ilaw_instance* law, const ilaw_batch* b, ilaw_repo
   return done(report, count ? ILAW_BAD_NODES : ILAW_OK, count, first, reason);
 }
 
-static const ilaw_law law = {.struct_size = sizeof law,
-                             .dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3,
-                             .delassus_forms = ILAW_DELASSUS_SCALAR,
-                             .inputs = ILAW_INPUT_GAP | ILAW_INPUT_AREA | ILAW_INPUT_NORMAL,
-                             .outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS,
-                             .capabilities = capabilities,
-                             .id = "viscous",
-                             .title = "Viscous layer",
-                             .doc = "A force -c A v where the gap is closed, solved implicitly.",
-                             .references = references,
-                             .reference_count = 1,
-                             .parameters = parameters,
-                             .parameter_count = 1,
-                             .create = create,
-                             .destroy = destroy,
-                             .info = info,
-                             .initialise = initialise,
-                             .evaluate = evaluate};
+static const ilaw_law law = {
+    .struct_size = sizeof law,
+    .dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3,
+    .delassus_forms = ILAW_DELASSUS_SCALAR,
+    .inputs = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA | ILAW_INPUT_NORMAL,
+    .outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS,
+    .capabilities = capabilities,
+    .id = "viscous",
+    .title = "Viscous layer",
+    .doc = "A force -c A v where the gap is closed, solved implicitly.",
+    .references = references,
+    .reference_count = 1,
+    .parameters = parameters,
+    .parameter_count = 1,
+    .create = create,
+    .destroy = destroy,
+    .info = info,
+    .initialise = initialise,
+    .evaluate = evaluate};
 static const ilaw_law* const laws[] = {&law};
 static const ilaw_plugin plugin = {.struct_size = sizeof plugin,
                                    .abi_major = ILAW_ABI_MAJOR,
