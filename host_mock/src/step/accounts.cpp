@@ -71,7 +71,7 @@ void Accounts::add_interface(const Interface& interface) {
 std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const EnergyReport& energy) const {
   std::vector<std::string> warnings;
   const auto say = [&](const char* format, auto... values) {
-    std::array<char, 256> text{};
+    std::array<char, 320> text{};
     std::snprintf(text.data(), text.size(), format, values...);
     warnings.emplace_back(text.data());
   };
@@ -87,7 +87,8 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
         dt, tally_.stable_step);
   if (energy.reaction_work > much_energy * energy.scale)
     say("interfaces put in the energy %.2g, where %.2g is the largest in the run: an explicit penalty too stiff "
-        "for the time step does, and one that is pressed in at the start; contact, friction and bonds do not",
+        "for the time step does, one that is pressed in at the start, and a stiff bond on a curved obstacle; "
+        "contact, friction and bonds on planes do not",
         energy.reaction_work, energy.scale);
   return warnings;
 }

@@ -76,7 +76,9 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
     const Vector after = interface.relative(contact, integrator.velocity()) - interface.obstacle_velocity();
     const Vector change = interface.delassus(contact) * interface.impulse(contact);
     const double rounded =
-        interface.impulse(contact).norm() * (before.norm() + (after - change).norm() + change.norm());
+        interface.impulse(contact).norm() *
+        (before.norm() + (after - change).norm() + change.norm() +
+         interface.obstacle_velocity_before().norm() + interface.obstacle_velocity().norm());
     rounded_ += rounded;
     rounded_most_ = std::max(rounded_most_, rounded + stored);
     if (turns)
