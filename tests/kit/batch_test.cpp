@@ -225,12 +225,12 @@ TEST_P(ManyRows, GiveTheBitsOfListedNodes) {
   const Nodes nodes(n);
   for (const bool outputs : {false, true})
     EXPECT_TRUE(run(law, nodes, {.outputs = outputs, .energy = false}, false) ==
-                run(law, nodes, {.order = order, .outputs = outputs, .energy = false}, false))
+                run(law, nodes, {.outputs = outputs, .energy = false, .order = order}, false))
         << "outputs " << outputs;
 }
 INSTANTIATE_TEST_SUITE_P(Laws, ManyRows,
                          ::testing::Values(LawCase{"tie", "tie", {}, {}},
-                                           LawCase{"penalty", "penalty", {{"stiffness", 1e6}}, {}}),
+                                           LawCase{"penalty", "penalty", {{{"stiffness", 1e6}}, {}}, {}}),
                          name_of_case);
 
 TEST_P(Contract, InstructionSetsGiveTheSameBits) {
