@@ -214,8 +214,9 @@ void Interface::open_step(const StepView& step) {
   choose_active(step);
   sums_ = {};
   const bool turns = setup_.counterpart->turns();
-  for (std::vector<double>* turn : {&contacts_.turn_before, &contacts_.turn_after})
-    if (turns) turn->resize(contacts_.normal.size());
+  if (turns)
+    for (std::vector<double>* turn : {&contacts_.turn_before, &contacts_.turn_after})
+      turn->resize(contacts_.normal.size());
   for (const std::int32_t contact_index : active()) {
     const std::size_t k = at(contact_index);
     const ContactPoint point = setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);

@@ -95,7 +95,7 @@ class Obstacle {
   TurningRate rate_before(double time, double dt) const { return rate(time - dt, time, -1.0); }
   TurningRate rate_after(double time, double dt) const { return rate(time, time + dt, 1.0); }
   bool stands_still() const { return !turns() && motion_.stands_still(); }
-  // In space.
+  // A direction in space, as it has turned since time 0; the same where nothing turns, or in a plane.
   Vector turned(const Vector& direction, double time) const;
   // Of its surface, at the place with that gap and normal.
   SurfaceTurn unit_velocity(const Vector& x, const RigidSurface& there, double time) const;
