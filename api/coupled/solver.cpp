@@ -107,6 +107,12 @@ std::int32_t Solver::evaluate(ilaw_coupled_report& report) {
   for (std::size_t g = 0; g < group_count_; ++g) {
     const std::int32_t code = groups_[g].evaluate(of_trial_);
     const ilaw_report& said = groups_[g].report();
+    // NaN, or below 0, would pass for no limit at all.
+    if (!(said.stable_velocity_step >= 0.0)) {
+      report.bad_group = static_cast<std::int64_t>(g);
+      report.reason = "a law reported a stable step that is below 0 or not a number";
+      return ILAW_BAD_LIBRARY;
+    }
     if (said.stable_velocity_step > 0.0)
       report.stable_velocity_step = std::fmin(report.stable_velocity_step, said.stable_velocity_step);
     if (code == ILAW_OK) continue;

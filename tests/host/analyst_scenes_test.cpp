@@ -362,6 +362,22 @@ TEST(Warnings, TellOfAWeldThatNothingCanBreak) {
   EXPECT_EQ(warnings_of(scene), "");
 }
 
+TEST(Warnings, TellOfAMemoryOfLessThanTwoSteps) {
+  json scene = json::parse(
+      R"({"model": {"type": "points", "dimension": 1, "points": [{"mass": 1, "position": [0], "area": 1}]},
+    "time": {"dt": 1e-3, "end": 1}, "interfaces": [{"law": "postit", "parameters": {"initial_adhesion": 1},
+      "nodes": "all", "obstacle": {"type": "plane", "point": [0], "normal": [1]}}]})");
+  json& memory = scene["interfaces"][0]["parameters"]["memory"];
+  for (const json& enough : {json(0.0), json(0.002), json("inf")}) {
+    memory = enough;
+    EXPECT_EQ(warnings_of(scene), "") << enough;
+  }
+  memory = 0.00199;
+  const std::string said = warnings_of(scene);
+  EXPECT_EQ(said.find("/interfaces/0/parameters/memory: found 0.00199, less than two steps of 0.001"), 0U)
+      << said;
+}
+
 TEST(Warnings, TellOfPartnersThatDoNotFaceTheirNodes) {
   json scene = scene_named("lap_joint");
   scene["interfaces"][0]["nodes"] = {36, 37};

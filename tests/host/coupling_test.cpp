@@ -273,6 +273,28 @@ TEST(RunWarnings, TellThatAPenaltyPutsInEnergy) {
   EXPECT_NE(warnings[1].find("interfaces put in the energy"), std::string::npos) << warnings[1];
 }
 
+// Bars between two walls. At the critical step itself their fastest vibration grows by as much in every step,
+// without any energy; not where nothing excites it.
+TEST(RunWarnings, TellThatTheFastestVibrationGrows) {
+  const auto warnings_at = [](const char* cfl, const char* end, const char* wall) {
+    Scene scene = scene_of(R"({"model": {"type": "bars", "bars": [{"name": "bar", "start": 0.5, "length": 1,
+      "elements": 20, "young": 1, "density": 1, "velocity": -0.1}]}, "time": {"cfl": )" +
+                           std::string(cfl) + R"(, "end": )" + end + R"(}, "interfaces": [
+      {"nodes": "bar.left", "law": "contact", "obstacle": {"type": "plane", "point": [)" +
+                           wall + R"(], "normal": [1]}},
+      {"nodes": "bar.right", "law": "contact",
+       "obstacle": {"type": "plane", "point": [2], "normal": [-1]}}]})");
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) integrator.step();
+    return integrator.warnings();
+  };
+  const std::vector<std::string> warnings = warnings_at("1", "100", "0");
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("the fastest vibration of the mesh grows"), std::string::npos) << warnings[0];
+  EXPECT_TRUE(warnings_at("0.999", "100", "0").empty());
+  EXPECT_TRUE(warnings_at("1", "100", "-100").empty());
+}
+
 // On stderr, in the run's line and in the summary.
 TEST(RunWarnings, AreSaidByTheProgram) {
   const auto folder = fresh_folder();

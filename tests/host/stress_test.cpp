@@ -114,14 +114,22 @@ TEST_P(LawsThatContradict, EndTheRunWithTheReason) {
   Scene scene = read_scene(scene_that_failed(GetParam()), "scene.json");
   Integrator integrator = integrator_of(scene);
   std::string reason;
+  std::int64_t sweeps = 0;
   try {
-    while (integrator.steps() < scene.steps) integrator.step();
+    while (integrator.steps() < scene.steps) {
+      sweeps = integrator.tally().sweeps;
+      integrator.step();
+    }
   } catch (const std::runtime_error& error) {
     reason = error.what();
   }
+  EXPECT_EQ(integrator.tally().sweeps, sweeps) << "of whole steps";
   EXPECT_NE(reason.find("find no velocity that suits them all"), std::string::npos) << reason;
   EXPECT_NE(reason.find("contradict each other"), std::string::npos) << reason;
+  integrator.take_back_step();
+  integrator.take_back_step();  // once is enough
   const EnergyReport energy = integrator.energy();
+  EXPECT_LE(energy.balance_error, 1e-12);
   const double dissipated = energy.by_law[ILAW_ENERGY_FRICTION] + energy.by_law[ILAW_ENERGY_IMPACT];
   EXPECT_LE(std::abs(energy.reaction_work), 1e-4 * energy.scale);
   EXPECT_LE(dissipated, energy.scale + std::abs(energy.reaction_work));

@@ -7,6 +7,7 @@
 #include <ilaw/loader.hpp>
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace {
@@ -106,6 +107,36 @@ TEST(Coupled, AnswersCallsOfNothing) {
   EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nullptr, 0, nullptr, &report), ILAW_OK);
   EXPECT_EQ(scene.v, before);
   ilaw_coupled_destroy(solver);
+}
+
+std::int32_t says_no_number(const ilaw_instance*, const ilaw_batch*, ilaw_report* report) {
+  report->stable_velocity_step = std::nan("");
+  return ILAW_OK;
+}
+std::int32_t says_below_zero(const ilaw_instance*, const ilaw_batch*, ilaw_report* report) {
+  report->stable_velocity_step = -1.0;
+  return ILAW_OK;
+}
+
+// It would pass for none at all.
+TEST(Coupled, RefusesALawWhoseStableStepMakesNoSense) {
+  for (const auto evaluate : {says_no_number, says_below_zero}) {
+    Scene scene = cube(tie(), 1);
+    const ilaw_bodies bodies = scene.bodies();
+    ilaw_batch batch = scene.batch();
+    ilaw_contacts contacts = scene.contacts(batch);
+    ilaw_law law = *contacts.law;
+    law.evaluate = evaluate;
+    contacts.law = &law;
+    const ilaw_contacts* groups[] = {&contacts};
+    ilaw_coupled_report report{};
+    report.struct_size = sizeof report;
+    ilaw_coupled* solver = ilaw_coupled_create();
+    EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, groups, 1, nullptr, &report), ILAW_BAD_LIBRARY);
+    EXPECT_STREQ(report.reason, "a law reported a stable step that is below 0 or not a number");
+    EXPECT_EQ(report.bad_group, 0);
+    ilaw_coupled_destroy(solver);
+  }
 }
 
 // Two points that a rigid bond joins have the velocity of their centre of mass, in the plane and on a line.

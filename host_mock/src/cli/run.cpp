@@ -95,6 +95,7 @@ class Run {
   // Where that fails, and nothing did before, the run did.
   void finish(double seconds_total) {
     record.seconds_total = seconds_total;
+    integrator_.take_back_step();
     record.warnings = integrator_.warnings();
     warn_of_penetration();
     record.forces = history_->forces().summary();

@@ -110,6 +110,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   warn_of_partners(scene);
   warn_of_open_bonds(scene);
   warn_of_strength(scene);
+  warn_of_memory(scene);
   warn_of_locking(scene);
   return scene;
 }

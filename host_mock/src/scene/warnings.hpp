@@ -20,6 +20,8 @@ void warn_of_open_bonds(Scene& scene);
 void warn_of_partners(Scene& scene);
 // Bonds stronger than all that acts in the scene.
 void warn_of_strength(Scene& scene);
+// Bonds that remember less than two steps.
+void warn_of_memory(Scene& scene);
 // Blocks that can hardly bend: full elements close to incompressibility.
 void warn_of_locking(Scene& scene);
 

@@ -12,6 +12,11 @@ namespace {
 // Part of the largest energy that interfaces may put in before a warning: a penalty that suits its
 // step puts in far less.
 constexpr double much_energy = 0.1;
+// As often the kinetic energy may be the largest energy or work: below 0.995 of the critical step it
+// cannot, for it is at most 1/(1 - cfl^2) times what the scheme conserves.
+constexpr double much_vibration = 100.0;
+// Part of the energy below which contacts that do not agree differ by rounding.
+constexpr double rounding_energy = 1e-13;
 // The same of a step whose contacts do not agree, before the run ends.
 constexpr double wrong_energy = 1e-3;
 
@@ -75,7 +80,7 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
     std::snprintf(text.data(), text.size(), format, values...);
     warnings.emplace_back(text.data());
   };
-  if (tally_.unconverged > 0)
+  if (tally_.unconverged > 0 && tally_.coupling_energy > rounding_energy * energy.scale)
     say("contacts that share nodes are not solved in %lld of %lld steps: residual up to %.1e after %d sweeps, "
         "expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
         static_cast<long long>(tally_.unconverged), static_cast<long long>(steps),
@@ -85,6 +90,10 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
     say("the time step is %g, where a law is stable up to %g at its nodes: an explicit spring is too stiff for "
         "it",
         dt, tally_.stable_step);
+  if (energy.kinetic > much_vibration * energy_.largest())
+    say("the kinetic energy is %.2g, where all that was put in is at most %.2g: the fastest vibration of the "
+        "mesh grows from step to step, as it does at the critical step; \"cfl\": 0.999 bounds it",
+        energy.kinetic, energy_.largest());
   if (energy.reaction_work > much_energy * energy.scale)
     say("interfaces put in the energy %.2g, where %.2g is the largest in the run: an explicit penalty too stiff "
         "for the time step does, one that is pressed in at the start, and a stiff bond on a curved obstacle; "

@@ -50,6 +50,7 @@ void Integrator::step() {
   const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
   RunningLaw::set_step(steps_ + 1);
   Laps laps(timed_steps());
+  has_begun_step_ = true;
   v_before_.swap(v_);       // v is written anew from here on
   double speed_free = 0.0;  // the largest, of v_free
   if (forces_are_steady_) {
@@ -67,9 +68,18 @@ void Integrator::step() {
   speed_before_ = external.speed;
   check_motion(speed_before_, times.after);
   ++steps_;
+  has_begun_step_ = false;
   accounts_.add_step(model_, interfaces_,
                      {external.work, damping_impulse_.size() == 0 ? nullptr : &damping_impulse_,
                       internal_impulse_, v_before_, v_});
+}
+
+// What is told of a run that failed is of its last whole step.
+void Integrator::take_back_step() {
+  if (!has_begun_step_) return;
+  v_ = v_before_;
+  u_ -= dt_ * v_;
+  has_begun_step_ = false;
 }
 
 // Reading the clock takes a good part of a step with few nodes: after the first steps, one in some is
@@ -177,9 +187,9 @@ void Integrator::add_reactions(double time, double speed_free) {
 // Laws that contradict each other end the run before their states are accepted.
 void Integrator::add_coupled_reactions(const StepView& step) {
   const CoupledContacts::Outcome outcome = coupled_->solve(step, v_);
-  accounts_.add_solution(outcome);
   if (accounts_.is_wrong(model_, outcome, v_before_))
     if (const std::string why = coupled_->explain(v_, outcome); !why.empty()) throw std::runtime_error(why);
+  accounts_.add_solution(outcome);
   for (const auto& interface : interfaces_) interface->accept(step, v_);
 }
 

@@ -36,6 +36,8 @@ class Integrator {
 
   // One step. Throws ilaw::error when a law refuses a node, Diverged when the motion is not finite.
   void step();
+  // Where step() threw: the bodies as they were before it. Nothing otherwise.
+  void take_back_step();
 
   std::int64_t steps() const { return steps_; }
   double time() const { return static_cast<double>(steps_) * dt_; }
@@ -87,6 +89,7 @@ class Integrator {
   std::vector<std::size_t> correcting_;   // loads in the order in which they correct velocities
   std::vector<Dofs> kept_load_impulses_;  // by load; empty where nobody asks
   std::int64_t steps_ = 0;
+  bool has_begun_step_ = false;
   double speed_before_ = 0.0;  // the largest of v_
   Dofs u_, v_, v_before_, external_impulse_, damping_impulse_, internal_impulse_;
   Dofs inverse_mass_;  // where forces change

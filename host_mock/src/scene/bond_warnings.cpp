@@ -1,5 +1,6 @@
 // Bonds that nothing in the scene can break: a wrong unit, often. What acts is bounded from above, by
-// all loads and momenta together on the weakest node; the factor leaves room for waves.
+// all loads and momenta together on the weakest node; the factor leaves room for waves. And bonds whose
+// memory is too short for the step.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/json_text.hpp"
 #include "scene/warnings.hpp"
@@ -74,10 +75,10 @@ std::optional<Drive> drive_of(const Scene& scene) {
   return drive;
 }
 
-// The unit that the law gives its strength in: an impulse or a force per area.
-std::string_view unit_of_strength(const ilaw_law& law) {
+// Empty where the law has no such parameter.
+std::string_view unit_of(const ilaw_law& law, std::string_view parameter) {
   for (std::uint32_t i = 0; i < law.parameter_count; ++i)
-    if (law.parameters[i]->name == std::string_view("strength")) return law.parameters[i]->unit;
+    if (law.parameters[i]->name == parameter) return law.parameters[i]->unit;
   return "";
 }
 
@@ -101,7 +102,7 @@ void warn_of_strength(Scene& scene) {
     if (!law || strength == numbers.end() || !std::isfinite(strength->second)) continue;
     if (!drive) drive = drive_of(scene);
     if (!drive) return;
-    const std::string_view unit = unit_of_strength(*law);
+    const std::string_view unit = unit_of(*law, "strength");
     const double end = static_cast<double>(scene.steps) * scene.dt,
                  window = memory == numbers.end() ? scene.dt : std::clamp(memory->second, scene.dt, end),
                  limit = weakest(interface, strength->second);
@@ -115,6 +116,23 @@ void warn_of_strength(Scene& scene) {
                              (of_impulse ? "an impulse" : "a force") + " of " + json(limit).dump() +
                              "; all loads and velocities of the scene together give " + json(reached).dump() +
                              ", which cannot break it");
+  }
+}
+
+// A window that holds hardly more than the impulse of one step.
+void warn_of_memory(Scene& scene) {
+  constexpr double few = 2.0;
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
+    const Interface& interface = *scene.interfaces[i];
+    const auto& numbers = interface.setup().arguments.numbers;
+    const auto memory = numbers.find("memory");
+    const ilaw_law* law = interface.library().law(interface.setup().law);
+    if (!law || memory == numbers.end() || unit_of(*law, "memory") != "s") continue;
+    if (!(memory->second > 0.0) || memory->second >= few * scene.dt) continue;
+    scene.warnings.push_back(at("/interfaces", i) + "/parameters/memory: found " +
+                             json(memory->second).dump() + ", less than two steps of " +
+                             json(scene.dt).dump() + ": whether a load that is not smooth breaks the bond " +
+                             "depends on where a step begins; only smaller steps help");
   }
 }
 
