@@ -33,16 +33,17 @@ def main():
     with open(given.bench) as rows:
         for row in csv.DictReader(rows):
             cases[row["law"], row["case"]].append(row)
-    print("| law | case | bytes | in cache, ns | beyond, ns | ratio | aim |")
-    print("| --- | --- | --- | --- | --- | --- | --- |")
+    print("| law | case | bytes | in cache, ns | beyond, ns | aim, ns | ratio | aim |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for (law, case), runs in cases.items():
         if len(runs) != 2:
             sys.exit(f"laws_table.py: {given.bench}: {law}, {case}: {len(runs)} numbers of nodes, needs 2")
         few, many = sorted(runs, key=lambda run: int(run["nodes"]))
-        aim = aim_of(law, case)
-        print(f"| {law} | {case.replace('; ', ', ')} | {float(few['bytes_per_node']):.0f} | "
-              f"{float(few['ns_per_node']):.1f} | {float(many['ns_per_node']):.1f} | {float(many['ratio']):.2f} | "
-              f"{aim if aim else '-'} |")
+        aim, size = aim_of(law, case), float(many["bytes_per_node"])
+        allowed = f"{aim * size / float(many['triad_gb_per_s']):.1f}" if aim else "-"
+        print(f"| {law} | {case.replace('; ', ', ')} | {size:.0f} | "
+              f"{float(few['ns_per_node']):.1f} | {float(many['ns_per_node']):.1f} | {allowed} | "
+              f"{float(many['ratio']):.2f} | {aim if aim else '-'} |")
 
 
 if __name__ == "__main__":
