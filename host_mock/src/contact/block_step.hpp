@@ -24,6 +24,7 @@ struct BlockStep {
   const StepView& step;
   const FlatSurface* flat;  // the obstacle, where it is a plane
   const Vector &obstacle_velocity, &obstacle_velocity_before, &tangent;
+  const std::vector<std::size_t>& axes;  // where they begin in the state
   TurningRates rates;
   Dofs& v;  // v_free, then what the impulses make of it
   bool gets_energies;

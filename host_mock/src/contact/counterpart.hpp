@@ -119,14 +119,24 @@ class Counterpart {
                                 const RigidSurface& /*there*/) const {
     return {};
   }
-  // A direction that turns with it.
-  virtual Vector turned(const Vector& direction, double /*time*/) const { return direction; }
+  // A direction that turns with it, between two times.
+  virtual Vector turned(const Vector& direction, double /*from*/, double /*to*/) const { return direction; }
   // Nodes that may be partners; empty for rigid counterparts.
   virtual const std::vector<int>& partners() const = 0;
   // Whether two contacts may have a partner in common.
   virtual bool shares_partners() const { return false; }
   virtual bool keeps_normal() const { return false; }
 };
+
+// Turns an axis of a state, of which number(c) is the component c, with the counterpart.
+template <class Number>
+void turn_axis(const Counterpart& counterpart, Eigen::Index dimension, double from, double to,
+               Number number) {
+  Vector axis(dimension);
+  for (Eigen::Index c = 0; c < dimension; ++c) axis[c] = number(static_cast<std::size_t>(c));
+  axis = counterpart.turned(axis, from, to);
+  for (Eigen::Index c = 0; c < dimension; ++c) number(static_cast<std::size_t>(c)) = axis[c];
+}
 
 // A rigid obstacle.
 class RigidCounterpart : public Counterpart {
@@ -147,8 +157,8 @@ class RigidCounterpart : public Counterpart {
                         const RigidSurface& there) const override {
     return obstacle_->unit_velocity(position(node_index, u), there, time);
   }
-  Vector turned(const Vector& direction, double time) const override {
-    return obstacle_->turned(direction, time);
+  Vector turned(const Vector& direction, double from, double to) const override {
+    return obstacle_->turned(direction, from, to);
   }
   bool stands_still() const override { return obstacle_->stands_still(); }
   const std::vector<int>& partners() const override { return none_; }

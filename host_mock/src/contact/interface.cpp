@@ -24,7 +24,7 @@ InterfaceSetup with_tangent(InterfaceSetup setup, const Model& model) {
   const Counterpart& counterpart = *setup.counterpart;
   if (!counterpart.turns() || !counterpart.keeps_normal() || setup.tangent.size() > 0) return setup;
   const Law law(setup.library, setup.law, setup.arguments, {}, model.dimension());
-  if (law.carries_axes()) setup.tangent = across(counterpart.flat_at(0.0)->normal);
+  if (!law.axes().empty()) setup.tangent = across(counterpart.flat_at(0.0)->normal);
   return setup;
 }
 
@@ -35,6 +35,7 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       model_(model),
       dimension_(model.dimension()),
       law_(setup_.library, setup_.law, setup_.arguments, setup_.tangent, dimension_),
+      axes_(law_.axes()),
       contacts_(dimension_, law_.info(), setup_.nodes.size(), !setup_.counterpart->partners().empty()),
       obstacle_velocity_(Vector::Zero(dimension_)),
       obstacle_velocity_before_(obstacle_velocity_),
@@ -72,7 +73,7 @@ int Interface::contact_index_of(int node_index, const Dofs& u) {
   return contacts_.index_of(k);
 }
 
-bool Interface::axes_turn() const { return law_.carries_axes() && !setup_.counterpart->keeps_normal(); }
+bool Interface::axes_turn() const { return !axes_.empty() && !setup_.counterpart->keeps_normal(); }
 
 bool Interface::may_skip() const {
   if (setup_.keeps_all_active || (law_.acts_at_distance() && !law_.rests())) return false;
@@ -150,7 +151,7 @@ void Interface::follow_obstacle(const StepView& step) {
   obstacle_speed_ = obstacle_velocity_.norm();
   if (counterpart.turns()) rates_ = counterpart.rates(step.time, step.dt);
   flat_ = counterpart.flat_at(step.time);
-  tangent_ = counterpart.turned(setup_.tangent, step.time);
+  tangent_ = counterpart.turned(setup_.tangent, 0.0, step.time);
   obstacle_is_known_ = counterpart.stands_still();
 }
 
@@ -186,6 +187,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
                          obstacle_velocity_,
                          obstacle_velocity_before_,
                          tangent_,
+                         axes_,
                          rates_,
                          v,
                          energies,
@@ -228,6 +230,9 @@ void Interface::open_step(const StepView& step) {
                                                              {point.gap, point.normal});
       contacts_.vector(contacts_.turn_before, contact_index) = turn.at(rates_.before);
       contacts_.vector(contacts_.turn_after, contact_index) = turn.at(rates_.after);
+      for (const std::size_t first : axes_)
+        turn_axis(*setup_.counterpart, dimension_, step.time - step.dt, step.time,
+                  [&](std::size_t c) -> double& { return contacts_.state.at(k, first + c); });
     }
     if (point.partner_count == 0) continue;
     contacts_.delassus[k] = point.delassus(model_, node_of(contact_index));

@@ -133,6 +133,7 @@ class Interface {
   const Model& model_;
   int dimension_;
   Law law_;
+  std::vector<std::size_t> axes_;  // where they begin in the state
   ContactArrays contacts_;
   ProximityFilter proximity_;
   double closing_ = 0.0;           // how far a gap may close in the coming step

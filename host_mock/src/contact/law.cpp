@@ -79,10 +79,12 @@ Law::Law(const std::string& library, const std::string& law, const Arguments& ar
       info_(interface_.info()),
       outputs_(library_.law(law)->outputs) {}
 
-bool Law::carries_axes() const {
-  for (std::uint32_t i = 0; i < info_.state_variable_count; ++i)
-    if (info_.state_variables[i]->kind == ILAW_STATE_AXIS) return true;
-  return false;
+std::vector<std::size_t> Law::axes() const {
+  std::vector<std::size_t> axes;
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < info_.state_variable_count; at += info_.state_variables[i++]->count)
+    if (info_.state_variables[i]->kind == ILAW_STATE_AXIS) axes.push_back(at);
+  return axes;
 }
 
 Answer Law::initialise(const ilaw_batch& batch) const {

@@ -27,8 +27,8 @@ class Law {
   // Whether a contact whose last status was ILAW_FREE does nothing out of reach (ilaw.h,
   // ILAW_CAN_REST).
   bool rests() const { return (info_.capabilities & ILAW_CAN_REST) != 0; }
-  // Whether the state holds axes, which turn with the normal from step to step.
-  bool carries_axes() const;
+  // Where in the state axes begin: they turn with the normal from step to step, and with an obstacle.
+  std::vector<std::size_t> axes() const;
 
   Answer initialise(const ilaw_batch& batch) const;
   Answer evaluate(const ilaw_batch& batch) const;

@@ -25,13 +25,13 @@ Vector across(const Vector& axis) {
   return (unit - unit.dot(axis) * axis).normalized();
 }
 
-Vector Turning::turned(const Vector& direction, double time) const {
-  const double angle = angles_ ? angles_->at(time)[0] - angles_->at(0.0)[0] : rate_ * time;
+Vector Turning::turned(const Vector& direction, double from, double to) const {
+  const double angle = angles_ ? angles_->at(to)[0] - angles_->at(from)[0] : rate_ * (to - from);
   return Eigen::AngleAxisd(angle, axis_) * Eigen::Vector3d(direction);
 }
 
-Vector Obstacle::turned(const Vector& direction, double time) const {
-  return turning_ && direction.size() == 3 ? turning_->turned(direction, time) : direction;
+Vector Obstacle::turned(const Vector& direction, double from, double to) const {
+  return turning_ && direction.size() == 3 ? turning_->turned(direction, from, to) : direction;
 }
 
 SurfaceTurn Turning::unit_velocity(const Vector& arm) const {

@@ -55,8 +55,8 @@ class Turning {
   double rate(double from, double to) const {
     return angles_ ? (angles_->at(to)[0] - angles_->at(from)[0]) / (to - from) : rate_;
   }
-  // A direction in space, as it has turned since time 0.
-  Vector turned(const Vector& direction, double time) const;
+  // A direction in space, as it turns between two times.
+  Vector turned(const Vector& direction, double from, double to) const;
   // Of what is there, seen from the axis; in 2D the axis is across the plane.
   SurfaceTurn unit_velocity(const Vector& arm) const;
 
@@ -95,8 +95,8 @@ class Obstacle {
   TurningRate rate_before(double time, double dt) const { return rate(time - dt, time, -1.0); }
   TurningRate rate_after(double time, double dt) const { return rate(time, time + dt, 1.0); }
   bool stands_still() const { return !turns() && motion_.stands_still(); }
-  // A direction in space, as it has turned since time 0; the same where nothing turns, or in a plane.
-  Vector turned(const Vector& direction, double time) const;
+  // A direction in space, as it turns between two times; the same where nothing turns, or in a plane.
+  Vector turned(const Vector& direction, double from, double to) const;
   // Of its surface, at the place with that gap and normal.
   SurfaceTurn unit_velocity(const Vector& x, const RigidSurface& there, double time) const;
   // Whether the normal is the same everywhere.
