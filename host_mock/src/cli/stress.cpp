@@ -80,6 +80,8 @@ void add_stress(CLI::App& app, Action& chosen) {
   command->add_option("--nodes", setup->size.nodes, "Most points of a scene")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
+  command->add_flag("--plain", setup->size.is_plain,
+                    "One body, obstacles that do not turn, no paths: of a seed the same scene without");
   command->add_option("--keep", setup->keep,
                       "Folder for scenes that failed, made as small as they still fail");
   command->add_option("--write", setup->write, "Folder for every scene, as it is run; not that of --keep");

@@ -44,7 +44,9 @@ Ledger::Ledger(const Scene& scene) : scene_(scene), start_depth_(scene.interface
   const Dofs u = Dofs::Zero(scene.model->mass().size());
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
-    if (!is_rigid(interface, scene.source["interfaces"][i], scene.model->dimension())) continue;
+    if (interface.setup().counterpart->shares_partners() ||
+        !is_rigid(interface, scene.source["interfaces"][i], scene.model->dimension()))
+      continue;
     start_depth_[i] = Dofs::Zero(scene.model->node_count());
     for (std::size_t k = 0; k < interface.nodes().size(); ++k)
       start_depth_[i][interface.nodes()[k]] = std::max(0.0, -interface.gap_at(static_cast<int>(k), u, 0.0));
@@ -67,35 +69,66 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
   fastest_ = std::max(fastest_, (is_alone ? 1.0 : 2.0) * speed + interface.obstacle_velocity().norm());
   if (interface.sums().penetration > penetration_) measure_depth(number, integrator);
   const double stored = interface.sums().energy[ILAW_ENERGY_STORED];
-  const bool turns = stores(interface) && !interface.setup().counterpart->keeps_normal();
   stored_ += stored;
   rounded_most_ = std::max(rounded_most_, stored);
   for (const std::int32_t contact : interface.active()) {
-    if (interface.impulse(contact).isZero(0.0)) continue;
-    const Vector before = interface.relative(contact, v_before_) - interface.obstacle_velocity_before();
-    const Vector after = interface.relative(contact, integrator.velocity()) - interface.obstacle_velocity();
-    const Vector change = interface.delassus(contact) * interface.impulse(contact);
+    const Vector impulse = interface.impulse(contact);
+    if (impulse.isZero(0.0)) continue;
+    const Ends ends = ends_of(interface, contact, integrator);
+    const Vector change = interface.delassus(contact) * impulse;
     const double rounded =
-        interface.impulse(contact).norm() *
-        (before.norm() + (after - change).norm() + change.norm() +
-         interface.obstacle_velocity_before().norm() + interface.obstacle_velocity().norm());
+        impulse.norm() * (ends.before.norm() + (ends.after - change).norm() + change.norm() + ends.carried);
     rounded_ += rounded;
     rounded_most_ = std::max(rounded_most_, rounded + stored);
-    if (turns)
-      turned_ +=
-          0.5 * interface.impulse(contact).norm() * before.norm() * turn(interface, contact, integrator);
+    if (stores(interface))
+      turned_ += 0.5 * impulse.norm() * turn(interface, contact, integrator, ends.before);
   }
 }
 
-// |n_{n+1} - n_n|: by no more of itself a vector changes that turns with the normal.
-double Ledger::turn(const Interface& interface, int contact, const Integrator& integrator) const {
+Ledger::Ends Ledger::ends_of(const Interface& interface, int contact, const Integrator& integrator) const {
   const Counterpart& counterpart = *interface.setup().counterpart;
-  const int node_index = interface.node_index_of(contact);
-  const Dofs& u = integrator.displacement();
+  const Dofs& v = integrator.velocity();
+  Vector before = interface.obstacle_velocity_before(), after = interface.obstacle_velocity();
+  if (counterpart.turns()) {
+    const int k = interface.node_index_of(contact);
+    const double time = integrator.time();
+    const ContactPoint point = counterpart.contact_point(k, integrator.displacement(), time);
+    const SurfaceTurn turn =
+        counterpart.unit_turn(k, integrator.displacement(), time, {point.gap, point.normal});
+    const TurningRates rates = counterpart.rates(time, scene_.dt);
+    before += turn.at(rates.before);
+    after += turn.at(rates.after);
+  }
+  double carried = before.norm() + after.norm();
+  if (!counterpart.partners().empty()) {
+    const Eigen::Index d = scene_.model->dimension();
+    interface.point(contact).for_each_node(interface.node_of(contact), [&](int node, double weight) {
+      carried += std::abs(weight) * (v_before_.segment(node * d, d).norm() + v.segment(node * d, d).norm());
+    });
+  }
+  return {interface.relative(contact, v_before_) - before, interface.relative(contact, v) - after, carried};
+}
+
+// How far what a law remembers of v^- is from it: no more than what the normal or the plane has turned by,
+// and what weighs the partners has changed by.
+double Ledger::turn(const Interface& interface, int contact, const Integrator& integrator,
+                    const Vector& before) const {
+  const Counterpart& counterpart = *interface.setup().counterpart;
   const double time = integrator.time();
-  return (counterpart.contact_point(node_index, u, time).normal -
-          counterpart.contact_point(node_index, u - scene_.dt * v_before_, time - scene_.dt).normal)
-      .norm();
+  if (counterpart.keeps_normal())
+    return counterpart.turns()
+               ? 2.0 * scene_.dt * std::abs(counterpart.rates(time, scene_.dt).before.along) * before.norm()
+               : 0.0;
+  const int k = interface.node_index_of(contact), node = interface.node_of(contact);
+  const Dofs& u = integrator.displacement();
+  const ContactPoint now = counterpart.contact_point(k, u, time),
+                     then = counterpart.contact_point(k, u - scene_.dt * v_before_, time - scene_.dt);
+  const Eigen::Index d = scene_.model->dimension();
+  Vector weighed = Vector::Zero(d);
+  now.for_each_node(node, [&](int one, double weight) { weighed += weight * v_before_.segment(one * d, d); });
+  then.for_each_node(node,
+                     [&](int one, double weight) { weighed -= weight * v_before_.segment(one * d, d); });
+  return (now.normal - then.normal).norm() * before.norm() + weighed.norm();
 }
 
 void Ledger::measure_depth(std::size_t number, const Integrator& integrator) {

@@ -43,14 +43,22 @@ class Ledger {
  private:
   void add(std::size_t number, const Integrator& integrator, double speed);
   void measure_depth(std::size_t number, const Integrator& integrator);
-  double turn(const Interface& interface, int contact, const Integrator& integrator) const;
+  // Relative velocities of a contact before and after the step, and the sum of the speeds that they are
+  // rounded by beside themselves: of the obstacle's surface, or of the nodes.
+  struct Ends {
+    Vector before, after;
+    double carried;
+  };
+  Ends ends_of(const Interface& interface, int contact, const Integrator& integrator) const;
+  double turn(const Interface& interface, int contact, const Integrator& integrator,
+              const Vector& before) const;
   void sample(const Integrator& integrator);
 
   static constexpr std::int64_t every = 16;  // steps from sample to sample
 
   const Scene& scene_;
   Dofs v_before_;
-  std::vector<Dofs> start_depth_;  // per interface, of all nodes; empty: its law gives way
+  std::vector<Dofs> start_depth_;  // per interface, of all nodes; empty: none is measured
   std::int64_t steps_ = 0;
   double rounded_ = 0.0, rounded_most_ = 0.0, stored_ = 0.0, turned_ = 0.0;
   double size_ = 0.0, farthest_ = 0.0;

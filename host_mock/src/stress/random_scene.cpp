@@ -4,6 +4,7 @@
 #include "contact/law_arguments.hpp"
 #include "scene/arguments.hpp"
 #include "stress/draw.hpp"
+#include "stress/random_motion.hpp"
 #include "stress/random_parameters.hpp"
 
 #include <algorithm>
@@ -36,6 +37,7 @@ class Scenery {
     scene["time"] = random_time(body, steps);
     scene["loads"] = random_loads(body, body.step * steps);
     scene["interfaces"] = random_interfaces(body);
+    if (!size_.is_plain) add_motion(scene, body);
     return scene;
   }
 
@@ -218,6 +220,24 @@ class Scenery {
     if (draw_.chance(0.15))
       interfaces.push_back(random_interface(body, draw_.one_of(laws_.serving(body.dimension)), 1));
     return interfaces;
+  }
+
+  // Drawn after all else, so that the plain scene of a seed stays what it is.
+  void add_motion(json& scene, const Body& body) {
+    const DrawnScene drawn{body.dimension, body.step, scene["time"]["end"].get<double>()};
+    json other;
+    if (draw_.chance(0.4)) other = join_a_body(scene, drawn, draw_);
+    if (!other.is_null() && draw_.chance(0.3)) {
+      Body second = body;
+      second.interface_nodes = json::array({other});
+      const LawBook::Entry law = draw_.one_of(laws_.serving(body.dimension));
+      scene["interfaces"].push_back(
+          random_interface(second, law, static_cast<int>(scene["interfaces"].size())));
+    }
+    for (json& interface : scene["interfaces"])
+      if (interface.contains("obstacle") && draw_.chance(0.7))
+        set_in_motion(interface["obstacle"], drawn, draw_);
+    if (draw_.chance(0.3)) drive_nodes(scene, drawn, draw_);
   }
 
   const LawBook& laws_;

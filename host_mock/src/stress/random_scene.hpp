@@ -34,6 +34,7 @@ class LawBook {
 struct StressSize {
   std::int64_t steps = 10'000;  // the most of a scene, which may have down to a tenth
   int nodes = 20;               // the most points of a scene
+  bool is_plain = false;        // one body, obstacles that do not turn, and nothing follows a path
 };
 
 // The scene of a seed, as JSON. The law is one of the book's; other laws may be in it, too. It may be
