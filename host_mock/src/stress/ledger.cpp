@@ -59,7 +59,11 @@ void Ledger::close(const Integrator& integrator) {
   const double speed =
       std::max(largest_speed(v_before_, dimension), largest_speed(integrator.velocity(), dimension));
   for (std::size_t i = 0; i < scene_.interfaces.size(); ++i) add(i, integrator, speed);
-  if (steps_ % every == 1) sample(integrator);
+  const double kinetic = scene_.model->mass().dot(integrator.velocity().cwiseAbs2());
+  const bool is_due = steps_ % every == 1;
+  if (is_due || kinetic > most_kinetic_) size_ = std::max(size_, size_now(integrator));
+  most_kinetic_ = std::max(most_kinetic_, kinetic);
+  if (is_due) sample(integrator);
 }
 
 // Stored energies are known in sum alone, which is no less than that of a node.
@@ -142,19 +146,23 @@ void Ledger::measure_depth(std::size_t number, const Integrator& integrator) {
   }
 }
 
-void Ledger::sample(const Integrator& integrator) {
+double Ledger::size_now(const Integrator& integrator) const {
   const Dofs &u = integrator.displacement(), &v = integrator.velocity(), &mass = scene_.model->mass();
-  const double dt = scene_.dt, critical = scene_.model->critical_step();
-  const double kinetic = mass.dot(v.cwiseAbs2()) + mass.dot(v_before_.cwiseAbs2());
+  const double critical = scene_.model->critical_step();
   // |p| <= m |change of v|, twice: outer and inner impulses may cancel.
-  double size = kinetic;
+  double size = mass.dot(v.cwiseAbs2()) + mass.dot(v_before_.cwiseAbs2());
   if (std::isfinite(critical)) size += 4.0 / (critical * critical) * mass.dot(u.cwiseAbs2());
-  size_ = std::max(size_, size);
+  return size;
+}
+
+void Ledger::sample(const Integrator& integrator) {
+  const Dofs& u = integrator.displacement();
+  const double dt = scene_.dt, critical = scene_.model->critical_step();
   farthest_ = std::max(farthest_, u.cwiseAbs().maxCoeff() + scene_.model->position().cwiseAbs().maxCoeff());
   if (!scene_.model->is_linear() || !(dt < critical)) return;
   const EnergyReport energy = integrator.energy();
   const double courant = std::isfinite(critical) ? dt / critical : 0.0;
-  const double most = energy.kinetic + energy.internal + rounding * size;
+  const double most = energy.kinetic + energy.internal + rounding * size_now(integrator);
   if (energy.kinetic > 0.0)
     worst_velocity_ = std::max(worst_velocity_, energy.kinetic * (1.0 - courant * courant) / most);
 }

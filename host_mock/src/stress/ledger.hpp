@@ -52,6 +52,7 @@ class Ledger {
   Ends ends_of(const Interface& interface, int contact, const Integrator& integrator) const;
   double turn(const Interface& interface, int contact, const Integrator& integrator,
               const Vector& before) const;
+  double size_now(const Integrator& integrator) const;
   void sample(const Integrator& integrator);
 
   static constexpr std::int64_t every = 16;  // steps from sample to sample
@@ -61,7 +62,7 @@ class Ledger {
   std::vector<Dofs> start_depth_;  // per interface, of all nodes; empty: none is measured
   std::int64_t steps_ = 0;
   double rounded_ = 0.0, rounded_most_ = 0.0, stored_ = 0.0, turned_ = 0.0;
-  double size_ = 0.0, farthest_ = 0.0;
+  double size_ = 0.0, most_kinetic_ = 0.0, farthest_ = 0.0;
   double fastest_ = 0.0, penetration_ = 0.0, worst_velocity_ = 0.0;
 };
 
