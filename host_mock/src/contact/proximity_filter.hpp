@@ -27,12 +27,12 @@ struct FarNodes {
 class ProximityFilter {
  public:
   // Whether the near contacts must be found anew. Speeds bound the closing speeds of the step that
-  // led here and of the coming one; validity bounds the horizon.
+  // led here and of the coming one; validity bounds the horizon, but for the coming step itself.
   bool refresh_due(double dt, double speed_before, double speed_after, double validity) {
     approached_ += rounding * dt * speed_before;
     way_ += rounding * dt * speed_before;
     const double ahead = rounding * dt * speed_after;
-    if (valid_ && approached_ + ahead < horizon_) return false;
+    if (valid_ && approached_ + ahead < horizon_ && approached_ <= validity) return false;
     approached_ = 0.0;
     horizon_ = std::min(steps_ahead * dt * speed_before, validity);
     horizon_ = std::max(horizon_, 2.0 * ahead);  // never shorter than the step itself
