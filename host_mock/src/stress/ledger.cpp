@@ -85,7 +85,7 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
     rounded_ += rounded;
     rounded_most_ = std::max(rounded_most_, rounded + stored);
     if (stores(interface))
-      turned_ += 0.5 * impulse.norm() * turn(interface, contact, integrator, ends.before);
+      turned_ += 0.5 * impulse.norm() * misremembered(interface, contact, integrator, ends.before);
   }
 }
 
@@ -113,26 +113,28 @@ Ledger::Ends Ledger::ends_of(const Interface& interface, int contact, const Inte
   return {interface.relative(contact, v_before_) - before, interface.relative(contact, v) - after, carried};
 }
 
-// How far what a law remembers of v^- is from it: no more than what the normal or the plane has turned by,
-// and what weighs the partners has changed by.
-double Ledger::turn(const Interface& interface, int contact, const Integrator& integrator,
-                    const Vector& before) const {
+// What a law remembers of v^- is the velocity w that it saw at the end of the step before, taken along by the
+// normal or the plane: how far that is from v^-, at most.
+double Ledger::misremembered(const Interface& interface, int contact, const Integrator& integrator,
+                             const Vector& before) const {
   const Counterpart& counterpart = *interface.setup().counterpart;
-  const double time = integrator.time();
-  if (counterpart.keeps_normal())
-    return counterpart.turns()
-               ? 2.0 * scene_.dt * std::abs(counterpart.rates(time, scene_.dt).before.along) * before.norm()
-               : 0.0;
-  const int k = interface.node_index_of(contact), node = interface.node_of(contact);
-  const Dofs& u = integrator.displacement();
+  const double time = integrator.time(), dt = scene_.dt;
+  if (counterpart.keeps_normal() && !counterpart.turns()) return 0.0;
+  const int k = interface.node_index_of(contact);
+  const Dofs &u = integrator.displacement(), u_before = u - dt * v_before_;
   const ContactPoint now = counterpart.contact_point(k, u, time),
-                     then = counterpart.contact_point(k, u - scene_.dt * v_before_, time - scene_.dt);
+                     then = counterpart.contact_point(k, u_before, time - dt);
   const Eigen::Index d = scene_.model->dimension();
-  Vector weighed = Vector::Zero(d);
-  now.for_each_node(node, [&](int one, double weight) { weighed += weight * v_before_.segment(one * d, d); });
-  then.for_each_node(node,
-                     [&](int one, double weight) { weighed -= weight * v_before_.segment(one * d, d); });
-  return (now.normal - then.normal).norm() * before.norm() + weighed.norm();
+  Vector w = -interface.obstacle_velocity_before();
+  then.for_each_node(interface.node_of(contact),
+                     [&](int node, double weight) { w += weight * v_before_.segment(node * d, d); });
+  double turned = (now.normal - then.normal).norm();
+  if (counterpart.turns()) {
+    const TurningRate rate = counterpart.rates(time - dt, dt).after;
+    w -= counterpart.unit_turn(k, u_before, time - dt, {then.gap, then.normal}).at(rate);
+    turned += std::sqrt(2.0 * dt * std::abs(rate.inward));  // a chord of the unit circle
+  }
+  return turned * w.norm() + (w - before).norm();
 }
 
 void Ledger::measure_depth(std::size_t number, const Integrator& integrator) {

@@ -27,8 +27,8 @@ class Ledger {
   double balance_bound() const;
   // Work of impulses r and what laws say of it are rounded by |r| (|v^-| + |v_free| + H |r|); stored
   // energies by themselves. Coupled contacts agree to a residual, whose energy is counted. An energy that is
-  // stored by an opening remembers v^- in the axes of the step before: r.(Q v^- - v^-)/2 where the normal
-  // has turned by Q since.
+  // stored by an opening remembers v^- as it was seen in the step before: r.(Q w - v^-)/2 where that was w,
+  // and the normal has turned by Q since.
   double added_bound(const Tally& tally) const;
   double dissipation_bound() const;
   // Rigid contact lets a node in by what it moves within a step; one that started inside goes no
@@ -50,8 +50,8 @@ class Ledger {
     double carried;
   };
   Ends ends_of(const Interface& interface, int contact, const Integrator& integrator) const;
-  double turn(const Interface& interface, int contact, const Integrator& integrator,
-              const Vector& before) const;
+  double misremembered(const Interface& interface, int contact, const Integrator& integrator,
+                       const Vector& before) const;
   double size_now(const Integrator& integrator) const;
   void sample(const Integrator& integrator);
 
