@@ -202,6 +202,80 @@ TEST(RandomScene, IsThatOfItsSeed) {
   EXPECT_NE(scene(5), scene(6));
 }
 
+// What a scene has that plain ones have not.
+std::set<std::string> motions_of(const json& scene) {
+  const std::string model = scene["model"]["type"].get<std::string>();
+  std::set<std::string> found;
+  for (const json& interface : scene["interfaces"]) {
+    const json obstacle = interface.value("obstacle", json::object());
+    for (const char* key : {"path", "rate", "angles"})
+      if (obstacle.contains(key)) found.insert(obstacle["type"].get<std::string>() + " " + key);
+    if (interface.contains("against"))
+      found.insert(model + (interface["against"].contains("surface") ? " surface" : " nodes"));
+  }
+  for (const json& load : scene["loads"])
+    if (load["type"] == "motion") found.insert(model + (load.contains("path") ? " driven" : " held"));
+  return found;
+}
+
+// Beside what the plain scene of the same seed is.
+TEST(RandomScene, MovesAndMeetsInAllWaysThatThereAre) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const LawBook laws({"contact"});
+  const LawBook::Entry& law = laws.all().front();
+  std::set<std::string> found;
+  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    const json scene = random_scene(laws, law, seed, {}),
+               plain = random_scene(laws, law, seed, {10'000, 20, true});
+    found.merge(motions_of(scene));
+    ASSERT_TRUE(motions_of(plain).empty()) << plain;
+    ASSERT_EQ(scene["time"], plain["time"]);
+    ASSERT_EQ(scene["interfaces"][0]["parameters"], plain["interfaces"][0]["parameters"]);
+  }
+  std::set<std::string> wanted = {"points nodes", "bars nodes", "blocks nodes", "blocks surface"};
+  for (const std::string type : {"plane", "sphere", "cylinder"})
+    for (const std::string key : {" path", " rate", " angles"}) wanted.insert(type + key);
+  for (const std::string model : {"points", "bars", "blocks"})
+    for (const std::string how : {" driven", " held"}) wanted.insert(model + how);
+  EXPECT_EQ(found, wanted);
+}
+
+// Two shocks between those steps in which other figures are taken, each far larger than what was before.
+TEST(Stress, HoldsTheBalanceToTheSizeOfEveryStep) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const json scene = json::parse(R"({"model": {"type": "points", "dimension": 2, "points": [
+      {"mass": 0.7, "position": [0, 1], "velocity": [0.2, 0.1]}]}, "time": {"dt": 0.01, "end": 0.2},
+      "loads": [{"type": "shock", "nodes": [0], "time": 0.185, "impulse": [1.1e5, 3.3e4]},
+                {"type": "shock", "nodes": [0], "time": 0.195, "impulse": [1.7e7, 2.9e6]}],
+      "interfaces": [{"law": "contact", "nodes": "all",
+                      "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}]})");
+  const StressVerdict verdict = stress_scene(scene);
+  EXPECT_EQ(verdict.ending, StressEnding::passed) << verdict.reason;
+  EXPECT_GT(verdict.figures.balance, 0.0) << "a balance without rounding holds by any bound";
+}
+
+class BondOnASurfaceThatTurns : public ::testing::TestWithParam<const char*> {};
+
+// What it remembers was seen a step before: that leaves energy, no more than turning makes of it.
+TEST_P(BondOnASurfaceThatTurns, LeavesWhatTurningMakesOfItsMemory) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const StressVerdict verdict = stress_scene(json::parse(GetParam()));
+  EXPECT_EQ(verdict.ending, StressEnding::passed) << verdict.reason;
+  EXPECT_GT(verdict.figures.added, 1e-5);
+  EXPECT_GT(verdict.figures.worst_bound, 0.1) << "a bound so wide holds nothing";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Stress, BondOnASurfaceThatTurns,
+    ::testing::Values(R"({"model": {"type": "points", "dimension": 3, "points": [
+        {"mass": 1, "position": [1, 0.5, 0], "velocity": [0.2, 0.1, 0]}]}, "time": {"dt": 0.01, "end": 10},
+        "interfaces": [{"law": "cohesive", "parameters": {"stiffness": 100, "strength": 1000, "toughness": 1e5},
+        "nodes": "all", "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "rate": 2}}]})",
+                      R"({"model": {"type": "rotating_spring", "mass": 0.01, "stiffness": 14.3, "length": 0,
+        "position": [1, 0], "velocity": [0, 0]}, "time": {"cfl": 0.5, "end": 0.027},
+        "interfaces": [{"law": "cohesive", "parameters": {"stiffness": 9e9, "strength": 1, "toughness": 1},
+        "nodes": "all", "obstacle": {"type": "sphere", "center": [0, 0], "radius": 1, "rate": 1}}]})"));
+
 // Fails as long as a shock of more than 3 meets a point heavier than 2: all the rest goes.
 TEST(Shrink, LeavesWhatFails) {
   json scene = {
@@ -238,11 +312,12 @@ TEST(Stress, FindsASceneThatStops) {
 }
 
 // The command in the small: `ilaw stress` for longer.
-TEST(Stress, RandomScenesFulfilTheInvariants) {
+class RandomScenes : public ::testing::TestWithParam<bool> {};
+TEST_P(RandomScenes, FulfilTheInvariants) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   StressSetup setup;
   setup.scenes = 84;
-  setup.size = {4000, 1000};
+  setup.size = {4000, 1000, GetParam()};
   const StressReport report = stress(setup, [](std::int64_t) {});
   std::int64_t node_steps = 0, ran = 0;
   for (const StressRow& row : report.rows) {
@@ -254,6 +329,8 @@ TEST(Stress, RandomScenesFulfilTheInvariants) {
   for (const StressFinding& failure : report.failures)
     ADD_FAILURE() << failure.law << ", seed " << failure.seed << ": " << failure.reason;
 }
+INSTANTIATE_TEST_SUITE_P(Stress, RandomScenes, ::testing::Bool(),
+                         [](const auto& one) { return one.param ? "plain" : "all"; });
 
 TEST(StressCommand, SaysWhatItFoundByItsExitCode) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
