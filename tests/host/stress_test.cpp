@@ -300,6 +300,48 @@ TEST(Shrink, LeavesWhatFails) {
   EXPECT_EQ(small["time"]["end"], 0.0);
 }
 
+// Fails as long as the pair of masses 5 and 50 meets, with a load on the lighter: the other pairs go, numbers
+// follow.
+TEST(Shrink, LeavesThePairThatFails) {
+  json scene = {{"model", {{"type", "points"}, {"points", json::array()}}},
+                {"time", {{"dt", 0.1}, {"end", 0.1}}},
+                {"loads", {{{"type", "motion"}, {"nodes", {14}}}, {{"type", "shock"}, {"nodes", {4}}}}},
+                {"springs", {{{"nodes", {4}}, {"to", {14}}}}},
+                {"interfaces", {{{"law", "a"}, {"parameters", json::object()}, {"nodes", json::array()}}}}};
+  for (int i = 1; i <= 7; ++i) scene["model"]["points"].push_back({{"mass", i}});
+  for (int i = 1; i <= 7; ++i) scene["model"]["points"].push_back({{"mass", 10 * i}});
+  scene["model"]["points"].push_back({{"mass", 100}});
+  json &nodes = scene["interfaces"][0]["nodes"], &against = scene["interfaces"][0]["against"];
+  for (int i = 0; i < 7; ++i) {
+    nodes.push_back(i);
+    against["nodes"].push_back(7 + i);
+  }
+  const auto fails = [](const json& s) {
+    const json &points = s["model"]["points"], &interface = s["interfaces"].at(0);
+    bool meets = false, is_pushed = false;
+    const auto mass = [&](const json& node) { return points.at(node.get<std::size_t>())["mass"].get<int>(); };
+    for (std::size_t k = 0; k < interface["nodes"].size(); ++k)
+      meets = meets || (mass(interface["nodes"][k]) == 5 && mass(interface["against"]["nodes"][k]) == 50);
+    for (const json& load : s["loads"])
+      if (load["type"] == "shock")
+        for (const json& node : load["nodes"]) is_pushed = is_pushed || mass(node) == 5;
+    return meets && is_pushed && s["springs"][0]["to"].size() == 1 && mass(s["springs"][0]["to"][0]) == 100;
+  };
+  ASSERT_TRUE(fails(scene));
+  const auto safely = [&](const json& s) {
+    try {
+      return fails(s);
+    } catch (const json::exception&) {
+      return false;  // as a scene that is refused
+    }
+  };
+  const json small = shrink(scene, safely, 1000);
+  EXPECT_TRUE(safely(small));
+  EXPECT_EQ(small["model"]["points"].size(), 3U) << small;
+  EXPECT_EQ(small["interfaces"][0]["nodes"], json({0}));
+  EXPECT_EQ(small["interfaces"][0]["against"]["nodes"], json({1}));
+}
+
 // A motion that leaves the range of numbers is no solution, whatever was promised: it must be found.
 TEST(Stress, FindsASceneThatStops) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <initializer_list>
+#include <iterator>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +50,58 @@ void add_with_fewer_points(const json& scene, std::vector<json>& made) {
     }
 }
 
+// Lists that name points by number, entry by entry, without those of some points, which are then counted
+// anew.
+void keep_of(std::initializer_list<json*> lists, const std::set<int>& removed) {
+  const auto is_number = [](const json& one) { return one.is_number(); };
+  for (const json* list : lists)
+    if (!list->is_array() || !std::all_of(list->begin(), list->end(), is_number)) return;
+  for (std::size_t k = (*lists.begin())->size(); k-- > 0;)
+    if (std::any_of(lists.begin(), lists.end(),
+                    [&](const json* list) { return removed.count((*list)[k].get<int>()) > 0; }))
+      for (json* list : lists) list->erase(k);
+  for (json* list : lists)
+    for (json& number : *list)
+      number = number.get<int>() -
+               static_cast<int>(std::distance(removed.begin(), removed.lower_bound(number.get<int>())));
+}
+
+json without_points(json scene, const std::set<int>& removed) {
+  for (auto point = removed.rbegin(); point != removed.rend(); ++point)
+    scene["model"]["points"].erase(static_cast<std::size_t>(*point));
+  for (json& interface : scene["interfaces"])
+    if (interface.contains("against"))
+      keep_of({&interface["nodes"], &interface["against"]["nodes"]}, removed);
+    else
+      keep_of({&interface["nodes"]}, removed);
+  for (json& load : scene["loads"])
+    if (load.contains("nodes")) keep_of({&load["nodes"]}, removed);
+  if (scene.contains("springs"))
+    for (json& spring : scene["springs"]) keep_of({&spring["nodes"], &spring["to"]}, removed);
+  return scene;
+}
+
+// Of an interface between points, parts of the list, with the partners of their nodes.
+void add_with_fewer_pairs(const json& scene, std::vector<json>& made) {
+  const json::json_pointer partners("/interfaces/0/against/nodes");
+  if (scene["model"]["type"] != "points" || !scene.contains(partners)) return;
+  const auto nodes = scene["interfaces"][0]["nodes"].get<std::vector<int>>(),
+             others = scene[partners].get<std::vector<int>>();
+  for (std::size_t kept = nodes.size(); kept > 1;) {
+    kept = (kept + 1) / 2;
+    for (std::size_t from = 0; from < nodes.size(); from += kept) {
+      const std::size_t end = std::min(nodes.size(), from + kept);
+      std::set<int> removed(nodes.begin(), nodes.end());
+      removed.insert(others.begin(), others.end());
+      for (std::size_t k = from; k < end; ++k) {
+        removed.erase(nodes[k]);
+        removed.erase(others[k]);
+      }
+      made.push_back(without_points(scene, removed));
+    }
+  }
+}
+
 void add_with_fewer_parameters(const json& scene, std::vector<json>& made) {
   for (std::size_t i = 0; i < scene["interfaces"].size(); ++i)
     for (const auto& item : scene["interfaces"][i]["parameters"].items()) {
@@ -76,6 +131,7 @@ std::vector<json> simpler_than(const json& scene) {
     made.back()["time"]["end"] = end * part;
   }
   add_with_fewer_points(scene, made);
+  add_with_fewer_pairs(scene, made);
   add_without_each(scene, json::json_pointer("/loads"), made);
   add_without_each(scene, json::json_pointer("/interfaces"), made);
   add_with_fewer_parameters(scene, made);
