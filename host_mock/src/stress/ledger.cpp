@@ -84,8 +84,6 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
         impulse.norm() * (ends.before.norm() + (ends.after - change).norm() + change.norm() + ends.carried);
     rounded_ += rounded;
     rounded_most_ = std::max(rounded_most_, rounded + stored);
-    if (stores(interface))
-      turned_ += 0.5 * impulse.norm() * misremembered(interface, contact, integrator, ends.before);
   }
 }
 
@@ -111,30 +109,6 @@ Ledger::Ends Ledger::ends_of(const Interface& interface, int contact, const Inte
     });
   }
   return {interface.relative(contact, v_before_) - before, interface.relative(contact, v) - after, carried};
-}
-
-// What a law remembers of v^- is the velocity w that it saw at the end of the step before, taken along by the
-// normal or the plane: how far that is from v^-, at most.
-double Ledger::misremembered(const Interface& interface, int contact, const Integrator& integrator,
-                             const Vector& before) const {
-  const Counterpart& counterpart = *interface.setup().counterpart;
-  const double time = integrator.time(), dt = scene_.dt;
-  if (counterpart.keeps_normal() && !counterpart.turns()) return 0.0;
-  const int k = interface.node_index_of(contact);
-  const Dofs &u = integrator.displacement(), u_before = u - dt * v_before_;
-  const ContactPoint now = counterpart.contact_point(k, u, time),
-                     then = counterpart.contact_point(k, u_before, time - dt);
-  const Eigen::Index d = scene_.model->dimension();
-  Vector w = -interface.obstacle_velocity_before();
-  then.for_each_node(interface.node_of(contact),
-                     [&](int node, double weight) { w += weight * v_before_.segment(node * d, d); });
-  double turned = (now.normal - then.normal).norm();
-  if (counterpart.turns()) {
-    const TurningRate rate = counterpart.rates(time - dt, dt).after;
-    w -= counterpart.unit_turn(k, u_before, time - dt, {then.gap, then.normal}).at(rate);
-    turned += std::sqrt(2.0 * dt * std::abs(rate.inward));  // a chord of the unit circle
-  }
-  return turned * w.norm() + (w - before).norm();
 }
 
 void Ledger::measure_depth(std::size_t number, const Integrator& integrator) {
@@ -174,7 +148,7 @@ double Ledger::balance_bound() const {
 }
 
 double Ledger::added_bound(const Tally& tally) const {
-  return rounding * (rounded_ + stored_) + turned_ + tally.coupling_energy;
+  return rounding * (rounded_ + stored_) + tally.coupling_energy;
 }
 
 double Ledger::dissipation_bound() const { return rounding * rounded_most_; }

@@ -26,9 +26,7 @@ class Ledger {
   // each of them is rounded, and so are the displacements that the forces come from.
   double balance_bound() const;
   // Work of impulses r and what laws say of it are rounded by |r| (|v^-| + |v_free| + H |r|); stored
-  // energies by themselves. Coupled contacts agree to a residual, whose energy is counted. An energy that is
-  // stored by an opening remembers v^- as it was seen in the step before: r.(Q w - v^-)/2 where that was w,
-  // and the normal has turned by Q since.
+  // energies by themselves. Coupled contacts agree to a residual, whose energy is counted.
   double added_bound(const Tally& tally) const;
   double dissipation_bound() const;
   // Rigid contact lets a node in by what it moves within a step; one that started inside goes no
@@ -50,8 +48,6 @@ class Ledger {
     double carried;
   };
   Ends ends_of(const Interface& interface, int contact, const Integrator& integrator) const;
-  double misremembered(const Interface& interface, int contact, const Integrator& integrator,
-                       const Vector& before) const;
   double size_now(const Integrator& integrator) const;
   void sample(const Integrator& integrator);
 
@@ -61,7 +57,7 @@ class Ledger {
   Dofs v_before_;
   std::vector<Dofs> start_depth_;  // per interface, of all nodes; empty: none is measured
   std::int64_t steps_ = 0;
-  double rounded_ = 0.0, rounded_most_ = 0.0, stored_ = 0.0, turned_ = 0.0;
+  double rounded_ = 0.0, rounded_most_ = 0.0, stored_ = 0.0;
   double size_ = 0.0, most_kinetic_ = 0.0, farthest_ = 0.0;
   double fastest_ = 0.0, penetration_ = 0.0, worst_velocity_ = 0.0;
 };
