@@ -214,22 +214,45 @@ struct cohesive : bond {
   void solve_bond(Node& node, const gathered<double>& given) const {
     const auto& s = node.state;
     const double w = weight();
-    double place[3];
-    place_bond(given, place);
-    const vector position = kept(place);
-    const zone<Modes> z{
-        .position = position,
-        .opening = s.opening,
-        .v_previous = node.v_previous,
-        .position_step = node.position_step,
-        .weight = w,
-        .friction = s.damage > 0.0 ? friction * s.damage : 0.0,
-        .compliance_scale =
-            0.25 * node.position_step * node.velocity_step * node.area * node.delassus.normal(),
-        .drive = 0.5 * node.v_free + (1.0 / node.position_step) * (position + s.opening),
-        .ground = ground_below(position.n, node.v_free.n, node.v_previous.n, node.position_step),
-        .modes = Modes(node.delassus, w)};
-    settle(node, z, is_delayed() ? delayed(s.damage, node.position_step, z) : at_once(s.damage, z));
+    const bool is_new = is_made_now(given);
+    const double step = step_of_opening(given, is_new);
+    zone<Modes> z{.position = {},
+                  .opening = s.opening,
+                  .v_free = node.v_free,
+                  .v_previous = node.v_previous,
+                  .position_step = step,
+                  .weight = w,
+                  .friction = s.damage > 0.0 ? friction * s.damage : 0.0,
+                  .compliance_scale = 0.25 * step * node.velocity_step * node.area * node.delassus.normal(),
+                  .modes = Modes(node.delassus, w)};
+    z.place(s.position);
+    outcome found = answer_of(z, given);
+    if (is_new && found.refused == not_refused) make_before(z, given, found);
+    settle(node, z, found);
+    if (is_new && node.velocity_step != node.position_step)
+      node.state.position = first_position(node.state.opening, z.position, given);
+  }
+
+  template <class Modes>
+  outcome answer_of(const zone<Modes>& z, const gathered<double>& given) const {
+    return is_delayed() ? delayed(given.damage, given.position_step, z) : at_once(given.damage, z);
+  }
+
+  // Where a bond that is made in this step, at the node's position, would put energy in, it is made before,
+  // at the least part of half a step at which it does not.
+  template <class Modes>
+  void make_before(zone<Modes>& z, const gathered<double>& given, outcome& found) const {
+    const auto taken = [&](double part) {
+      z.place((0.5 * part * z.position_step) * z.v_previous);
+      found = answer_of(z, given);
+      double opening[3];
+      keep(z.at(found.parts).opening, opening);
+      return taken_from_before(given, opening, z.weight * z.weight);
+    };
+    if (taken(0.0) >= 0.0) return;
+    double part = sign_change(0.0, 1.0, taken);
+    for (double more = 0x1p-52; taken(part) < 0.0 && part < 1.0; more *= 2.0)
+      part = smaller(part + more, 1.0);
   }
 
   template <class Modes, class Node>

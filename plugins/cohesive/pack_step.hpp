@@ -30,9 +30,10 @@ class pack_step {
  public:
   using Mask = mask_of<V>;
 
-  pack_step(const bond& b, const of_all_nodes& all, const gathered<V>& g) : bond_(b), all_(all), g_(g) {
-    const V *v = g.v_free, *u = g.v_previous, *w = g.opening, step = g.position_step;
-    place_bond(g, x_);
+  pack_step(const bond& b, const of_all_nodes& all, const gathered<V>& g)
+      : bond_(b), all_(all), g_(g), is_new_(is_made_now(g)), step_(step_of_opening(g, is_new_)) {
+    const V *v = g.v_free, *u = g.v_previous, *w = g.opening, step = step_;
+    for (int k = 0; k < 3; ++k) x_[k] = g.position[k];
     ground_ = ground_below(x_[0], v[0], u[0], step);
     floor_ = 0.5 * (x_[0] + ground_);
     below_ = 0.5 * (x_[0] + below(x_[0], ground_));
@@ -64,7 +65,8 @@ class pack_step {
     const Mask is_found =
         (absolute(found.excess) <= 0x1p-45 * scale_of(found)) & (sum > 0x1p-200) & (sum < 0x1p200);
     leave(found.kappa, found.motion, damage_after(found.motion, softening_of(found.motion), holds), a);
-    return where & !(has_scale & self().is_whole(found.motion, most) & (holds | (softens & is_found)));
+    const Mask is_solved = has_scale & self().is_whole(found.motion, most) & (holds | (softens & is_found));
+    return where & !(is_solved & !turns_round(found.motion));
   }
 
  protected:
@@ -113,6 +115,12 @@ class pack_step {
     const double least = smaller(bond_.strength, bond_.shear_strength());
     return ((g_.damage == 0.0) & (pull <= now_.soft * least)) |
            (pull <= now_.soft * softening_of(m).traction(m.size));
+  }
+
+  // Whether a bond that is made where the node is now would put energy in: it is made before then.
+  Mask turns_round(const trial& m) const {
+    if (!any(is_new_)) return Mask(false);
+    return is_new_ & (taken_from_before(g_, m.opening, V(square_of_weight())) < 0.0);
   }
 
   // What the excess is small beside.
@@ -209,11 +217,17 @@ class pack_step {
       a.position[k] = 2.0 * y[k] - x_[k];
       a.opening[k] = y[k];
     }
+    const Mask is_uneven = is_new_ & (g_.velocity_step != g_.position_step);
+    if (!any(is_uneven)) return;
+    for (int k = 0; k < 3; ++k)
+      a.position[k] = select(is_uneven, first_position(y[k], x_[k], g_), a.position[k]);
   }
 
   const bond& bond_;
   const of_all_nodes& all_;
   const gathered<V>& g_;
+  Mask is_new_;               // made in this step
+  V step_;                    // see step_of_opening
   V x_[3], drive_[3];         // position at the time of the impulse; w^+ + w^- without bond and contact
   V ground_, floor_, below_;  // lowest next position, lowest opening, and what is below it
   V from_, c_;                // |w^-|

@@ -53,17 +53,53 @@ V below(V position, V ground) {
   return ground - 0x1p-49 * (absolute(position) + absolute(ground));
 }
 
+// The lowest next position: where the bond was made, or as deep as the node is. A node that was leaving turns
+// round at most at the speed with which it left (see contact_leaving_at), which matters where steps differ.
+template <class V>
+[[gnu::always_inline]] inline V ground_below(V position, V v_free, V v_previous, V position_step) {
+  const V rounding = 0x1p-48 * (absolute(v_free) + absolute(v_previous)), lowest = smaller(position, 0.0);
+  const auto leaves = position_step * (v_previous - rounding) > position - lowest;
+  return select(leaves, position - position_step * v_previous, lowest);
+}
+
+// Whether the bond has not been moved: then it is made in this step.
+template <class V>
+mask_of<V> is_made_now(const gathered<V>& g) {
+  V moved = 0.0;
+  for (int k = 0; k < 3; ++k) moved = moved + (absolute(g.position[k]) + absolute(g.opening[k]));
+  return moved == 0.0;
+}
+
+// Over which the opening grows with the velocity. In the first step that of the impulse, so that its work is
+// the bond's also where the steps differ.
+template <class V>
+V step_of_opening(const gathered<V>& g, mask_of<V> is_new) {
+  return select(is_new, g.velocity_step, g.position_step);
+}
+
+// Half a step behind the opening, after a first step.
+template <class V, class T>
+T first_position(T opening, T place, const gathered<V>& g) {
+  return opening + (g.position_step / g.velocity_step) * (opening - place);
+}
+
 template <class Modes>
 struct zone {
   vector position, opening;  // relative position at the time of the impulse; w^-
-  vector v_previous;
-  double position_step;
+  vector v_free, v_previous;
+  double position_step;     // see step_of_opening
   double weight;            // of tangential openings in the effective one
   double friction;          // coefficient, already reduced to the broken part
   double compliance_scale;  // c
-  vector drive;             // of w^+ + w^- without bond and contact, as a velocity
-  double ground;            // contact keeps the next position above it
   Modes modes;
+  vector drive{};       // of w^+ + w^- without bond and contact, as a velocity
+  double ground = 0.0;  // contact keeps the next position above it
+
+  void place(vector where) {
+    position = where;
+    drive = 0.5 * v_free + (1.0 / position_step) * (where + opening);
+    ground = ground_below(where.n, v_free.n, v_previous.n, position_step);
+  }
 
   // Opening along which work is done in each direction, as one number.
   double size(vector w) const { return length(w.n, weight * w.t1, weight * w.t2); }
@@ -109,31 +145,13 @@ struct zone {
   }
 };
 
-// The lowest next position: where the bond was made, or as deep as the node is. A node that was leaving turns
-// round at most at the speed with which it left (see contact_leaving_at), which matters where steps differ.
+// What the impulse of a bond that is made in this step works on v^-, against its sign. A node that is held
+// has of v^- what rounding left, as at stopping_impulse.
 template <class V>
-[[gnu::always_inline]] inline V ground_below(V position, V v_free, V v_previous, V position_step) {
-  const V rounding = 0x1p-48 * (absolute(v_free) + absolute(v_previous)), lowest = smaller(position, 0.0);
-  const auto leaves = position_step * (v_previous - rounding) > position - lowest;
-  return select(leaves, position - position_step * v_previous, lowest);
-}
-
-// Where the bond is at the time of the impulse. One that has not been moved is made where the node is now.
-// Its work r.(v^- + v)/2 and the energy that it stores, r.v/2, then differ by r.v^-/2 < 0, an impact. That is
-// positive where the node turns round within the step, as on a stiff spring: there the bond was made half a
-// step before, at l v^-/2.
-template <class V>
-[[gnu::always_inline]] inline void place_bond(const gathered<V>& g, V (&place)[3]) {
-  const V *p = g.position, *w = g.opening, *v = g.v_free, *u = g.v_previous;
-  V moved = 0.0;
-  for (int k = 0; k < 3; ++k) moved = moved + (absolute(p[k]) + absolute(w[k]));
-  const auto is_new = moved == 0.0;
-  const V half = 0.5 * g.position_step;
-  const V normal = select(is_new & (v[0] * u[0] < 0.0), half, 0.0);
-  const V tangential = select(is_new & (v[1] * u[1] + v[2] * u[2] < 0.0), half, 0.0);
-  place[0] = p[0] + normal * u[0];
-  place[1] = p[1] + tangential * u[1];
-  place[2] = p[2] + tangential * u[2];
+V taken_from_before(const gathered<V>& g, const V (&opening)[3], V square_of_weight) {
+  V along[3];
+  for (int k = 0; k < 3; ++k) along[k] = velocity_before(g.v_previous[k], g.v_free[k]) * opening[k];
+  return along[0] + square_of_weight * (along[1] + along[2]);
 }
 
 }  // namespace ILAW_KIT_LEVEL
