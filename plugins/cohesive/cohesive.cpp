@@ -214,23 +214,25 @@ struct cohesive : bond {
   void solve_bond(Node& node, const gathered<double>& given) const {
     const auto& s = node.state;
     const double w = weight();
+    const double step = node.velocity_step;
     const bool is_new = is_made_now(given);
-    const double step = step_of_opening(given, is_new);
+    double place[3], ground;
+    place_bond(given, is_new, place, ground);
     zone<Modes> z{.position = {},
                   .opening = s.opening,
                   .v_free = node.v_free,
                   .v_previous = node.v_previous,
-                  .position_step = step,
+                  .step = step,
                   .weight = w,
                   .friction = s.damage > 0.0 ? friction * s.damage : 0.0,
-                  .compliance_scale = 0.25 * step * node.velocity_step * node.area * node.delassus.normal(),
+                  .compliance_scale = 0.25 * step * step * node.area * node.delassus.normal(),
                   .modes = Modes(node.delassus, w)};
-    z.place(s.position);
+    z.place(kept(place), ground);
     outcome found = answer_of(z, given);
     if (is_new && found.refused == not_refused) make_before(z, given, found);
     settle(node, z, found);
-    if (is_new && node.velocity_step != node.position_step)
-      node.state.position = first_position(node.state.opening, z.position, given);
+    if (step != node.position_step)
+      node.state.position = uneven_position(node.state.opening, z.position, given);
   }
 
   template <class Modes>
@@ -243,7 +245,8 @@ struct cohesive : bond {
   template <class Modes>
   void make_before(zone<Modes>& z, const gathered<double>& given, outcome& found) const {
     const auto taken = [&](double part) {
-      z.place((0.5 * part * z.position_step) * z.v_previous);
+      const vector place = (0.5 * part * z.step) * z.v_previous;
+      z.place(place, ground_below(place.n, z.v_free.n, z.v_previous.n, z.step));
       found = answer_of(z, given);
       double opening[3];
       keep(z.at(found.parts).opening, opening);

@@ -114,7 +114,7 @@ class coupled_step : public pack_step<V, coupled_step<V>, coupled_response<V>> {
   // Of bond and contact together: the bond takes up what M leaves not of the contact's.
   void press(V kappa, const trial& m, V (&impulse)[3]) const {
     const V load[] = {m.contact - kappa * heavy_[0], -(kappa * heavy_[1]), -(kappa * heavy_[2])};
-    const V scale = 2.0 * m.inverse / (this->step_ * this->g_.h[0]);
+    const V scale = 2.0 * m.inverse / (this->g_.velocity_step * this->g_.h[0]);
     V taken[3], weighted[3];
     multiply(m.adjugate, load, taken);
     weigh(taken, weighted);

@@ -47,14 +47,14 @@ class isotropic_step : public pack_step<V, isotropic_step<V>, isotropic_response
   }
   // See close in zone.hpp.
   [[gnu::noinline]] void rub_closed(trial& m, V free) const {
-    const V rate = 1.0 / this->step_, target = (this->ground_ - this->x_[0]) * rate;
+    const V rate = 1.0 / this->g_.velocity_step, target = (this->ground_ - this->x_[0]) * rate;
     const V h_t = m.left_t * this->g_.h[1],
             normal = (this->ground_ + this->x_[0] - 2.0 * free) * rate / (m.left_n * this->g_.h[0]);
     const V *y = m.opening, *u = this->g_.v_previous, rest[] = {smaller(u[0] + target, 0.0), u[1], u[2]};
     const V q[] = {0.0, 2.0 * rate * (y[1] - this->x_[1]), 2.0 * rate * (y[2] - this->x_[2])};
     const rubbing_factor<V> found = rub_from(h_t, normal, q, rest, this->bond_.friction * this->g_.damage);
     const Mask rubs = m.closed & (this->g_.damage > 0.0);
-    const V way = 0.5 * this->step_ * h_t;
+    const V way = 0.5 * this->g_.velocity_step * h_t;
     for (int k = 1; k < 3; ++k) {
       m.rub[k - 1] = select(rubs, 0.0 - found.factor * q[k], 0.0);
       const V rubbed = select(found.moves, m.opening[k] + way * m.rub[k - 1], this->x_[k]);
@@ -77,7 +77,7 @@ class isotropic_step : public pack_step<V, isotropic_step<V>, isotropic_response
   // does.
   void press(V kappa, const trial& m, V (&impulse)[3]) const {
     const V *h = this->g_.h, *d = this->drive_;
-    const V rate_of_step = 1.0 / this->step_, taken = 2.0 * kappa * rate_of_step;
+    const V rate_of_step = 1.0 / this->g_.velocity_step, taken = 2.0 * kappa * rate_of_step;
     const V taken_t = taken * ratio_ * m.left_t / h[1];
     const V closing = this->g_.v_free[0] + (this->x_[0] - this->ground_) * rate_of_step;
     impulse[0] = -(select(m.closed, closing, taken * m.left_n * d[0]) / h[0]);

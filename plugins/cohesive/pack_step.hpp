@@ -31,10 +31,9 @@ class pack_step {
   using Mask = mask_of<V>;
 
   pack_step(const bond& b, const of_all_nodes& all, const gathered<V>& g)
-      : bond_(b), all_(all), g_(g), is_new_(is_made_now(g)), step_(step_of_opening(g, is_new_)) {
-    const V *v = g.v_free, *u = g.v_previous, *w = g.opening, step = step_;
-    for (int k = 0; k < 3; ++k) x_[k] = g.position[k];
-    ground_ = ground_below(x_[0], v[0], u[0], step);
+      : bond_(b), all_(all), g_(g), is_new_(is_made_now(g)) {
+    const V *v = g.v_free, *w = g.opening, step = g.velocity_step;
+    place_bond(g, is_new_, x_, ground_);
     floor_ = 0.5 * (x_[0] + ground_);
     below_ = 0.5 * (x_[0] + below(x_[0], ground_));
     for (int k = 0; k < 3; ++k) drive_[k] = 0.5 * step * v[k] + (x_[k] + w[k]);
@@ -217,17 +216,16 @@ class pack_step {
       a.position[k] = 2.0 * y[k] - x_[k];
       a.opening[k] = y[k];
     }
-    const Mask is_uneven = is_new_ & (g_.velocity_step != g_.position_step);
+    const Mask is_uneven = g_.velocity_step != g_.position_step;
     if (!any(is_uneven)) return;
     for (int k = 0; k < 3; ++k)
-      a.position[k] = select(is_uneven, first_position(y[k], x_[k], g_), a.position[k]);
+      a.position[k] = select(is_uneven, uneven_position(y[k], x_[k], g_), a.position[k]);
   }
 
   const bond& bond_;
   const of_all_nodes& all_;
   const gathered<V>& g_;
   Mask is_new_;               // made in this step
-  V step_;                    // see step_of_opening
   V x_[3], drive_[3];         // position at the time of the impulse; w^+ + w^- without bond and contact
   V ground_, floor_, below_;  // lowest next position, lowest opening, and what is below it
   V from_, c_;                // |w^-|

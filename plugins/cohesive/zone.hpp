@@ -70,16 +70,23 @@ mask_of<V> is_made_now(const gathered<V>& g) {
   return moved == 0.0;
 }
 
-// Over which the opening grows with the velocity. In the first step that of the impulse, so that its work is
-// the bond's also where the steps differ.
+// Where the bond is at the time of the impulse, and its ground, as if both steps were that of the velocity:
+// so that the opening grows as the work does. See cohesive.md.
 template <class V>
-V step_of_opening(const gathered<V>& g, mask_of<V> is_new) {
-  return select(is_new, g.velocity_step, g.position_step);
+[[gnu::always_inline]] inline void place_bond(const gathered<V>& g, mask_of<V> is_new, V (&place)[3],
+                                              V& ground) {
+  const V *p = g.position, *u = g.v_previous, step = g.velocity_step;
+  for (int k = 0; k < 3; ++k) place[k] = p[k];
+  ground = ground_below(p[0], g.v_free[0], u[0], g.position_step);
+  const auto uneven = step != g.position_step;
+  if (!any(uneven)) return;
+  for (int k = 0; k < 3; ++k) place[k] = select(uneven & !is_new, g.opening[k] + 0.5 * step * u[k], place[k]);
+  ground = select(uneven, place[0] + step / g.position_step * (ground - p[0]), ground);
 }
 
-// Half a step behind the opening, after a first step.
+// Where the node is next, where the steps differ: from its opening on by half a step of the position.
 template <class V, class T>
-T first_position(T opening, T place, const gathered<V>& g) {
+T uneven_position(T opening, T place, const gathered<V>& g) {
   return opening + (g.position_step / g.velocity_step) * (opening - place);
 }
 
@@ -87,7 +94,7 @@ template <class Modes>
 struct zone {
   vector position, opening;  // relative position at the time of the impulse; w^-
   vector v_free, v_previous;
-  double position_step;     // see step_of_opening
+  double step;              // over which the opening grows with the velocity
   double weight;            // of tangential openings in the effective one
   double friction;          // coefficient, already reduced to the broken part
   double compliance_scale;  // c
@@ -95,10 +102,10 @@ struct zone {
   vector drive{};       // of w^+ + w^- without bond and contact, as a velocity
   double ground = 0.0;  // contact keeps the next position above it
 
-  void place(vector where) {
+  void place(vector where, double lowest) {
     position = where;
-    drive = 0.5 * v_free + (1.0 / position_step) * (where + opening);
-    ground = ground_below(where.n, v_free.n, v_previous.n, position_step);
+    ground = lowest;
+    drive = 0.5 * v_free + (1.0 / step) * (where + opening);
   }
 
   // Opening along which work is done in each direction, as one number.
@@ -110,7 +117,7 @@ struct zone {
   }
 
   motion at(share s) const {
-    motion m{.opening = position_step * modes.left(s, drive) - opening, .contact = {}};
+    motion m{.opening = step * modes.left(s, drive) - opening, .contact = {}};
     if (next_position(m).n < below(position.n, ground)) close(s, m);
     m.size = size(m.opening);
     return m;
@@ -125,8 +132,8 @@ struct zone {
   // Contact is pressed by what it takes from the bond as well, and what is broken of the bond rubs. Like
   // every contact it does no positive work.
   void close(share s, motion& m) const {
-    const double target = (ground - position.n) / position_step;
-    vector q = (2.0 / position_step) * (m.opening - position);
+    const double target = (ground - position.n) / step;
+    vector q = (2.0 / step) * (m.opening - position);
     q.n -= target;
     const vector rest{smaller(v_previous.n + target, 0.0), v_previous.t1, v_previous.t2};
     pressed_node<decltype(modes.delassus(s))> node{modes.delassus(s), {}, status::free, not_refused};
@@ -136,7 +143,7 @@ struct zone {
     if (left < -0x1p-30 * absolute(q.n)) node.impulse = {-q.n / node.delassus.normal(), 0.0, 0.0};
     m.contact = node.impulse;
     m.refused = node.refused;
-    m.opening = m.opening + (0.5 * position_step) * node.delassus.times(node.impulse);
+    m.opening = m.opening + (0.5 * step) * node.delassus.times(node.impulse);
     if (!Modes::along_axes || node.impulse.n == 0.0) return;
     m.opening.n = 0.5 * (position.n + ground);
     if (node.status != status::stick || friction == 0.0) return;
