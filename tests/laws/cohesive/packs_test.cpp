@@ -53,7 +53,8 @@ struct Nodes {
     ilaw_batch b{};
     b.struct_size = sizeof b;
     b.node_count = static_cast<std::int64_t>(status.size());
-    b.velocity_step = b.position_step = step;
+    b.velocity_step = step;
+    b.position_step = position_step;
     b.v_free = {v_free.data(), 3, 1};
     b.delassus = {h.data(), 6, 1};
     b.gap = {gap.data(), 1, 1};
@@ -85,6 +86,7 @@ struct Nodes {
     std::copy_n(from.state.begin() + states * i, states, state.begin() + states * k);
     gap[k] = from.gap[i];
     step = from.step;
+    position_step = from.position_step;
   }
   Given at(std::size_t i) const {
     Given g{{given.begin() + outputs * i, given.begin() + outputs * (i + 1)}, status[i]};
@@ -92,7 +94,7 @@ struct Nodes {
     return g;
   }
 
-  double step = 0.0;
+  double step = 0.0, position_step = 0.0;
   std::vector<double> h, v_free, before, gap, area, state, given;
   std::vector<std::uint8_t> status;
 };
@@ -116,6 +118,7 @@ Nodes drawn_nodes(Draw& draw, const Curve& curve, std::size_t count, double coup
     nodes.set(i, p, kind < 0.2 ? 0.0 : kind < 0.4 ? 1.0 : p.damage);
     nodes.gap[i] = draw.between(-1.0, 1.0) * nodes.step;
   }
+  nodes.position_step = nodes.step * (draw.between(0.0, 1.0) < 0.5 ? 1.0 : draw.between(0.7, 1.4));
   return nodes;
 }
 
@@ -138,7 +141,7 @@ TEST(CohesivePacks, LeaveAnIllConditionedInertia) {
     Nodes nodes(100);
     for (std::size_t i = 0; i < 100; ++i) {
       Problem p(draw, Curve(parameters), 0.0);
-      if (i == 0) nodes.step = p.step;
+      if (i == 0) nodes.step = nodes.position_step = p.step;
       const double coupling = 1.0 - (is_fair ? 0x1p-10 : 0x1p-24);
       p.inertia.h = {Vector{1.0, coupling, 0.0}, {coupling, 1.0, 0.0}, {0.0, 0.0, 1.0}};
       nodes.set(i, p, p.damage);
