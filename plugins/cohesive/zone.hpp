@@ -71,16 +71,17 @@ mask_of<V> is_made_now(const gathered<V>& g) {
 }
 
 // Where the bond is at the time of the impulse, and its ground, as if both steps were that of the velocity:
-// so that the opening grows as the work does. See cohesive.md.
+// so that the opening grows as the work does, whatever the steps and the axes of the step before. See
+// cohesive.md.
 template <class V>
 [[gnu::always_inline]] inline void place_bond(const gathered<V>& g, mask_of<V> is_new, V (&place)[3],
                                               V& ground) {
   const V *p = g.position, *u = g.v_previous, step = g.velocity_step;
-  for (int k = 0; k < 3; ++k) place[k] = p[k];
-  ground = ground_below(p[0], g.v_free[0], u[0], g.position_step);
+  for (int k = 0; k < 3; ++k) place[k] = select(is_new, p[k], g.opening[k] + 0.5 * step * u[k]);
   const auto uneven = step != g.position_step;
+  const V from = select(uneven, p[0], place[0]);
+  ground = ground_below(from, g.v_free[0], u[0], g.position_step);
   if (!any(uneven)) return;
-  for (int k = 0; k < 3; ++k) place[k] = select(uneven & !is_new, g.opening[k] + 0.5 * step * u[k], place[k]);
   ground = select(uneven, place[0] + step / g.position_step * (ground - p[0]), ground);
 }
 
