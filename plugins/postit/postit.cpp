@@ -172,6 +172,25 @@ struct postit {
     return holds;
   }
 
+  // The largest part up to 1 of r that may join what is held, so that the work of both, which is
+  // (held + r).(v^- + v_free + H (held + r))/2, is not positive; that of what is held alone counts as none.
+  template <class Node>
+  static double joining_part(const Node& node, vector held, vector r) {
+    const auto product = [](vector a, vector b) { return normal_product(a, b) + tangential_product(a, b); };
+    const vector of_held = node.delassus.times(held), motion = node.v_previous + node.v_free + of_held;
+    const double c2 = product(r, node.delassus.times(r)), c1 = product(r, motion + of_held);
+    const fraction<double> root = root_of_work(c2, c1, smaller(product(held, motion), 0.0));
+    return root.over < root.under ? root.over / root.under : 1.0;
+  }
+  // What is held and then contact and friction do no positive work each, and yet may together: friction is
+  // scaled first, as where there is no bond, and then contact with it, if that was not enough.
+  template <class Node>
+  static vector joined(const Node& node, vector held, vector r) {
+    const vector rubs{0.0, r.t1, r.t2};
+    r = vector{r.n, 0.0, 0.0} + joining_part(node, held + vector{r.n, 0.0, 0.0}, rubs) * rubs;
+    return held + joining_part(node, held, r) * r;
+  }
+
   // What the step makes of the bond: the node comes with the impulse of contact, is given the trial impulse
   // where its bond holds, and heals.
   template <bool Wears, class Node>
@@ -226,7 +245,7 @@ struct postit::form : postit, friction_in_packs {
       const bool breaks = node.state.adhesion > 0.0 && !holds;
       const vector held = breaks ? held_part(node.earlier, trial, node.state.adhesion) * trial : vector{};
       apply_plain_contact(node, node.v_free + node.delassus.times(held), friction);
-      node.impulse = node.impulse + held;
+      if (breaks) node.impulse = joined(node, held, node.impulse);
     } else {
       apply_plain_contact(node, node.v_free, friction);
     }

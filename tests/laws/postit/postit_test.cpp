@@ -244,6 +244,35 @@ TEST(Postit, SaturatedRuptureGivesWhatWasLeft) {
   EXPECT_EQ(brittle.r[0], 0.0);
 }
 
+// What a bond holds on to takes nothing from contact: where H does not couple, a node on the plane that
+// breaks in shear does not enter it, unless it was leaving, and then no faster than it left. So it is also
+// where its sliding turned round within the step and friction is scaled for the work of both.
+TEST(Postit, SaturatedRuptureUnderPressureStaysOnThePlane) {
+  NodeRun node("postit",
+               {{{"tangent_influence", 0.3}, {"friction", 5.0}, {"initial_adhesion", 0.2}},
+                {{"rupture", "saturated"}}},
+               1e-3, ILAW_DELASSUS_DIAGONAL);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  int broke = 0, scaled = 0;
+  for (int k = 0; k < 100000 && !HasFailure(); ++k) {
+    for (std::size_t c = 0; c < 3; ++c) node.h[c] = std::exp2(2.5 * any(random));
+    const Vector free{-0.05 - 0.05 * any(random), any(random), any(random)};
+    const double back = 0.5 + 0.5 * any(random);
+    node.v_previous = {k % 2 * 0.1 * any(random), -back * free[1], 0.2 * any(random) - back * free[2]};
+    const double limit = std::min(0.0, -node.v_previous[0]);
+    node.initialise();
+    ASSERT_EQ(node.step(free), ILAW_OK);
+    if (node.status != ILAW_BROKEN) continue;
+    ++broke;
+    scaled += node.energy[ILAW_ENERGY_RUPTURE] < 1e-14;
+    EXPECT_GE(node.v[0], limit - 1e-12) << "draw " << k;
+    EXPECT_LE(node.v[0], 1e-12) << "draw " << k;
+  }
+  EXPECT_GT(broke, 20000);
+  EXPECT_GT(scaled, 10);
+}
+
 // A block under a press of 1 that is pushed sideways at 2, from rest on a bond of P tau, and then back gently
 // until it sticks again; steps share no factor with the times or with each other.
 constexpr double sliding_steps[] = {0.0097, 0.00113, 0.000107};
