@@ -29,8 +29,9 @@ std::ostream& operator<<(std::ostream& out, const Solved& solved) { return out <
 class SceneThatFailed : public ::testing::TestWithParam<Solved> {};
 
 // Energy was added near the critical step, by a bond that caught a moving node, by bonds that were not
-// solved, by one whose damage had no digits left for its shear, and by a rounded ground; a resumed run had
-// other bits; a node at rest was given an impulse that is not a number.
+// solved, by one whose damage had no digits left for its shear, by a rounded ground, and by one that
+// remembered a velocity in the axes of the step before; a resumed run had other bits; a node at rest was
+// given an impulse that is not a number.
 TEST_P(SceneThatFailed, IsSolved) {
   json scene = scene_that_failed(GetParam().name);
   scene["time"]["end"] = scene["time"]["end"].get<double>() * GetParam().part;
@@ -47,7 +48,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Solved{"bond_and_rebound", 0.2}, Solved{"bond_on_a_stiff_spring", 0.5},
                       Solved{"mass_ratio_of_1e5", 0.02}, Solved{"tie_on_a_stiff_spring", 0.05},
                       Solved{"speeds_whose_squares_underflow", 1.0}, Solved{"springs_of_no_stiffness", 1.0},
-                      Solved{"strengths_far_apart", 1.0}, Solved{"strong_bond_that_swings", 1.0}));
+                      Solved{"strengths_far_apart", 1.0}, Solved{"strong_bond_that_swings", 1.0},
+                      Solved{"stiff_bond_on_a_sphere", 1.0}, Solved{"bond_after_a_step_left_unsolved", 1.0},
+                      Solved{"opening_of_rounding", 1.0}));
 
 // A soft and a rigid bond on the same nodes leave a step unsolved. The law of the bond then begins the next
 // step where it is not, which its impulse there works on once more; a resumed run knows of it.

@@ -96,8 +96,7 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
         energy.kinetic, energy_.largest());
   if (energy.reaction_work > much_energy * energy.scale)
     say("interfaces put in the energy %.2g, where %.2g is the largest in the run: an explicit penalty too stiff "
-        "for the time step does, one that is pressed in at the start, and a stiff bond on a curved obstacle; "
-        "contact, friction and bonds on planes do not",
+        "for the time step does, and one that is pressed in at the start; contact, friction and bonds do not",
         energy.reaction_work, energy.scale);
   return warnings;
 }
