@@ -127,10 +127,8 @@ class node_alone {
   }
 
   [[gnu::noinline]] rubbed<double> solve() const {
-    const bool couples = p_.c1 != 0.0 || p_.c2 != 0.0;
-    const bool is_plain = !couples && p_.a12 == 0.0 && p_.a11 == p_.a22;
-    if (is_plain || !(friction_ > 0.0)) return apart();
-    return normal_.spring.is_rigid() ? rigid() : coupled(couples);
+    if (is_like_scalar(p_) || !(friction_ > 0.0)) return apart();
+    return normal_.spring.is_rigid() ? rigid() : coupled(p_.c1 != 0.0 || p_.c2 != 0.0);
   }
 
  private:
@@ -199,6 +197,52 @@ inline void solve_alone(const normal_spring& spring, double friction, double res
                         const rubbing<double>& p, rubbed<double>& a) {
   a = node_alone(spring, friction, restitution, p).solve();
 }
+
+// A rigid tangential spring: e_T in [0, 1] and r_T with r_T.v_T^- at most 0 where e_T is 0, 0 where it is
+// between, and not less than 0 where it is 1, so that the stick puts nothing in. See penalty.md. Solve: of a
+// rubbing<double>, with e_T given.
+inline rubbing<double> giving_back(const rigid_rubbing<double>& p, double part) {
+  rubbing<double> held = p;
+  held.q1 += 0.5 * part * p.before1;
+  held.q2 += 0.5 * part * p.before2;
+  return held;
+}
+// With an impulse across v_T^- alone.
+template <class Solve>
+rubbed<double> rub_across(const rigid_rubbing<double>& p, Solve solve) {
+  const double speed = kit::length(p.before1, p.before2);
+  const double n1 = 0.0 - p.before2 / speed, n2 = p.before1 / speed;
+  rubbing<double> turned = p;
+  turned.c1 = n1 * p.c1 + n2 * p.c2;
+  turned.a11 = turned.a22 = n1 * (p.a11 * n1 + p.a12 * n2) + n2 * (p.a12 * n1 + p.a22 * n2);
+  turned.q1 = n1 * p.q1 + n2 * p.q2;
+  turned.c2 = turned.a12 = turned.q2 = 0.0;
+  rubbed<double> a = solve(turned);
+  a.t2 = n2 * a.t1;
+  a.t1 = n1 * a.t1;
+  return a;
+}
+// e_T of a velocity whose part along v_T^- is -e_T v_T^-.
+inline double part_given_back(const rigid_rubbing<double>& p, const rubbed<double>& a) {
+  const auto before = kit::scaled_length_of(p.before1, p.before2);
+  const double v1 = p.q1 + 0.5 * p.c1 * a.impulse + p.a11 * a.t1 + p.a12 * a.t2;
+  const double v2 = p.q2 + 0.5 * p.c2 * a.impulse + p.a12 * a.t1 + p.a22 * a.t2;
+  const double along = (before.down * p.before1) * v1 + (before.down * p.before2) * v2;
+  return -2.0 * before.down * along / before.square;
+}
+template <class Solve>
+[[gnu::noinline]] rubbed<double> stick_rigidly(const rigid_rubbing<double>& p, Solve solve) {
+  if (is_like_scalar(p)) {
+    const kit::vector free{0.0, 2.0 * p.q1, 2.0 * p.q2}, before{0.0, p.before1, p.before2};
+    return solve(giving_back(p, turned_part(free, before)));
+  }
+  const rubbed<double> stopped = solve(p);
+  const auto size = kit::power_scale_of(kit::larger(kit::absolute(stopped.t1), kit::absolute(stopped.t2)));
+  if (stopped.outcome == has_none || !pushes_on(p, stopped.t1, stopped.t2, size.down)) return stopped;
+  const rubbed<double> across = rub_across(p, solve);
+  return part_given_back(p, across) <= 1.0 ? across : solve(giving_back(p, 1.0));
+}
+
 inline void solve_alone(const normal_spring& spring, double friction, double restitution,
                         const pressing<double>& p, pressed<double>& a) {
   const rubbed<double> found = node_alone(spring, friction, restitution, p).solve();

@@ -39,18 +39,35 @@ inline double damping_ratio(double restitution) {
 }
 
 // plain: linear, neither rigid nor, where it is implicit, with damper or restitution. smooth: the same
-// without friction. rigid_plain: plain, with a rigid tangential spring.
-enum class spring_kind { smooth, plain, rigid_plain, linear, smooth_hertz, hertz, any };
+// without friction. sticking_...: with friction and a rigid tangential spring, which `any` may have, too.
+enum class spring_kind {
+  smooth,
+  plain,
+  sticking_plain,
+  linear,
+  sticking_linear,
+  smooth_hertz,
+  hertz,
+  sticking_hertz,
+  any
+};
 constexpr bool is_smooth(spring_kind kind) {
   return kind == spring_kind::smooth || kind == spring_kind::smooth_hertz;
 }
 constexpr bool is_plain(spring_kind kind) {
-  return kind == spring_kind::smooth || kind == spring_kind::plain || kind == spring_kind::rigid_plain;
+  return kind == spring_kind::smooth || kind == spring_kind::plain || kind == spring_kind::sticking_plain;
 }
 constexpr bool is_hertz(spring_kind kind) {
-  return kind == spring_kind::smooth_hertz || kind == spring_kind::hertz;
+  return kind == spring_kind::smooth_hertz || kind == spring_kind::hertz ||
+         kind == spring_kind::sticking_hertz;
 }
-constexpr bool is_linear(spring_kind kind) { return is_plain(kind) || kind == spring_kind::linear; }
+constexpr bool is_linear(spring_kind kind) {
+  return is_plain(kind) || kind == spring_kind::linear || kind == spring_kind::sticking_linear;
+}
+constexpr bool sticks_rigidly(spring_kind kind) {
+  return kind == spring_kind::sticking_plain || kind == spring_kind::sticking_linear ||
+         kind == spring_kind::sticking_hertz;
+}
 
 template <spring_kind Kind>
 double spring_force(double stiffness, double exponent, double penetration) {
@@ -74,9 +91,9 @@ inline double stable_step(double delassus, double tangent, double damping) {
   return 2.0 / (kit::length(kit::square_root(tangent * delassus), half_damper) + half_damper);
 }
 
-// How much of the velocity before a step counts for the mean of a rigid tangential spring: what of it the
-// free velocity has turned round, so that stopping it does no work. A little more, as rounding may leave
-// velocities along v^-, which then do none either.
+// How much of the velocity before a step a rigid tangential spring gives back, where H is that of a ball in
+// the tangent plane: what of it the free velocity has turned round, so that the stick does no work. A little
+// more, as rounding may leave velocities along v^-, which then do none either.
 template <class Vector>
 double turned_part(Vector v_free, Vector v_previous) {
   constexpr double more_than_rounding = 1.0 + 0x1p-48;

@@ -175,19 +175,20 @@ struct penalty {
         !is_out_of_reach(node) & (node.gap + 0.5 * node.position_step * node.v_previous.n <= 0.0);
     return (node.state.indentation > 0.0) | enters;
   }
-  // Whether a stick is rigid: known of plain springs before their loop, each of which leaves something out.
+  // Whether a stick is rigid: known of most before their loop, each of which leaves something out.
   template <spring_kind Kind>
   bool sticks_rigidly() const {
-    if constexpr (is_plain(Kind)) return Kind == spring_kind::rigid_plain;
+    if constexpr (is_plain(Kind) || penalty_law::sticks_rigidly(Kind))
+      return penalty_law::sticks_rigidly(Kind);
     return tangential_stiffness == infinity;
   }
-  // q + H/2 r is the mean velocity of what slips. Twice that, and twice what the spring adds to H/2.
+  // q + H/2 r is the mean velocity of what slips, of which a rigid stick gives back a part. Twice that, and
+  // twice what the spring adds to H/2.
   template <spring_kind Kind, class Node>
-  vector sliding_velocity(const Node& node) const {
+  vector sliding_velocity(const Node& node, double given_back) const {
     const bool rigid = sticks_rigidly<Kind>();  // then no spring is strained
-    const double turned = penalty_law::turned_part(node.v_free, node.v_previous), held = rigid ? turned : 1.0;
-    const vector sum = node.v_free + held * node.v_previous;
-    if constexpr (Kind == spring_kind::rigid_plain) return sum;
+    const vector sum = node.v_free + (rigid ? given_back : 1.0) * node.v_previous;
+    if constexpr (penalty_law::sticks_rigidly(Kind)) return sum;
     return sum + kept_if(!rigid, 4.0 / node.velocity_step) *
                      vector{0.0, node.state.spring.t1, node.state.spring.t2};
   }
@@ -223,7 +224,8 @@ struct penalty {
       store<Kind>(node, indentation, {});
     } else {
       const double softness = node.delassus.tangential() + softness_of(node);
-      const bool slides = rub(node, impulse, sliding_velocity<Kind>(node), softness);
+      const double turned = penalty_law::turned_part(node.v_free, node.v_previous);
+      const bool slides = rub(node, impulse, sliding_velocity<Kind>(node, turned), softness);
       store<Kind>(node, indentation, strained<Kind>(node, slides));
     }
   }
@@ -232,7 +234,7 @@ struct penalty {
   // than its force holds, in the direction of its end.
   template <spring_kind Kind, class Node>
   vector strained(const Node& node, bool slides) const {
-    if constexpr (Kind == spring_kind::rigid_plain) return {};
+    if constexpr (penalty_law::sticks_rigidly(Kind)) return {};
     const double h = node.velocity_step, per_impulse = 1.0 / (h * tangential_stiffness);
     const vector spring{0.0, node.state.spring.t1, node.state.spring.t2}, r = node.impulse;
     const vector v = node.v_free + node.delassus.times(r), moved = spring + (0.5 * h) * (node.v_previous + v);
@@ -320,8 +322,12 @@ struct penalty::form : penalty {
 
   // What has a root to find is solved in packs: springs that are not linear, and friction where H has more
   // than one tangential entry.
+  static constexpr bool may_stick_rigidly = penalty_law::sticks_rigidly(Kind) || Kind == spring_kind::any;
   template <class V>
-  using problem = std::conditional_t<is_smooth(Kind), penalty_law::pressing<V>, penalty_law::rubbing<V>>;
+  using rubbing =
+      std::conditional_t<may_stick_rigidly, penalty_law::rigid_rubbing<V>, penalty_law::rubbing<V>>;
+  template <class V>
+  using problem = std::conditional_t<is_smooth(Kind), penalty_law::pressing<V>, rubbing<V>>;
   template <class V>
   using answer = std::conditional_t<is_smooth(Kind), penalty_law::pressed<V>, penalty_law::rubbed<V>>;
   static constexpr bool answers_every_node = true;
@@ -344,8 +350,15 @@ struct penalty::form : penalty {
     open.previous = node.v_previous.n;
     open.delassus = node.delassus.normal();
     open.indentation = indentation_of(node);
-    if constexpr (!is_smooth(Kind) && !has_transverse_delassus<Node>)
-      penalty_law::couple(open, node.delassus, 0.5 * sliding_velocity<Kind>(node), 0.5 * softness_of(node));
+    if constexpr (!is_smooth(Kind) && !has_transverse_delassus<Node>) {
+      const vector q = 0.5 * sliding_velocity<Kind>(node, 0.0);
+      penalty_law::couple(open, node.delassus, q, 0.5 * softness_of(node));
+      if constexpr (may_stick_rigidly) {
+        const bool rigid = sticks_rigidly<Kind>();
+        open.before1 = kept_if(rigid, node.v_previous.t1);
+        open.before2 = kept_if(rigid, node.v_previous.t2);
+      }
+    }
     const bool acts = acts_on(node), may_push = penalty_law::may_push<is_plain(Kind)>(open);
     answered(node, {});
     return acts & may_push;
@@ -359,7 +372,16 @@ struct penalty::form : penalty {
     return penalty_law::solve<is_linear(Kind), is_plain(Kind)>(spring, friction, p, a);
   }
   void solve_alone(const problem<double>& p, answer<double>& a) const {
-    penalty_law::solve_alone(spring_of(p.step, damping_ratio), friction, restitution, p, a);
+    if constexpr (may_stick_rigidly)
+      a = penalty_law::stick_rigidly(
+          p, [this](const penalty_law::rubbing<double>& own) { return solve_one(own); });
+    else
+      penalty_law::solve_alone(spring_of(p.step, damping_ratio), friction, restitution, p, a);
+  }
+  [[gnu::noinline]] penalty_law::rubbed<double> solve_one(const penalty_law::rubbing<double>& p) const {
+    penalty_law::rubbed<double> a{};
+    if (solve(p, a)) penalty_law::solve_alone(spring_of(p.step, damping_ratio), friction, restitution, p, a);
+    return a;
   }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {
@@ -381,16 +403,19 @@ void penalty::in_form(Run run) const {
   const double ratio = restitution < 1.0 ? penalty_law::damping_ratio(restitution) : 0.0;
   const bool loses = restitution < 1.0 || damping > 0.0, is_soft = exponent == 1.0 && stiffness < infinity;
   const bool implicit = integration == implicitly, rubs = friction > 0.0;
+  const bool sticks_rigidly = implicit && rubs && tangential_stiffness == infinity;
   const bool keeps = is_soft && implicit && !loses && stiffness > 0.0;
   const auto run_kind = [&]<spring_kind Kind>() {
     implicit ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
   };
   if (is_soft && !rubs && !(implicit && loses)) return run_kind.template operator()<spring_kind::smooth>();
-  if (keeps && tangential_stiffness == infinity)
-    return run(form<true, spring_kind::rigid_plain>{*this, ratio});
+  if (keeps && sticks_rigidly) return run(form<true, spring_kind::sticking_plain>{*this, ratio});
   if (keeps) return run(form<true, spring_kind::plain>{*this, ratio});
-  if (exponent == 1.0 || stiffness == infinity) return run_kind.template operator()<spring_kind::linear>();
+  const bool is_linear = exponent == 1.0 || stiffness == infinity;
+  if (is_linear && sticks_rigidly) return run(form<true, spring_kind::sticking_linear>{*this, ratio});
+  if (is_linear) return run_kind.template operator()<spring_kind::linear>();
   if (exponent == 1.5 && implicit && !rubs) return run(form<true, spring_kind::smooth_hertz>{*this, ratio});
+  if (exponent == 1.5 && sticks_rigidly) return run(form<true, spring_kind::sticking_hertz>{*this, ratio});
   if (exponent == 1.5) return run_kind.template operator()<spring_kind::hertz>();
   run_kind.template operator()<spring_kind::any>();
 }

@@ -35,10 +35,27 @@ void couple(rubbing<double>& open, const Delassus& delassus, kit::vector q, doub
   open.q1 = q.t1;
   open.q2 = q.t2;
 }
+// With a rigid tangential spring, which sticks at -e_T v_T^-; q is that of e_T = 0.
+template <class V>
+struct rigid_rubbing : rubbing<V> {
+  V before1, before2;  // v_T^-; zero where the spring is soft
+};
 template <class V>
 struct rubbed {
   V impulse, t1, t2, indentation, outcome;
 };
+// Lanes without coupling and with one tangential entry have a closed form, that of a scalar H.
+template <class V>
+auto is_like_scalar(const rubbing<V>& p) {
+  return (p.c1 == 0.0) & (p.c2 == 0.0) & (p.a12 == 0.0) & (p.a11 == p.a22);
+}
+// Whether r_T pushes along v_T^-, by more than rounding leaves of a velocity that was stopped.
+template <class V>
+auto pushes_on(const rigid_rubbing<V>& p, V t1, V t2, V down = 1.0) {
+  constexpr double rounding = 0x1p-44;
+  const V r1 = down * t1, r2 = down * t2;
+  return r1 * p.before1 + r2 * p.before2 > rounding * (p.a11 + p.a22) * (r1 * t1 + r2 * t2);
+}
 // The normal spring alone.
 template <class V>
 struct pressing {
@@ -106,7 +123,7 @@ class rubbing_node {
     const V r = kit::select(pushes, end.normal.impulse, none), free = p_.free - (p_.c1 * t1 + p_.c2 * t2);
     end.normal.impulse = r;
     a = {r, none - t1, none - t2, end_of(pushes, end.normal, free), kit::select(holds, V(sticks), V(slides))};
-    const Mask plain = is_plain(), usual = has_usual_scales(p_.a11), is_found = found & (r > 0.0);
+    const Mask plain = is_like_scalar(p_), usual = has_usual_scales(p_.a11), is_found = found & (r > 0.0);
     return plain | !usual | (pushes & !is_found);
   }
 
@@ -144,8 +161,6 @@ class rubbing_node {
     }
   }
 
-  // Lanes without coupling and with one tangential entry have a closed form, that of a scalar H.
-  Mask is_plain() const { return (p_.c1 == 0.0) & (p_.c2 == 0.0) & (p_.a12 == 0.0) & (p_.a11 == p_.a22); }
   // Whether no product on the way overflows or underflows. What is allowed for H bounds t22, too.
   Mask has_usual_scales(V t11) const {
     constexpr double scale = 0x1p80;
@@ -286,6 +301,11 @@ template <bool IsLinear, bool IsPlain, class V>
 kit::mask_of<V> solve(const normal_spring& spring, double friction, const rubbing<V>& p, rubbed<V>& a) {
   const rubbing_node<V, IsLinear, IsPlain> node(spring, friction, p);
   return friction > 0.0 && kit::any(p.a11 > 0.0) ? node.solve(a) : node.press(a);
+}
+template <bool IsLinear, bool IsPlain, class V>
+kit::mask_of<V> solve(const normal_spring& spring, double friction, const rigid_rubbing<V>& p, rubbed<V>& a) {
+  const auto left = rubbing_node<V, IsLinear, IsPlain>(spring, friction, p).solve(a);
+  return left | pushes_on(p, a.t1, a.t2);
 }
 template <bool IsLinear, bool IsPlain, class V>
 kit::mask_of<V> solve(const normal_spring& spring, double friction, const pressing<V>& p, pressed<V>& a) {
