@@ -230,17 +230,25 @@ inline double part_given_back(const rigid_rubbing<double>& p, const rubbed<doubl
   const double along = (before.down * p.before1) * v1 + (before.down * p.before2) * v2;
   return -2.0 * before.down * along / before.square;
 }
+// Not inlined, and of a copy: what is passed to functions goes through memory, which most nodes need not.
+// Where e_T is known before.
 template <class Solve>
-[[gnu::noinline]] rubbed<double> stick_rigidly(const rigid_rubbing<double>& p, Solve solve) {
-  if (is_like_scalar(p)) {
-    const kit::vector free{0.0, 2.0 * p.q1, 2.0 * p.q2}, before{0.0, p.before1, p.before2};
-    return solve(giving_back(p, turned_part(free, before)));
-  }
-  const rubbed<double> stopped = solve(p);
-  const auto size = kit::power_scale_of(kit::larger(kit::absolute(stopped.t1), kit::absolute(stopped.t2)));
-  if (stopped.outcome == has_none || !pushes_on(p, stopped.t1, stopped.t2, size.down)) return stopped;
+[[gnu::noinline]] rubbed<double> stick_like_scalar(rigid_rubbing<double> p, Solve solve) {
+  const kit::vector free{0.0, 2.0 * p.q1, 2.0 * p.q2}, before{0.0, p.before1, p.before2};
+  return solve(giving_back(p, turned_part(free, before)));
+}
+// Where e_T is not zero.
+template <class Solve>
+[[gnu::noinline]] rubbed<double> stick_in_turn(rigid_rubbing<double> p, Solve solve) {
   const rubbed<double> across = rub_across(p, solve);
   return part_given_back(p, across) <= 1.0 ? across : solve(giving_back(p, 1.0));
+}
+inline bool gives_back_nothing(const rigid_rubbing<double>& p) {
+  return (p.before1 == 0.0) & (p.before2 == 0.0);
+}
+inline bool pushes_on(const rigid_rubbing<double>& p, const rubbed<double>& a) {
+  const auto size = kit::power_scale_of(kit::larger(kit::absolute(a.t1), kit::absolute(a.t2)));
+  return a.outcome != has_none && pushes_on(p, a.t1, a.t2, size.down);
 }
 
 inline void solve_alone(const normal_spring& spring, double friction, double restitution,

@@ -372,16 +372,35 @@ struct penalty::form : penalty {
     return penalty_law::solve<is_linear(Kind), is_plain(Kind)>(spring, friction, p, a);
   }
   void solve_alone(const problem<double>& p, answer<double>& a) const {
-    if constexpr (may_stick_rigidly)
-      a = penalty_law::stick_rigidly(
-          p, [this](const penalty_law::rubbing<double>& own) { return solve_one(own); });
-    else
-      penalty_law::solve_alone(spring_of(p.step, damping_ratio), friction, restitution, p, a);
+    if constexpr (may_stick_rigidly) {
+      const auto solve = [this](const penalty_law::rubbing<double>& own) { return solve_held(own); };
+      if (gives_back_nothing(p))
+        solve_by_brackets(p, a);
+      else if (is_like_scalar(p))
+        a = stick_like_scalar(p, solve);
+      else
+        stick_alone(p, a, solve);
+    } else {
+      solve_by_brackets(p, a);
+    }
   }
-  [[gnu::noinline]] penalty_law::rubbed<double> solve_one(const penalty_law::rubbing<double>& p) const {
+  template <class Problem, class Answer>
+  void solve_by_brackets(const Problem& p, Answer& a) const {
+    penalty_law::solve_alone(spring_of(p.step, damping_ratio), friction, restitution, p, a);
+  }
+  // With e_T given. Not inlined: most nodes are solved in packs.
+  [[gnu::noinline]] penalty_law::rubbed<double> solve_held(penalty_law::rubbing<double> p) const {
     penalty_law::rubbed<double> a{};
-    if (solve(p, a)) penalty_law::solve_alone(spring_of(p.step, damping_ratio), friction, restitution, p, a);
+    if (solve(p, a)) solve_by_brackets(p, a);
     return a;
+  }
+  template <class Solve>
+  void stick_alone(const problem<double>& p, answer<double>& a, Solve solve_other) const {
+    if (Kind == spring_kind::any || stiffness == infinity)
+      solve_by_brackets(p, a);
+    else
+      a = solve_held(p);
+    if (pushes_on(p, a)) a = stick_in_turn(p, solve_other);
   }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {

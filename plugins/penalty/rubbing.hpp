@@ -304,7 +304,8 @@ kit::mask_of<V> solve(const normal_spring& spring, double friction, const rubbin
 }
 template <bool IsLinear, bool IsPlain, class V>
 kit::mask_of<V> solve(const normal_spring& spring, double friction, const rigid_rubbing<V>& p, rubbed<V>& a) {
-  const auto left = rubbing_node<V, IsLinear, IsPlain>(spring, friction, p).solve(a);
+  const rubbing<V>& stopped = p;
+  const auto left = solve<IsLinear, IsPlain>(spring, friction, stopped, a);
   return left | pushes_on(p, a.t1, a.t2);
 }
 template <bool IsLinear, bool IsPlain, class V>
