@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 
 namespace ilaw::host::testing {
 namespace {
@@ -37,7 +36,7 @@ TEST_P(SceneThatFailed, IsSolved) {
   scene["time"]["end"] = scene["time"]["end"].get<double>() * GetParam().part;
   const StressVerdict verdict = stress_scene(scene);
   EXPECT_EQ(verdict.ending, StressEnding::passed) << verdict.reason;
-  EXPECT_GT(verdict.figures.node_steps, 1000);
+  EXPECT_GT(verdict.figures.node_steps, 200);
   // The tolerance of coupled contacts, times the largest mass ratio.
   EXPECT_LT(verdict.figures.added, 1e5 * CoupledContacts::tolerance);
 }
@@ -51,26 +50,6 @@ INSTANTIATE_TEST_SUITE_P(
                       Solved{"strengths_far_apart", 1.0}, Solved{"strong_bond_that_swings", 1.0},
                       Solved{"stiff_bond_on_a_sphere", 1.0}, Solved{"bond_after_a_step_left_unsolved", 1.0},
                       Solved{"opening_of_rounding", 1.0}));
-
-// A soft and a rigid bond on the same nodes leave a step unsolved. The law of the bond then begins the next
-// step where it is not, which its impulse there works on once more; a resumed run knows of it.
-TEST(CoupledContacts, TellWhatTheStepAfterOneLeftUnsolvedPaysForIt) {
-  const json source = scene_that_failed("bonds_left_unsolved");
-  Scene scene = read_scene(source, "scene.json"), other = read_scene(source, "scene.json");
-  Integrator integrator = integrator_of(scene), resumed = integrator_of(other);
-  integrator.step();
-  EXPECT_EQ(integrator.tally().unconverged, 1);
-  std::stringstream kept;
-  integrator.save(kept);
-  resumed.load(kept);
-  const double of_one_step = integrator.tally().coupling_energy;
-  integrator.step();
-  resumed.step();
-  const double told = integrator.tally().coupling_energy;
-  EXPECT_GT(told, 3.0 * of_one_step);
-  EXPECT_NEAR(std::abs(integrator.energy().reaction_work), told, 1e-3 * told);
-  EXPECT_EQ(resumed.tally().coupling_energy, told);
-}
 
 // A contact and a bond push each other up to 1e15 times what they agree on: v keeps nothing of that.
 TEST(CoupledContacts, KeepNoRoundingOfWhatWasLargeOnTheWay) {
@@ -259,13 +238,12 @@ TEST(Stress, HoldsTheBalanceToTheSizeOfEveryStep) {
 
 class BondOnASurfaceThatTurns : public ::testing::TestWithParam<const char*> {};
 
-// What it remembers was seen a step before: that leaves energy, no more than turning makes of it.
-TEST_P(BondOnASurfaceThatTurns, LeavesWhatTurningMakesOfItsMemory) {
+// Its opening advances by velocities as they are seen now, and not a step before.
+TEST_P(BondOnASurfaceThatTurns, AddsNoEnergy) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   const StressVerdict verdict = stress_scene(json::parse(GetParam()));
   EXPECT_EQ(verdict.ending, StressEnding::passed) << verdict.reason;
-  EXPECT_GT(verdict.figures.added, 1e-5);
-  EXPECT_GT(verdict.figures.worst_bound, 0.1) << "a bound so wide holds nothing";
+  EXPECT_LT(verdict.figures.added, 1e-12);
 }
 
 INSTANTIATE_TEST_SUITE_P(

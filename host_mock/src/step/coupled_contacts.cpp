@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/coupled_contacts.hpp"
 
-#include "base/bytes.hpp"
 #include "step/dof_loops.hpp"
 
 #include <algorithm>
@@ -29,8 +28,7 @@ bool share_nodes(const Model& model, const Interfaces& interfaces) {
 CoupledContacts::CoupledContacts(const Model& model, Interfaces& interfaces)
     : interfaces_(interfaces),
       dimension_(model.dimension()),
-      colours_(interfaces.size(), Colours(model.node_count())),
-      left_(interfaces.size()) {
+      colours_(interfaces.size(), Colours(model.node_count())) {
   for (const auto& interface : interfaces_) interface->evaluate_repeatedly();
 }
 
@@ -52,8 +50,7 @@ CoupledContacts::Outcome CoupledContacts::solve(StepView step, Dofs& v) {
     step.speed_after = 2.0 * fastest;
   }
   for (std::size_t i = 0; i < interfaces_.size(); ++i) answer(*interfaces_[i], colours_[i].idle(), step, v);
-  outcome.energy = disagreement(v).energy + energy_of_left();
-  keep_left(outcome, v);
+  outcome.energy = disagreement(v).energy;
   return outcome;
 }
 
@@ -237,53 +234,6 @@ CoupledContacts::Disagreement CoupledContacts::disagreement(const Dofs& v) const
       all.velocity = std::sqrt(square);
     }
   return all;
-}
-
-// A law with a state begins the next step where it thinks that it is: what it was off by in one step, its
-// impulse of the next works on once more.
-double CoupledContacts::energy_of_left() const {
-  double energy = 0.0;
-  for (std::size_t i = 0; i < interfaces_.size(); ++i) {
-    if (left_[i].size() == 0) continue;
-    colours_[i].for_each_acting([&](const ContactList& contacts) {
-      for (const std::int32_t contact : contacts)
-        energy += 0.5 * std::abs(interfaces_[i]->impulse(contact).dot(
-                            left_[i].segment(Eigen::Index{contact} * dimension_, dimension_)));
-    });
-  }
-  return energy;
-}
-
-void CoupledContacts::keep_left(const Outcome& outcome, const Dofs& v) {
-  for (std::size_t i = 0; i < interfaces_.size(); ++i) {
-    const Interface& interface = *interfaces_[i];
-    left_[i].resize(0);
-    if (!(outcome.residual > tolerance) || interface.info().state_size == 0) continue;
-    left_[i] = Dofs::Zero(static_cast<Eigen::Index>(interface.nodes().size()) * dimension_);
-    colours_[i].for_each_acting([&](const ContactList& contacts) {
-      for (const std::int32_t contact : contacts)
-        left_[i].segment(Eigen::Index{contact} * dimension_, dimension_) =
-            since_answer(interface, contact, v);
-    });
-  }
-}
-
-void CoupledContacts::save(std::ostream& out) const {
-  for (const Dofs& left : left_) {
-    write_value(out, std::int64_t{left.size()});
-    write_array(out, left.data(), static_cast<std::size_t>(left.size()));
-  }
-}
-
-void CoupledContacts::load(std::istream& in) {
-  for (std::size_t i = 0; i < left_.size(); ++i) {
-    std::int64_t size = 0;
-    read_value(in, size);
-    const auto all = static_cast<std::int64_t>(interfaces_[i]->nodes().size()) * dimension_;
-    if (size != 0 && size != all) refuse_damaged();
-    left_[i].resize(size);
-    read_array(in, left_[i].data(), static_cast<std::size_t>(size));
-  }
 }
 
 // Where laws contradict each other they push each other up, to far more than any mass ratio asks

@@ -8,7 +8,6 @@
 #include "step/colours.hpp"
 #include "step/islands.hpp"
 
-#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -37,10 +36,6 @@ class CoupledContacts {
   Outcome solve(StepView step, Dofs& v);
   // Of the last solution: where laws agree least.
   std::string explain(const Dofs& v, const Outcome& outcome) const;
-
-  // What the next step needs to know of the last one.
-  void save(std::ostream& out) const;
-  void load(std::istream& in);
 
  private:
   static constexpr int patience = 20;        // sweeps without acceleration
@@ -85,8 +80,6 @@ class CoupledContacts {
   double largest_made(const ContactGroup& group, const Dofs& scaled) const;
   static Vector since_answer(const Interface& interface, std::int32_t contact, const Dofs& v);
   Disagreement disagreement(const Dofs& v) const;
-  double energy_of_left() const;
-  void keep_left(const Outcome& outcome, const Dofs& v);
   std::size_t contacts_joined_to(int node) const;
   static Dofs scaled_impulses(const ContactGroup& group);
   void move_to(const ContactGroup& group, const Dofs& scaled, Dofs& v) const;
@@ -96,7 +89,6 @@ class CoupledContacts {
   std::vector<Colours> colours_;  // one per interface
   ContactGroup acting_;           // of the step, all of them
   Dofs v_free_;
-  std::vector<Dofs> left_;  // per interface: what its contacts were off by; empty where all laws held
   double out_of_reach_ = 0.0;
 };
 
