@@ -319,8 +319,8 @@ TEST(Shrink, LeavesThePairThatFails) {
   const json small = shrink(scene, safely, 1000);
   EXPECT_TRUE(safely(small));
   EXPECT_EQ(small["model"]["points"].size(), 3U) << small;
-  EXPECT_EQ(small["interfaces"][0]["nodes"], json({0}));
-  EXPECT_EQ(small["interfaces"][0]["against"]["nodes"], json({1}));
+  EXPECT_EQ(small["interfaces"][0]["nodes"], json::array({0}));
+  EXPECT_EQ(small["interfaces"][0]["against"]["nodes"], json::array({1}));
 }
 
 // A motion that leaves the range of numbers is no solution, whatever was promised: it must be found.
