@@ -95,11 +95,11 @@ class BlockWalk {
   void find_turns() {
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       const RigidSurface there{gap_[i], Eigen::Map<const Vector>(&normal_[D * i], D)};
-      const SurfaceTurn turn =
-          step_.setup.counterpart->unit_turn(node_index(i), step_.step.u, step_.step.time, there);
+      const SurfaceVelocities turn = surface_velocities(*step_.setup.counterpart, node_index(i), step_.step.u,
+                                                        step_.step.time, there, step_.rates);
       for (int c = 0; c < D; ++c) {
-        turn_before_[D * i + c] = turn.at(step_.rates.before, c);
-        turn_after_[D * i + c] = turn.at(step_.rates.after, c);
+        turn_before_[D * i + c] = turn.before[c];
+        turn_after_[D * i + c] = turn.after[c];
       }
     }
   }

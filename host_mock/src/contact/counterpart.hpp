@@ -128,6 +128,17 @@ class Counterpart {
   virtual bool keeps_normal() const { return false; }
 };
 
+// Velocities of a turning surface in the steps before and after a time, where a node meets it.
+struct SurfaceVelocities {
+  Vector before, after;
+};
+inline SurfaceVelocities surface_velocities(const Counterpart& counterpart, int node_index, const Dofs& u,
+                                            double time, const RigidSurface& there,
+                                            const TurningRates& rates) {
+  const SurfaceTurn turn = counterpart.unit_turn(node_index, u, time, there);
+  return {turn.at(rates.before), turn.at(rates.after)};
+}
+
 // Turns an axis of a state, of which number(c) is the component c, with the counterpart.
 template <class Number>
 void turn_axis(const Counterpart& counterpart, Eigen::Index dimension, double from, double to,

@@ -19,7 +19,8 @@ namespace {
 // rest on a spring have them, at gaps as small.
 constexpr double least_speed = 0x1p-500;
 
-// On a plane that turns about its normal the law cannot see what its tangential memory has to turn with.
+// On a plane that turns about its normal the law cannot see what its tangential memory has to turn with. Axes
+// in its state would have to turn in every step (turn_axis), and contacts out of reach be asked for that.
 InterfaceSetup with_tangent(InterfaceSetup setup, const Model& model) {
   const Counterpart& counterpart = *setup.counterpart;
   if (!counterpart.turns() || !counterpart.keeps_normal() || setup.tangent.size() > 0) return setup;
@@ -226,10 +227,10 @@ void Interface::open_step(const StepView& step) {
     contacts_.vector(contacts_.normal, contact_index) = point.normal;
     contacts_.vector(contacts_.impulse, contact_index).setZero();
     if (turns) {
-      const SurfaceTurn turn = setup_.counterpart->unit_turn(contacts_.node_index[k], step.u, step.time,
-                                                             {point.gap, point.normal});
-      contacts_.vector(contacts_.turn_before, contact_index) = turn.at(rates_.before);
-      contacts_.vector(contacts_.turn_after, contact_index) = turn.at(rates_.after);
+      const SurfaceVelocities turn = surface_velocities(*setup_.counterpart, contacts_.node_index[k], step.u,
+                                                        step.time, {point.gap, point.normal}, rates_);
+      contacts_.vector(contacts_.turn_before, contact_index) = turn.before;
+      contacts_.vector(contacts_.turn_after, contact_index) = turn.after;
       for (const std::size_t first : axes_)
         turn_axis(*setup_.counterpart, dimension_, step.time - step.dt, step.time,
                   [&](std::size_t c) -> double& { return contacts_.state.at(k, first + c); });

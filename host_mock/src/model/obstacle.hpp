@@ -38,9 +38,6 @@ struct TurningRate {
 struct SurfaceTurn {
   Vector along, inward;
 
-  double at(TurningRate rate, Eigen::Index c) const {
-    return rate.along * along[c] + rate.inward * inward[c];
-  }
   Vector at(TurningRate rate) const { return rate.along * along + rate.inward * inward; }
 };
 

@@ -95,11 +95,11 @@ Ledger::Ends Ledger::ends_of(const Interface& interface, int contact, const Inte
     const int k = interface.node_index_of(contact);
     const double time = integrator.time();
     const ContactPoint point = counterpart.contact_point(k, integrator.displacement(), time);
-    const SurfaceTurn turn =
-        counterpart.unit_turn(k, integrator.displacement(), time, {point.gap, point.normal});
-    const TurningRates rates = counterpart.rates(time, scene_.dt);
-    before += turn.at(rates.before);
-    after += turn.at(rates.after);
+    const SurfaceVelocities turn =
+        surface_velocities(counterpart, k, integrator.displacement(), time, {point.gap, point.normal},
+                           counterpart.rates(time, scene_.dt));
+    before += turn.before;
+    after += turn.after;
   }
   double carried = before.norm() + after.norm();
   if (!counterpart.partners().empty()) {
