@@ -114,90 +114,6 @@ rubbed_apart<Vector> rub_apart(double normal, Vector q, double softness, double 
   return {impulse, slips};
 }
 
-class node_alone {
- public:
-  node_alone(const normal_spring& spring, double friction, double restitution, const rubbing<double>& p)
-      : p_(p), friction_(friction), restitution_(restitution) {
-    normal_.spring = spring;
-    normal_.free = p.free;
-    normal_.previous = p.previous;
-    normal_.delassus = p.delassus;
-    normal_.indentation = spring.is_rigid() ? 0.0 : p.indentation;
-    normal_.damping = spring.damper(p.delassus);
-  }
-
-  [[gnu::noinline]] rubbed<double> solve() const {
-    if (is_like_scalar(p_) || !(friction_ > 0.0)) return apart();
-    return normal_.spring.is_rigid() ? rigid() : coupled(p_.c1 != 0.0 || p_.c2 != 0.0);
-  }
-
- private:
-  using solution = compression<double>::solution;
-
-  rubbed<double> apart() const {
-    const solution found = normal_.solve();
-    if (!(p_.a11 > 0.0)) return {found.impulse, 0.0, 0.0, found.end, sticks};
-    const auto result = rub_apart(found.impulse, kit::vector{0.0, p_.q1, p_.q2}, p_.a11, friction_);
-    const double outcome = result.slips ? slides : sticks;
-    return {found.impulse, result.impulse.t1, result.impulse.t2, found.end, outcome};
-  }
-
-  // Tangents with a normal impulse that is known are Coulomb's local problem without coupling, the tangential
-  // spring an inverse mass beside H.
-  kit::local_coulomb problem() const {
-    return {
-        {0.5 * p_.delassus, p_.a11, p_.a22, 0.0, 0.0, p_.a12}, {0.0, p_.q1, p_.q2}, {friction_, friction_}};
-  }
-  // A rigid spring has no impulse to find: Coulomb's local problem as it is.
-  rubbed<double> rigid() const {
-    kit::local_coulomb whole = problem();
-    whole.h[3] = 0.5 * p_.c1;
-    whole.h[4] = 0.5 * p_.c2;
-    whole.q[0] = 0.5 * (p_.free + (p_.previous < 0.0 ? restitution_ : 1.0) * p_.previous);
-    double r[3];
-    const kit::contact_mode mode = kit::solve(whole, r);
-    return {r[0], r[1], r[2], 0.0, outcome_of(mode)};
-  }
-  static double outcome_of(kit::contact_mode mode) {
-    if (mode == kit::contact_mode::none) return has_none;
-    return mode == kit::contact_mode::stick ? sticks : slides;
-  }
-
-  // What the tangential impulse does to the normal leaves one equation for r_N.
-  rubbed<double> coupled(bool couples) const {
-    double r[3];
-    kit::contact_mode mode = kit::contact_mode::free;
-    kit::local_coulomb tangents = problem();
-    const auto free = [&](double normal) {
-      tangents.q[0] = -tangents.h[0] * normal;
-      tangents.q[1] = p_.q1 + 0.5 * p_.c1 * normal;
-      tangents.q[2] = p_.q2 + 0.5 * p_.c2 * normal;
-      mode = kit::solve(tangents, r);
-      return p_.free + p_.c1 * r[1] + p_.c2 * r[2];
-    };
-    solution found{};
-    if (couples) {
-      const double impulse = normal_.impulse_where(
-          [&](double normal) { return normal_.given(free(normal) + p_.delassus * normal) - normal; });
-      found = normal_.at(impulse, free(impulse));
-    } else {
-      found = normal_.solve();
-      free(found.impulse);
-    }
-    const double outcome = kit::is_finite(found.impulse) ? outcome_of(mode) : has_none;
-    return {found.impulse, r[1], r[2], found.end, outcome};
-  }
-
-  rubbing<double> p_;
-  double friction_, restitution_;
-  any_compression normal_;
-};
-
-inline void solve_alone(const normal_spring& spring, double friction, double restitution,
-                        const rubbing<double>& p, rubbed<double>& a) {
-  a = node_alone(spring, friction, restitution, p).solve();
-}
-
 // A rigid tangential spring: e_T in [0, 1] and r_T with r_T.v_T^- at most 0 where e_T is 0, 0 where it is
 // between, and not less than 0 where it is 1, so that the stick puts nothing in. See penalty.md. Solve: of a
 // rubbing<double>, with e_T given.
@@ -237,24 +153,118 @@ template <class Solve>
   const kit::vector free{0.0, 2.0 * p.q1, 2.0 * p.q2}, before{0.0, p.before1, p.before2};
   return solve(giving_back(p, turned_part(free, before)));
 }
-// Where e_T is not zero.
-template <class Solve>
-[[gnu::noinline]] rubbed<double> stick_in_turn(rigid_rubbing<double> p, Solve solve) {
-  const rubbed<double> across = rub_across(p, solve);
-  return part_given_back(p, across) <= 1.0 ? across : solve(giving_back(p, 1.0));
-}
-inline bool gives_back_nothing(const rigid_rubbing<double>& p) {
-  return (p.before1 == 0.0) & (p.before2 == 0.0);
-}
 inline bool pushes_on(const rigid_rubbing<double>& p, const rubbed<double>& a) {
   const auto size = kit::power_scale_of(kit::larger(kit::absolute(a.t1), kit::absolute(a.t2)));
   return a.outcome != has_none && pushes_on(p, a.t1, a.t2, size.down);
 }
 
-inline void solve_alone(const normal_spring& spring, double friction, double restitution,
-                        const pressing<double>& p, pressed<double>& a) {
-  const rubbed<double> found = node_alone(spring, friction, restitution, p).solve();
-  a = {found.impulse, found.indentation};
+// Settled: the answer is one for its e_T. It always is where the normal impulse is given: a convex problem.
+struct turned_round {
+  rubbed<double> answer;
+  bool settled;
+};
+// Where e_T is not zero.
+template <class Solve>
+[[gnu::noinline]] turned_round stick_in_turn(rigid_rubbing<double> p, Solve solve) {
+  const rubbed<double> across = rub_across(p, solve);
+  const double part = part_given_back(p, across);
+  if (part <= 1.0) return {across, across.outcome != has_none && part >= 0.0};
+  const rubbed<double> reversed = solve(giving_back(p, 1.0));
+  return {reversed, part > 1.0 && pushes_on(p, reversed)};
 }
+template <class Solve>
+turned_round stick(const rigid_rubbing<double>& p, Solve solve) {
+  const rubbed<double> stopped = solve(p);
+  return pushes_on(p, stopped) ? stick_in_turn(p, solve) : turned_round{stopped, stopped.outcome != has_none};
+}
+
+class node_alone {
+ public:
+  node_alone(const normal_spring& spring, double friction, double restitution, const rigid_rubbing<double>& p)
+      : p_(p), friction_(friction), restitution_(restitution) {
+    normal_.spring = spring;
+    normal_.free = p.free;
+    normal_.previous = p.previous;
+    normal_.delassus = p.delassus;
+    normal_.indentation = spring.is_rigid() ? 0.0 : p.indentation;
+    normal_.damping = spring.damper(p.delassus);
+  }
+
+  [[gnu::noinline]] rubbed<double> solve() const {
+    if (is_like_scalar(p_) || !(friction_ > 0.0)) return apart();
+    const bool couples = (p_.c1 != 0.0) | (p_.c2 != 0.0);
+    if (!normal_.spring.is_rigid()) return couples ? coupled() : uncoupled();
+    const turned_round found = stick(p_, [this](const rubbing<double>& p) { return rigid(p); });
+    return found.settled ? found.answer : coupled();
+  }
+
+ private:
+  using solution = compression<double>::solution;
+
+  rubbed<double> apart() const {
+    const solution found = normal_.solve();
+    if (!(p_.a11 > 0.0)) return {found.impulse, 0.0, 0.0, found.end, sticks};
+    const auto result = rub_apart(found.impulse, kit::vector{0.0, p_.q1, p_.q2}, p_.a11, friction_);
+    const double outcome = result.slips ? slides : sticks;
+    return {found.impulse, result.impulse.t1, result.impulse.t2, found.end, outcome};
+  }
+
+  static double outcome_of(kit::contact_mode mode) {
+    if (mode == kit::contact_mode::none) return has_none;
+    return mode == kit::contact_mode::stick ? sticks : slides;
+  }
+
+  // A rigid spring has no impulse to find: Coulomb's local problem as it is.
+  rubbed<double> rigid(const rubbing<double>& p) const {
+    return rub(p, {0.5 * p.c1, 0.5 * p.c2}, {0.5 * (p.free + given_back()), p.q1, p.q2});
+  }
+  double given_back() const { return (p_.previous < 0.0 ? restitution_ : 1.0) * p_.previous; }
+
+  // Tangents with a normal impulse that is known are the same without coupling, the tangential spring an
+  // inverse mass beside H: a convex problem.
+  rubbed<double> rub_at(double normal) const {
+    const auto solve = [this, normal](const rubbing<double>& p) {
+      const double half = 0.5 * normal;
+      rubbed<double> a =
+          rub(p, {0.0, 0.0}, {0.0 - half * p.delassus, p.q1 + half * p.c1, p.q2 + half * p.c2});
+      a.impulse = normal;
+      return a;
+    };
+    return stick(p_, solve).answer;
+  }
+  rubbed<double> rub(const rubbing<double>& p, const double (&coupling)[2], const double (&q)[3]) const {
+    const kit::local_coulomb problem{{0.5 * p.delassus, p.a11, p.a22, coupling[0], coupling[1], p.a12},
+                                     {q[0], q[1], q[2]},
+                                     {friction_, friction_}};
+    double r[3];
+    const kit::contact_mode mode = kit::solve(problem, r);
+    return {r[0], r[1], r[2], 0.0, outcome_of(mode)};
+  }
+
+  // What the tangential impulse does to the normal leaves one equation for r_N.
+  rubbed<double> coupled() const {
+    const double normal = normal_.impulse_where([this](double r) { return excess(free_with(rub_at(r)), r); });
+    rubbed<double> a = rub_at(normal);
+    if (!kit::is_finite(normal)) a.outcome = has_none;
+    if (!normal_.spring.is_rigid()) a.indentation = normal_.at(normal, free_with(a)).end;
+    return a;
+  }
+  rubbed<double> uncoupled() const {
+    const solution found = normal_.solve();
+    rubbed<double> a = rub_at(found.impulse);
+    a.indentation = found.end;
+    return a;
+  }
+  double free_with(const rubbed<double>& a) const { return p_.free + p_.c1 * a.t1 + p_.c2 * a.t2; }
+  // What the spring gives less r_N.
+  double excess(double free, double normal) const {
+    const double v = free + p_.delassus * normal;
+    return normal_.spring.is_rigid() ? 0.0 - (v + given_back()) / p_.delassus : normal_.given(v) - normal;
+  }
+
+  rigid_rubbing<double> p_;
+  double friction_, restitution_;
+  any_compression normal_;
+};
 
 }  // namespace penalty_law

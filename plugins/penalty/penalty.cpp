@@ -373,34 +373,32 @@ struct penalty::form : penalty {
   }
   void solve_alone(const problem<double>& p, answer<double>& a) const {
     if constexpr (may_stick_rigidly) {
-      const auto solve = [this](const penalty_law::rubbing<double>& own) { return solve_held(own); };
-      if (gives_back_nothing(p))
-        solve_by_brackets(p, a);
-      else if (is_like_scalar(p))
-        a = stick_like_scalar(p, solve);
-      else
-        stick_alone(p, a, solve);
+      if (!is_like_scalar(p)) return stick_alone(p, a);
+      a = penalty_law::stick_like_scalar(p, [this](const penalty_law::rubbing<double>& held) {
+        return solve_by_brackets({held, 0.0, 0.0});
+      });
+    } else if constexpr (is_smooth(Kind)) {
+      const auto found = solve_by_brackets({p, 0.0, 0.0});
+      a = {found.impulse, found.indentation};
     } else {
-      solve_by_brackets(p, a);
+      a = solve_by_brackets({p, 0.0, 0.0});
     }
   }
-  template <class Problem, class Answer>
-  void solve_by_brackets(const Problem& p, Answer& a) const {
-    penalty_law::solve_alone(spring_of(p.step, damping_ratio), friction, restitution, p, a);
+  penalty_law::rubbed<double> solve_by_brackets(const penalty_law::rigid_rubbing<double>& p) const {
+    const auto spring = spring_of(p.step, damping_ratio);
+    return penalty_law::node_alone(spring, friction, restitution, p).solve();
   }
-  // With e_T given. Not inlined: most nodes are solved in packs.
-  [[gnu::noinline]] penalty_law::rubbed<double> solve_held(penalty_law::rubbing<double> p) const {
+  // By the solver of packs while one e_T after the other will do.
+  void stick_alone(const problem<double>& p, answer<double>& a) const {
+    const auto solve_held = [this](const penalty_law::rubbing<double>& held) { return solve_regular(held); };
+    const auto found = penalty_law::stick(p, solve_held);
+    a = found.settled ? found.answer : solve_by_brackets(p);
+  }
+  // Not inlined: most nodes are solved in packs.
+  [[gnu::noinline]] penalty_law::rubbed<double> solve_regular(penalty_law::rubbing<double> p) const {
     penalty_law::rubbed<double> a{};
-    if (solve(p, a)) solve_by_brackets(p, a);
+    if (solve(p, a)) a.outcome = penalty_law::has_none;
     return a;
-  }
-  template <class Solve>
-  void stick_alone(const problem<double>& p, answer<double>& a, Solve solve_other) const {
-    if (Kind == spring_kind::any || stiffness == infinity)
-      solve_by_brackets(p, a);
-    else
-      a = solve_held(p);
-    if (pushes_on(p, a)) a = stick_in_turn(p, solve_other);
   }
   template <class Node>
   void answered(Node& node, const answer<double>& a) const {

@@ -233,7 +233,8 @@ class rubbing_node {
     } else {
       const double step = normal_.spring.step, k = normal_.spring.stiffness;
       const V r = normal.impulse, x = p_.indentation, v = (p_.free + p_.previous) + h * r;
-      const Mask opens = 0.5 * step * v > x;
+      // By both, since where x is 0 the open spring's r v = k x^2 has a root at v = 0, too.
+      const Mask opens = (0.5 * step * v > x) & (r < 0.5 * step * k * x);
       const V by_speed = kit::select(opens, r, V(0.25 * step * step * k));
       const V given = kit::select(opens, k * x * x, step * k * x - r);
       return {by_speed * v - given, by_speed * h + kit::select(opens, v, V(1.0)), by_speed};

@@ -118,6 +118,10 @@ struct Packs {
   }
 };
 
+rubbed<double> solve_alone(const normal_spring& spring, const rubbing<double>& p) {
+  return penalty_law::node_alone(spring, friction, 1.0, {p, 0.0, 0.0}).solve();
+}
+
 using Bits = std::array<std::uint64_t, answer_size>;
 
 template <bool IsLinear, bool IsPlain>
@@ -136,7 +140,7 @@ void expect_solved(double exponent, bool loses) {
       const penalty_law::rubbing_node<double, IsLinear, IsPlain> node(spring, friction, problems[j]);
       ASSERT_EQ(node.solve(own), packs.left[j]) << at;
       left += packs.left[j] ? 1 : 0;
-      if (packs.left[j]) own = penalty_law::node_alone(spring, friction, 1.0, problems[j]).solve();
+      if (packs.left[j]) own = solve_alone(spring, problems[j]);
       if (!packs.left[j]) {
         ASSERT_EQ(std::bit_cast<Bits>(own), std::bit_cast<Bits>(packs.answers[j])) << at;
       }
@@ -166,6 +170,32 @@ TEST(PenaltyRubbing, SolvesItsEquationsWithTheBitsOfANodeAlone) {
   expect_solved<false, false>(1.5, true);
 }
 
+// Where the step closes the spring, and friction and couplings are as large as they may be: on the way to the
+// solution Newton's method passes motions that would let go.
+TEST(PenaltyRubbing, GivesWhatItsSpringGivesWhereItCloses) {
+  Draw draw;
+  int solved = 0;
+  for (int trial = 0; trial < part_of(2000000) && !::testing::Test::HasFailure(); ++trial) {
+    const normal_spring spring = draw.spring(1.0, false);
+    rubbing<double> p = draw.problem(spring.step);
+    p.indentation = 0.0;
+    const double mu = draw.decades(0.7), n1 = 0.95 * draw.uniform(), n2 = 0.95 * draw.uniform(),
+                 t12 = 0.95 * draw.uniform();
+    if (1.0 + 2.0 * n1 * n2 * t12 - n1 * n1 - n2 * n2 - t12 * t12 < 0.01) continue;
+    p.c1 = n1 * std::sqrt(2.0 * p.delassus * p.a11);
+    p.c2 = n2 * std::sqrt(2.0 * p.delassus * p.a22);
+    p.a12 = t12 * std::sqrt(p.a11 * p.a22);
+    rubbed<double> own{};
+    if (penalty_law::rubbing_node<double, true, true>(spring, mu, p).solve(own)) continue;
+    if (!(own.impulse > 0.0)) continue;
+    ++solved;
+    const long double slack = 1e-11L * (own.impulse + (std::abs(p.free) + std::abs(p.previous)) / p.delassus);
+    ASSERT_LE(excess_of(spring, p, own, own.impulse + slack), 0.0L) << trial << ", r " << own.impulse;
+    ASSERT_GE(excess_of(spring, p, own, own.impulse - slack), 0.0L) << trial << ", r " << own.impulse;
+  }
+  EXPECT_GT(solved, part_of(2000000) / 10);
+}
+
 // Sticking nodes, sliding ones and such that let go, by brackets and by Newton's method.
 TEST(PenaltyRubbing, AgreesWithTheSolverOfOneNode) {
   Draw draw;
@@ -178,7 +208,7 @@ TEST(PenaltyRubbing, AgreesWithTheSolverOfOneNode) {
                           ? penalty_law::rubbing_node<double, true, false>(spring, friction, p).solve(quick)
                           : penalty_law::rubbing_node<double, false, false>(spring, friction, p).solve(quick);
     if (left) continue;
-    const rubbed<double> slow = penalty_law::node_alone(spring, friction, 1.0, p).solve();
+    const rubbed<double> slow = solve_alone(spring, p);
     const double size = slow.impulse + (1.0 + p.indentation / spring.step) / p.delassus;
     ASSERT_NEAR(quick.impulse, slow.impulse, 1e-12 * size) << trial;
     ASSERT_NEAR(quick.t1, slow.t1, 1e-12 * size) << trial;
