@@ -22,10 +22,18 @@ def measured(program, libraries, options):
     return json.loads(done.stdout)
 
 
+def folder(path):
+    """Absolute: `ilaw` passes over others on its search path, and would take its own laws."""
+    if not os.path.isdir(path):
+        raise argparse.ArgumentTypeError(f"'{path}' is no folder")
+    return os.path.abspath(path)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", help="ilaw")
-    parser.add_argument("--libraries", nargs="+", required=True, help="one folder, or two: the first, the second")
+    parser.add_argument("--libraries", nargs="+", type=folder, required=True,
+                        help="one folder, or two: the first, the second")
     parser.add_argument("--second", default="", help="options of the second run alone")
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("options", nargs="+", help="after --: what both runs of `ilaw bench` are given")
