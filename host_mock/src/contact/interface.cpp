@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -42,9 +44,15 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       obstacle_velocity_before_(obstacle_velocity_),
       tangent_(setup_.tangent) {}
 
-void Interface::check(const Refusal& refusal) const {
-  if (refusal.code != ILAW_OK)
-    check(refusal, refusal.contact >= 0 ? std::to_string(node_of(refusal.contact)) : "");
+// With what of the node limits the step, where equations have more than one solution.
+void Interface::check(const Refusal& refusal, double dt) const {
+  if (refusal.code == ILAW_OK) return;
+  if (refusal.contact < 0) return check(refusal, "");
+  std::array<char, 128> given{};
+  if (refusal.code == ILAW_BAD_NODES)
+    std::snprintf(given.data(), given.size(), " (H = %.6g, area %.6g, step %.6g)", delassus(refusal.contact),
+                  setup_.areas[at(node_index_of(refusal.contact))], dt);
+  check(refusal, std::to_string(node_of(refusal.contact)) + given.data());
 }
 
 void Interface::check(const Refusal& refusal, const std::string& node) const {
@@ -208,7 +216,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
     refusal.add(outcomes_[c].refusal);
     sums_.add(outcomes_[c].sums);
   }
-  if (refusal.code != ILAW_OK) check(refusal);
+  if (refusal.code != ILAW_OK) check(refusal, step.dt);
 }
 
 // ---- a step where contacts share nodes ------------------------------------------------------------------
@@ -285,7 +293,7 @@ void Interface::evaluate(const ContactList& contacts, const StepView& step) {
     refusal.add(outcome.refusal);
     sums_.add_stable_step(outcome.sums.stable_step);
   }
-  check(refusal);
+  check(refusal, step.dt);
 }
 
 void Interface::apply(const ContactList& contacts, Dofs& v) {
@@ -313,7 +321,7 @@ void Interface::accept(const StepView& step, const Dofs& v) {
   for (const std::int32_t contact_index : active()) {
     const std::size_t k = at(contact_index);
     unknown.add_unknown(&contacts_.status[k], &contact_index, 1);
-    check(unknown);
+    check(unknown, step.dt);
     const Vector sum = relative(contact_index, step.v_before) + relative(contact_index, v);
     sums_.work += 0.5 * impulse(contact_index).dot(sum);
     const Vector drift = surface_velocity(contact_index, obstacle_velocity_, contacts_.turn_after) +
@@ -333,7 +341,7 @@ void Interface::accept(const StepView& step, const Dofs& v) {
     if (const char* fault =
             fault_of(impulse(contact_index).data(), dimension_,
                      &contacts_.energy[at(contact_index) * ILAW_ENERGY_COUNT], status(contact_index)))
-      check({ILAW_BAD_LIBRARY, 0, contact_index, 0, fault});
+      check({ILAW_BAD_LIBRARY, 0, contact_index, 0, fault}, step.dt);
 }
 
 Vector Interface::surface_velocity(int contact_index, const Vector& velocity,
@@ -347,6 +355,16 @@ Vector Interface::surface_velocity(int contact_index, const Vector& velocity,
 bool Interface::is_active(int contact_index) const {
   if (contact_index < 0 || active().empty()) return false;
   return is_near_[at(node_index_of(contact_index))] != 0;
+}
+
+bool Interface::has_lost_a_node(const Dofs& u, double time) const {
+  constexpr double rounding = 1e-6;
+  for (std::size_t k = 0; k < setup_.nodes.size(); ++k) {
+    const ContactPoint point = setup_.counterpart->contact_point(static_cast<int>(k), u, time);
+    const double length = point.normal.norm();
+    if (!(std::isfinite(point.gap) && std::abs(length - 1.0) < rounding)) return true;
+  }
+  return false;
 }
 
 const ContactPoint& Interface::point(int contact_index) const {

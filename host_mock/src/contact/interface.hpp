@@ -54,6 +54,10 @@ class Interface {
   bool is_idle(int contact_index) const;
   // What the listed contacts see of the velocities v, without their own impulses: v_free.
   void gather(const ContactList& contacts, const Dofs& v, const StepView& step);
+  // Gives a contact such a velocity in place of what gather found.
+  void ask_at(int contact_index, const Vector& v_free) {
+    contacts_.vector(contacts_.v_free, contact_index) = v_free;
+  }
   // The law: impulse, state, energies and status. Throws ilaw::error on bad nodes.
   void evaluate(const ContactList& contacts, const StepView& step);
   // Adds to v what the impulses have changed by since gather.
@@ -98,6 +102,8 @@ class Interface {
   double gap_at(int node_index, const Dofs& u, double time) const {
     return setup_.counterpart->contact_point(node_index, u, time).gap - setup_.gap_offset;
   }
+  // Whether a node has no gap or no normal: so far out lengths overflow, and edges of facets vanish.
+  bool has_lost_a_node(const Dofs& u, double time) const;
   int contact_index_of(int node_index, const Dofs& u);  // makes a contact where there is none
   // -1: none yet. Who looks on makes none: contacts then have the order of their nodes, which blocks need to
   // work on them where they are.
@@ -126,7 +132,7 @@ class Interface {
   std::vector<double> parameters_of(int node_index) const;
   std::vector<double> first_state(int node_index, const Dofs& u) const;
   // Throws what a law refused; node: the first, empty where it is none in particular.
-  void check(const Refusal& refusal) const;
+  void check(const Refusal& refusal, double dt) const;
   void check(const Refusal& refusal, const std::string& node) const;
 
   InterfaceSetup setup_;

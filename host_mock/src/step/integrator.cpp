@@ -23,22 +23,25 @@ void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undam
     }
 }
 
+// What of it tells best that it diverged, and its name.
 struct WildMotion {
+  const char* name;
+  const Dofs& wild;
   const Model& model;
-  const Dofs &u, &v;
+  const Dofs& u;
   double time, dt;
   std::int64_t step;
 };
 
 [[noreturn]] void explain_divergence(const WildMotion& motion) {
-  const Dofs& v = motion.v;
+  const Dofs& wild = motion.wild;
   Eigen::Index dof = 0, largest = 0;
-  v.cwiseAbs().maxCoeff(&largest);
-  while (dof < v.size() && std::isfinite(v[dof])) ++dof;
-  if (dof == v.size()) dof = largest;
-  std::array<char, 32> velocity{};  // with an exponent: it may have 300 digits
-  std::snprintf(velocity.data(), velocity.size(), "%g", v[dof]);
-  throw Diverged("velocity " + std::string(velocity.data()) + " at node " +
+  wild.cwiseAbs().maxCoeff(&largest);
+  while (dof < wild.size() && std::isfinite(wild[dof])) ++dof;
+  if (dof == wild.size()) dof = largest;
+  std::array<char, 32> value{};  // with an exponent: it may have 300 digits
+  std::snprintf(value.data(), value.size(), " %g", wild[dof]);
+  throw Diverged(motion.name + std::string(value.data()) + " at node " +
                  std::to_string(dof / motion.model.dimension()) + ", step " + std::to_string(motion.step) +
                  ", time " + std::to_string(motion.time) +
                  advice_on_divergence(motion.model, motion.u, motion.dt));
@@ -175,13 +178,19 @@ void Integrator::correct(StepTimes step) {
 
 // Where no two contacts share a node, each law is evaluated once: for blocks of contacts the
 // interface finds gaps, normals and 1/m, passes v_free and v_before relative to the obstacle, takes
-// impulses, states and energies, and adds r/m. Where some do, laws are evaluated until all agree.
-void Integrator::add_reactions(double time, double speed_free) {
+// impulses, states and energies, and adds r/m. Where some do, laws are evaluated until all agree. A
+// law that is given no gap or normal, as bodies are gone too far, is not to be blamed.
+void Integrator::add_reactions(double time, double speed_free) try {
   const StepView step{u_, v_before_, time, dt_, speed_before_, speed_free, steps_ + 1};
   if (coupled_)
     add_coupled_reactions(step);
   else
     for (const auto& interface : interfaces_) interface->solve(step, v_);
+} catch (const ilaw::error&) {
+  for (const auto& interface : interfaces_)
+    if (interface->has_lost_a_node(u_, time))
+      explain_divergence({"displacement", u_, model_, u_, time, dt_, steps_ + 1});
+  throw;
 }
 
 // Laws that contradict each other end the run before their states are accepted.
@@ -195,7 +204,7 @@ void Integrator::add_coupled_reactions(const StepView& step) {
 
 // A speed whose square is infinite has no kinetic energy, either.
 void Integrator::check_motion(double speed, double time) const {
-  if (!std::isfinite(speed)) explain_divergence({model_, u_, v_, time, dt_, steps_ + 1});
+  if (!std::isfinite(speed)) explain_divergence({"velocity", v_, model_, u_, time, dt_, steps_ + 1});
 }
 
 }  // namespace ilaw::host

@@ -19,7 +19,7 @@
 
 namespace ilaw::host {
 
-// The motion, or what follows from it, is not finite.
+// The motion, or what follows from it, is not finite, or has gone too far to tell who touches whom.
 class Diverged : public std::runtime_error {
  public:
   explicit Diverged(const std::string& what) : std::runtime_error("the motion diverged: " + what) {}
