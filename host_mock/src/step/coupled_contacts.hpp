@@ -41,9 +41,13 @@ class CoupledContacts {
   static constexpr int patience = 20;        // sweeps without acceleration
   static constexpr int long_patience = 300;  // sweeps until the acceleration is given up
 
+  // Steps of Newton's method after all sweeps, and how many impulses its matrix may have.
+  static constexpr int most_tangents = 30;
+  static constexpr Eigen::Index most_unknowns = 300;
+
   // No impulse may make a speed larger than that many times the first: it would be all rounding.
   static constexpr double most_growth = 0x1p50;
-  // From so many times the first speed on laws push each other up.
+  // From so many times the first speed, times the mass ratio, laws push each other up.
   static constexpr double run_away = 1e6;
 
   // So few contacts are solved by the sweeps there are, if they can be.
@@ -71,6 +75,7 @@ class CoupledContacts {
   void iterate(const StepView& step, double speed, Dofs& v, Outcome& outcome);
   void accelerate(const Sweeping& on, Outcome& outcome);
   void search(const Sweeping& on, Outcome& outcome);
+  void solve_by_tangents(const Sweeping& on, Outcome& outcome);
   void round_anew(const Sweeping& on, Outcome& outcome);
   // Evaluates every contact once, each against the impulses of the others.
   static Residual sweep(const Sweeping& on, Outcome& outcome);
@@ -80,10 +85,10 @@ class CoupledContacts {
   double largest_made(const ContactGroup& group, const Dofs& scaled) const;
   static Vector since_answer(const Interface& interface, std::int32_t contact, const Dofs& v);
   Disagreement disagreement(const Dofs& v) const;
-  std::size_t contacts_joined_to(int node) const;
-  static Dofs scaled_impulses(const ContactGroup& group);
+  ContactGroup island_at(int node) const;
   void move_to(const ContactGroup& group, const Dofs& scaled, Dofs& v) const;
 
+  const Model& model_;
   Interfaces& interfaces_;
   int dimension_;
   std::vector<Colours> colours_;  // one per interface

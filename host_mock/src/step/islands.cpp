@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/islands.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <unordered_map>
 
@@ -26,6 +27,30 @@ class JoinedNodes {
 };
 
 }  // namespace
+
+Dofs scaled_impulses(const ContactGroup& group) {
+  std::vector<double> scaled;
+  for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index /*k*/) {
+    for (const double component : interface.impulse(contact))
+      scaled.push_back(std::sqrt(interface.delassus(contact)) * component);
+  });
+  return Eigen::Map<const Dofs>(scaled.data(), static_cast<Eigen::Index>(scaled.size()));
+}
+
+std::vector<Vector> asked_velocities(const ContactGroup& group) {
+  std::vector<Vector> velocities;
+  for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index /*k*/) {
+    velocities.emplace_back(interface.v_free(contact));
+  });
+  return velocities;
+}
+
+void answer_at(const ContactGroup& group, const std::vector<Vector>& velocities, const StepView& step) {
+  for_each_contact(group, [&](Interface& interface, int contact, Eigen::Index k) {
+    interface.ask_at(contact, velocities[static_cast<std::size_t>(k)]);
+  });
+  for (const auto& [interface, contacts] : group) interface->evaluate(contacts, step);
+}
 
 std::vector<ContactGroup> islands_of(const ContactGroup& group) {
   JoinedNodes nodes;

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "step/newton.hpp"
+
+#include <Eigen/QR>
+
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace ilaw::host {
+namespace {
+
+// Velocity that a scaled impulse at one contact makes at another, over all pairs: W, scaled to a diagonal
+// of 1. The same in each direction.
+Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const Model& model) {
+  std::map<int, std::vector<std::pair<Eigen::Index, double>>> at_node;
+  const Eigen::Index count = for_each_contact(group, [&](Interface& interface, int contact, Eigen::Index k) {
+    const double root = std::sqrt(interface.delassus(contact));
+    interface.point(contact).for_each_node(interface.node_of(contact), [&](int node, double weight) {
+      at_node[node].emplace_back(k, weight / root);
+    });
+  });
+  Eigen::MatrixXd coupling = Eigen::MatrixXd::Zero(count, count);
+  for (const auto& [node, shares] : at_node)
+    for (const auto& [j, weight] : shares)
+      for (const auto& [k, other] : shares)
+        coupling(j, k) += weight * other / model.mass()[Eigen::Index{node} * model.dimension()];
+  return coupling;
+}
+
+// Changes of velocities that show the tangents of laws, one per contact.
+std::vector<double> small_changes(const ContactGroup& group, const std::vector<Vector>& velocities) {
+  constexpr double small = 0x1p-20;
+  std::vector<double> changes;
+  for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index k) {
+    const double made = interface.delassus(contact) * interface.impulse(contact).cwiseAbs().maxCoeff();
+    changes.push_back(small * (velocities[static_cast<std::size_t>(k)].cwiseAbs().maxCoeff() + made));
+  });
+  return changes;
+}
+
+// H times the derivative of each law's impulse by its velocity, by differences, in rows of the contacts: a
+// law sees its own contact alone, so that all are found at once.
+Eigen::MatrixXd tangents_of(const ContactGroup& group, const StepView& step,
+                            const std::vector<Vector>& velocities, const Dofs& answered) {
+  const std::vector<double> changes = small_changes(group, velocities);
+  const Eigen::Index d = velocities.front().size();
+  Eigen::MatrixXd tangents = Eigen::MatrixXd::Zero(answered.size(), d);
+  for (Eigen::Index c = 0; c < d; ++c) {
+    std::vector<Vector> changed = velocities;
+    for (std::size_t k = 0; k < changed.size(); ++k) changed[k][c] += changes[k];
+    answer_at(group, changed, step);
+    tangents.col(c) = scaled_impulses(group) - answered;
+  }
+  for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index k) {
+    const double change = changes[static_cast<std::size_t>(k)];
+    if (change > 0.0) tangents.middleRows(d * k, d) *= std::sqrt(interface.delassus(contact)) / change;
+  });
+  return tangents;
+}
+
+}  // namespace
+
+// A law f answers to c + (W - 1) r, all scaled, where c is v without any impulse: all agree where that is r,
+// and (1 - f' (W - 1)) dr = f - r leads there.
+Dofs newton_impulses(const ContactGroup& group, const Model& model, const StepView& step, const Dofs& v) {
+  const Dofs impulses = scaled_impulses(group);
+  for (const auto& [interface, contacts] : group) interface->gather(contacts, v, step);
+  const std::vector<Vector> velocities = asked_velocities(group);
+  answer_at(group, velocities, step);
+  const Dofs answered = scaled_impulses(group);
+  const Eigen::MatrixXd tangents = tangents_of(group, step, velocities, answered),
+                        coupling = scaled_coupling(group, model);
+  const Eigen::Index d = tangents.cols(), count = coupling.cols();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(impulses.size(), impulses.size());
+  for (Eigen::Index j = 0; j < count; ++j)
+    for (Eigen::Index k = 0; k < count; ++k)
+      if (j != k) matrix.block(d * j, d * k, d, d) -= coupling(j, k) * tangents.middleRows(d * j, d);
+  return impulses + matrix.colPivHouseholderQr().solve(answered - impulses);
+}
+
+}  // namespace ilaw::host
