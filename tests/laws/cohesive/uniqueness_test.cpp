@@ -186,10 +186,11 @@ Parameters soft_bond(Draw& draw) {
   return p;
 }
 
-// Pulled by what it can hardly hold; c h_N |T'| from 0.1 to 30.
-Problem steep(Draw& draw, const Curve& curve) {
+// Pulled by what it can hardly hold; compliance(H) is c h_N.
+template <class Compliance>
+Problem pulled(Draw& draw, const Curve& curve, Compliance compliance) {
   Problem p(draw, curve, 1.0);
-  const double c = draw.power_of_ten(-1.0, 1.5) * curve.mode(0.0).width / curve.s1;
+  const double c = compliance(p.inertia.h);
   const double times = 4.0 * c / (p.step * p.velocity_step * p.inertia.h[0][0]);
   for (Vector& row : p.inertia.h)
     for (double& entry : row) entry *= times;
@@ -198,6 +199,12 @@ Problem steep(Draw& draw, const Curve& curve) {
       (curve.size(p.opening) + 2.0 * c * curve.s1) * draw.between(0.5, 2.0) / (norm(way) * p.step);
   p.v_free = {2.0 * std::abs(way[0]) * far, 2.0 * way[1] * far, 2.0 * way[2] * far};
   return p;
+}
+// With c h_N |T'| from 0.1 to 30.
+Problem steep(Draw& draw, const Curve& curve) {
+  return pulled(draw, curve, [&](const Matrix&) {
+    return draw.power_of_ten(-1.0, 1.5) * curve.mode(0.0).width / curve.s1;
+  });
 }
 
 // The same in three directions, with mixed modes and delay: what a dense search finds, the node says, and
@@ -234,6 +241,50 @@ TEST(CohesiveUniqueness, IsSaidInThreeDirections) {
   if (given) std::printf("several solutions: %d, one: %d\n", several, single);
   EXPECT_GT(several, steps / 100);
   EXPECT_GT(single, steps / 4);
+}
+
+// The steepest softening that the page gives for a bond, and the longest step with one solution.
+double steepest_slope(const Parameters& p) {
+  const auto number = [&p](const char* name, double otherwise) {
+    const auto found = p.numbers.find(name);
+    return found == p.numbers.end() ? otherwise : found->second;
+  };
+  const bool is_one_curve = p.texts.at("shape") == "camacho_ortiz";
+  const double s1 = number("strength", 0.0), g1 = number("toughness", 0.0),
+               s2 = is_one_curve ? s1 : number("strength_2", s1),
+               g2 = is_one_curve ? g1 : number("toughness_2", g1), k = number("stiffness", inf_value);
+  const double factor = p.texts.at("shape") == "exponential" ? 0.998 : 0.5;
+  return factor * std::max(s1 * s1 / (g1 - s1 * s1 / (2.0 * k)), s2 * s2 / (g2 - s2 * s2 / (2.0 * k)));
+}
+double longest_step(const Parameters& p, const Matrix& h) {
+  const bool is_weighted = p.texts.at("shape") == "camacho_ortiz";
+  const double beta = is_weighted ? p.numbers.at("strength_2") / p.numbers.at("strength") : 1.0;
+  const double trace = h[0][0] + beta * beta * (h[1][1] + h[2][2]);
+  return 2.0 / std::sqrt(trace * steepest_slope(p));
+}
+
+// Below the step that the page gives no node is refused, whatever its H, mode and delay; at four times that
+// step some are.
+TEST(CohesiveUniqueness, HoldsBelowTheStepOfThePage) {
+  Draw draw(26);
+  int softened = 0, beyond = 0;
+  for (int k = 0; k < 2000 && !HasFailure(); ++k) {
+    const Parameters parameters = soft_bond(draw);
+    const Curve curve(parameters);
+    NodeRun node("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
+    const auto at_part = [&](double part) {
+      return pulled(draw, curve, [&](const Matrix& h) {
+        const double step = part * longest_step(parameters, h);
+        return 0.25 * step * step * h[0][0];
+      });
+    };
+    const Problem below = at_part(0.99);
+    ASSERT_EQ(below.solve(node), ILAW_OK) << k << ", shape " << curve.shape << ": " << node.report.reason;
+    softened += node.named("damage") > below.damage ? 1 : 0;
+    beyond += at_part(4.0).solve(node) == ILAW_OK ? 0 : 1;
+  }
+  EXPECT_GT(softened, 500);
+  EXPECT_GT(beyond, 20);
 }
 
 }  // namespace
