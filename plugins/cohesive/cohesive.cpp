@@ -246,7 +246,7 @@ struct cohesive : bond {
   void make_before(zone<Modes>& z, const gathered<double>& given, outcome& found) const {
     const auto taken = [&](double part) {
       const vector place = (0.5 * part * z.step) * z.v_previous;
-      z.place(place, ground_below(place.n, z.v_free.n, z.v_previous.n, z.step));
+      z.place(place, ground_below(place.n, z.v_previous.n, z.step));
       found = answer_of(z, given);
       double opening[3];
       keep(z.at(found.parts).opening, opening);

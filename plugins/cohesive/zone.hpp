@@ -54,12 +54,11 @@ V below(V position, V ground) {
 }
 
 // The lowest next position: where the bond was made, or as deep as the node is. A node that was leaving turns
-// round at most at the speed with which it left (see contact_leaving_at), which matters where steps differ.
+// round at most at the speed with which it left (see contact_leaving_at): else contact would do work on a
+// bond, which may be so stiff that rounding is enough to store some.
 template <class V>
-[[gnu::always_inline]] inline V ground_below(V position, V v_free, V v_previous, V position_step) {
-  const V rounding = 0x1p-48 * (absolute(v_free) + absolute(v_previous)), lowest = smaller(position, 0.0);
-  const auto leaves = position_step * (v_previous - rounding) > position - lowest;
-  return select(leaves, position - position_step * v_previous, lowest);
+[[gnu::always_inline]] inline V ground_below(V position, V v_previous, V position_step) {
+  return smaller(smaller(position, V(0.0)), position - position_step * v_previous);
 }
 
 // Whether the bond has not been moved: then it is made in this step.
@@ -80,7 +79,7 @@ template <class V>
   for (int k = 0; k < 3; ++k) place[k] = select(is_new, p[k], g.opening[k] + 0.5 * step * u[k]);
   const auto uneven = step != g.position_step;
   const V from = select(uneven, p[0], place[0]);
-  ground = ground_below(from, g.v_free[0], u[0], g.position_step);
+  ground = ground_below(from, u[0], g.position_step);
   if (!any(uneven)) return;
   ground = select(uneven, place[0] + step / g.position_step * (ground - p[0]), ground);
 }

@@ -49,7 +49,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Solved{"speeds_whose_squares_underflow", 1.0}, Solved{"springs_of_no_stiffness", 1.0},
                       Solved{"strengths_far_apart", 1.0}, Solved{"strong_bond_that_swings", 1.0},
                       Solved{"stiff_bond_on_a_sphere", 1.0}, Solved{"bond_after_a_step_left_unsolved", 1.0},
-                      Solved{"opening_of_rounding", 1.0}, Solved{"ties_of_masses_far_apart", 0.05}));
+                      Solved{"opening_of_rounding", 1.0}, Solved{"ties_of_masses_far_apart", 0.05},
+                      Solved{"bond_that_leaves_by_rounding", 1.0}));
 
 // A contact and a bond push each other up to 1e15 times what they agree on: v keeps nothing of that.
 TEST(CoupledContacts, KeepNoRoundingOfWhatWasLargeOnTheWay) {
@@ -342,6 +343,16 @@ TEST(Stress, HoldsTheBalanceToTheSizeOfEveryStep) {
   const StressVerdict verdict = stress_scene(scene);
   EXPECT_EQ(verdict.ending, StressEnding::passed) << verdict.reason;
   EXPECT_GT(verdict.figures.balance, 0.0) << "a balance without rounding holds by any bound";
+}
+
+// A plane that rises in the first step and then stands still: a node that is tied to it then is as far inside
+// as the plane has come.
+TEST(Stress, CountsTheWayOfAnObstacleInTheFirstStep) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const StressVerdict verdict = stress_scene(json::parse(R"({"model": {"type": "points", "dimension": 1,
+      "points": [{"mass": 1, "position": [0]}]}, "time": {"dt": 1, "end": 1}, "interfaces": [{"law": "tie",
+      "nodes": "all", "obstacle": {"type": "plane", "point": [0], "normal": [1], "path": [[0, 0], [1, 1]]}}]})"));
+  EXPECT_EQ(verdict.ending, StressEnding::passed) << verdict.reason;
 }
 
 class BondOnASurfaceThatTurns : public ::testing::TestWithParam<const char*> {};

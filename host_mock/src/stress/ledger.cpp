@@ -70,7 +70,9 @@ void Ledger::close(const Integrator& integrator) {
 void Ledger::add(std::size_t number, const Integrator& integrator, double speed) {
   const Interface& interface = *scene_.interfaces[number];
   const bool is_alone = interface.setup().counterpart->partners().empty();
-  fastest_ = std::max(fastest_, (is_alone ? 1.0 : 2.0) * speed + interface.obstacle_velocity().norm());
+  const double obstacle =
+      std::max(interface.obstacle_velocity_before().norm(), interface.obstacle_velocity().norm());
+  fastest_ = std::max(fastest_, (is_alone ? 1.0 : 2.0) * speed + obstacle);
   if (interface.sums().penetration > penetration_) measure_depth(number, integrator);
   const double stored = interface.sums().energy[ILAW_ENERGY_STORED];
   stored_ += stored;
