@@ -41,7 +41,8 @@ class CoupledContacts {
   static constexpr int patience = 20;        // sweeps without acceleration
   static constexpr int long_patience = 300;  // sweeps until the acceleration is given up
 
-  // Steps of Newton's method after all sweeps, and how many impulses its matrix may have.
+  // Steps of Newton's method after all sweeps, and how many impulses its matrix may have: with more of them a
+  // step takes longer than the sweeps did.
   static constexpr int most_tangents = 30;
   static constexpr Eigen::Index most_unknowns = 300;
 
