@@ -178,6 +178,34 @@ turned_round stick(const rigid_rubbing<double>& p, Solve solve) {
   return pushes_on(p, stopped) ? stick_in_turn(p, solve) : turned_round{stopped, stopped.outcome != has_none};
 }
 
+inline double outcome_of(kit::contact_mode mode) {
+  if (mode == kit::contact_mode::none) return has_none;
+  return mode == kit::contact_mode::stick ? sticks : slides;
+}
+inline rubbed<double> solved(const kit::local_coulomb& problem) {
+  double r[3];
+  const kit::contact_mode mode = kit::solve(problem, r);
+  return {r[0], r[1], r[2], 0.0, outcome_of(mode)};
+}
+// Without coupling, and without the normal velocity.
+inline kit::local_coulomb tangents(const rubbing<double>& p, double friction) {
+  return {{0.5 * p.delassus, p.a11, p.a22, 0.0, 0.0, p.a12}, {0.0, p.q1, p.q2}, {friction, friction}};
+}
+inline double velocity_given_back(const rubbing<double>& p, double restitution) {
+  return (p.previous < 0.0 ? restitution : 1.0) * p.previous;
+}
+// A rigid spring has no impulse to find: Coulomb's local problem as it is.
+inline turned_round rub_on_rigid(const rigid_rubbing<double>& p, double friction, double restitution) {
+  const double given_back = velocity_given_back(p, restitution);
+  return stick(p, [=](const rubbing<double>& held) {
+    kit::local_coulomb whole = tangents(held, friction);
+    whole.h[3] = 0.5 * held.c1;
+    whole.h[4] = 0.5 * held.c2;
+    whole.q[0] = 0.5 * (held.free + given_back);
+    return solved(whole);
+  });
+}
+
 class node_alone {
  public:
   node_alone(const normal_spring& spring, double friction, double restitution, const rigid_rubbing<double>& p)
@@ -190,12 +218,9 @@ class node_alone {
     normal_.damping = spring.damper(p.delassus);
   }
 
-  [[gnu::noinline]] rubbed<double> solve() const {
+  rubbed<double> solve() const {
     if (is_like_scalar(p_) || !(friction_ > 0.0)) return apart();
-    const bool couples = (p_.c1 != 0.0) | (p_.c2 != 0.0);
-    if (!normal_.spring.is_rigid()) return couples ? coupled() : uncoupled();
-    const turned_round found = stick(p_, [this](const rubbing<double>& p) { return rigid(p); });
-    return found.settled ? found.answer : coupled();
+    return (p_.c1 != 0.0) | (p_.c2 != 0.0) ? coupled() : uncoupled();
   }
 
  private:
@@ -209,41 +234,32 @@ class node_alone {
     return {found.impulse, result.impulse.t1, result.impulse.t2, found.end, outcome};
   }
 
-  static double outcome_of(kit::contact_mode mode) {
-    if (mode == kit::contact_mode::none) return has_none;
-    return mode == kit::contact_mode::stick ? sticks : slides;
-  }
-
-  // A rigid spring has no impulse to find: Coulomb's local problem as it is.
-  rubbed<double> rigid(const rubbing<double>& p) const {
-    return rub(p, {0.5 * p.c1, 0.5 * p.c2}, {0.5 * (p.free + given_back()), p.q1, p.q2});
-  }
-  double given_back() const { return (p_.previous < 0.0 ? restitution_ : 1.0) * p_.previous; }
-
+  double given_back() const { return velocity_given_back(p_, restitution_); }
   // Tangents with a normal impulse that is known are the same without coupling, the tangential spring an
   // inverse mass beside H: a convex problem.
-  rubbed<double> rub_at(double normal) const {
-    const auto solve = [this, normal](const rubbing<double>& p) {
-      const double half = 0.5 * normal;
-      rubbed<double> a =
-          rub(p, {0.0, 0.0}, {0.0 - half * p.delassus, p.q1 + half * p.c1, p.q2 + half * p.c2});
-      a.impulse = normal;
-      return a;
-    };
-    return stick(p_, solve).answer;
+  rubbed<double> rub(const rubbing<double>& p, double normal) const {
+    kit::local_coulomb given = tangents(p, friction_);
+    given.q[0] = -given.h[0] * normal;
+    given.q[1] += 0.5 * p.c1 * normal;
+    given.q[2] += 0.5 * p.c2 * normal;
+    rubbed<double> a = solved(given);
+    a.impulse = normal;
+    return a;
   }
-  rubbed<double> rub(const rubbing<double>& p, const double (&coupling)[2], const double (&q)[3]) const {
-    const kit::local_coulomb problem{{0.5 * p.delassus, p.a11, p.a22, coupling[0], coupling[1], p.a12},
-                                     {q[0], q[1], q[2]},
-                                     {friction_, friction_}};
-    double r[3];
-    const kit::contact_mode mode = kit::solve(problem, r);
-    return {r[0], r[1], r[2], 0.0, outcome_of(mode)};
+  rubbed<double> rub_and_turn(double normal) const {
+    return stick(p_, [this, normal](const rubbing<double>& p) { return rub(p, normal); }).answer;
   }
 
-  // What the tangential impulse does to the normal leaves one equation for r_N.
+  // What the tangential impulse does to the normal leaves one equation for r_N. Most stick with e_T = 0.
   rubbed<double> coupled() const {
-    const double normal = normal_.impulse_where([this](double r) { return excess(free_with(rub_at(r)), r); });
+    const rubbed<double> stopped = coupled_by([this](double r) { return rub(p_, r); });
+    if (!pushes_on(p_, stopped)) return stopped;
+    return coupled_by([this](double r) { return rub_and_turn(r); });
+  }
+  template <class Rub>
+  rubbed<double> coupled_by(Rub rub_at) const {
+    const auto excess_at = [&](double r) { return excess(free_with(rub_at(r)), r); };
+    const double normal = normal_.impulse_where(excess_at);
     rubbed<double> a = rub_at(normal);
     if (!kit::is_finite(normal)) a.outcome = has_none;
     if (!normal_.spring.is_rigid()) a.indentation = normal_.at(normal, free_with(a)).end;
@@ -251,7 +267,7 @@ class node_alone {
   }
   rubbed<double> uncoupled() const {
     const solution found = normal_.solve();
-    rubbed<double> a = rub_at(found.impulse);
+    rubbed<double> a = rub_and_turn(found.impulse);
     a.indentation = found.end;
     return a;
   }
@@ -266,5 +282,15 @@ class node_alone {
   double friction_, restitution_;
   any_compression normal_;
 };
+
+// Not inlined into each of the law's loops.
+[[gnu::noinline]] inline rubbed<double> solve_alone(const normal_spring& spring, double friction,
+                                                    double restitution, const rigid_rubbing<double>& p) {
+  if (spring.is_rigid() && friction > 0.0 && !is_like_scalar(p)) {
+    const turned_round found = rub_on_rigid(p, friction, restitution);
+    if (found.settled) return found.answer;
+  }
+  return node_alone(spring, friction, restitution, p).solve();
+}
 
 }  // namespace penalty_law

@@ -386,10 +386,14 @@ struct penalty::form : penalty {
   }
   penalty_law::rubbed<double> solve_by_brackets(const penalty_law::rigid_rubbing<double>& p) const {
     const auto spring = spring_of(p.step, damping_ratio);
-    return penalty_law::node_alone(spring, friction, restitution, p).solve();
+    return penalty_law::solve_alone(spring, friction, restitution, p);
   }
   // By the solver of packs while one e_T after the other will do.
   void stick_alone(const problem<double>& p, answer<double>& a) const {
+    if (Kind == spring_kind::any || stiffness == infinity) {
+      a = solve_by_brackets(p);
+      return;
+    }
     const auto solve_held = [this](const penalty_law::rubbing<double>& held) { return solve_regular(held); };
     const auto found = penalty_law::stick(p, solve_held);
     a = found.settled ? found.answer : solve_by_brackets(p);

@@ -119,7 +119,7 @@ struct Packs {
 };
 
 rubbed<double> solve_alone(const normal_spring& spring, const rubbing<double>& p) {
-  return penalty_law::node_alone(spring, friction, 1.0, {p, 0.0, 0.0}).solve();
+  return penalty_law::solve_alone(spring, friction, 1.0, {p, 0.0, 0.0});
 }
 
 using Bits = std::array<std::uint64_t, answer_size>;
