@@ -4,11 +4,14 @@
     ILAW_PATH=build/release/lib/ilaw build/release/bin/ilaw bench --cases tests/laws/*/cases.json \\
         --nodes 2000 10000000 --out results
     tests/bench/laws_table.py results/bench.csv
+
+Of several such files, medians.
 """
 import argparse
 import collections
 import csv
 import re
+import statistics
 import sys
 
 # Law, words of the case, ratio that this project aims at: the first that fits. A memory has its aim in cache.
@@ -25,25 +28,38 @@ def aim_of(law, case):
     return next((aim for laws, words, aim in AIMS if re.fullmatch(laws, law) and re.search(words, case)), None)
 
 
+def runs_of(files):
+    """By law and case: what few nodes took and many, one row of each per file."""
+    cases = collections.defaultdict(list)
+    for file in files:
+        of_file = collections.defaultdict(list)
+        with open(file) as rows:
+            for row in csv.DictReader(rows):
+                of_file[row["law"], row["case"]].append(row)
+        for (law, case), rows in of_file.items():
+            if len(rows) != 2:
+                sys.exit(f"laws_table.py: {file}: {law}, {case}: {len(rows)} numbers of nodes, needs 2")
+            cases[law, case].append(sorted(rows, key=lambda row: int(row["nodes"])))
+    return cases
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bench", help="bench.csv, each case with two numbers of nodes")
-    given = parser.parse_args()
-    cases = collections.defaultdict(list)
-    with open(given.bench) as rows:
-        for row in csv.DictReader(rows):
-            cases[row["law"], row["case"]].append(row)
+    parser.add_argument("bench", nargs="+", help="bench.csv, each case with two numbers of nodes")
+    cases = runs_of(parser.parse_args().bench)
     print("| law | case | bytes | in cache, ns | beyond, ns | aim, ns | ratio | aim |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for (law, case), runs in cases.items():
-        if len(runs) != 2:
-            sys.exit(f"laws_table.py: {given.bench}: {law}, {case}: {len(runs)} numbers of nodes, needs 2")
-        few, many = sorted(runs, key=lambda run: int(run["nodes"]))
-        aim, size = aim_of(law, case), float(many["bytes_per_node"])
-        allowed = f"{aim * size / float(many['triad_gb_per_s']):.1f}" if aim else "-"
+        few, many = zip(*runs)
+
+        def median(rows, key):
+            return statistics.median(float(row[key]) for row in rows)
+
+        aim, size = aim_of(law, case), float(many[0]["bytes_per_node"])
+        allowed = f"{aim * size / median(many, 'triad_gb_per_s'):.1f}" if aim else "-"
         print(f"| {law} | {case.replace('; ', ', ')} | {size:.0f} | "
-              f"{float(few['ns_per_node']):.1f} | {float(many['ns_per_node']):.1f} | {allowed} | "
-              f"{float(many['ratio']):.2f} | {aim if aim else '-'} |")
+              f"{median(few, 'ns_per_node'):.1f} | {median(many, 'ns_per_node'):.1f} | {allowed} | "
+              f"{median(many, 'ratio'):.2f} | {aim if aim else '-'} |")
 
 
 if __name__ == "__main__":
