@@ -220,7 +220,8 @@ class node_alone {
 
   rubbed<double> solve() const {
     if (is_like_scalar(p_) || !(friction_ > 0.0)) return apart();
-    return (p_.c1 != 0.0) | (p_.c2 != 0.0) ? coupled() : uncoupled();
+    const bool couples = (p_.c1 != 0.0) | (p_.c2 != 0.0);
+    return couples ? coupled() : uncoupled();
   }
 
  private:
