@@ -102,8 +102,8 @@ struct Packs {
       columns[c] = kit::pack::load(values);
     }
     rubbed<kit::pack> answer{};
-    const penalty_law::rubbing_node<kit::pack, IsLinear, IsPlain> node(
-        spring, friction, std::bit_cast<rubbing<kit::pack>>(columns));
+    const auto problem = std::bit_cast<rubbing<kit::pack>>(columns);
+    const penalty_law::rubbing_node<kit::pack, IsLinear, IsPlain> node(spring, friction, problem);
     const kit::mask not_solved = node.solve(answer);
     const auto packs = std::bit_cast<std::array<kit::pack, answer_size>>(answer);
     for (std::size_t j = 0; j < lanes; ++j) {
