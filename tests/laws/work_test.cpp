@@ -5,7 +5,6 @@
 #include "random_nodes.hpp"
 
 #include "support/numbers.hpp"
-#include "support/sizes.hpp"
 
 #include <optional>
 #include <ostream>
@@ -191,7 +190,7 @@ class Work : public ::testing::TestWithParam<Case> {
 };
 
 TEST_P(Work, IsNeverPositive) {
-  const auto enough = static_cast<std::size_t>(part_of(draws));
+  const auto enough = static_cast<std::size_t>(draws);
   for (unsigned seed = 1; done < enough && !wrong && !HasFatalFailure(); ++seed)
     for (const std::uint32_t form : forms)
       for (std::uint32_t dimension = 1; dimension <= 3 && !wrong; ++dimension) {
