@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the table of docs/benchmarks.md, "The host", from runs of ilaw_bench_host.
 
-    ILAW_PATH=build/release/lib/ilaw tests/bench/host_table.py build/release/bin/ilaw_bench_host
+    ILAW_PATH=$PWD/build/release/lib/ilaw tests/bench/host_table.py build/release/bin/ilaw_bench_host
     ... host_table.py AFTER --before BEFORE      # two builds, run in turn: what became of each time
 
 Medians of runs in turn: a machine that is busy with other work disturbs both programs alike.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the table of all laws of docs/benchmarks.md from what `ilaw bench` writes.
 
-    ILAW_PATH=build/release/lib/ilaw build/release/bin/ilaw bench --cases tests/laws/*/cases.json \\
+    ILAW_PATH=$PWD/build/release/lib/ilaw build/release/bin/ilaw bench --cases tests/laws/*/cases.json \\
         --nodes 2000 10000000 --out results
     tests/bench/laws_table.py results/bench.csv
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Makes the table "What forbids the bars" of docs/benchmarks.md.
 
-    ILAW_PATH=build/release/lib/ilaw tests/bench/loops.py build/release/bin/ilaw build/release/bin/ilaw_bench_dividers
+    ILAW_PATH=$PWD/build/release/lib/ilaw \\
+        tests/bench/loops.py build/release/bin/ilaw build/release/bin/ilaw_bench_dividers
 
 Time in cache by `ilaw bench`; instructions, divisions and roots are counted in the loop that the case runs
 through at level v4: the longest one of each function that is named by its words. "pipes": what its arithmetic takes

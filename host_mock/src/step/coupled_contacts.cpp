@@ -14,12 +14,6 @@
 namespace ilaw::host {
 namespace {
 
-std::size_t count_of(const ContactGroup& group) {
-  std::size_t count = 0;
-  for (const ContactPart& part : group) count += part.contacts.size();
-  return count;
-}
-
 // Of all nodes that its contacts have, the heaviest to the lightest.
 double mass_ratio_of(const ContactGroup& group, const Model& model) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
@@ -147,7 +141,7 @@ void CoupledContacts::accelerate(const Sweeping& on, Outcome& outcome) {
 // accelerated. Where it does not solve them, either, or a law refuses what it is asked on the way, all is as
 // it was.
 void CoupledContacts::solve_by_tangents(const Sweeping& on, Outcome& outcome) {
-  if (static_cast<Eigen::Index>(count_of(on.group)) * dimension_ > most_unknowns) return;
+  if (contact_count(on.group) * dimension_ > most_unknowns) return;
   const Dofs v = on.v;
   const std::vector<Vector> asked = asked_velocities(on.group);
   Outcome found = outcome;
@@ -253,12 +247,11 @@ Vector CoupledContacts::since_answer(const Interface& interface, std::int32_t co
 // contacts that may act: what the idle ones were evaluated with must not matter.
 CoupledContacts::Residual CoupledContacts::residual(const ContactGroup& group, double speed, const Dofs& v) {
   Residual found{0.0, speed};
-  for (const auto& [interface, contacts] : group)
-    for (const std::int32_t contact : contacts) {
-      const double own = interface->delassus(contact) * interface->impulse(contact).cwiseAbs().maxCoeff();
-      found.change = std::max(found.change, since_answer(*interface, contact, v).cwiseAbs().maxCoeff());
-      found.size = std::max(found.size, own);
-    }
+  for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index /*k*/) {
+    const double own = interface.delassus(contact) * interface.impulse(contact).cwiseAbs().maxCoeff();
+    found.change = std::max(found.change, since_answer(interface, contact, v).cwiseAbs().maxCoeff());
+    found.size = std::max(found.size, own);
+  });
   return found;
 }
 
@@ -267,22 +260,21 @@ CoupledContacts::Residual CoupledContacts::residual(const ContactGroup& group, d
 CoupledContacts::Disagreement CoupledContacts::disagreement(const Dofs& v) const {
   Disagreement all{};
   double worst = 0.0;
-  for (const auto& [interface, contacts] : acting_)
-    for (const std::int32_t contact : contacts) {
-      const Vector off = since_answer(*interface, contact, v);
-      double work = 0.0, square = 0.0;
-      for (Eigen::Index c = 0; c < off.size(); ++c) {
-        work += interface->impulse(contact)[c] * off[c];
-        square += off[c] * off[c];
-      }
-      const double energy = 0.5 * std::abs(work);
-      all.energy += energy;
-      if (!(energy > worst)) continue;
-      worst = energy;
-      all.interface = interface;
-      all.node = interface->node_of(contact);
-      all.velocity = std::sqrt(square);
+  for_each_contact(acting_, [&](const Interface& interface, int contact, Eigen::Index /*k*/) {
+    const Vector off = since_answer(interface, contact, v);
+    double work = 0.0, square = 0.0;
+    for (Eigen::Index c = 0; c < off.size(); ++c) {
+      work += interface.impulse(contact)[c] * off[c];
+      square += off[c] * off[c];
     }
+    const double energy = 0.5 * std::abs(work);
+    all.energy += energy;
+    if (!(energy > worst)) return;
+    worst = energy;
+    all.interface = &interface;
+    all.node = interface.node_of(contact);
+    all.velocity = std::sqrt(square);
+  });
   return all;
 }
 
@@ -295,7 +287,7 @@ std::string CoupledContacts::explain(const Dofs& v, const Outcome& outcome) cons
   const Disagreement found = disagreement(v);
   if (!found.interface) return "";
   const ContactGroup island = island_at(found.node);
-  const std::size_t count = count_of(island);
+  const Eigen::Index count = contact_count(island);
   const double ratio = mass_ratio_of(island, model_);
   const bool ran_away = residual(island, 0.0, v).size > run_away * ratio * speed;
   const bool is_stuck = found.velocity > beyond_rounding * speed && count <= few;
@@ -304,7 +296,7 @@ std::string CoupledContacts::explain(const Dofs& v, const Outcome& outcome) cons
   std::snprintf(
       text.data(), text.size(),
       "contacts that share node %d find no velocity that suits them all: after %d sweeps '%s' (law '%s') "
-      "is off by %.3g, which is worth the energy %.3g. %s: %zu contacts hang together, with masses of 1:%.2g",
+      "is off by %.3g, which is worth the energy %.3g. %s: %td contacts hang together, with masses of 1:%.2g",
       found.node, outcome.sweeps, found.interface->name().c_str(), found.interface->setup().law.c_str(),
       found.velocity, found.energy,
       ran_away ? "Two laws there contradict each other"
@@ -327,32 +319,23 @@ ContactGroup CoupledContacts::island_at(int node) const {
 // The largest velocity that one of them makes.
 double CoupledContacts::largest_made(const ContactGroup& group, const Dofs& scaled) const {
   double largest = 0.0;
-  Eigen::Index next = 0;
-  for (const auto& [interface, contacts] : group)
-    for (const std::int32_t contact : contacts) {
-      const double most = scaled.segment(next, dimension_).cwiseAbs().maxCoeff();
-      largest = std::max(largest, std::sqrt(interface->delassus(contact)) * most);
-      next += dimension_;
-    }
+  for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index k) {
+    const double most = scaled.segment(k * dimension_, dimension_).cwiseAbs().maxCoeff();
+    largest = std::max(largest, std::sqrt(interface.delassus(contact)) * most);
+  });
   return largest;
 }
 
 // From v_free anew: what large impulses would leave of each other is rounding.
 void CoupledContacts::move_to(const ContactGroup& group, const Dofs& scaled, Dofs& v) const {
   const Eigen::Index d = dimension_;
-  for (const auto& [interface, contacts] : group)
-    for (const std::int32_t contact : contacts)
-      interface->point(contact).for_each_node(interface->node_of(contact), [&](int node, double) {
-        v.segment(node * d, d) = v_free_.segment(node * d, d);
-      });
-  Eigen::Index next = 0;
-  for (const auto& [interface, contacts] : group) {
-    for (const std::int32_t contact : contacts) {
-      interface->start_from(contact, scaled.segment(next, d) / std::sqrt(interface->delassus(contact)));
-      next += d;
-    }
-    interface->apply(contacts, v);
-  }
+  for_each_contact(group, [&](Interface& interface, int contact, Eigen::Index k) {
+    interface.point(contact).for_each_node(interface.node_of(contact), [&](int node, double) {
+      v.segment(node * d, d) = v_free_.segment(node * d, d);
+    });
+    interface.start_from(contact, scaled.segment(k * d, d) / std::sqrt(interface.delassus(contact)));
+  });
+  for (const auto& [interface, contacts] : group) interface->apply(contacts, v);
 }
 
 }  // namespace ilaw::host

@@ -51,8 +51,8 @@ class CoupledContacts {
   // From so many times the first speed, times the mass ratio, laws push each other up.
   static constexpr double run_away = 1e6;
 
-  // So few contacts are solved by the sweeps there are, if they can be.
-  static constexpr std::size_t few = 50;
+  // Where no more contacts than that are not solved, laws are said to contradict each other or not to be.
+  static constexpr Eigen::Index few = 50;
 
   struct Residual {
     double change, size;

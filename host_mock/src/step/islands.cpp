@@ -28,6 +28,12 @@ class JoinedNodes {
 
 }  // namespace
 
+Eigen::Index contact_count(const ContactGroup& group) {
+  std::size_t count = 0;
+  for (const ContactPart& part : group) count += part.contacts.size();
+  return static_cast<Eigen::Index>(count);
+}
+
 Dofs scaled_impulses(const ContactGroup& group) {
   std::vector<double> scaled;
   for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index /*k*/) {
@@ -54,11 +60,10 @@ void answer_at(const ContactGroup& group, const std::vector<Vector>& velocities,
 
 std::vector<ContactGroup> islands_of(const ContactGroup& group) {
   JoinedNodes nodes;
-  for (const auto& [interface, contacts] : group)
-    for (const std::int32_t contact : contacts) {
-      const int own = interface->node_of(contact);
-      interface->point(contact).for_each_node(own, [&](int node, double) { nodes.join(own, node); });
-    }
+  for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index /*k*/) {
+    const int own = interface.node_of(contact);
+    interface.point(contact).for_each_node(own, [&](int node, double) { nodes.join(own, node); });
+  });
   constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::unordered_map<int, std::size_t> island_of_root;
   std::vector<std::size_t> last_part;

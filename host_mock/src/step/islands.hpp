@@ -17,14 +17,14 @@ struct ContactPart {
 // In the order of solution.
 using ContactGroup = std::vector<ContactPart>;
 
-// Calls visit(interface, contact, k) with each contact and its number in the group; returns how many there
-// are.
+Eigen::Index contact_count(const ContactGroup& group);
+
+// Calls visit(interface, contact, k) with each contact and its number in the group.
 template <class Visit>
-Eigen::Index for_each_contact(const ContactGroup& group, Visit visit) {
+void for_each_contact(const ContactGroup& group, Visit visit) {
   Eigen::Index k = 0;
   for (const auto& [interface, contacts] : group)
     for (const std::int32_t contact : contacts) visit(*interface, contact, k++);
-  return k;
 }
 
 // Impulses of all contacts times the root of their delassus: a norm in energy.

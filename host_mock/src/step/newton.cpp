@@ -15,12 +15,13 @@ namespace {
 // of 1. The same in each direction.
 Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const Model& model) {
   std::map<int, std::vector<std::pair<Eigen::Index, double>>> at_node;
-  const Eigen::Index count = for_each_contact(group, [&](Interface& interface, int contact, Eigen::Index k) {
+  for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index k) {
     const double root = std::sqrt(interface.delassus(contact));
     interface.point(contact).for_each_node(interface.node_of(contact), [&](int node, double weight) {
       at_node[node].emplace_back(k, weight / root);
     });
   });
+  const Eigen::Index count = contact_count(group);
   Eigen::MatrixXd coupling = Eigen::MatrixXd::Zero(count, count);
   for (const auto& [node, shares] : at_node)
     for (const auto& [j, weight] : shares)
