@@ -110,7 +110,7 @@ class BlockWalk {
       point = step_.setup.counterpart->contact_point(node_index(i), step_.step.u, step_.step.time);
       gap_[i] = point.gap;
       for (int c = 0; c < D; ++c) normal_[D * i + c] = point.normal[c];
-      at_.delassus[contact(i)] = point.delassus(step_.model, node_[i]);
+      at_.delassus[contact(i)] = point.delassus(step_.inverse_mass, D, node_[i]);
     }
   }
 
@@ -295,7 +295,7 @@ class BlockWalk {
   void push(std::ptrdiff_t i, const Components& r, double* v) {
     if constexpr (Partnered)
       at_.point[contact(i)].for_each_node(node_[i], [&](int node, double weight) {
-        const double scale = weight / step_.model.mass()[Eigen::Index{D} * node];
+        const double scale = weight * step_.inverse_mass[Eigen::Index{D} * node];
         for (int c = 0; c < D; ++c) v[Eigen::Index{D} * node + c] += scale * r[c];
       });
     else {

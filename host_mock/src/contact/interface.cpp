@@ -75,11 +75,18 @@ void Interface::check(const Refusal& refusal, const std::string& node) const {
 int Interface::contact_index_of(int node_index, const Dofs& u) {
   const std::size_t k = at(node_index);
   if (const int found = contacts_.index_of(k); found >= 0) return found;
-  contacts_.add({node_index, 1.0 / model_.mass()[setup_.nodes[k] * dimension_], setup_.areas[k],
+  contacts_.add({node_index, ContactPoint().delassus(inverse_mass_, dimension_, setup_.nodes[k]), setup_.areas[k],
                  parameters_of(node_index), first_state(node_index, u), law_.acts_at_distance(),
                  axes_turn()});
   if (const std::size_t chunk = k / contact_chunk; chunk < far_.size()) far_[chunk] = {};
   return contacts_.index_of(k);
+}
+
+// Contacts with partners find their H in every step.
+void Interface::set_inverse_mass(const double* inverse_mass) {
+  inverse_mass_ = inverse_mass;
+  for (std::size_t k = 0; k < contacts_.count() && contacts_.point.empty(); ++k)
+    contacts_.delassus[k] = ContactPoint().delassus(inverse_mass_, dimension_, node_of(static_cast<int>(k)));
 }
 
 bool Interface::axes_turn() const { return !axes_.empty() && !setup_.counterpart->keeps_normal(); }
@@ -189,6 +196,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
              watched = InputCopy::is_due(step.number);
   const BlockStep blocks{setup_,
                          model_,
+                         inverse_mass_,
                          law_,
                          contacts_,
                          step,
@@ -244,7 +252,7 @@ void Interface::open_step(const StepView& step) {
                   [&](std::size_t c) -> double& { return contacts_.state.at(k, first + c); });
     }
     if (point.partner_count == 0) continue;
-    contacts_.delassus[k] = point.delassus(model_, node_of(contact_index));
+    contacts_.delassus[k] = point.delassus(inverse_mass_, dimension_, node_of(contact_index));
     contacts_.point[k] = point;
   }
 }
@@ -305,7 +313,7 @@ void Interface::apply(const ContactList& contacts, Dofs& v) {
       const Vector added = impulse(k) - contacts_.vector(contacts_.previous_impulse, k);
       if (added.isZero(0.0)) continue;  // idle contacts must not even write nodes they share
       point(k).for_each_node(node_of(k), [&](int node, double weight) {
-        v.segment(node * d, d) += (weight / model_.mass()[node * d]) * added;
+        v.segment(node * d, d) += (weight * inverse_mass_[node * d]) * added;
       });
     }
   });

@@ -38,9 +38,14 @@ class Interface {
   // the impulse, and changes no bit of it. They are, where nobody says that it is not wanted.
   void ask_energies(bool asks) { asks_energies_ = asks; }
 
+  // Velocity that a unit impulse makes, per degree of freedom of the model. To be set before the first step and
+  // again when its values change; the array must stay.
+  void set_inverse_mass(const double* inverse_mass);
+  const double* inverse_mass() const { return inverse_mass_; }
+
   // ---- a step where no two contacts share a node ----
   // Chooses the active contacts, finds gaps, normals and delassus, asks the law for impulse, state,
-  // energies and status, and takes v from v_free to v_free + r/m. Throws ilaw::error on bad nodes.
+  // energies and status, and takes v from v_free to v_free + H r. Throws ilaw::error on bad nodes.
   void solve(const StepView& step, Dofs& v);
 
   // ---- a step where contacts share nodes, in the order of the calls ----
@@ -158,6 +163,7 @@ class Interface {
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
   bool asks_energies_ = true;
+  const double* inverse_mass_ = nullptr;
 };
 
 using Interfaces = std::vector<std::unique_ptr<Interface>>;

@@ -67,8 +67,7 @@ int Interface::status_at_start(int node_index, const Dofs& u) const {
   const Vector rest = Vector::Zero(dimension_);
   Vector impulse = rest;
   std::vector<double> state_out = state;
-  const double gap = point.gap - setup_.gap_offset,
-               delassus = point.delassus(model_, nodes()[at(node_index)]);
+  const double gap = point.gap - setup_.gap_offset, delassus = 1.0;  // any: at rest it does not matter
   const auto size = static_cast<std::int64_t>(state.size());
   std::uint8_t status = ILAW_FREE;
   ilaw_batch batch = empty_batch(setup_.tangent, 0.0, 1.0);

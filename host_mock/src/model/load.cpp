@@ -5,10 +5,7 @@
 
 namespace ilaw::host {
 
-const std::vector<int>& Load::prescribed_nodes() const {
-  static const std::vector<int> none;
-  return none;
-}
+const std::vector<int> Load::none_;
 
 Gravity::Gravity(const Model& model, std::vector<int> nodes, Vector acceleration)
     : model_(model), nodes_(std::move(nodes)), acceleration_(std::move(acceleration)) {}
@@ -65,6 +62,11 @@ void PrescribedMotion::correct(StepTimes step, Motions /*before*/, Dofs& v, Dofs
   prescribe(step, v, [&](Eigen::Index dof, double by) { impulse[dof] += model_.mass()[dof] * by; });
 }
 
+void PrescribedMotion::transmit(StepTimes /*step*/, Dofs& impulse) const {
+  for (const int node : nodes_)
+    for (const int axis : axes_) impulse[Eigen::Index{node} * model_.dimension() + axis] = 0.0;
+}
+
 void PrescribedMotion::start(double dt, Motions /*before*/, Dofs& v) const {
   prescribe({-dt, 0.0}, v, [](Eigen::Index, double) {});
 }
@@ -75,6 +77,13 @@ Damping::Damping(const Model& model, std::vector<int> nodes, double rate)
 void Damping::correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const {
   damp(step.after - step.before, before.v, v,
        [&](Eigen::Index dof, double by) { impulse[dof] += model_.mass()[dof] * by; });
+}
+
+// With an impulse r beside it the equation of damp() has r/m on its right: v' changes by r/(m (1 + a)).
+void Damping::transmit(StepTimes step, Dofs& impulse) const {
+  const double a = 0.5 * rate_ * (step.after - step.before);
+  const Eigen::Index d = model_.dimension();
+  for (const int node : nodes_) impulse.segment(node * d, d) /= 1.0 + a;
 }
 
 void Damping::start(double dt, Motions before, Dofs& v) const {

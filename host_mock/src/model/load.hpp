@@ -31,6 +31,9 @@ class Load {
   // Changes the velocity that a step would leave with, without interfaces, and adds the impulse that
   // this takes. before: what the step started with.
   virtual void correct(StepTimes /*step*/, Motions /*before*/, Dofs& /*v*/, Dofs& /*impulse*/) const {}
+  // What a load that corrects velocities leaves of an impulse that interfaces add after it: a damper's own velocity
+  // changes with it, and the holder of a driven node takes it all.
+  virtual void transmit(StepTimes /*step*/, Dofs& /*impulse*/) const {}
   // The same for the half step that a run starts with, from V_0 to V_{1/2}.
   virtual void start(double /*dt*/, Motions /*before*/, Dofs& /*v*/) const {}
   virtual bool corrects() const { return false; }
@@ -40,8 +43,12 @@ class Load {
   virtual bool acts_on_driven() const { return true; }
   // Whether it is the same force at all times, and nothing else.
   virtual bool is_steady() const { return false; }
-  // Nodes whose motion is prescribed.
-  virtual const std::vector<int>& prescribed_nodes() const;
+  // Nodes whose motion is prescribed, and the axes along which it is.
+  virtual const std::vector<int>& prescribed_nodes() const { return none_; }
+  virtual const std::vector<int>& prescribed_axes() const { return none_; }
+
+ private:
+  static const std::vector<int> none_;
 };
 
 using Loads = std::vector<std::unique_ptr<Load>>;
@@ -84,11 +91,12 @@ class Shock : public Load {
   Vector impulse_;
 };
 
-// Viscous damping by mass: the force -rate m (v_before + v)/2.
+// Viscous damping by mass: the force -rate m (v_before + v)/2, with v the velocity at the end of the step.
 class Damping : public Load {
  public:
   Damping(const Model& model, std::vector<int> nodes, double rate);
   void correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const override;
+  void transmit(StepTimes step, Dofs& impulse) const override;
   void start(double dt, Motions before, Dofs& v) const override;
   bool corrects() const override { return true; }
   bool damps() const override { return true; }
@@ -109,9 +117,11 @@ class PrescribedMotion : public Load {
   PrescribedMotion(const Model& model, std::vector<int> nodes, std::vector<int> axes, Motion motion);
   // The impulse is the reaction of what holds the nodes.
   void correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const override;
+  void transmit(StepTimes step, Dofs& impulse) const override;
   void start(double dt, Motions before, Dofs& v) const override;
   bool corrects() const override { return true; }
   const std::vector<int>& prescribed_nodes() const override { return nodes_; }
+  const std::vector<int>& prescribed_axes() const override { return axes_; }
 
  private:
   template <class Changed>

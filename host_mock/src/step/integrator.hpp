@@ -75,6 +75,9 @@ class Integrator {
   void sum_forces(StepTimes step);
   double kick(StepTimes step);
   void correct(StepTimes step);
+  Dofs transmitted(std::size_t load, StepTimes step, const Dofs& impulse) const;
+  void find_contact_mass(StepTimes step);
+  void add_load_reactions(StepTimes step);
   void add_reactions(double time, double speed_free);
   void add_coupled_reactions(const StepView& step);
   void check_motion(double speed, double time) const;
@@ -92,7 +95,9 @@ class Integrator {
   bool has_begun_step_ = false;
   double speed_before_ = 0.0;  // the largest of v_
   Dofs u_, v_, v_before_, external_impulse_, damping_impulse_, internal_impulse_;
-  Dofs inverse_mass_;  // where forces change
+  Dofs inverse_mass_;
+  // Velocity that a unit impulse of an interface makes, per degree of freedom; empty where that is inverse_mass_.
+  Dofs contact_inverse_mass_;
   Dofs gain_;          // of the velocities in a step, where they do not; empty without loads
   Accounts accounts_;
   TickLength tick_length_;

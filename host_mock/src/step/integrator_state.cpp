@@ -42,19 +42,21 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       v_before_(v_),
       external_impulse_(Dofs::Zero(loads.empty() ? 0 : u_.size())),
       internal_impulse_(Dofs::Zero(model.has_internal_forces() ? u_.size() : 0)),
-      inverse_mass_(forces_are_steady_ ? Dofs() : Dofs(model.mass().cwiseInverse())) {
+      inverse_mass_(model.mass().cwiseInverse()) {
   if (share_nodes(model_, interfaces_)) coupled_.emplace(model_, interfaces_);
   Dofs force = Dofs::Zero(u_.size());
   for (const auto& load : loads_) load->add_force(0.0, u_, force);
   if (loads_are_steady_ && !loads_.empty()) external_impulse_ = dt_ * force;
   if (forces_are_steady_ && !loads_.empty())
-    gain_ = external_impulse_.cwiseProduct(model_.mass().cwiseInverse());
+    gain_ = external_impulse_.cwiseProduct(inverse_mass_);
   model_.add_internal_forces(u_, force);
   v_ += 0.5 * dt_ * force.cwiseQuotient(model_.mass());
   for (const std::size_t k : correcting_) loads_[k]->start(dt_, {u_, v_before_}, v_);
   const bool damped =
       std::any_of(loads_.begin(), loads_.end(), [](const auto& load) { return load->damps(); });
   damping_impulse_ = Dofs::Zero(damped ? u_.size() : 0);
+  for (const auto& interface : interfaces_) interface->set_inverse_mass(inverse_mass_.data());
+  if (!interfaces_.empty()) find_contact_mass({0.0, dt_});
   accounts_.start(model_, u_, u_ + dt_ * v_, v_);
   speed_before_ = largest_speed(v_, model_.dimension());
   keep_in_large_pages(model_.position());
