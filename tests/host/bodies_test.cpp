@@ -111,5 +111,114 @@ TEST(Damping, TakesItsPartOfAnImpact) {
   }
 }
 
+// ---- driven nodes in interfaces -------------------------------------------------------------------------
+
+// Half a block, its plane of symmetry driven along x alone, against the whole one: the same motion and energies.
+TEST(Driven, HalfABlockMovesAsTheWholeOne) {
+  struct Law {
+    const char *name, *parameters;
+  };
+  for (const Law law : {Law{"contact", "{}"}, Law{"coulomb", R"({"friction": 0.3})"},
+                        Law{"penalty", R"({"stiffness": 1e9, "friction": 0.3})"}, Law{"tie", "{}"},
+                        Law{"cohesive", R"({"strength": 3e4, "toughness": 20, "friction": 0.2})"}})
+    for (const double cfl : {0.9, 0.999, 0.53}) {
+      json whole = json::parse(R"({
+        "model": {"type": "blocks", "blocks": [{"name": "b", "size": [2, 0.5, 0.5], "corner": [-1, 0, 0], "elements": [4, 1, 2], "velocity": [0, 0, -1],
+          "material": {"type": "linear", "young": 1e7, "poisson": 0.3, "density": 1000}}]},
+        "loads": [{"type": "gravity", "acceleration": [0, 0, -10]}, {"type": "damping", "rate": 40}],
+        "interfaces": [{"name": "floor", "nodes": "b.z_min", "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
+      whole["interfaces"][0]["law"] = law.name;
+      whole["interfaces"][0]["parameters"] = json::parse(law.parameters);
+      whole["time"] = {{"cfl", cfl}, {"end", 0.05}};
+      json half = whole;
+      json& block = half["model"]["blocks"][0];
+      block["size"][0] = 1;
+      block["corner"][0] = 0;
+      block["elements"][0] = 2;
+      half["loads"].push_back({{"type", "motion"}, {"nodes", "b.x_min"}, {"axes", {0}}});
+      Scene all = scene_of(whole.dump()), part = scene_of(half.dump());
+      Integrator one(*all.model, all.loads, all.interfaces, all.dt), other(*part.model, part.loads, part.interfaces, all.dt);
+      for (std::int64_t k = 0; k < all.steps; ++k) {
+        one.step();
+        other.step();
+      }
+      const std::string at = std::string(law.name) + ", cfl " + number(cfl);
+      double largest = 0.0, difference = 0.0;
+      for (int node = 0; node < part.model->node_count(); ++node)
+        for (int same = 0; same < all.model->node_count(); ++same) {
+          const Eigen::Index d = 3, i = d * node, j = d * same;
+          if ((part.model->position().segment(i, d) - all.model->position().segment(j, d)).norm() > 1e-9) continue;
+          difference = std::max(difference, (other.displacement().segment(i, d) - one.displacement().segment(j, d)).norm());
+          largest = std::max(largest, one.displacement().segment(j, d).norm());
+        }
+      EXPECT_LT(difference, 1e-10 * largest) << at;
+      const EnergyReport a = one.energy(), b = other.energy();
+      EXPECT_NEAR(2.0 * b.interface_work, a.interface_work, 1e-10 * a.scale) << at;
+      EXPECT_NEAR(2.0 * b.by_law[ILAW_ENERGY_FRICTION], a.by_law[ILAW_ENERGY_FRICTION], 1e-10 * a.scale) << at;
+      EXPECT_LT(b.balance_error, 1e-12) << at;
+    }
+}
+
+// A slope of 45 degrees that a driven point climbs: the load perpendicular to the drive gives N and F in closed form.
+TEST(Driven, PointSlidesUpASlope) {
+  for (const double h : steps) {
+    json scene = json::parse(R"({
+      "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0]}]},
+      "loads": [{"type": "motion", "name": "rod", "nodes": [0], "axes": [0], "velocity": [0.3, 0]},
+                {"type": "gravity", "acceleration": [0, -10]}, {"type": "damping", "rate": 30}],
+      "interfaces": [{"name": "slope", "law": "coulomb", "parameters": {"friction": 0.2}, "nodes": [0],
+        "obstacle": {"type": "plane", "point": [0, 0], "normal": [-1, 1]}}],
+      "output": {"forces": ["slope", "rod"], "balance": true}})");
+    scene["time"] = {{"dt", h}, {"end", 1}};
+    const Ran run = ran(scene);
+    // Along y: (N - mu N)/sqrt 2 = m g + rate m v, and along x the rod holds -(N + mu N)/sqrt 2.
+    const double lift = 20.0 + 30.0 * 2.0 * 0.3, push = lift * 1.2 / 0.8;
+    EXPECT_NEAR(run.last("slope.F1"), lift, 1e-9) << "h = " << h;
+    EXPECT_NEAR(run.last("slope.F0"), -push, 1e-9) << "h = " << h;
+    EXPECT_NEAR(run.last("rod.F0"), push, 1e-9) << "h = " << h;
+    EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-13) << "h = " << h;
+  }
+}
+
+// What a law cannot give way to ends the run with a reason: a rigid one that is driven along its normal.
+TEST(Driven, AgainstARigidLawEndsTheRun) {
+  json scene = json::parse(R"({
+    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0.05]}]},
+    "time": {"dt": 0.0037, "end": 0.1},
+    "loads": [{"type": "motion", "nodes": [0], "axes": [1], "velocity": [0, -1]}],
+    "interfaces": [{"name": "floor", "law": "contact", "nodes": [0],
+      "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}],
+    "output": {"watch": [0]}})");
+  const auto folder = fresh_folder();
+  const auto run = [&] {
+    std::ofstream(folder / "scene.json") << scene.dump();
+    return run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  };
+  const Outcome rigid = run();
+  EXPECT_EQ(rigid.code, 1) << rigid.output;
+  EXPECT_NE(rigid.output.find("node 0 is driven along axis 1 against 'floor' (law 'contact'), which cannot give way"),
+            std::string::npos)
+      << rigid.output;
+  scene["interfaces"][0]["law"] = "penalty";
+  scene["interfaces"][0]["parameters"] = {{"stiffness", 1e6}};
+  const Outcome soft = run();
+  EXPECT_EQ(soft.code, 0) << soft.output;
+  std::filesystem::remove_all(folder);
+}
+
+// Nothing is left to solve where nodes on both sides are driven along all axes.
+TEST(Driven, AlongAllAxesOnBothSidesIsRefused) {
+  json scene = json::parse(R"({
+    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0.05]}, {"mass": 2, "position": [0, 0]}]},
+    "time": {"dt": 0.0037, "end": 0.1},
+    "loads": [{"type": "motion", "nodes": [0], "velocity": [0, -1]}],
+    "interfaces": [{"name": "pair", "law": "contact", "nodes": [0], "against": {"nodes": [1], "normal": [0, 1]}}]})");
+  EXPECT_EQ(refusal_of_scene(scene), "not refused");
+  scene["loads"].push_back({{"type", "motion"}, {"nodes", {1}}});
+  EXPECT_EQ(refusal_of_scene(scene),
+            "/interfaces/0/nodes: found node 0, which a motion drives along all axes, expected a node that is free along "
+            "one axis, or that meets one that is");
+}
+
 }  // namespace
 }  // namespace ilaw::host::testing

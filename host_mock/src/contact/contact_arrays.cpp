@@ -71,6 +71,7 @@ ilaw_batch ContactArrays::repeated_batch(const Vector& tangent, double time, dou
   batch.v_free = {v_free.data(), dimension_, 1};
   batch.v_previous = {v_previous.data(), dimension_, 1};
   batch.delassus = {delassus.data(), 1, 1};
+  if (!law_delassus.empty()) batch.delassus = {law_delassus.data(), dimension_, 1};
   batch.gap = {gap.data(), 1, 1};
   batch.state_in = {state.first(0), 1, state.stride()};
   batch.state_out = {next_state_.first(0), 1, next_state_.stride()};

@@ -97,6 +97,8 @@ class ContactArrays {
   std::vector<int> node_index;
   std::vector<ContactPoint> point;  // where the counterpart has partners
   std::vector<double> impulse, delassus;
+  // Where nodes are driven, H by axis: as it is, and as the law is given it; delassus is then the largest.
+  std::vector<double> axis_delassus, law_delassus;
   StateColumns state;
   std::vector<double> area;                     // where the law reads it
   std::vector<std::vector<double>> parameters;  // that are given per node, as the law lists them

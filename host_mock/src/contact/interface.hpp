@@ -69,6 +69,8 @@ class Interface {
   void apply(const ContactList& contacts, Dofs& v);
   // Gives a contact an impulse, for apply to add to v_free as a whole.
   void start_from(int contact_index, const Vector& impulse);
+  // Throws std::runtime_error where a motion drives a node against a law that cannot give way.
+  void check_driven(const StepView& step) const;
   // The step is done: its state becomes the state before the next.
   void accept(const StepView& step, const Dofs& v);
 
@@ -82,6 +84,8 @@ class Interface {
   int node_index_of(int contact_index) const { return contacts_.node_index[at(contact_index)]; }
   int node_of(int contact_index) const { return setup_.nodes[at(node_index_of(contact_index))]; }
   double delassus(int contact_index) const { return contacts_.delassus[at(contact_index)]; }
+  // H times an impulse.
+  Vector velocity_of(int contact_index, const Vector& impulse) const;
   // Without partners where the counterpart is rigid.
   const ContactPoint& point(int contact_index) const;
   // Accepted state; entry: double of the node's state.
@@ -130,6 +134,7 @@ class Interface {
   // Whether the state of a contact that is out of reach changes: axes follow the normal.
   bool axes_turn() const;
   bool may_skip() const;
+  void find_delassus(std::size_t contact);
   void follow_obstacle(const StepView& step);
   void choose_active(const StepView& step);
   void refresh_near(const StepView& step);

@@ -22,6 +22,7 @@ struct InterfaceSetup {
   double birth = 0.0, death = std::numeric_limits<double>::infinity();  // while birth <= t < death
   Vector tangent;                 // first tangent of all nodes; empty: none given
   double gap_offset = 0.0;        // taken off every gap: thickness, radius
+  bool has_driven_nodes = false;  // motions drive some of its nodes or partners: H differs by axis
   bool keeps_all_active = false;  // also contacts that cannot be reached: same results, more work
 };
 

@@ -53,7 +53,8 @@ class History {
   AtomicFile file_;
   CsvWriter table_;
   std::vector<std::vector<Contact>> contacts_;  // per watched node
-  std::vector<std::size_t> motions_;            // loads that drive one of them
+  std::vector<bool> is_alone_;                  // per watched node: no interface acts on it
+  std::vector<std::size_t> motions_;            // loads that drive a watched node
   Forces forces_;
 };
 

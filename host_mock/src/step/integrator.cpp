@@ -232,6 +232,7 @@ void Integrator::add_coupled_reactions(const StepView& step) {
   const CoupledContacts::Outcome outcome = coupled_->solve(step, v_);
   if (accounts_.is_wrong(model_, outcome, v_before_))
     if (const std::string why = coupled_->explain(v_, outcome); !why.empty()) throw std::runtime_error(why);
+  for (const auto& interface : interfaces_) interface->check_driven(step);
   accounts_.add_solution(outcome);
   for (const auto& interface : interfaces_) interface->accept(step, v_);
 }

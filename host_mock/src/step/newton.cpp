@@ -12,8 +12,8 @@ namespace ilaw::host {
 namespace {
 
 // Velocity that a scaled impulse at one contact makes at another, over all pairs: W, scaled to a diagonal
-// of 1. The same in each direction.
-Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const double* inverse_mass, Eigen::Index d) {
+// of 1, along an axis.
+Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const double* inverse_mass, Eigen::Index d, Eigen::Index axis) {
   std::map<int, std::vector<std::pair<Eigen::Index, double>>> at_node;
   for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index k) {
     const double root = std::sqrt(interface.delassus(contact));
@@ -26,7 +26,7 @@ Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const double* inverse
   for (const auto& [node, shares] : at_node)
     for (const auto& [j, weight] : shares)
       for (const auto& [k, other] : shares)
-        coupling(j, k) += weight * other * inverse_mass[node * d];
+        coupling(j, k) += weight * other * inverse_mass[node * d + axis];
   return coupling;
 }
 
@@ -73,11 +73,13 @@ Dofs newton_impulses(const ContactGroup& group, const double* inverse_mass, cons
   const Dofs answered = scaled_impulses(group);
   const Eigen::MatrixXd tangents = tangents_of(group, step, velocities, answered);
   const Eigen::Index d = tangents.cols(), count = contact_count(group);
-  const Eigen::MatrixXd coupling = scaled_coupling(group, inverse_mass, d);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(impulses.size(), impulses.size());
-  for (Eigen::Index j = 0; j < count; ++j)
-    for (Eigen::Index k = 0; k < count; ++k)
-      if (j != k) matrix.block(d * j, d * k, d, d) -= coupling(j, k) * tangents.middleRows(d * j, d);
+  for (Eigen::Index c = 0; c < d; ++c) {
+    const Eigen::MatrixXd coupling = scaled_coupling(group, inverse_mass, d, c);
+    for (Eigen::Index j = 0; j < count; ++j)
+      for (Eigen::Index k = 0; k < count; ++k)
+        if (j != k) matrix.block(d * j, d * k + c, d, 1) -= coupling(j, k) * tangents.block(d * j, c, d, 1);
+  }
   return impulses + matrix.colPivHouseholderQr().solve(answered - impulses);
 }
 
