@@ -8,12 +8,12 @@
 
 namespace ilaw::host {
 
-ilaw_batch empty_batch(const Vector& tangent, double time, double dt) {
+ilaw_batch empty_batch(const Vector& tangent, double time, double velocity_step, double position_step) {
   ilaw_batch batch{};
   batch.struct_size = sizeof batch;
   batch.time = time;
-  batch.velocity_step = dt;
-  batch.position_step = dt;
+  batch.velocity_step = velocity_step;
+  batch.position_step = position_step;
   if (tangent.size() > 0) batch.tangent = {tangent.data(), 0, 1};
   return batch;
 }
@@ -61,8 +61,8 @@ void ContactArrays::make_room() {
 
 void ContactArrays::accept_state(int contact) { state.take(static_cast<std::size_t>(contact), next_state_); }
 
-ilaw_batch ContactArrays::repeated_batch(const Vector& tangent, double time, double dt) {
-  ilaw_batch batch = empty_batch(tangent, time, dt);
+ilaw_batch ContactArrays::repeated_batch(const Vector& tangent, const StepView& step) {
+  ilaw_batch batch = empty_batch(tangent, step.time, step.velocity_step(), step.dt);
   batch.area = {area.data(), 1, 1};
   batch.normal = {normal.data(), dimension_, 1};
   parameter_inputs_.clear();

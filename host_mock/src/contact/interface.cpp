@@ -212,9 +212,11 @@ void Interface::follow_obstacle(const StepView& step) {
   const Counterpart& counterpart = *setup_.counterpart;
   obstacle_velocity_before_ = counterpart.velocity(step.time - step.dt, step.time);
   obstacle_velocity_ = counterpart.velocity(step.time, step.time + step.dt);
+  if (step.number == 0) obstacle_velocity_before_ = obstacle_velocity_;  // the start is no impact of the obstacle
   obstacle_speed_before_ = obstacle_velocity_before_.norm();
   obstacle_speed_ = obstacle_velocity_.norm();
   if (counterpart.turns()) rates_ = counterpart.rates(step.time, step.dt);
+  if (step.number == 0) rates_.before = rates_.after;
   flat_ = counterpart.flat_at(step.time);
   tangent_ = counterpart.turned(setup_.tangent, 0.0, step.time);
   obstacle_is_known_ = counterpart.stands_still();
@@ -297,7 +299,7 @@ void Interface::open_step(const StepView& step) {
       contacts_.vector(contacts_.turn_before, contact_index) = turn.before;
       contacts_.vector(contacts_.turn_after, contact_index) = turn.after;
       for (const std::size_t first : axes_)
-        turn_axis(*setup_.counterpart, dimension_, step.time - step.dt, step.time,
+        turn_axis(*setup_.counterpart, dimension_, step.time_before(), step.time,
                   [&](std::size_t c) -> double& { return contacts_.state.at(k, first + c); });
     }
     if (point.partner_count == 0) continue;
@@ -327,7 +329,7 @@ void Interface::gather(const ContactList& contacts, const Dofs& v, const StepVie
 }
 
 void Interface::evaluate(const ContactList& contacts, const StepView& step) {
-  ilaw_batch batch = contacts_.repeated_batch(tangent_, step.time, step.dt);
+  ilaw_batch batch = contacts_.repeated_batch(tangent_, step);
   if (!asks_energies_) batch.energy = {};
   const auto count = static_cast<std::ptrdiff_t>(contacts.size());
   outcomes_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), {});

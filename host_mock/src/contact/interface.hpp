@@ -119,8 +119,6 @@ class Interface {
   int contact_at(int node_index) const { return contacts_.index_of(at(node_index)); }
   // The accepted state, without making a contact.
   std::vector<double> state_at(int node_index, const Dofs& u) const;
-  // What the law says of a node at rest where it starts, before any step.
-  int status_at_start(int node_index, const Dofs& u) const;
   std::size_t bytes_per_contact() const { return contacts_.bytes_per_contact(); }
   std::size_t contact_count() const { return contacts_.count(); }
 

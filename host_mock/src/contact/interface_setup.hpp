@@ -26,14 +26,18 @@ struct InterfaceSetup {
   bool keeps_all_active = false;  // also contacts that cannot be reached: same results, more work
 };
 
-// A step from the interface's side. Speeds bound those of all nodes.
+// A step from the interface's side. Speeds bound those of all nodes. Step 0 is the start: half a step of the velocity,
+// from V_0, before a whole one of the position.
 struct StepView {
   const Dofs& u;         // at time
   const Dofs& v_before;  // at the half step before time
-  double time, dt;
-  double speed_before;  // at the half step before time
-  double speed_after;   // of v_free, and of what other contacts may make of it
-  std::int64_t number;  // from 1 on
+  double time, dt;       // dt: of the position
+  double speed_before;   // at the half step before time
+  double speed_after;    // of v_free, and of what other contacts may make of it
+  std::int64_t number;
+
+  double velocity_step() const { return number == 0 ? 0.5 * dt : dt; }
+  double time_before() const { return number == 0 ? time : time - dt; }
 };
 
 using ContactList = std::vector<std::int32_t>;  // by contact_index

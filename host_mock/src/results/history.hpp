@@ -25,6 +25,8 @@ class History {
   // Goes on after what an earlier run had written.
   History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
           const FileMark& written);
+  // After the start, before any step.
+  void add_start(const Integrator& integrator) { forces_.add_start(integrator); }
   // After every step, before its row.
   void add_step(const Integrator& integrator) { forces_.add_step(integrator); }
   void add_row(const Integrator& integrator);

@@ -6,6 +6,7 @@
 #include "model/elements.hpp"
 #include "step/dof_loops.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -51,6 +52,7 @@ struct WildMotion {
 }  // namespace
 
 void Integrator::step() {
+  start();
   const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
   RunningLaw::set_step(steps_ + 1);
   Laps laps(timed_steps());
@@ -66,7 +68,8 @@ void Integrator::step() {
   }
   check_motion(speed_free, times.after);  // before the laws see it, too: they must not be blamed
   laps.add_to(force_ticks_);
-  add_reactions(times.after, speed_free);  // r = law(v_free, H, gap, state), v = v_free + H r
+  // r = law(v_free, H, gap, state), v = v_free + H r
+  add_reactions({u_, v_before_, times.after, dt_, speed_before_, speed_free, steps_ + 1});
   if (contact_inverse_mass_.size() > 0) add_load_reactions(times);
   laps.add_to(interface_ticks_);
   const WorkAndSpeed external = work_and_speed(external_impulse_, v_before_, v_, model_.dimension());
@@ -76,7 +79,7 @@ void Integrator::step() {
   has_begun_step_ = false;
   accounts_.add_step(model_, interfaces_,
                      {external.work, damping_impulse_.size() == 0 ? nullptr : &damping_impulse_,
-                      internal_impulse_, v_before_, v_});
+                      internal_impulse_, v_before_, v_, std::max(speed_free, speed_before_)});
 }
 
 // What is told of a run that failed is of its last whole step.
@@ -193,7 +196,7 @@ Dofs Integrator::transmitted(std::size_t load, StepTimes step, const Dofs& impul
 void Integrator::find_contact_mass(StepTimes step) {
   Dofs left = Dofs::Ones(u_.size());
   for (const std::size_t k : correcting_) left = transmitted(k, step, left);
-  if ((left.array() == 1.0).all()) return;
+  if (contact_inverse_mass_.size() == 0 && (left.array() == 1.0).all()) return;
   contact_inverse_mass_ = left.cwiseProduct(inverse_mass_);
   for (const auto& interface : interfaces_) interface->set_inverse_mass(contact_inverse_mass_.data());
 }
@@ -214,16 +217,15 @@ void Integrator::add_load_reactions(StepTimes step) {
 // interface finds gaps, normals and H, passes v_free and v_before relative to the obstacle, takes
 // impulses, states and energies, and adds H r. Where some do, laws are evaluated until all agree. A
 // law that is given no gap or normal, as bodies are gone too far, is not to be blamed.
-void Integrator::add_reactions(double time, double speed_free) try {
-  const StepView step{u_, v_before_, time, dt_, speed_before_, speed_free, steps_ + 1};
+void Integrator::add_reactions(const StepView& step) try {
   if (coupled_)
     add_coupled_reactions(step);
   else
     for (const auto& interface : interfaces_) interface->solve(step, v_);
 } catch (const ilaw::error&) {
   for (const auto& interface : interfaces_)
-    if (interface->has_lost_a_node(u_, time))
-      explain_divergence({"displacement", u_, model_, u_, time, dt_, steps_ + 1});
+    if (interface->has_lost_a_node(u_, step.time))
+      explain_divergence({"displacement", u_, model_, u_, step.time, dt_, step.number});
   throw;
 }
 
