@@ -220,5 +220,102 @@ TEST(Driven, AlongAllAxesOnBothSidesIsRefused) {
             "one axis, or that meets one that is");
 }
 
+// ---- the start ------------------------------------------------------------------------------------------
+
+json resting_point(const std::string& law, const json& parameters, double h) {
+  json scene = json::parse(R"({
+    "model": {"type": "points", "dimension": 2, "points": [{"mass": 1, "position": [0, 0]}]},
+    "loads": [{"type": "gravity", "name": "weight", "acceleration": [0, -10]}],
+    "interfaces": [{"name": "floor", "nodes": [0], "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}],
+    "output": {"watch": [0], "forces": ["floor", "weight"], "events": true}})");
+  scene["interfaces"][0]["law"] = law;
+  scene["interfaces"][0]["parameters"] = parameters;
+  scene["time"] = {{"dt", h}, {"end", 0.2}};
+  return scene;
+}
+
+// A point at rest on a floor stays where it is, under its weight from time 0 on, whatever the rigid law and step.
+TEST(Start, LeavesABodyAtRestOnItsFloor) {
+  for (const auto& [law, parameters] : {std::pair{"contact", json::object()}, std::pair{"coulomb", json{{"friction", 0.3}}},
+                                        std::pair{"tie", json::object()}, std::pair{"postit", json::object()},
+                                        std::pair{"cohesive", json{{"strength", 1e3}, {"toughness", 10}}}})
+    for (const double h : steps) {
+      const Ran run = ran(resting_point(law, parameters, h));
+      const std::string at = std::string(law) + ", h = " + number(h);
+      for (const double u : run.history.at("n0.u1")) EXPECT_NEAR(u, 0.0, 1e-16) << at;
+      for (const double force : run.history.at("floor.F1")) EXPECT_NEAR(force, 10.0, 1e-12) << at;
+      EXPECT_NEAR(run.summary["forces"]["floor"]["largest"].get<double>(), 10.0, 1e-12) << at;
+      // From V_0 = 0 to V_{n+1/2} = 0.
+      const double held = run.summary["forces"]["floor"]["impulse"][1].get<double>(),
+                   given = run.summary["forces"]["weight"]["impulse"][1].get<double>();
+      EXPECT_NEAR(held, 10.0 * (run.last("time") + 0.5 * h), 1e-12) << at;
+      EXPECT_NEAR(held + given, 0.0, 1e-12) << at;
+      EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-12) << at;
+      EXPECT_TRUE(run.summary["warnings"].empty()) << at << run.summary["warnings"].dump();
+      EXPECT_NE(run.events.find("\n0,0,floor,contact"), std::string::npos) << at << ": " << run.events;
+    }
+}
+
+// A bond holds below its strength from the start, and breaks above.
+TEST(Start, BondHoldsUpToItsStrength) {
+  for (const double h : steps)
+    for (const double part : {0.9, 0.99, 1.01}) {
+      json cohesive = resting_point("cohesive", {{"strength", 10.0 / part}, {"toughness", 1e-4}}, h);
+      json tie = resting_point("tie", {{"strength", 10.0 * 0.05 / part}, {"memory", 0.05}}, h);
+      for (json* scene : {&cohesive, &tie}) {
+        (*scene)["loads"][0]["acceleration"] = {0, 10};
+        const Ran run = ran(*scene);
+        const std::string at = (*scene)["interfaces"][0]["law"].dump() + " at " + number(part) + ", h = " + number(h);
+        if (part < 1.0)
+          EXPECT_NEAR(run.last("n0.u1"), 0.0, 1e-15) << at;
+        else
+          EXPECT_GT(run.last("n0.u1"), 1e-3) << at;
+      }
+    }
+}
+
+// Impacts at time 0 from a gap of 0 are exact: the body turns at once, and never enters.
+TEST(Start, ImpactsAtAGapOfZeroAreExact) {
+  for (const char* activation : {"predictive", "moreau"})
+    for (const double e : {0.0, 0.5, 1.0})
+      for (const double h : steps) {
+        json scene = resting_point("contact", {{"restitution", e}, {"activation", activation}}, h);
+        scene["loads"] = json::array();
+        scene["output"]["forces"] = {"floor"};
+        scene["model"]["points"][0]["velocity"] = {0, -1};
+        const Ran run = ran(scene);
+        for (std::size_t k = 0; k < run.history.at("time").size(); ++k)
+          EXPECT_NEAR(run.history.at("n0.u1")[k], e * run.history.at("time")[k], 1e-15) << activation << ", e = " << e << ", h = " << h;
+        EXPECT_NEAR(run.summary["energy"]["dissipated_impact"].get<double>(), 0.5 * (1.0 - e * e), 1e-15);
+        EXPECT_NEAR(run.summary["forces"]["floor"]["impulse"][1].get<double>(), 1.0 + e, 1e-15);
+        EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-15);
+      }
+}
+
+// A floor that moves from time 0 on takes a body along that rides on it, at any restitution: it makes no impact.
+TEST(Start, MovingFloorCarriesItsBody) {
+  for (const double e : {0.0, 1.0})
+    for (const double h : steps) {
+      json scene = resting_point("contact", {{"restitution", e}}, h);
+      scene["model"]["points"][0]["velocity"] = {0, 0.3};
+      scene["interfaces"][0]["obstacle"]["velocity"] = {0, 0.3};
+      const Ran run = ran(scene);
+      for (std::size_t k = 0; k < run.history.at("time").size(); ++k)
+        EXPECT_NEAR(run.history.at("n0.u1")[k], 0.3 * run.history.at("time")[k], 1e-15) << "e = " << e << ", h = " << h;
+      EXPECT_NEAR(run.summary["forces"]["floor"]["largest"].get<double>(), 10.0, 1e-11) << "e = " << e << ", h = " << h;
+    }
+}
+
+// A law that refuses a node at time 0 ends the run as in any step.
+TEST(Start, RefusalEndsTheRunAsInAnyStep) {
+  json scene = resting_point("cohesive", {{"strength", 1e3}, {"toughness", 1e-9}}, 1e-2);
+  scene["loads"][0]["acceleration"] = {0, 1e4};
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << scene.dump();
+  const Outcome outcome = run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  if (outcome.code != 0) EXPECT_EQ(outcome.code, 1) << outcome.output;
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace ilaw::host::testing
