@@ -194,7 +194,8 @@ void Interface::look_at(std::size_t chunk, const StepView& step) {
     const bool awake =
         contact_index >= 0 ? contacts_.must_be_evaluated(at(contact_index)) : law_.acts_at_distance();
     const double gap = skips ? bounds[i] - setup_.gap_offset : 0.0;
-    const bool is_near = awake || !skips || proximity_.may_touch(gap);
+    const bool is_near = awake || !skips || proximity_.may_touch(gap) ||
+                         setup_.counterpart->is_held(static_cast<int>(first + i));
     is_near_[first + i] = is_near ? 1 : 0;
     near += is_near ? 1 : 0;
     least = gap < least ? gap : least;
@@ -291,6 +292,7 @@ void Interface::open_step(const StepView& step) {
     const std::size_t k = at(contact_index);
     const ContactPoint point = setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);
     contacts_.gap[k] = point.gap - setup_.gap_offset;
+    if (point.is_beyond_border && setup_.counterpart->is_held(contacts_.node_index[k])) ++sums_.left;
     contacts_.vector(contacts_.normal, contact_index) = point.normal;
     contacts_.vector(contacts_.impulse, contact_index).setZero();
     if (turns) {
@@ -388,6 +390,7 @@ void Interface::accept(const StepView& step, const Dofs& v) {
     sums_.relative_work += 0.5 * impulse(contact_index).dot(sum - drift);
     sums_.penetration = std::max(sums_.penetration, -gap(contact_index));
     ++sums_.statuses[contacts_.status[k]];
+    setup_.counterpart->note_contact(contacts_.node_index[k], contacts_.status[k] != ILAW_FREE, point(contact_index));
     sums_.add_energy(&contacts_.energy[k * ILAW_ENERGY_COUNT]);
     if (info().state_size == 0) continue;
     const bool in_reach = is_in_reach(gap(contact_index), normal(contact_index).data(),

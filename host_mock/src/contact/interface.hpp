@@ -123,7 +123,10 @@ class Interface {
   std::size_t contact_count() const { return contacts_.count(); }
 
   // Everything that the next step depends on.
-  void save(std::ostream& out) const { contacts_.save(out); }
+  void save(std::ostream& out) const {
+    contacts_.save(out);
+    setup_.counterpart->save(out);
+  }
   void load(std::istream& in, const Dofs& u);
 
  private:

@@ -62,6 +62,7 @@ void Interface::load(std::istream& in, const Dofs& u) {
   for (const int node_index : nodes) contact_index_of(node_index, u);
   if (contacts_.node_index != nodes) refuse_damaged();
   contacts_.load_state(in);
+  setup_.counterpart->load(in);
   far_.clear();
   proximity_.invalidate();
 }
