@@ -33,6 +33,7 @@ struct OutputSetup {
   std::vector<int> watch;  // nodes
   bool balance = false;    // energies and angular momentum in the history
   bool events = false;     // events.csv
+  bool mean_velocity = false;  // of the half steps before and after, in the history
   std::vector<ForceSetup> forces;
   std::int64_t fields = 0;  // steps per VTK file; 0: none
 };
