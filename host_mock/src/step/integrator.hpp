@@ -63,6 +63,10 @@ class Integrator {
     return {tick * static_cast<double>(force_ticks_), tick * static_cast<double>(interface_ticks_)};
   }
   const Tally& tally() const { return accounts_.tally(); }
+  // By interface, when a contact of it first was not free; infinite: not yet.
+  double first_contact(std::size_t interface) const { return accounts_.first_contact(interface); }
+  // Where a law asked for a smaller step; empty where none did.
+  std::string step_warning() const { return accounts_.step_warning(dt_); }
   // What a reader of the results must know.
   std::vector<std::string> warnings() const { return accounts_.warnings(steps_, dt_, energy()); }
 
@@ -88,6 +92,7 @@ class Integrator {
   void add_reactions(const StepView& step);
   void add_coupled_reactions(const StepView& step);
   void check_motion(double speed, double time) const;
+  void check_energy() const;
 
   const Model& model_;
   const Loads& loads_;
@@ -95,6 +100,7 @@ class Integrator {
   std::optional<CoupledContacts> coupled_;  // where contacts share nodes
   double dt_;
   bool loads_are_steady_;
+  bool transmits_steadily_;               // H is the same in all steps
   bool forces_are_steady_;                // loads are, and there are no others
   std::vector<std::size_t> correcting_;   // loads in the order in which they correct velocities
   std::vector<Dofs> kept_load_impulses_;  // by load; empty where nobody asks
