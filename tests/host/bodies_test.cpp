@@ -508,5 +508,25 @@ TEST(Summary, HasFirstContactAndTheTimeOfThePeak) {
   EXPECT_TRUE(ran(scene).summary["interfaces"][0]["first_contact"].is_null());
 }
 
+// At rest the floor carries the weight, friction holds what the plane of symmetry does, and then it is shaken.
+TEST(SettledStack, RestsOnItsFloorAndIsShaken) {
+  for (const double cfl : {0.9, 0.71, 0.999}) {
+    json scene = read_scene_source(scene_files::named("settled_stack.json"));
+    scene["time"]["cfl"] = cfl;
+    const Ran run = ran(scene);
+    double largest = 0.0;
+    for (std::size_t k = 0; k < run.history.at("time").size(); ++k) {
+      const double time = run.history.at("time")[k];
+      if (time > 1.0) largest = std::max(largest, run.history.at("floor.F2")[k]);
+      if (time < 0.8 || time > 0.9) continue;
+      EXPECT_NEAR(run.history.at("floor.F2")[k], 2080.0, 1e-2) << cfl;
+      EXPECT_NEAR(run.history.at("joint.F2")[k], 1280.0, 1e-2) << cfl;
+      EXPECT_NEAR(run.history.at("floor.F0")[k], -run.history.at("symmetry_plane.F0")[k], 1e-2) << cfl;
+    }
+    EXPECT_GT(largest, 2080.0 + 400.0) << cfl;
+    EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-13) << cfl;
+  }
+}
+
 }  // namespace
 }  // namespace ilaw::host::testing
