@@ -40,8 +40,8 @@ TEST(Damping, ActsAlongTheFreeAxesOfADrivenNode) {
   }
 }
 
-// A block in plane strain, all nodes held along y: its velocity along x falls as e^-15, at the default step and
-// at the critical one.
+// A block in plane strain, all nodes held along y: its velocity along x falls as e^-15, at the default step
+// and at the critical one.
 TEST(Damping, SlowsABlockInPlaneStrain) {
   for (const double cfl : {0.9, 0.999, 0.53}) {
     json scene = json::parse(R"({
@@ -58,7 +58,8 @@ TEST(Damping, SlowsABlockInPlaneStrain) {
   }
 }
 
-// A floor carries the weight, whatever is damped: alone, with friction, and through a stack of light and heavy ones.
+// A floor carries the weight, whatever is damped: alone, with friction, and through a stack of light and
+// heavy ones.
 TEST(Damping, LeavesTheWeightToTheFloor) {
   for (const double h : steps)
     for (const double rate : {20.0, 200.0}) {
@@ -99,8 +100,10 @@ TEST(Damping, TakesItsPartOfAnImpact) {
     scene["time"] = {{"dt", h}, {"end", 0.3}};
     const Ran run = ran(scene);
     for (std::size_t k = 1; k < run.history.at("time").size(); ++k) {
-      const double force = run.history.at("wall.F0")[k] + run.history.at("air.F0")[k] + run.history.at("oil.F0")[k];
-      EXPECT_NEAR(2.0 * (run.history.at("n0.v0")[k] - run.history.at("n0.v0")[k - 1]), h * force, 1e-14) << "h = " << h;
+      const double force =
+          run.history.at("wall.F0")[k] + run.history.at("air.F0")[k] + run.history.at("oil.F0")[k];
+      EXPECT_NEAR(2.0 * (run.history.at("n0.v0")[k] - run.history.at("n0.v0")[k - 1]), h * force, 1e-14)
+          << "h = " << h;
       if (run.history.at("wall.F0")[k] > 0.0) {
         EXPECT_NEAR(run.history.at("n0.v0")[k], -0.5 * run.history.at("n0.v0")[k - 1], 1e-15) << "h = " << h;
       }
@@ -112,14 +115,15 @@ TEST(Damping, TakesItsPartOfAnImpact) {
 
 // ---- driven nodes in interfaces -------------------------------------------------------------------------
 
-// Half a block, its plane of symmetry driven along x alone, against the whole one: the same motion and energies.
+// Half a block, its plane of symmetry driven along x alone, against the whole one: the same motion and
+// energies.
 TEST(Driven, HalfABlockMovesAsTheWholeOne) {
   struct Law {
     const char *name, *parameters;
   };
-  for (const Law law : {Law{"contact", "{}"}, Law{"coulomb", R"({"friction": 0.3})"},
-                        Law{"postit", R"({"friction": 0.2})"}, Law{"tie", "{}"},
-                        Law{"cohesive", R"({"strength": 3e4, "toughness": 20, "friction": 0.2})"}})
+  for (const Law law :
+       {Law{"contact", "{}"}, Law{"coulomb", R"({"friction": 0.3})"}, Law{"postit", R"({"friction": 0.2})"},
+        Law{"tie", "{}"}, Law{"cohesive", R"({"strength": 3e4, "toughness": 20, "friction": 0.2})"}})
     for (const double cfl : {0.9, 0.999, 0.53}) {
       json whole = json::parse(R"({
         "model": {"type": "blocks", "blocks": [{"name": "b", "size": [2, 0.5, 0.5], "corner": [-1, 0, 0], "elements": [4, 1, 2], "velocity": [0, 0, -1],
@@ -136,7 +140,8 @@ TEST(Driven, HalfABlockMovesAsTheWholeOne) {
       block["elements"][0] = 2;
       half["loads"].push_back({{"type", "motion"}, {"nodes", "b.x_min"}, {"axes", {0}}});
       Scene all = scene_of(whole.dump()), part = scene_of(half.dump());
-      Integrator one(*all.model, all.loads, all.interfaces, all.dt), other(*part.model, part.loads, part.interfaces, all.dt);
+      Integrator one(*all.model, all.loads, all.interfaces, all.dt),
+          other(*part.model, part.loads, part.interfaces, all.dt);
       for (std::int64_t k = 0; k < all.steps; ++k) {
         one.step();
         other.step();
@@ -146,19 +151,23 @@ TEST(Driven, HalfABlockMovesAsTheWholeOne) {
       for (int node = 0; node < part.model->node_count(); ++node)
         for (int same = 0; same < all.model->node_count(); ++same) {
           const Eigen::Index d = 3, i = d * node, j = d * same;
-          if ((part.model->position().segment(i, d) - all.model->position().segment(j, d)).norm() > 1e-9) continue;
-          difference = std::max(difference, (other.displacement().segment(i, d) - one.displacement().segment(j, d)).norm());
+          if ((part.model->position().segment(i, d) - all.model->position().segment(j, d)).norm() > 1e-9)
+            continue;
+          difference = std::max(
+              difference, (other.displacement().segment(i, d) - one.displacement().segment(j, d)).norm());
           largest = std::max(largest, one.displacement().segment(j, d).norm());
         }
       EXPECT_LT(difference, 1e-10 * largest) << at;
       const EnergyReport a = one.energy(), b = other.energy();
       EXPECT_NEAR(2.0 * b.interface_work, a.interface_work, 1e-10 * a.scale) << at;
-      EXPECT_NEAR(2.0 * b.by_law[ILAW_ENERGY_FRICTION], a.by_law[ILAW_ENERGY_FRICTION], 1e-10 * a.scale) << at;
+      EXPECT_NEAR(2.0 * b.by_law[ILAW_ENERGY_FRICTION], a.by_law[ILAW_ENERGY_FRICTION], 1e-10 * a.scale)
+          << at;
       EXPECT_LT(b.balance_error, 1e-12) << at;
     }
 }
 
-// A slope of 45 degrees that a driven point climbs: the load perpendicular to the drive gives N and F in closed form.
+// A slope of 45 degrees that a driven point climbs: the load perpendicular to the drive gives N and F in
+// closed form.
 TEST(Driven, PointSlidesUpASlope) {
   for (const double h : steps) {
     json scene = json::parse(R"({
@@ -195,7 +204,8 @@ TEST(Driven, AgainstARigidLawEndsTheRun) {
   };
   const Outcome rigid = run();
   EXPECT_EQ(rigid.code, 1) << rigid.output;
-  EXPECT_NE(rigid.output.find("node 0 is driven along axis 1 against 'floor' (law 'contact'), which cannot give way"),
+  EXPECT_NE(rigid.output.find(
+                "node 0 is driven along axis 1 against 'floor' (law 'contact'), which cannot give way"),
             std::string::npos)
       << rigid.output;
   scene["interfaces"][0]["law"] = "penalty";
@@ -214,9 +224,10 @@ TEST(Driven, AlongAllAxesOnBothSidesIsRefused) {
     "interfaces": [{"name": "pair", "law": "contact", "nodes": [0], "against": {"nodes": [1], "normal": [0, 1]}}]})");
   EXPECT_EQ(refusal_of_scene(scene), "not refused");
   scene["loads"].push_back({{"type", "motion"}, {"nodes", {1}}});
-  EXPECT_EQ(refusal_of_scene(scene),
-            "/interfaces/0/nodes: found node 0, which a motion drives along all axes, expected a node that is free along "
-            "one axis, or that meets one that is");
+  EXPECT_EQ(
+      refusal_of_scene(scene),
+      "/interfaces/0/nodes: found node 0, which a motion drives along all axes, expected a node that is free along "
+      "one axis, or that meets one that is");
 }
 
 // ---- the start ------------------------------------------------------------------------------------------
@@ -233,11 +244,13 @@ json resting_point(const std::string& law, const json& parameters, double h) {
   return scene;
 }
 
-// A point at rest on a floor stays where it is, under its weight from time 0 on, whatever the rigid law and step.
+// A point at rest on a floor stays where it is, under its weight from time 0 on, whatever the rigid law and
+// step.
 TEST(Start, LeavesABodyAtRestOnItsFloor) {
-  for (const auto& [law, parameters] : {std::pair{"contact", json::object()}, std::pair{"coulomb", json{{"friction", 0.3}}},
-                                        std::pair{"tie", json::object()}, std::pair{"postit", json::object()},
-                                        std::pair{"cohesive", json{{"strength", 50}, {"toughness", 10}}}})
+  for (const auto& [law, parameters] :
+       {std::pair{"contact", json::object()}, std::pair{"coulomb", json{{"friction", 0.3}}},
+        std::pair{"tie", json::object()}, std::pair{"postit", json::object()},
+        std::pair{"cohesive", json{{"strength", 50}, {"toughness", 10}}}})
     for (const double h : steps) {
       const Ran run = ran(resting_point(law, parameters, h));
       const std::string at = std::string(law) + ", h = " + number(h);
@@ -264,7 +277,8 @@ TEST(Start, BondHoldsUpToItsStrength) {
       for (json* scene : {&cohesive, &tie}) {
         (*scene)["loads"][0]["acceleration"] = {0, 10};
         const Ran run = ran(*scene);
-        const std::string at = (*scene)["interfaces"][0]["law"].dump() + " at " + number(part) + ", h = " + number(h);
+        const std::string at =
+            (*scene)["interfaces"][0]["law"].dump() + " at " + number(part) + ", h = " + number(h);
         if (part < 1.0)
           EXPECT_NEAR(run.last("n0.u1"), 0.0, 1e-15) << at;
         else
@@ -284,14 +298,16 @@ TEST(Start, ImpactsAtAGapOfZeroAreExact) {
         scene["model"]["points"][0]["velocity"] = {0, -1};
         const Ran run = ran(scene);
         for (std::size_t k = 0; k < run.history.at("time").size(); ++k)
-          EXPECT_NEAR(run.history.at("n0.u1")[k], e * run.history.at("time")[k], 1e-15) << activation << ", e = " << e << ", h = " << h;
+          EXPECT_NEAR(run.history.at("n0.u1")[k], e * run.history.at("time")[k], 1e-15)
+              << activation << ", e = " << e << ", h = " << h;
         EXPECT_NEAR(run.summary["energy"]["dissipated_impact"].get<double>(), 0.5 * (1.0 - e * e), 1e-15);
         EXPECT_NEAR(run.summary["forces"]["floor"]["impulse"][1].get<double>(), 1.0 + e, 1e-15);
         EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-15);
       }
 }
 
-// A floor that moves from time 0 on takes a body along that rides on it, at any restitution: it makes no impact.
+// A floor that moves from time 0 on takes a body along that rides on it, at any restitution: it makes no
+// impact.
 TEST(Start, MovingFloorCarriesItsBody) {
   for (const double e : {0.0, 1.0})
     for (const double h : steps) {
@@ -300,8 +316,10 @@ TEST(Start, MovingFloorCarriesItsBody) {
       scene["interfaces"][0]["obstacle"]["velocity"] = {0, 0.3};
       const Ran run = ran(scene);
       for (std::size_t k = 0; k < run.history.at("time").size(); ++k)
-        EXPECT_NEAR(run.history.at("n0.u1")[k], 0.3 * run.history.at("time")[k], 1e-15) << "e = " << e << ", h = " << h;
-      EXPECT_NEAR(run.summary["forces"]["floor"]["largest"].get<double>(), 10.0, 1e-15 / (h * h)) << "e = " << e << ", h = " << h;
+        EXPECT_NEAR(run.history.at("n0.u1")[k], 0.3 * run.history.at("time")[k], 1e-15)
+            << "e = " << e << ", h = " << h;
+      EXPECT_NEAR(run.summary["forces"]["floor"]["largest"].get<double>(), 10.0, 1e-15 / (h * h))
+          << "e = " << e << ", h = " << h;
     }
 }
 
@@ -312,7 +330,8 @@ TEST(Start, FailsAsAnyStepDoes) {
   scene["output"]["forces"] = {"floor"};
   const auto folder = fresh_folder();
   std::ofstream(folder / "scene.json") << scene.dump();
-  const Outcome outcome = run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  const Outcome outcome =
+      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
   EXPECT_EQ(outcome.code, 1) << outcome.output;
   EXPECT_NE(outcome.output.find("failed after step 0, time 0: node 0 is driven along axis 1 against 'floor'"),
             std::string::npos)
@@ -355,7 +374,8 @@ TEST(Border, HoldsAStackThatMovesALittle) {
 TEST(Border, WarnsOfNodesThatLeaveIt) {
   const Ran run = ran(moved_stack(0.1));
   ASSERT_EQ(run.summary["warnings"].size(), 1U) << run.summary["warnings"].dump();
-  EXPECT_NE(run.summary["warnings"][0].get<std::string>().find("went over the border of a surface"), std::string::npos);
+  EXPECT_NE(run.summary["warnings"][0].get<std::string>().find("went over the border of a surface"),
+            std::string::npos);
 }
 
 // A block that falls past another with a side clearance of 0.03 edges is not caught.
@@ -410,7 +430,8 @@ TEST(Instability, EndsTheRunWithAReason) {
   for (const double part : {1.8, 1.4}) {
     const Outcome outcome = run(part);
     EXPECT_EQ(outcome.code, 1) << part << ": " << outcome.output;
-    EXPECT_NE(outcome.output.find("the motion diverged: the kinetic energy is "), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find("the motion diverged: the kinetic energy is "), std::string::npos)
+        << outcome.output;
     EXPECT_NE(outcome.output.find("the critical step is "), std::string::npos) << outcome.output;
   }
   for (const double part : {1.0, 0.999, 0.7}) {
@@ -426,10 +447,13 @@ TEST(Instability, OfASpringIsToldAtItsFirstContact) {
   scene["model"]["points"][0]["position"] = {0, 0.05};
   const auto folder = fresh_folder();
   std::ofstream(folder / "scene.json") << scene.dump();
-  const Outcome outcome = run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
-  EXPECT_NE(outcome.output.find(": the time step is 0.01, where a law is stable up to 0.002 at its nodes"), std::string::npos)
+  const Outcome outcome =
+      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  EXPECT_NE(outcome.output.find(": the time step is 0.01, where a law is stable up to 0.002 at its nodes"),
+            std::string::npos)
       << outcome.output;
-  EXPECT_EQ(outcome.output.find("the time step is"), outcome.output.rfind("the time step is")) << outcome.output;
+  EXPECT_EQ(outcome.output.find("the time step is"), outcome.output.rfind("the time step is"))
+      << outcome.output;
   std::filesystem::remove_all(folder);
 }
 
@@ -464,7 +488,8 @@ TEST(History, ScalesGravityAndDamping) {
 TEST(History, OfDampingReachesTheLaws) {
   for (const double h : steps) {
     json scene = resting_point("contact", json::object(), h);
-    scene["loads"].push_back({{"type", "damping"}, {"rate", 300}, {"history", {{0, 0}, {0.1, 1}, {0.15, 0.3}}}});
+    scene["loads"].push_back(
+        {{"type", "damping"}, {"rate", 300}, {"history", {{0, 0}, {0.1, 1}, {0.15, 0.3}}}});
     const Ran run = ran(scene);
     for (const double force : run.history.at("floor.F1")) EXPECT_NEAR(force, 10.0, 1e-12) << "h = " << h;
   }
@@ -482,13 +507,18 @@ TEST(Table, IsSmoothBetweenItsRowsOrASine) {
 
 TEST(History, TakesASineAndRefusesOneOfDamping) {
   json scene = resting_point("contact", json::object(), 1e-2);
-  scene["loads"].push_back({{"type", "force"}, {"name", "shaker"}, {"nodes", {0}}, {"direction", {1, 0}},
+  scene["loads"].push_back({{"type", "force"},
+                            {"name", "shaker"},
+                            {"nodes", {0}},
+                            {"direction", {1, 0}},
                             {"history", {{"sine", {{"amplitude", 3}, {"frequency", 5}}}}}});
   scene["output"]["forces"].push_back("shaker");
   const Ran run = ran(scene);
   for (std::size_t k = 0; k < run.history.at("time").size(); ++k)
-    EXPECT_NEAR(run.history.at("shaker.F0")[k], 3.0 * std::sin(10.0 * 3.14159265358979323846 * run.history.at("time")[k]), 1e-12);
-  scene["loads"].back() = {{"type", "damping"}, {"rate", 1}, {"history", {{"sine", {{"amplitude", 3}, {"frequency", 5}}}}}};
+    EXPECT_NEAR(run.history.at("shaker.F0")[k],
+                3.0 * std::sin(10.0 * 3.14159265358979323846 * run.history.at("time")[k]), 1e-12);
+  scene["loads"].back() = {
+      {"type", "damping"}, {"rate", 1}, {"history", {{"sine", {{"amplitude", 3}, {"frequency", 5}}}}}};
   scene["output"]["forces"] = {"floor"};
   EXPECT_EQ(refusal_of_scene(scene), "/loads/1/history: found a sine, expected rows: a rate is not negative");
 }
@@ -503,12 +533,14 @@ TEST(Summary, HasFirstContactAndTheTimeOfThePeak) {
   EXPECT_NEAR(run.summary["interfaces"][0]["first_contact"].get<double>(), fall, 2e-3);
   EXPECT_NEAR(run.summary["forces"]["floor"]["largest_at"].get<double>(), fall, 2e-3);
   for (std::size_t k = 1; k < run.history.at("time").size(); ++k)
-    EXPECT_EQ(run.history.at("n0.vm1")[k], 0.5 * (run.history.at("n0.v1")[k - 1] + run.history.at("n0.v1")[k]));
+    EXPECT_EQ(run.history.at("n0.vm1")[k],
+              0.5 * (run.history.at("n0.v1")[k - 1] + run.history.at("n0.v1")[k]));
   scene["time"]["end"] = 0.01;
   EXPECT_TRUE(ran(scene).summary["interfaces"][0]["first_contact"].is_null());
 }
 
-// At rest the floor carries the weight, friction holds what the plane of symmetry does, and then it is shaken.
+// At rest the floor carries the weight, friction holds what the plane of symmetry does, and then it is
+// shaken.
 TEST(SettledStack, RestsOnItsFloorAndIsShaken) {
   for (const double cfl : {0.9, 0.71, 0.999}) {
     json scene = read_scene_source(scene_files::named("settled_stack.json"));

@@ -251,7 +251,8 @@ TEST(Column, ThatIsTooLongIsSaidToBe) {
   EXPECT_GT(largest, 0.0);
   EXPECT_NEAR(integrator.tally().coupling_residual_max, largest / size, 1e-3 * largest / size);
   ASSERT_EQ(integrator.warnings().size(), 1U);
-  EXPECT_NE(integrator.warnings()[0].find("not solved in 1 of 1 steps, the start included: residual up to"), std::string::npos);
+  EXPECT_NE(integrator.warnings()[0].find("not solved in 1 of 1 steps, the start included: residual up to"),
+            std::string::npos);
 }
 
 // A short column beside it is solved, which says nothing of the long one.

@@ -33,8 +33,8 @@ json shaken_block() {
 
 const std::vector<std::string> parts{"floor", "grip", "air", "weight", "push", "blow"};
 
-// The impulses of all that acts from outside are the change of momentum, whatever the rows: from V_{1/2} on in the
-// rows, and from V_0 on in the summary.
+// The impulses of all that acts from outside are the change of momentum, whatever the rows: from V_{1/2} on
+// in the rows, and from V_0 on in the summary.
 TEST(Forces, SumToTheChangeOfMomentumWhateverTheRows) {
   json scene = shaken_block();
   Scene same = scene_of(scene.dump());

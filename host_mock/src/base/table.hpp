@@ -1,4 +1,5 @@
-// table.hpp - a function of time: rows with straight or smooth steps between them, constant outside, or a sine.
+// table.hpp - a function of time: rows with straight or smooth steps between them, constant outside, or a
+// sine.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -179,7 +179,8 @@ class Run {
     if (!record.told.empty()) return;
     record.told = integrator_.step_warning();
     if (!record.told.empty())
-      complain(scene_.file.string() + ": warning: step " + std::to_string(integrator_.steps()) + ": " + record.told);
+      complain(scene_.file.string() + ": warning: step " + std::to_string(integrator_.steps()) + ": " +
+               record.told);
   }
 
   void keep_what_there_is(const char* failure) {

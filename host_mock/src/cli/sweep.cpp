@@ -101,7 +101,8 @@ std::string folder_name(const std::string& text) {
   for (const char c : text)
     if (std::isalnum(static_cast<unsigned char>(c)) || std::string("=.+-_").find(c) != std::string::npos)
       name += c;
-    else if (!name.ends_with('_') && !name.ends_with('='))  // one for all brackets, quotes and commas in a row
+    else if (!name.ends_with('_') &&
+             !name.ends_with('='))  // one for all brackets, quotes and commas in a row
       name += '_';
   while (name.ends_with('_')) name.pop_back();
   return name.substr(0, 100);

@@ -35,7 +35,8 @@ struct ContactPoint {
     visit(node, 1.0);
     for (std::size_t i = 0; i < static_cast<std::size_t>(partner_count); ++i) visit(partners[i], -weights[i]);
   }
-  // H along an axis: inverse_mass is 1/m, or less where loads take a part of an impulse, per degree of freedom.
+  // H along an axis: inverse_mass is 1/m, or less where loads take a part of an impulse, per degree of
+  // freedom.
   double delassus(const double* inverse_mass, int dimension, int node, int axis = 0) const;
 };
 

@@ -72,7 +72,9 @@ Projection project(const Vector3d& p, const Corners& x) {
     if (!(moved > 1e-14)) break;
   }
   const Vector3d point = point_of(x, at);
-  return {shape_functions(at), point, along_xi(x, at).cross(along_eta(x, at)).normalized(),
+  return {shape_functions(at),
+          point,
+          along_xi(x, at).cross(along_eta(x, at)).normalized(),
           (p - point).norm(),
           {at[1] == -1.0, at[0] == 1.0, at[1] == 1.0, at[0] == -1.0}};
 }
@@ -206,7 +208,8 @@ ContactPoint MeshSurface::contact_point(int node_index, const Dofs& u, double /*
   for (std::size_t e = 0; e < 4; ++e) is_at_border = is_at_border || (best.is_at[e] && border_[facet][e]);
   const double rim = (is_held(node_index) ? leaving_rim : entering_rim) * shortest_edge_;
   const bool is_on_rim = is_at_border && beside <= rim && normal_distance >= -rim;
-  // A point that is nearest to an edge without facing the patch lies beside the surface: it is not in contact.
+  // A point that is nearest to an edge without facing the patch lies beside the surface: it is not in
+  // contact.
   const bool is_over_patch = beside <= rounding_rim * shortest_edge_ || is_on_rim;
   return {is_over_patch ? normal_distance : best.distance,
           best.normal,

@@ -11,8 +11,8 @@
 
 namespace ilaw::host {
 
-// The step from time t_n to t_{n+1} = t_n + dt. Nodes move with its last velocity until the end of the next one. The
-// half step that a run starts with, from V_0 to V_{1/2}, is {-dt/2, 0, dt}.
+// The step from time t_n to t_{n+1} = t_n + dt. Nodes move with its last velocity until the end of the next
+// one. The half step that a run starts with, from V_0 to V_{1/2}, is {-dt/2, 0, dt}.
 struct StepTimes {
   double before, after;
   double until = after + (after - before);
@@ -35,8 +35,8 @@ class Load {
   // Changes the velocity that a step would leave with, without interfaces, and adds the impulse that
   // this takes. before: what the step started with.
   virtual void correct(StepTimes /*step*/, Motions /*before*/, Dofs& /*v*/, Dofs& /*impulse*/) const {}
-  // What a load that corrects velocities leaves of an impulse that interfaces add after it: a damper's own velocity
-  // changes with it, and the holder of a driven node takes it all.
+  // What a load that corrects velocities leaves of an impulse that interfaces add after it: a damper's own
+  // velocity changes with it, and the holder of a driven node takes it all.
   virtual void transmit(StepTimes /*step*/, Dofs& /*impulse*/) const {}
   // Whether that is the same in all steps.
   virtual bool transmits_steadily() const { return true; }

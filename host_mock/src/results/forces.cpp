@@ -33,7 +33,8 @@ void Forces::add_start(const Integrator& integrator) {
 
 void Forces::add_step(const Integrator& integrator) {
   if (sums_.empty()) return;
-  for (std::size_t k = 0; k < sums_.size(); ++k) add(scene_.output.forces[k], sums_[k], integrator, scene_.dt);
+  for (std::size_t k = 0; k < sums_.size(); ++k)
+    add(scene_.output.forces[k], sums_[k], integrator, scene_.dt);
   ++steps_;
 }
 

@@ -38,8 +38,8 @@ class Forces {
 
  private:
   struct Resultant {
-    Dofs impulse, moment;  // since the last row; moment empty where none is asked for
-    Dofs total;            // impulse up to the last row, that of the start included
+    Dofs impulse, moment;                    // since the last row; moment empty where none is asked for
+    Dofs total;                              // impulse up to the last row, that of the start included
     double largest = 0.0, largest_at = 0.0;  // size of the force, and the time of its row
   };
   void add(const ForceSetup& force, Resultant& sum, const Integrator& integrator, double duration);

@@ -36,7 +36,8 @@ std::unique_ptr<Load> read_damping(const json& load, const Model& model, const N
   const json history = load.value("history", json::array());
   if (history.contains("sine")) throw mistake(key, "a sine", "rows: a rate is not negative");
   for (const json& row : history.is_object() ? history["rows"] : history)
-    if (row.size() == 2 && row[1].get<double>() < 0.0) throw mistake(key, row.dump(), "factors of at least 0");
+    if (row.size() == 2 && row[1].get<double>() < 0.0)
+      throw mistake(key, row.dump(), "factors of at least 0");
   return std::make_unique<Damping>(model, set.nodes, load["rate"].get<double>(), read_factor(load, pointer));
 }
 

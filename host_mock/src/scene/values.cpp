@@ -47,7 +47,8 @@ Vector read_values(const json& value, int width, const std::string& pointer) {
 }
 
 Table read_sine(const json& sine, int width, const std::string& pointer) {
-  const Vector mean = sine.contains("mean") ? read_values(sine["mean"], width, pointer + "/mean") : Vector::Zero(width);
+  const Vector mean =
+      sine.contains("mean") ? read_values(sine["mean"], width, pointer + "/mean") : Vector::Zero(width);
   return Table(Sine{mean, read_values(sine["amplitude"], width, pointer + "/amplitude"),
                     sine["frequency"].get<double>(), sine.value("phase", 0.0)});
 }

@@ -16,8 +16,8 @@ constexpr double much_energy = 0.1;
 // As often the kinetic energy may be the largest energy or work: below 0.995 of the critical step it
 // cannot, for it is at most 1/(1 - cfl^2) times what the scheme conserves.
 constexpr double much_vibration = 100.0;
-// As often the kinetic energy may be what was put in before the run ends: runs at the critical step reach 3e5, and
-// unstable ones this in some tens of steps.
+// As often the kinetic energy may be what was put in before the run ends: runs at the critical step reach
+// 3e5, and unstable ones this in some tens of steps.
 constexpr double unstable_growth = 1e6;
 // Part of the energy below which contacts that do not agree differ by rounding.
 constexpr double rounding_energy = 1e-13;
@@ -27,7 +27,8 @@ constexpr double wrong_energy = 1e-3;
 // One by one: the bytes between them mean nothing, and equal runs write equal checkpoints.
 template <class Any, class Work>
 void for_each_member(Any& tally, Work work) {
-  for (auto* count : {&tally.active, &tally.skipped, &tally.sweeps, &tally.unconverged, &tally.left_surface}) work(*count);
+  for (auto* count : {&tally.active, &tally.skipped, &tally.sweeps, &tally.unconverged, &tally.left_surface})
+    work(*count);
   work(tally.sweeps_max);
   for (auto* value :
        {&tally.coupling_residual_max, &tally.coupling_energy, &tally.penetration_max, &tally.stable_step})
@@ -66,8 +67,8 @@ void Accounts::start(const Model& model, const Dofs& u, const Dofs& u_next, cons
   total_mass_ = model.mass().sum();
 }
 
-// The work of r_0 is the change of kinetic energy that it makes: the account begins before it, and then books it
-// like that of any step.
+// The work of r_0 is the change of kinetic energy that it makes: the account begins before it, and then books
+// it like that of any step.
 void Accounts::add_start(const Interfaces& interfaces, double speed) {
   for (const auto& interface : interfaces) {
     energy_.take_from_initial(interface->sums().work);
@@ -81,7 +82,8 @@ void Accounts::add_start(const Interfaces& interfaces, double speed) {
 void Accounts::note_contacts(const Interfaces& interfaces, double time) {
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     const auto& statuses = interfaces[i]->sums().statuses;
-    const auto touching = std::accumulate(statuses.begin(), statuses.end(), std::int64_t{0}) - statuses[ILAW_FREE];
+    const auto touching =
+        std::accumulate(statuses.begin(), statuses.end(), std::int64_t{0}) - statuses[ILAW_FREE];
     if (touching > 0) first_contact_[i] = std::min(first_contact_[i], time);
   }
 }
@@ -97,8 +99,8 @@ void Accounts::add_energies(const Interfaces& interfaces) {
   energy_.set_stored(stored);
 }
 
-// Impulses that stop a motion leave the rounding of its energy, also where a body rests: what a step gives it they
-// take.
+// Impulses that stop a motion leave the rounding of its energy, also where a body rests: what a step gives it
+// they take.
 void Accounts::note_rounding(double speed) {
   rounding_energy_ += 0.5 * std::numeric_limits<double>::epsilon() * total_mass_ * speed * speed;
 }
@@ -127,9 +129,10 @@ bool Accounts::has_diverged(const Model& model, const Dofs& v, double speed) con
 std::string Accounts::step_warning(double dt) const {
   if (!(dt > tally_.stable_step)) return "";
   std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                "the time step is %g, where a law is stable up to %g at its nodes: an explicit spring is too stiff for it",
-                dt, tally_.stable_step);
+  std::snprintf(
+      text.data(), text.size(),
+      "the time step is %g, where a law is stable up to %g at its nodes: an explicit spring is too stiff for it",
+      dt, tally_.stable_step);
   return text.data();
 }
 

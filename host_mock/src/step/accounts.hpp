@@ -41,7 +41,7 @@ struct StepRecord {
 class Accounts {
  public:
   // The state (U_0, V_{1/2}) and U_1 that follows from it.
-  explicit Accounts(std::size_t interface_count)
+  explicit Accounts(std::size_t interface_count = 0)
       : first_contact_(interface_count, std::numeric_limits<double>::infinity()) {}
   void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v);
   // What interfaces did on the way to that state: its energy has their work already. speed: the largest then.

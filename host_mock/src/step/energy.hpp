@@ -44,8 +44,8 @@ class EnergyBalance {
   // What the laws of an interface dissipated in a step, and the least of a node.
   void add_dissipation(const std::array<double, ILAW_ENERGY_COUNT>& energy, double least);
   double largest() const { return sums_.largest; }  // of energies and works so far
-  // An upper bound of the energy that was put in: what there was at the start, what loads and moving obstacles
-  // added, and the most that interfaces have stored.
+  // An upper bound of the energy that was put in: what there was at the start, what loads and moving
+  // obstacles added, and the most that interfaces have stored.
   double put_in() const { return sums_.put_in + sums_.most_stored; }
   void set_stored(double energy);
 

@@ -183,7 +183,8 @@ void Integrator::correct(StepTimes step) {
   }
 }
 
-// What a load leaves of an impulse. Damping by mass leaves all of it along driven axes, where a motion takes it.
+// What a load leaves of an impulse. Damping by mass leaves all of it along driven axes, where a motion takes
+// it.
 Dofs Integrator::transmitted(std::size_t load, StepTimes step, const Dofs& impulse) const {
   Dofs left = impulse;
   loads_[load]->transmit(step, left);
@@ -203,8 +204,8 @@ void Integrator::find_contact_mass(StepTimes step) {
   for (const auto& interface : interfaces_) interface->set_inverse_mass(contact_inverse_mass_.data());
 }
 
-// Loads that correct velocities take their part of the impulses of interfaces: the damper's force follows from
-// the final velocity, and the holder of a driven node bears what acts on it.
+// Loads that correct velocities take their part of the impulses of interfaces: the damper's force follows
+// from the final velocity, and the holder of a driven node bears what acts on it.
 void Integrator::add_load_reactions(StepTimes step) {
   Dofs impulse = interface_impulse();
   for (const std::size_t k : correcting_) {
@@ -245,8 +246,9 @@ void Integrator::add_coupled_reactions(const StepView& step) {
 void Integrator::check_energy() const {
   if (!accounts_.has_diverged(model_, v_, speed_before_)) return;
   std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "the kinetic energy is %.3g, where %.3g was put in, step %lld, time %g",
-                kinetic_energy(model_, v_), accounts_.energy().put_in(), static_cast<long long>(steps_), time());
+  std::snprintf(
+      text.data(), text.size(), "the kinetic energy is %.3g, where %.3g was put in, step %lld, time %g",
+      kinetic_energy(model_, v_), accounts_.energy().put_in(), static_cast<long long>(steps_), time());
   throw Diverged(text.data() + advice_on_divergence(model_, u_, dt_));
 }
 

@@ -34,8 +34,9 @@ class Integrator {
  public:
   Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt);
 
-  // The half step that a run starts with, from V_0 to V_{1/2}, as interfaces let it: what rests or is bonded carries
-  // its load from time 0 on. The first step does it where nobody has; later calls do nothing. Throws as step().
+  // The half step that a run starts with, from V_0 to V_{1/2}, as interfaces let it: what rests or is bonded
+  // carries its load from time 0 on. The first step does it where nobody has; later calls do nothing. Throws
+  // as step().
   void start();
   // One step. Throws ilaw::error when a law refuses a node, Diverged when the motion is not finite.
   void step();
@@ -48,7 +49,8 @@ class Integrator {
   const Dofs& velocity() const { return v_; }      // at the half step after time()
   // At the half step before time(), once a step has been made.
   const Dofs& velocity_before() const { return v_before_; }
-  // Impulse of the interfaces in the last step, per degree of freedom; before any, in the half step of the start.
+  // Impulse of the interfaces in the last step, per degree of freedom; before any, in the half step of the
+  // start.
   Dofs interface_impulse() const;
   // The same of one load, added to those per degree of freedom. Of a load that
   // corrects velocities (a motion, damping) it is kept from when it is first asked for.
@@ -109,9 +111,10 @@ class Integrator {
   double speed_before_ = 0.0;  // the largest of v_
   Dofs u_, v_, v_before_, external_impulse_, damping_impulse_, internal_impulse_;
   Dofs inverse_mass_;
-  // Velocity that a unit impulse of an interface makes, per degree of freedom; empty where that is inverse_mass_.
+  // Velocity that a unit impulse of an interface makes, per degree of freedom; empty where that is
+  // inverse_mass_.
   Dofs contact_inverse_mass_;
-  Dofs gain_;          // of the velocities in a step, where they do not; empty without loads
+  Dofs gain_;  // of the velocities in a step, where they do not; empty without loads
   Accounts accounts_;
   TickLength tick_length_;
   std::int64_t force_ticks_ = 0, interface_ticks_ = 0;

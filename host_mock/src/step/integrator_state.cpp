@@ -86,8 +86,8 @@ void Integrator::hold_driven_before() {
       }
 }
 
-// m (V_{1/2} - V_0) = h/2 f_0 + r_0: laws are asked at time 0, with half a step of the velocity. Bodies then move a
-// whole step, so that a predicted gap takes a whole step of the position.
+// m (V_{1/2} - V_0) = h/2 f_0 + r_0: laws are asked at time 0, with half a step of the velocity. Bodies then
+// move a whole step, so that a predicted gap takes a whole step of the position.
 void Integrator::start() {
   if (has_started_) return;
   has_started_ = true;
