@@ -92,10 +92,11 @@ TEST(RotatingSpring, DivergesBeyondItsCriticalStepOnly) {
     const auto run = [&] {
       while (integrator.steps() < 60) integrator.step();
     };
-    if (part > 1.0)
+    if (part > 1.0) {
       EXPECT_THROW(run(), Diverged);
-    else
+    } else {
       EXPECT_NO_THROW(run());
+    }
   }
 }
 
