@@ -64,7 +64,7 @@ layout argument_layout() {
 layout setup_layout() {
   using T = ilaw_setup;
   return {sizeof(T),     OFFSET(struct_size), OFFSET(dimension),      OFFSET(delassus_form), OFFSET(frame),
-          OFFSET(flags), OFFSET(arguments),   OFFSET(argument_count), OFFSET(tangent_given)};
+          OFFSET(flags), OFFSET(arguments),   OFFSET(argument_count), OFFSET(has_tangent)};
 }
 
 layout info_layout() {
@@ -72,7 +72,7 @@ layout info_layout() {
   return {sizeof(T),
           OFFSET(struct_size),
           OFFSET(inputs),
-          OFFSET(energy_inputs),
+          OFFSET(balance_inputs),
           OFFSET(state_variable_count),
           OFFSET(state_size),
           OFFSET(state_variables),
