@@ -28,7 +28,7 @@ std::vector<ilaw_input> inputs_of(const std::vector<double>& parameters) {
 std::vector<double> Interface::parameters_of(int node_index) const {
   std::vector<double> parameters;
   for (std::size_t p = 0; p < info().per_node_parameter_count; ++p)
-    parameters.push_back(setup_.arguments.per_node.at(info().per_node_parameters[p])[at(node_index)]);
+    parameters.push_back(setup_.arguments.values_of(info().per_node_parameters[p])[at(node_index)]);
   return parameters;
 }
 
