@@ -54,6 +54,8 @@ TEST(OutOfMemory, OpeningAndCreatingSayItAndLeaveNothingBehind) {
     setup.struct_size = sizeof setup;
     setup.dimension = 1;
     setup.delassus_form = ILAW_DELASSUS_SCALAR;
+    setup.frame = ILAW_FRAME_LOCAL;
+    setup.numbers = ILAW_NUMBERS_DOUBLE;
     code = ilaw_library_open(file, &library, message, sizeof message);
     if (code == ILAW_OK)
       code = ilaw_interface_create(library, "zero", &setup, &interface, message, sizeof message);
