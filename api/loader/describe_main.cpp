@@ -1,6 +1,7 @@
 // ilaw-describe LIBRARY - writes the description of contact.so to contact.json beside it, when it is built.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "description_file.hpp"
+#include "description_text.hpp"
 #include "refusal.hpp"
 
 #include <ilaw/loader.hpp>
@@ -16,7 +17,7 @@ using namespace ilaw::loading;
 
 // The file of an earlier build says what that library said: the loader would refuse this one.
 void remove_description(const std::string& library, const std::string& file) {
-  if (parsed_description(library))
+  if (read_description(library))
     std::remove(file.c_str());
   else if (std::FILE* other = std::fopen(file.c_str(), "rb")) {
     std::fclose(other);
@@ -44,7 +45,7 @@ void describe(const std::string& path) {
     throw std::runtime_error(library + ": ABI 1." + std::to_string(plugin.abi_minor) +
                              ", expected at most 1." + std::to_string(ILAW_ABI_MINOR) +
                              ": use a newer ilaw-describe");
-  write_whole(file, json_of(plugin).dump(1) + "\n");
+  write_whole(file, nlohmann::ordered_json::parse(description_text(plugin)).dump(1) + "\n");
 }
 
 }  // namespace

@@ -1,122 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "description_file.hpp"
 
+#include "description_text.hpp"
 #include "file.hpp"
 #include "readable.hpp"
 #include "refusal.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <initializer_list>
-#include <limits>
-#include <string_view>
-#include <vector>
+#include <utility>
 
 namespace ilaw::loading {
 namespace {
 
 using nlohmann::json;
 
-constexpr const char* format = "ilaw-description/1";
 constexpr std::uint64_t max_bytes = std::uint64_t{1} << 20;
 constexpr int max_depth = 16;
-
-// ---- from the structs -----------------------------------------------------------------------------------
-
-// Names of bits, the lowest first; of kinds, from 0.
-using names = std::initializer_list<const char*>;
-constexpr names dimension_names = {"", "1", "2", "3"};
-constexpr names form_names = {"scalar", "diagonal", "full", "transverse"};
-constexpr names frame_names = {"local", "global"};
-constexpr names number_names = {"double", "float"};
-constexpr names input_names = {"gap", "v_previous", "area", "normal", "tangent"};
-constexpr names output_names = {"velocity", "status", "energy"};
-constexpr names capability_names = {"adhere", "store_energy"};
-constexpr names permission_names = {"skip_fresh", "skip_free"};
-constexpr names parameter_flag_names = {"is_required", "excludes_minimum", "allows_infinity",
-                                        "allows_per_node", "is_field"};
-constexpr names variable_flag_names = {"internal"};
-constexpr names parameter_kinds = {"number", "count", "choice"};
-constexpr names state_kinds = {"scalar", "vector", "history", "axis", "tangential"};
-
-json bits(std::uint32_t mask, const names& known) {
-  json list = json::array();
-  for (std::size_t i = 0; i < known.size(); ++i)
-    if ((mask >> i & 1U) != 0 && *known.begin()[i]) list.push_back(known.begin()[i]);
-  return list;
-}
-
-json kind(std::uint32_t value, const names& known) {
-  return value < known.size() ? json(known.begin()[value]) : json();
-}
-
-json number(double value) {
-  if (std::isfinite(value)) return value;
-  return std::isnan(value) ? json() : json(value > 0 ? "inf" : "-inf");
-}
-
-// No limit is written as infinity.
-json limit(double value) {
-  return std::abs(value) == std::numeric_limits<double>::max() ? number(std::copysign(INFINITY, value))
-                                                               : number(value);
-}
-
-json texts(const char* const* list, std::uint32_t count) {
-  return std::vector<std::string>(list, list + count);
-}
-
-json default_of(const ilaw_parameter& p) {
-  if ((p.flags & ILAW_PARAMETER_IS_REQUIRED) != 0) return {};
-  if (p.kind == ILAW_PARAMETER_CHOICE) return p.choices[static_cast<std::size_t>(p.default_value)];
-  return number(p.default_value);
-}
-
-json json_of_parameter(const ilaw_parameter& p) {
-  return {{"name", p.name},
-          {"symbol", p.symbol},
-          {"unit", p.unit},
-          {"doc", p.doc},
-          {"kind", kind(p.kind, parameter_kinds)},
-          {"minimum", limit(p.minimum)},
-          {"maximum", limit(p.maximum)},
-          {"default", default_of(p)},
-          {"flags", bits(p.flags, parameter_flag_names)},
-          {"choices", texts(p.choices, p.choice_count)},
-          {"axes", texts(p.axes, p.axis_count)}};
-}
-
-json json_of_variable(const ilaw_state_variable& v) {
-  return {{"name", v.name},   {"unit", v.unit},
-          {"doc", v.doc},     {"kind", kind(v.kind, state_kinds)},
-          {"count", v.count}, {"flags", bits(v.flags, variable_flag_names)}};
-}
-
-json json_of_amount(const ilaw_amount& a) { return {{"name", a.name}, {"unit", a.unit}, {"doc", a.doc}}; }
-
-template <class Element>
-json list(const Element* const* elements, std::uint32_t count, json (*json_of_one)(const Element&)) {
-  json made = json::array();
-  for (std::uint32_t i = 0; i < count; ++i) made.push_back(json_of_one(*elements[i]));
-  return made;
-}
-
-json json_of_law(const ilaw_law& law) {
-  return {{"id", law.id},
-          {"title", law.title},
-          {"doc", law.doc},
-          {"references", texts(law.references, law.reference_count)},
-          {"dimensions", bits(law.dimensions, dimension_names)},
-          {"delassus_forms", bits(law.delassus_forms, form_names)},
-          {"frames", bits(law.frames, frame_names)},
-          {"numbers", bits(law.numbers, number_names)},
-          {"inputs", bits(law.inputs, input_names)},
-          {"outputs", bits(law.outputs, output_names)},
-          {"capabilities", bits(law.capabilities, capability_names)},
-          {"permissions", bits(law.permissions, permission_names)},
-          {"parameters", list(law.parameters, law.parameter_count, json_of_parameter)},
-          {"state_variables", list(law.state_variables, law.state_variable_count, json_of_variable)},
-          {"amounts", list(law.amounts, law.amount_count, json_of_amount)}};
-}
 
 // ---- from the file --------------------------------------------------------------------------------------
 
@@ -133,14 +32,26 @@ std::string content_of(const std::string& file, const file_status& status) {
   return text;
 }
 
+// Lists and objects within each other.
+int depth_of(const std::string& text) {
+  int depth = 0, deepest = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_text && c == '\\') ++i;
+    if (c == '"') in_text = !in_text;
+    if (in_text) continue;
+    if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
+    if (c == ']' || c == '}') --depth;
+  }
+  return deepest;
+}
+
 json parsed(const std::string& file, const std::string& text) {
-  const auto limited = [&file](int depth, json::parse_event_t, json&) {
-    if (depth > max_depth)
-      refuse(file, "nested deeper than " + std::to_string(max_depth) + " levels, expected a description");
-    return true;
-  };
+  if (depth_of(text) > max_depth)
+    refuse(file, "nested deeper than " + std::to_string(max_depth) + " levels, expected a description");
   try {
-    return json::parse(text, limited);
+    return json::parse(text);
   } catch (const json::parse_error& error) {
     refuse(file, "no JSON at byte " + std::to_string(error.byte));
   } catch (const json::out_of_range&) {
@@ -178,9 +89,15 @@ const json& model() {
   return made;
 }
 
+bool is_infinity(const json& value) {
+  if (!value.is_string()) return false;
+  const auto& text = value.get_ref<const std::string&>();
+  return text == "inf" || text == "-inf";
+}
+
 bool is_like(const json& found, const json& model) {
   if (model.is_null()) return found.is_primitive() && !found.is_boolean();
-  if (model.is_number()) return found.is_number() || found == "inf" || found == "-inf";
+  if (model.is_number()) return found.is_number() || is_infinity(found);
   return found.type() == model.type();
 }
 
@@ -202,7 +119,11 @@ void check_like(const json& found, const json& model, const std::string& at, con
 
 std::string shown(const json& value) {
   constexpr std::size_t max_letters = 60;
-  const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  if (value.is_structured()) return value.is_array() ? "a list" : "an object";
+  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
+  if (value.is_number()) return number_text(value.get<double>());
+  if (!value.is_string()) return "null";
+  const std::string text = quoted_text(value.get_ref<const std::string&>());
   return text.size() > max_letters ? text.substr(0, max_letters) + "..." : text;
 }
 
@@ -242,28 +163,19 @@ std::string difference(const json& found, const json& library, bool newer, const
 
 }  // namespace
 
-json json_of(const ilaw_plugin& plugin) {
-  return {{"format", format},
-          {"name", plugin.name},
-          {"version", plugin.version},
-          {"vendor", plugin.vendor},
-          {"licence", plugin.licence},
-          {"abi", {plugin.abi_major, plugin.abi_minor}},
-          {"laws", list(plugin.laws, plugin.law_count, json_of_law)}};
-}
-
 std::string description_path(const std::string& library) {
   return library.ends_with(".so") ? library.substr(0, library.size() - 3) + ".json" : "";
 }
 
-std::optional<json> parse_description(const std::string& file, const std::string& text) {
+std::optional<description> parse_description(const std::string& file, const std::string& text) {
   json found = parsed(file, text);
-  if (!found.is_object() || found.value("format", json()) != format) return {};
+  if (!found.is_object() || !found.contains("format") || found["format"] != json(description_format))
+    return {};
   check_texts(found, false, file);
-  return found;
+  return description{text, std::move(found)};
 }
 
-std::optional<json> parsed_description(const std::string& library) {
+std::optional<description> read_description(const std::string& library) {
   const std::string file = description_path(library);
   const file_status status = status_of(file);
   if (file.empty() || !status.exists) return {};
@@ -276,7 +188,8 @@ void check_members(const json& found, const std::string& file) {
 }
 
 void check_same(const json& found, const ilaw_plugin& plugin, const std::string& library) {
-  const std::string text = difference(found, json_of(plugin), plugin.abi_minor > ILAW_ABI_MINOR, "");
+  const std::string text =
+      difference(found, json::parse(description_text(plugin)), plugin.abi_minor > ILAW_ABI_MINOR, "");
   if (!text.empty())
     refuse(description_path(library),
            text + ": remove the file, or write it anew by ilaw-describe " + library);

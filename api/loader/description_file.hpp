@@ -12,20 +12,22 @@
 
 namespace ilaw::loading {
 
-// A checked description as JSON. Bits and kinds of newer minor versions are left out (a kind is null).
-nlohmann::json json_of(const ilaw_plugin& plugin);
-
 // "contact.json" for "contact.so"; empty for a file of another name.
 std::string description_path(const std::string& library);
 
-// The JSON of the file beside a library. None where there is no such file, or where it is some other JSON, such
+struct description {
+  std::string text;
+  nlohmann::json parsed;
+};
+
+// The file beside a library. None where there is no such file, or where it is some other JSON, such
 // as a scene. Throws refusal where the file is too large, too deep or no JSON, or has texts unfit to print.
-std::optional<nlohmann::json> parsed_description(const std::string& library);
+std::optional<description> read_description(const std::string& library);
 
 // The same for the content of a file.
-std::optional<nlohmann::json> parse_description(const std::string& file, const std::string& text);
+std::optional<description> parse_description(const std::string& file, const std::string& text);
 
-// Throws refusal unless the JSON has all members that json_of writes, with the right types.
+// Throws refusal unless the JSON has all members that description_text writes, with the right types.
 void check_members(const nlohmann::json& found, const std::string& file);
 
 // Throws refusal unless the file says the same as the library, naming the first difference. A library of a

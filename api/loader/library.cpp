@@ -4,6 +4,7 @@
 
 #include "description.hpp"
 #include "description_file.hpp"
+#include "description_text.hpp"
 #include "dynamic.hpp"
 #include "elf_file.hpp"
 #include "file.hpp"
@@ -103,14 +104,13 @@ struct closer {
 ilaw_library* open_checked(std::list<ilaw_library>& open, const std::string& path,
                            const ilaw::loading::file_status& status) {
   ilaw::loading::check_shared_object(path);
-  const auto written =
-      ilaw::loading::parsed_description(path);  // refused before any code of the library runs
+  const auto written = ilaw::loading::read_description(path);  // refused before any code of the library runs
   std::unique_ptr<void, closer> handle(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL));
   if (!handle) throw refusal(ILAW_BAD_LIBRARY, path + ": cannot be loaded: " + dlerror());
   std::list<ilaw_library> made;
   made.push_back(ilaw_library{path, status.device, status.inode, handle.get()});
   made.back().plugin = described(path, handle.get(), made.back().kept);
-  if (written) ilaw::loading::check_same(*written, *made.back().plugin, path);
+  if (written) ilaw::loading::check_same(written->parsed, *made.back().plugin, path);
   open.splice(open.end(), made);
   static_cast<void>(handle.release());  // the list closes it from here on
   return &open.back();
@@ -209,13 +209,13 @@ std::int32_t with_readable_reason(std::int32_t code, ilaw_report* report) {
 // A report whose struct_size cannot be true is given to no library.
 bool usable(ilaw_report* report) { return !report || ilaw::sized::cleared(report); }
 
-// The text of a description, cut at size; returns its length with the zero.
-std::size_t write_description(nlohmann::json description, const std::string& path, char* buffer,
+// The text of a description with the library's path, cut at size; returns its length with the zero.
+std::size_t write_description(const std::string& text, const std::string& path, char* buffer,
                               std::size_t size) {
-  description["file"] = path;
-  const std::string text = description.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  say(buffer, size, text.c_str());
-  return text.size() + 1;
+  const std::string with_path =
+      text.substr(0, text.rfind('}')) + ", \"file\": " + ilaw::loading::quoted_text(path) + "}";
+  say(buffer, size, with_path.c_str());
+  return with_path.size() + 1;
 }
 
 std::int32_t open_with(std::string (*find)(const std::string&), const char* text, ilaw_library** library,
@@ -251,10 +251,10 @@ ilaw_result ILAW_CALL ilaw_library_read_description(const char* name_or_path, ch
                     "the name of the library, or where to put the length, is null or empty");
     const std::string path = ilaw::loading::find_library(name_or_path);
     ilaw::loading::check_shared_object(path);
-    const auto found = ilaw::loading::parsed_description(path);
+    const auto found = ilaw::loading::read_description(path);
     if (!found) return ILAW_OK;
-    ilaw::loading::check_members(*found, ilaw::loading::description_path(path));
-    *length = write_description(*found, path, buffer, size);
+    ilaw::loading::check_members(found->parsed, ilaw::loading::description_path(path));
+    *length = write_description(found->text, path, buffer, size);
     return ILAW_OK;
   });
 }
@@ -271,7 +271,8 @@ size_t ILAW_CALL ilaw_library_describe(const ilaw_library* library, char* buffer
   std::size_t needed = 0;
   guarded(buffer, size, [&]() -> std::int32_t {
     if (library)
-      needed = write_description(ilaw::loading::json_of(*library->plugin), library->path, buffer, size);
+      needed =
+          write_description(ilaw::loading::description_text(*library->plugin), library->path, buffer, size);
     return ILAW_OK;
   });
   if (needed == 0) say(buffer, size, "");

@@ -140,7 +140,7 @@ TEST_F(DescriptionFile, MustSayWhatTheLibrarySays) {
   EXPECT_EQ(opening_with("/version", "0.2"), "/version is \"0.2\", the library says \"0.1\"");
   EXPECT_EQ(opening_with("/abi/1", 3), "/abi/1 is 3, the library says 0");
   EXPECT_EQ(opening_with("/laws/0/parameters/0/maximum", 2.0),
-            "/laws/0/parameters/0/maximum is 2.0, the library says \"inf\"");
+            "/laws/0/parameters/0/maximum is 2, the library says \"inf\"");
   EXPECT_EQ(opening_with("/laws/0/parameters/0/default", 0.5 + std::numeric_limits<double>::epsilon()),
             "/laws/0/parameters/0/default is 0.5000000000000002, the library says 0.5");
   EXPECT_EQ(opening_with("/laws/0/frames/0", "global"),
