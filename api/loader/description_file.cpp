@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace ilaw::loading {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t max_bytes = std::uint64_t{1} << 20;
-constexpr int max_depth = 16;
+constexpr std::size_t max_depth = 16;
 
 // ---- from the file --------------------------------------------------------------------------------------
 
@@ -32,31 +33,67 @@ std::string content_of(const std::string& file, const file_status& status) {
   return text;
 }
 
-// Lists and objects within each other.
-int depth_of(const std::string& text) {
-  int depth = 0, deepest = 0;
-  bool in_text = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_text && c == '\\') ++i;
-    if (c == '"') in_text = !in_text;
-    if (in_text) continue;
-    if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
-    if (c == ']' || c == '}') --depth;
+// Builds the value as nlohmann reads it. json::parse would do, but for a newer C++ library than the loader
+// may need, and without a limit of depth.
+class builder : public nlohmann::json_sax<json> {
+ public:
+  explicit builder(const std::string& file) : file_(file) {}
+  json take() { return std::move(root_); }
+
+  bool null() override { return add(json()); }
+  bool boolean(bool value) override { return add(json(value)); }
+  bool number_integer(number_integer_t value) override { return add(json(value)); }
+  bool number_unsigned(number_unsigned_t value) override { return add(json(value)); }
+  bool number_float(number_float_t value, const string_t&) override { return add(json(value)); }
+  bool string(string_t& value) override { return add(json(std::move(value))); }
+  bool binary(binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return start(json(json::value_t::object)); }
+  bool start_array(std::size_t) override { return start(json(json::value_t::array)); }
+  bool end_object() override { return end(); }
+  bool end_array() override { return end(); }
+  bool key(string_t& value) override {
+    key_ = std::move(value);
+    return true;
   }
-  return deepest;
-}
+  bool parse_error(std::size_t byte, const std::string&, const json::exception& error) override {
+    if (dynamic_cast<const json::out_of_range*>(&error))
+      refuse(file_, "a number beyond the range of double, expected infinity as \"inf\"");
+    refuse(file_, "no JSON at byte " + std::to_string(byte));
+  }
+
+ private:
+  json& place(json&& value) {
+    if (open_.empty()) return root_ = std::move(value);
+    json& parent = *open_.back();
+    if (parent.is_object()) return parent[key_] = std::move(value);
+    parent.push_back(std::move(value));
+    return parent.back();
+  }
+  bool add(json&& value) {
+    place(std::move(value));
+    return true;
+  }
+  bool start(json&& value) {
+    if (open_.size() == max_depth)
+      refuse(file_, "nested deeper than " + std::to_string(max_depth) + " levels, expected a description");
+    open_.push_back(&place(std::move(value)));
+    return true;
+  }
+  bool end() {
+    open_.pop_back();
+    return true;
+  }
+
+  const std::string& file_;
+  json root_;
+  std::vector<json*> open_;  // lists and objects that are not complete
+  std::string key_;
+};
 
 json parsed(const std::string& file, const std::string& text) {
-  if (depth_of(text) > max_depth)
-    refuse(file, "nested deeper than " + std::to_string(max_depth) + " levels, expected a description");
-  try {
-    return json::parse(text);
-  } catch (const json::parse_error& error) {
-    refuse(file, "no JSON at byte " + std::to_string(error.byte));
-  } catch (const json::out_of_range&) {
-    refuse(file, "a number beyond the range of double, expected infinity as \"inf\"");
-  }
+  builder value(file);
+  json::sax_parse(text, &value);
+  return value.take();
 }
 
 // Texts may be printed: UTF-8 without control characters; a doc may have several lines.
@@ -76,7 +113,7 @@ void check_texts(const json& value, bool lines_allowed, const std::string& file)
 // Every member of a description, each list with one element: 0 stands for a number or "inf", null for any
 // text, number or null.
 const json& model() {
-  static const json& made = *new json(json::parse(R"({
+  static const json& made = *new json(parsed("", R"({
     "format": "", "name": "", "version": "", "vendor": "", "licence": "", "abi": [0],
     "laws": [{
       "id": "", "title": "", "doc": "", "references": [""], "dimensions": [""], "delassus_forms": [""],
@@ -189,7 +226,7 @@ void check_members(const json& found, const std::string& file) {
 
 void check_same(const json& found, const ilaw_plugin& plugin, const std::string& library) {
   const std::string text =
-      difference(found, json::parse(description_text(plugin)), plugin.abi_minor > ILAW_ABI_MINOR, "");
+      difference(found, parsed(library, description_text(plugin)), plugin.abi_minor > ILAW_ABI_MINOR, "");
   if (!text.empty())
     refuse(description_path(library),
            text + ": remove the file, or write it anew by ilaw-describe " + library);
