@@ -48,8 +48,8 @@ std::string range_of(const json& p) {
 std::string varying(const json& p) {
   std::vector<std::string> ways;
   if (has(p["flags"], "is_field")) ways.push_back("field");
-  if (!p["axes"].empty()) ways.push_back("table over " + listed(p["axes"]));
   if (has(p["flags"], "allows_per_node")) ways.push_back("per_node");
+  if (!p["axes"].empty()) ways.push_back("table over " + listed(p["axes"]));
   return ways.empty() ? "constant" : "or " + joined(ways);
 }
 
