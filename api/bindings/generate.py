@@ -4,7 +4,7 @@
 
     generate.py                 writes the files below in the tree
     generate.py --check         compares them with the headers; exit status 1 and a diff where they differ
-    generate.py --into FOLDER   writes them there; --include FOLDER reads other headers
+    generate.py --into FOLDER   writes them there; --include FOLDER reads other headers, those of the tree where it has none
 
 The written files are part of the tree, so that users need neither this script nor pycparser (Debian:
 python3-pycparser). A test runs --check. The C preprocessor is $CC, or else cc.
@@ -181,8 +181,8 @@ def parsed(include: Path) -> c_ast.FileAST:
         Path(folder, "stddef.h").write_text("typedef unsigned long size_t;\n")
         source = Path(folder, "all.c")
         source.write_text("#include <ilaw/coupled.h>\n#include <ilaw/loader.h>\n")
-        command = [os.environ.get("CC", "cc"), "-E", "-nostdinc", f"-I{folder}", f"-I{include}", str(source)]
-        text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        command = [os.environ.get("CC", "cc"), "-E", "-nostdinc", f"-I{folder}", f"-I{include}", f"-I{API / 'include'}"]
+        text = subprocess.run([*command, source], check=True, capture_output=True, text=True).stdout
     return c_parser.CParser().parse(text, "headers")
 
 
