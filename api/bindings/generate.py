@@ -4,7 +4,8 @@
 
     generate.py                 writes the files below in the tree
     generate.py --check         compares them with the headers; exit status 1 and a diff where they differ
-    generate.py --into FOLDER   writes them there; --include FOLDER reads other headers, those of the tree where it has none
+    generate.py --into FOLDER   writes them there
+    --include FOLDER            reads the headers there, and those of the tree that it lacks
 
 The written files are part of the tree, so that users need neither this script nor pycparser (Debian:
 python3-pycparser). A test runs --check. The C preprocessor is $CC, or else cc.
@@ -339,8 +340,11 @@ class Python:
         for function in (one for header in chosen for one in header.functions):
             result, *arguments = self.signature(function)
             line = f'    "{function.name}": ({result}, [{", ".join(arguments)}]),'
-            split = line.replace(", [", ", [\n" + 8 * " ", 1).replace("]),", "\n    ]),")
-            body.append(line if len(line) <= 120 else split)
+            if len(line) > 120:
+                parts = wrapped(arguments, 8 * " ", "", 120)
+                body += [f'    "{function.name}": ({result}, [', *parts, "    ]),"]
+            else:
+                body.append(line)
         types = ", ".join(sorted(self.used | {"c_void_p"}))
         head = PYTHON_HEAD.format(what=what, headers=">, <ilaw/".join(headers), types=types)
         return head + imports + "\n".join([*body, "}"]) + "\n"

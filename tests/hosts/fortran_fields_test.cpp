@@ -38,8 +38,8 @@ nodes<double> in_doubles(int way) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   nodes<double> made;
   char line[200];
-  made.code =
-      fortran_doubles(way, count, made.v.data(), made.temperature.data(), made.r.data(), made.heat.data(), line);
+  made.code = fortran_doubles(way, count, made.v.data(), made.temperature.data(), made.r.data(),
+                              made.heat.data(), line);
   made.message = line;
   return made;
 }
@@ -59,7 +59,8 @@ TEST(FortranFields, FrictionAndHeatFollowTheTable) {
   const nodes<double> found = in_doubles(right);
   ASSERT_EQ(found.code, ILAW_OK) << found.message;
   for (std::size_t i = 0; i < count; ++i) {
-    const double r_N = found.r[2 * i], r_T = found.r[2 * i + 1], v = found.v[2 * i + 1], slip = v + r_T / mass;
+    const double r_N = found.r[2 * i], r_T = found.r[2 * i + 1], v = found.v[2 * i + 1],
+                 slip = v + r_T / mass;
     EXPECT_NEAR(r_N, -mass * found.v[2 * i], 1e-15) << "node " << i;
     EXPECT_NEAR(r_T, -friction(slip, found.temperature[2 * i + 1]) * r_N, 1e-13) << "node " << i;
     EXPECT_NEAR(found.heat[i], -partition * r_T * (v + slip) / 2, 1e-13) << "node " << i;
@@ -70,8 +71,8 @@ TEST(FortranFields, FloatsAreTheDoublesRounded) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   nodes<float> found;
   char line[200];
-  found.code = fortran_floats(count, found.v.data(), found.temperature.data(), found.r.data(), found.heat.data(),
-                              line);
+  found.code = fortran_floats(count, found.v.data(), found.temperature.data(), found.r.data(),
+                              found.heat.data(), line);
   ASSERT_EQ(found.code, ILAW_OK) << line;
   const nodes<double> wanted = in_doubles(right);
   for (std::size_t k = 0; k < 2 * count; ++k) EXPECT_EQ(found.r[k], static_cast<float>(wanted.r[k]));
@@ -88,7 +89,8 @@ TEST(FortranFields, SaysWhatIsMissingOrWrong) {
   for (const refusal& wanted :
        {refusal{no_field, ILAW_INVALID_ARGUMENT, "reads 'temperature' per node"},
         refusal{no_amount, ILAW_UNSUPPORTED, "no amount 'wear'"},
-        refusal{wrong_shape, ILAW_INVALID_PARAMETER, "parameter 'friction': a table has one value per point of its axis"},
+        refusal{wrong_shape, ILAW_INVALID_PARAMETER,
+                "parameter 'friction': a table has one value per point of its axis"},
         refusal{wrong_pairs, ILAW_INVALID_PARAMETER, "parameter 'friction': pairs (time, value)"},
         refusal{by_number, ILAW_INVALID_PARAMETER, "'partition'"},
         refusal{other_kind, ILAW_INVALID_ARGUMENT, ""}}) {

@@ -1,4 +1,5 @@
-// The Fortran module: arrays without a copy, lists of nodes, parameters. Layouts are in python/test_bindings.py.
+// The Fortran module: arrays without a copy, lists of nodes, parameters. Layouts are in
+// python/test_bindings.py.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <ilaw/ilaw.h>

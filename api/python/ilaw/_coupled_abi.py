@@ -86,6 +86,7 @@ SIGNATURES = {
     "ilaw_coupled_create": (c_void_p, []),
     "ilaw_coupled_destroy": (None, [c_void_p]),
     "ilaw_coupled_solve": (c_int32, [
-        c_void_p, POINTER(bodies), POINTER(POINTER(contacts)), c_int64, POINTER(coupled_options), POINTER(coupled_report)
+        c_void_p, POINTER(bodies), POINTER(POINTER(contacts)), c_int64, POINTER(coupled_options),
+        POINTER(coupled_report)
     ]),
 }

@@ -87,8 +87,8 @@ class _Arguments:
         points = {axis: self._doubles(f"{name}: axis {axis}", given) for axis, given in axes.items()}
         shape = tuple(len(one) if one.ndim == 1 else -1 for one in points.values())
         if table.shape != shape:
-            of_axes = ", ".join(f"{axis} {one.shape}" for axis, one in points.items())
-            raise InvalidArgument(f"{name}: values of shape {table.shape}, expected one per point of {of_axes or 'an axis'}")
+            expected = ", ".join(f"{axis} {one.shape}" for axis, one in points.items()) or "an axis"
+            raise InvalidArgument(f"{name}: values of shape {table.shape}, expected one per point of {expected}")
         pointers = (ctypes.POINTER(_abi.axis) * len(points))()
         for k, (axis, one) in enumerate(points.items()):
             read = sized(_abi.axis)
@@ -190,8 +190,9 @@ class Interface:
         self.state_variables: tuple[StateVariable, ...] = variables
         self.amounts: tuple[Amount, ...] = amounts(info.amounts, info.amount_count)
         names = texts(info.per_node_parameters, info.per_node_parameter_count)
-        # None: every batch gives it
-        self.per_node_parameters: dict[str, NDArray[Any] | None] = {name: arguments.per_node.get(name) for name in names}
+        # The arrays for batches that give none; None: every batch has to.
+        defaults: dict[str, NDArray[Any] | None] = {name: arguments.per_node.get(name) for name in names}
+        self.per_node_parameters = defaults
 
     def __repr__(self) -> str:
         return f"<ilaw.Interface {self.law.id}, dimension {self.dimension}, {self.frame} frame, {self.delassus} H>"
@@ -335,9 +336,10 @@ class Batch(NotCopied):
     def _read_per_node(self, given: dict[str, Any]) -> None:
         expected, law = self.interface.per_node_parameters, self.interface.law.id
         for name in given.keys() - expected.keys():
-            allowed = ", ".join(expected) or "none"
-            advice = f"; create the interface with {name}=ilaw.PER_NODE" if name in self.interface.law.parameters else ""
-            raise InvalidArgument(f"{name}: {law} reads no such array, expected one of: {allowed}{advice}")
+            reason = f"{name}: {law} reads no such array, expected one of: {', '.join(expected) or 'none'}"
+            if name in self.interface.law.parameters:
+                reason += f"; create the interface with {name}=ilaw.PER_NODE"
+            raise InvalidArgument(reason)
         made = []
         for name, default in expected.items():
             value = given.get(name, default)

@@ -29,7 +29,7 @@ def test_the_files_of_the_tree_are_those_of_the_headers():
     ("header", "text", "changed", "shown"),
     [
         ("ilaw.h", "ILAW_SLIP = 3", "ILAW_SLIP = 9", ["+    SLIP = 9", "ILAW_SLIP = 9"]),
-        ("ilaw.h", "  int64_t bad_count;", "  int32_t bad_count;", ['+        ("bad_count", c_int32),', "bad_count = 0"]),
+        ("ilaw.h", "int64_t bad_count;", "int32_t bad_count;", ['+        ("bad_count", c_int32),', "bad_count = 0"]),
         ("coupled.h", "  double work;", "  double work, more;", ['+        ("more", c_double),', ":: more = 0"]),
         ("loader.h", "ilaw_search_path(char* buffer, size_t", "ilaw_search_path(char* buffer, int64_t", ["c_int64"]),
     ],
@@ -78,7 +78,8 @@ def test_python_has_the_layout_of_c(declarations, in_c):
         module = _coupled_abi if hasattr(_coupled_abi, name.removeprefix("ilaw_")) else _abi
         struct = getattr(module, name.removeprefix("ilaw_"))
         found[f"(int)sizeof({name})"] = ctypes.sizeof(struct)
-        found.update({f"(int)offsetof({name}, {member})": getattr(struct, member).offset for member, *_ in struct._fields_})
+        for member, *_ in struct._fields_:
+            found[f"(int)offsetof({name}, {member})"] = getattr(struct, member).offset
     assert len(found) > 150
     assert found == {name: value for name, value in in_c.items() if "of(" in name}
 
@@ -87,7 +88,7 @@ def test_fortran_has_the_values_and_the_layout_of_c(declarations, in_c, tmp_path
     if not os.environ.get("FC"):
         pytest.skip("no Fortran compiler")
     structs = list(declarations.structs.items())
-    lines = ["program probe", "use ilaw_coupled_abi", "use ilaw_abi", "use, intrinsic :: iso_c_binding", "implicit none"]
+    lines = ["program probe", "use ilaw_coupled_abi", "use ilaw_abi", "use iso_c_binding", "implicit none"]
     lines += [f"type({struct}), target :: s{k}" for k, (struct, _) in enumerate(structs)]
     lines += [f"print '(i0)', {name}" for name in declarations.values]
     for k, (struct, members) in enumerate(structs):

@@ -225,7 +225,7 @@ V = np.zeros((2, 3))
         (lambda: solve(most_sweeps=2**32 + 1), "most_sweeps: 4294967297, expected a whole number from 0 to 4294967295"),
         (lambda: solve(most_sweeps=-1), "most_sweeps: -1, expected"),
         (lambda: solve(most_sweeps=1.5), "most_sweeps: float, expected a whole number"),
-        (lambda: Contacts(law(numbers="float"), body=[0], counterpart=[1], normal=UP), "expect an interface of doubles"),
+        (lambda: Contacts(law(numbers="float"), body=[0], counterpart=[1], normal=UP), "an interface of doubles"),
         (lambda: solve(body=[0], counterpart=[5]), "a contact names a body that is not there"),
         (lambda: solve(body=[1], counterpart=[1]), "a contact of a body with itself"),
         (lambda: solve(bodies=Bodies(v_free=V, inverse_mass=1.0)), "the law reads v_previous"),
