@@ -6,9 +6,9 @@ module fortran_fields
   implicit none
   integer, parameter :: dp = c_double, sp = c_float
 
-  ! Ways to go wrong.
+  ! Ways to give parameters and arrays, most of them wrong.
   integer(c_int), parameter :: right = 0, no_field = 1, no_amount = 2, wrong_shape = 3, wrong_pairs = 4
-  integer(c_int), parameter :: by_number = 5, other_kind = 6
+  integer(c_int), parameter :: by_number = 5, other_kind = 6, wrong_axis = 7
 contains
 
   ! Friction mu(speed, temperature) at speeds 0, 1, 4 m/s (rows) and 293, 593 K (columns).
@@ -25,7 +25,7 @@ contains
       call values%set('friction', mu, 'slip_speed', speed, 'temperature', hot)
     end if
     if (way == by_number) call values%set('temperature', 443._dp)
-    if (way == by_number) call values%set('partition', [1._dp], 'time', [0._dp]) ! refused: no table
+    if (way == wrong_axis) call values%set('partition', [1._dp], 'time', [0._dp])
   end function
 
   ! Offers the temperature, and creates.

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int count = 6;
 constexpr double mass = 2.0, partition = 0.5;
-enum way { right, no_field, no_amount, wrong_shape, wrong_pairs, by_number, other_kind };
+enum way { right, no_field, no_amount, wrong_shape, wrong_pairs, by_number, other_kind, wrong_axis };
 
 // Pairs (normal, tangential) velocity; temperatures stand in the second row of two.
 template <class number>
@@ -55,16 +55,23 @@ double friction(double speed, double temperature) {
   return cold * between(temperature, 293, 593, 1.0, 0.5);
 }
 
-TEST(FortranFields, FrictionAndHeatFollowTheTable) {
-  const nodes<double> found = in_doubles(right);
+void expect_law(const nodes<double>& found, const std::array<double, count>& temperature) {
   ASSERT_EQ(found.code, ILAW_OK) << found.message;
   for (std::size_t i = 0; i < count; ++i) {
-    const double r_N = found.r[2 * i], r_T = found.r[2 * i + 1], v = found.v[2 * i + 1],
-                 slip = v + r_T / mass;
+    const double r_N = found.r[2 * i], r_T = found.r[2 * i + 1], v = found.v[2 * i + 1];
+    const double slip = v + r_T / mass;
     EXPECT_NEAR(r_N, -mass * found.v[2 * i], 1e-15) << "node " << i;
-    EXPECT_NEAR(r_T, -friction(slip, found.temperature[2 * i + 1]) * r_N, 1e-13) << "node " << i;
+    EXPECT_NEAR(r_T, -friction(slip, temperature[i]) * r_N, 1e-13) << "node " << i;
     EXPECT_NEAR(found.heat[i], -partition * r_T * (v + slip) / 2, 1e-13) << "node " << i;
   }
+}
+
+TEST(FortranFields, FrictionAndHeatFollowTheTable) {
+  expect_law(in_doubles(right), {293, 393, 443, 593, 200, 900});
+}
+
+TEST(FortranFields, AFieldGivenAsANumberIsNotOffered) {
+  expect_law(in_doubles(by_number), {443, 443, 443, 443, 443, 443});
 }
 
 TEST(FortranFields, FloatsAreTheDoublesRounded) {
@@ -92,7 +99,7 @@ TEST(FortranFields, SaysWhatIsMissingOrWrong) {
         refusal{wrong_shape, ILAW_INVALID_PARAMETER,
                 "parameter 'friction': a table has one value per point of its axis"},
         refusal{wrong_pairs, ILAW_INVALID_PARAMETER, "parameter 'friction': pairs (time, value)"},
-        refusal{by_number, ILAW_INVALID_PARAMETER, "'partition'"},
+        refusal{wrong_axis, ILAW_INVALID_PARAMETER, "'partition'"},
         refusal{other_kind, ILAW_INVALID_ARGUMENT, ""}}) {
     const nodes<double> found = in_doubles(wanted.way);
     EXPECT_EQ(found.code, wanted.code) << "way " << wanted.way << ": " << found.message;

@@ -37,7 +37,7 @@ class NotCopied:
 
 
 class Handle(NotCopied):
-    """An object of C, destroyed with the last Python object that refers to it. Copies of its owners share it."""
+    """An object of C, destroyed with the last Python object that refers to it. Copies and deep copies of its owners share it."""
 
     def __init__(self, pointer: ctypes.c_void_p, destroy: Callable[[Any], None]) -> None:
         # The function is kept: modules are empty when the interpreter ends.
@@ -45,9 +45,6 @@ class Handle(NotCopied):
 
     def __del__(self) -> None:
         self._destroy(self._as_parameter_)
-
-    def __copy__(self) -> Handle:
-        return self
 
     def __deepcopy__(self, _memo: Any) -> Handle:
         return self
