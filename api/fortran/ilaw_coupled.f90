@@ -11,16 +11,6 @@ module ilaw_coupled
   use ilaw_coupled_abi
   implicit none
 
-  abstract interface
-    ! sum_bodies: values has `count` values per body; largest and sum: `count` in all.
-    subroutine ilaw_exchanger(context, values, count) bind(c)
-      import :: c_ptr, c_double, c_int64_t
-      type(c_ptr), value :: context
-      real(c_double), intent(inout) :: values(*)
-      integer(c_int64_t), value :: count
-    end subroutine
-  end interface
-
 contains
 
   ! The contacts of one law. The batch has the arrays of the contacts (gap, normal, state, impulse, ...) and

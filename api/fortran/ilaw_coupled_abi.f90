@@ -72,6 +72,21 @@ module ilaw_coupled_abi
     real(c_double) :: stable_velocity_step = 0
   end type
 
+  abstract interface
+    subroutine ilaw_sum_bodies_function(context, values, components) bind(c)
+      import :: c_double, c_int64_t, c_ptr
+      type(c_ptr), value :: context
+      real(c_double), intent(inout) :: values(*)
+      integer(c_int64_t), value :: components
+    end subroutine
+    subroutine ilaw_reduce_function(context, values, count) bind(c)
+      import :: c_double, c_int64_t, c_ptr
+      type(c_ptr), value :: context
+      real(c_double), intent(inout) :: values(*)
+      integer(c_int64_t), value :: count
+    end subroutine
+  end interface
+
   interface
     type(c_ptr) function ilaw_coupled_create() bind(c, name='ilaw_coupled_create')
       import :: c_ptr

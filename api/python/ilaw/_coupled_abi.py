@@ -47,14 +47,18 @@ class contacts(ctypes.Structure):
     ]
 
 
+sum_bodies_function = CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)
+reduce_function = CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)
+
+
 class exchange(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
         ("context", c_void_p),
-        ("sum_bodies", CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)),
-        ("largest", CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)),
-        ("sum", CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)),
+        ("sum_bodies", sum_bodies_function),
+        ("largest", reduce_function),
+        ("sum", reduce_function),
     ]
 
 

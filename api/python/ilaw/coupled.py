@@ -263,11 +263,12 @@ class _Calls:
     def __init__(self, exchange: Exchange, bodies: int) -> None:
         self.raised: BaseException | None = None
         self.struct = sized(_coupled_abi.exchange)
-        self.struct.sum_bodies = self._call(exchange.sum_bodies, lambda components: (bodies, components))
-        self.struct.largest = self._call(exchange.largest, lambda count: (count,))
-        self.struct.sum = self._call(exchange.sum, lambda count: (count,))
+        sum_bodies, reduce = _coupled_abi.sum_bodies_function, _coupled_abi.reduce_function
+        self.struct.sum_bodies = self._call(sum_bodies, exchange.sum_bodies, lambda components: (bodies, components))
+        self.struct.largest = self._call(reduce, exchange.largest, lambda count: (count,))
+        self.struct.sum = self._call(reduce, exchange.sum, lambda count: (count,))
 
-    def _call(self, function: Any, shape: Any) -> Any:
+    def _call(self, kind: Any, function: Any, shape: Any) -> Any:
         def call(_context: Any, values: Any, count: int) -> None:
             try:
                 if self.raised is None:
@@ -277,7 +278,7 @@ class _Calls:
             except BaseException as raised:  # C cannot pass it on
                 self.raised = raised
 
-        return dict(_coupled_abi.exchange._fields_)["sum"](call)  # the three have one type
+        return kind(call)
 
 
 class Solver(NotCopied):

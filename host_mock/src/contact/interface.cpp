@@ -76,8 +76,7 @@ int Interface::contact_index_of(int node_index, const Dofs& u) {
   const std::size_t k = at(node_index);
   if (const int found = contacts_.index_of(k); found >= 0) return found;
   contacts_.add({node_index, 1.0 / model_.mass()[setup_.nodes[k] * dimension_], setup_.areas[k],
-                 parameters_of(node_index), first_state(node_index, u), law_.acts_at_distance(),
-                 axes_turn()});
+                 parameters_of(node_index), first_state(node_index, u), !law_.may_skip_fresh(), axes_turn()});
   if (const std::size_t chunk = k / contact_chunk; chunk < far_.size()) far_[chunk] = {};
   return contacts_.index_of(k);
 }
@@ -85,7 +84,7 @@ int Interface::contact_index_of(int node_index, const Dofs& u) {
 bool Interface::axes_turn() const { return !axes_.empty() && !setup_.counterpart->keeps_normal(); }
 
 bool Interface::may_skip() const {
-  if (setup_.keeps_all_active || (law_.acts_at_distance() && !law_.rests())) return false;
+  if (setup_.keeps_all_active || (!law_.may_skip_fresh() && !law_.may_skip_free())) return false;
   return !axes_turn();
 }
 
@@ -126,7 +125,7 @@ void Interface::refresh_near(const StepView& step) {
 void Interface::look_at(std::size_t chunk, const StepView& step) {
   const std::size_t first = chunk * contact_chunk,
                     count = std::min<std::size_t>(contact_chunk, is_near_.size() - first);
-  const bool skips = may_skip(), may_be_awake = info().state_size > 0 || law_.acts_at_distance();
+  const bool skips = may_skip(), may_be_awake = info().state_size > 0 || !law_.may_skip_fresh();
   std::array<double, contact_chunk> bounds;
   if (skips)
     setup_.counterpart->gap_bounds(static_cast<int>(first), static_cast<int>(count), step.u, step.time,
@@ -136,7 +135,7 @@ void Interface::look_at(std::size_t chunk, const StepView& step) {
   for (std::size_t i = 0; i < count; ++i) {
     const int contact_index = may_be_awake ? contacts_.index_of(first + i) : -1;
     const bool awake =
-        contact_index >= 0 ? contacts_.must_be_evaluated(at(contact_index)) : law_.acts_at_distance();
+        contact_index >= 0 ? contacts_.must_be_evaluated(at(contact_index)) : !law_.may_skip_fresh();
     const double gap = skips ? bounds[i] - setup_.gap_offset : 0.0;
     const bool is_near = awake || !skips || proximity_.may_touch(gap);
     is_near_[first + i] = is_near ? 1 : 0;
@@ -333,7 +332,7 @@ void Interface::accept(const StepView& step, const Dofs& v) {
     if (info().state_size == 0) continue;
     const bool in_reach = is_in_reach(gap(contact_index), normal(contact_index).data(),
                                       v_free(contact_index).data(), dimension_, step.dt);
-    contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach, law_.rests());
+    contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach, law_.may_skip_free());
     contacts_.accept_state(contact_index);
   }
   if (!show_fault(sums_)) return;

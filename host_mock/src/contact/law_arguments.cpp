@@ -15,11 +15,7 @@ class ArgumentList {
   explicit ArgumentList(const Arguments& given) {
     for (const auto& [name, value] : given.numbers) add(ILAW_VALUE_NUMBER, name).number = value;
     for (const auto& [name, text] : given.texts) add(ILAW_VALUE_TEXT, name).text = text.c_str();
-    for (const auto& [name, pairs] : given.tables) {
-      ilaw_argument& argument = add(ILAW_VALUE_TABLE, name);
-      argument.values = pairs.data();
-      argument.count = pairs.size() / 2;
-    }
+    for (const auto& [name, table] : given.tables) add_table(name, table);
     for (const auto& [name, values] : given.per_node)
       per_node_.emplace_back(&add(ILAW_VALUE_PER_NODE, name), &values);
     for (const ilaw_argument& argument : arguments_) pointers_.push_back(&argument);
@@ -69,6 +65,20 @@ class ArgumentList {
     return argument;
   }
 
+  void add_table(const std::string& name, const ArgumentTable& table) {
+    std::vector<const ilaw_axis*>& pointers = axis_pointers_.emplace_back();
+    for (const ArgumentTable::Axis& axis : table.axes) {
+      axes_.push_back({sizeof(ilaw_axis), 0, axis.name.c_str(), axis.points.data(), axis.points.size()});
+      pointers.push_back(&axes_.back());
+    }
+    ilaw_argument& argument = add(ILAW_VALUE_TABLE, name);
+    argument.values = table.values.data();
+    argument.axes = pointers.data();
+    argument.axis_count = static_cast<std::uint32_t>(pointers.size());
+  }
+
+  std::deque<ilaw_axis> axes_;
+  std::deque<std::vector<const ilaw_axis*>> axis_pointers_;
   std::deque<ilaw_argument> arguments_;
   std::vector<std::pair<ilaw_argument*, const std::vector<double>*>> per_node_;
   std::vector<const ilaw_argument*> pointers_;
@@ -86,7 +96,7 @@ std::string meant_by(const std::string& given, const ilaw_law* law) {
 void try_create(const ilaw_law& law, const ilaw_setup& setup) {
   char message[1024] = "";
   ilaw_instance* made = nullptr;
-  const std::int32_t code = law.create(&setup, &made, message, sizeof message);
+  const std::int32_t code = law.create(law.id, &setup, &made, message, sizeof message);
   if (code != ILAW_OK) throw ilaw::error(code, message);
   law.destroy(made);
 }
@@ -121,7 +131,8 @@ ilaw::interface create_law(const std::string& law, const Arguments& given, const
   setup.dimension = static_cast<std::uint32_t>(dimension);
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
   setup.frame = ILAW_FRAME_GLOBAL;
-  setup.tangent_given = tangent.size() > 0 ? 1 : 0;
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
+  setup.has_tangent = tangent.size() > 0 ? 1 : 0;
   return create_law(law, given, setup, library);
 }
 

@@ -15,11 +15,21 @@
 
 namespace ilaw::host {
 
+// A parameter over one to three axes; the last axis varies fastest in values.
+struct ArgumentTable {
+  struct Axis {
+    std::string name;
+    std::vector<double> points;
+  };
+  std::vector<Axis> axes;
+  std::vector<double> values;
+};
+
 // Parameters of a law as a scene gives them.
 struct Arguments {
   std::map<std::string, double> numbers;
   std::map<std::string, std::string> texts;
-  std::map<std::string, std::vector<double>> tables;    // pairs (time, value)
+  std::map<std::string, ArgumentTable> tables;
   std::map<std::string, std::vector<double>> per_node;  // one value per node of the interface
 };
 
