@@ -24,6 +24,7 @@ function(ilaw_add_plugin name source)
   set_target_properties(${name} PROPERTIES
     PREFIX "" SUFFIX ".so"
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/ilaw)
+  ilaw_describe_plugin(${name})
 endfunction()
 
 # The source at one level, as an object whose only global symbol is the function that gives its walks. All else is
