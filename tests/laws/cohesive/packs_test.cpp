@@ -189,7 +189,7 @@ double give_their_bits_in_any_company(double coupled) {
     all += static_cast<std::int64_t>(count);
     ilaw_batch c = apart.batch();
     const std::vector<double> strength(count, parameters.numbers.at("strength"));
-    const ilaw_input values{strength.data(), 1, 1};
+    const ilaw_input values = ilaw::input(strength.data(), 1, 1);
     c.per_node_parameters = &values;
     static_cast<void>(per_node.evaluate(c));
     for (std::size_t i = 0; i < count; ++i) {
