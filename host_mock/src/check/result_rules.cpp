@@ -252,7 +252,7 @@ std::vector<Rule> result_rules() {
        Needs::motion, amounts_zero},
       {"heat-dissipated",
        "The amounts heat and counterpart_heat are not negative, and together at most what was dissipated.",
-       "abi.md, Fields and amounts", Needs::motion, heat_dissipated},
+       "abi.md, Tables, fields and amounts", Needs::motion, heat_dissipated},
       {"step-limits", "Any positive step is served; a bond that may soften may refuse one that is too large.",
        "ilaw.h, ilaw_batch.velocity_step", Needs::motion, step_limits}};
 }
