@@ -2,6 +2,7 @@
 // frame.
 #pragma once
 
+#include <ilaw/arrays.hpp>
 #include <ilaw/loader.hpp>
 
 #include <gtest/gtest.h>
@@ -53,18 +54,15 @@ class SetupBuilder {
       a.number = value;
     }
     for (const auto& [name, text] : given_.texts) add(name, ILAW_VALUE_TEXT).text = text.c_str();
-    for (const auto& [name, pairs] : given_.tables) {
-      ilaw_argument& a = add(name, ILAW_VALUE_TABLE);
-      a.values = pairs.data();
-      a.count = pairs.size() / 2;
-    }
+    for (const auto& [name, pairs] : given_.tables) add_time_table(name, pairs);
     for (const std::string& name : given_.per_node) add(name, ILAW_VALUE_PER_NODE);
     for (const ilaw_argument& a : arguments_) pointers_.push_back(&a);
     setup.struct_size = sizeof setup;
     setup.dimension = dimension;
     setup.delassus_form = form;
     setup.frame = frame;
-    setup.tangent_given = tangent;
+    setup.numbers = ILAW_NUMBERS_DOUBLE;
+    setup.has_tangent = tangent;
     setup.arguments = pointers_.data();
     setup.argument_count = static_cast<std::uint32_t>(pointers_.size());
   }
@@ -81,7 +79,28 @@ class SetupBuilder {
     a.name = name.c_str();
     return a;
   }
+  // Pairs (time, value).
+  void add_time_table(const std::string& name, const std::vector<double>& pairs) {
+    TimeTable& table = tables_.emplace_back();
+    for (std::size_t k = 0; k + 1 < pairs.size(); k += 2) {
+      table.times.push_back(pairs[k]);
+      table.values.push_back(pairs[k + 1]);
+    }
+    table.axis = {sizeof(ilaw_axis), 0, "time", table.times.data(), table.times.size()};
+    table.axes = &table.axis;
+    ilaw_argument& a = add(name, ILAW_VALUE_TABLE);
+    a.values = table.values.data();
+    a.axes = &table.axes;
+    a.axis_count = 1;
+  }
+
+  struct TimeTable {
+    std::vector<double> times, values;
+    ilaw_axis axis;
+    const ilaw_axis* axes;
+  };
   Parameters given_;
+  std::deque<TimeTable> tables_;
   std::deque<ilaw_argument> arguments_;
   std::vector<const ilaw_argument*> pointers_;
 };
@@ -117,7 +136,7 @@ struct NodeRun {
 
   void initialise() {
     ilaw_batch b = batch();
-    b.state_out = {state.data(), 0, 1};
+    b.state_out = ilaw::output(state.data(), 0, 1);
     ASSERT_EQ(interface.initialise(b), ILAW_OK);
   }
 
@@ -125,11 +144,11 @@ struct NodeRun {
   std::int32_t step(const Vector& free_velocity) {
     v_free = free_velocity;
     ilaw_batch b = batch();
-    b.state_in = {state.data(), 0, 1};
-    b.state_out = {state.data(), 0, 1};
-    b.impulse = {r.data(), 0, 1};
-    b.velocity = {v.data(), 0, 1};
-    b.energy = {energy.data(), 0, 1};
+    b.state_in = ilaw::input(state.data(), 0, 1);
+    b.state_out = ilaw::output(state.data(), 0, 1);
+    b.impulse = ilaw::output(r.data(), 0, 1);
+    b.velocity = ilaw::output(v.data(), 0, 1);
+    b.energy = ilaw::output(energy.data(), 0, 1);
     b.status = &status;
     b.status_stride = 1;
     report.struct_size = sizeof report;
@@ -157,11 +176,11 @@ struct NodeRun {
     b.time = time;
     b.velocity_step = dt;
     b.position_step = position_dt.value_or(dt);
-    b.v_free = {v_free.data(), 0, 1};
-    b.delassus = {h.data(), 0, 1};
-    b.gap = {&gap, 0, 1};
-    b.v_previous = {v_previous.data(), 0, 1};
-    b.area = {&area, 0, 1};
+    b.v_free = ilaw::input(v_free.data(), 0, 1);
+    b.delassus = ilaw::input(h.data(), 0, 1);
+    b.gap = ilaw::input(&gap, 0, 1);
+    b.v_previous = ilaw::input(v_previous.data(), 0, 1);
+    b.area = ilaw::input(&area, 0, 1);
     return b;
   }
 

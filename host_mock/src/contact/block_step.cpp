@@ -205,6 +205,7 @@ class BlockWalk {
     batch.status = status_;
     batch.status_stride = 1;
     add_parameters(batch);
+    add_amounts(batch);
     return batch;
   }
 
@@ -216,6 +217,20 @@ class BlockWalk {
     for (std::size_t p = 0; p < count; ++p)
       parameters_[p] = ilaw::input(column(at_.parameters[p], parameter_room_.data() + p * block_size), 1, 0);
     batch.per_node_parameters = parameters_.data();
+  }
+
+  void add_amounts(ilaw_batch& batch) {
+    const std::size_t count = step_.gets_energies ? step_.law.info().amount_count : 0;
+    if (count == 0) return;
+    amount_room_.resize(count * block_size);
+    amounts_.resize(count);
+    for (std::size_t k = 0; k < count; ++k)
+      amounts_[k] = ilaw::output(amount_room_.data() + k * block_size, 1, 0);
+    batch.amounts = amounts_.data();
+  }
+  void sum_amounts(ContactSums& sums) const {
+    for (std::size_t k = 0; k < amounts_.size(); ++k)
+      for (std::ptrdiff_t i = 0; i < count_; ++i) sums.add_amount(k, amounts_[k].values[i]);
   }
 
   // ---- the law, and what follows from it ----
@@ -323,6 +338,7 @@ class BlockWalk {
   }
 
   void add_dissipation(ContactSums& sums) const {
+    sum_amounts(sums);
     for (std::size_t k = 0; step_.gets_energies && k < ILAW_ENERGY_STORED; ++k)
       sums.add_dissipation(k, &energy_[k * block_size], count_);
   }
@@ -366,6 +382,8 @@ class BlockWalk {
   std::unique_ptr<double[]> state_room_;
   std::vector<double> parameter_room_;
   std::vector<ilaw_input> parameters_;
+  std::vector<double> amount_room_;
+  std::vector<ilaw_output> amounts_;
 };
 
 template <int D, Meets What>

@@ -24,6 +24,7 @@ ContactArrays::ContactArrays(int dimension, const ilaw_instance_info& info, std:
                              bool partnered)
     : state(info.state_size),
       parameters(info.per_node_parameter_count),
+      amounts(info.amount_count),
       dimension_(dimension),
       state_size_(info.state_size),
       reads_area_((info.inputs & ILAW_INPUT_AREA) != 0),
@@ -59,6 +60,7 @@ void ContactArrays::make_room() {
     vectors->resize(count() * static_cast<std::size_t>(dimension_));
   gap.resize(count());
   energy.resize(count() * ILAW_ENERGY_COUNT);
+  for (std::vector<double>& one : amounts) one.resize(count());
 }
 
 void ContactArrays::accept_state(int contact) { state.take(static_cast<std::size_t>(contact), next_state_); }
@@ -79,6 +81,9 @@ ilaw_batch ContactArrays::repeated_batch(const Vector& tangent, double time, dou
   batch.state_out = ilaw::output(next_state_.first(0), 1, next_state_.stride());
   batch.impulse = ilaw::output(impulse.data(), dimension_, 1);
   batch.energy = ilaw::output(energy.data(), ILAW_ENERGY_COUNT, 1);
+  amount_outputs_.clear();
+  for (std::vector<double>& one : amounts) amount_outputs_.push_back(ilaw::output(one.data(), 1, 0));
+  batch.amounts = amount_outputs_.empty() ? nullptr : amount_outputs_.data();
   batch.status = status.data();
   batch.status_stride = 1;
   return batch;

@@ -42,7 +42,8 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       contacts_(dimension_, law_.info(), setup_.nodes.size(), !setup_.counterpart->partners().empty()),
       obstacle_velocity_(Vector::Zero(dimension_)),
       obstacle_velocity_before_(obstacle_velocity_),
-      tangent_(setup_.tangent) {}
+      tangent_(setup_.tangent),
+      amounts_(law_.info().amount_count) {}
 
 // With what of the node limits the step, where equations have more than one solution.
 void Interface::check(const Refusal& refusal, double dt) const {
@@ -216,6 +217,11 @@ void Interface::solve(const StepView& step, Dofs& v) {
     sums_.add(outcomes_[c].sums);
   }
   if (refusal.code != ILAW_OK) check(refusal, step.dt);
+  total_amounts();
+}
+
+void Interface::total_amounts() {
+  for (std::size_t k = 0; k < sums_.amounts.size(); ++k) amounts_[k] += sums_.amounts[k];
 }
 
 // ---- a step where contacts share nodes ------------------------------------------------------------------
@@ -270,7 +276,7 @@ void Interface::gather(const ContactList& contacts, const Dofs& v, const StepVie
 
 void Interface::evaluate(const ContactList& contacts, const StepView& step) {
   ilaw_batch batch = contacts_.repeated_batch(tangent_, step.time, step.dt);
-  if (!asks_energies_) batch.energy = {};
+  if (!asks_energies_) batch.energy = {}, batch.amounts = nullptr;
   const auto count = static_cast<std::ptrdiff_t>(contacts.size());
   outcomes_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), {});
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
@@ -329,12 +335,14 @@ void Interface::accept(const StepView& step, const Dofs& v) {
     sums_.penetration = std::max(sums_.penetration, -gap(contact_index));
     ++sums_.statuses[contacts_.status[k]];
     sums_.add_energy(&contacts_.energy[k * ILAW_ENERGY_COUNT]);
+    for (std::size_t a = 0; a < contacts_.amounts.size(); ++a) sums_.add_amount(a, contacts_.amounts[a][k]);
     if (info().state_size == 0) continue;
     const bool in_reach = is_in_reach(gap(contact_index), normal(contact_index).data(),
                                       v_free(contact_index).data(), dimension_, step.dt);
     contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach, law_.may_skip_free());
     contacts_.accept_state(contact_index);
   }
+  total_amounts();
   if (!show_fault(sums_)) return;
   for (const std::int32_t contact_index : active())
     if (const char* fault =

@@ -28,7 +28,7 @@ std::vector<ilaw_input> inputs_of(const std::vector<double>& parameters) {
 std::vector<double> Interface::parameters_of(int node_index) const {
   std::vector<double> parameters;
   for (std::size_t p = 0; p < info().per_node_parameter_count; ++p)
-    parameters.push_back(setup_.arguments.per_node.at(info().per_node_parameters[p])[at(node_index)]);
+    parameters.push_back(setup_.arguments.values_of(info().per_node_parameters[p])[at(node_index)]);
   return parameters;
 }
 
@@ -90,11 +90,18 @@ int Interface::status_at_start(int node_index, const Dofs& u) const {
   return law_.evaluate(batch).code == ILAW_OK ? status : int{ILAW_FREE};
 }
 
+void Interface::save(std::ostream& out) const {
+  contacts_.save(out);
+  write_sized(out, amounts_);
+}
+
 void Interface::load(std::istream& in, const Dofs& u) {
   const std::vector<int> nodes = ContactArrays::load_nodes(in, setup_.nodes.size());
   for (const int node_index : nodes) contact_index_of(node_index, u);
   if (contacts_.node_index != nodes) refuse_damaged();
   contacts_.load_state(in);
+  amounts_ = read_sized<double>(in, info().amount_count);
+  if (amounts_.size() != info().amount_count) refuse_damaged();
   far_.clear();
   proximity_.invalidate();
 }

@@ -12,12 +12,15 @@ namespace {
 // The arguments of create, with the pointers that it wants; deque keeps addresses while growing.
 class ArgumentList {
  public:
-  explicit ArgumentList(const Arguments& given) {
+  ArgumentList(const Arguments& given, const ilaw_law* law) {
     for (const auto& [name, value] : given.numbers) add(ILAW_VALUE_NUMBER, name).number = value;
     for (const auto& [name, text] : given.texts) add(ILAW_VALUE_TEXT, name).text = text.c_str();
     for (const auto& [name, table] : given.tables) add_table(name, table);
     for (const auto& [name, values] : given.per_node)
       per_node_.emplace_back(&add(ILAW_VALUE_PER_NODE, name), &values);
+    for (const auto& [name, values] : given.fields)
+      if (has_field(law, name) && !given.gives(name))
+        per_node_.emplace_back(&add(ILAW_VALUE_PER_NODE, name), &values);
     for (const ilaw_argument& argument : arguments_) pointers_.push_back(&argument);
   }
 
@@ -56,6 +59,13 @@ class ArgumentList {
   }
 
  private:
+  static bool has_field(const ilaw_law* law, const std::string& name) {
+    constexpr ilaw_parameter_flags field = ILAW_PARAMETER_IS_FIELD | ILAW_PARAMETER_ALLOWS_PER_NODE;
+    for (std::uint32_t k = 0; law && k < law->parameter_count; ++k)
+      if (name == law->parameters[k]->name) return (law->parameters[k]->flags & field) == field;
+    return false;
+  }
+
   ilaw_argument& add(std::uint32_t kind, const std::string& name) {
     ilaw_argument& argument = arguments_.emplace_back();
     argument = {};
@@ -105,7 +115,7 @@ void try_create(const ilaw_law& law, const ilaw_setup& setup) {
 
 ilaw::interface create_law(const std::string& law, const Arguments& given, ilaw_setup setup,
                            const ilaw::library& library) {
-  ArgumentList arguments(given);
+  ArgumentList arguments(given, library.law(law));
   setup.arguments = arguments.pointers().data();
   setup.argument_count = static_cast<std::uint32_t>(arguments.pointers().size());
   std::optional<std::size_t> node_index;

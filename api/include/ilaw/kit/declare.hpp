@@ -22,11 +22,11 @@
 //                                                         at this node, whatever its state; see ilaw_report
 //   template <class Run> void in_form(Run) const;         a shorter step for these parameters, see below
 //   const char* conflict() const;                         why parameters do not go together, or null
-//   static const void* extension(const char* name);       see ilaw_law (default: ilaw/profile.h alone)
-//   template <class Node> void initialise(Node&) const;   first state (default: zeros)
-//   static constexpr history_card history_variable;       declares a history, of
-//   std::int64_t history_size() const;                    doubles, which step reads as node.history and
-//   template <class Node> void record(const Node&, history) const   writes once the step is accepted
+//   static const void* extension(const char* name);       see ilaw_law (default: ilaw/ext/draft/profile.h
+//   alone) template <class Node> void initialise(Node&) const;   first state (default: zeros) static
+//   constexpr history_card history_variable;       declares a history, of std::int64_t history_size() const;
+//   doubles, which step reads as node.history and template <class Node> void record(const Node&, history)
+//   const   writes once the step is accepted
 // A history that is a window is read and written for the law, which then runs in vector code (window.hpp):
 //   window_in_step window_in(step_interval) const;        gives node.earlier
 //   static bool adds_to_window(double status);            whether a step that gave this status is taken in,
