@@ -286,6 +286,11 @@ module ilaw_abi
     type(c_ptr) function ilaw_entry_function() bind(c)
       import :: c_ptr
     end function
+    integer(c_int32_t) function ilaw_visit_function(path, context) bind(c)
+      import :: c_int32_t, c_ptr
+      type(c_ptr), value :: path
+      type(c_ptr), value :: context
+    end function
   end interface
 
   interface
@@ -305,6 +310,16 @@ module ilaw_abi
       type(c_ptr), value :: message
       integer(c_size_t), value :: message_size
     end function
+    integer(c_int32_t) function ilaw_library_read_description(name_or_path, buffer, size, length, message, message_size) &
+      bind(c, name='ilaw_library_read_description')
+      import :: c_int32_t, c_ptr, c_size_t
+      type(c_ptr), value :: name_or_path
+      type(c_ptr), value :: buffer
+      integer(c_size_t), value :: size
+      integer(c_size_t), intent(inout) :: length(*)
+      type(c_ptr), value :: message
+      integer(c_size_t), value :: message_size
+    end function
     subroutine ilaw_library_close(library) bind(c, name='ilaw_library_close')
       import :: c_ptr
       type(c_ptr), value :: library
@@ -312,6 +327,13 @@ module ilaw_abi
     type(c_ptr) function ilaw_library_plugin(library) bind(c, name='ilaw_library_plugin')
       import :: c_ptr
       type(c_ptr), value :: library
+    end function
+    integer(c_size_t) function ilaw_library_describe(library, buffer, size) &
+      bind(c, name='ilaw_library_describe')
+      import :: c_ptr, c_size_t
+      type(c_ptr), value :: library
+      type(c_ptr), value :: buffer
+      integer(c_size_t), value :: size
     end function
     type(c_ptr) function ilaw_library_path(library) bind(c, name='ilaw_library_path')
       import :: c_ptr

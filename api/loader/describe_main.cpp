@@ -6,6 +6,8 @@
 
 #include <ilaw/loader.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <cstdio>
 #include <exception>
 #include <stdexcept>

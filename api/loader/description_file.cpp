@@ -6,6 +6,8 @@
 #include "readable.hpp"
 #include "refusal.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -33,28 +35,26 @@ std::string content_of(const std::string& file, const file_status& status) {
   return text;
 }
 
-// Builds the value as nlohmann reads it. json::parse would do, but for a newer C++ library than the loader
-// may need, and without a limit of depth.
+// Builds the value as nlohmann reads it.
 class builder : public nlohmann::json_sax<json> {
  public:
   explicit builder(const std::string& file) : file_(file) {}
-  json take() { return std::move(root_); }
+  json_value take() { return std::move(root_); }
 
-  bool null() override { return add(json()); }
-  bool boolean(bool value) override { return add(json(value)); }
-  bool number_integer(number_integer_t value) override { return add(json(value)); }
-  bool number_unsigned(number_unsigned_t value) override { return add(json(value)); }
-  bool number_float(number_float_t value, const string_t&) override { return add(json(value)); }
-  bool string(string_t& value) override { return add(json(std::move(value))); }
-  bool binary(binary_t&) override { return false; }
-  bool start_object(std::size_t) override { return start(json(json::value_t::object)); }
-  bool start_array(std::size_t) override { return start(json(json::value_t::array)); }
-  bool end_object() override { return end(); }
-  bool end_array() override { return end(); }
-  bool key(string_t& value) override {
-    key_ = std::move(value);
-    return true;
+  bool null() override { return add({}), true; }
+  bool boolean(bool truth) override { return add({json_value::boolean, truth, 0.0, {}, {}, {}}), true; }
+  bool number_integer(number_integer_t value) override { return add_number(static_cast<double>(value)); }
+  bool number_unsigned(number_unsigned_t value) override { return add_number(static_cast<double>(value)); }
+  bool number_float(number_float_t value, const string_t&) override { return add_number(value); }
+  bool string(string_t& letters) override {
+    return add({json_value::text, false, 0.0, std::move(letters), {}, {}}), true;
   }
+  bool binary(binary_t&) override { return false; }  // not in JSON
+  bool start_object(std::size_t) override { return start(json_value::object); }
+  bool start_array(std::size_t) override { return start(json_value::list); }
+  bool end_object() override { return open_.pop_back(), true; }
+  bool end_array() override { return open_.pop_back(), true; }
+  bool key(string_t& name) override { return open_.back()->keys.push_back(std::move(name)), true; }
   bool parse_error(std::size_t byte, const std::string&, const json::exception& error) override {
     if (dynamic_cast<const json::out_of_range*>(&error))
       refuse(file_, "a number beyond the range of double, expected infinity as \"inf\"");
@@ -62,58 +62,44 @@ class builder : public nlohmann::json_sax<json> {
   }
 
  private:
-  json& place(json&& value) {
-    if (open_.empty()) return root_ = std::move(value);
-    json& parent = *open_.back();
-    if (parent.is_object()) return parent[key_] = std::move(value);
-    parent.push_back(std::move(value));
-    return parent.back();
+  json_value& add(json_value&& made) {
+    if (open_.empty()) return root_ = std::move(made);
+    return open_.back()->elements.emplace_back(std::move(made));
   }
-  bool add(json&& value) {
-    place(std::move(value));
-    return true;
-  }
-  bool start(json&& value) {
+  bool add_number(double value) { return add({json_value::number, false, value, {}, {}, {}}), true; }
+  bool start(json_value::kind type) {
     if (open_.size() == max_depth)
       refuse(file_, "nested deeper than " + std::to_string(max_depth) + " levels, expected a description");
-    open_.push_back(&place(std::move(value)));
-    return true;
-  }
-  bool end() {
-    open_.pop_back();
+    json_value made;
+    made.type = type;
+    open_.push_back(&add(std::move(made)));
     return true;
   }
 
   const std::string& file_;
-  json root_;
-  std::vector<json*> open_;  // lists and objects that are not complete
-  std::string key_;
+  json_value root_;
+  std::vector<json_value*> open_;  // lists and objects that are not complete
 };
 
-json parsed(const std::string& file, const std::string& text) {
+json_value parsed(const std::string& file, const std::string& text) {
   builder value(file);
   json::sax_parse(text, &value);
   return value.take();
 }
 
 // Texts may be printed: UTF-8 without control characters; a doc may have several lines.
-void check_texts(const json& value, bool lines_allowed, const std::string& file) {
-  if (value.is_string() && !clean_text(value.get_ref<const std::string&>(), lines_allowed))
-    refuse(file, "a text has control characters");
-  if (value.is_object()) {
-    for (const auto& [key, member] : value.items()) {
-      if (!clean_text(key, false)) refuse(file, "a name has control characters");
-      check_texts(member, key == "doc", file);
-    }
-  } else if (value.is_array()) {
-    for (const json& element : value) check_texts(element, false, file);
-  }
+void check_texts(const json_value& found, bool lines_allowed, const std::string& file) {
+  if (!clean_text(found.letters, lines_allowed)) refuse(file, "a text has control characters");
+  for (const std::string& key : found.keys)
+    if (!clean_text(key, false)) refuse(file, "a name has control characters");
+  for (std::size_t i = 0; i < found.elements.size(); ++i)
+    check_texts(found.elements[i], found.type == json_value::object && found.keys[i] == "doc", file);
 }
 
 // Every member of a description, each list with one element: 0 stands for a number or "inf", null for any
 // text, number or null.
-const json& model() {
-  static const json& made = *new json(parsed("", R"({
+const json_value& model() {
+  static const json_value& made = *new json_value(parsed("", R"({
     "format": "", "name": "", "version": "", "vendor": "", "licence": "", "abi": [0],
     "laws": [{
       "id": "", "title": "", "doc": "", "references": [""], "dimensions": [""], "delassus_forms": [""],
@@ -126,88 +112,122 @@ const json& model() {
   return made;
 }
 
-bool is_infinity(const json& value) {
-  if (!value.is_string()) return false;
-  const auto& text = value.get_ref<const std::string&>();
-  return text == "inf" || text == "-inf";
+const char* name_of(json_value::kind type) {
+  static constexpr const char* all[] = {"text or number", "boolean", "number", "text", "list", "object"};
+  return all[type];
 }
 
-bool is_like(const json& found, const json& model) {
-  if (model.is_null()) return found.is_primitive() && !found.is_boolean();
-  if (model.is_number()) return found.is_number() || is_infinity(found);
-  return found.type() == model.type();
+bool is_like(const json_value& found, const json_value& model) {
+  const bool is_number = found.type == json_value::number;
+  if (model.type == json_value::null)
+    return is_number || found.type == json_value::text || found.type == json_value::null;
+  if (model.type == json_value::number) return is_number || found.is("inf") || found.is("-inf");
+  return found.type == model.type;
 }
 
-void check_like(const json& found, const json& model, const std::string& at, const std::string& file) {
-  if (!is_like(found, model))
-    refuse(file, at + " is a JSON " + found.type_name() + ", expected " +
-                     (model.is_null() ? "a text or number" : model.type_name()));
-  if (model.is_array())
-    for (std::size_t i = 0; i < found.size(); ++i)
-      check_like(found[i], model[0], at + "/" + std::to_string(i), file);
-  if (!model.is_object()) return;
-  for (const auto& [key, member] : model.items()) {
-    if (!found.contains(key)) refuse(file, at + "/" + key + " is missing");
-    check_like(found[key], member, at + "/" + key, file);
+// ---- comparison -----------------------------------------------------------------------------------------
+
+std::string shown(const json_value& found) {
+  constexpr std::size_t max_letters = 60;
+  switch (found.type) {
+    case json_value::null:
+      return "null";
+    case json_value::boolean:
+      return found.truth ? "true" : "false";
+    case json_value::number:
+      return number_text(found.value);
+    case json_value::text: {
+      const std::string text = quoted_text(found.letters);
+      return text.size() > max_letters ? text.substr(0, max_letters) + "..." : text;
+    }
+    case json_value::list:
+      return "a list of " + std::to_string(found.elements.size());
+    default:
+      return "an object";
   }
 }
 
-// ---- both -----------------------------------------------------------------------------------------------
-
-std::string shown(const json& value) {
-  constexpr std::size_t max_letters = 60;
-  if (value.is_structured()) return value.is_array() ? "a list" : "an object";
-  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
-  if (value.is_number()) return number_text(value.get<double>());
-  if (!value.is_string()) return "null";
-  const std::string text = quoted_text(value.get_ref<const std::string&>());
-  return text.size() > max_letters ? text.substr(0, max_letters) + "..." : text;
+void check_like(const json_value& found, const json_value& model, const std::string& at,
+                const std::string& file) {
+  if (!is_like(found, model)) refuse(file, at + " is " + shown(found) + ", expected " + name_of(model.type));
+  if (model.type == json_value::list)
+    for (std::size_t i = 0; i < found.elements.size(); ++i)
+      check_like(found.elements[i], model.elements[0], at + "/" + std::to_string(i), file);
+  for (std::size_t i = 0; i < model.keys.size(); ++i) {
+    const std::string inner = at + "/" + model.keys[i];
+    const json_value* member = found.find(model.keys[i]);
+    if (!member) refuse(file, inner + " is missing");
+    check_like(*member, model.elements[i], inner, file);
+  }
 }
 
 std::string unequal(const std::string& at, const std::string& found, const std::string& expected) {
   return (at.empty() ? "it" : at) + " is " + found + ", the library says " + expected;
 }
 
+std::string difference(const json_value& found, const json_value& library, bool newer, const std::string& at);
+
+std::string difference_of_objects(const json_value& found, const json_value& library, bool newer,
+                                  const std::string& at) {
+  for (std::size_t i = 0; i < library.keys.size(); ++i) {
+    const std::string inner = at + "/" + library.keys[i];
+    const json_value* member = found.find(library.keys[i]);
+    if (!member) return unequal(inner, "missing", shown(library.elements[i]));
+    if (std::string text = difference(*member, library.elements[i], newer, inner); !text.empty()) return text;
+  }
+  for (std::size_t i = 0; i < found.keys.size(); ++i)
+    if (!newer && !library.find(found.keys[i]))
+      return unequal(at + "/" + found.keys[i], shown(found.elements[i]), "nothing");
+  return "";
+}
+
+std::string difference_of_lists(const json_value& found, const json_value& library, bool newer,
+                                const std::string& at) {
+  // Names of bits: the loader leaves out those that it does not know.
+  if (newer && (library.elements.empty() || library.elements[0].type == json_value::text)) {
+    for (const json_value& name : library.elements)
+      if (std::none_of(found.elements.begin(), found.elements.end(),
+                       [&name](const json_value& other) { return other.is(name.letters); }))
+        return unequal(at, shown(found) + " without " + shown(name), shown(library));
+    return "";
+  }
+  for (std::size_t i = 0; i < library.elements.size() && i < found.elements.size(); ++i)
+    if (std::string text =
+            difference(found.elements[i], library.elements[i], newer, at + "/" + std::to_string(i));
+        !text.empty())
+      return text;
+  return found.elements.size() == library.elements.size() ? "" : unequal(at, shown(found), shown(library));
+}
+
 // The first difference; empty where there is none. newer: the library has a newer minor version than this
-// loader, and its file may have members, elements and names that the loader does not know.
-std::string difference(const json& found, const json& library, bool newer, const std::string& at) {
-  if (newer && library.is_null()) return "";
-  if (found.is_object() && library.is_object()) {
-    for (const auto& [key, member] : library.items()) {
-      if (!found.contains(key)) return unequal(at + "/" + key, "missing", shown(member));
-      std::string text = difference(found[key], member, newer, at + "/" + key);
-      if (!text.empty()) return text;
-    }
-    for (const auto& [key, member] : found.items())
-      if (!newer && !library.contains(key)) return unequal(at + "/" + key, shown(member), "nothing");
-    return "";
-  }
-  if (!found.is_array() || !library.is_array())
-    return found == library ? "" : unequal(at, shown(found), shown(library));
-  if (newer && !library.empty() && library[0].is_string()) {
-    for (const json& name : library)
-      if (std::find(found.begin(), found.end(), name) == found.end())
-        return unequal(at, shown(found), shown(library));
-    return "";
-  }
-  for (std::size_t i = 0; i < library.size() && i < found.size(); ++i) {
-    std::string text = difference(found[i], library[i], newer, at + "/" + std::to_string(i));
-    if (!text.empty()) return text;
-  }
-  if (found.size() == library.size() || (newer && library.empty())) return "";
-  return unequal(at, "a list of " + std::to_string(found.size()), std::to_string(library.size()));
+// loader, and its file may have members and names that the loader does not know.
+std::string difference(const json_value& found, const json_value& library, bool newer,
+                       const std::string& at) {
+  if (newer && library.type == json_value::null) return "";
+  if (found.type != library.type) return unequal(at, shown(found), shown(library));
+  if (found.type == json_value::object) return difference_of_objects(found, library, newer, at);
+  if (found.type == json_value::list) return difference_of_lists(found, library, newer, at);
+  const bool same =
+      found.truth == library.truth && found.value == library.value && found.letters == library.letters;
+  return same ? "" : unequal(at, shown(found), shown(library));
 }
 
 }  // namespace
+
+const json_value* json_value::find(std::string_view key) const {
+  for (std::size_t i = keys.size(); i-- > 0;)
+    if (keys[i] == key) return &elements[i];
+  return nullptr;
+}
 
 std::string description_path(const std::string& library) {
   return library.ends_with(".so") ? library.substr(0, library.size() - 3) + ".json" : "";
 }
 
 std::optional<description> parse_description(const std::string& file, const std::string& text) {
-  json found = parsed(file, text);
-  if (!found.is_object() || !found.contains("format") || found["format"] != json(description_format))
-    return {};
+  json_value found = parsed(file, text);
+  const json_value* format = found.find("format");
+  if (!format || !format->is(description_format)) return {};
   check_texts(found, false, file);
   return description{text, std::move(found)};
 }
@@ -219,12 +239,12 @@ std::optional<description> read_description(const std::string& library) {
   return parse_description(file, content_of(file, status));
 }
 
-void check_members(const json& found, const std::string& file) {
+void check_members(const json_value& found, const std::string& file) {
   check_like(found, model(), "", file);
-  if (found["abi"].size() != 2) refuse(file, "/abi has not two numbers");
+  if (found.find("abi")->elements.size() != 2) refuse(file, "/abi has not two numbers");
 }
 
-void check_same(const json& found, const ilaw_plugin& plugin, const std::string& library) {
+void check_same(const json_value& found, const ilaw_plugin& plugin, const std::string& library) {
   const std::string text =
       difference(found, parsed(library, description_text(plugin)), plugin.abi_minor > ILAW_ABI_MINOR, "");
   if (!text.empty())

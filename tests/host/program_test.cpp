@@ -347,15 +347,15 @@ TEST(Program, ListsAndDescribesLaws) {
   for (const auto& variable : postit["laws"][0]["state_variables"])
     EXPECT_EQ(!variable["flags"].empty(), variable["name"] == "window") << variable;
   const std::string text = run_program("describe postit").output;
-  for (const char* part :
-       {"tangent_influence", "\n  can: adhere\n", "history, internal"})
+  for (const char* part : {"tangent_influence", "\n  can: adhere\n", "history, internal"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
   const nlohmann::json coulomb =
       nlohmann::json::parse(run_program("describe coulomb --json").output)["laws"][0];
   for (const auto& parameter : coulomb["parameters"])
-    EXPECT_EQ(parameter["axes"], parameter["name"] == "activation" ? nlohmann::json::array()
-                                                                   : nlohmann::json::array({"time"}));
-  EXPECT_NE(run_program("describe coulomb").output.find("  or per_node, table over time  "), std::string::npos);
+    EXPECT_EQ(parameter["axes"],
+              parameter["name"] == "activation" ? nlohmann::json::array() : nlohmann::json::array({"time"}));
+  EXPECT_NE(run_program("describe coulomb").output.find("  or per_node, table over time  "),
+            std::string::npos);
 }
 
 // The constructor of this library ends the process that loads it.
@@ -379,8 +379,9 @@ TEST(Program, DescribesWithoutRunningTheLibrary) {
   EXPECT_NE(run_program("list", path).output.find("its code crashed: Aborted"), std::string::npos);
   std::ofstream(folder / "aborts.json") << "{";
   EXPECT_EQ(run_program("describe aborts", path).code, 2);
-  EXPECT_NE(run_program("list", path).output.find("refused: " + (folder / "aborts.json").string() + ": no JSON"),
-            std::string::npos);
+  EXPECT_NE(
+      run_program("list", path).output.find("refused: " + (folder / "aborts.json").string() + ": no JSON"),
+      std::string::npos);
   fs::remove_all(folder);
 }
 

@@ -146,7 +146,7 @@ TEST_F(DescriptionFile, MustSayWhatTheLibrarySays) {
   EXPECT_EQ(opening_with("/laws/0/frames/0", "global"),
             "/laws/0/frames/0 is \"global\", the library says \"local\"");
   EXPECT_EQ(opening_with("/laws/0/permissions", json::array()),
-            "/laws/0/permissions is a list of 0, the library says 1");
+            "/laws/0/permissions is a list of 0, the library says a list of 1");
   EXPECT_EQ(opening_with("/laws/0/title", std::string(100, 'a')),
             "/laws/0/title is \"" + std::string(59, 'a') + "..., the library says \"Nothing\"");
   EXPECT_EQ(opening_with("/laws/0/spins", true), "/laws/0/spins is true, the library says nothing");
@@ -206,14 +206,14 @@ TEST_F(DescriptionFile, IsRefusedWhenMembersAreMissingOrOfOtherTypes) {
   without["laws"][0].erase("title");
   write(without.dump());
   EXPECT_EQ(reading(), file() + ": /laws/0/title is missing");
-  EXPECT_EQ(reading_with("/laws", 7), "/laws is a JSON number, expected array");
-  EXPECT_EQ(reading_with("/laws/0", json()), "/laws/0 is a JSON null, expected object");
+  EXPECT_EQ(reading_with("/laws", 7), "/laws is 7, expected list");
+  EXPECT_EQ(reading_with("/laws/0", json()), "/laws/0 is null, expected object");
   EXPECT_EQ(reading_with("/abi", {1}), "/abi has not two numbers");
-  EXPECT_EQ(reading_with("/laws/0/frames", {7}), "/laws/0/frames/0 is a JSON number, expected string");
+  EXPECT_EQ(reading_with("/laws/0/frames", {7}), "/laws/0/frames/0 is 7, expected text");
   EXPECT_EQ(reading_with("/laws/0/parameters/0/maximum", "none"),
-            "/laws/0/parameters/0/maximum is a JSON string, expected number");
+            "/laws/0/parameters/0/maximum is \"none\", expected number");
   EXPECT_EQ(reading_with("/laws/0/parameters/0/default", true),
-            "/laws/0/parameters/0/default is a JSON boolean, expected a text or number");
+            "/laws/0/parameters/0/default is true, expected text or number");
 }
 
 TEST_F(DescriptionFile, IsWrittenAnewAfterAChange) {

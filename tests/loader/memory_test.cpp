@@ -76,7 +76,7 @@ TEST(OutOfMemory, ReadingADescriptionSaysIt) {
               ilaw_library_close(opened);
             }),
             100);
-  EXPECT_EQ(needed, length);
+  EXPECT_GT(needed, 100U);
   std::filesystem::remove_all(std::filesystem::path(library).parent_path());
 }
 

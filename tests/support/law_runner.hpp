@@ -47,62 +47,36 @@ class SetupBuilder {
  public:
   explicit SetupBuilder(const Parameters& given, std::uint32_t dimension = 3,
                         std::uint32_t form = ILAW_DELASSUS_SCALAR, std::uint32_t frame = ILAW_FRAME_LOCAL,
-                        bool tangent = false)
-      : given_(given) {
-    for (const auto& [name, value] : given_.numbers) {
-      ilaw_argument& a = add(name, ILAW_VALUE_NUMBER);
-      a.number = value;
-    }
-    for (const auto& [name, text] : given_.texts) add(name, ILAW_VALUE_TEXT).text = text.c_str();
-    for (const auto& [name, pairs] : given_.tables) add_time_table(name, pairs);
-    for (const std::string& name : given_.per_node) add(name, ILAW_VALUE_PER_NODE);
-    for (const ilaw_argument& a : arguments_) pointers_.push_back(&a);
+                        bool tangent = false) {
+    for (const auto& [name, value] : given.numbers) arguments_.number(name, value);
+    for (const auto& [name, text] : given.texts) arguments_.text(name, text);
+    for (const auto& [name, pairs] : given.tables) add_time_table(name, pairs);
+    for (const std::string& name : given.per_node) arguments_.per_node(name);
     setup.struct_size = sizeof setup;
     setup.dimension = dimension;
     setup.delassus_form = form;
     setup.frame = frame;
     setup.numbers = ILAW_NUMBERS_DOUBLE;
     setup.has_tangent = tangent;
-    setup.arguments = pointers_.data();
-    setup.argument_count = static_cast<std::uint32_t>(pointers_.size());
+    arguments_.give(setup);
   }
   SetupBuilder(const SetupBuilder&) = delete;
 
   ilaw_setup setup{};
 
  private:
-  ilaw_argument& add(const std::string& name, std::uint32_t kind) {
-    ilaw_argument& a = arguments_.emplace_back();
-    a = {};
-    a.struct_size = sizeof a;
-    a.kind = kind;
-    a.name = name.c_str();
-    return a;
-  }
   // Pairs (time, value).
   void add_time_table(const std::string& name, const std::vector<double>& pairs) {
-    TimeTable& table = tables_.emplace_back();
+    ilaw::parameters::axis times{"time", {}};
+    std::vector<double> values;
     for (std::size_t k = 0; k + 1 < pairs.size(); k += 2) {
-      table.times.push_back(pairs[k]);
-      table.values.push_back(pairs[k + 1]);
+      times.points.push_back(pairs[k]);
+      values.push_back(pairs[k + 1]);
     }
-    table.axis = {sizeof(ilaw_axis), 0, "time", table.times.data(), table.times.size()};
-    table.axes = &table.axis;
-    ilaw_argument& a = add(name, ILAW_VALUE_TABLE);
-    a.values = table.values.data();
-    a.axes = &table.axes;
-    a.axis_count = 1;
+    arguments_.table(name, {times}, values);
   }
 
-  struct TimeTable {
-    std::vector<double> times, values;
-    ilaw_axis axis;
-    const ilaw_axis* axes;
-  };
-  Parameters given_;
-  std::deque<TimeTable> tables_;
-  std::deque<ilaw_argument> arguments_;
-  std::vector<const ilaw_argument*> pointers_;
+  ilaw::parameters arguments_;
 };
 
 inline ilaw::interface make_law(const std::string& law, const SetupBuilder& builder) {

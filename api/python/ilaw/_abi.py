@@ -377,13 +377,16 @@ class plugin(ctypes.Structure):
 
 
 entry_function = CFUNCTYPE(POINTER(plugin))
+visit_function = CFUNCTYPE(c_int32, c_char_p, c_void_p)
 
 
 SIGNATURES = {
     "ilaw_library_open": (c_int32, [c_char_p, POINTER(c_void_p), c_char_p, c_size_t]),
     "ilaw_library_open_named": (c_int32, [c_char_p, POINTER(c_void_p), c_char_p, c_size_t]),
+    "ilaw_library_read_description": (c_int32, [c_char_p, c_char_p, c_size_t, POINTER(c_size_t), c_char_p, c_size_t]),
     "ilaw_library_close": (None, [c_void_p]),
     "ilaw_library_plugin": (POINTER(plugin), [c_void_p]),
+    "ilaw_library_describe": (c_size_t, [c_void_p, c_char_p, c_size_t]),
     "ilaw_library_path": (c_char_p, [c_void_p]),
     "ilaw_library_law": (POINTER(law), [c_void_p, c_char_p]),
     "ilaw_interface_create": (c_int32, [c_void_p, c_char_p, POINTER(setup), POINTER(c_void_p), c_char_p, c_size_t]),
@@ -393,6 +396,6 @@ SIGNATURES = {
     "ilaw_interface_info": (c_int32, [c_void_p, POINTER(instance_info)]),
     "ilaw_interface_initialise": (c_int32, [c_void_p, POINTER(batch), POINTER(report)]),
     "ilaw_interface_evaluate": (c_int32, [c_void_p, POINTER(batch), POINTER(report)]),
-    "ilaw_search": (c_int32, [CFUNCTYPE(c_int32, c_char_p, c_void_p), c_void_p]),
+    "ilaw_search": (c_int32, [visit_function, c_void_p]),
     "ilaw_search_path": (c_size_t, [c_char_p, c_size_t]),
 }

@@ -62,7 +62,7 @@ class _Arguments:
             made.kind = _abi.ValueKind.PER_NODE
         elif isinstance(value, Mapping):
             if value.keys() != {"axes", "values"} or not isinstance(value["axes"], Mapping):
-                raise InvalidArgument(f'{name}: a dict, expected {{"axes": {{name: points, ...}}, "values": [...]}}')
+                raise InvalidArgument(f'{name}: dict, expected {{"axes": {{name: points, ...}}, "values": [...]}}')
             self._set_table(made, name, value["axes"], value["values"])
         elif isinstance(value, np.ndarray) and value.ndim == 1:
             made.kind = _abi.ValueKind.PER_NODE

@@ -17,11 +17,7 @@ namespace ilaw::host {
 
 // A parameter over one to three axes; the last axis varies fastest in values.
 struct ArgumentTable {
-  struct Axis {
-    std::string name;
-    std::vector<double> points;
-  };
-  std::vector<Axis> axes;
+  std::vector<ilaw::parameters::axis> axes;
   std::vector<double> values;
 };
 

@@ -62,7 +62,7 @@ ArgumentTable read_grid_table(const json& given, const std::string& pointer) {
     if (!axes[a].is_object() || axes[a].size() != 2 || !axes[a].contains("name") ||
         !axes[a]["name"].is_string() || !axes[a].contains("points"))
       throw mistake(where, axes[a].dump(), R"({"name": ..., "points": [...]})");
-    ArgumentTable::Axis& axis = table.axes.emplace_back();
+    ilaw::parameters::axis& axis = table.axes.emplace_back();
     axis.name = axes[a]["name"].get<std::string>();
     const json& points = entries(axes[a]["points"], where + "/points");
     for (std::size_t k = 0; k < points.size(); ++k)

@@ -112,7 +112,7 @@ def test_floats_are_the_doubles_rounded_once():
 @pytest.mark.parametrize(
     ("call", "kind", "message"),
     [
-        (lambda *a: law(friction={"axes": {}}), ilaw.InvalidArgument, "friction: a dict, expected"),
+        (lambda *a: law(friction={"axes": {}}), ilaw.InvalidArgument, "friction: dict, expected"),
         (lambda *a: law(friction={**TABLE, "values": MU.T}), ilaw.InvalidArgument,
          r"friction: values of shape \(2, 3\), expected one per point of slip_speed \(3,\), temperature \(2,\)"),
         (lambda *a: law(friction={"axes": {"speed": SPEED}, "values": SPEED}), ilaw.InvalidParameter, "'friction'"),
