@@ -215,16 +215,16 @@ void FixIlaw::solve() {
   bodies.dimension = 3;
   bodies.count = count;
   bodies.owned_count = atom->nlocal;
-  bodies.inverse_mass = {inverse_mass_.data(), 1, 0};
-  bodies.inverse_inertia = {inverse_inertia_.data(), 1, 0};
-  bodies.v_free = {motion_.data(), motion_size, 1};
-  bodies.spin_free = {motion_.data() + 3, motion_size, 1};
-  bodies.v_previous = {motion_.data() + 6, motion_size, 1};
-  bodies.spin_previous = {motion_.data() + 9, motion_size, 1};
-  bodies.velocity = {after_.data(), 6, 1};
-  bodies.spin = {after_.data() + 3, 6, 1};
-  bodies.impulse = {total_.data(), 6, 1};
-  bodies.angular_impulse = {total_.data() + 3, 6, 1};
+  bodies.inverse_mass = ilaw::input(inverse_mass_.data(), 1, 0);
+  bodies.inverse_inertia = ilaw::input(inverse_inertia_.data(), 1, 0);
+  bodies.v_free = ilaw::input(motion_.data(), motion_size, 1);
+  bodies.spin_free = ilaw::input(motion_.data() + 3, motion_size, 1);
+  bodies.v_previous = ilaw::input(motion_.data() + 6, motion_size, 1);
+  bodies.spin_previous = ilaw::input(motion_.data() + 9, motion_size, 1);
+  bodies.velocity = ilaw::output(after_.data(), 6, 1);
+  bodies.spin = ilaw::output(after_.data() + 3, 6, 1);
+  bodies.impulse = ilaw::output(total_.data(), 6, 1);
+  bodies.angular_impulse = ilaw::output(total_.data() + 3, 6, 1);
 
   ilaw_exchange exchange{};
   exchange.struct_size = sizeof exchange;
