@@ -212,7 +212,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "/loads/0/axes: found axis 2, expected 0 to 1"},
         Mistake{
             "/loads/0", R"({"type": "motion", "nodes": [0]})",
-            "/interfaces/0/nodes: found node 0, whose motion is prescribed by a load, expected nodes that"},
+            "/interfaces/0/nodes: found node 0, which a motion drives along all axes, expected a node that is"},
         Mistake{
             "/interfaces/0/parameters/friction", R"({"values": [0.1, 0.2]})",
             "/interfaces/0/parameters/friction: found {\"values\":[0.1,0.2]}, expected a number, \"inf\""},

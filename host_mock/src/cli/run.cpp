@@ -70,7 +70,7 @@ class Run {
     std::optional<Progress> progress;
     if (options_.shows_progress) progress.emplace(integrator_.steps(), scene_.steps);
     try {
-      if (!options_.resume && scene_.output.fields > 0) fields_.write(integrator_);
+      if (!options_.resume) start();
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
         integrator_.step();
         history_->add_step(integrator_);
@@ -164,6 +164,13 @@ class Run {
     } else if (scene_.output.events) {
       events_.emplace(scene_, options_.folder);
     }
+  }
+
+  void start() {
+    integrator_.start();
+    history_->add_start(integrator_);
+    if (events_) events_->add_step(integrator_);
+    if (scene_.output.fields > 0) fields_.write(integrator_);
   }
 
   void keep_what_there_is(const char* failure) {

@@ -112,7 +112,7 @@ class BlockWalk {
       point = step_.setup.counterpart->contact_point(node_index(i), step_.step.u, step_.step.time);
       gap_[i] = point.gap;
       for (int c = 0; c < D; ++c) normal_[D * i + c] = point.normal[c];
-      at_.delassus[contact(i)] = point.delassus(step_.model, node_[i]);
+      at_.delassus[contact(i)] = point.delassus(step_.inverse_mass, D, node_[i]);
     }
   }
 
@@ -174,7 +174,7 @@ class BlockWalk {
     const auto column = static_cast<std::size_t>(stride);
     for (const std::size_t first : step_.axes)
       for (std::ptrdiff_t i = 0; i < count_; ++i)
-        turn_axis(*step_.setup.counterpart, D, step_.step.time - step_.step.dt, step_.step.time,
+        turn_axis(*step_.setup.counterpart, D, step_.step.time_before(), step_.step.time,
                   [&](std::size_t c) -> double& { return state[(first + c) * column + i]; });
   }
   double& state_in_room(std::ptrdiff_t i, std::size_t c) {
@@ -189,7 +189,7 @@ class BlockWalk {
     delassus_ = column(at_.delassus, delassus_room_.data());
     impulse_ = contacts_in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
     status_ = contacts_in_row_ ? &at_.status[contact(0)] : status_room_.data();
-    ilaw_batch batch = empty_batch(step_.tangent, step_.step.time, step_.step.dt);
+    ilaw_batch batch = empty_batch(step_.tangent, step_.step.time, step_.step.velocity_step(), step_.step.dt);
     batch.node_count = count_;
     batch.v_free = relative(step_.v, obstacle_, moves_, turn_after_, v_free_);
     if ((info.inputs | (step_.gets_energies ? info.balance_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)
@@ -312,7 +312,7 @@ class BlockWalk {
   void push(std::ptrdiff_t i, const Components& r, double* v) {
     if constexpr (Partnered)
       at_.point[contact(i)].for_each_node(node_[i], [&](int node, double weight) {
-        const double scale = weight / step_.model.mass()[Eigen::Index{D} * node];
+        const double scale = weight * step_.inverse_mass[Eigen::Index{D} * node];
         for (int c = 0; c < D; ++c) v[Eigen::Index{D} * node + c] += scale * r[c];
       });
     else {

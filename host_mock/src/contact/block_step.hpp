@@ -19,6 +19,7 @@ namespace ilaw::host {
 struct BlockStep {
   const InterfaceSetup& setup;
   const Model& model;
+  const double* inverse_mass;  // as impulses meet it, per degree of freedom
   const Law& law;
   ContactArrays& contacts;
   const StepView& step;

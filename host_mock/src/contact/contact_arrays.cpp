@@ -10,12 +10,12 @@
 
 namespace ilaw::host {
 
-ilaw_batch empty_batch(const Vector& tangent, double time, double dt) {
+ilaw_batch empty_batch(const Vector& tangent, double time, double velocity_step, double position_step) {
   ilaw_batch batch{};
   batch.struct_size = sizeof batch;
   batch.time = time;
-  batch.velocity_step = dt;
-  batch.position_step = dt;
+  batch.velocity_step = velocity_step;
+  batch.position_step = position_step;
   if (tangent.size() > 0) batch.tangent = ilaw::input(tangent.data(), 0, 1);
   return batch;
 }
@@ -65,8 +65,8 @@ void ContactArrays::make_room() {
 
 void ContactArrays::accept_state(int contact) { state.take(static_cast<std::size_t>(contact), next_state_); }
 
-ilaw_batch ContactArrays::repeated_batch(const Vector& tangent, double time, double dt) {
-  ilaw_batch batch = empty_batch(tangent, time, dt);
+ilaw_batch ContactArrays::repeated_batch(const Vector& tangent, const StepView& step) {
+  ilaw_batch batch = empty_batch(tangent, step.time, step.velocity_step(), step.dt);
   batch.area = ilaw::input(area.data(), 1, 1);
   batch.normal = ilaw::input(normal.data(), dimension_, 1);
   parameter_inputs_.clear();
@@ -76,6 +76,7 @@ ilaw_batch ContactArrays::repeated_batch(const Vector& tangent, double time, dou
   batch.v_free = ilaw::input(v_free.data(), dimension_, 1);
   batch.v_previous = ilaw::input(v_previous.data(), dimension_, 1);
   batch.delassus = ilaw::input(delassus.data(), 1, 1);
+  if (!law_delassus.empty()) batch.delassus = ilaw::input(law_delassus.data(), dimension_, 1);
   batch.gap = ilaw::input(gap.data(), 1, 1);
   batch.state_in = ilaw::input(state.first(0), 1, state.stride());
   batch.state_out = ilaw::output(next_state_.first(0), 1, next_state_.stride());

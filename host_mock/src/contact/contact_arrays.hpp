@@ -19,7 +19,7 @@
 namespace ilaw::host {
 
 // A batch with times and what is the same for all contacts alone.
-ilaw_batch empty_batch(const Vector& tangent, double time, double dt);
+ilaw_batch empty_batch(const Vector& tangent, double time, double velocity_step, double position_step);
 
 // Not out of reach as ilaw.h says it, in its order of operations: law, promise and host agree to the
 // last bit.
@@ -81,7 +81,7 @@ class ContactArrays {
   // The state after the step becomes that before the next.
   void accept_state(int contact);
   // The arrays that evaluate takes, where contacts share nodes.
-  ilaw_batch repeated_batch(const Vector& tangent, double time, double dt);
+  ilaw_batch repeated_batch(const Vector& tangent, const StepView& step);
 
   // Once more contacts are there, what a step reads and writes of them.
   void keep_in_large_pages() const;
@@ -97,6 +97,8 @@ class ContactArrays {
   std::vector<int> node_index;
   std::vector<ContactPoint> point;  // where the counterpart has partners
   std::vector<double> impulse, delassus;
+  // Where nodes are driven, H by axis: as it is, and as the law is given it; delassus is then the largest.
+  std::vector<double> axis_delassus, law_delassus;
   StateColumns state;
   std::vector<double> area;                     // where the law reads it
   std::vector<std::vector<double>> parameters;  // that are given per node, as the law lists them

@@ -15,10 +15,10 @@ Vector position_of(const Model& model, int node, const Dofs& u) {
 
 }  // namespace
 
-double ContactPoint::delassus(const Model& model, int node) const {
+double ContactPoint::delassus(const double* inverse_mass, int dimension, int node, int axis) const {
   double sum = 0.0;
   for_each_node(node, [&](int one, double weight) {
-    sum += weight * weight / model.mass()[static_cast<Eigen::Index>(one) * model.dimension()];
+    sum += weight * weight * inverse_mass[std::ptrdiff_t{dimension} * one + axis];
   });
   return sum;
 }

@@ -33,7 +33,8 @@ struct ContactPoint {
     visit(node, 1.0);
     for (std::size_t i = 0; i < static_cast<std::size_t>(partner_count); ++i) visit(partners[i], -weights[i]);
   }
-  double delassus(const Model& model, int node) const;
+  // H along an axis: inverse_mass is 1/m, or less where loads take a part of an impulse, per degree of freedom.
+  double delassus(const double* inverse_mass, int dimension, int node, int axis = 0) const;
 };
 
 // How fast a rigid counterpart turns in the steps before and after a time.

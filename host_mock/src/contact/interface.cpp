@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 namespace ilaw::host {
@@ -20,6 +21,9 @@ namespace {
 // The largest speed is that of the largest square, which is 0 for smaller ones: nodes that come to
 // rest on a spring have them, at gaps as small.
 constexpr double least_speed = 0x1p-500;
+
+// H of a driven axis as laws are given it, beside the largest of the node: they resolve 2^-42 of it.
+constexpr double driven_delassus = 0x1p-40;
 
 // On a plane that turns about its normal the law cannot see what its tangential memory has to turn with. Axes
 // in its state would have to turn in every step (turn_axis), and contacts out of reach be asked for that.
@@ -37,7 +41,8 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
     : setup_(with_tangent(std::move(setup), model)),
       model_(model),
       dimension_(model.dimension()),
-      law_(setup_.library, setup_.law, setup_.arguments, setup_.tangent, dimension_),
+      law_(setup_.library, setup_.law, setup_.arguments, setup_.tangent, dimension_,
+           setup_.has_driven_nodes ? ILAW_DELASSUS_DIAGONAL : ILAW_DELASSUS_SCALAR),
       axes_(law_.axes()),
       contacts_(dimension_, law_.info(), setup_.nodes.size(), !setup_.counterpart->partners().empty()),
       obstacle_velocity_(Vector::Zero(dimension_)),
@@ -76,10 +81,62 @@ void Interface::check(const Refusal& refusal, const std::string& node) const {
 int Interface::contact_index_of(int node_index, const Dofs& u) {
   const std::size_t k = at(node_index);
   if (const int found = contacts_.index_of(k); found >= 0) return found;
-  contacts_.add({node_index, 1.0 / model_.mass()[setup_.nodes[k] * dimension_], setup_.areas[k],
-                 parameters_of(node_index), first_state(node_index, u), !law_.may_skip_fresh(), axes_turn()});
+  contacts_.add({node_index, ContactPoint().delassus(inverse_mass_, dimension_, setup_.nodes[k]), setup_.areas[k],
+                 parameters_of(node_index), first_state(node_index, u), !law_.may_skip_fresh(),
+                 axes_turn()});
+  if (setup_.has_driven_nodes) find_delassus(contacts_.count() - 1);
   if (const std::size_t chunk = k / contact_chunk; chunk < far_.size()) far_[chunk] = {};
   return contacts_.index_of(k);
+}
+
+// Contacts with partners find their H in every step.
+void Interface::set_inverse_mass(const double* inverse_mass) {
+  inverse_mass_ = inverse_mass;
+  for (std::size_t k = 0; k < contacts_.count() && contacts_.point.empty(); ++k) find_delassus(k);
+}
+
+// A driven axis has H = 0, which laws refuse. They are given a small part of the largest H, which every precision
+// of the kit resolves; impulses are applied with the true one.
+void Interface::find_delassus(std::size_t k) {
+  const auto along = [&](int axis) {
+    return point(static_cast<int>(k)).delassus(inverse_mass_, dimension_, node_of(static_cast<int>(k)), axis);
+  };
+  contacts_.delassus[k] = along(0);
+  if (!setup_.has_driven_nodes) return;
+  const auto d = at(dimension_);
+  for (std::vector<double>* values : {&contacts_.axis_delassus, &contacts_.law_delassus})
+    values->resize(d * contacts_.count());
+  double* const own = &contacts_.axis_delassus[d * k];
+  for (int axis = 0; axis < dimension_; ++axis) own[axis] = along(axis);
+  contacts_.delassus[k] = *std::max_element(own, own + d);
+  for (std::size_t axis = 0; axis < d; ++axis)
+    contacts_.law_delassus[d * k + axis] = std::max(own[axis], driven_delassus * contacts_.delassus[k]);
+}
+
+Vector Interface::velocity_of(int contact_index, const Vector& impulse) const {
+  if (contacts_.axis_delassus.empty()) return delassus(contact_index) * impulse;
+  return contacts_.vector(contacts_.axis_delassus, contact_index).cwiseProduct(impulse);
+}
+
+// A rigid law that is driven along its normal answers with an impulse that takes the whole approach, over the small
+// H that it was given. The size of the answer tells it: the node would give way by H r, and laws that need no such
+// thing give way by a vanishing part of the speed, or of the indentation in a step.
+void Interface::check_driven(const StepView& step) const {
+  constexpr double noticeable = 1e-9;
+  if (contacts_.axis_delassus.empty()) return;
+  const double speed = std::max(step.speed_before, step.speed_after);
+  for (const std::int32_t k : active()) {
+    const Vector given_way = contacts_.vector(contacts_.law_delassus, k).cwiseProduct(impulse(k)) -
+                             velocity_of(k, impulse(k));
+    Eigen::Index axis = 0;
+    const double largest = given_way.cwiseAbs().maxCoeff(&axis);
+    if (!(largest > noticeable * std::max(speed, std::abs(gap(k)) / step.dt))) continue;
+    if (largest < 0.5 * std::abs(v_free(k)[axis])) continue;
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(), "node %d is driven along axis %td against '%s' (law '%s'), which cannot give way",
+                  node_of(k), axis, name().c_str(), setup_.law.c_str());
+    throw std::runtime_error(text.data());
+  }
 }
 
 bool Interface::axes_turn() const { return !axes_.empty() && !setup_.counterpart->keeps_normal(); }
@@ -156,9 +213,11 @@ void Interface::follow_obstacle(const StepView& step) {
   const Counterpart& counterpart = *setup_.counterpart;
   obstacle_velocity_before_ = counterpart.velocity(step.time - step.dt, step.time);
   obstacle_velocity_ = counterpart.velocity(step.time, step.time + step.dt);
+  if (step.number == 0) obstacle_velocity_before_ = obstacle_velocity_;  // the start is no impact of the obstacle
   obstacle_speed_before_ = obstacle_velocity_before_.norm();
   obstacle_speed_ = obstacle_velocity_.norm();
   if (counterpart.turns()) rates_ = counterpart.rates(step.time, step.dt);
+  if (step.number == 0) rates_.before = rates_.after;
   flat_ = counterpart.flat_at(step.time);
   tangent_ = counterpart.turned(setup_.tangent, 0.0, step.time);
   obstacle_is_known_ = counterpart.stands_still();
@@ -189,6 +248,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
              watched = InputCopy::is_due(step.number);
   const BlockStep blocks{setup_,
                          model_,
+                         inverse_mass_,
                          law_,
                          contacts_,
                          step,
@@ -245,12 +305,12 @@ void Interface::open_step(const StepView& step) {
       contacts_.vector(contacts_.turn_before, contact_index) = turn.before;
       contacts_.vector(contacts_.turn_after, contact_index) = turn.after;
       for (const std::size_t first : axes_)
-        turn_axis(*setup_.counterpart, dimension_, step.time - step.dt, step.time,
+        turn_axis(*setup_.counterpart, dimension_, step.time_before(), step.time,
                   [&](std::size_t c) -> double& { return contacts_.state.at(k, first + c); });
     }
     if (point.partner_count == 0) continue;
-    contacts_.delassus[k] = point.delassus(model_, node_of(contact_index));
     contacts_.point[k] = point;
+    find_delassus(k);
   }
 }
 
@@ -265,7 +325,7 @@ void Interface::gather(const ContactList& contacts, const Dofs& v, const StepVie
                    for (std::ptrdiff_t i = first; i < end; ++i) {
                      const std::int32_t k = contacts[static_cast<std::size_t>(i)];
                      contacts_.vector(contacts_.v_free, k) =
-                         relative(k, v) - surface_velocity(k) - delassus(k) * impulse(k);
+                         relative(k, v) - surface_velocity(k) - velocity_of(k, impulse(k));
                      contacts_.vector(contacts_.v_previous, k) =
                          relative(k, step.v_before) -
                          surface_velocity(k, obstacle_velocity_before_, contacts_.turn_before);
@@ -275,7 +335,7 @@ void Interface::gather(const ContactList& contacts, const Dofs& v, const StepVie
 }
 
 void Interface::evaluate(const ContactList& contacts, const StepView& step) {
-  ilaw_batch batch = contacts_.repeated_batch(tangent_, step.time, step.dt);
+  ilaw_batch batch = contacts_.repeated_batch(tangent_, step);
   if (!asks_energies_) batch.energy = {}, batch.amounts = nullptr;
   const auto count = static_cast<std::ptrdiff_t>(contacts.size());
   outcomes_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), {});
@@ -310,7 +370,7 @@ void Interface::apply(const ContactList& contacts, Dofs& v) {
       const Vector added = impulse(k) - contacts_.vector(contacts_.previous_impulse, k);
       if (added.isZero(0.0)) continue;  // idle contacts must not even write nodes they share
       point(k).for_each_node(node_of(k), [&](int node, double weight) {
-        v.segment(node * d, d) += (weight / model_.mass()[node * d]) * added;
+        for (Eigen::Index c = 0; c < d; ++c) v[node * d + c] += weight * inverse_mass_[node * d + c] * added[c];
       });
     }
   });

@@ -38,9 +38,14 @@ class Interface {
   // the impulse, and changes no bit of it. They are, where nobody says that it is not wanted.
   void ask_energies(bool asks) { asks_energies_ = asks; }
 
+  // Velocity that a unit impulse makes, per degree of freedom of the model. To be set before the first step and
+  // again when its values change; the array must stay.
+  void set_inverse_mass(const double* inverse_mass);
+  const double* inverse_mass() const { return inverse_mass_; }
+
   // ---- a step where no two contacts share a node ----
   // Chooses the active contacts, finds gaps, normals and delassus, asks the law for impulse, state,
-  // energies and status, and takes v from v_free to v_free + r/m. Throws ilaw::error on bad nodes.
+  // energies and status, and takes v from v_free to v_free + H r. Throws ilaw::error on bad nodes.
   void solve(const StepView& step, Dofs& v);
 
   // ---- a step where contacts share nodes, in the order of the calls ----
@@ -64,6 +69,8 @@ class Interface {
   void apply(const ContactList& contacts, Dofs& v);
   // Gives a contact an impulse, for apply to add to v_free as a whole.
   void start_from(int contact_index, const Vector& impulse);
+  // Throws std::runtime_error where a motion drives a node against a law that cannot give way.
+  void check_driven(const StepView& step) const;
   // The step is done: its state becomes the state before the next.
   void accept(const StepView& step, const Dofs& v);
 
@@ -79,6 +86,8 @@ class Interface {
   int node_index_of(int contact_index) const { return contacts_.node_index[at(contact_index)]; }
   int node_of(int contact_index) const { return setup_.nodes[at(node_index_of(contact_index))]; }
   double delassus(int contact_index) const { return contacts_.delassus[at(contact_index)]; }
+  // H times an impulse.
+  Vector velocity_of(int contact_index, const Vector& impulse) const;
   // Without partners where the counterpart is rigid.
   const ContactPoint& point(int contact_index) const;
   // Accepted state; entry: double of the node's state.
@@ -112,8 +121,6 @@ class Interface {
   int contact_at(int node_index) const { return contacts_.index_of(at(node_index)); }
   // The accepted state, without making a contact.
   std::vector<double> state_at(int node_index, const Dofs& u) const;
-  // What the law says of a node at rest where it starts, before any step.
-  int status_at_start(int node_index, const Dofs& u) const;
   std::size_t bytes_per_contact() const { return contacts_.bytes_per_contact(); }
   std::size_t contact_count() const { return contacts_.count(); }
 
@@ -127,6 +134,7 @@ class Interface {
   // Whether the state of a contact that is out of reach changes: axes follow the normal.
   bool axes_turn() const;
   bool may_skip() const;
+  void find_delassus(std::size_t contact);
   void follow_obstacle(const StepView& step);
   void choose_active(const StepView& step);
   void total_amounts();
@@ -162,6 +170,7 @@ class Interface {
   ContactSums sums_;
   std::vector<double> amounts_;
   bool asks_energies_ = true;
+  const double* inverse_mass_ = nullptr;
 };
 
 using Interfaces = std::vector<std::unique_ptr<Interface>>;

@@ -22,17 +22,22 @@ struct InterfaceSetup {
   double birth = 0.0, death = std::numeric_limits<double>::infinity();  // while birth <= t < death
   Vector tangent;                 // first tangent of all nodes; empty: none given
   double gap_offset = 0.0;        // taken off every gap: thickness, radius
+  bool has_driven_nodes = false;  // motions drive some of its nodes or partners: H differs by axis
   bool keeps_all_active = false;  // also contacts that cannot be reached: same results, more work
 };
 
-// A step from the interface's side. Speeds bound those of all nodes.
+// A step from the interface's side. Speeds bound those of all nodes. Step 0 is the start: half a step of the velocity,
+// from V_0, before a whole one of the position.
 struct StepView {
   const Dofs& u;         // at time
   const Dofs& v_before;  // at the half step before time
-  double time, dt;
-  double speed_before;  // at the half step before time
-  double speed_after;   // of v_free, and of what other contacts may make of it
-  std::int64_t number;  // from 1 on
+  double time, dt;       // dt: of the position
+  double speed_before;   // at the half step before time
+  double speed_after;    // of v_free, and of what other contacts may make of it
+  std::int64_t number;
+
+  double velocity_step() const { return number == 0 ? 0.5 * dt : dt; }
+  double time_before() const { return number == 0 ? time : time - dt; }
 };
 
 using ContactList = std::vector<std::int32_t>;  // by contact_index

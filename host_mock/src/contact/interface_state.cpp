@@ -41,7 +41,7 @@ std::vector<double> Interface::first_state(int node_index, const Dofs& u) const 
   const std::vector<double> parameters = parameters_of(node_index);
   const std::vector<ilaw_input> inputs = inputs_of(parameters);
   const Vector normal = setup_.counterpart->contact_point(node_index, u, 0.0).normal;
-  ilaw_batch batch = empty_batch(setup_.tangent, 0.0, 1.0);
+  ilaw_batch batch = empty_batch(setup_.tangent, 0.0, 1.0, 1.0);
   batch.node_count = 1;
   batch.area = ilaw::input(&setup_.areas[at(node_index)], 1, 1);
   batch.normal = ilaw::input(normal.data(), dimension_, 1);
@@ -57,37 +57,6 @@ std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
   const int contact_index = contacts_.index_of(at(node_index));
   if (contact_index < 0) return first_state(node_index, u);
   return contacts_.state.of(at(contact_index));
-}
-
-// The step has no size yet: at rest, no law's answer depends on it. A node that the law refuses is
-// told of by the first step.
-int Interface::status_at_start(int node_index, const Dofs& u) const {
-  if (setup_.birth > 0.0) return ILAW_FREE;
-  const ContactPoint point = setup_.counterpart->contact_point(node_index, u, 0.0);
-  const std::vector<double> parameters = parameters_of(node_index), state = first_state(node_index, u);
-  const std::vector<ilaw_input> inputs = inputs_of(parameters);
-  const Vector rest = Vector::Zero(dimension_);
-  Vector impulse = rest;
-  std::vector<double> state_out = state;
-  const double gap = point.gap - setup_.gap_offset,
-               delassus = point.delassus(model_, nodes()[at(node_index)]);
-  const auto size = static_cast<std::int64_t>(state.size());
-  std::uint8_t status = ILAW_FREE;
-  ilaw_batch batch = empty_batch(setup_.tangent, 0.0, 1.0);
-  batch.node_count = 1;
-  batch.v_free = batch.v_previous = ilaw::input(rest.data(), dimension_, 1);
-  batch.delassus = ilaw::input(&delassus, 1, 1);
-  batch.gap = ilaw::input(&gap, 1, 1);
-  batch.area = ilaw::input(&setup_.areas[at(node_index)], 1, 1);
-  batch.normal = ilaw::input(point.normal.data(), dimension_, 1);
-  batch.per_node_parameters = inputs.data();
-  batch.state_in = ilaw::input(state.data(), size, 1);
-  batch.state_out = ilaw::output(state_out.data(), size, 1);
-  batch.impulse = ilaw::output(impulse.data(), dimension_, 1);
-  batch.status = &status;
-  batch.status_stride = 1;
-  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
-  return law_.evaluate(batch).code == ILAW_OK ? status : int{ILAW_FREE};
 }
 
 void Interface::save(std::ostream& out) const {

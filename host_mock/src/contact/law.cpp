@@ -19,9 +19,9 @@ ilaw::library open_library(const std::string& library, const std::string& law) {
 }
 
 ilaw::interface create_named(const std::string& law, const Arguments& arguments, const Vector& tangent,
-                             const ilaw::library& library, int dimension) {
+                             const ilaw::library& library, int dimension, std::uint32_t delassus_form) {
   const RunningLaw running(law.c_str(), ilaw_library_path(library.get()), nullptr);
-  return create_law(law, arguments, tangent, library, dimension);
+  return create_law(law, arguments, tangent, library, dimension, delassus_form);
 }
 
 // The text stays until the thread's next call of a law.
@@ -74,9 +74,9 @@ Answer answer_of(const ilaw_batch& batch, Call call) {
 }  // namespace
 
 Law::Law(const std::string& library, const std::string& law, const Arguments& arguments,
-         const Vector& tangent, int dimension)
+         const Vector& tangent, int dimension, std::uint32_t delassus_form)
     : library_(open_library(library, law)),
-      interface_(create_named(law, arguments, tangent, library_, dimension)),
+      interface_(create_named(law, arguments, tangent, library_, dimension, delassus_form)),
       info_(interface_.info()),
       outputs_(library_.law(law)->outputs) {}
 

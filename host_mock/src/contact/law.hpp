@@ -17,7 +17,7 @@ class Law {
  public:
   // Loads the library, by name or path, and creates the law; throws as create_law.
   Law(const std::string& library, const std::string& law, const Arguments& arguments, const Vector& tangent,
-      int dimension);
+      int dimension, std::uint32_t delassus_form = ILAW_DELASSUS_SCALAR);
 
   const ilaw::library& library() const { return library_; }
   const ilaw_instance_info& info() const { return info_; }

@@ -108,11 +108,11 @@ ilaw::interface create_law(const std::string& law, const Arguments& from_scene, 
 }
 
 ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
-                           const ilaw::library& library, int dimension) {
+                           const ilaw::library& library, int dimension, std::uint32_t delassus_form) {
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
   setup.dimension = static_cast<std::uint32_t>(dimension);
-  setup.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.delassus_form = delassus_form;
   setup.frame = ILAW_FRAME_GLOBAL;
   setup.numbers = ILAW_NUMBERS_DOUBLE;
   setup.has_tangent = tangent.size() > 0 ? 1 : 0;

@@ -5,10 +5,7 @@
 
 namespace ilaw::host {
 
-const std::vector<int>& Load::prescribed_nodes() const {
-  static const std::vector<int> none;
-  return none;
-}
+const std::vector<int> Load::none_;
 
 Gravity::Gravity(const Model& model, std::vector<int> nodes, Vector acceleration)
     : model_(model), nodes_(std::move(nodes)), acceleration_(std::move(acceleration)) {}
@@ -48,50 +45,42 @@ PrescribedMotion::PrescribedMotion(const Model& model, std::vector<int> nodes, s
                                    Motion motion)
     : model_(model), nodes_(std::move(nodes)), axes_(std::move(axes)), motion_(std::move(motion)) {}
 
-// Positions follow the motion: the velocity is its mean over the step to come. Calls changed(dof,
-// by).
-template <class Changed>
-void PrescribedMotion::prescribe(StepTimes step, Dofs& v, Changed changed) const {
-  const Vector mean = motion_.velocity(step.after, step.after + (step.after - step.before));
+// Positions follow the motion: the velocity is its mean over the step to come.
+void PrescribedMotion::correct(StepTimes step, Motions /*before*/, Dofs& v, Dofs& impulse) const {
+  const Vector mean = motion_.velocity(step.after, step.until);
   for (int node : nodes_)
     for (int axis : axes_) {
       const Eigen::Index dof = Eigen::Index{node} * model_.dimension() + axis;
-      changed(dof, mean[axis] - v[dof]);
+      impulse[dof] += model_.mass()[dof] * (mean[axis] - v[dof]);
       v[dof] = mean[axis];
     }
 }
 
-void PrescribedMotion::correct(StepTimes step, Motions /*before*/, Dofs& v, Dofs& impulse) const {
-  prescribe(step, v, [&](Eigen::Index dof, double by) { impulse[dof] += model_.mass()[dof] * by; });
-}
-
-void PrescribedMotion::start(double dt, Motions /*before*/, Dofs& v) const {
-  prescribe({-dt, 0.0}, v, [](Eigen::Index, double) {});
+void PrescribedMotion::transmit(StepTimes /*step*/, Dofs& impulse) const {
+  for (const int node : nodes_)
+    for (const int axis : axes_) impulse[Eigen::Index{node} * model_.dimension() + axis] = 0.0;
 }
 
 Damping::Damping(const Model& model, std::vector<int> nodes, double rate)
     : model_(model), nodes_(std::move(nodes)), rate_(rate) {}
 
-void Damping::correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const {
-  damp(step.after - step.before, before.v, v,
-       [&](Eigen::Index dof, double by) { impulse[dof] += model_.mass()[dof] * by; });
-}
-
-void Damping::start(double dt, Motions before, Dofs& v) const {
-  damp(0.5 * dt, before.v, v, [](Eigen::Index, double) {});
-}
-
 // m (v' - v_before) = m (v - v_before) - rate h m (v_before + v')/2, solved for v'.
-template <class Changed>
-void Damping::damp(double duration, const Dofs& v_before, Dofs& v, Changed changed) const {
-  const double a = 0.5 * rate_ * duration;
+void Damping::correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const {
+  const double a = 0.5 * rate_ * step.duration();
   const Eigen::Index d = model_.dimension();
   for (int node : nodes_)
     for (Eigen::Index dof = node * d; dof < (node + 1) * d; ++dof) {
-      const double damped = (v[dof] - a * v_before[dof]) / (1.0 + a);
-      changed(dof, damped - v[dof]);
+      const double damped = (v[dof] - a * before.v[dof]) / (1.0 + a);
+      impulse[dof] += model_.mass()[dof] * (damped - v[dof]);
       v[dof] = damped;
     }
+}
+
+// With an impulse r beside it the equation of correct() has r/m on its right: v' changes by r/(m (1 + a)).
+void Damping::transmit(StepTimes step, Dofs& impulse) const {
+  const double a = 0.5 * rate_ * step.duration();
+  const Eigen::Index d = model_.dimension();
+  for (const int node : nodes_) impulse.segment(node * d, d) /= 1.0 + a;
 }
 
 }  // namespace ilaw::host

@@ -11,9 +11,13 @@
 
 namespace ilaw::host {
 
-// The step from time t_n to t_{n+1} = t_n + dt.
+// The step from time t_n to t_{n+1} = t_n + dt. Nodes move with its last velocity until the end of the next one. The
+// half step that a run starts with, from V_0 to V_{1/2}, is {-dt/2, 0, dt}.
 struct StepTimes {
   double before, after;
+  double until = after + (after - before);
+
+  double duration() const { return after - before; }
 };
 
 // Of all nodes: displacements at the end of the step, and velocities before it.
@@ -31,8 +35,9 @@ class Load {
   // Changes the velocity that a step would leave with, without interfaces, and adds the impulse that
   // this takes. before: what the step started with.
   virtual void correct(StepTimes /*step*/, Motions /*before*/, Dofs& /*v*/, Dofs& /*impulse*/) const {}
-  // The same for the half step that a run starts with, from V_0 to V_{1/2}.
-  virtual void start(double /*dt*/, Motions /*before*/, Dofs& /*v*/) const {}
+  // What a load that corrects velocities leaves of an impulse that interfaces add after it: a damper's own velocity
+  // changes with it, and the holder of a driven node takes it all.
+  virtual void transmit(StepTimes /*step*/, Dofs& /*impulse*/) const {}
   virtual bool corrects() const { return false; }
   // Whether its work is that of damping.
   virtual bool damps() const { return false; }
@@ -40,8 +45,12 @@ class Load {
   virtual bool acts_on_driven() const { return true; }
   // Whether it is the same force at all times, and nothing else.
   virtual bool is_steady() const { return false; }
-  // Nodes whose motion is prescribed.
-  virtual const std::vector<int>& prescribed_nodes() const;
+  // Nodes whose motion is prescribed, and the axes along which it is.
+  virtual const std::vector<int>& prescribed_nodes() const { return none_; }
+  virtual const std::vector<int>& prescribed_axes() const { return none_; }
+
+ private:
+  static const std::vector<int> none_;
 };
 
 using Loads = std::vector<std::unique_ptr<Load>>;
@@ -84,20 +93,17 @@ class Shock : public Load {
   Vector impulse_;
 };
 
-// Viscous damping by mass: the force -rate m (v_before + v)/2.
+// Viscous damping by mass: the force -rate m (v_before + v)/2, with v the velocity at the end of the step.
 class Damping : public Load {
  public:
   Damping(const Model& model, std::vector<int> nodes, double rate);
   void correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const override;
-  void start(double dt, Motions before, Dofs& v) const override;
+  void transmit(StepTimes step, Dofs& impulse) const override;
   bool corrects() const override { return true; }
   bool damps() const override { return true; }
   bool acts_on_driven() const override { return false; }
 
  private:
-  template <class Changed>
-  void damp(double duration, const Dofs& v_before, Dofs& v, Changed changed) const;
-
   const Model& model_;
   std::vector<int> nodes_;
   double rate_;
@@ -109,14 +115,12 @@ class PrescribedMotion : public Load {
   PrescribedMotion(const Model& model, std::vector<int> nodes, std::vector<int> axes, Motion motion);
   // The impulse is the reaction of what holds the nodes.
   void correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const override;
-  void start(double dt, Motions before, Dofs& v) const override;
+  void transmit(StepTimes step, Dofs& impulse) const override;
   bool corrects() const override { return true; }
   const std::vector<int>& prescribed_nodes() const override { return nodes_; }
+  const std::vector<int>& prescribed_axes() const override { return axes_; }
 
  private:
-  template <class Changed>
-  void prescribe(StepTimes step, Dofs& v, Changed changed) const;
-
   const Model& model_;
   std::vector<int> nodes_, axes_;
   Motion motion_;

@@ -120,15 +120,9 @@ void Dampers::damp(double duration, Motions at, Dofs& impulse) const {
 
 void Dampers::correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const {
   Dofs own = Dofs::Zero(v.size());
-  damp(step.after - step.before, before, own);
+  damp(step.duration(), before, own);
   v += own.cwiseQuotient(model_.mass());
   impulse += own;
-}
-
-void Dampers::start(double dt, Motions before, Dofs& v) const {
-  Dofs own = Dofs::Zero(v.size());
-  damp(0.5 * dt, before, own);
-  v += own.cwiseQuotient(model_.mass());
 }
 
 }  // namespace ilaw::host

@@ -48,7 +48,6 @@ class Dampers : public Load {
  public:
   Dampers(const Model& model, std::vector<Spring> springs) : model_(model), springs_(std::move(springs)) {}
   void correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const override;
-  void start(double dt, Motions before, Dofs& v) const override;
   bool corrects() const override { return true; }
   bool damps() const override { return true; }
 

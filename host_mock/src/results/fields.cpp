@@ -155,9 +155,7 @@ void add_interface(vtkUnstructuredGrid& grid, const Interface& interface, const 
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
     const int node = interface.nodes()[k], node_index = static_cast<int>(k);
     gap->SetValue(node, interface.gap_at(node_index, integrator.displacement(), integrator.time()));
-    status->SetValue(node, integrator.steps() > 0
-                               ? ILAW_FREE
-                               : interface.status_at_start(node_index, integrator.displacement()));
+    status->SetValue(node, ILAW_FREE);
     if (states.empty()) continue;
     const std::vector<double> values = interface.state_at(node_index, integrator.displacement());
     for (const StateArray& state : states) {

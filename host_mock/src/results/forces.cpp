@@ -19,13 +19,25 @@ Forces::Forces(const Scene& scene, Integrator& integrator) : scene_(scene) {
   }
 }
 
+void Forces::add_start(const Integrator& integrator) {
+  const double duration = 0.5 * scene_.dt;
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    Resultant& sum = sums_[k];
+    add(scene_.output.forces[k], sum, integrator, duration);
+    sum.largest = sum.impulse.norm() / duration;
+    sum.total += sum.impulse;
+    sum.impulse.setZero();
+    sum.moment.setZero();
+  }
+}
+
 void Forces::add_step(const Integrator& integrator) {
   if (sums_.empty()) return;
-  for (std::size_t k = 0; k < sums_.size(); ++k) add(scene_.output.forces[k], sums_[k], integrator);
+  for (std::size_t k = 0; k < sums_.size(); ++k) add(scene_.output.forces[k], sums_[k], integrator, scene_.dt);
   ++steps_;
 }
 
-void Forces::add(const ForceSetup& force, Resultant& sum, const Integrator& integrator) {
+void Forces::add(const ForceSetup& force, Resultant& sum, const Integrator& integrator, double duration) {
   const Dofs& u = integrator.displacement();
   if (force.interface >= 0) {
     const Interface& interface = *scene_.interfaces[static_cast<std::size_t>(force.interface)];
@@ -35,7 +47,7 @@ void Forces::add(const ForceSetup& force, Resultant& sum, const Integrator& inte
   }
   if (!force.springs.empty()) {
     for (const Spring& spring : force.springs) {
-      const Vector impulse = scene_.dt * pull_of(*scene_.model, spring, {u, integrator.velocity_before()});
+      const Vector impulse = duration * pull_of(*scene_.model, spring, {u, integrator.velocity_before()});
       add_at(spring.node, impulse.data(), force, sum, u);
     }
     return;

@@ -19,6 +19,8 @@ class Forces {
  public:
   Forces(const Scene& scene, Integrator& integrator);
 
+  // After the start: counted in the summary alone, for rows are means over steps.
+  void add_start(const Integrator& integrator);
   // After every step.
   void add_step(const Integrator& integrator);
 
@@ -27,7 +29,7 @@ class Forces {
   // Means over the steps since the last row.
   void write_row(CsvWriter& table);
 
-  // Per name the impulse of the whole run, and the largest size of a row's force.
+  // Per name the impulse of the whole run, and the largest size of the force at the start or in a row.
   nlohmann::json summary() const;
 
   // What has been added up: the checkpoint takes it along.
@@ -37,10 +39,10 @@ class Forces {
  private:
   struct Resultant {
     Dofs impulse, moment;  // since the last row; moment empty where none is asked for
-    Dofs total;            // impulse up to the last row
+    Dofs total;            // impulse up to the last row, that of the start included
     double largest = 0.0;
   };
-  void add(const ForceSetup& force, Resultant& sum, const Integrator& integrator);
+  void add(const ForceSetup& force, Resultant& sum, const Integrator& integrator, double duration);
   void add_at(int node, const double* impulse, const ForceSetup& force, Resultant& sum,
               const Dofs& displacement) const;
 

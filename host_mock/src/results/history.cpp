@@ -47,7 +47,7 @@ History::History(const Scene& scene, Integrator& integrator, const std::filesyst
   find_motions(integrator);
 }
 
-// No interface acts on the nodes that a motion drives: their impulse is its reaction.
+// The impulse of a driven node that is in no interface is the reaction of its holder.
 void History::find_motions(Integrator& integrator) {
   const std::vector<int>& watch = scene_.output.watch;
   for (std::size_t k = 0; k < scene_.loads.size(); ++k) {
@@ -61,12 +61,16 @@ void History::find_motions(Integrator& integrator) {
 void History::find_contacts() {
   for (int node : scene_.output.watch) {
     std::vector<Contact>& contacts = contacts_.emplace_back();
+    is_alone_.push_back(true);
     for (const auto& interface : scene_.interfaces) {
+      const std::vector<int>& partners = interface->setup().counterpart->partners();
+      if (std::find(partners.begin(), partners.end(), node) != partners.end()) is_alone_.back() = false;
       const auto found = std::find(interface->nodes().begin(), interface->nodes().end(), node);
       if (found == interface->nodes().end()) continue;
       const int node_index = static_cast<int>(found - interface->nodes().begin());
       contacts.push_back({interface.get(), node_index, ""});
     }
+    if (!contacts.empty()) is_alone_.back() = false;
     const std::string name = "n" + std::to_string(node) + ".";
     for (Contact& contact : contacts)
       contact.prefix = contacts.size() == 1 ? name : name + contact.interface->name() + ".";
@@ -117,9 +121,11 @@ void History::add_node(std::size_t watched, const Integrator& integrator, const 
 void History::add_row(const Integrator& integrator) {
   table_ << integrator.time();
   if (!contacts_.empty()) {
-    Dofs impulse = integrator.interface_impulse();
-    for (const std::size_t load : motions_) integrator.add_load_impulse(load, impulse);
-    for (std::size_t w = 0; w < contacts_.size(); ++w) add_node(w, integrator, impulse);
+    const Dofs impulse = integrator.interface_impulse();
+    Dofs held = Dofs::Zero(motions_.empty() ? 0 : impulse.size());
+    for (const std::size_t load : motions_) integrator.add_load_impulse(load, held);
+    for (std::size_t w = 0; w < contacts_.size(); ++w)
+      add_node(w, integrator, is_alone_[w] && !motions_.empty() ? held : impulse);
   }
   forces_.write_row(table_);
   if (scene_.output.balance) {

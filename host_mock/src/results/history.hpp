@@ -25,6 +25,8 @@ class History {
   // Goes on after what an earlier run had written.
   History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
           const FileMark& written);
+  // After the start, before any step.
+  void add_start(const Integrator& integrator) { forces_.add_start(integrator); }
   // After every step, before its row.
   void add_step(const Integrator& integrator) { forces_.add_step(integrator); }
   void add_row(const Integrator& integrator);
@@ -53,7 +55,8 @@ class History {
   AtomicFile file_;
   CsvWriter table_;
   std::vector<std::vector<Contact>> contacts_;  // per watched node
-  std::vector<std::size_t> motions_;            // loads that drive one of them
+  std::vector<bool> is_alone_;                  // per watched node: no interface acts on it
+  std::vector<std::size_t> motions_;            // loads that drive a watched node
   Forces forces_;
 };
 

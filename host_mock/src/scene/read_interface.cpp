@@ -8,6 +8,7 @@
 #include "scene/selection.hpp"
 #include "scene/values.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -21,16 +22,31 @@ namespace {
 
 using nlohmann::json;
 
-// A node that follows a given path cannot give way to an interface.
-void refuse_prescribed(const Interface& interface, const Loads& loads, const std::string& pointer) {
-  std::set<int> driven;
+// By node, the axes along which motions drive it.
+std::map<int, std::set<int>> driven_axes(const Loads& loads) {
+  std::map<int, std::set<int>> driven;
   for (const auto& load : loads)
-    driven.insert(load->prescribed_nodes().begin(), load->prescribed_nodes().end());
-  for (const std::vector<int>* nodes : {&interface.nodes(), &interface.setup().counterpart->partners()})
-    for (const int node : *nodes)
-      if (driven.count(node))
-        throw mistake(pointer, "node " + std::to_string(node) + ", whose motion is prescribed by a load",
-                      "nodes that are free to move");
+    for (const int node : load->prescribed_nodes())
+      driven[node].insert(load->prescribed_axes().begin(), load->prescribed_axes().end());
+  return driven;
+}
+
+// Whether motions drive nodes of an interface. A contact whose nodes are all driven along all axes has no velocity
+// that its law could change.
+bool find_driven(const InterfaceSetup& setup, const Scene& scene, const std::string& pointer) {
+  const std::map<int, std::set<int>> driven = driven_axes(scene.loads);
+  const auto d = static_cast<std::size_t>(scene.model->dimension());
+  const auto is_driven = [&](int node) { return driven.contains(node); };
+  const auto is_held = [&](int node) { return is_driven(node) && driven.at(node).size() == d; };
+  const std::vector<int>& partners = setup.counterpart->partners();
+  const bool all_held = std::all_of(partners.begin(), partners.end(), is_held),
+             has_pairs = !partners.empty() && !setup.counterpart->shares_partners();
+  for (std::size_t k = 0; k < setup.nodes.size(); ++k)
+    if (is_held(setup.nodes[k]) && (has_pairs ? is_held(partners[k]) : all_held))
+      throw mistake(pointer, "node " + std::to_string(setup.nodes[k]) + ", which a motion drives along all axes",
+                    "a node that is free along one axis, or that meets one that is");
+  return std::any_of(setup.nodes.begin(), setup.nodes.end(), is_driven) ||
+         std::any_of(partners.begin(), partners.end(), is_driven);
 }
 
 // An explicit path is relative to the scene, not to wherever the user happens to be.
@@ -121,9 +137,9 @@ std::unique_ptr<Interface> read_interface(std::size_t number, const Scene& scene
   const std::string pointer = at("/interfaces", number);
   const NodeSet own = select_nodes(interface["nodes"], *scene.model, pointer + "/nodes");
   try {
-    auto made = std::make_unique<Interface>(read_setup(interface, number, scene, own, pointer), *scene.model);
-    refuse_prescribed(*made, scene.loads, pointer + "/nodes");
-    return made;
+    InterfaceSetup setup = read_setup(interface, number, scene, own, pointer);
+    setup.has_driven_nodes = find_driven(setup, scene, pointer + "/nodes");
+    return std::make_unique<Interface>(std::move(setup), *scene.model);
   } catch (const ParameterError& error) {
     const std::string whose =
         error.node_index() ? " (node " + std::to_string(own.nodes[*error.node_index()]) + ")" : "";

@@ -33,14 +33,15 @@ struct StepRecord {
   long double external_work;
   const Dofs* damping_impulse;  // null: none
   const Dofs &internal_impulse, &v_before, &v;
+  double speed;  // the largest of v_free and v
 };
 
 class Accounts {
  public:
   // The state (U_0, V_{1/2}) and U_1 that follows from it.
-  void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) {
-    energy_.start(model, u, u_next, v);
-  }
+  void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v);
+  // What interfaces did on the way to that state: its energy has their work already. speed: the largest then.
+  void add_start(const Interfaces& interfaces, double speed);
   void add_solution(const CoupledContacts::Outcome& outcome);
   // Whether contacts that do not agree change the energy by more than a small part of it.
   bool is_wrong(const Model& model, const CoupledContacts::Outcome& outcome, const Dofs& v_before) const;
@@ -55,9 +56,13 @@ class Accounts {
   void load(std::istream& in);
 
  private:
-  void add_interface(const Interface& interface);
+  void add_energies(const Interfaces& interfaces);
+  void add_counts(const Interface& interface);
+  void note_rounding(double speed);
 
   EnergyBalance energy_;
+  double total_mass_ = 0.0;
+  double rounding_energy_ = 0.0;  // that reactions may leave, over all steps
   Tally tally_;
 };
 

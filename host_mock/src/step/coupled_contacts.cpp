@@ -33,6 +33,7 @@ bool share_nodes(const Model& model, const Interfaces& interfaces) {
   std::vector<bool> seen(static_cast<std::size_t>(model.node_count()));
   for (const auto& interface : interfaces) {
     if (interface->setup().counterpart->shares_partners()) return true;
+    if (interface->setup().has_driven_nodes) return true;  // blocks of contacts have one H per node
     for (const std::vector<int>* nodes : {&interface->nodes(), &interface->setup().counterpart->partners()})
       for (const int node : *nodes)
         if (std::vector<bool>::reference mark = seen[static_cast<std::size_t>(node)]; mark)
@@ -147,7 +148,7 @@ void CoupledContacts::solve_by_tangents(const Sweeping& on, Outcome& outcome) {
   Outcome found = outcome;
   try {
     for (int k = 0; k < most_tangents; ++k) {
-      if (!try_from(on, newton_impulses(on.group, model_, on.step, on.v), found)) break;
+      if (!try_from(on, newton_impulses(on.group, on.group.front().interface->inverse_mass(), on.step, on.v), found)) break;
       sweep(on, found);
       if (found.residual > tolerance) continue;
       outcome = found;
@@ -240,7 +241,7 @@ void CoupledContacts::answer(Interface& interface, const ContactList& contacts, 
 // from that velocity.
 Vector CoupledContacts::since_answer(const Interface& interface, std::int32_t contact, const Dofs& v) {
   return interface.relative(contact, v) - interface.surface_velocity(contact) -
-         interface.delassus(contact) * interface.impulse(contact) - interface.v_free(contact);
+         interface.velocity_of(contact, interface.impulse(contact)) - interface.v_free(contact);
 }
 
 // That, beside the largest velocity there is, or that an impulse makes. Zero where all laws hold. Of
@@ -248,7 +249,7 @@ Vector CoupledContacts::since_answer(const Interface& interface, std::int32_t co
 CoupledContacts::Residual CoupledContacts::residual(const ContactGroup& group, double speed, const Dofs& v) {
   Residual found{0.0, speed};
   for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index /*k*/) {
-    const double own = interface.delassus(contact) * interface.impulse(contact).cwiseAbs().maxCoeff();
+    const double own = interface.velocity_of(contact, interface.impulse(contact)).cwiseAbs().maxCoeff();
     found.change = std::max(found.change, since_answer(interface, contact, v).cwiseAbs().maxCoeff());
     found.size = std::max(found.size, own);
   });

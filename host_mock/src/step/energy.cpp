@@ -43,6 +43,7 @@ double mixed_potential(const Model& model, const Dofs& u, const Dofs& u_next) {
 }  // namespace
 
 void EnergyBalance::start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) {
+  sums_ = {};
   sums_.initial = kinetic_sum(model, v);
   sums_.initial += model.is_linear() ? mixed_potential(model, u, u_next) : model.potential(u);
   if (!model.is_linear()) sums_.internal_work = -static_cast<Sum>(model.potential(u));

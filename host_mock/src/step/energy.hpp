@@ -32,6 +32,8 @@ class EnergyBalance {
   // The state (U_0, V_{1/2}) and U_1 that follows from it.
   void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v);
 
+  // Work on the way to that state, which is booked apart.
+  void take_from_initial(double work) { sums_.initial -= work; }
   void add_external(long double work);
   // Impulses of a step, per degree of freedom, with the velocities at its ends.
   void add_damping(const Dofs& impulse, const Dofs& v_before, const Dofs& v_after);

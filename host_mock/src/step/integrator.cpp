@@ -6,6 +6,7 @@
 #include "model/elements.hpp"
 #include "step/dof_loops.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -17,10 +18,11 @@ namespace {
 
 void leave_driven_undamped(const Loads& loads, Eigen::Index d, const Dofs& undamped, Dofs& v, Dofs& impulse) {
   for (const auto& load : loads)
-    for (const int node : load->prescribed_nodes()) {
-      v.segment(node * d, d) = undamped.segment(node * d, d);
-      impulse.segment(node * d, d).setZero();
-    }
+    for (const int node : load->prescribed_nodes())
+      for (const int axis : load->prescribed_axes()) {
+        v[node * d + axis] = undamped[node * d + axis];
+        impulse[node * d + axis] = 0.0;
+      }
 }
 
 // What of it tells best that it diverged, and its name.
@@ -50,6 +52,7 @@ struct WildMotion {
 }  // namespace
 
 void Integrator::step() {
+  start();
   const StepTimes times{time(), static_cast<double>(steps_ + 1) * dt_};
   RunningLaw::set_step(steps_ + 1);
   Laps laps(timed_steps());
@@ -65,7 +68,9 @@ void Integrator::step() {
   }
   check_motion(speed_free, times.after);  // before the laws see it, too: they must not be blamed
   laps.add_to(force_ticks_);
-  add_reactions(times.after, speed_free);  // r = law(v_free, 1/m, gap, state), v = v_free + r/m
+  // r = law(v_free, H, gap, state), v = v_free + H r
+  add_reactions({u_, v_before_, times.after, dt_, speed_before_, speed_free, steps_ + 1});
+  if (contact_inverse_mass_.size() > 0) add_load_reactions(times);
   laps.add_to(interface_ticks_);
   const WorkAndSpeed external = work_and_speed(external_impulse_, v_before_, v_, model_.dimension());
   speed_before_ = external.speed;
@@ -74,7 +79,7 @@ void Integrator::step() {
   has_begun_step_ = false;
   accounts_.add_step(model_, interfaces_,
                      {external.work, damping_impulse_.size() == 0 ? nullptr : &damping_impulse_,
-                      internal_impulse_, v_before_, v_});
+                      internal_impulse_, v_before_, v_, std::max(speed_free, speed_before_)});
 }
 
 // What is told of a run that failed is of its last whole step.
@@ -160,8 +165,8 @@ double Integrator::kick(StepTimes step) {
   return largest_speed(v_, d);
 }
 
-// Damping works apart from the other loads. That by mass comes first and leaves alone what a motion
-// drives; the motion comes last: what holds a node has the whole reaction.
+// Damping works apart from the other loads. Damping by mass comes first and does not act along driven axes. A
+// motion comes last, so that the holder of a node takes the whole reaction.
 void Integrator::correct(StepTimes step) {
   const Dofs undamped = damping_impulse_.size() == 0 ? Dofs() : v_;
   damping_impulse_.setZero();
@@ -176,20 +181,51 @@ void Integrator::correct(StepTimes step) {
   }
 }
 
+// What a load leaves of an impulse. Damping by mass leaves all of it along driven axes, where a motion takes it.
+Dofs Integrator::transmitted(std::size_t load, StepTimes step, const Dofs& impulse) const {
+  Dofs left = impulse;
+  loads_[load]->transmit(step, left);
+  if (loads_[load]->acts_on_driven()) return left;
+  Dofs none = Dofs::Zero(impulse.size());
+  leave_driven_undamped(loads_, model_.dimension(), impulse, left, none);
+  return left;
+}
+
+// Interfaces act after the loads that correct velocities: H is 1/m times what those leave of a unit impulse,
+// 1/(m (1 + a)) with damping, a = rate h/2, and 0 where a motion drives.
+void Integrator::find_contact_mass(StepTimes step) {
+  Dofs left = Dofs::Ones(u_.size());
+  for (const std::size_t k : correcting_) left = transmitted(k, step, left);
+  if (contact_inverse_mass_.size() == 0 && (left.array() == 1.0).all()) return;
+  contact_inverse_mass_ = left.cwiseProduct(inverse_mass_);
+  for (const auto& interface : interfaces_) interface->set_inverse_mass(contact_inverse_mass_.data());
+}
+
+// Loads that correct velocities take their part of the impulses of interfaces: the damper's force follows from
+// the final velocity, and the holder of a driven node bears what acts on it.
+void Integrator::add_load_reactions(StepTimes step) {
+  Dofs impulse = interface_impulse();
+  for (const std::size_t k : correcting_) {
+    const Dofs left = transmitted(k, step, impulse), taken = left - impulse;
+    (loads_[k]->damps() ? damping_impulse_ : external_impulse_) += taken;
+    if (Dofs& kept = kept_load_impulses_[k]; kept.size() != 0) kept += taken;
+    impulse = left;
+  }
+}
+
 // Where no two contacts share a node, each law is evaluated once: for blocks of contacts the
-// interface finds gaps, normals and 1/m, passes v_free and v_before relative to the obstacle, takes
-// impulses, states and energies, and adds r/m. Where some do, laws are evaluated until all agree. A
+// interface finds gaps, normals and H, passes v_free and v_before relative to the obstacle, takes
+// impulses, states and energies, and adds H r. Where some do, laws are evaluated until all agree. A
 // law that is given no gap or normal, as bodies are gone too far, is not to be blamed.
-void Integrator::add_reactions(double time, double speed_free) try {
-  const StepView step{u_, v_before_, time, dt_, speed_before_, speed_free, steps_ + 1};
+void Integrator::add_reactions(const StepView& step) try {
   if (coupled_)
     add_coupled_reactions(step);
   else
     for (const auto& interface : interfaces_) interface->solve(step, v_);
 } catch (const ilaw::error&) {
   for (const auto& interface : interfaces_)
-    if (interface->has_lost_a_node(u_, time))
-      explain_divergence({"displacement", u_, model_, u_, time, dt_, steps_ + 1});
+    if (interface->has_lost_a_node(u_, step.time))
+      explain_divergence({"displacement", u_, model_, u_, step.time, dt_, step.number});
   throw;
 }
 
@@ -198,6 +234,7 @@ void Integrator::add_coupled_reactions(const StepView& step) {
   const CoupledContacts::Outcome outcome = coupled_->solve(step, v_);
   if (accounts_.is_wrong(model_, outcome, v_before_))
     if (const std::string why = coupled_->explain(v_, outcome); !why.empty()) throw std::runtime_error(why);
+  for (const auto& interface : interfaces_) interface->check_driven(step);
   accounts_.add_solution(outcome);
   for (const auto& interface : interfaces_) interface->accept(step, v_);
 }

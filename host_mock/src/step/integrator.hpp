@@ -34,6 +34,9 @@ class Integrator {
  public:
   Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt);
 
+  // The half step that a run starts with, from V_0 to V_{1/2}, as interfaces let it: what rests or is bonded carries
+  // its load from time 0 on. The first step does it where nobody has; later calls do nothing. Throws as step().
+  void start();
   // One step. Throws ilaw::error when a law refuses a node, Diverged when the motion is not finite.
   void step();
   // Where step() threw: the bodies as they were before it. Nothing otherwise.
@@ -45,9 +48,9 @@ class Integrator {
   const Dofs& velocity() const { return v_; }      // at the half step after time()
   // At the half step before time(), once a step has been made.
   const Dofs& velocity_before() const { return v_before_; }
-  // Impulse of the interfaces in the last step, per degree of freedom.
+  // Impulse of the interfaces in the last step, per degree of freedom; before any, in the half step of the start.
   Dofs interface_impulse() const;
-  // The impulse of one load in the last step, added to those per degree of freedom. Of a load that
+  // The same of one load, added to those per degree of freedom. Of a load that
   // corrects velocities (a motion, damping) it is kept from when it is first asked for.
   void keep_load_impulse(std::size_t load);
   void add_load_impulse(std::size_t load, Dofs& impulse) const;
@@ -75,7 +78,14 @@ class Integrator {
   void sum_forces(StepTimes step);
   double kick(StepTimes step);
   void correct(StepTimes step);
-  void add_reactions(double time, double speed_free);
+  Dofs transmitted(std::size_t load, StepTimes step, const Dofs& impulse) const;
+  void find_contact_mass(StepTimes step);
+  void add_load_reactions(StepTimes step);
+  Dofs force_at_start() const;
+  StepTimes start_times() const { return {-0.5 * dt_, 0.0, dt_}; }
+  void add_start_kick();
+  void hold_driven_before();
+  void add_reactions(const StepView& step);
   void add_coupled_reactions(const StepView& step);
   void check_motion(double speed, double time) const;
 
@@ -89,10 +99,12 @@ class Integrator {
   std::vector<std::size_t> correcting_;   // loads in the order in which they correct velocities
   std::vector<Dofs> kept_load_impulses_;  // by load; empty where nobody asks
   std::int64_t steps_ = 0;
-  bool has_begun_step_ = false;
+  bool has_started_ = false, has_begun_step_ = false;
   double speed_before_ = 0.0;  // the largest of v_
   Dofs u_, v_, v_before_, external_impulse_, damping_impulse_, internal_impulse_;
-  Dofs inverse_mass_;  // where forces change
+  Dofs inverse_mass_;
+  // Velocity that a unit impulse of an interface makes, per degree of freedom; empty where that is inverse_mass_.
+  Dofs contact_inverse_mass_;
   Dofs gain_;          // of the velocities in a step, where they do not; empty without loads
   Accounts accounts_;
   TickLength tick_length_;

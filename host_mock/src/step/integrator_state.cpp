@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/bytes.hpp"
 #include "base/large_pages.hpp"
+#include "base/running_law.hpp"
 #include "step/dof_loops.hpp"
 #include "step/integrator.hpp"
 
@@ -26,7 +27,6 @@ std::vector<std::size_t> order_of_corrections(const Loads& loads) {
 
 }  // namespace
 
-// Half a kick takes V_0 to V_{1/2}.
 Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt)
     : model_(model),
       loads_(loads),
@@ -42,25 +42,70 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       v_before_(v_),
       external_impulse_(Dofs::Zero(loads.empty() ? 0 : u_.size())),
       internal_impulse_(Dofs::Zero(model.has_internal_forces() ? u_.size() : 0)),
-      inverse_mass_(forces_are_steady_ ? Dofs() : Dofs(model.mass().cwiseInverse())) {
+      inverse_mass_(model.mass().cwiseInverse()) {
   if (share_nodes(model_, interfaces_)) coupled_.emplace(model_, interfaces_);
-  Dofs force = Dofs::Zero(u_.size());
-  for (const auto& load : loads_) load->add_force(0.0, u_, force);
-  if (loads_are_steady_ && !loads_.empty()) external_impulse_ = dt_ * force;
-  if (forces_are_steady_ && !loads_.empty())
-    gain_ = external_impulse_.cwiseProduct(model_.mass().cwiseInverse());
-  model_.add_internal_forces(u_, force);
-  v_ += 0.5 * dt_ * force.cwiseQuotient(model_.mass());
-  for (const std::size_t k : correcting_) loads_[k]->start(dt_, {u_, v_before_}, v_);
+  if (loads_are_steady_ && !loads_.empty()) external_impulse_ = dt_ * force_at_start();
+  if (forces_are_steady_ && !loads_.empty()) gain_ = external_impulse_.cwiseProduct(inverse_mass_);
   const bool damped =
       std::any_of(loads_.begin(), loads_.end(), [](const auto& load) { return load->damps(); });
   damping_impulse_ = Dofs::Zero(damped ? u_.size() : 0);
+  for (const auto& interface : interfaces_) interface->set_inverse_mass(inverse_mass_.data());
+  add_start_kick();
   accounts_.start(model_, u_, u_ + dt_ * v_, v_);
   speed_before_ = largest_speed(v_, model_.dimension());
   keep_in_large_pages(model_.position());
   for (const Dofs* dofs : {&u_, &v_, &v_before_, &external_impulse_, &damping_impulse_, &internal_impulse_,
                            &inverse_mass_, &gain_})
     keep_in_large_pages(*dofs);
+}
+
+Dofs Integrator::force_at_start() const {
+  Dofs force = Dofs::Zero(u_.size());
+  for (const auto& load : loads_) load->add_force(0.0, u_, force);
+  return force;
+}
+
+// Half a kick takes V_0 to V_{1/2}, without interfaces.
+void Integrator::add_start_kick() {
+  Dofs force = force_at_start();
+  model_.add_internal_forces(u_, force);
+  v_ = v_before_ + 0.5 * dt_ * force.cwiseProduct(inverse_mass_);
+  if (!correcting_.empty()) correct(start_times());
+}
+
+// Driven nodes have no velocity before the start but the one that drives them: the start is no impact.
+void Integrator::hold_driven_before() {
+  for (const auto& load : loads_)
+    for (const int node : load->prescribed_nodes())
+      for (const int axis : load->prescribed_axes()) {
+        const Eigen::Index dof = Eigen::Index{node} * model_.dimension() + axis;
+        v_before_[dof] = v_[dof];
+      }
+}
+
+// m (V_{1/2} - V_0) = h/2 f_0 + r_0: laws are asked at time 0, with half a step of the velocity. Bodies then move a
+// whole step, so that a predicted gap takes a whole step of the position.
+void Integrator::start() {
+  if (has_started_) return;
+  has_started_ = true;
+  add_start_kick();  // once more: by now it is known whose impulses are kept
+  if (interfaces_.empty()) return;
+  RunningLaw::set_step(0);
+  const Eigen::Index d = model_.dimension();
+  const Dofs v_free = v_;
+  hold_driven_before();
+  find_contact_mass(start_times());
+  try {
+    add_reactions({u_, v_before_, 0.0, dt_, largest_speed(v_before_, d), speed_before_, 0});
+  } catch (...) {
+    v_ = v_free;
+    throw;
+  }
+  if (contact_inverse_mass_.size() > 0) add_load_reactions(start_times());
+  find_contact_mass({0.0, dt_});
+  speed_before_ = largest_speed(v_, d);
+  accounts_.start(model_, u_, u_ + dt_ * v_, v_);
+  accounts_.add_start(interfaces_, std::max(largest_speed(v_free, d), speed_before_));
 }
 
 Dofs Integrator::interface_impulse() const {
@@ -77,19 +122,19 @@ void Integrator::keep_load_impulse(std::size_t load) {
 }
 
 void Integrator::add_load_impulse(std::size_t load, Dofs& impulse) const {
-  if (steps_ == 0) return;
   if (const Dofs& kept = kept_load_impulses_[load]; kept.size() != 0) {
     impulse += kept;
     return;
   }
   Dofs force = Dofs::Zero(u_.size());
   loads_[load]->add_force(time(), u_, force);
-  impulse += dt_ * force;
-  loads_[load]->add_impulse({static_cast<double>(steps_ - 1) * dt_, time()}, impulse);
+  impulse += (steps_ == 0 ? 0.5 * dt_ : dt_) * force;
+  if (steps_ > 0) loads_[load]->add_impulse({static_cast<double>(steps_ - 1) * dt_, time()}, impulse);
 }
 
 void Integrator::save(std::ostream& out) const {
   write_value(out, steps_);
+  write_value(out, has_started_);
   for (const Dofs* dofs : {&u_, &v_}) write_array(out, dofs->data(), static_cast<std::size_t>(dofs->size()));
   accounts_.save(out);
   for (const auto& interface : interfaces_) interface->save(out);
@@ -97,6 +142,7 @@ void Integrator::save(std::ostream& out) const {
 
 void Integrator::load(std::istream& in) {
   read_value(in, steps_);
+  read_value(in, has_started_);
   for (Dofs* dofs : {&u_, &v_}) read_array(in, dofs->data(), static_cast<std::size_t>(dofs->size()));
   accounts_.load(in);
   speed_before_ = largest_speed(v_, model_.dimension());

@@ -12,8 +12,8 @@ namespace ilaw::host {
 namespace {
 
 // Velocity that a scaled impulse at one contact makes at another, over all pairs: W, scaled to a diagonal
-// of 1. The same in each direction.
-Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const Model& model) {
+// of 1, along an axis.
+Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const double* inverse_mass, Eigen::Index d, Eigen::Index axis) {
   std::map<int, std::vector<std::pair<Eigen::Index, double>>> at_node;
   for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index k) {
     const double root = std::sqrt(interface.delassus(contact));
@@ -26,7 +26,7 @@ Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const Model& model) {
   for (const auto& [node, shares] : at_node)
     for (const auto& [j, weight] : shares)
       for (const auto& [k, other] : shares)
-        coupling(j, k) += weight * other / model.mass()[Eigen::Index{node} * model.dimension()];
+        coupling(j, k) += weight * other * inverse_mass[node * d + axis];
   return coupling;
 }
 
@@ -65,19 +65,21 @@ Eigen::MatrixXd tangents_of(const ContactGroup& group, const StepView& step,
 
 // A law f answers to c + (W - 1) r, all scaled, where c is v without any impulse: all agree where that is r,
 // and (1 - f' (W - 1)) dr = f - r leads there.
-Dofs newton_impulses(const ContactGroup& group, const Model& model, const StepView& step, const Dofs& v) {
+Dofs newton_impulses(const ContactGroup& group, const double* inverse_mass, const StepView& step, const Dofs& v) {
   const Dofs impulses = scaled_impulses(group);
   for (const auto& [interface, contacts] : group) interface->gather(contacts, v, step);
   const std::vector<Vector> velocities = asked_velocities(group);
   answer_at(group, velocities, step);
   const Dofs answered = scaled_impulses(group);
-  const Eigen::MatrixXd tangents = tangents_of(group, step, velocities, answered),
-                        coupling = scaled_coupling(group, model);
-  const Eigen::Index d = tangents.cols(), count = coupling.cols();
+  const Eigen::MatrixXd tangents = tangents_of(group, step, velocities, answered);
+  const Eigen::Index d = tangents.cols(), count = contact_count(group);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(impulses.size(), impulses.size());
-  for (Eigen::Index j = 0; j < count; ++j)
-    for (Eigen::Index k = 0; k < count; ++k)
-      if (j != k) matrix.block(d * j, d * k, d, d) -= coupling(j, k) * tangents.middleRows(d * j, d);
+  for (Eigen::Index c = 0; c < d; ++c) {
+    const Eigen::MatrixXd coupling = scaled_coupling(group, inverse_mass, d, c);
+    for (Eigen::Index j = 0; j < count; ++j)
+      for (Eigen::Index k = 0; k < count; ++k)
+        if (j != k) matrix.block(d * j, d * k + c, d, 1) -= coupling(j, k) * tangents.block(d * j, c, d, 1);
+  }
   return impulses + matrix.colPivHouseholderQr().solve(answered - impulses);
 }
 

@@ -131,6 +131,8 @@ Trace trace_of(Scene& scene) {
   trace.dimension = scene.model->dimension();
   trace.instants.resize(scene.output.watch.size());
   Dofs impulse = Dofs::Zero(static_cast<Eigen::Index>(scene.interfaces.size()) * trace.dimension);
+  integrator.start();
+  add_impulses(scene.interfaces, impulse);
   while (integrator.steps() < scene.steps) {
     integrator.step();
     trace.displacement.push_back(watched_part(integrator.displacement(), scene));
@@ -149,6 +151,7 @@ Trace trace_of(Scene& scene) {
 double seconds_of(Scene& scene) {
   ask_no_energies(scene.interfaces);
   Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
+  integrator.start();
   const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
   while (integrator.steps() < scene.steps) integrator.step();
   return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;

@@ -1,0 +1,321 @@
+// Bodies that are held, damped, loaded from the start and stacked, against closed forms.
+#include "run_result.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+// Three steps without a common factor.
+constexpr double steps[] = {1e-2, 3.7e-3, 1.3e-3};
+
+// ---- damping --------------------------------------------------------------------------------------------
+
+// A point that is driven along y keeps the damping along x, as a free one beside it.
+TEST(Damping, ActsAlongTheFreeAxesOfADrivenNode) {
+  for (const double h : steps) {
+    json scene = json::parse(R"({
+      "model": {"type": "points", "dimension": 2, "points": [{"mass": 3, "position": [0, 0], "velocity": [2, 0]},
+                                                             {"mass": 3, "position": [1, 0], "velocity": [2, 0]}]},
+      "loads": [{"type": "damping", "rate": 30},
+                {"type": "motion", "nodes": [0], "axes": [1], "path": [[0, 0, 0], [0.2, 0, 0.1]]}],
+      "interfaces": []})");
+    scene["time"] = {{"dt", h}, {"end", 0.5}};
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    while (integrator.steps() < read.steps) integrator.step();
+    const double a = 15.0 * h, kept = 2.0 * (1.0 - 0.5 * a) / (1.0 + 0.5 * a) *
+                                      std::pow((1.0 - a) / (1.0 + a), static_cast<double>(read.steps));
+    EXPECT_NEAR(integrator.velocity()[2], kept, 1e-14) << "h = " << h;
+    EXPECT_EQ(integrator.velocity()[0], integrator.velocity()[2]) << "h = " << h;
+    EXPECT_EQ(integrator.velocity()[1], 0.0) << "h = " << h;
+    EXPECT_NEAR(integrator.displacement()[1], 0.1, 1e-15) << "h = " << h;
+    EXPECT_LT(integrator.energy().balance_error, 1e-14) << "h = " << h;
+  }
+}
+
+// A block in plane strain, all nodes held along y: its velocity along x falls as e^-15, at the default step and
+// at the critical one.
+TEST(Damping, SlowsABlockInPlaneStrain) {
+  for (const double cfl : {0.9, 0.999, 0.53}) {
+    json scene = json::parse(R"({
+      "model": {"type": "blocks", "blocks": [{"name": "b", "size": [1, 0.2, 1], "elements": [4, 1, 4], "velocity": [1, 0, 0],
+        "material": {"type": "linear", "young": 1e6, "poisson": 0.3, "density": 1000}}]},
+      "loads": [{"type": "damping", "rate": 30}, {"type": "motion", "nodes": "all", "axes": [1]}],
+      "interfaces": []})");
+    scene["time"] = {{"cfl", cfl}, {"end", 0.5}};
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    while (integrator.steps() < read.steps) integrator.step();
+    const double end = static_cast<double>(read.steps) * read.dt;
+    EXPECT_NEAR(integrator.velocity()[0] / std::exp(-30.0 * end), 1.0, 0.1) << "cfl " << cfl;
+  }
+}
+
+// A floor carries the weight, whatever is damped: alone, with friction, and through a stack of light and heavy ones.
+TEST(Damping, LeavesTheWeightToTheFloor) {
+  for (const double h : steps)
+    for (const double rate : {20.0, 200.0}) {
+      json scene = json::parse(R"({
+        "model": {"type": "points", "dimension": 2, "points": [{"mass": 1, "position": [0, 0]}, {"mass": 20, "position": [0, 0]},
+                                                               {"mass": 5, "position": [0, 0]}]},
+        "loads": [{"type": "gravity", "acceleration": [0, -10]}, {"type": "damping", "nodes": "all"},
+                  {"type": "force", "nodes": [0], "direction": [1, 0], "history": [[0, 60]]},
+                  {"type": "damping", "name": "more", "nodes": [1], "rate": 50}],
+        "interfaces": [{"name": "floor", "law": "coulomb", "parameters": {"friction": 0.2}, "nodes": [0],
+            "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}},
+          {"name": "middle", "law": "coulomb", "parameters": {"friction": 0.2}, "nodes": [1], "against": {"nodes": [0], "normal": [0, 1]}},
+          {"name": "top", "law": "contact", "nodes": [2], "against": {"nodes": [1], "normal": [0, 1]}}],
+        "output": {"forces": ["floor", "middle", "top", "more"]}})");
+      scene["time"] = {{"dt", h}, {"end", 3}};
+      scene["loads"][1]["rate"] = rate;
+      const Ran run = ran(scene);
+      const std::string at = "h = " + number(h) + ", rate " + number(rate);
+      EXPECT_NEAR(run.last("floor.F1"), 260.0, 1e-9) << at;
+      EXPECT_NEAR(run.last("floor.F0"), -52.0, 1e-9) << at;
+      EXPECT_NEAR(run.last("middle.F1"), 250.0, 1e-9) << at;
+      EXPECT_NEAR(run.last("top.F1"), 50.0, 1e-9) << at;
+      EXPECT_NEAR(run.last("more.F1"), 0.0, 1e-9) << at;
+      EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-13) << at;
+      EXPECT_LT(run.summary["energy"]["reaction_work"].get<double>(), 1e-12) << at;
+    }
+}
+
+// Forces of all loads and the floor add up to the change of momentum, where dampers take part of a reaction.
+TEST(Damping, TakesItsPartOfAnImpact) {
+  for (const double h : steps) {
+    json scene = json::parse(R"({
+      "model": {"type": "points", "dimension": 1, "points": [{"mass": 2, "position": [0.1], "velocity": [-1]}]},
+      "loads": [{"type": "damping", "name": "air", "rate": 20}, {"type": "damping", "name": "oil", "rate": 7}],
+      "interfaces": [{"name": "wall", "law": "contact", "parameters": {"restitution": 0.5}, "nodes": "all",
+        "obstacle": {"type": "plane", "point": [0], "normal": [1]}}],
+      "output": {"watch": [0], "balance": true, "forces": ["wall", "air", "oil"]}})");
+    scene["time"] = {{"dt", h}, {"end", 0.3}};
+    const Ran run = ran(scene);
+    const double first = run.history.at("n0.v0")[0];
+    for (std::size_t k = 1; k < run.history.at("time").size(); ++k) {
+      const double force = run.history.at("wall.F0")[k] + run.history.at("air.F0")[k] + run.history.at("oil.F0")[k];
+      EXPECT_NEAR(2.0 * (run.history.at("n0.v0")[k] - run.history.at("n0.v0")[k - 1]), h * force, 1e-14) << "h = " << h;
+      if (run.history.at("wall.F0")[k] > 0.0)
+        EXPECT_NEAR(run.history.at("n0.v0")[k], -0.5 * run.history.at("n0.v0")[k - 1], 1e-15) << "h = " << h;
+    }
+    EXPECT_LT(first, 0.0);
+    EXPECT_GT(run.last("n0.v0"), 0.0) << "h = " << h;
+    EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-14) << "h = " << h;
+  }
+}
+
+// ---- driven nodes in interfaces -------------------------------------------------------------------------
+
+// Half a block, its plane of symmetry driven along x alone, against the whole one: the same motion and energies.
+TEST(Driven, HalfABlockMovesAsTheWholeOne) {
+  struct Law {
+    const char *name, *parameters;
+  };
+  for (const Law law : {Law{"contact", "{}"}, Law{"coulomb", R"({"friction": 0.3})"},
+                        Law{"penalty", R"({"stiffness": 1e9, "friction": 0.3})"}, Law{"tie", "{}"},
+                        Law{"cohesive", R"({"strength": 3e4, "toughness": 20, "friction": 0.2})"}})
+    for (const double cfl : {0.9, 0.999, 0.53}) {
+      json whole = json::parse(R"({
+        "model": {"type": "blocks", "blocks": [{"name": "b", "size": [2, 0.5, 0.5], "corner": [-1, 0, 0], "elements": [4, 1, 2], "velocity": [0, 0, -1],
+          "material": {"type": "linear", "young": 1e7, "poisson": 0.3, "density": 1000}}]},
+        "loads": [{"type": "gravity", "acceleration": [0, 0, -10]}, {"type": "damping", "rate": 40}],
+        "interfaces": [{"name": "floor", "nodes": "b.z_min", "obstacle": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}]})");
+      whole["interfaces"][0]["law"] = law.name;
+      whole["interfaces"][0]["parameters"] = json::parse(law.parameters);
+      whole["time"] = {{"cfl", cfl}, {"end", 0.05}};
+      json half = whole;
+      json& block = half["model"]["blocks"][0];
+      block["size"][0] = 1;
+      block["corner"][0] = 0;
+      block["elements"][0] = 2;
+      half["loads"].push_back({{"type", "motion"}, {"nodes", "b.x_min"}, {"axes", {0}}});
+      Scene all = scene_of(whole.dump()), part = scene_of(half.dump());
+      Integrator one(*all.model, all.loads, all.interfaces, all.dt), other(*part.model, part.loads, part.interfaces, all.dt);
+      for (std::int64_t k = 0; k < all.steps; ++k) {
+        one.step();
+        other.step();
+      }
+      const std::string at = std::string(law.name) + ", cfl " + number(cfl);
+      double largest = 0.0, difference = 0.0;
+      for (int node = 0; node < part.model->node_count(); ++node)
+        for (int same = 0; same < all.model->node_count(); ++same) {
+          const Eigen::Index d = 3, i = d * node, j = d * same;
+          if ((part.model->position().segment(i, d) - all.model->position().segment(j, d)).norm() > 1e-9) continue;
+          difference = std::max(difference, (other.displacement().segment(i, d) - one.displacement().segment(j, d)).norm());
+          largest = std::max(largest, one.displacement().segment(j, d).norm());
+        }
+      EXPECT_LT(difference, 1e-10 * largest) << at;
+      const EnergyReport a = one.energy(), b = other.energy();
+      EXPECT_NEAR(2.0 * b.interface_work, a.interface_work, 1e-10 * a.scale) << at;
+      EXPECT_NEAR(2.0 * b.by_law[ILAW_ENERGY_FRICTION], a.by_law[ILAW_ENERGY_FRICTION], 1e-10 * a.scale) << at;
+      EXPECT_LT(b.balance_error, 1e-12) << at;
+    }
+}
+
+// A slope of 45 degrees that a driven point climbs: the load perpendicular to the drive gives N and F in closed form.
+TEST(Driven, PointSlidesUpASlope) {
+  for (const double h : steps) {
+    json scene = json::parse(R"({
+      "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0]}]},
+      "loads": [{"type": "motion", "name": "rod", "nodes": [0], "axes": [0], "velocity": [0.3, 0]},
+                {"type": "gravity", "acceleration": [0, -10]}, {"type": "damping", "rate": 30}],
+      "interfaces": [{"name": "slope", "law": "coulomb", "parameters": {"friction": 0.2}, "nodes": [0],
+        "obstacle": {"type": "plane", "point": [0, 0], "normal": [-1, 1]}}],
+      "output": {"forces": ["slope", "rod"], "balance": true}})");
+    scene["time"] = {{"dt", h}, {"end", 1}};
+    const Ran run = ran(scene);
+    // Along y: (N - mu N)/sqrt 2 = m g + rate m v, and along x the rod holds -(N + mu N)/sqrt 2.
+    const double lift = 20.0 + 30.0 * 2.0 * 0.3, push = lift * 1.2 / 0.8;
+    EXPECT_NEAR(run.last("slope.F1"), lift, 1e-9) << "h = " << h;
+    EXPECT_NEAR(run.last("slope.F0"), -push, 1e-9) << "h = " << h;
+    EXPECT_NEAR(run.last("rod.F0"), push, 1e-9) << "h = " << h;
+    EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-13) << "h = " << h;
+  }
+}
+
+// What a law cannot give way to ends the run with a reason: a rigid one that is driven along its normal.
+TEST(Driven, AgainstARigidLawEndsTheRun) {
+  json scene = json::parse(R"({
+    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0.05]}]},
+    "time": {"dt": 0.0037, "end": 0.1},
+    "loads": [{"type": "motion", "nodes": [0], "axes": [1], "velocity": [0, -1]}],
+    "interfaces": [{"name": "floor", "law": "contact", "nodes": [0],
+      "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}],
+    "output": {"watch": [0]}})");
+  const auto folder = fresh_folder();
+  const auto run = [&] {
+    std::ofstream(folder / "scene.json") << scene.dump();
+    return run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  };
+  const Outcome rigid = run();
+  EXPECT_EQ(rigid.code, 1) << rigid.output;
+  EXPECT_NE(rigid.output.find("node 0 is driven along axis 1 against 'floor' (law 'contact'), which cannot give way"),
+            std::string::npos)
+      << rigid.output;
+  scene["interfaces"][0]["law"] = "penalty";
+  scene["interfaces"][0]["parameters"] = {{"stiffness", 1e6}};
+  const Outcome soft = run();
+  EXPECT_EQ(soft.code, 0) << soft.output;
+  std::filesystem::remove_all(folder);
+}
+
+// Nothing is left to solve where nodes on both sides are driven along all axes.
+TEST(Driven, AlongAllAxesOnBothSidesIsRefused) {
+  json scene = json::parse(R"({
+    "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0.05]}, {"mass": 2, "position": [0, 0]}]},
+    "time": {"dt": 0.0037, "end": 0.1},
+    "loads": [{"type": "motion", "nodes": [0], "velocity": [0, -1]}],
+    "interfaces": [{"name": "pair", "law": "contact", "nodes": [0], "against": {"nodes": [1], "normal": [0, 1]}}]})");
+  EXPECT_EQ(refusal_of_scene(scene), "not refused");
+  scene["loads"].push_back({{"type", "motion"}, {"nodes", {1}}});
+  EXPECT_EQ(refusal_of_scene(scene),
+            "/interfaces/0/nodes: found node 0, which a motion drives along all axes, expected a node that is free along "
+            "one axis, or that meets one that is");
+}
+
+// ---- the start ------------------------------------------------------------------------------------------
+
+json resting_point(const std::string& law, const json& parameters, double h) {
+  json scene = json::parse(R"({
+    "model": {"type": "points", "dimension": 2, "points": [{"mass": 1, "position": [0, 0]}]},
+    "loads": [{"type": "gravity", "name": "weight", "acceleration": [0, -10]}],
+    "interfaces": [{"name": "floor", "nodes": [0], "obstacle": {"type": "plane", "point": [0, 0], "normal": [0, 1]}}],
+    "output": {"watch": [0], "forces": ["floor", "weight"], "events": true}})");
+  scene["interfaces"][0]["law"] = law;
+  scene["interfaces"][0]["parameters"] = parameters;
+  scene["time"] = {{"dt", h}, {"end", 0.2}};
+  return scene;
+}
+
+// A point at rest on a floor stays where it is, under its weight from time 0 on, whatever the rigid law and step.
+TEST(Start, LeavesABodyAtRestOnItsFloor) {
+  for (const auto& [law, parameters] : {std::pair{"contact", json::object()}, std::pair{"coulomb", json{{"friction", 0.3}}},
+                                        std::pair{"tie", json::object()}, std::pair{"postit", json::object()},
+                                        std::pair{"cohesive", json{{"strength", 1e3}, {"toughness", 10}}}})
+    for (const double h : steps) {
+      const Ran run = ran(resting_point(law, parameters, h));
+      const std::string at = std::string(law) + ", h = " + number(h);
+      for (const double u : run.history.at("n0.u1")) EXPECT_NEAR(u, 0.0, 1e-16) << at;
+      for (const double force : run.history.at("floor.F1")) EXPECT_NEAR(force, 10.0, 1e-12) << at;
+      EXPECT_NEAR(run.summary["forces"]["floor"]["largest"].get<double>(), 10.0, 1e-12) << at;
+      // From V_0 = 0 to V_{n+1/2} = 0.
+      const double held = run.summary["forces"]["floor"]["impulse"][1].get<double>(),
+                   given = run.summary["forces"]["weight"]["impulse"][1].get<double>();
+      EXPECT_NEAR(held, 10.0 * (run.last("time") + 0.5 * h), 1e-12) << at;
+      EXPECT_NEAR(held + given, 0.0, 1e-12) << at;
+      EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-12) << at;
+      EXPECT_TRUE(run.summary["warnings"].empty()) << at << run.summary["warnings"].dump();
+      EXPECT_NE(run.events.find("\n0,0,floor,contact"), std::string::npos) << at << ": " << run.events;
+    }
+}
+
+// A bond holds below its strength from the start, and breaks above.
+TEST(Start, BondHoldsUpToItsStrength) {
+  for (const double h : steps)
+    for (const double part : {0.9, 0.99, 1.01}) {
+      json cohesive = resting_point("cohesive", {{"strength", 10.0 / part}, {"toughness", 1e-4}}, h);
+      json tie = resting_point("tie", {{"strength", 10.0 * 0.05 / part}, {"memory", 0.05}}, h);
+      for (json* scene : {&cohesive, &tie}) {
+        (*scene)["loads"][0]["acceleration"] = {0, 10};
+        const Ran run = ran(*scene);
+        const std::string at = (*scene)["interfaces"][0]["law"].dump() + " at " + number(part) + ", h = " + number(h);
+        if (part < 1.0)
+          EXPECT_NEAR(run.last("n0.u1"), 0.0, 1e-15) << at;
+        else
+          EXPECT_GT(run.last("n0.u1"), 1e-3) << at;
+      }
+    }
+}
+
+// Impacts at time 0 from a gap of 0 are exact: the body turns at once, and never enters.
+TEST(Start, ImpactsAtAGapOfZeroAreExact) {
+  for (const char* activation : {"predictive", "moreau"})
+    for (const double e : {0.0, 0.5, 1.0})
+      for (const double h : steps) {
+        json scene = resting_point("contact", {{"restitution", e}, {"activation", activation}}, h);
+        scene["loads"] = json::array();
+        scene["output"]["forces"] = {"floor"};
+        scene["model"]["points"][0]["velocity"] = {0, -1};
+        const Ran run = ran(scene);
+        for (std::size_t k = 0; k < run.history.at("time").size(); ++k)
+          EXPECT_NEAR(run.history.at("n0.u1")[k], e * run.history.at("time")[k], 1e-15) << activation << ", e = " << e << ", h = " << h;
+        EXPECT_NEAR(run.summary["energy"]["dissipated_impact"].get<double>(), 0.5 * (1.0 - e * e), 1e-15);
+        EXPECT_NEAR(run.summary["forces"]["floor"]["impulse"][1].get<double>(), 1.0 + e, 1e-15);
+        EXPECT_LT(run.summary["energy"]["balance_error"].get<double>(), 1e-15);
+      }
+}
+
+// A floor that moves from time 0 on takes a body along that rides on it, at any restitution: it makes no impact.
+TEST(Start, MovingFloorCarriesItsBody) {
+  for (const double e : {0.0, 1.0})
+    for (const double h : steps) {
+      json scene = resting_point("contact", {{"restitution", e}}, h);
+      scene["model"]["points"][0]["velocity"] = {0, 0.3};
+      scene["interfaces"][0]["obstacle"]["velocity"] = {0, 0.3};
+      const Ran run = ran(scene);
+      for (std::size_t k = 0; k < run.history.at("time").size(); ++k)
+        EXPECT_NEAR(run.history.at("n0.u1")[k], 0.3 * run.history.at("time")[k], 1e-15) << "e = " << e << ", h = " << h;
+      EXPECT_NEAR(run.summary["forces"]["floor"]["largest"].get<double>(), 10.0, 1e-11) << "e = " << e << ", h = " << h;
+    }
+}
+
+// A law that refuses a node at time 0 ends the run as in any step.
+TEST(Start, RefusalEndsTheRunAsInAnyStep) {
+  json scene = resting_point("cohesive", {{"strength", 1e3}, {"toughness", 1e-9}}, 1e-2);
+  scene["loads"][0]["acceleration"] = {0, 1e4};
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "scene.json") << scene.dump();
+  const Outcome outcome = run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  if (outcome.code != 0) EXPECT_EQ(outcome.code, 1) << outcome.output;
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
