@@ -99,6 +99,8 @@ std::int32_t evaluate(const ilaw_instance*, const ilaw_batch* batch, ilaw_report
   if (breaks("throw_number")) throw 3;
   if (breaks("abort")) std::abort();
   if (breaks("exit")) std::exit(0);
+  if (breaks("exit_at_once")) _exit(0);
+  if (breaks("quick_exit")) std::quick_exit(0);
   // Read at run time, so that the compiler does not see through it.
   static int* volatile nowhere = reinterpret_cast<int*>(8);
   if (breaks("crash")) *nowhere = 1;
