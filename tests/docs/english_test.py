@@ -15,6 +15,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST = 40  # words
 VAGUE_BEGINNING = re.compile(r"(What|Who|Whose|Of|Those|One that)\b")
+# Pages of laws have these sections in this order.
+LAW_SECTIONS = ["Equations", "Parameters", "State", "Energy", "Limits", "Cost", "Example", "Sources"]
 # Logbooks keep the words of the day on which they were written.
 LOGBOOKS = ROOT / "docs" / "log"
 
@@ -82,6 +84,13 @@ class English(unittest.TestCase):
         for page in pages():
             with self.subTest(page=str(page.relative_to(ROOT))):
                 self.assertEqual(list(offences(page.read_text())), [])
+
+    def test_pages_of_laws_have_the_same_sections(self):
+        laws = [page for page in pages() if page.parent.parent.name == "plugins"]
+        self.assertGreater(len(laws), 5)
+        for page in laws:
+            with self.subTest(page=page.name):
+                self.assertEqual(re.findall(r"^## (.*)", page.read_text(), re.M), LAW_SECTIONS)
 
     def test_finds_long_and_vague_sentences(self):
         long = "Word" + 40 * " word" + "."
