@@ -138,6 +138,8 @@ def table(part, definitions):
     for key, value in part["properties"].items():
         if key == "type" and "enum" not in value:
             continue  # it is in the heading
+        if "description" not in value:
+            sys.exit(f"{SCHEMA.name}: key '{key}' has no description")
         meaning, _, default = value["description"].partition("; default: ")
         if "default" in value:
             default = f"`{json.dumps(value['default'])}`"

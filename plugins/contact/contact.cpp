@@ -17,7 +17,7 @@ struct contact {
           "that "
           "the normal velocity after the step is at least -e times the one before.",
       .inputs = reads_gap | reads_v_previous,
-      .capabilities = ILAW_CAN_REST,
+      .capabilities = can_rest,
       .names_tangents = false};
 
   static constexpr const char* references[] = {

@@ -25,7 +25,7 @@ struct coulomb : friction_in_packs {
           "cone, circular or elliptical, and dissipates at most. Exact for any symmetric positive definite "
           "H.",
       .inputs = reads_gap | reads_v_previous,
-      .capabilities = ILAW_CAN_REST,
+      .capabilities = can_rest,
       .names_tangents = false};
 
   static constexpr const char* references[] = {

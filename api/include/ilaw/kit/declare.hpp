@@ -11,7 +11,7 @@
 //   static constexpr std::uint32_t always_reads;          what inputs() has for all parameters (default:
 //                                                         none): loops without it are not compiled
 //   std::uint32_t capabilities() const;                   what these parameters can do (default: the card's)
-//   static constexpr bool rests_by_parameters = true;     capabilities() promises ILAW_CAN_REST, and nobody
+//   static constexpr bool rests_by_parameters = true;     capabilities() promises can_rest, and nobody
 //                                                         does where parameters vary
 //   static constexpr bool skips_out_of_reach = true;      the step frees such nodes (see node.hpp) without an
 //                                                         impulse and refuses none: where all are so, the kit
@@ -22,11 +22,11 @@
 //                                                         at this node, whatever its state; see ilaw_report
 //   template <class Run> void in_form(Run) const;         a shorter step for these parameters, see below
 //   const char* conflict() const;                         why parameters do not go together, or null
-//   static const void* extension(const char* name);       see ilaw_law (default: ilaw/profile.h alone)
-//   template <class Node> void initialise(Node&) const;   first state (default: zeros)
-//   static constexpr history_card history_variable;       declares a history, of
-//   std::int64_t history_size() const;                    doubles, which step reads as node.history and
-//   template <class Node> void record(const Node&, history) const   writes once the step is accepted
+//   static const void* extension(const char* name);       see ilaw_law (default: ilaw/ext/draft/profile.h
+//   alone) template <class Node> void initialise(Node&) const;   first state (default: zeros) static
+//   constexpr history_card history_variable;       declares a history, of std::int64_t history_size() const;
+//   doubles, which step reads as node.history and template <class Node> void record(const Node&, history)
+//   const   writes once the step is accepted
 // A history that is a window is read and written for the law, which then runs in vector code (window.hpp):
 //   window_in_step window_in(step_interval) const;        gives node.earlier
 //   static bool adds_to_window(double status);            whether a step that gave this status is taken in,
@@ -75,6 +75,10 @@
 #include <utility>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+// In capabilities of a card, besides those of the ABI; they become permissions.
+inline constexpr std::uint32_t acts_at_distance = 1U << 30;  // evaluated out of reach, too, when fresh
+inline constexpr std::uint32_t can_rest = 1U << 31;          // a free node out of reach stays as it is
 
 struct law_card {
   const char* id;
@@ -194,6 +198,8 @@ constexpr std::array<const T*, N> pointers_to(const std::array<T, N>& elements) 
   return pointers;
 }
 
+inline constexpr const char* time_axis[] = {"time"};
+
 template <class Law>
 constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
   const std::uint32_t kind = p.choice_count > 0 ? ILAW_PARAMETER_CHOICE
@@ -209,12 +215,14 @@ constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
           .minimum = p.choice_count > 0 ? 0.0 : p.minimum,
           .maximum = p.choice_count > 0 ? p.choice_count - 1.0 : p.maximum,
           .default_value = p.default_value,
-          .required = p.required,
-          .minimum_excluded = p.minimum_excluded,
-          .infinity_allowed = p.infinity_allowed,
-          .may_be = varies ? std::uint32_t{ILAW_MAY_BE_TABLE | ILAW_MAY_BE_PER_NODE} : 0U,
-          .choices = p.choices,
+          .flags = (p.required ? ILAW_PARAMETER_IS_REQUIRED : 0U) |
+                   (p.minimum_excluded ? ILAW_PARAMETER_EXCLUDES_MINIMUM : 0U) |
+                   (p.infinity_allowed ? ILAW_PARAMETER_ALLOWS_INFINITY : 0U) |
+                   (varies ? ILAW_PARAMETER_ALLOWS_PER_NODE : 0U),
           .choice_count = p.choice_count,
+          .choices = p.choices,
+          .axes = varies ? time_axis : nullptr,
+          .axis_count = varies ? 1U : 0U,
           .reserved = 0};
 }
 
@@ -269,6 +277,22 @@ constexpr auto abi_state_variables(int dimension, std::uint64_t history_size) {
   if constexpr (has_history<Law>)
     result[i] = abi_state_variable(Law::history_variable, ILAW_STATE_HISTORY, history_size);
   return result;
+}
+
+constexpr ilaw_capabilities abi_capabilities(std::uint32_t of_card) {
+  return of_card & ~(acts_at_distance | can_rest);
+}
+constexpr ilaw_permissions abi_permissions(std::uint32_t of_card) {
+  return (of_card & acts_at_distance ? 0U : std::uint32_t{ILAW_MAY_SKIP_FRESH}) |
+         (of_card & can_rest ? std::uint32_t{ILAW_MAY_SKIP_FREE} : 0U);
+}
+// Permissions with any parameters and in any frame.
+template <class Law>
+constexpr ilaw_permissions least_permissions() {
+  std::uint32_t mask = Law::card.capabilities;
+  if constexpr (requires { Law::rests_by_parameters; }) mask &= ~can_rest;
+  if (has_history<Law> && !(mask & can_rest)) mask |= acts_at_distance;
+  return abi_permissions(mask);
 }
 
 // The ABI description of a law, all of it constant.

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/ilaw.h>
+#include <ilaw/kit/detail/kit_batch.hpp>
 #include <ilaw/kit/math.hpp>
 
 #include <type_traits>

@@ -5,7 +5,7 @@
 #ifndef ILAW_BUILDING_PLUGIN
 #define ILAW_BUILDING_PLUGIN
 #endif
-#include <ilaw/profile.h>
+#include <ilaw/ext/draft/profile.h>
 #include <ilaw/kit/detail/checked.hpp>
 #include <ilaw/kit/detail/evaluate.hpp>
 
@@ -24,23 +24,18 @@ inline constexpr ilaw_kit_walk walks[] = {walk_batch<Laws>...};
 
 // The place of a law in its library is not known to the law, so create is made per place.
 template <std::size_t Place, class Law>
-std::int32_t create_at(const ilaw_setup* setup, ilaw_instance** result, char* text, std::size_t text_size) {
-  const std::int32_t code = create<Law>(setup, result, text, text_size);
+ilaw_result ILAW_CALL create_at(const char* id, const ilaw_setup* setup, ilaw_instance** result, char* text,
+                                std::size_t text_size) {
+  const std::int32_t code = create<Law>(id, setup, result, text, text_size);
   if (code == ILAW_OK)
     if (const ilaw_kit_walk* best = best_walks())
       reinterpret_cast<instance<Law>*>(*result)->walk = best[Place];
   return code;
 }
 
-template <class Law>
-inline constexpr ilaw_float_functions float_functions{.struct_size = sizeof(ilaw_float_functions),
-                                                      .reserved = 0,
-                                                      .initialise = initialise<Law>,
-                                                      .evaluate = evaluate<Law>};
-
 // The level whose walks an instance uses.
 template <std::size_t Place, class Law>
-const char* instruction_set_at(const ilaw_instance* opaque) {
+const char* ILAW_CALL instruction_set_at(const ilaw_instance* opaque) {
   [[maybe_unused]] const ilaw_kit_walk walk = of<Law>(opaque).walk;
 #if defined(ILAW_KIT_OTHER_LEVELS)
   if (walk && walk == ilaw_kit_walks_v4()[Place]) return "v4";
@@ -58,8 +53,7 @@ inline constexpr ilaw_profile profile{.struct_size = sizeof(ilaw_profile),
 // What the law has under names besides: what all laws of the kit have, and what its static member
 // extension(const char*) knows.
 template <std::size_t Place, class Law>
-const void* extension_at(const char* name) {
-  if (name && std::strcmp(name, ILAW_FLOAT) == 0) return &float_functions<Law>;
+const void* ILAW_CALL extension_at(const char* name) {
   if (name && std::strcmp(name, ILAW_PROFILE) == 0) return &profile<Place, Law>;
   if constexpr (requires { Law::extension(name); })
     return Law::extension(name);
@@ -71,9 +65,13 @@ template <std::size_t Place, class Law>
 inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .dimensions = Law::card.dimensions,
                                   .delassus_forms = Law::card.delassus_forms,
+                                  .frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL,
+                                  .numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT,
                                   .inputs = Law::card.inputs | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT,
                                   .outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY,
-                                  .capabilities = Law::card.capabilities,
+                                  .capabilities = abi_capabilities(Law::card.capabilities),
+                                  .permissions = least_permissions<Law>(),
+                                  .reserved = 0,
                                   .id = Law::card.id,
                                   .title = Law::card.title,
                                   .doc = Law::card.doc,
@@ -83,7 +81,8 @@ inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
                                   .reference_count = std::size(Law::references),
                                   .parameter_count = parameter_count<Law>,
                                   .state_variable_count = state_variable_count<Law>,
-                                  .reserved = 0,
+                                  .amount_count = 0,
+                                  .amounts = nullptr,
                                   .create = create_at<Place, Law>,
                                   .destroy = destroy<Law>,
                                   .info = info<Law>,
@@ -136,7 +135,7 @@ using library_of = library<(checked<Laws>() && ...), Laws...>;
   extern "C" const ilaw_kit_walk* ILAW_KIT_WALKS() { return ilaw::kit::detail::walks<__VA_ARGS__>; }
 #else
 #define ILAW_PLUGIN(name, version, vendor, licence, ...)                                         \
-  extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {                                   \
+  extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_CALL ILAW_ENTRY(void) {                         \
     return ilaw::kit::detail::library_of<__VA_ARGS__>::describe(name, version, vendor, licence); \
   }
 #endif

@@ -12,7 +12,7 @@ template <class Law, class Layout>
 class arrays_ahead {
  public:
   // is_read_again: whether a block is gone through several times.
-  arrays_ahead(const instance<Law>& made, const ilaw_batch& batch, bool is_read_again)
+  arrays_ahead(const instance<Law>& made, const ilaw_kit_batch& batch, bool is_read_again)
       : holds_floats_(holds_floats(batch)), asks_all_(!is_in_place<Layout> || is_read_again) {
     if (batch.node_count < streams::fewest_nodes || batch.index || batch.index64) return;
     is_needed_ = is_in_place<Layout> && is_read_again;
@@ -25,14 +25,15 @@ class arrays_ahead {
  private:
   // All that is read or written where nodes follow each other, if any of it is copied. Of a batch whose
   // vectors stay where they are, and are read once, only what is copied: the rest comes sooner unasked.
-  void expect_arrays(const instance<Law>& made, const ilaw_batch& batch) {
+  void expect_arrays(const instance<Law>& made, const ilaw_kit_batch& batch) {
     const int dimension = static_cast<int>(made.dimension), states = state_entries<Law>(dimension);
     if (asks_all_)
-      for (const ilaw_input* one : {&batch.v_free, &batch.v_previous, &batch.normal}) expect(*one, dimension);
+      for (const ilaw_kit_input* one : {&batch.v_free, &batch.v_previous, &batch.normal})
+        expect(*one, dimension);
     if (asks_all_)
-      for (const ilaw_output* one : {&batch.impulse, &batch.velocity}) expect(*one, dimension);
+      for (const ilaw_kit_output* one : {&batch.impulse, &batch.velocity}) expect(*one, dimension);
     expect(batch.delassus, delassus_numbers(made.delassus_form, dimension));
-    for (const ilaw_input* one : {&batch.gap, &batch.gap_offset, &batch.area}) expect(*one, 1);
+    for (const ilaw_kit_input* one : {&batch.gap, &batch.gap_offset, &batch.area}) expect(*one, 1);
     expect(batch.tangent, dimension);
     if (!has_state_rows<Layout>) expect_doubles(batch.state_in, states);
     expect(batch.energy, ILAW_ENERGY_COUNT);

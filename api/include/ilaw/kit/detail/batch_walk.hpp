@@ -18,7 +18,7 @@ class batch_walk {
   static constexpr int states = state_doubles<Law>;
   static constexpr bool in_place = is_in_place<Layout>, of_floats = is_of_floats<Layout>;
 
-  batch_walk(const instance<Law>& made, const ilaw_batch& batch, block_room<Law, Length>& room,
+  batch_walk(const instance<Law>& made, const ilaw_kit_batch& batch, block_room<Law, Length>& room,
              const streams* ahead)
       : made_(made),
         batch_(batch),
@@ -96,7 +96,7 @@ class batch_walk {
   // The frame of an accepted step becomes the frame to carry on from.
   void keep_frames() {
     if (!made_.carries_frame) return;
-    const bool history_moves = has_history<Law> && !(made_.capabilities() & ILAW_CAN_REST);
+    const bool history_moves = has_history<Law> && !(made_.capabilities() & can_rest);
     column moves;
     for (int i = 0; i < nodes_.count; ++i)
       moves.values[i] = block_.refused[i] == 0.0 && (history_moves || block_.stirs[i] != 0.0) ? 1.0 : 0.0;
@@ -128,10 +128,10 @@ class batch_walk {
     static constexpr typename Layout::number absent[Length] = {};
     return reinterpret_cast<const double*>(absent);
   }
-  static const double& at(const ilaw_input& a, std::int64_t node, std::int64_t c) {
+  static const double& at(const ilaw_kit_input& a, std::int64_t node, std::int64_t c) {
     return a.values[node * a.node_stride + c * a.component_stride];
   }
-  static double& at(const ilaw_output& a, std::int64_t node, std::int64_t c) {
+  static double& at(const ilaw_kit_output& a, std::int64_t node, std::int64_t c) {
     return a.values[node * a.node_stride + c * a.component_stride];
   }
 
@@ -162,13 +162,13 @@ class batch_walk {
     }
   }
 
-  const double* optional(const ilaw_input& input, bool read, column& room) {
+  const double* optional(const ilaw_kit_input& input, bool read, column& room) {
     if (!read || !input.values) return none();
     return of_floats ? where(input, 0) : gather(input, nodes_, room.values);
   }
 
   // Vectors that may stay interleaved where the layout says so.
-  void gather_in_layout(const ilaw_input& input, column* room, const double** components) {
+  void gather_in_layout(const ilaw_kit_input& input, column* room, const double** components) {
     if constexpr (in_place) {
       for (int c = 0; c < 3; ++c) components[c] = where(input, c);
     } else {
@@ -251,11 +251,11 @@ class batch_walk {
     }
     const tangent_columns tangents(room_.first_tangent, room_.second_tangent);
     const bool in_space = dimension_ == 3;
-    if (in_space && made_.tangent_given) {
+    if (in_space && made_.has_tangent) {
       gather_vector(batch_.tangent, dimension_, nodes_, room_.tangent, block_.axes + 3);
       tangents.keep(nodes_.count, block_.axes, block_.axes + 3);
     } else if (in_space && made_.carries_frame && !is_initial_) {
-      ilaw_input frames = batch_.state_in;
+      ilaw_kit_input frames = batch_.state_in;
       frames.values += made_.frame_offset() * frames.component_stride;
       const double* before[6];
       gather_doubles(frames, 6, nodes_, room_.frame_before, before);
@@ -283,7 +283,7 @@ class batch_walk {
     } else {
       for (int k = 0; k < states; ++k) block_.state_in[k] = zeros.values;
     }
-    const ilaw_output& out = batch_.state_out;
+    const ilaw_kit_output& out = batch_.state_out;
     block_.history_values = nullptr;
     if (!has_history<Law>) return;
     block_.history_values = out.values + made_.history_offset() * out.component_stride +
@@ -329,16 +329,16 @@ class batch_walk {
     }
   }
 
-  void aim_vector(const ilaw_output& output, double** components, column* room) {
+  void aim_vector(const ilaw_kit_output& output, double** components, column* room) {
     for (int c = 0; c < 3; ++c)
       components[c] = in_place && output.values ? where(output, c) : aim(output, c, c < dimension_, room[c]);
   }
-  double* aim(const ilaw_output& output, int component, bool exists, column& room) {
+  double* aim(const ilaw_kit_output& output, int component, bool exists, column& room) {
     return exists && output.values ? target(output, component, nodes_, room.values) : room.values;
   }
 
   const instance<Law>& made_;
-  const ilaw_batch& batch_;
+  const ilaw_kit_batch& batch_;
   block_room<Law, Length>& room_;
   int dimension_;
   const streams* ahead_;

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/ilaw.h>
+#include <ilaw/kit/detail/kit_batch.hpp>
 #include <ilaw/kit/detail/rows.hpp>
 
 #include <bit>
@@ -40,10 +40,19 @@ bool any_one(const Number* values, int count) {
   return found != 0;
 }
 
-// In the flags of a batch, once checked: its arrays, but those of the state, hold floats (ilaw/float.h). No
-// host can set it, since every flag of a host's is refused.
+// In the flags of a checked batch: its arrays hold floats, those of the state excepted.
 inline constexpr std::uint64_t arrays_of_float = 1;
-inline bool holds_floats(const ilaw_batch& checked) { return checked.flags == arrays_of_float; }
+inline bool holds_floats(const ilaw_kit_batch& checked) { return checked.flags == arrays_of_float; }
+
+// An array of the host, once its number type is checked.
+inline ilaw_kit_input in_kit(const ilaw_input& a) {
+  const auto* values = a.values ? a.values : reinterpret_cast<const double*>(a.floats);
+  return {values, a.node_stride, a.component_stride};
+}
+inline ilaw_kit_output in_kit(const ilaw_output& a) {
+  auto* values = a.values ? a.values : reinterpret_cast<double*>(a.floats);
+  return {values, a.node_stride, a.component_stride};
+}
 
 // The nodes of a block: consecutive from first, or listed.
 struct node_range {
@@ -87,7 +96,7 @@ const double* gather_of(const Number* values, std::int64_t stride, const node_ra
   }
   return room;
 }
-inline const double* gather(const ilaw_input& input, const node_range& nodes, double* room) {
+inline const double* gather(const ilaw_kit_input& input, const node_range& nodes, double* room) {
   if (!nodes.of_floats) return gather_of(input.values, input.node_stride, nodes, room);
   return gather_of(as_floats(input.values), input.node_stride, nodes, room);
 }
@@ -132,13 +141,13 @@ void gather_components_of(const Number* values, std::int64_t node_stride, std::i
     components[k] = gather_of(values + k * component_stride, node_stride, nodes, room[k].values);
 }
 template <class Column>
-void gather_doubles(const ilaw_input& input, int numbers, const node_range& nodes, Column* room,
+void gather_doubles(const ilaw_kit_input& input, int numbers, const node_range& nodes, Column* room,
                     const double** components) {
   gather_components_of(input.values, input.node_stride, input.component_stride, numbers, nodes, room,
                        components);
 }
 template <class Column>
-void gather_components(const ilaw_input& input, int numbers, const node_range& nodes, Column* room,
+void gather_components(const ilaw_kit_input& input, int numbers, const node_range& nodes, Column* room,
                        const double** components) {
   if (!nodes.of_floats) return gather_doubles(input, numbers, nodes, room, components);
   gather_components_of(as_floats(input.values), input.node_stride, input.component_stride, numbers, nodes,
@@ -147,14 +156,14 @@ void gather_components(const ilaw_input& input, int numbers, const node_range& n
 
 // The three components of a block of vectors.
 template <class Column>
-void gather_vector(const ilaw_input& input, int dimension, const node_range& nodes, Column* room,
+void gather_vector(const ilaw_kit_input& input, int dimension, const node_range& nodes, Column* room,
                    const double** components) {
   gather_components(input, dimension, nodes, room, components);
   for (int k = dimension; k < 3; ++k) components[k] = zeros.values;
 }
 
 // Where to write one component: in the host's array if it is consecutive, else in room, to be scattered.
-inline double* target(const ilaw_output& output, int component, const node_range& nodes, double* room) {
+inline double* target(const ilaw_kit_output& output, int component, const node_range& nodes, double* room) {
   if (nodes.listed() || nodes.of_floats || output.node_stride != 1) return room;
   return output.values + component * output.component_stride + nodes.first;
 }
@@ -188,12 +197,12 @@ void scatter_components_of(Number* values, std::int64_t node_stride, std::int64_
   for (int k = 0; k < numbers; ++k)
     scatter_of(values + k * component_stride, node_stride, nodes, components[k]);
 }
-inline void scatter_doubles(const ilaw_output& output, int numbers, const node_range& nodes,
+inline void scatter_doubles(const ilaw_kit_output& output, int numbers, const node_range& nodes,
                             double* const* components) {
   scatter_components_of(output.values, output.node_stride, output.component_stride, numbers, nodes,
                         components);
 }
-inline void scatter_components(const ilaw_output& output, int numbers, const node_range& nodes,
+inline void scatter_components(const ilaw_kit_output& output, int numbers, const node_range& nodes,
                                double* const* components) {
   if (!nodes.of_floats) return scatter_doubles(output, numbers, nodes, components);
   scatter_components_of(as_floats(output.values), output.node_stride, output.component_stride, numbers, nodes,

@@ -30,7 +30,7 @@ struct instance {
   static constexpr std::size_t variable_room = detail::state_variable_count<Law> + 2;
 
   Law law;
-  std::uint32_t dimension, delassus_form, frame, tangent_given;
+  std::uint32_t dimension, delassus_form, frame, numbers, has_tangent;
   ilaw_kit_walk walk = nullptr;  // null: this level's own
   std::int64_t history_size = 0;
   bool carries_frame = false;
@@ -60,7 +60,7 @@ struct instance {
 
   // Whether kernels read all axes from columns, rather than the normal alone.
   bool stores_frame() const {
-    return !needs_no_tangents<Law>() || dimension < 3 || tangent_given || carries_frame || !is_transverse();
+    return !needs_no_tangents<Law>() || dimension < 3 || has_tangent || carries_frame || !is_transverse();
   }
 
   std::uint32_t inputs() const {
@@ -69,7 +69,7 @@ struct instance {
       if (table_count == 0 && per_node_count == 0) mask = law.inputs();
     mask &= ~std::uint32_t{ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT};
     if (frame == ILAW_FRAME_GLOBAL) mask |= ILAW_INPUT_NORMAL;
-    if (frame == ILAW_FRAME_GLOBAL && tangent_given && dimension == 3) mask |= ILAW_INPUT_TANGENT;
+    if (frame == ILAW_FRAME_GLOBAL && has_tangent && dimension == 3) mask |= ILAW_INPUT_TANGENT;
     return mask;
   }
   std::uint32_t energy_inputs() const { return ILAW_INPUT_V_PREVIOUS & ~inputs(); }
@@ -80,10 +80,10 @@ struct instance {
     if constexpr (requires { law.capabilities(); })
       if (!vary) mask = law.capabilities();
     if constexpr (requires { Law::rests_by_parameters; })
-      if (vary) mask &= ~std::uint32_t{ILAW_CAN_REST};  // a promise, unlike the others
+      if (vary) mask &= ~can_rest;  // a promise, unlike the others
     // A frame follows the normal wherever the node is, unless the law says when its memory rests.
-    const bool frame_moves = carries_frame && has_history<Law> && !(mask & ILAW_CAN_REST);
-    return frame_moves ? mask | ILAW_CAN_ACT_AT_DISTANCE : mask;
+    const bool frame_moves = carries_frame && has_history<Law> && !(mask & can_rest);
+    return frame_moves ? mask | acts_at_distance : mask;
   }
 
   // The law as it is at a time: tables read.
@@ -136,22 +136,28 @@ class instance_builder {
       return ILAW_UNSUPPORTED;
     }
     if (setup_.frame != ILAW_FRAME_LOCAL && setup_.frame != ILAW_FRAME_GLOBAL) {
-      text_.add("law '%s': frame %u is unknown: expected 0 (local) or 1 (global)", id, setup_.frame);
-      return ILAW_INVALID_ARGUMENT;
+      text_.add("law '%s': frame %u is not served: expected 1 (local) or 2 (global)", id, setup_.frame);
+      return ILAW_UNSUPPORTED;
+    }
+    if (setup_.numbers != ILAW_NUMBERS_DOUBLE && setup_.numbers != ILAW_NUMBERS_FLOAT) {
+      text_.add("law '%s': number type %u is not served: expected 1 (double) or 2 (float)", id,
+                setup_.numbers);
+      return ILAW_UNSUPPORTED;
     }
     if (setup_.flags != 0) {
       text_.add("law '%s': flags 0x%llx are not known: expected 0", id,
                 static_cast<unsigned long long>(setup_.flags));
       return ILAW_UNSUPPORTED;
     }
-    if (setup_.tangent_given > 1) {
-      text_.add("law '%s': tangent_given %u is unknown: expected 0 or 1", id, setup_.tangent_given);
+    if (setup_.has_tangent > 1) {
+      text_.add("law '%s': has_tangent %u is unknown: expected 0 or 1", id, setup_.has_tangent);
       return ILAW_INVALID_ARGUMENT;
     }
     made_.dimension = setup_.dimension;
     made_.delassus_form = setup_.delassus_form;
     made_.frame = setup_.frame;
-    made_.tangent_given = setup_.tangent_given;
+    made_.numbers = setup_.numbers;
+    made_.has_tangent = setup_.has_tangent;
     return ILAW_OK;
   }
 
@@ -192,21 +198,26 @@ class instance_builder {
     const ilaw_parameter& p = description<Law>::parameters[i];
     double Law::*member = Law::parameters[i].member;
     if (p.kind == ILAW_PARAMETER_CHOICE) return read_choice(id, p, a, made_.law.*member, text_);
-    if (a.kind == ILAW_VALUE_TABLE && (p.may_be & ILAW_MAY_BE_TABLE)) return keep_table(p, member, a);
-    if (a.kind == ILAW_VALUE_PER_NODE && (p.may_be & ILAW_MAY_BE_PER_NODE)) return keep_per_node(p, member);
+    if (a.kind == ILAW_VALUE_TABLE && p.axis_count > 0) return keep_table(p, member, a);
+    if (a.kind == ILAW_VALUE_PER_NODE && (p.flags & ILAW_PARAMETER_ALLOWS_PER_NODE))
+      return keep_per_node(p, member);
     return read_number(id, p, a, made_.law.*member, text_);
   }
 
   std::int32_t keep_table(const ilaw_parameter& p, double Law::*member, const ilaw_argument& a) {
     if (const std::int32_t code = check_table(id, p, a, text_); code != ILAW_OK) return code;
-    auto* pairs = static_cast<double*>(std::malloc(2 * a.count * sizeof(double)));
+    const ilaw_axis axis = sized::read(a.axes[0]);
+    auto* pairs = static_cast<double*>(std::malloc(2 * axis.count * sizeof(double)));
     if (!pairs) {
       text_.add("law '%s': no memory for the table of parameter '%s'", id, p.name);
       return ILAW_OUT_OF_MEMORY;
     }
-    std::memcpy(pairs, a.values, 2 * a.count * sizeof(double));
+    for (std::uint64_t k = 0; k < axis.count; ++k) {
+      pairs[2 * k] = axis.points[k];
+      pairs[2 * k + 1] = a.values[k];
+    }
     made_.table_members[made_.table_count] = member;
-    made_.tables[made_.table_count++] = {&p, pairs, a.count};
+    made_.tables[made_.table_count++] = {&p, pairs, axis.count};
     made_.law.*member = pairs[1];
     return ILAW_OK;
   }
@@ -244,7 +255,7 @@ class instance_builder {
     if (const std::int32_t code = check_conflicts(); code != ILAW_OK) return code;
     if constexpr (requires { made_.law.tells_tangents_apart(); })
       if (with_unknowns().tells_tangents_apart() && setup_.frame == ILAW_FRAME_GLOBAL &&
-          setup_.dimension == 3 && !setup_.tangent_given) {
+          setup_.dimension == 3 && !setup_.has_tangent) {
         text_.add(
             "law '%s': these parameters tell the two tangential axes apart: expected a tangent per node", id);
         return ILAW_UNSUPPORTED;
@@ -317,7 +328,7 @@ class instance_builder {
     if constexpr (has_history<Law>) made_.history_size = made_.law.history_size();
     const auto declared = abi_state_variables<Law>(static_cast<int>(made_.dimension), made_.history_size);
     for (const ilaw_state_variable& v : declared) append(v);
-    made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.tangent_given &&
+    made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.has_tangent &&
                           (made_.history_size > 0 || has_vector_state<Law>());
     if (made_.carries_frame)
       for (const history_card& v : frame_variables) append(abi_state_variable(v, ILAW_STATE_AXIS, 3));
@@ -344,13 +355,18 @@ const instance<Law>& of(const ilaw_instance* opaque) {
 }
 
 template <class Law>
-std::int32_t create(const ilaw_setup* setup, ilaw_instance** result, char* text, std::size_t text_size) {
+ilaw_result create(const char* id, const ilaw_setup* setup, ilaw_instance** result, char* text,
+                   std::size_t text_size) {
   message said(text, text_size);
   if (!result) return ILAW_INVALID_ARGUMENT;
   *result = nullptr;
   if (!sized::is_complete(setup)) {
     said.add("law '%s': setup is null or its struct_size not from %u to %u", Law::card.id,
              sized::least<ilaw_setup>, sized::most);
+    return ILAW_INVALID_ARGUMENT;
+  }
+  if (!id || std::strcmp(id, Law::card.id) != 0) {
+    said.add("no law '%s' here: expected '%s'", id ? id : "(null)", Law::card.id);
     return ILAW_INVALID_ARGUMENT;
   }
   const float_environment own;
@@ -368,26 +384,29 @@ std::int32_t create(const ilaw_setup* setup, ilaw_instance** result, char* text,
 }
 
 template <class Law>
-void destroy(ilaw_instance* opaque) {
+void ILAW_CALL destroy(ilaw_instance* opaque) {
   if (!opaque) return;
   reinterpret_cast<instance<Law>*>(opaque)->~instance<Law>();
   std::free(opaque);
 }
 
 template <class Law>
-std::int32_t info(const ilaw_instance* opaque, ilaw_instance_info* out) {
+ilaw_result ILAW_CALL info(const ilaw_instance* opaque, ilaw_instance_info* out) {
   if (!opaque || !sized::is_complete(out)) return ILAW_INVALID_ARGUMENT;
   const instance<Law>& made = of<Law>(opaque);
   sized::write(out, {.struct_size = 0,
                      .inputs = made.inputs(),
-                     .energy_inputs = made.energy_inputs(),
+                     .balance_inputs = made.energy_inputs(),
                      .state_variable_count = made.variable_count,
                      .state_size = made.state_size,
                      .state_variables = made.variable_pointers,
                      .per_node_parameters = made.per_node_names,
                      .per_node_parameter_count = made.per_node_count,
-                     .capabilities = made.capabilities(),
+                     .capabilities = abi_capabilities(made.capabilities()),
                      .state_version = Law::card.state_version,
+                     .permissions = abi_permissions(made.capabilities()),
+                     .amounts = nullptr,
+                     .amount_count = 0,
                      .reserved = 0});
   return ILAW_OK;
 }

@@ -15,13 +15,13 @@ inline constexpr bool in_space = (Law::card.dimensions & ILAW_DIMENSION_3) != 0;
 // Whether no more is asked than the kernels of such arrays give: impulses, or velocities and statuses
 // besides.
 template <class Law>
-bool asks_little(const ilaw_batch& b) {
+bool asks_little(const ilaw_kit_batch& b) {
   if (b.energy.values) return false;
   return b.velocity.values ? always_reads_previous<Law> : !b.status;
 }
 // Whether the vectors that a kernel may read and write in place stand as a layout has them.
 template <class Layout, class Law>
-bool stand_in(const instance<Law>& made, const ilaw_batch& b) {
+bool stand_in(const instance<Law>& made, const ilaw_kit_batch& b) {
   const auto may_be = [](const auto& a) { return !a.values || Layout::has(a); };
   return made.dimension == 3 && !b.index && !b.index64 && holds_floats(b) == is_of_floats<Layout> &&
          Layout::has(b.v_free) && Layout::has(b.impulse) && may_be(b.v_previous) && may_be(b.velocity) &&
@@ -36,13 +36,13 @@ inline constexpr bool may_have_state_rows = [] {
   return false;
 }();
 template <class Law>
-bool state_stands_in_rows(const instance<Law>& made, const ilaw_batch& b) {
+bool state_stands_in_rows(const instance<Law>& made, const ilaw_kit_batch& b) {
   constexpr int numbers = row_of_state<Law>;
   const auto are_rows = [](const auto& a) { return a.node_stride == numbers && a.component_stride == 1; };
   return made.state_size == numbers && b.state_in.values && are_rows(b.state_in) && are_rows(b.state_out);
 }
 // Of floats nothing is copied: numbers of the nodes one after another.
-inline bool are_scalars_in_columns(const ilaw_batch& b) {
+inline bool are_scalars_in_columns(const ilaw_kit_batch& b) {
   const auto may_be = [](const auto& a) { return !a.values || a.node_stride == 1; };
   return may_be(b.delassus) && may_be(b.gap) && may_be(b.gap_offset) && may_be(b.area);
 }

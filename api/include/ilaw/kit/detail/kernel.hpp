@@ -201,7 +201,7 @@ template <class Law>
 inline constexpr bool may_pull = (Law::card.capabilities & ILAW_CAN_ADHERE) != 0;
 template <class Law>
 inline constexpr bool may_act_anywhere =
-    (Law::card.capabilities & ILAW_CAN_ACT_AT_DISTANCE) != 0 || has_history<Law> || has_state<Law> ||
+    (Law::card.capabilities & acts_at_distance) != 0 || has_history<Law> || has_state<Law> ||
     (Law::card.inputs & reads_gap) == 0;
 template <class Law, class Node>
 double pull_defect(const Node& n) {

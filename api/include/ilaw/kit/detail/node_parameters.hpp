@@ -48,10 +48,10 @@ struct law_per_node {
 // The parameters of one node; says what is wrong with them, null where nothing is. Then law stays as it was:
 // no step need stand what no parameter may be.
 template <class Law>
-const char* at_node(const instance<Law>& made, const ilaw_batch& batch, std::int64_t node, Law& law) {
+const char* at_node(const instance<Law>& made, const ilaw_kit_batch& batch, std::int64_t node, Law& law) {
   Law own = law;
   for (std::uint32_t k = 0; k < made.per_node_count; ++k) {
-    const ilaw_input& given = batch.per_node_parameters[k];
+    const ilaw_kit_input given = in_kit(batch.per_node_parameters[k]);
     const std::int64_t at = node * given.node_stride;
     const double value = holds_floats(batch) ? double{as_floats(given.values)[at]} : given.values[at];
     if (!in_range(*made.per_node[k], value)) return "a per-node parameter is out of range";
@@ -74,7 +74,7 @@ class node_parameters {
  public:
   static constexpr int count = static_cast<int>(parameter_count<Law>);
 
-  node_parameters(const instance<Law>& made, const Law& law, const ilaw_batch& batch)
+  node_parameters(const instance<Law>& made, const Law& law, const ilaw_kit_batch& batch)
       : made_(made), law_(law), batch_(batch) {
     for (int p = 0; p < count; ++p)
       for (double& value : values_[p].values) value = law.*Law::parameters[p].member;
@@ -100,7 +100,7 @@ class node_parameters {
   void take(std::uint32_t k, const node_range& nodes) {
     const parameter_range range(*made_.per_node[k]);
     double *const own = values_[position_of(k)].values, *const valid = valid_.values;
-    const double* const given = gather(batch_.per_node_parameters[k], nodes, own);
+    const double* const given = gather(in_kit(batch_.per_node_parameters[k]), nodes, own);
 #pragma omp simd
     for (int i = 0; i < nodes.count; ++i) {
       own[i] = given[i];
@@ -119,7 +119,7 @@ class node_parameters {
 
   const instance<Law>& made_;
   const Law law_;
-  const ilaw_batch& batch_;
+  const ilaw_kit_batch& batch_;
   column values_[count + 1], valid_;  // one more than needed: no array of length zero
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ilaw/kit/declare.hpp>
+#include <ilaw/sized.hpp>
 
 #include <cstdarg>
 #include <cstdio>
@@ -74,9 +75,11 @@ struct parameter_range {
 
   explicit parameter_range(const ilaw_parameter& p)
       : minimum(p.minimum),
-        excluded(p.minimum_excluded ? p.minimum : std::numeric_limits<double>::quiet_NaN()),
+        excluded((p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM) ? p.minimum
+                                                             : std::numeric_limits<double>::quiet_NaN()),
         maximum(smaller(p.maximum, std::numeric_limits<double>::max())),
-        beyond(p.infinity_allowed ? infinity : std::numeric_limits<double>::quiet_NaN()) {}
+        beyond((p.flags & ILAW_PARAMETER_ALLOWS_INFINITY) ? infinity
+                                                          : std::numeric_limits<double>::quiet_NaN()) {}
   bool has(double value) const {
     return (value >= minimum) & (value != excluded) & ((value <= maximum) | (value == beyond));
   }
@@ -84,8 +87,8 @@ struct parameter_range {
 inline bool in_range(const ilaw_parameter& p, double value) { return parameter_range(p).has(value); }
 
 inline void add_range(message& text, const ilaw_parameter& p) {
-  text.add("%s%g, ", p.minimum_excluded ? "(" : "[", p.minimum);
-  if (p.infinity_allowed)
+  text.add("%s%g, ", (p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM) ? "(" : "[", p.minimum);
+  if (p.flags & ILAW_PARAMETER_ALLOWS_INFINITY)
     text.add("inf]");
   else if (p.maximum == std::numeric_limits<double>::max())
     text.add("inf)");
@@ -161,25 +164,34 @@ inline std::int32_t read_number(const char* law, const ilaw_parameter& p, const 
   return ILAW_INVALID_PARAMETER;
 }
 
-// Checks a table: times finite and increasing, values in range.
+// Checks a table over time: times finite and increasing, values in range.
 inline std::int32_t check_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
                                 message& text) {
-  if (!a.values || a.count == 0) {
-    text.add("law '%s': parameter '%s': the table has no (time, value) pair, expected at least 1", law,
-             p.name);
+  const auto refused = [&](const char* why) {
+    text.add("law '%s': parameter '%s': %s", law, p.name, why);
+    return ILAW_INVALID_PARAMETER;
+  };
+  if (a.axis_count != 1 || !a.axes || !sized::is_complete(a.axes[0]))
+    return refused("the table has no axis, more than one or a broken one; expected one axis \"time\"");
+  const ilaw_axis axis = sized::read(a.axes[0]);
+  if (!axis.name || std::strcmp(axis.name, "time") != 0) {
+    text.add("law '%s': parameter '%s': a table over '%s' is not served; expected an axis \"time\"", law,
+             p.name, axis.name ? axis.name : "(null)");
     return ILAW_INVALID_PARAMETER;
   }
-  for (std::uint64_t k = 0; k < a.count; ++k) {
-    const double time = a.values[2 * k];
-    if (!is_finite(time) || (k > 0 && time <= a.values[2 * k - 2])) {
+  if (!a.values || !axis.points || axis.count == 0)
+    return refused("the table is empty; expected at least one time and value");
+  if (axis.count > ILAW_TABLE_MAX_VALUES) return refused("the table has more than 2^24 values");
+  for (std::uint64_t k = 0; k < axis.count; ++k) {
+    const double time = axis.points[k];
+    if (!is_finite(time) || (k > 0 && time <= axis.points[k - 1])) {
       text.add("law '%s': parameter '%s': time ", law, p.name);
       add_number(text, time);
-      text.add(" of pair %llu of the table is not allowed: expected finite, increasing times",
+      text.add(" at place %llu of the table is not allowed: expected finite, increasing times",
                static_cast<unsigned long long>(k));
       return ILAW_INVALID_PARAMETER;
     }
-    if (const std::int32_t code = check_number(law, p, a.values[2 * k + 1], text); code != ILAW_OK)
-      return code;
+    if (const std::int32_t code = check_number(law, p, a.values[k], text); code != ILAW_OK) return code;
   }
   return ILAW_OK;
 }

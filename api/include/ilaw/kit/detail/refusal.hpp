@@ -60,18 +60,18 @@ const char* result_reason(const Node& n, double impulse_guard) {
     return "the impulse or the state overflows";
   if (status_defect(n.status) != 0.0) return "the law gave a status that ilaw.h does not have";
   if (pull_defect<Law>(n) != 0.0) return "the law pulled, which needs ILAW_CAN_ADHERE in its card";
-  return "the law acted out of reach, which needs ILAW_CAN_ACT_AT_DISTANCE in its card";
+  return "the law acted out of reach, which needs acts_at_distance in its card";
 }
 
 // Why a node was refused, from the same checks as step_node, in their order.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope>
-const char* refusal_reason(const Law& law, const block_of_one<Law>& b, int i, bool tangent_given) {
+const char* refusal_reason(const Law& law, const block_of_one<Law>& b, int i, bool has_tangent) {
   const auto n = load_node<Law, Delassus, Frame, Layout, Scope>(b, i);
   if (defect(Frame::template at<Layout>(b.axes, i).unit_defect()) != 0.0)
     return "the normal is not a unit vector";
   bool framed = true;
   if constexpr (std::is_same_v<Frame, stored_frame>) framed = defect(columns::get(b.axes + 6, i)) == 0.0;
-  if (!framed && tangent_given) return "the tangent is not a unit vector orthogonal to the normal";
+  if (!framed && has_tangent) return "the tangent is not a unit vector orthogonal to the normal";
   if (framed && defect(n.v_free) != 0.0) return "v_free is not finite";
   if (framed && n.delassus.positive_defect() != 0.0) return "H is not finite and positive definite";
   if constexpr ((Law::card.inputs & reads_gap) != 0)

@@ -165,7 +165,7 @@ bool are_in_flight(const node_block<Law>& b) {
   return !any_one(reached.values, b.count);
 }
 
-// Returns how many nodes were solved one by one, as ilaw/profile.h counts them.
+// Returns how many nodes were solved one by one, as ilaw/ext/draft/profile.h counts them.
 template <class Law, class Delassus, class Frame, class Layout, scope Scope, class Laws>
 int run_steps(const Laws& laws, const node_block<Law>& b) {
   using form = typename Laws::form;
