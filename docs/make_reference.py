@@ -200,7 +200,7 @@ def help_of(program, *command):
 def commands_page(program):
     main = help_of(program)
     commands = re.findall(r"^  (\w+) +\S", main[main.index("\nSubcommands:"):], re.M)
-    text = COMMANDS_HEAD + f"\n```text\n{main}\n```\n"
+    text = wrapped(COMMANDS_HEAD) + f"\n```text\n{main}\n```\n"
     for command in commands:
         text += f"\n## ilaw {command}\n\n```text\n{help_of(program, command)}\n```\n"
     return text
