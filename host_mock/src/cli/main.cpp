@@ -38,8 +38,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
 
 int run_command(int argc, char** argv) {
   using namespace ilaw::host;
-  CLI::App app{
-      "ilaw - interface laws in explicit dynamics: runs scenes, draws them, tells what laws there are"};
+  CLI::App app{"ilaw - interface laws in explicit dynamics: runs and draws scenes, measures and checks laws"};
   app.set_version_flag("--version", "ilaw " ILAW_VERSION);
   app.name("ilaw");
   app.require_subcommand(1);

@@ -178,12 +178,12 @@ void add_plot(CLI::App& app, Action& chosen) {
   command->add_option("folders", options->folders, "Folders that `ilaw run` wrote")->required();
   command
       ->add_option("--panels", options->panels,
-                   "Panels to draw of one run, by the names on their left: gap,velocity,status")
+                   "Panels of one run, by the names on their left: gap,velocity,status")
       ->delimiter(',');
   command->add_option("--y", options->y, "Columns of history.csv, a panel each")->delimiter(',');
-  command->add_option("--x", options->x, "Column to draw them over")->capture_default_str();
+  command->add_option("--x", options->x, "Column of the abscissa")->capture_default_str();
   command->add_option("--out", options->out,
-                      "Folder of the picture, which exists (that of the run, or the one above several)");
+                      "Existing folder for the picture (default: that of the run, or the one above several)");
   command->footer("Example: ilaw plot results\n         ilaw plot results/* --y glue.F2,n50.u2");
   command->callback([options, &chosen] { chosen = [options] { return plot(*options); }; });
 }

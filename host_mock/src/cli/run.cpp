@@ -321,10 +321,10 @@ void add_run(CLI::App& app, Action& chosen) {
   command->add_option("--out", options->folder, "Folder for the results, made if it does not exist")
       ->required();
   command
-      ->add_option("--checkpoint-every", options->checkpoint_every,
-                   "Steps between checkpoints, from which --resume goes on")
+      ->add_option("--checkpoint-every", options->checkpoint_every, "Steps between checkpoints for --resume")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000'000}));
-  command->add_flag("--resume", options->resume, "Go on from the checkpoint in the folder, to the same bits");
+  command->add_flag("--resume", options->resume,
+                    "Continue from the checkpoint in the folder, to the same bits");
   add_threads(*command, options->threads);
   command
       ->add_option("--set", *settings,
