@@ -24,7 +24,7 @@ struct CheckOptions {
 int write_report(const check::Checked& checked, const std::string& file) {
   const std::filesystem::file_status status = std::filesystem::symlink_status(file);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    complain(file + ": is no regular file, expected one, or none yet, for the report");
+    complain(file + ": not a regular file; expected a new or an existing file for the report");
     return exit_bad_input;
   }
   try {

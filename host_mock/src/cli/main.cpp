@@ -63,7 +63,7 @@ int run_command(int argc, char** argv) {
     complain(error.what());
     return exit_bad_input;
   } catch (const std::bad_alloc&) {
-    complain("the memory does not suffice");
+    complain("out of memory");
   } catch (const std::exception& error) {
     complain(error.what());
   }

@@ -99,12 +99,12 @@ int plot_history(const PlotOptions& options) {
   return exit_done;
 }
 
-// Of many names the last, where the resultants are.
-std::string some_of(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 20;
-  if (names.size() <= most) return joined(names);
-  return joined(std::vector<std::string>(names.end() - most, names.end())) + " and " +
-         std::to_string(names.size() - most) + " more";
+// The last names of a long list: resultants are there.
+std::string last_of(const std::vector<std::string>& names) {
+  constexpr std::size_t max_names = 20;
+  if (names.size() <= max_names) return joined(names);
+  return joined(std::vector<std::string>(names.end() - max_names, names.end())) + " and " +
+         std::to_string(names.size() - max_names) + " more";
 }
 
 void check_columns(const std::vector<RunFolder>& runs, const std::vector<std::string>& columns) {
@@ -113,7 +113,7 @@ void check_columns(const std::vector<RunFolder>& runs, const std::vector<std::st
     for (const std::string& column : columns)
       if (!history.index_of(column))
         throw std::runtime_error((run.folder / "history.csv").string() + ": found no column '" + column +
-                                 "', expected one of " + some_of(history.names()) +
+                                 "', expected one of " + last_of(history.names()) +
                                  suggestion(column, history.names()));
   }
 }

@@ -127,7 +127,7 @@ class Run {
     std::string said;
     const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder, said);
     if (!said.empty())
-      complain(said + "; going on from the checkpoint before it, at step " +
+      complain(said + "; continues from the checkpoint before it, at step " +
                std::to_string(integrator_.steps()));
     fields_.resume(checkpoint.fields);
     record.resumed_at = checkpoint_step_ = integrator_.steps();
@@ -181,9 +181,9 @@ class Run {
   }
 
   void warn_of_penetration() {
-    constexpr double much = 0.05;
+    constexpr double max_penetration_fraction = 0.05;
     const double depth = integrator_.tally().penetration_max, part = depth / shortest_edge(*scene_.model);
-    if (!(part > much)) return;
+    if (!(part > max_penetration_fraction)) return;
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(),
                   "nodes penetrate by up to %.2g, %.3g %% of the shortest element edge: they start there, a "
