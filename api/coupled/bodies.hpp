@@ -7,6 +7,7 @@
 #include <ilaw/coupled.h>
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace ilaw::coupled {
@@ -26,6 +27,21 @@ inline Motion operator*(double s, const Motion& a) { return {s * a.velocity, s *
 inline double value(const ilaw_input& array, std::int64_t i, std::int64_t c = 0) {
   return array.values ? array.values[i * array.node_stride + c * array.component_stride] : 0.0;
 }
+// More entries than any memory has: their sizes would wrap.
+inline constexpr std::int64_t most_entries = std::int64_t{1} << 40;
+
+// Whether an output gives two numbers the same place.
+inline bool collides(const ilaw_output& a, std::int64_t count, std::int64_t components) {
+  return a.values && components > 0 &&
+         ((count > 1 && a.node_stride == 0) || (count > 0 && components > 1 && a.component_stride == 0));
+}
+
+// NaN counts as infinite, and so is no maximum that is overlooked.
+inline double larger(double a, double b) {
+  if (!(a == a) || !(b == b)) return std::numeric_limits<double>::infinity();
+  return a < b ? b : a;
+}
+
 Vector vector(const ilaw_input& array, std::int64_t i, std::uint32_t dimension);
 void store(const ilaw_output& array, std::int64_t i, std::uint32_t dimension, const Vector& values);
 

@@ -59,12 +59,17 @@ const char* Contacts::complaint() const {
       given_.delassus_form != ILAW_DELASSUS_FULL)
     return "delassus_form is neither scalar, transverse nor full";
   if (theirs_.node_count < 0) return "node_count is negative";
+  if (theirs_.node_count > most_entries) return "node_count is above 2^40";
   if (theirs_.impulse.floats || theirs_.energy.floats || theirs_.state_in.floats || theirs_.state_out.floats)
     return "an array of a batch has floats; expected doubles";
   if (theirs_.index || theirs_.index64) return "contacts have no list of nodes";
   if (theirs_.node_count == 0) return nullptr;
   if (!given_.body || !given_.counterpart) return "body or counterpart is missing";
-  return theirs_.impulse.values ? nullptr : "impulse is missing";
+  if (!theirs_.impulse.values) return "impulse is missing";
+  if (collides(theirs_.impulse, theirs_.node_count, dimension_)) return "impulse has a stride of 0";
+  if (collides(theirs_.energy, theirs_.node_count, ILAW_ENERGY_COUNT)) return "energy has a stride of 0";
+  return theirs_.status && theirs_.node_count > 1 && theirs_.status_stride == 0 ? "status_stride is 0"
+                                                                                : nullptr;
 }
 
 const char* Contacts::complaint_of_law(const Bodies& bodies) {
@@ -72,6 +77,10 @@ const char* Contacts::complaint_of_law(const Bodies& bodies) {
   info_ = {};
   info_.struct_size = sizeof info_;
   if (given_.law->info(given_.instance, &info_) != ILAW_OK) return "info refuses the instance";
+  if (!(info_.inputs & ILAW_INPUT_NORMAL))
+    return "the instance is for the local frame; expected the global one";
+  if (theirs_.energy.values && !(given_.law->outputs & ILAW_OUTPUT_ENERGY))
+    return "energies are asked for, which the law does not give";
   const std::uint32_t read = info_.inputs | (asks_balance() ? info_.balance_inputs : 0U);
   constexpr std::uint32_t known =
       ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT;
@@ -81,6 +90,11 @@ const char* Contacts::complaint_of_law(const Bodies& bodies) {
   if (info_.state_size > 0 && theirs_.node_count > 0 &&
       (!theirs_.state_in.values || !theirs_.state_out.values))
     return "state_in or state_out is missing";
+  if (collides(theirs_.state_out, theirs_.node_count, static_cast<std::int64_t>(info_.state_size)))
+    return "state_out has a stride of 0";
+  for (std::uint32_t a = 0; theirs_.amounts && a < info_.amount_count; ++a)
+    if (theirs_.amounts[a].floats || collides(theirs_.amounts[a], theirs_.node_count, 1))
+      return "an array of amounts has floats or a stride of 0";
   return nullptr;
 }
 
@@ -125,6 +139,7 @@ void Contacts::make_room() {
   delassus_.resize(count * form_size_);
   state_.resize(count * info_.state_size);
   energy_.resize(count * (theirs_.energy.values ? ILAW_ENERGY_COUNT : 0));
+  amounts_.resize(count * (theirs_.amounts ? info_.amount_count : 0));
   status_.assign(count, ILAW_FREE);
 }
 
@@ -251,8 +266,8 @@ Contacts::Residual Contacts::residual(const std::vector<Motion>& of_answer) cons
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     if (is_bad(k)) continue;
     const Vector own = split_response(k, answer_[k]);
-    residual.difference =
-        std::fmax(residual.difference, largest(relative(contacts_[k], of_answer) - own - v_free_[k]));
+    const double difference = largest(relative(contacts_[k], of_answer) - own - v_free_[k]);
+    residual.difference = larger(residual.difference, difference);
     residual.size = std::fmax(residual.size, std::fmax(largest(own), largest(v_free_[k])));
   }
   return residual;
@@ -265,19 +280,25 @@ void Contacts::extrapolate(double by) {
   }
 }
 
-std::int32_t Contacts::write(const std::vector<Motion>& of_answer, const Bodies& bodies,
-                             ilaw_coupled_report& report) {
+std::int32_t Contacts::evaluate_balance(const std::vector<Motion>& of_answer) {
+  if (!asks_balance() || contacts_.empty()) return ILAW_OK;
+  spare_state_.resize(state_.size());
+  ilaw_batch batch = ours_;
+  const auto count = static_cast<std::int64_t>(contacts_.size());
+  if (theirs_.energy.values) batch.energy = ilaw::output(energy_.data(), ILAW_ENERGY_COUNT, 1);
+  std::vector<ilaw_output> amounts;
+  for (std::int64_t a = 0; theirs_.amounts && a < info_.amount_count; ++a)
+    amounts.push_back(ilaw::output(amounts_.data() + a * count, 1, 0));
+  batch.amounts = amounts.empty() ? nullptr : amounts.data();
+  batch.impulse = ilaw::output(trial_.data()->data(), 3, 1);  // of no use any more, as the state
+  batch.state_out.values = spare_state_.data();
+  batch.status = nullptr;
+  return call(batch, of_answer, answer_);
+}
+
+void Contacts::write(const std::vector<Motion>& of_answer, const Bodies& bodies,
+                     ilaw_coupled_report& report) const {
   const auto state_size = static_cast<std::int64_t>(info_.state_size);
-  if (asks_balance() && !contacts_.empty()) {
-    spare_state_.resize(state_.size());
-    ilaw_batch batch = ours_;
-    if (theirs_.energy.values) batch.energy = ilaw::output(energy_.data(), ILAW_ENERGY_COUNT, 1);
-    batch.amounts = theirs_.amounts;
-    batch.impulse = ilaw::output(trial_.data()->data(), 3, 1);  // of no use any more, as the state
-    batch.state_out.values = spare_state_.data();
-    batch.status = nullptr;
-    if (const std::int32_t code = call(batch, of_answer, answer_); code < 0) return code;
-  }
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const auto i = static_cast<std::int64_t>(k);
     store(theirs_.impulse, i, dimension_, answer_[k]);
@@ -285,15 +306,19 @@ std::int32_t Contacts::write(const std::vector<Motion>& of_answer, const Bodies&
       theirs_.state_out.values[i * theirs_.state_out.node_stride + c * theirs_.state_out.component_stride] =
           state_[k * info_.state_size + static_cast<std::size_t>(c)];
     if (theirs_.status) theirs_.status[i * theirs_.status_stride] = status_[k];
+    for (std::size_t a = 0; a * contacts_.size() < amounts_.size(); ++a)
+      if (const ilaw_output& out = theirs_.amounts[a]; out.values)
+        out.values[i * out.node_stride] = amounts_[a * contacts_.size() + k];
     for (std::size_t part = 0; part < ILAW_ENERGY_COUNT && !energy_.empty(); ++part) {
       const double energy = energy_[k * ILAW_ENERGY_COUNT + part];
       theirs_.energy.values[i * theirs_.energy.node_stride +
                             static_cast<std::int64_t>(part) * theirs_.energy.component_stride] = energy;
       report.energy[part] += energy;
     }
-    report.work += 0.5 * dot(answer_[k], previous(contacts_[k], bodies) + relative(contacts_[k], of_answer));
+    if (!is_bad(k))  // its velocities may be no numbers
+      report.work +=
+          0.5 * dot(answer_[k], previous(contacts_[k], bodies) + relative(contacts_[k], of_answer));
   }
-  return ILAW_OK;
 }
 
 }  // namespace ilaw::coupled

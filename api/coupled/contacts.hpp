@@ -33,8 +33,10 @@ class Contacts {
   // The next trial: the answer, taken further by so much of its change.
   void extrapolate(double by);
 
-  // Writes impulse, state and status of the last answer, and energies with these velocities.
-  std::int32_t write(const std::vector<Motion>& of_answer, const Bodies& bodies, ilaw_coupled_report& report);
+  // Energies and amounts with these velocities, where the host asks for them. Returns the law's code.
+  std::int32_t evaluate_balance(const std::vector<Motion>& of_answer);
+  // Writes impulse, state and status of the last answer, energies and amounts.
+  void write(const std::vector<Motion>& of_answer, const Bodies& bodies, ilaw_coupled_report& report) const;
 
   const ilaw_report& report() const { return report_; }
 
@@ -69,7 +71,7 @@ class Contacts {
   std::size_t form_size_ = 0;
   std::vector<Contact> contacts_;
   std::vector<Vector> answer_, before_, trial_, v_free_, v_previous_;
-  std::vector<double> delassus_, state_, spare_state_, energy_;
+  std::vector<double> delassus_, state_, spare_state_, energy_, amounts_;
   std::vector<std::uint8_t> status_;
 };
 

@@ -21,6 +21,10 @@ const char* complaint(const ilaw_bodies* given) {
   const ilaw_bodies bodies = sized::read(given);
   if (bodies.dimension < 1 || bodies.dimension > 3) return "dimension is not 1, 2 or 3";
   if (bodies.owned_count < 0 || bodies.count < bodies.owned_count) return "counts of bodies are wrong";
+  if (bodies.count > most_entries) return "count is above 2^40";
+  for (const ilaw_output* a : {&bodies.velocity, &bodies.spin, &bodies.impulse, &bodies.angular_impulse})
+    if (a->floats || collides(*a, bodies.count, bodies.dimension))
+      return "an output of bodies has floats or a stride of 0";
   if (bodies.count == 0) return nullptr;
   if (!bodies.inverse_mass.values || !bodies.v_free.values) return "inverse_mass or v_free is missing";
   if (!bodies.inverse_inertia.values) return nullptr;
@@ -85,12 +89,12 @@ std::int32_t Solver::iterate(const ilaw_coupled_options& options, ilaw_coupled_r
     std::array<double, 4> found{0.0, 0.0, code < 0 ? 1.0 : 0.0, counts_changed() ? 1.0 : 0.0};
     for (const Contacts& group : std::span(groups_).first(group_count_)) {
       const Contacts::Residual residual = group.residual(of_answer_);
-      found[0] = std::fmax(found[0], residual.difference);
+      found[0] = larger(found[0], residual.difference);
       found[1] = std::fmax(found[1], residual.size);
     }
     if (exchange_) exchange_->largest(exchange_->context, found.data(), found.size());
     if (found[2] > 0.0) return code < 0 ? code : ILAW_INVALID_ARGUMENT;
-    report.residual = found[1] > 0.0 ? found[0] / found[1] : 0.0;
+    report.residual = found[0] > 0.0 ? found[0] / found[1] : 0.0;
     if (report.residual <= tolerance) break;
 
     changed = found[3] > 0.0;
@@ -166,8 +170,17 @@ void Solver::extrapolate(double by) {
 }
 
 std::int32_t Solver::write(ilaw_coupled_report& report) {
-  for (Contacts& group : std::span(groups_).first(group_count_))
-    if (const std::int32_t code = group.write(of_answer_, bodies_, report); code < 0) return code;
+  std::int32_t refused = ILAW_OK;
+  for (std::size_t g = 0; g < group_count_ && refused == ILAW_OK; ++g) {
+    const std::int32_t code = groups_[g].evaluate_balance(of_answer_);
+    if (code >= 0) continue;
+    refused = code;
+    report.bad_group = static_cast<std::int64_t>(g);
+    report.reason = groups_[g].report().reason;
+  }
+  if (any_rank(refused < 0)) return refused < 0 ? refused : ILAW_INVALID_ARGUMENT;
+  for (const Contacts& group : std::span(groups_).first(group_count_))
+    group.write(of_answer_, bodies_, report);
   bodies_.write(of_answer_, sums_);
   return report.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }

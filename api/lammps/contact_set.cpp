@@ -31,32 +31,25 @@ ContactSet::ContactSet(const std::string& law, const std::vector<std::array<std:
   const library opened(law);
   if (opened.plugin().law_count != 1) throw error(ILAW_NOT_FOUND, law + ": not a library of one law");
   const ilaw_law& description = *opened.plugin().laws[0];
-  std::vector<ilaw_argument> arguments(parameters.size());
-  std::vector<const ilaw_argument*> pointers;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const auto& [name, text] = parameters[i];
-    arguments[i].struct_size = sizeof arguments[i];
-    arguments[i].name = name.c_str();
+  ilaw::parameters given;
+  for (const auto& [name, text] : parameters) {
     const ilaw_parameter* known = find(description, name);
-    if (known && known->kind == ILAW_PARAMETER_CHOICE) {
-      arguments[i].kind = ILAW_VALUE_TEXT;
-      arguments[i].text = text.c_str();
-    } else if (known) {
-      arguments[i].number = number(name, text);
-    }
-    pointers.push_back(&arguments[i]);
+    if (known && known->kind == ILAW_PARAMETER_CHOICE)
+      given.text(name, text);
+    else
+      given.number(name, known ? number(name, text) : 0.0);  // create refuses an unknown name
   }
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
   setup.dimension = 3;
   // Spheres that touch: arms along the normal. A library that does not know this form is given the matrix.
   setup.delassus_form = (description.delassus_forms & ILAW_DELASSUS_TRANSVERSE) != 0
-                            ? std::uint32_t{ILAW_DELASSUS_TRANSVERSE}
-                            : std::uint32_t{ILAW_DELASSUS_FULL};
+                            ? ilaw_delassus_forms{ILAW_DELASSUS_TRANSVERSE}
+                            : ilaw_delassus_forms{ILAW_DELASSUS_FULL};
   delassus_form_ = setup.delassus_form;
   setup.frame = ILAW_FRAME_GLOBAL;
-  setup.arguments = pointers.data();
-  setup.argument_count = static_cast<std::uint32_t>(pointers.size());
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
+  given.give(setup);
   interface_ = std::make_unique<ilaw::interface>(opened, "", setup);
   state_size_ = interface_->info().state_size;
 }

@@ -21,6 +21,7 @@ namespace {
 constexpr int motion_size = 12;  // v_free, spin_free, v_previous, spin_previous
 constexpr double inertia = 0.4;  // of a sphere, over m R^2
 constexpr std::uint32_t default_sweeps = 20;
+constexpr double max_sweeps = 1e6;
 constexpr double default_tolerance = 1e-8;
 enum { CLOSED, SWEEPS, RESIDUAL, OVERLAP, APPROACH, FRICTION, IMPACT, RUPTURE, STORED, OUTPUTS };
 
@@ -62,14 +63,18 @@ void FixIlaw::read_words() {
   for (std::size_t at = 0; at < words_.size();) {
     if (words_[at] == "sweeps") {
       most_sweeps_ = number(words_, at + 1);
-      if (!(most_sweeps_ >= 1.0)) refuse("sweeps must be 1 or more");
+      if (!(most_sweeps_ >= 1.0 && most_sweeps_ <= max_sweeps && most_sweeps_ == std::floor(most_sweeps_)))
+        refuse("sweeps is " + words_[at + 1] + "; expected a whole number from 1 to 1000000");
       at += 2;
     } else if (words_[at] == "tol") {
       tolerance_ = number(words_, at + 1);
-      if (!(tolerance_ > 0.0)) refuse("tol must be larger than 0");
+      if (!(tolerance_ > 0.0 && std::isfinite(tolerance_)))
+        refuse("tol is " + words_[at + 1] + "; expected a finite number above 0");
       at += 2;
     } else if (words_[at] == "area") {
       area_ = number(words_, at + 1);
+      if (!(area_ >= 0.0 && std::isfinite(area_)))
+        refuse("area is " + words_[at + 1] + "; expected a finite number, 0 or above");
       at += 2;
     } else if (const int own = read_own(words_, at); own > 0) {
       at += static_cast<std::size_t>(own);
@@ -210,16 +215,16 @@ void FixIlaw::solve() {
   bodies.dimension = 3;
   bodies.count = count;
   bodies.owned_count = atom->nlocal;
-  bodies.inverse_mass = {inverse_mass_.data(), 1, 0};
-  bodies.inverse_inertia = {inverse_inertia_.data(), 1, 0};
-  bodies.v_free = {motion_.data(), motion_size, 1};
-  bodies.spin_free = {motion_.data() + 3, motion_size, 1};
-  bodies.v_previous = {motion_.data() + 6, motion_size, 1};
-  bodies.spin_previous = {motion_.data() + 9, motion_size, 1};
-  bodies.velocity = {after_.data(), 6, 1};
-  bodies.spin = {after_.data() + 3, 6, 1};
-  bodies.impulse = {total_.data(), 6, 1};
-  bodies.angular_impulse = {total_.data() + 3, 6, 1};
+  bodies.inverse_mass = ilaw::input(inverse_mass_.data(), 1, 0);
+  bodies.inverse_inertia = ilaw::input(inverse_inertia_.data(), 1, 0);
+  bodies.v_free = ilaw::input(motion_.data(), motion_size, 1);
+  bodies.spin_free = ilaw::input(motion_.data() + 3, motion_size, 1);
+  bodies.v_previous = ilaw::input(motion_.data() + 6, motion_size, 1);
+  bodies.spin_previous = ilaw::input(motion_.data() + 9, motion_size, 1);
+  bodies.velocity = ilaw::output(after_.data(), 6, 1);
+  bodies.spin = ilaw::output(after_.data() + 3, 6, 1);
+  bodies.impulse = ilaw::output(total_.data(), 6, 1);
+  bodies.angular_impulse = ilaw::output(total_.data() + 3, 6, 1);
 
   ilaw_exchange exchange{};
   exchange.struct_size = sizeof exchange;

@@ -1,6 +1,7 @@
 // The C interface of ilaw/loader.h.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ilaw/loader.h>
+#include <ilaw/floating_control.hpp>
 
 #include "description.hpp"
 #include "description_file.hpp"
@@ -89,6 +90,28 @@ std::string other_version(void* handle) {
   return std::string("not a law library: the symbol ") + ILAW_ENTRY_NAME + " is missing";
 }
 
+// Restores the floating-point control that code of a library changed, and refuses that library.
+class control_guard {
+ public:
+  void check(const std::string& path, const char* when) const {
+    if (ilaw::floating_control::now() == before_) return;
+    before_.restore();
+    throw refusal(ILAW_BAD_LIBRARY,
+                  path + ": " + when +
+                      " changed how the processor rounds, traps or flushes to zero; expected no change "
+                      "(linking with -ffast-math makes one)");
+  }
+  ~control_guard() {
+    if (ilaw::floating_control::now() != before_) before_.restore();
+  }
+  control_guard() = default;
+  control_guard(const control_guard&) = delete;
+  control_guard& operator=(const control_guard&) = delete;
+
+ private:
+  const ilaw::floating_control before_ = ilaw::floating_control::now();
+};
+
 const ilaw_plugin* described(const std::string& path, void* handle, ilaw::loading::storage& kept) {
   void* symbol = dlsym(handle, ILAW_ENTRY_NAME);
   if (!symbol) throw refusal(ILAW_BAD_LIBRARY, path + ": " + other_version(handle));
@@ -105,11 +128,13 @@ ilaw_library* open_checked(std::list<ilaw_library>& open, const std::string& pat
                            const ilaw::loading::file_status& status) {
   ilaw::loading::check_shared_object(path);
   const auto written = ilaw::loading::read_description(path);  // refused before any code of the library runs
+  const control_guard control;
   std::unique_ptr<void, closer> handle(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL));
   if (!handle) throw refusal(ILAW_BAD_LIBRARY, path + ": cannot be loaded: " + dlerror());
   std::list<ilaw_library> made;
   made.push_back(ilaw_library{path, status.device, status.inode, handle.get()});
   made.back().plugin = described(path, handle.get(), made.back().kept);
+  control.check(path, "loading it");
   if (written) ilaw::loading::check_same(written->parsed, *made.back().plugin, path);
   open.splice(open.end(), made);
   static_cast<void>(handle.release());  // the list closes it from here on
@@ -188,10 +213,13 @@ std::unique_ptr<ilaw_interface> create_interface(ilaw_library& library, const il
     }
   };
   std::unique_ptr<ilaw_interface, unmade> made(new ilaw_interface{&library, &law});
+  const control_guard control;
   made->instance = created(library, law, setup);
+  control.check(library.path, "create");
   made->info.struct_size = sizeof made->info;
   if (law.info(made->instance, &made->info) != ILAW_OK)
     throw refusal(ILAW_BAD_LIBRARY, library.path + ": law '" + law.id + "': info refuses its own instance");
+  control.check(library.path, "info");
   made->info.struct_size = sizeof made->info;
   ilaw::loading::check_instance_info({library.path, law, library.plugin->abi_minor}, setup, made->info,
                                      made->kept);

@@ -124,7 +124,7 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
       {"call-refused: silent", ", gave no reason"},
       {"array-numbers: amount", "an amount with both pointers"},
       {"balance-inputs: amounts", "with amounts, evaluate returned 0"},
-      {"table-linear: order", "over temperature {0.25, 0.75}, time {0.25, 0.75} at (0.25, 0.75)"},
+      {"table-linear: order", "over temperature {0.25, 0.75, 1}, time {0.25, 0.75} at (0.25, 0.75)"},
       {"report-null: refused", "without a report evaluate returned -"},
       {"report-clean: step", "stable_velocity_step nan"},
       {"report-clean: step beside bad", "stable_velocity_step nan"},

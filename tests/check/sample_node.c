@@ -52,7 +52,7 @@ static double between(double a, double b, double part) {
 }
 
 double value_at(const quantity* given, double time, double temperature) {
-  const int is_square = given->axis_count == 2 && given->count[0] == given->count[1];
+  const uint64_t rows = given->count[0];
   const uint64_t width = given->axis_count == 2 ? given->count[1] : 1;
   double part[2] = {0.0, 0.0}, row[2];
   uint64_t at[2] = {0, 0}, k;
@@ -62,8 +62,8 @@ double value_at(const quantity* given, double time, double temperature) {
     at[n] = find(given, n, given->is_time[n] ? time : temperature, &part[n]);
   for (k = 0; k < 2; ++k) {
     const uint64_t i = at[0] + (given->count[0] > 1 ? k : 0), next = at[1] + (width > 1 ? 1 : 0);
-    if (breaks("table-linear: order") && is_square)
-      row[k] = between(given->values[at[1] * width + i], given->values[next * width + i], part[1]);
+    if (breaks("table-linear: order") && given->axis_count == 2)
+      row[k] = between(given->values[at[1] * rows + i], given->values[next * rows + i], part[1]);
     else
       row[k] = between(given->values[i * width + at[1]], given->values[i * width + next], part[1]);
   }

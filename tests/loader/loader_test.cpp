@@ -1,6 +1,7 @@
 // What the loader finds, refuses and keeps loaded.
 #include <ilaw/loader.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <dlfcn.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -183,11 +185,19 @@ INSTANTIATE_TEST_SUITE_P(
                     "permissions is 1048577, expected only the bits of 3"},
         RefusedInfo{"foreign_amount", ILAW_BAD_LIBRARY, "amount 'wear' is none of the law's"},
         RefusedInfo{"refused_info", ILAW_BAD_LIBRARY, "info refuses its own instance"},
+        RefusedInfo{"rounds_in_create", ILAW_BAD_LIBRARY, "create changed how the processor rounds"},
         RefusedInfo{"odd_code", ILAW_BAD_LIBRARY, "create gave no instance, code 57"},
         RefusedInfo{"throws_number", ILAW_BAD_LIBRARY, "an exception of a library"},
         RefusedInfo{"throws_error", ILAW_BAD_LIBRARY, "a table is missing"},
         RefusedInfo{"odd_message", ILAW_INVALID_PARAMETER, "wrong ?[2J?"}),
     [](const auto& drawn) { return drawn.param.name; });
+
+TEST(Loader, RefusesALibraryThatRoundsOtherwise) {
+  const auto [code, text] = refusal_of(variant("rounds_at_load"));
+  EXPECT_EQ(code, ILAW_BAD_LIBRARY);
+  EXPECT_THAT(text, ::testing::HasSubstr("loading it changed how the processor rounds"));
+  EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+}
 
 // A host of another minor version than the loader: its structs are longer, or as short as 1.0 had them.
 TEST(Loader, FillsStructsOfLongerHosts) {

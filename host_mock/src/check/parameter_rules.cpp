@@ -326,11 +326,15 @@ void table_linear(const Subject& subject) {
               judged = expect_table_value(trial, over_one, {place}, value, draw) || judged;
           }
           if (known.size() < 2) continue;
-          const Value over_two{
-              p.name,      ILAW_VALUE_TABLE, 0.0, {}, {{known[0], {0.25, 0.75}}, {known[1], {0.25, 0.75}}},
-              {a, b, a, a}};
+          const Value over_two{p.name,
+                               ILAW_VALUE_TABLE,
+                               0.0,
+                               {},
+                               {{known[0], {0.25, 0.75, 1.0}}, {known[1], {0.25, 0.75}}},
+                               {a, b, a, a, b, a}};
           const std::pair<std::vector<double>, double> corners[] = {
-              {{0.25, 0.25}, a}, {{0.25, 0.75}, b}, {{0.75, 0.25}, a}, {{0.25, 0.5}, 0.5 * (a + b)}};
+              {{0.25, 0.25}, a}, {{0.25, 0.75}, b}, {{0.75, 0.75}, a},
+              {{1.0, 0.25}, b},  {{2.0, 0.75}, a},  {{0.25, 0.5}, 0.5 * (a + b)}};
           for (const auto& [place, value] : corners)
             judged = expect_table_value(trial, over_two, place, value, draw) || judged;
         }

@@ -240,6 +240,11 @@ def test_walls_hold_where_they_are(tmp_path, wall, lowest):
     (("coulomb friction 0.3 sweeps", "no_such_law sweeps"), "no_such_law"),
     (("pair_style zero 1.2", "pair_style zero 0.9"), "has to be larger than the largest diameter"),
     (("pair coulomb", "pair coulomb mu 0.1"), "mu"),
+    (("sweeps 30", "sweeps 1e300"), "sweeps is 1e300; expected a whole number from 1 to 1000000"),
+    (("sweeps 30", "sweeps nan"), "sweeps is nan"),
+    (("tol 1e-10", "tol inf"), "tol is inf; expected a finite number above 0"),
+    (("tol 1e-10", "area nan tol 1e-10"), "area is nan; expected a finite number, 0 or above"),
+    (("tol 1e-10", "area -1 tol 1e-10"), "area is -1"),
     (("fix nve all nve/sphere", "fix nve all nve"), "that fix nve/sphere moves, but fix nve turns none"),
     (("tol 1e-10\n", "tol 1e-10\nfix late all gravity 1 vector 1 0 0\n"), "fix late comes later"),
 ])

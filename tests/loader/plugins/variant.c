@@ -3,6 +3,7 @@
 #define ILAW_BUILDING_PLUGIN
 #include <ilaw/ilaw.h>
 
+#include <fenv.h>
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,10 @@ struct ilaw_instance {
 };
 
 static int instances; /* that live; laws are created by many threads at once */
+
+#ifdef VARIANT_ROUNDS_AT_LOAD
+__attribute__((constructor)) static void loaded(void) { fesetround(FE_UPWARD); }
+#endif
 
 #ifdef VARIANT_ABORTS
 /* Describing a law runs none of its code: this one's ends the process. */
@@ -27,6 +32,9 @@ static ilaw_result ILAW_CALL create(const char* id, const ilaw_setup* setup, ila
   (void)setup;
   if (strcmp(id, "zero") != 0) return ILAW_NOT_FOUND;
   if (message_size > 0) message[0] = '\0';
+#ifdef VARIANT_ROUNDS_IN_CREATE
+  fesetround(FE_UPWARD);
+#endif
 #ifdef VARIANT_ODD_CODE
   *instance = NULL;
   return 57;
