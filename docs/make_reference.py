@@ -39,6 +39,9 @@ SECTIONS = [
     ("Pressure", [("load_pressure", "load of type `pressure`")]),
     ("Motion", [("load_motion", "load of type `motion`")]),
     ("Damping", [("load_damping", "load of type `damping`")]),
+    ("Curves over time", [("history_curve", "a curve in place of a list of [time, value]"),
+                          ("path_curve", "a curve in place of a list of [time, displacement...]"),
+                          ("sine", "`sine`")]),
     ("Interfaces", [("interface", "entries of `interfaces`"), ("against", "`against`"),
                     ("obstacle", "`obstacle`, common to all types")]),
     ("Plane", [("obstacle_plane", "`obstacle` of type `plane`")]),
@@ -53,7 +56,8 @@ SECTIONS = [
 VALUES = {
     "vector": "vector", "nodes": "[nodes](#nodes)", "history": "list of [time, value]",
     "path": "list of [time, displacement...]", "places": "vector, or list of vectors",
-    "near": "[nodes](#nodes)", "box": "[nodes](#nodes)",
+    "near": "[nodes](#nodes)", "box": "[nodes](#nodes)", "history_rows": "list of [time, value]",
+    "path_rows": "list of [time, displacement...]",
 }
 
 KEYS_HEAD = """# Reference: keys of a scene
@@ -159,6 +163,9 @@ def keys_page():
         sys.exit(f"SECTIONS of {__file__} leaves out {', '.join(sorted(left))}")
     text = [KEYS_HEAD]
     for heading, objects in SECTIONS:
+        objects = [(name, words) for name, words in objects if not name or name in definitions]
+        if not objects:
+            continue
         text.append(f"## {heading}\n")
         if heading == "Nodes":
             text.append(NODES)
