@@ -1,5 +1,5 @@
 // How long this processor takes for eight numbers, one division, root, product or choice of bits right after
-// the other: below it no loop comes that has so many of them (docs/benchmarks.md, "What forbids the rest").
+// the other: below it no loop comes that has so many of them (docs/log/loops.md, "What forbids the rest").
 // Nothing takes less than a choice of bits, for which all pipes serve.
 #include "base/clock.hpp"
 

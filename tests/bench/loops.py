@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the table "What forbids the bars" of docs/benchmarks.md.
+"""Makes the table "What forbids the rest" of docs/log/loops.md.
 
     ILAW_PATH=$PWD/build/release/lib/ilaw \\
         tests/bench/loops.py build/release/bin/ilaw build/release/bin/ilaw_bench_dividers

@@ -87,7 +87,7 @@ TEST(Program, WritesTheReportOfACheck) {
   EXPECT_NE(nowhere.output.find("none/report.xml"), std::string::npos) << nowhere.output;
   const Outcome device = report_to("/dev/full");
   EXPECT_EQ(device.code, 2);
-  EXPECT_EQ(device.output.find("ilaw: /dev/full: is no regular file"), 0U) << device.output;
+  EXPECT_EQ(device.output.find("ilaw: /dev/full: not a regular file"), 0U) << device.output;
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 

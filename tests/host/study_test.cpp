@@ -250,7 +250,7 @@ TEST(Study, OfTheHeldRodTellsContactFromAStiffSpring) {
       table[row["law"]][column].push_back(std::stod(row[column]));
   ASSERT_EQ(table.size(), 2U);
   auto& contact = table["contact predictive"];
-  auto& spring = table["explicit 20"];
+  auto& spring = table["explicit k=20"];
   EXPECT_NEAR(order(contact["dt"], contact["u_L2"]), 0.85, 0.15);
   EXPECT_LT(contact["v_L1"].back(), 0.5 * contact["v_L1"].front());
   EXPECT_GT(spring["v_L1"].back(), 0.4);
@@ -269,8 +269,8 @@ TEST(Study, TakesTheUsualLawsWhereTheSceneListsNone) {
   EXPECT_EQ(found["reference"], "finest run of the first law");
   ASSERT_EQ(found["laws"].size(), 7U);
   EXPECT_EQ(found["laws"][0]["name"], "contact predictive");
-  EXPECT_EQ(found["laws"][2]["name"], "explicit 0.1");
-  EXPECT_NE(study.outcome.output.find("implicit 100.0"), std::string::npos) << study.outcome.output;
+  EXPECT_EQ(found["laws"][2]["name"], "explicit k=0.1");
+  EXPECT_NE(study.outcome.output.find("implicit k=100.0"), std::string::npos) << study.outcome.output;
 }
 
 // Of a scene with friction they have it, too; one with another law is compared with itself.

@@ -12,7 +12,7 @@
                             counterpart_arm=r_j * normal, impulse=impulse, state=state)
         solver.solve(bodies, [contacts], time=(n + 1) * h)
 
-What it does, and the method, is in ilaw/coupled.h and docs/hosts.md.
+What it does, and the method, is in ilaw/coupled.h and docs/hosts/coupled.md.
 """
 from __future__ import annotations
 

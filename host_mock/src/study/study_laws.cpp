@@ -68,7 +68,7 @@ json usual_penalty(const json& source, const char* integration, double stiffness
     parameters["restitution"] = given;
   else if (!rebounds_by_itself && given.is_number() && given < 1.0)
     parameters["damping"] = damping_of(given.get<double>(), stiffness);
-  return {{"name", std::string(integration) + " " + json(stiffness).dump()},
+  return {{"name", std::string(integration) + " k=" + json(stiffness).dump()},
           {"law", "penalty"},
           {"scaled", true},
           {"parameters", parameters}};
