@@ -91,7 +91,9 @@ TEST(Fields, HoldWhatTheIntegratorHolds) {
 // The first file of a scene.
 auto first_grid(Scene& scene) {
   const auto folder = fresh_folder();
-  Fields(scene, folder).write(integrator_of(scene));
+  Integrator integrator = integrator_of(scene);
+  integrator.start();
+  Fields(scene, folder).write(integrator);
   return grid_of(folder / "fields_000000.vtu");
 }
 
@@ -202,7 +204,7 @@ TEST(Fields, AreListedInASeries) {
 
 // ---- interfaces at the start, obstacles ------------------------------------------------------------------
 
-// Before any step: what the law says of a node at rest where it is.
+// Before any step, what the law says of a node at the start.
 TEST(Fields, TellTheStatusAtTheStart) {
   const auto status_of = [](const std::string& law, double height, const std::string& more = "") {
     Scene scene = scene_of(

@@ -33,7 +33,8 @@ json shaken_block() {
 
 const std::vector<std::string> parts{"floor", "grip", "air", "weight", "push", "blow"};
 
-// The impulses of all that acts from outside are the change of momentum, whatever the rows.
+// The impulses of all that acts from outside are the change of momentum, whatever the rows: from V_{1/2} on
+// in the rows, and from V_0 on in the summary.
 TEST(Forces, SumToTheChangeOfMomentumWhateverTheRows) {
   json scene = shaken_block();
   Scene same = scene_of(scene.dump());
@@ -46,24 +47,27 @@ TEST(Forces, SumToTheChangeOfMomentumWhateverTheRows) {
   };
   const std::array<double, 3> start{momentum(0), momentum(1), momentum(2)};
   while (integrator.steps() < same.steps) integrator.step();
+  const Dofs thrown = same.model->mass().cwiseProduct(same.model->initial_velocity());
   std::map<std::string, double> first;
   for (const int every : {1, 7, 20}) {
     scene["output"]["every"] = every;
     const Ran run = ran(scene);
     EXPECT_NEAR(run.last("time"), integrator.time(), 1e-12) << "every " << every;
     for (int axis = 0; axis < 3; ++axis) {
-      double sum = 0.0;
+      double sum = 0.0, all = 0.0;
       for (const std::string& name : parts) {
         const std::string column = name + ".F" + std::to_string(axis);
         const double impulse = run.impulse(column);
         sum += impulse;
-        EXPECT_NEAR(impulse, run.summary["forces"][name]["impulse"][axis].get<double>(), 1e-12) << column;
+        all += run.summary["forces"][name]["impulse"][axis].get<double>();
         if (every == 1)
           first[column] = impulse;
         else
           EXPECT_NEAR(impulse, first[column], 1e-13) << column << ", every " << every;
       }
       EXPECT_NEAR(sum, momentum(axis) - start[static_cast<std::size_t>(axis)], 1e-12)
+          << "axis " << axis << ", every " << every;
+      EXPECT_NEAR(all, momentum(axis) - thrown(Eigen::seqN(axis, thrown.size() / 3, 3)).sum(), 1e-12)
           << "axis " << axis << ", every " << every;
       EXPECT_EQ(run.history.at("b.z_max.F" + std::to_string(axis)),
                 run.history.at("grip.F" + std::to_string(axis)))
@@ -74,8 +78,11 @@ TEST(Forces, SumToTheChangeOfMomentumWhateverTheRows) {
       double largest = 0.0;
       for (std::size_t k = 0; k < column(".F0").size(); ++k)
         largest = std::max(largest, std::hypot(column(".F0")[k], column(".F1")[k], column(".F2")[k]));
-      EXPECT_NEAR(run.summary["forces"][name]["largest"].get<double>(), largest, 1e-12 * largest)
-          << name << ", every " << every;
+      const double told = run.summary["forces"][name]["largest"].get<double>();
+      EXPECT_GE(told, largest * (1.0 - 1e-12)) << name << ", every " << every;
+      // The grip and the air have more to do at the start.
+      if (name == "grip" || name == "air") continue;
+      EXPECT_NEAR(told, largest, 1e-12 * largest) << name << ", every " << every;
     }
     EXPECT_GT(std::abs(first["floor.F2"]), 0.5) << "every " << every;
     EXPECT_NEAR(first["blow.F2"], 9 * 0.002, 1e-15) << "every " << every;
@@ -102,7 +109,7 @@ TEST(Forces, CarryTheWeightAtRest) {
 }
 
 // A bar between a bond and a grip that stretches it: both carry E S u/L at rest, and so says the held
-// node's own column. Where an interface acts, damping takes rate h/2 of the force.
+// node's own column.
 TEST(Forces, AreTheStressOfAJointAndTheReactionOfAGrip) {
   const json scene = json::parse(R"({
     "model": {"type": "bars", "bars": [{"name": "b", "length": 2, "elements": 10, "young": 100, "density": 1, "section": 0.3}]},
@@ -112,7 +119,7 @@ TEST(Forces, AreTheStressOfAJointAndTheReactionOfAGrip) {
     "output": {"every": 13, "watch": ["b.right"], "forces": ["joint", "b.right"]}})");
   const Ran run = ran(scene);
   const double force = 100 * 0.3 * 0.01 / 2, h = 0.8 * 0.2 / 10;
-  EXPECT_NEAR(run.last("joint.F0"), -force / (1.0 + 0.5 * 0.5 * h), 1e-4 * force);
+  EXPECT_NEAR(run.last("joint.F0"), -force, 1e-4 * force);
   EXPECT_NEAR(run.last("b.right.F0"), force, 1e-4 * force);
   EXPECT_NEAR(run.last("n10.r0"), force * h, 1e-4 * force * h);
 }
@@ -142,8 +149,14 @@ TEST(Forces, OfSpringsAreTheChangeOfMomentumOfTheirNodes) {
       EXPECT_NEAR(gained(0) + gained(1) + gained(2), rope, 1e-13) << "axis " << axis << ", h " << h;
       // Springs 0-1 and 2-0 act on 0 and 2 as on their own: of the second, 0 has the opposite.
       EXPECT_NEAR(gained(1), rope - (strut - gained(2)), 1e-13) << "axis " << axis << ", h " << h;
-      EXPECT_NEAR(run.summary["forces"]["strut"]["impulse"][static_cast<std::size_t>(axis)].get<double>(),
-                  strut, 1e-13)
+      const auto all = [&](const char* name) {
+        return run.summary["forces"][name]["impulse"][static_cast<std::size_t>(axis)].get<double>();
+      };
+      const auto gained_in_all = [&](int node) {
+        return gained(node) + same.model->mass()[2 * node] *
+                                  (start[2 * node + axis] - same.model->initial_velocity()[2 * node + axis]);
+      };
+      EXPECT_NEAR(gained_in_all(1), all("rope") - (all("strut") - gained_in_all(2)), 1e-13)
           << "h " << h << ", axis " << axis;
       EXPECT_GT(std::abs(strut) + std::abs(rope), 0.1) << "h " << h << ", axis " << axis;
     }

@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"/loads/0/type", "\"wind\"",
                 "/loads/0/type: found \"wind\", expected one of \"gravity\", \"force\", \"shock\""},
         Mistake{"/loads/0/direction", "[1, 0]",
-                "/loads/0/direction: unknown key, expected one of: acceleration, name, nodes, type"},
+                "/loads/0/direction: unknown key, expected one of: acceleration, history, name, nodes, type"},
         Mistake{"/loads/0/nodes", "[7]", "/loads/0/nodes/0: found node 7, expected 0 to 1"},
         Mistake{"/interfaces/0/nodes", "[0, 2]", "/interfaces/0/nodes/1: found node 2, expected 0 to 1"},
         Mistake{"/interfaces/0/nodes", "[-1]", "/interfaces/0/nodes/0: found -1, expected integer >= 0"},

@@ -73,6 +73,7 @@ class Run {
       if (!options_.resume) start();
       while (integrator_.steps() < scene_.steps && !stop_requested()) {
         integrator_.step();
+        tell_of_stable_step();
         history_->add_step(integrator_);
         if (events_) events_->add_step(integrator_);
         write_outputs();
@@ -171,6 +172,15 @@ class Run {
     history_->add_start(integrator_);
     if (events_) events_->add_step(integrator_);
     if (scene_.output.fields > 0) fields_.write(integrator_);
+  }
+
+  // At once, for the run may take long; the summary has it, too.
+  void tell_of_stable_step() {
+    if (!record.told.empty()) return;
+    record.told = integrator_.step_warning();
+    if (!record.told.empty())
+      complain(scene_.file.string() + ": warning: step " + std::to_string(integrator_.steps()) + ": " +
+               record.told);
   }
 
   void keep_what_there_is(const char* failure) {
@@ -311,7 +321,8 @@ int run_scene(Scene& scene, const RunOptions& options) {
   const std::unique_ptr<Run> run = start_or_explain(scene, options);
   if (!run) return exit_bad_input;
   const auto warn = [&](const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings) complain(options.scene.string() + ": warning: " + warning);
+    for (const std::string& warning : warnings)
+      if (warning != run->record.told) complain(options.scene.string() + ": warning: " + warning);
   };
   warn(scene.warnings);
   run->advance();

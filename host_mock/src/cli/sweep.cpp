@@ -97,10 +97,14 @@ struct Variant {
 };
 
 std::string folder_name(const std::string& text) {
-  std::string name = text;
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && std::string("=.+-_").find(c) == std::string::npos)
-      c = '_';
+  std::string name;
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)) || std::string("=.+-_").find(c) != std::string::npos)
+      name += c;
+    else if (!name.ends_with('_') &&
+             !name.ends_with('='))  // one for all brackets, quotes and commas in a row
+      name += '_';
+  while (name.ends_with('_')) name.pop_back();
   return name.substr(0, 100);
 }
 

@@ -18,6 +18,7 @@ struct ContactSums {
   double work = 0.0;           // of the impulses on the bodies
   double relative_work = 0.0;  // relative to a moving obstacle
   double penetration = 0.0;    // the largest
+  std::int64_t left = 0;       // contacts that were held and went over the border of their surface
   double least_dissipation = 0.0;
   std::array<double, ILAW_ENERGY_COUNT> energy{};
   std::array<std::int64_t, ILAW_STATUS_COUNT> statuses{};
@@ -28,6 +29,7 @@ struct ContactSums {
     work += other.work;
     relative_work += other.relative_work;
     penetration = std::max(penetration, other.penetration);
+    left += other.left;
     least_dissipation = std::min(least_dissipation, other.least_dissipation);
     for (std::size_t k = 0; k < energy.size(); ++k) energy[k] += other.energy[k];
     for (std::size_t k = 0; k < statuses.size(); ++k) statuses[k] += other.statuses[k];

@@ -46,7 +46,7 @@ Vector RigidCounterpart::position(int node_index, const Dofs& u) const {
 
 ContactPoint RigidCounterpart::contact_point(int node_index, const Dofs& u, double time) const {
   const RigidSurface surface = obstacle_->at(position(node_index, u), time);
-  return {surface.gap, surface.normal, 0, {}, {}};
+  return {surface.gap, surface.normal, 0, {}, {}, false};
 }
 
 double RigidCounterpart::gap_bound(int node_index, const Dofs& u, double time) const {
@@ -86,7 +86,7 @@ NodeCounterpart::NodeCounterpart(const Model& model, std::vector<int> nodes, std
 ContactPoint NodeCounterpart::contact_point(int node_index, const Dofs& u, double /*time*/) const {
   const auto k = static_cast<std::size_t>(node_index);
   const Vector apart = position_of(model_, nodes_[k], u) - position_of(model_, partners_[k], u);
-  return {apart.dot(normal_), normal_, 1, {partners_[k]}, {1.0}};
+  return {apart.dot(normal_), normal_, 1, {partners_[k]}, {1.0}, false};
 }
 
 }  // namespace ilaw::host

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iosfwd>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -26,6 +27,7 @@ struct ContactPoint {
   int partner_count = 0;
   std::array<int, most_partners> partners{};
   std::array<double, most_partners> weights{};
+  bool is_beyond_border = false;  // beside the surface of a mesh
 
   // Calls visit(node, weight) for the contact's own node and its partners.
   template <class Visit>
@@ -33,7 +35,8 @@ struct ContactPoint {
     visit(node, 1.0);
     for (std::size_t i = 0; i < static_cast<std::size_t>(partner_count); ++i) visit(partners[i], -weights[i]);
   }
-  // H along an axis: inverse_mass is 1/m, or less where loads take a part of an impulse, per degree of freedom.
+  // H along an axis: inverse_mass is 1/m, or less where loads take a part of an impulse, per degree of
+  // freedom.
   double delassus(const double* inverse_mass, int dimension, int node, int axis = 0) const;
 };
 
@@ -124,6 +127,13 @@ class Counterpart {
   virtual Vector turned(const Vector& direction, double /*from*/, double /*to*/) const { return direction; }
   // Nodes that may be partners; empty for rigid counterparts.
   virtual const std::vector<int>& partners() const = 0;
+  // After a step: whether the law of a node was not ILAW_FREE, and where the node was.
+  virtual void note_contact(int /*node_index*/, bool /*touches*/, const ContactPoint& /*point*/) {}
+  // Whether it touched and has not left since. Such nodes must be evaluated in every step.
+  virtual bool is_held(int /*node_index*/) const { return false; }
+  // What of that a checkpoint takes along.
+  virtual void save(std::ostream& /*out*/) const {}
+  virtual void load(std::istream& /*in*/) {}
   // Whether two contacts may have a partner in common.
   virtual bool shares_partners() const { return false; }
   virtual bool keeps_normal() const { return false; }

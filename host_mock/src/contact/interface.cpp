@@ -81,9 +81,9 @@ void Interface::check(const Refusal& refusal, const std::string& node) const {
 int Interface::contact_index_of(int node_index, const Dofs& u) {
   const std::size_t k = at(node_index);
   if (const int found = contacts_.index_of(k); found >= 0) return found;
-  contacts_.add({node_index, ContactPoint().delassus(inverse_mass_, dimension_, setup_.nodes[k]), setup_.areas[k],
-                 parameters_of(node_index), first_state(node_index, u), !law_.may_skip_fresh(),
-                 axes_turn()});
+  contacts_.add({node_index, ContactPoint().delassus(inverse_mass_, dimension_, setup_.nodes[k]),
+                 setup_.areas[k], parameters_of(node_index), first_state(node_index, u),
+                 !law_.may_skip_fresh(), axes_turn()});
   if (setup_.has_driven_nodes) find_delassus(contacts_.count() - 1);
   if (const std::size_t chunk = k / contact_chunk; chunk < far_.size()) far_[chunk] = {};
   return contacts_.index_of(k);
@@ -95,8 +95,8 @@ void Interface::set_inverse_mass(const double* inverse_mass) {
   for (std::size_t k = 0; k < contacts_.count() && contacts_.point.empty(); ++k) find_delassus(k);
 }
 
-// A driven axis has H = 0, which laws refuse. They are given a small part of the largest H, which every precision
-// of the kit resolves; impulses are applied with the true one.
+// A driven axis has H = 0, which laws refuse. They are given a small part of the largest H, which every
+// precision of the kit resolves; impulses are applied with the true one.
 void Interface::find_delassus(std::size_t k) {
   const auto along = [&](int axis) {
     return point(static_cast<int>(k)).delassus(inverse_mass_, dimension_, node_of(static_cast<int>(k)), axis);
@@ -118,22 +118,23 @@ Vector Interface::velocity_of(int contact_index, const Vector& impulse) const {
   return contacts_.vector(contacts_.axis_delassus, contact_index).cwiseProduct(impulse);
 }
 
-// A rigid law that is driven along its normal answers with an impulse that takes the whole approach, over the small
-// H that it was given. The size of the answer tells it: the node would give way by H r, and laws that need no such
-// thing give way by a vanishing part of the speed, or of the indentation in a step.
+// A rigid law that is driven along its normal answers with an impulse that takes the whole approach, over the
+// small H that it was given. The size of the answer tells it: the node would give way by H r, and laws that
+// need no such thing give way by a vanishing part of the speed, or of the indentation in a step.
 void Interface::check_driven(const StepView& step) const {
   constexpr double noticeable = 1e-9;
   if (contacts_.axis_delassus.empty()) return;
   const double speed = std::max(step.speed_before, step.speed_after);
   for (const std::int32_t k : active()) {
-    const Vector given_way = contacts_.vector(contacts_.law_delassus, k).cwiseProduct(impulse(k)) -
-                             velocity_of(k, impulse(k));
+    const Vector given_way =
+        contacts_.vector(contacts_.law_delassus, k).cwiseProduct(impulse(k)) - velocity_of(k, impulse(k));
     Eigen::Index axis = 0;
     const double largest = given_way.cwiseAbs().maxCoeff(&axis);
     if (!(largest > noticeable * std::max(speed, std::abs(gap(k)) / step.dt))) continue;
     if (largest < 0.5 * std::abs(v_free(k)[axis])) continue;
     std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(), "node %d is driven along axis %td against '%s' (law '%s'), which cannot give way",
+    std::snprintf(text.data(), text.size(),
+                  "node %d is driven along axis %td against '%s' (law '%s'), which cannot give way",
                   node_of(k), axis, name().c_str(), setup_.law.c_str());
     throw std::runtime_error(text.data());
   }
@@ -195,7 +196,8 @@ void Interface::look_at(std::size_t chunk, const StepView& step) {
     const bool awake =
         contact_index >= 0 ? contacts_.must_be_evaluated(at(contact_index)) : !law_.may_skip_fresh();
     const double gap = skips ? bounds[i] - setup_.gap_offset : 0.0;
-    const bool is_near = awake || !skips || proximity_.may_touch(gap);
+    const bool is_near = awake || !skips || proximity_.may_touch(gap) ||
+                         setup_.counterpart->is_held(static_cast<int>(first + i));
     is_near_[first + i] = is_near ? 1 : 0;
     near += is_near ? 1 : 0;
     least = gap < least ? gap : least;
@@ -213,7 +215,8 @@ void Interface::follow_obstacle(const StepView& step) {
   const Counterpart& counterpart = *setup_.counterpart;
   obstacle_velocity_before_ = counterpart.velocity(step.time - step.dt, step.time);
   obstacle_velocity_ = counterpart.velocity(step.time, step.time + step.dt);
-  if (step.number == 0) obstacle_velocity_before_ = obstacle_velocity_;  // the start is no impact of the obstacle
+  if (step.number == 0)
+    obstacle_velocity_before_ = obstacle_velocity_;  // the start is no impact of the obstacle
   obstacle_speed_before_ = obstacle_velocity_before_.norm();
   obstacle_speed_ = obstacle_velocity_.norm();
   if (counterpart.turns()) rates_ = counterpart.rates(step.time, step.dt);
@@ -297,6 +300,7 @@ void Interface::open_step(const StepView& step) {
     const std::size_t k = at(contact_index);
     const ContactPoint point = setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);
     contacts_.gap[k] = point.gap - setup_.gap_offset;
+    if (point.is_beyond_border && setup_.counterpart->is_held(contacts_.node_index[k])) ++sums_.left;
     contacts_.vector(contacts_.normal, contact_index) = point.normal;
     contacts_.vector(contacts_.impulse, contact_index).setZero();
     if (turns) {
@@ -370,7 +374,8 @@ void Interface::apply(const ContactList& contacts, Dofs& v) {
       const Vector added = impulse(k) - contacts_.vector(contacts_.previous_impulse, k);
       if (added.isZero(0.0)) continue;  // idle contacts must not even write nodes they share
       point(k).for_each_node(node_of(k), [&](int node, double weight) {
-        for (Eigen::Index c = 0; c < d; ++c) v[node * d + c] += weight * inverse_mass_[node * d + c] * added[c];
+        for (Eigen::Index c = 0; c < d; ++c)
+          v[node * d + c] += weight * inverse_mass_[node * d + c] * added[c];
       });
     }
   });
@@ -394,6 +399,8 @@ void Interface::accept(const StepView& step, const Dofs& v) {
     sums_.relative_work += 0.5 * impulse(contact_index).dot(sum - drift);
     sums_.penetration = std::max(sums_.penetration, -gap(contact_index));
     ++sums_.statuses[contacts_.status[k]];
+    setup_.counterpart->note_contact(contacts_.node_index[k], contacts_.status[k] != ILAW_FREE,
+                                     point(contact_index));
     sums_.add_energy(&contacts_.energy[k * ILAW_ENERGY_COUNT]);
     for (std::size_t a = 0; a < contacts_.amounts.size(); ++a) sums_.add_amount(a, contacts_.amounts[a][k]);
     if (info().state_size == 0) continue;

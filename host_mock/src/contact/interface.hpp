@@ -38,8 +38,8 @@ class Interface {
   // the impulse, and changes no bit of it. They are, where nobody says that it is not wanted.
   void ask_energies(bool asks) { asks_energies_ = asks; }
 
-  // Velocity that a unit impulse makes, per degree of freedom of the model. To be set before the first step and
-  // again when its values change; the array must stay.
+  // Velocity that a unit impulse makes, per degree of freedom of the model. To be set before the first step
+  // and again when its values change; the array must stay.
   void set_inverse_mass(const double* inverse_mass);
   const double* inverse_mass() const { return inverse_mass_; }
 

@@ -26,8 +26,8 @@ struct InterfaceSetup {
   bool keeps_all_active = false;  // also contacts that cannot be reached: same results, more work
 };
 
-// A step from the interface's side. Speeds bound those of all nodes. Step 0 is the start: half a step of the velocity,
-// from V_0, before a whole one of the position.
+// A step from the interface's side. Speeds bound those of all nodes. Step 0 is the start: half a step of the
+// velocity, from V_0, before a whole one of the position.
 struct StepView {
   const Dofs& u;         // at time
   const Dofs& v_before;  // at the half step before time

@@ -62,6 +62,7 @@ std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
 void Interface::save(std::ostream& out) const {
   contacts_.save(out);
   write_sized(out, amounts_);
+  setup_.counterpart->save(out);
 }
 
 void Interface::load(std::istream& in, const Dofs& u) {
@@ -71,6 +72,7 @@ void Interface::load(std::istream& in, const Dofs& u) {
   contacts_.load_state(in);
   amounts_ = read_sized<double>(in, info().amount_count);
   if (amounts_.size() != info().amount_count) refuse_damaged();
+  setup_.counterpart->load(in);
   far_.clear();
   proximity_.invalidate();
 }

@@ -55,8 +55,8 @@ class ParameterError : public ilaw::error {
   std::optional<std::size_t> node_index_;
 };
 
-// Creates the law for nodes with spherical or diagonal H in global axes; tangent is empty where none is given.
-// Throws ParameterError, also about values per node, or ilaw::error, with the law's message.
+// Creates the law for nodes with spherical or diagonal H in global axes; tangent is empty where none is
+// given. Throws ParameterError, also about values per node, or ilaw::error, with the law's message.
 ilaw::interface create_law(const std::string& law, const Arguments& given, const Vector& tangent,
                            const ilaw::library& library, int dimension,
                            std::uint32_t delassus_form = ILAW_DELASSUS_SCALAR);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/mesh_surface.hpp"
 
+#include "base/bytes.hpp"
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -22,7 +24,13 @@ struct Projection {
   std::array<double, 4> weights;
   Vector3d point, normal;
   double distance;
+  std::array<bool, 4> is_at;  // edges of the patch, from corner k to k + 1
 };
+
+// How far a facet goes on beyond the border, in parts of the shortest edge.
+constexpr double entering_rim = 1e-3, leaving_rim = 0.1;
+// The same everywhere, for rounding.
+constexpr double rounding_rim = 1e-6;
 
 std::array<double, 4> shape_functions(const Vector2d& at) {
   const double a = 0.5 * (1.0 - at[0]), b = 0.5 * (1.0 + at[0]), c = 0.5 * (1.0 - at[1]),
@@ -64,8 +72,11 @@ Projection project(const Vector3d& p, const Corners& x) {
     if (!(moved > 1e-14)) break;
   }
   const Vector3d point = point_of(x, at);
-  return {shape_functions(at), point, along_xi(x, at).cross(along_eta(x, at)).normalized(),
-          (p - point).norm()};
+  return {shape_functions(at),
+          point,
+          along_xi(x, at).cross(along_eta(x, at)).normalized(),
+          (p - point).norm(),
+          {at[1] == -1.0, at[0] == 1.0, at[1] == 1.0, at[0] == -1.0}};
 }
 
 }  // namespace
@@ -77,8 +88,10 @@ MeshSurface::MeshSurface(const Model& model, std::vector<int> nodes, const NodeS
       facets_(surface.facets),
       nearest_(nodes_.size()),
       bound_(nodes_.size()),
+      held_(nodes_.size()),
       shortest_edge_(std::numeric_limits<double>::infinity()) {
   find_neighbours();
+  find_border();
   const Dofs undeformed = Dofs::Zero(model.mass().size());
   for (const Facet& facet : facets_)
     for (std::size_t k = 0; k < 4; ++k)
@@ -96,6 +109,36 @@ void MeshSurface::find_neighbours() {
     for (const int node : facets_[f]) around.insert(facets_at[node].begin(), facets_at[node].end());
     neighbours_.emplace_back(around.begin(), around.end());
   }
+}
+
+void MeshSurface::find_border() {
+  const auto edge_of = [](const Facet& facet, std::size_t k) {
+    const int a = facet[k], b = facet[(k + 1) % 4];
+    return std::pair(std::min(a, b), std::max(a, b));
+  };
+  std::map<std::pair<int, int>, int> facets_along;
+  for (const Facet& facet : facets_)
+    for (std::size_t k = 0; k < 4; ++k) ++facets_along[edge_of(facet, k)];
+  for (const Facet& facet : facets_) {
+    std::array<bool, 4>& border = border_.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) border[k] = facets_along[edge_of(facet, k)] == 1;
+  }
+}
+
+// A node that vibrates is free in some steps without leaving.
+void MeshSurface::note_contact(int node_index, bool touches, const ContactPoint& point) {
+  std::uint8_t& held = held_[static_cast<std::size_t>(node_index)];
+  if (touches)
+    held = 1;
+  else if (point.is_beyond_border || point.gap > leaving_rim * shortest_edge_)
+    held = 0;
+}
+
+void MeshSurface::save(std::ostream& out) const { write_sized(out, held_); }
+
+void MeshSurface::load(std::istream& in) {
+  held_ = read_sized<std::uint8_t>(in, nodes_.size());
+  if (held_.size() != nodes_.size()) refuse_damaged();
 }
 
 Vector3d MeshSurface::position(int node, const Dofs& u) const {
@@ -161,11 +204,19 @@ ContactPoint MeshSurface::contact_point(int node_index, const Dofs& u, double /*
   }
   const double normal_distance = best.normal.dot(p - best.point);
   const double beside = (p - best.point - normal_distance * best.normal).norm();
-  // A point that is nearest to an edge without facing the patch lies beyond the surface's border:
-  // it is not in contact.
-  const bool is_over_patch = beside <= 1e-6 * shortest_edge_;
-  return {is_over_patch ? normal_distance : best.distance, best.normal, ContactPoint::most_partners,
-          facets_[facet], best.weights};
+  bool is_at_border = false;
+  for (std::size_t e = 0; e < 4; ++e) is_at_border = is_at_border || (best.is_at[e] && border_[facet][e]);
+  const double rim = (is_held(node_index) ? leaving_rim : entering_rim) * shortest_edge_;
+  const bool is_on_rim = is_at_border && beside <= rim && normal_distance >= -rim;
+  // A point that is nearest to an edge without facing the patch lies beside the surface: it is not in
+  // contact.
+  const bool is_over_patch = beside <= rounding_rim * shortest_edge_ || is_on_rim;
+  return {is_over_patch ? normal_distance : best.distance,
+          best.normal,
+          ContactPoint::most_partners,
+          facets_[facet],
+          best.weights,
+          is_at_border && !is_over_patch};
 }
 
 }  // namespace ilaw::host

@@ -7,13 +7,17 @@ namespace ilaw::host {
 
 const std::vector<int> Load::none_;
 
-Gravity::Gravity(const Model& model, std::vector<int> nodes, Vector acceleration)
-    : model_(model), nodes_(std::move(nodes)), acceleration_(std::move(acceleration)) {}
+Gravity::Gravity(const Model& model, std::vector<int> nodes, Vector acceleration, Table history)
+    : model_(model),
+      nodes_(std::move(nodes)),
+      acceleration_(std::move(acceleration)),
+      history_(std::move(history)) {}
 
-void Gravity::add_force(double /*time*/, const Dofs& /*u*/, Dofs& force) const {
-  const Eigen::Index d = acceleration_.size();
+void Gravity::add_force(double time, const Dofs& /*u*/, Dofs& force) const {
+  const Vector acceleration = history_.at(time)[0] * acceleration_;
+  const Eigen::Index d = acceleration.size();
   for (int node : nodes_)
-    force.segment(node * d, d) += model_.mass().segment(node * d, d).cwiseProduct(acceleration_);
+    force.segment(node * d, d) += model_.mass().segment(node * d, d).cwiseProduct(acceleration);
 }
 
 Force::Force(std::vector<int> nodes, std::vector<double> shares, Vector direction, Table history)
@@ -61,12 +65,12 @@ void PrescribedMotion::transmit(StepTimes /*step*/, Dofs& impulse) const {
     for (const int axis : axes_) impulse[Eigen::Index{node} * model_.dimension() + axis] = 0.0;
 }
 
-Damping::Damping(const Model& model, std::vector<int> nodes, double rate)
-    : model_(model), nodes_(std::move(nodes)), rate_(rate) {}
+Damping::Damping(const Model& model, std::vector<int> nodes, double rate, Table history)
+    : model_(model), nodes_(std::move(nodes)), rate_(rate), history_(std::move(history)) {}
 
 // m (v' - v_before) = m (v - v_before) - rate h m (v_before + v')/2, solved for v'.
 void Damping::correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const {
-  const double a = 0.5 * rate_ * step.duration();
+  const double a = part(step);
   const Eigen::Index d = model_.dimension();
   for (int node : nodes_)
     for (Eigen::Index dof = node * d; dof < (node + 1) * d; ++dof) {
@@ -78,7 +82,7 @@ void Damping::correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) co
 
 // With an impulse r beside it the equation of correct() has r/m on its right: v' changes by r/(m (1 + a)).
 void Damping::transmit(StepTimes step, Dofs& impulse) const {
-  const double a = 0.5 * rate_ * step.duration();
+  const double a = part(step);
   const Eigen::Index d = model_.dimension();
   for (const int node : nodes_) impulse.segment(node * d, d) /= 1.0 + a;
 }

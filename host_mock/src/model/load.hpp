@@ -11,8 +11,8 @@
 
 namespace ilaw::host {
 
-// The step from time t_n to t_{n+1} = t_n + dt. Nodes move with its last velocity until the end of the next one. The
-// half step that a run starts with, from V_0 to V_{1/2}, is {-dt/2, 0, dt}.
+// The step from time t_n to t_{n+1} = t_n + dt. Nodes move with its last velocity until the end of the next
+// one. The half step that a run starts with, from V_0 to V_{1/2}, is {-dt/2, 0, dt}.
 struct StepTimes {
   double before, after;
   double until = after + (after - before);
@@ -35,9 +35,11 @@ class Load {
   // Changes the velocity that a step would leave with, without interfaces, and adds the impulse that
   // this takes. before: what the step started with.
   virtual void correct(StepTimes /*step*/, Motions /*before*/, Dofs& /*v*/, Dofs& /*impulse*/) const {}
-  // What a load that corrects velocities leaves of an impulse that interfaces add after it: a damper's own velocity
-  // changes with it, and the holder of a driven node takes it all.
+  // What a load that corrects velocities leaves of an impulse that interfaces add after it: a damper's own
+  // velocity changes with it, and the holder of a driven node takes it all.
   virtual void transmit(StepTimes /*step*/, Dofs& /*impulse*/) const {}
+  // Whether that is the same in all steps.
+  virtual bool transmits_steadily() const { return true; }
   virtual bool corrects() const { return false; }
   // Whether its work is that of damping.
   virtual bool damps() const { return false; }
@@ -57,17 +59,19 @@ using Loads = std::vector<std::unique_ptr<Load>>;
 
 class Gravity : public Load {
  public:
-  Gravity(const Model& model, std::vector<int> nodes, Vector acceleration);
+  // history: a factor.
+  Gravity(const Model& model, std::vector<int> nodes, Vector acceleration, Table history);
   void add_force(double time, const Dofs& u, Dofs& force) const override;
-  bool is_steady() const override { return true; }
+  bool is_steady() const override { return history_.is_constant(); }
 
  private:
   const Model& model_;
   std::vector<int> nodes_;
   Vector acceleration_;
+  Table history_;
 };
 
-// A force along a direction, of a size that is piecewise linear in time.
+// A force along a direction, of a size that follows a table.
 class Force : public Load {
  public:
   // The size times its share acts on each node.
@@ -96,17 +100,23 @@ class Shock : public Load {
 // Viscous damping by mass: the force -rate m (v_before + v)/2, with v the velocity at the end of the step.
 class Damping : public Load {
  public:
-  Damping(const Model& model, std::vector<int> nodes, double rate);
+  // history: a factor of the rate.
+  Damping(const Model& model, std::vector<int> nodes, double rate, Table history);
   void correct(StepTimes step, Motions before, Dofs& v, Dofs& impulse) const override;
   void transmit(StepTimes step, Dofs& impulse) const override;
   bool corrects() const override { return true; }
   bool damps() const override { return true; }
   bool acts_on_driven() const override { return false; }
+  bool transmits_steadily() const override { return history_.is_constant(); }
 
  private:
+  // rate h/2 of a step.
+  double part(StepTimes step) const { return 0.5 * rate_ * history_.at(step.after)[0] * step.duration(); }
+
   const Model& model_;
   std::vector<int> nodes_;
   double rate_;
+  Table history_;
 };
 
 // Nodes that follow a given motion; axes that are not driven stay free.

@@ -33,7 +33,8 @@ void Forces::add_start(const Integrator& integrator) {
 
 void Forces::add_step(const Integrator& integrator) {
   if (sums_.empty()) return;
-  for (std::size_t k = 0; k < sums_.size(); ++k) add(scene_.output.forces[k], sums_[k], integrator, scene_.dt);
+  for (std::size_t k = 0; k < sums_.size(); ++k)
+    add(scene_.output.forces[k], sums_[k], integrator, scene_.dt);
   ++steps_;
 }
 
@@ -86,12 +87,15 @@ void Forces::write_header(CsvWriter& table) const {
   }
 }
 
-void Forces::write_row(CsvWriter& table) {
+void Forces::write_row(CsvWriter& table, double time) {
   const double duration = static_cast<double>(steps_) * scene_.dt;
   for (Resultant& sum : sums_) {
     for (const double impulse : sum.impulse) table << impulse / duration;
     for (const double moment : sum.moment) table << moment / duration;
-    sum.largest = std::max(sum.largest, sum.impulse.norm() / duration);
+    if (const double force = sum.impulse.norm() / duration; force > sum.largest) {
+      sum.largest = force;
+      sum.largest_at = time;
+    }
     sum.total += sum.impulse;
     sum.impulse.setZero();
     sum.moment.setZero();
@@ -104,7 +108,8 @@ nlohmann::json Forces::summary() const {
   for (std::size_t k = 0; k < sums_.size(); ++k) {
     const Dofs impulse = sums_[k].total + sums_[k].impulse;
     all[scene_.output.forces[k].name] = {{"impulse", std::vector<double>(impulse.begin(), impulse.end())},
-                                         {"largest", sums_[k].largest}};
+                                         {"largest", sums_[k].largest},
+                                         {"largest_at", sums_[k].largest_at}};
   }
   return all;
 }
@@ -115,6 +120,7 @@ void Forces::save(std::ostream& out) const {
     for (const Dofs* part : {&sum.impulse, &sum.moment, &sum.total})
       write_array(out, part->data(), static_cast<std::size_t>(part->size()));
     write_value(out, sum.largest);
+    write_value(out, sum.largest_at);
   }
 }
 
@@ -124,6 +130,7 @@ void Forces::load(std::istream& in) {
     for (Dofs* part : {&sum.impulse, &sum.moment, &sum.total})
       read_array(in, part->data(), static_cast<std::size_t>(part->size()));
     read_value(in, sum.largest);
+    read_value(in, sum.largest_at);
   }
 }
 

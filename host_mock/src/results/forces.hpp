@@ -26,8 +26,8 @@ class Forces {
 
   // <name>.F0 ..., and <name>.M0 ... where a moment is asked for.
   void write_header(CsvWriter& table) const;
-  // Means over the steps since the last row.
-  void write_row(CsvWriter& table);
+  // Means over the steps since the last row, which ends at the time.
+  void write_row(CsvWriter& table, double time);
 
   // Per name the impulse of the whole run, and the largest size of the force at the start or in a row.
   nlohmann::json summary() const;
@@ -38,9 +38,9 @@ class Forces {
 
  private:
   struct Resultant {
-    Dofs impulse, moment;  // since the last row; moment empty where none is asked for
-    Dofs total;            // impulse up to the last row, that of the start included
-    double largest = 0.0;
+    Dofs impulse, moment;                    // since the last row; moment empty where none is asked for
+    Dofs total;                              // impulse up to the last row, that of the start included
+    double largest = 0.0, largest_at = 0.0;  // size of the force, and the time of its row
   };
   void add(const ForceSetup& force, Resultant& sum, const Integrator& integrator, double duration);
   void add_at(int node, const double* impulse, const ForceSetup& force, Resultant& sum,

@@ -25,7 +25,7 @@ void for_each_state(const ilaw_instance_info& info, Visit visit) {
 }  // namespace
 
 bool same_columns(const nlohmann::json& one, const nlohmann::json& other) {
-  for (const char* key : {"watch", "forces", "balance"})
+  for (const char* key : {"watch", "forces", "balance", "mean_velocity"})
     if (one.value(key, nlohmann::json()) != other.value(key, nlohmann::json())) return false;
   return true;
 }
@@ -82,8 +82,10 @@ void History::write_header() {
   table_ << "time";
   for (std::size_t w = 0; w < contacts_.size(); ++w) {
     const std::string node = "n" + std::to_string(scene_.output.watch[w]) + ".";
-    for (const char* quantity : {"u", "v", "r"})
+    for (const char* quantity : {"u", "v", "vm", "r"}) {
+      if (quantity == std::string("vm") && !scene_.output.mean_velocity) continue;
       for (int c = 0; c < d; ++c) table_ << node + quantity + std::to_string(c);
+    }
     for (const Contact& contact : contacts_[w]) {
       table_ << contact.prefix + "gap" << contact.prefix + "status";
       for_each_state(contact.interface->info(),
@@ -105,8 +107,14 @@ void History::write_header() {
 void History::add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse) {
   const int d = scene_.model->dimension();
   const Eigen::Index node = static_cast<Eigen::Index>(scene_.output.watch[watched]) * d;
-  for (const Dofs* quantity : {&integrator.displacement(), &integrator.velocity(), &impulse})
-    for (int c = 0; c < d; ++c) table_ << (*quantity)[node + c];
+  const auto add = [&](const Dofs& quantity) {
+    for (int c = 0; c < d; ++c) table_ << quantity[node + c];
+  };
+  add(integrator.displacement());
+  add(integrator.velocity());
+  for (int c = 0; scene_.output.mean_velocity && c < d; ++c)
+    table_ << 0.5 * (integrator.velocity_before()[node + c] + integrator.velocity()[node + c]);
+  add(impulse);
   for (const Contact& contact : contacts_[watched]) {
     const Interface& interface = *contact.interface;
     const int contact_index = interface.contact_at(contact.node_index);
@@ -127,7 +135,7 @@ void History::add_row(const Integrator& integrator) {
     for (std::size_t w = 0; w < contacts_.size(); ++w)
       add_node(w, integrator, is_alone_[w] && !motions_.empty() ? held : impulse);
   }
-  forces_.write_row(table_);
+  forces_.write_row(table_, integrator.time());
   if (scene_.output.balance) {
     const EnergyReport energy = integrator.energy();
     for (const double value :

@@ -23,12 +23,14 @@ json describe_amounts(const Interface& interface) {
   return amounts;
 }
 
-json describe_interface(const Interface& interface) {
+// first_contact: null where there was none.
+json describe_interface(const Interface& interface, double first_contact) {
   return {{"name", interface.name()},
           {"law", interface.setup().law},
           {"library", interface.library().path()},
           {"library_version", interface.library().plugin().version},
           {"nodes", interface.nodes().size()},
+          {"first_contact", std::isinf(first_contact) ? json() : json(first_contact)},
           {"state_size", interface.info().state_size},
           {"amounts", describe_amounts(interface)},
           {"bytes_per_node", interface.bytes_per_contact()}};
@@ -79,7 +81,8 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
   const Tally& tally = integrator.tally();
   const PhaseSeconds seconds = integrator.seconds();
   json interfaces = json::array();
-  for (const auto& interface : scene.interfaces) interfaces.push_back(describe_interface(*interface));
+  for (std::size_t i = 0; i < scene.interfaces.size(); ++i)
+    interfaces.push_back(describe_interface(*scene.interfaces[i], integrator.first_contact(i)));
   std::vector<std::string> warnings = scene.warnings;
   warnings.insert(warnings.end(), record.warnings.begin(), record.warnings.end());
   const json source = with_packed_points_as(scene.source, {{"count", scene.model->node_count()}});

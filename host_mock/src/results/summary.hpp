@@ -17,6 +17,7 @@ struct RunRecord {
   bool interrupted = false;
   std::string failure;                               // empty: none
   std::vector<std::string> warnings;                 // of the integrator, at the end
+  std::string told;                                  // of them, during the run
   nlohmann::json forces = nlohmann::json::object();  // per name, as Forces sums them up
   double seconds_total = 0.0, seconds_output = 0.0;
 };

@@ -27,7 +27,8 @@ struct Drive {
 std::set<double> knots_of(const Scene& scene) {
   std::set<double> times{0.0, static_cast<double>(scene.steps) * scene.dt};
   for (const json& load : scene.source.value("loads", json::array()))
-    for (const json& row : load.value("history", json::array())) times.insert(row[0].get<double>());
+    for (const json& row : load.value("history", json::array()))
+      if (row.is_array()) times.insert(row[0].get<double>());
   return times;
 }
 
@@ -37,12 +38,13 @@ double sum_of_sizes(const Dofs& values, Eigen::Index d) {
   return sum;
 }
 
-// What moves as it is told to, and what is strained at the start, may act with any force.
+// What moves as it is told to, what follows a smooth table, and what is strained at the start, may act with
+// any force.
 bool is_bounded(const Scene& scene) {
   const std::set<std::string> known{"gravity", "force", "shock", "damping", "motion"};
   for (const json& load : scene.source.value("loads", json::array()))
     if (!known.contains(load["type"].get<std::string>()) || load.contains("velocity") ||
-        load.contains("path"))
+        load.contains("path") || load.value("history", json()).is_object())
       return false;
   const std::set<std::string> still{"type", "point", "normal", "center", "radius", "axis"};
   for (const json& interface : scene.source["interfaces"]) {

@@ -31,8 +31,8 @@ std::map<int, std::set<int>> driven_axes(const Loads& loads) {
   return driven;
 }
 
-// Whether motions drive nodes of an interface. A contact whose nodes are all driven along all axes has no velocity
-// that its law could change.
+// Whether motions drive nodes of an interface. A contact whose nodes are all driven along all axes has no
+// velocity that its law could change.
 bool find_driven(const InterfaceSetup& setup, const Scene& scene, const std::string& pointer) {
   const std::map<int, std::set<int>> driven = driven_axes(scene.loads);
   const auto d = static_cast<std::size_t>(scene.model->dimension());
@@ -43,7 +43,8 @@ bool find_driven(const InterfaceSetup& setup, const Scene& scene, const std::str
              has_pairs = !partners.empty() && !setup.counterpart->shares_partners();
   for (std::size_t k = 0; k < setup.nodes.size(); ++k)
     if (is_held(setup.nodes[k]) && (has_pairs ? is_held(partners[k]) : all_held))
-      throw mistake(pointer, "node " + std::to_string(setup.nodes[k]) + ", which a motion drives along all axes",
+      throw mistake(pointer,
+                    "node " + std::to_string(setup.nodes[k]) + ", which a motion drives along all axes",
                     "a node that is free along one axis, or that meets one that is");
   return std::any_of(setup.nodes.begin(), setup.nodes.end(), is_driven) ||
          std::any_of(partners.begin(), partners.end(), is_driven);

@@ -23,6 +23,24 @@ std::vector<double> shares_of(const NodeSet& set, const std::string& pointer) {
   return shares;
 }
 
+// A factor over time; 1 where none is given.
+Table read_factor(const json& load, const std::string& pointer) {
+  if (!load.contains("history")) return {{0.0}, {Vector::Ones(1)}};
+  return read_table(load["history"], 1, pointer + "/history");
+}
+
+// A negative rate would drive the motion.
+std::unique_ptr<Load> read_damping(const json& load, const Model& model, const NodeSet& set,
+                                   const std::string& pointer) {
+  const std::string key = pointer + "/history";
+  const json history = load.value("history", json::array());
+  if (history.contains("sine")) throw mistake(key, "a sine", "rows: a rate is not negative");
+  for (const json& row : history.is_object() ? history["rows"] : history)
+    if (row.size() == 2 && row[1].get<double>() < 0.0)
+      throw mistake(key, row.dump(), "factors of at least 0");
+  return std::make_unique<Damping>(model, set.nodes, load["rate"].get<double>(), read_factor(load, pointer));
+}
+
 std::unique_ptr<Load> read_prescribed(const json& load, const Model& model, const NodeSet& set,
                                       const std::string& pointer) {
   const int d = model.dimension();
@@ -50,7 +68,8 @@ std::unique_ptr<Load> read_load(const json& load, const Model& model, const std:
   const NodeSet set = select_nodes(load.value("nodes", json("all")), model, pointer + "/nodes");
   if (type == "gravity")
     return std::make_unique<Gravity>(model, set.nodes,
-                                     read_vector(load["acceleration"], d, pointer + "/acceleration"));
+                                     read_vector(load["acceleration"], d, pointer + "/acceleration"),
+                                     read_factor(load, pointer));
   if (type == "force") {
     const std::vector<double> shares = load.value("total", false)
                                            ? shares_of(set, pointer + "/nodes")
@@ -59,7 +78,7 @@ std::unique_ptr<Load> read_load(const json& load, const Model& model, const std:
                                    read_vector(load["direction"], d, pointer + "/direction"),
                                    read_table(load["history"], 1, pointer + "/history"));
   }
-  if (type == "damping") return std::make_unique<Damping>(model, set.nodes, load["rate"].get<double>());
+  if (type == "damping") return read_damping(load, model, set, pointer);
   if (type == "motion") return read_prescribed(load, model, set, pointer);
   const double time = load["time"].get<double>();
   if (time <= 0.0) throw mistake(pointer + "/time", load["time"].dump(), "a time > 0");

@@ -29,10 +29,11 @@ struct ForceSetup {
 };
 
 struct OutputSetup {
-  std::int64_t every = 1;  // steps per row of the history
-  std::vector<int> watch;  // nodes
-  bool balance = false;    // energies and angular momentum in the history
-  bool events = false;     // events.csv
+  std::int64_t every = 1;      // steps per row of the history
+  std::vector<int> watch;      // nodes
+  bool balance = false;        // energies and angular momentum in the history
+  bool events = false;         // events.csv
+  bool mean_velocity = false;  // of the half steps before and after, in the history
   std::vector<ForceSetup> forces;
   std::int64_t fields = 0;  // steps per VTK file; 0: none
 };

@@ -36,7 +36,24 @@ Vector read_direction(const json& value, int dimension, const std::string& point
   throw mistake(pointer, value.dump(), "a direction with a length of 1e-150 to 1e150");
 }
 
-Table read_table(const json& rows, int width, const std::string& pointer) {
+namespace {
+
+// A number where one value is wanted.
+Vector read_values(const json& value, int width, const std::string& pointer) {
+  if (value.is_number() && width == 1) return Vector::Constant(1, value.get<double>());
+  if (!value.is_array() || static_cast<int>(value.size()) != width)
+    throw mistake(pointer, value.dump(), width == 1 ? "a number" : std::to_string(width) + " numbers");
+  return read_vector(value, width, pointer);
+}
+
+Table read_sine(const json& sine, int width, const std::string& pointer) {
+  const Vector mean =
+      sine.contains("mean") ? read_values(sine["mean"], width, pointer + "/mean") : Vector::Zero(width);
+  return Table(Sine{mean, read_values(sine["amplitude"], width, pointer + "/amplitude"),
+                    sine["frequency"].get<double>(), sine.value("phase", 0.0)});
+}
+
+Table read_rows(const json& rows, int width, bool is_smooth, const std::string& pointer) {
   std::vector<double> times;
   std::vector<Vector> values;
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -51,7 +68,16 @@ Table read_table(const json& rows, int width, const std::string& pointer) {
     for (int i = 0; i < width; ++i) value[i] = rows[k][static_cast<std::size_t>(i) + 1].get<double>();
     values.push_back(value);
   }
-  return {times, values};
+  return {times, values, is_smooth};
+}
+
+}  // namespace
+
+Table read_table(const json& table, int width, const std::string& pointer) {
+  if (table.is_array()) return read_rows(table, width, false, pointer);
+  require_one_of(table, "rows", "sine", "'rows' and 'sine'", pointer);
+  if (table.contains("sine")) return read_sine(table["sine"], width, pointer + "/sine");
+  return read_rows(table["rows"], width, table.value("smooth", false), pointer + "/rows");
 }
 
 Motion read_motion(const json& object, int dimension, const std::string& pointer) {

@@ -23,7 +23,8 @@ Vector read_vector_or_zero(const nlohmann::json& object, const char* key, int di
 // Any vector but zero.
 Vector read_direction(const nlohmann::json& value, int dimension, const std::string& pointer);
 
-// Rows of a table: time first, then width values.
+// Rows of a table: time first, then width values. Or an object: {"rows": [...], "smooth": true} or {"sine":
+// {...}}.
 Table read_table(const nlohmann::json& rows, int width, const std::string& pointer);
 
 // "velocity", "path" or neither.

@@ -197,9 +197,10 @@ void warn_of_partners(Scene& scene) {
     const auto twice = std::find_if(partners.begin(), partners.end(),
                                     [&](const int partner) { return !seen.insert(partner).second; });
     if (twice != partners.end())
-      scene.warnings.push_back(pointer + "found node " + std::to_string(*twice) +
-                               " more than once in this list and 'nodes'. Contacts that share a node are solved together: right in a "
-                               "chain of bodies, a mistake where a node was listed twice");
+      scene.warnings.push_back(
+          pointer + "found node " + std::to_string(*twice) +
+          " more than once in this list and 'nodes'. Contacts that share a node are solved together: right in a "
+          "chain of bodies, a mistake where a node was listed twice");
     for (std::size_t k = 0; d > 1 && k < partners.size(); ++k) {
       const Vector x = model.position().segment(d * interface.nodes()[k], d) -
                        model.position().segment(d * partners[k], d);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numeric>
 
 namespace ilaw::host {
 namespace {
@@ -15,6 +16,9 @@ constexpr double much_energy = 0.1;
 // As often the kinetic energy may be the largest energy or work: below 0.995 of the critical step it
 // cannot, for it is at most 1/(1 - cfl^2) times what the scheme conserves.
 constexpr double much_vibration = 100.0;
+// As often the kinetic energy may be what was put in before the run ends: runs at the critical step reach
+// 3e5, and unstable ones this in some tens of steps.
+constexpr double unstable_growth = 1e6;
 // Part of the energy below which contacts that do not agree differ by rounding.
 constexpr double rounding_energy = 1e-13;
 // The same of a step whose contacts do not agree, before the run ends.
@@ -23,7 +27,8 @@ constexpr double wrong_energy = 1e-3;
 // One by one: the bytes between them mean nothing, and equal runs write equal checkpoints.
 template <class Any, class Work>
 void for_each_member(Any& tally, Work work) {
-  for (auto* count : {&tally.active, &tally.skipped, &tally.sweeps, &tally.unconverged}) work(*count);
+  for (auto* count : {&tally.active, &tally.skipped, &tally.sweeps, &tally.unconverged, &tally.left_surface})
+    work(*count);
   work(tally.sweeps_max);
   for (auto* value :
        {&tally.coupling_residual_max, &tally.coupling_energy, &tally.penetration_max, &tally.stable_step})
@@ -53,6 +58,7 @@ void Accounts::add_step(const Model& model, const Interfaces& interfaces, const 
   if (!model.is_linear()) energy_.add_internal(step.internal_impulse, step.v_before, step.v);
   add_energies(interfaces);
   note_rounding(step.speed);
+  note_contacts(interfaces, step.time);
   for (const auto& interface : interfaces) add_counts(*interface);
 }
 
@@ -61,8 +67,8 @@ void Accounts::start(const Model& model, const Dofs& u, const Dofs& u_next, cons
   total_mass_ = model.mass().sum();
 }
 
-// The work of r_0 is the change of kinetic energy that it makes: the account begins before it, and then books it
-// like that of any step.
+// The work of r_0 is the change of kinetic energy that it makes: the account begins before it, and then books
+// it like that of any step.
 void Accounts::add_start(const Interfaces& interfaces, double speed) {
   for (const auto& interface : interfaces) {
     energy_.take_from_initial(interface->sums().work);
@@ -70,6 +76,16 @@ void Accounts::add_start(const Interfaces& interfaces, double speed) {
   }
   add_energies(interfaces);
   note_rounding(speed);
+  note_contacts(interfaces, 0.0);
+}
+
+void Accounts::note_contacts(const Interfaces& interfaces, double time) {
+  for (std::size_t i = 0; i < interfaces.size(); ++i) {
+    const auto& statuses = interfaces[i]->sums().statuses;
+    const auto touching =
+        std::accumulate(statuses.begin(), statuses.end(), std::int64_t{0}) - statuses[ILAW_FREE];
+    if (touching > 0) first_contact_[i] = std::min(first_contact_[i], time);
+  }
 }
 
 void Accounts::add_energies(const Interfaces& interfaces) {
@@ -83,8 +99,8 @@ void Accounts::add_energies(const Interfaces& interfaces) {
   energy_.set_stored(stored);
 }
 
-// Impulses that stop a motion leave the rounding of its energy, also where a body rests: what a step gives it they
-// take.
+// Impulses that stop a motion leave the rounding of its energy, also where a body rests: what a step gives it
+// they take.
 void Accounts::note_rounding(double speed) {
   rounding_energy_ += 0.5 * std::numeric_limits<double>::epsilon() * total_mass_ * speed * speed;
 }
@@ -92,6 +108,7 @@ void Accounts::note_rounding(double speed) {
 void Accounts::add_counts(const Interface& interface) {
   const ContactSums& sums = interface.sums();
   tally_.penetration_max = std::max(tally_.penetration_max, sums.penetration);
+  tally_.left_surface += sums.left;
   tally_.stable_step = std::min(tally_.stable_step, sums.stable_step);
   for (std::size_t k = 0; k < sums.statuses.size(); ++k) tally_.status_counts[k] += sums.statuses[k];
   const auto active = static_cast<std::int64_t>(interface.active().size());
@@ -99,6 +116,24 @@ void Accounts::add_counts(const Interface& interface) {
   tally_.active += active;
   tally_.skipped += skipped;
   tally_.status_counts[ILAW_FREE] += skipped;
+}
+
+// Below the critical step the kinetic energy of a linear model is at most 1/(1 - cfl^2) times what the scheme
+// conserves, and that is at most what was put in. A mode that is unstable grows by a factor in every step.
+bool Accounts::has_diverged(const Model& model, const Dofs& v, double speed) const {
+  const double most = unstable_growth * energy_.put_in();
+  if (!(0.5 * total_mass_ * speed * speed > most)) return false;
+  return kinetic_energy(model, v) > most;
+}
+
+std::string Accounts::step_warning(double dt) const {
+  if (!(dt > tally_.stable_step)) return "";
+  std::array<char, 160> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "the time step is %g, where a law is stable up to %g at its nodes: an explicit spring is too stiff for it",
+      dt, tally_.stable_step);
+  return text.data();
 }
 
 std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const EnergyReport& energy) const {
@@ -114,10 +149,11 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
         static_cast<long long>(tally_.unconverged), static_cast<long long>(steps + 1),
         tally_.coupling_residual_max, CoupledContacts::most_sweeps, CoupledContacts::tolerance,
         tally_.coupling_energy, energy.scale);
-  if (dt > tally_.stable_step)
-    say("the time step is %g, where a law is stable up to %g at its nodes: an explicit spring is too stiff for "
-        "it",
-        dt, tally_.stable_step);
+  if (tally_.left_surface > 0)
+    say("%lld node(s) went over the border of a surface while they touched it: beyond it nothing holds them; a node "
+        "that shall stay needs a surface that reaches farther",
+        static_cast<long long>(tally_.left_surface));
+  if (dt > tally_.stable_step) warnings.push_back(step_warning(dt));
   if (energy.kinetic > much_vibration * energy_.largest())
     say("the kinetic energy is %.2g, where all that was put in is at most %.2g: the fastest vibration of the "
         "mesh grows from step to step, as it does at the critical step; \"cfl\": 0.999 bounds it",
@@ -132,12 +168,14 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
 void Accounts::save(std::ostream& out) const {
   energy_.save(out);
   write_value(out, rounding_energy_);
+  write_array(out, first_contact_.data(), first_contact_.size());
   for_each_member(tally_, [&out](const auto& member) { write_value(out, member); });
 }
 
 void Accounts::load(std::istream& in) {
   energy_.load(in);
   read_value(in, rounding_energy_);
+  read_array(in, first_contact_.data(), first_contact_.size());
   for_each_member(tally_, [&in](auto& member) { read_value(in, member); });
 }
 

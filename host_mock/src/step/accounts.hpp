@@ -24,6 +24,7 @@ struct Tally {
   double coupling_residual_max = 0.0;  // at the end of any step
   double coupling_energy = 0.0;        // that laws may account for wrongly, over all steps
   double penetration_max = 0.0;
+  std::int64_t left_surface = 0;  // nodes that went over the border of a surface while they touched it
   double stable_step = std::numeric_limits<double>::infinity();  // the least that a law asked for
   std::array<std::int64_t, ILAW_STATUS_COUNT> status_counts{};
 };
@@ -34,11 +35,14 @@ struct StepRecord {
   const Dofs* damping_impulse;  // null: none
   const Dofs &internal_impulse, &v_before, &v;
   double speed;  // the largest of v_free and v
+  double time;
 };
 
 class Accounts {
  public:
   // The state (U_0, V_{1/2}) and U_1 that follows from it.
+  explicit Accounts(std::size_t interface_count = 0)
+      : first_contact_(interface_count, std::numeric_limits<double>::infinity()) {}
   void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v);
   // What interfaces did on the way to that state: its energy has their work already. speed: the largest then.
   void add_start(const Interfaces& interfaces, double speed);
@@ -47,8 +51,14 @@ class Accounts {
   bool is_wrong(const Model& model, const CoupledContacts::Outcome& outcome, const Dofs& v_before) const;
   void add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step);
 
+  // Whether the kinetic energy is far above all that was put in; speed: the largest.
+  bool has_diverged(const Model& model, const Dofs& v, double speed) const;
+
   const EnergyBalance& energy() const { return energy_; }
   const Tally& tally() const { return tally_; }
+  // Time of the first step in which a contact of an interface was not free; infinite: none yet.
+  double first_contact(std::size_t interface) const { return first_contact_[interface]; }
+  std::string step_warning(double dt) const;
   // What a reader of the results must know.
   std::vector<std::string> warnings(std::int64_t steps, double dt, const EnergyReport& energy) const;
 
@@ -59,11 +69,13 @@ class Accounts {
   void add_energies(const Interfaces& interfaces);
   void add_counts(const Interface& interface);
   void note_rounding(double speed);
+  void note_contacts(const Interfaces& interfaces, double time);
 
   EnergyBalance energy_;
   double total_mass_ = 0.0;
   double rounding_energy_ = 0.0;  // that reactions may leave, over all steps
   Tally tally_;
+  std::vector<double> first_contact_;  // by interface
 };
 
 }  // namespace ilaw::host

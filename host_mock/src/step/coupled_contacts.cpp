@@ -148,7 +148,9 @@ void CoupledContacts::solve_by_tangents(const Sweeping& on, Outcome& outcome) {
   Outcome found = outcome;
   try {
     for (int k = 0; k < most_tangents; ++k) {
-      if (!try_from(on, newton_impulses(on.group, on.group.front().interface->inverse_mass(), on.step, on.v), found)) break;
+      if (!try_from(on, newton_impulses(on.group, on.group.front().interface->inverse_mass(), on.step, on.v),
+                    found))
+        break;
       sweep(on, found);
       if (found.residual > tolerance) continue;
       outcome = found;

@@ -13,8 +13,8 @@
 
 namespace ilaw::host {
 
-// Whether contacts must be solved together: an impulse of one may change the velocity of another, or nodes are
-// driven along some axes.
+// Whether contacts must be solved together: an impulse of one may change the velocity of another, or nodes
+// are driven along some axes.
 bool share_nodes(const Model& model, const Interfaces& interfaces);
 
 class CoupledContacts {

@@ -48,6 +48,7 @@ void EnergyBalance::start(const Model& model, const Dofs& u, const Dofs& u_next,
   sums_.initial += model.is_linear() ? mixed_potential(model, u, u_next) : model.potential(u);
   if (!model.is_linear()) sums_.internal_work = -static_cast<Sum>(model.potential(u));
   note_size(sums_.initial);
+  sums_.put_in = std::abs(static_cast<double>(sums_.initial)) + std::abs(model.potential(u));
 }
 
 void EnergyBalance::note_size(Sum energy) {
@@ -56,6 +57,7 @@ void EnergyBalance::note_size(Sum energy) {
 
 void EnergyBalance::add_external(long double work) {
   sums_.external_work += work;
+  sums_.put_in += std::max(static_cast<double>(work), 0.0);
   note_size(sums_.external_work);
 }
 
@@ -71,12 +73,18 @@ void EnergyBalance::add_internal(const Dofs& impulse, const Dofs& v_before, cons
 void EnergyBalance::add_interface(double work, double relative_work) {
   sums_.interface_work += work;
   sums_.relative_work += relative_work;
+  sums_.put_in += std::max(work - relative_work, 0.0);
   note_size(sums_.interface_work);
 }
 
 void EnergyBalance::add_dissipation(const std::array<double, ILAW_ENERGY_COUNT>& energy, double least) {
   for (std::size_t part = 0; part < ILAW_ENERGY_STORED; ++part) by_law_[part] += energy[part];
   sums_.least_dissipation = std::min(sums_.least_dissipation, least);
+}
+
+void EnergyBalance::set_stored(double energy) {
+  by_law_[ILAW_ENERGY_STORED] = energy;
+  sums_.most_stored = std::max(sums_.most_stored, energy);
 }
 
 EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs& u_next,
@@ -148,15 +156,13 @@ Vector angular_momentum(const Model& model, const Dofs& u, const Dofs& v) {
 
 void EnergyBalance::save(std::ostream& out) const {
   for (Sum Sums::*sum : all_sums) write_value(out, sums_.*sum);
-  write_value(out, sums_.least_dissipation);
-  write_value(out, sums_.largest);
+  for (double Sums::*extreme : all_extremes) write_value(out, sums_.*extreme);
   for (const Sum& sum : by_law_) write_value(out, sum);
 }
 
 void EnergyBalance::load(std::istream& in) {
   for (Sum Sums::*sum : all_sums) read_value(in, sums_.*sum);
-  read_value(in, sums_.least_dissipation);
-  read_value(in, sums_.largest);
+  for (double Sums::*extreme : all_extremes) read_value(in, sums_.*extreme);
   for (Sum& sum : by_law_) read_value(in, sum);
 }
 

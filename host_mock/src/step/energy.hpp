@@ -44,7 +44,10 @@ class EnergyBalance {
   // What the laws of an interface dissipated in a step, and the least of a node.
   void add_dissipation(const std::array<double, ILAW_ENERGY_COUNT>& energy, double least);
   double largest() const { return sums_.largest; }  // of energies and works so far
-  void set_stored(double energy) { by_law_[ILAW_ENERGY_STORED] = energy; }
+  // An upper bound of the energy that was put in: what there was at the start, what loads and moving
+  // obstacles added, and the most that interfaces have stored.
+  double put_in() const { return sums_.put_in + sums_.most_stored; }
+  void set_stored(double energy);
 
   EnergyReport report(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) const;
 
@@ -62,9 +65,12 @@ class EnergyBalance {
         relative_work = 0;
     double least_dissipation = 0.0;
     double largest = 0.0;  // of the energies and works so far
+    double put_in = 0.0, most_stored = 0.0;
   };
   static constexpr std::array all_sums{&Sums::initial,       &Sums::external_work,  &Sums::damping_work,
                                        &Sums::internal_work, &Sums::interface_work, &Sums::relative_work};
+  static constexpr std::array all_extremes{&Sums::least_dissipation, &Sums::largest, &Sums::put_in,
+                                           &Sums::most_stored};
   void note_size(Sum energy);
 
   Sums sums_;

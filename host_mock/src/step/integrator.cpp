@@ -68,6 +68,7 @@ void Integrator::step() {
   }
   check_motion(speed_free, times.after);  // before the laws see it, too: they must not be blamed
   laps.add_to(force_ticks_);
+  if (!transmits_steadily_ && !interfaces_.empty()) find_contact_mass(times);
   // r = law(v_free, H, gap, state), v = v_free + H r
   add_reactions({u_, v_before_, times.after, dt_, speed_before_, speed_free, steps_ + 1});
   if (contact_inverse_mass_.size() > 0) add_load_reactions(times);
@@ -79,7 +80,8 @@ void Integrator::step() {
   has_begun_step_ = false;
   accounts_.add_step(model_, interfaces_,
                      {external.work, damping_impulse_.size() == 0 ? nullptr : &damping_impulse_,
-                      internal_impulse_, v_before_, v_, std::max(speed_free, speed_before_)});
+                      internal_impulse_, v_before_, v_, std::max(speed_free, speed_before_), times.after});
+  check_energy();
 }
 
 // What is told of a run that failed is of its last whole step.
@@ -181,7 +183,8 @@ void Integrator::correct(StepTimes step) {
   }
 }
 
-// What a load leaves of an impulse. Damping by mass leaves all of it along driven axes, where a motion takes it.
+// What a load leaves of an impulse. Damping by mass leaves all of it along driven axes, where a motion takes
+// it.
 Dofs Integrator::transmitted(std::size_t load, StepTimes step, const Dofs& impulse) const {
   Dofs left = impulse;
   loads_[load]->transmit(step, left);
@@ -201,8 +204,8 @@ void Integrator::find_contact_mass(StepTimes step) {
   for (const auto& interface : interfaces_) interface->set_inverse_mass(contact_inverse_mass_.data());
 }
 
-// Loads that correct velocities take their part of the impulses of interfaces: the damper's force follows from
-// the final velocity, and the holder of a driven node bears what acts on it.
+// Loads that correct velocities take their part of the impulses of interfaces: the damper's force follows
+// from the final velocity, and the holder of a driven node bears what acts on it.
 void Integrator::add_load_reactions(StepTimes step) {
   Dofs impulse = interface_impulse();
   for (const std::size_t k : correcting_) {
@@ -237,6 +240,16 @@ void Integrator::add_coupled_reactions(const StepView& step) {
   for (const auto& interface : interfaces_) interface->check_driven(step);
   accounts_.add_solution(outcome);
   for (const auto& interface : interfaces_) interface->accept(step, v_);
+}
+
+// An unstable step closes its energy balance, too: what the bodies gain in motion they lose in stored energy.
+void Integrator::check_energy() const {
+  if (!accounts_.has_diverged(model_, v_, speed_before_)) return;
+  std::array<char, 160> text{};
+  std::snprintf(
+      text.data(), text.size(), "the kinetic energy is %.3g, where %.3g was put in, step %lld, time %g",
+      kinetic_energy(model_, v_), accounts_.energy().put_in(), static_cast<long long>(steps_), time());
+  throw Diverged(text.data() + advice_on_divergence(model_, u_, dt_));
 }
 
 // A speed whose square is infinite has no kinetic energy, either.

@@ -34,8 +34,9 @@ class Integrator {
  public:
   Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt);
 
-  // The half step that a run starts with, from V_0 to V_{1/2}, as interfaces let it: what rests or is bonded carries
-  // its load from time 0 on. The first step does it where nobody has; later calls do nothing. Throws as step().
+  // The half step that a run starts with, from V_0 to V_{1/2}, as interfaces let it: what rests or is bonded
+  // carries its load from time 0 on. The first step does it where nobody has; later calls do nothing. Throws
+  // as step().
   void start();
   // One step. Throws ilaw::error when a law refuses a node, Diverged when the motion is not finite.
   void step();
@@ -48,7 +49,8 @@ class Integrator {
   const Dofs& velocity() const { return v_; }      // at the half step after time()
   // At the half step before time(), once a step has been made.
   const Dofs& velocity_before() const { return v_before_; }
-  // Impulse of the interfaces in the last step, per degree of freedom; before any, in the half step of the start.
+  // Impulse of the interfaces in the last step, per degree of freedom; before any, in the half step of the
+  // start.
   Dofs interface_impulse() const;
   // The same of one load, added to those per degree of freedom. Of a load that
   // corrects velocities (a motion, damping) it is kept from when it is first asked for.
@@ -63,6 +65,10 @@ class Integrator {
     return {tick * static_cast<double>(force_ticks_), tick * static_cast<double>(interface_ticks_)};
   }
   const Tally& tally() const { return accounts_.tally(); }
+  // By interface, when a contact of it first was not free; infinite: not yet.
+  double first_contact(std::size_t interface) const { return accounts_.first_contact(interface); }
+  // Where a law asked for a smaller step; empty where none did.
+  std::string step_warning() const { return accounts_.step_warning(dt_); }
   // What a reader of the results must know.
   std::vector<std::string> warnings() const { return accounts_.warnings(steps_, dt_, energy()); }
 
@@ -88,6 +94,7 @@ class Integrator {
   void add_reactions(const StepView& step);
   void add_coupled_reactions(const StepView& step);
   void check_motion(double speed, double time) const;
+  void check_energy() const;
 
   const Model& model_;
   const Loads& loads_;
@@ -95,6 +102,7 @@ class Integrator {
   std::optional<CoupledContacts> coupled_;  // where contacts share nodes
   double dt_;
   bool loads_are_steady_;
+  bool transmits_steadily_;               // H is the same in all steps
   bool forces_are_steady_;                // loads are, and there are no others
   std::vector<std::size_t> correcting_;   // loads in the order in which they correct velocities
   std::vector<Dofs> kept_load_impulses_;  // by load; empty where nobody asks
@@ -103,9 +111,10 @@ class Integrator {
   double speed_before_ = 0.0;  // the largest of v_
   Dofs u_, v_, v_before_, external_impulse_, damping_impulse_, internal_impulse_;
   Dofs inverse_mass_;
-  // Velocity that a unit impulse of an interface makes, per degree of freedom; empty where that is inverse_mass_.
+  // Velocity that a unit impulse of an interface makes, per degree of freedom; empty where that is
+  // inverse_mass_.
   Dofs contact_inverse_mass_;
-  Dofs gain_;          // of the velocities in a step, where they do not; empty without loads
+  Dofs gain_;  // of the velocities in a step, where they do not; empty without loads
   Accounts accounts_;
   TickLength tick_length_;
   std::int64_t force_ticks_ = 0, interface_ticks_ = 0;

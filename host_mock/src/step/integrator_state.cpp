@@ -34,6 +34,8 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       dt_(dt),
       loads_are_steady_(
           std::all_of(loads.begin(), loads.end(), [](const auto& load) { return load->is_steady(); })),
+      transmits_steadily_(std::all_of(loads.begin(), loads.end(),
+                                      [](const auto& load) { return load->transmits_steadily(); })),
       forces_are_steady_(loads_are_steady_ && !model.has_internal_forces()),
       correcting_(order_of_corrections(loads)),
       kept_load_impulses_(loads.size()),
@@ -42,7 +44,8 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       v_before_(v_),
       external_impulse_(Dofs::Zero(loads.empty() ? 0 : u_.size())),
       internal_impulse_(Dofs::Zero(model.has_internal_forces() ? u_.size() : 0)),
-      inverse_mass_(model.mass().cwiseInverse()) {
+      inverse_mass_(model.mass().cwiseInverse()),
+      accounts_(interfaces.size()) {
   if (share_nodes(model_, interfaces_)) coupled_.emplace(model_, interfaces_);
   if (loads_are_steady_ && !loads_.empty()) external_impulse_ = dt_ * force_at_start();
   if (forces_are_steady_ && !loads_.empty()) gain_ = external_impulse_.cwiseProduct(inverse_mass_);
@@ -83,8 +86,8 @@ void Integrator::hold_driven_before() {
       }
 }
 
-// m (V_{1/2} - V_0) = h/2 f_0 + r_0: laws are asked at time 0, with half a step of the velocity. Bodies then move a
-// whole step, so that a predicted gap takes a whole step of the position.
+// m (V_{1/2} - V_0) = h/2 f_0 + r_0: laws are asked at time 0, with half a step of the velocity. Bodies then
+// move a whole step, so that a predicted gap takes a whole step of the position.
 void Integrator::start() {
   if (has_started_) return;
   has_started_ = true;
@@ -145,6 +148,7 @@ void Integrator::load(std::istream& in) {
   read_value(in, has_started_);
   for (Dofs* dofs : {&u_, &v_}) read_array(in, dofs->data(), static_cast<std::size_t>(dofs->size()));
   accounts_.load(in);
+  if (has_started_ && !interfaces_.empty()) find_contact_mass({0.0, dt_});
   speed_before_ = largest_speed(v_, model_.dimension());
   for (const auto& interface : interfaces_) interface->load(in, u_);
 }

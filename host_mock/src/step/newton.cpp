@@ -13,7 +13,8 @@ namespace {
 
 // Velocity that a scaled impulse at one contact makes at another, over all pairs: W, scaled to a diagonal
 // of 1, along an axis.
-Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const double* inverse_mass, Eigen::Index d, Eigen::Index axis) {
+Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const double* inverse_mass, Eigen::Index d,
+                                Eigen::Index axis) {
   std::map<int, std::vector<std::pair<Eigen::Index, double>>> at_node;
   for_each_contact(group, [&](const Interface& interface, int contact, Eigen::Index k) {
     const double root = std::sqrt(interface.delassus(contact));
@@ -25,8 +26,7 @@ Eigen::MatrixXd scaled_coupling(const ContactGroup& group, const double* inverse
   Eigen::MatrixXd coupling = Eigen::MatrixXd::Zero(count, count);
   for (const auto& [node, shares] : at_node)
     for (const auto& [j, weight] : shares)
-      for (const auto& [k, other] : shares)
-        coupling(j, k) += weight * other * inverse_mass[node * d + axis];
+      for (const auto& [k, other] : shares) coupling(j, k) += weight * other * inverse_mass[node * d + axis];
   return coupling;
 }
 
@@ -65,7 +65,8 @@ Eigen::MatrixXd tangents_of(const ContactGroup& group, const StepView& step,
 
 // A law f answers to c + (W - 1) r, all scaled, where c is v without any impulse: all agree where that is r,
 // and (1 - f' (W - 1)) dr = f - r leads there.
-Dofs newton_impulses(const ContactGroup& group, const double* inverse_mass, const StepView& step, const Dofs& v) {
+Dofs newton_impulses(const ContactGroup& group, const double* inverse_mass, const StepView& step,
+                     const Dofs& v) {
   const Dofs impulses = scaled_impulses(group);
   for (const auto& [interface, contacts] : group) interface->gather(contacts, v, step);
   const std::vector<Vector> velocities = asked_velocities(group);

@@ -10,6 +10,7 @@ namespace ilaw::host {
 
 // Scaled impulses to which the tangents of all laws lead, from those that v has. What contacts have
 // then are answers to other velocities.
-Dofs newton_impulses(const ContactGroup& group, const double* inverse_mass, const StepView& step, const Dofs& v);
+Dofs newton_impulses(const ContactGroup& group, const double* inverse_mass, const StepView& step,
+                     const Dofs& v);
 
 }  // namespace ilaw::host

@@ -215,10 +215,10 @@ constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
           .minimum = p.choice_count > 0 ? 0.0 : p.minimum,
           .maximum = p.choice_count > 0 ? p.choice_count - 1.0 : p.maximum,
           .default_value = p.default_value,
-          .flags = (p.required ? ILAW_PARAMETER_IS_REQUIRED : 0U) |
-                   (p.minimum_excluded ? ILAW_PARAMETER_EXCLUDES_MINIMUM : 0U) |
-                   (p.infinity_allowed ? ILAW_PARAMETER_ALLOWS_INFINITY : 0U) |
-                   (varies ? ILAW_PARAMETER_ALLOWS_PER_NODE : 0U),
+          .flags = (p.required ? std::uint32_t{ILAW_PARAMETER_IS_REQUIRED} : 0U) |
+                   (p.minimum_excluded ? std::uint32_t{ILAW_PARAMETER_EXCLUDES_MINIMUM} : 0U) |
+                   (p.infinity_allowed ? std::uint32_t{ILAW_PARAMETER_ALLOWS_INFINITY} : 0U) |
+                   (varies ? std::uint32_t{ILAW_PARAMETER_ALLOWS_PER_NODE} : 0U),
           .choice_count = p.choice_count,
           .choices = p.choices,
           .axes = varies ? time_axis : nullptr,
