@@ -31,9 +31,9 @@
  *  - Pointers to arrays of structs are arrays of pointers, since a struct may grow.
  *  - New functions are extensions, asked for by name: ilaw/ext/, drafts in ilaw/ext/draft/.
  *
- * Pure C99, clean as C++17, needs nothing but <stdint.h> and <stddef.h>. Formulation: Moreau (1988), Unilateral
- * contact and dry friction in finite freedom dynamics; Fekak, Brun, Gravouil, Depale (2017), A new heterogeneous
- * asynchronous explicit-implicit time integrator for nonsmooth dynamics (CD-Lagrange).
+ * Pure C99, clean as C++17, needs nothing but <stdint.h> and <stddef.h>.
+ * Formulation: Moreau (1988), Unilateral contact and dry friction in finite freedom dynamics; Fekak, Brun,
+ * Gravouil, Depale (2017), heterogeneous asynchronous time integrator for nonsmooth dynamics (CD-Lagrange).
  *
  * SPDX-License-Identifier: BSD-3-Clause
  */
