@@ -141,6 +141,7 @@ TEST_P(LawsThatContradict, EndTheRunWithTheReason) {
   std::string reason;
   std::int64_t sweeps = 0;
   try {
+    integrator.start();
     while (integrator.steps() < scene.steps) {
       sweeps = integrator.tally().sweeps;
       integrator.step();
@@ -188,8 +189,7 @@ TEST(MotionThatDiverged, IsToldWhereNoNormalCanBeFound) {
       "time": {"dt": 0.06, "end": 60},
       "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "c.z_max"}}]})");
   const StressVerdict mesh = stress_scene(scene);
-  EXPECT_NE(mesh.reason.find("the motion diverged: displacement "), std::string::npos) << mesh.reason;
-  EXPECT_NE(mesh.reason.find(" at node "), std::string::npos) << mesh.reason;
+  EXPECT_NE(mesh.reason.find("the motion diverged: the kinetic energy is "), std::string::npos) << mesh.reason;
   EXPECT_NE(mesh.reason.find("the critical step is "), std::string::npos) << mesh.reason;
 
   scene = json::parse(R"({"model": {"type": "points", "dimension": 2, "points": [

@@ -26,7 +26,7 @@ bool stops(const nlohmann::json& interface, int dimension) {
                             {"interfaces", {alone}}},
                            "alone.json");
   Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
-  integrator.step();
+  integrator.start();
   return integrator.velocity().tail(1)[0] >= -rounding;
 }
 

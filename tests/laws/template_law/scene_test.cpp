@@ -7,6 +7,7 @@ namespace {
 // Backward Euler, v' = (v - g h)/(1 + c h): after n steps g/c + v is (1 + c h)^-n of what it was.
 TEST(LawScenes, template_law_TendsToTheTerminalSpeed) {
   ShownScene shown("template_law.json");
+  shown.integrator.start();
   const Dofs first = shown.integrator.velocity();
   shown.run([] {});
   const auto n = static_cast<double>(shown.integrator.steps());
