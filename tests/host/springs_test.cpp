@@ -152,7 +152,11 @@ double growth_at(json source, double h) {
   source["time"] = {{"dt", h}, {"end", 400.0 * h}};
   Scene scene = scene_of(source.dump());
   Integrator integrator = integrator_of(scene);
-  while (integrator.steps() < scene.steps) integrator.step();
+  try {
+    while (integrator.steps() < scene.steps) integrator.step();
+  } catch (const Diverged&) {
+    return INFINITY;
+  }
   const Dofs& u = integrator.displacement();
   return std::abs(u[1] - u[0]);
 }
