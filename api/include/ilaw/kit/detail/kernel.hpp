@@ -254,7 +254,9 @@ energy_split split_energy(const Node& n, Vector v_previous, Vector v) {
   const double along_tangents = -0.5 * tangential_product(n.impulse, mean) - n.tangential_gain;
   const double normal = positive_part(along_normal + smaller(along_tangents, 0.0));
   const double tangential = positive_part(along_tangents + smaller(along_normal, 0.0));
-  const bool broken = n.status == status::broken;
+  // Of a law that books its bond itself, the rest of a breaking step is friction and impact.
+  const bool broken =
+      (n.status == status::broken) & (n.normal_gain == 0.0) & (n.tangential_gain == 0.0) & (n.rupture == 0.0);
   return {broken ? 0.0 : tangential, broken ? 0.0 : normal, (broken ? normal + tangential : 0.0) + n.rupture,
           defect(n.stored) == 0.0 ? n.stored : infinity};  // its terms overflow
 }
