@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fix_ilaw.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <atom.h>
 #include <comm.h>
 #include <error.h>
