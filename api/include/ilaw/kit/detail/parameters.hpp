@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/declare.hpp>
+#include <ilaw/kit/law.hpp>
+#include <ilaw/kit/math.hpp>
+#include <ilaw/sized.hpp>
 
 #include <cstdarg>
 #include <cstdio>
@@ -32,35 +34,33 @@ class message {
   std::size_t size_, used_ = 0;
 };
 
-// A parameter given as a table in time.
+// A parameter given as a table in time: piecewise linear, constant beyond its ends.
 struct time_table {
-  const ilaw_parameter* parameter;
-  double* pairs;  // owned by the instance
-  std::uint64_t count;
+  double* times = nullptr;  // owned by the instance; behind them the values
+  std::uint64_t count = 0;
 
-  // The first of its times after one; infinity where there is none.
-  double next_time(double time) const {
+  const double* values() const { return times + count; }
+  // Position of the first time after one.
+  std::uint64_t after(double time) const {
     std::uint64_t low = 0, high = count;
     while (low < high) {
       const std::uint64_t middle = (low + high) / 2;
-      if (pairs[2 * middle] > time)
+      if (times[middle] > time)
         high = middle;
       else
         low = middle + 1;
     }
-    return low < count ? pairs[2 * low] : infinity;
+    return low;
   }
-
-  // Piecewise linear, constant outside its ends.
+  double next_time(double time) const {
+    const std::uint64_t k = after(time);
+    return k < count ? times[k] : infinity;
+  }
   double at(double time) const {
-    if (time <= pairs[0]) return pairs[1];
-    std::uint64_t low = 0, high = count - 1;
-    if (time >= pairs[2 * high]) return pairs[2 * high + 1];
-    while (high - low > 1) {
-      const std::uint64_t middle = (low + high) / 2;
-      (time < pairs[2 * middle] ? high : low) = middle;
-    }
-    const double t0 = pairs[2 * low], t1 = pairs[2 * high], y0 = pairs[2 * low + 1], y1 = pairs[2 * high + 1];
+    const std::uint64_t k = after(time);
+    if (k == 0) return values()[0];
+    if (k == count) return values()[count - 1];
+    const double t0 = times[k - 1], t1 = times[k], y0 = values()[k - 1], y1 = values()[k];
     const double fraction = (time - t0) / (t1 - t0);
     // At its ends a segment has their values, also beside an infinite one.
     if (y0 == y1 || fraction == 0.0) return y0;
@@ -68,24 +68,29 @@ struct time_table {
   }
 };
 
-// What a parameter may be, without a branch: the loops over nodes ask it, too.
+// What a parameter may be.
 struct parameter_range {
   double minimum, excluded, maximum, beyond;
 
-  explicit parameter_range(const ilaw_parameter& p)
-      : minimum(p.minimum),
-        excluded(p.minimum_excluded ? p.minimum : std::numeric_limits<double>::quiet_NaN()),
-        maximum(smaller(p.maximum, std::numeric_limits<double>::max())),
-        beyond(p.infinity_allowed ? infinity : std::numeric_limits<double>::quiet_NaN()) {}
-  bool has(double value) const {
+  constexpr parameter_range(double least, bool excludes, double most, bool allows_infinity)
+      : minimum(least),
+        excluded(excludes ? least : not_a_number),
+        maximum(smaller(most, std::numeric_limits<double>::max())),
+        beyond(allows_infinity ? infinity : not_a_number) {}
+  template <class V>
+  ILAW_KIT_INLINE auto has(V value) const {
     return (value >= minimum) & (value != excluded) & ((value <= maximum) | (value == beyond));
   }
 };
-inline bool in_range(const ilaw_parameter& p, double value) { return parameter_range(p).has(value); }
+inline bool in_range(const ilaw_parameter& p, double value) {
+  return parameter_range(p.minimum, p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM, p.maximum,
+                         p.flags & ILAW_PARAMETER_ALLOWS_INFINITY)
+      .has(value);
+}
 
 inline void add_range(message& text, const ilaw_parameter& p) {
-  text.add("%s%g, ", p.minimum_excluded ? "(" : "[", p.minimum);
-  if (p.infinity_allowed)
+  text.add("%s%g, ", p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM ? "(" : "[", p.minimum);
+  if (p.flags & ILAW_PARAMETER_ALLOWS_INFINITY)
     text.add("inf]");
   else if (p.maximum == std::numeric_limits<double>::max())
     text.add("inf)");
@@ -114,7 +119,7 @@ inline void add_value(message& text, const ilaw_parameter& p, double value) {
 }
 
 // Checks one number against the range of its parameter.
-inline std::int32_t check_number(const char* law, const ilaw_parameter& p, double value, message& text) {
+inline ilaw_result check_number(const char* law, const ilaw_parameter& p, double value, message& text) {
   const bool whole = p.kind != ILAW_PARAMETER_COUNT || value == __builtin_floor(value);
   if (in_range(p, value) && whole) return ILAW_OK;
   text.add("law '%s': parameter '%s' = ", law, p.name);
@@ -124,7 +129,7 @@ inline std::int32_t check_number(const char* law, const ilaw_parameter& p, doubl
   return ILAW_INVALID_PARAMETER;
 }
 
-inline std::int32_t read_choice(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
+inline ilaw_result read_choice(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
                                 double& value, message& text) {
   if (a.kind == ILAW_VALUE_TEXT && a.text)
     for (std::uint32_t i = 0; i < p.choice_count; ++i)
@@ -144,14 +149,14 @@ inline std::int32_t read_choice(const char* law, const ilaw_parameter& p, const 
   return ILAW_INVALID_PARAMETER;
 }
 
-inline std::int32_t read_number(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
+inline ilaw_result read_number(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
                                 double& value, message& text) {
   if (a.kind == ILAW_VALUE_NUMBER) {
     value = a.number;
     return check_number(law, p, value, text);
   }
   const char* given = a.kind == ILAW_VALUE_TEXT       ? "a text"
-                      : a.kind == ILAW_VALUE_TABLE    ? "a table in time"
+                      : a.kind == ILAW_VALUE_TABLE    ? "a table"
                       : a.kind == ILAW_VALUE_PER_NODE ? "a value per node"
                                                       : "a value of unknown kind";
   text.add("law '%s': parameter '%s' was given as %s", law, p.name, given);
@@ -161,25 +166,33 @@ inline std::int32_t read_number(const char* law, const ilaw_parameter& p, const 
   return ILAW_INVALID_PARAMETER;
 }
 
-// Checks a table: times finite and increasing, values in range.
-inline std::int32_t check_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
-                                message& text) {
-  if (!a.values || a.count == 0) {
-    text.add("law '%s': parameter '%s': the table has no (time, value) pair, expected at least 1", law,
-             p.name);
+// Checks a table over time: points finite and increasing, values in range.
+inline ilaw_result check_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a, ilaw_axis& axis,
+                               message& text) {
+  const auto refuse = [&](const char* what) {
+    text.add("law '%s': parameter '%s': the table %s", law, p.name, what);
+    return ILAW_INVALID_PARAMETER;
+  };
+  if (a.axis_count != 1 || !a.axes) return refuse("has no or several axes, expected 1");
+  if (!sized::is_complete(a.axes[0])) return refuse("has an axis that is null or whose struct_size is of no version");
+  axis = sized::read(a.axes[0]);
+  if (!axis.name || std::strcmp(axis.name, "time") != 0) {
+    text.add("law '%s': parameter '%s': axis '%s' of the table is unknown: expected 'time'", law, p.name,
+             axis.name ? axis.name : "");
     return ILAW_INVALID_PARAMETER;
   }
-  for (std::uint64_t k = 0; k < a.count; ++k) {
-    const double time = a.values[2 * k];
-    if (!is_finite(time) || (k > 0 && time <= a.values[2 * k - 2])) {
+  if (!axis.points || !a.values || axis.count == 0) return refuse("has no point, expected at least 1");
+  if (axis.count > ILAW_TABLE_MAX_VALUES) return refuse("has more than 16777216 points");
+  for (std::uint64_t k = 0; k < axis.count; ++k) {
+    const double time = axis.points[k];
+    if (!is_finite(time) || (k > 0 && time <= axis.points[k - 1])) {
       text.add("law '%s': parameter '%s': time ", law, p.name);
       add_number(text, time);
-      text.add(" of pair %llu of the table is not allowed: expected finite, increasing times",
+      text.add(" of point %llu of the table is not allowed: expected finite, increasing times",
                static_cast<unsigned long long>(k));
       return ILAW_INVALID_PARAMETER;
     }
-    if (const std::int32_t code = check_number(law, p, a.values[2 * k + 1], text); code != ILAW_OK)
-      return code;
+    if (const ilaw_result code = check_number(law, p, a.values[k], text); code != ILAW_OK) return code;
   }
   return ILAW_OK;
 }
