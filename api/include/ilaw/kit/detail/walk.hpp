@@ -29,7 +29,7 @@ struct instance_base {
     const int d = static_cast<int>(dimension);
     switch (delassus_form) {
       case ILAW_DELASSUS_SCALAR: return 1;
-      case ILAW_DELASSUS_TRANSVERSE: return 2;
+      case ILAW_DELASSUS_TRANSVERSE: return d == 1 ? 1 : 2;
       case ILAW_DELASSUS_DIAGONAL: return d;
       default: return d * (d + 1) / 2;
     }
@@ -336,7 +336,7 @@ class batch_walk {
     v.impulse_guard = std::is_same_v<Number, float> ? 0x1p898 : 4.0;
     v.dimension = d_;
     v.tangents_from = tangents_from();
-    v.is_scalar = made_.delassus_form == ILAW_DELASSUS_SCALAR;
+    v.is_scalar = made_.delassus_numbers() == 1;
     v.frame_follows = made_.frame_follows;
     v.varying = made_.per_node_count > 0;
     v.in_memory = n.count >= prefetch_from;
