@@ -109,7 +109,7 @@ struct open_problems {
   int count = 0;
 
   // In full packs; the last is filled up with its first problem. Returns how many the scalar fallback took.
-  [[gnu::noinline]] int solve() {
+  [[gnu::noinline, gnu::flatten]] int solve() {
     int by_fallback = 0;
     for (int first = 0; first < count; first += solver_pack::size) {
       const int filled = count - first < solver_pack::size ? count - first : solver_pack::size;
@@ -132,7 +132,7 @@ struct open_problems {
     }
     return by_fallback;
   }
-  void solve_scalar(int k) {
+  [[gnu::noinline]] void solve_scalar(int k) {
     using scalar = law_on_t<Law, double>;
     typename scalar::problem p;
     typename scalar::answer a{};
@@ -271,7 +271,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     finish_pack(law, prepared, b, i, left_at(b, i), good, all, open, first, found, limits);
   }
 
-  [[gnu::noinline]] static void run(const void* opaque, const view_type& whole, tally& found) {
+  [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& whole, tally& found) {
     const Law& given = *static_cast<const Law*>(opaque);
     const view_type b = whole;
     Wide law = broadcast<V>(given);
