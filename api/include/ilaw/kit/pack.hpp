@@ -169,6 +169,7 @@ struct pack_mask {
   ILAW_KIT_INLINE friend pack_mask operator&(bool a, pack_mask b) { return of(a) & b; }
   ILAW_KIT_INLINE friend pack_mask operator|(pack_mask a, bool b) { return a | of(b); }
   ILAW_KIT_INLINE friend pack_mask operator|(bool a, pack_mask b) { return of(a) | b; }
+  explicit operator bool() const = delete;  // write any(mask): is it one for all lanes?
   template <class Other>
   friend void operator&&(pack_mask a, Other b) = delete;  // write & between masks
   template <class Other>
