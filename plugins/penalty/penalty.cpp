@@ -29,7 +29,7 @@ struct penalty {
           "then any stiffness, infinite too, leaves the critical time step as it is and gives back the "
           "energy of an impact, or what a coefficient of restitution leaves of it.",
       .inputs = reads_gap | reads_v_previous,
-      .capabilities = ILAW_CAN_STORE_ENERGY | ILAW_CAN_REST};
+      .capabilities = ILAW_CAN_STORE_ENERGY | can_rest};
 
   static constexpr const char* references[] = {
       "H. Hertz, 1882, Ueber die Beruehrung fester elastischer Koerper",
@@ -114,7 +114,7 @@ struct penalty {
   static constexpr bool rests_by_parameters = true;
   std::uint32_t capabilities() const {
     const bool lets_go_early = integration == implicitly && (damping > 0.0 || restitution < 1.0);
-    return card.capabilities & ~(lets_go_early ? std::uint32_t{ILAW_CAN_REST} : 0U);
+    return card.capabilities & ~(lets_go_early ? can_rest : 0U);
   }
 
   template <class Node>

@@ -121,9 +121,9 @@ template <class V>
 ILAW_KIT_INLINE V logarithm(V x) {
   using bits = bits_of<V>;
   constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
-  constexpr std::uint64_t one = 0x3FF0000000000000, root_half = 0x3FE6A09E00000000;
+  constexpr std::uint64_t bits_of_one = 0x3FF0000000000000, root_half = 0x3FE6A09E00000000;
   const auto tiny = x < std::numeric_limits<double>::min();
-  const auto moved = bits::in(select(tiny, x * 0x1p54, x)) + bits::of(one - root_half);
+  const auto moved = bits::in(select(tiny, x * 0x1p54, x)) + bits::of(bits_of_one - root_half);
   const V k = bits::number((moved >> 52) | bits::of(0x4330000000000000)) -
               select(tiny, V(0x1p52 + 1077.0), V(0x1p52 + 1023.0));
   const V f = bits::number((moved & bits::of(0x000FFFFFFFFFFFFF)) + bits::of(root_half)) - 1.0;

@@ -86,7 +86,7 @@ ILAW_KIT_INLINE auto take_parameters(Wide& own, const Law& law, const view<Numbe
   using V = typename number_of_law<Wide>::type;
   mask_of<V> good = V(0.0) == V(0.0);
   for (int k = 0; k < parameter_count<Law>; ++k)
-    if (b.parameters[k]) {
+    if (Wide::parameters[k].member.may_vary() && b.parameters[k]) {
       const V given = l.load(b.parameters[k] + i, Law::parameters[k].member.get(law));
       good = good & range_of(Wide::parameters[k]).has(given);
       Wide::parameters[k].member.varying_in(own) = given;
@@ -94,17 +94,17 @@ ILAW_KIT_INLINE auto take_parameters(Wide& own, const Law& law, const view<Numbe
   if constexpr (requires { law.conflict(); }) {
     unsigned fit = 0;
     for (int lane = 0; lane < l.count; ++lane) {
-      Law one = law;
+      Law here = law;
       for (int k = 0; k < parameter_count<Law>; ++k)
-        if (b.parameters[k])
-          Law::parameters[k].member.set(one, lane_of(Wide::parameters[k].member.varying_in(own), lane));
-      fit |= one.conflict() ? 0U : 1U << lane;
+        if (Wide::parameters[k].member.may_vary() && b.parameters[k])
+          Law::parameters[k].member.set(here, lane_of(Wide::parameters[k].member.varying_in(own), lane));
+      fit |= here.conflict() ? 0U : 1U << lane;
     }
     good = good & mask_from<V>(fit | (~0U << l.count));
   }
   if (any(!good))
     for (int k = 0; k < parameter_count<Law>; ++k)
-      if (b.parameters[k]) {
+      if (Wide::parameters[k].member.may_vary() && b.parameters[k]) {
         V& value = Wide::parameters[k].member.varying_in(own);
         value = select(good, value, V(Law::parameters[k].member.get(law)));
       }
@@ -376,13 +376,19 @@ struct kernel {
 
   // ---- check the result
 
+  static mask is_infinite(vector<V> a) {
+    return (absolute(a.n) == infinity) | (absolute(a.t1) == infinity) | (absolute(a.t2) == infinity);
+  }
+  static mask is_infinite(projected<V> a) {
+    return (absolute(a.n) == infinity) | (absolute(a.x) + absolute(a.y) + absolute(a.z) == infinity);
+  }
   template <class Checks>
   ILAW_KIT_INLINE static void check_result(const node_type& n, const view_type& b, Checks& c) {
     const V size = sum_of_sizes(n.impulse);
     if constexpr (std::is_same_v<Checks, checks<V, true>>) {
       for (int k = 1; k <= 4; ++k)
         c.require(n.refused != static_cast<double>(k), static_cast<reason>(reason_several_solutions + k - 1));
-      c.require((size == size) | (size == infinity), reason_not_a_number);
+      c.require((size == size) | is_infinite(n.impulse), reason_not_a_number);
     } else {
       c.require(n.refused == 0.0, reason_overflow);
     }
@@ -612,7 +618,7 @@ struct kernel {
     const auto prepared = kit::prepared(law, b.step);
     run_pack(law, prepared, b, i, left, good, found, limits);
   }
-  [[gnu::noinline]] static void run(const void* opaque, const view_type& all, tally& found) {
+  [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& all, tally& found) {
     const Law& given = *static_cast<const Law*>(opaque);
     const view_type b = all;
     Wide law = broadcast<V>(given);

@@ -111,7 +111,7 @@ struct open_problems {
   int count = 0;
 
   // In full packs; the last is filled up with its first problem. Returns how many the scalar fallback took.
-  [[gnu::noinline]] int solve(const Law& given, const step_sizes& step) {
+  [[gnu::noinline, gnu::flatten]] int solve(const Law& given, const step_sizes& step) {
     int by_fallback = 0;
     solver law = broadcast<solver_pack>(given);
     auto prepared = kit::prepared(law, step);
@@ -313,7 +313,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     finish_pack(law, prepared, b, i, left_at(b, i), good, all, open, first, found, limits);
   }
 
-  [[gnu::noinline]] static void run(const void* opaque, const view_type& whole, tally& found) {
+  [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& whole, tally& found) {
     const Law& given = *static_cast<const Law*>(opaque);
     const view_type b = whole;
     Wide law = broadcast<V>(given);

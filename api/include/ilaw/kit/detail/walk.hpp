@@ -75,14 +75,14 @@ class batch_walk {
   batch_walk(const instance_base& made, const ilaw_batch& batch, double* state_scratch)
       : made_(made), b_(batch), d_(static_cast<int>(made.dimension)), state_scratch_(state_scratch) {}
 
-  [[gnu::noinline]] tally run(run_function run, const void* law) {
+  [[gnu::noinline]] tally run(run_function loop, const void* law) {
     tally all;
     if (!made_.in_blocks && all_stay()) {
-      run_part(node_range(b_, 0, b_.node_count), run, law, all);
+      run_part(node_range(b_, 0, b_.node_count), loop, law, all);
     } else {
       for (std::int64_t first = 0; first < b_.node_count; first += block_nodes) {
         const std::int64_t left = b_.node_count - first;
-        run_part(node_range(b_, first, left < block_nodes ? left : block_nodes), run, law, all);
+        run_part(node_range(b_, first, left < block_nodes ? left : block_nodes), loop, law, all);
       }
     }
     return all;
@@ -165,21 +165,21 @@ class batch_walk {
       __builtin_prefetch(values + (n.first + block_nodes) * stride + k);
   }
 
-  array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* scratch) const {
+  array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* copy) const {
     const Number* const values = numbers_in<Number>(a);
     if (!values) return {};
     if (!n.listed && stays(a, components))
       return {values + n.first * a.node_stride, a.component_stride, components, a.node_stride != 1};
     prefetch_block(values, a.node_stride, a.component_stride, n);
     if (components == 3)
-      gather_three(values, a.node_stride, a.component_stride, n, scratch);
+      gather_three(values, a.node_stride, a.component_stride, n, copy);
     else
       for (int c = 0; c < components; ++c)
-        gather_column(values + c * a.component_stride, a.node_stride, n, scratch + c * block_nodes);
-    return {scratch, block_nodes, components, false};
+        gather_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
+    return {copy, block_nodes, components, false};
   }
-  const Number* gather_scalar(const ilaw_input& a, const node_range& n, Number* scratch) const {
-    return gather(a, 1, n, scratch).at;
+  const Number* gather_scalar(const ilaw_input& a, const node_range& n, Number* copy) const {
+    return gather(a, 1, n, copy).at;
   }
   // Full in the order of three dimensions, padded so that it stays positive definite.
   array<const Number> gather_delassus(const node_range& n) {
@@ -196,20 +196,20 @@ class batch_walk {
     if (numbers == 3) take(2, 3);
     return {s_.delassus, block_nodes, 6, false};
   }
-  array<Number> aim(const ilaw_output& a, int components, const node_range& n, Number* scratch) const {
+  array<Number> aim(const ilaw_output& a, int components, const node_range& n, Number* copy) const {
     Number* const values = numbers_in<Number>(a);
     if (!values) return {};
     if (!n.listed && stays(a, components))
       return {values + n.first * a.node_stride, a.component_stride, components, a.node_stride != 1};
-    return {scratch, block_nodes, components, false};
+    return {copy, block_nodes, components, false};
   }
-  void scatter(const ilaw_output& a, const array<Number>& aimed, const node_range& n, const Number* scratch) const {
-    if (aimed.at != scratch) return;
+  void scatter(const ilaw_output& a, const array<Number>& aimed, const node_range& n, const Number* copy) const {
+    if (aimed.at != copy) return;
     Number* const values = numbers_in<Number>(a);
     prefetch_block(values, a.node_stride, a.component_stride, n);
-    if (aimed.count == 3) return scatter_three(values, a.node_stride, a.component_stride, n, scratch);
+    if (aimed.count == 3) return scatter_three(values, a.node_stride, a.component_stride, n, copy);
     for (int c = 0; c < aimed.count; ++c)
-      scatter_column(values + c * a.component_stride, a.node_stride, n, scratch + c * block_nodes);
+      scatter_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
   }
 
   // ---- state
@@ -244,7 +244,7 @@ class batch_walk {
     v.history_component_stride = to.component_stride;
     v.nodes = n.listed ? n.where : nullptr;
   }
-  void open_frame(view<Number>& v, const node_range& n, double* scratch) {
+  void open_frame(view<Number>& v, const node_range& n, double* copy) {
     if (!made_.carries_frame) return;
     const std::int64_t at = made_.frame_offset;
     const ilaw_input& in = b_.state_in;
@@ -253,13 +253,13 @@ class batch_walk {
       v.frame_in = {in.values + at * in.component_stride + n.first, in.component_stride, 6, false};
     } else {
       for (int k = 0; k < 6; ++k)
-        gather_column(in.values + (at + k) * in.component_stride, in.node_stride, n, scratch + k * block_nodes);
-      v.frame_in = {scratch, block_nodes, 6, false};
+        gather_column(in.values + (at + k) * in.component_stride, in.node_stride, n, copy + k * block_nodes);
+      v.frame_in = {copy, block_nodes, 6, false};
     }
     if (!n.listed && out.node_stride == 1)
       v.frame_out = {out.values + at * out.component_stride + n.first, out.component_stride, 6, false};
     else
-      v.frame_out = {scratch + 6 * block_nodes, block_nodes, 6, false};
+      v.frame_out = {copy + 6 * block_nodes, block_nodes, 6, false};
   }
   // A history is worked on in state_out, which therefore starts as state_in.
   void copy_unnamed(const node_range& n) const {
@@ -329,7 +329,7 @@ class batch_walk {
     return made_.carries_frame ? tangents::carried : tangents::chosen;
   }
 
-  void run_part(const node_range& n, run_function run, const void* law, tally& all) {
+  void run_part(const node_range& n, run_function loop, const void* law, tally& all) {
     view<Number> v{};
     v.count = n.count;
     v.step = {b_.time, b_.velocity_step, b_.position_step, 1.0 / b_.position_step};
@@ -344,7 +344,7 @@ class batch_walk {
     open_outputs(v, n);
     open_state(v, n);
     tally found;
-    run(law, v, found);
+    loop(law, v, found);
     add(all, found, n);
     scatter(b_.impulse, v.impulse, n, s_.impulse);
     scatter(b_.velocity, v.velocity, n, s_.velocity);
