@@ -424,7 +424,8 @@ struct kernel {
     const V along_tangents = -0.5 * tangential_product(n.impulse, mean) - n.tangential_gain;
     const V normal = positive_part(along_normal + smaller(along_tangents, 0.0));
     const V tangential = positive_part(along_tangents + smaller(along_normal, 0.0));
-    const mask broken = status == status::broken;
+    mask broken = status == status::broken;
+    if constexpr (Law::card.gives_rupture) broken = broken & false;
     const V rupture = zero_unless(broken, normal + tangential) + n.rupture;
     const V stored = select(0.0 * n.stored == 0.0, n.stored, V(infinity));  // its terms overflow
     const V parts[ILAW_ENERGY_COUNT] = {zero_unless(known & !broken, tangential), zero_unless(known & !broken, normal),

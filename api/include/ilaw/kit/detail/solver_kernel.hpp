@@ -103,16 +103,25 @@ struct open_problems {
                 "the members of problem and answer must all be of type V");
 
   alignas(64) double problem[problems][room], answer[answers][room];
+  alignas(64) double parameter[parameter_count<Law>][room];  // those that vary from node to node
+  std::uint64_t varying = 0;                                 // which: a bit each
   unsigned open[problem_block];   // by pack: lanes with a problem
   bool stored[problem_block];     // by pack: nothing is left to do
   bool careful[problem_block];    // by pack: has a bad node
   int count = 0;
 
   // In full packs; the last is filled up with its first problem. Returns how many the scalar fallback took.
-  [[gnu::noinline, gnu::flatten]] int solve() {
+  [[gnu::noinline, gnu::flatten]] int solve(const Law& given, const step_sizes& step) {
     int by_fallback = 0;
+    solver law = broadcast<solver_pack>(given);
+    auto prepared = kit::prepared(law, step);
     for (int first = 0; first < count; first += solver_pack::size) {
       const int filled = count - first < solver_pack::size ? count - first : solver_pack::size;
+      if (varying) {
+        take_parameters(law, first, filled);
+        const auto own = kit::prepared(law, step);
+        __builtin_memcpy(static_cast<void*>(&prepared), &own, sizeof own);
+      }
       typename solver::problem p;
       typename solver::answer a;
       for (int c = 0; c < problems; ++c) {
@@ -120,24 +129,48 @@ struct open_problems {
         __builtin_memcpy(place_in<solver_pack>(p, c), problem[c] + first, sizeof(solver_pack));
       }
       for (int c = 0; c < answers; ++c) __builtin_memset(place_in<solver_pack>(a, c), 0, sizeof(solver_pack));
-      const mask_of<solver_pack> left = solver::solve(p, a);
+      const mask_of<solver_pack> left = solve_one(law, p, a, prepared);
       for (int c = 0; c < answers; ++c)
         __builtin_memcpy(answer[c] + first, place_in<solver_pack>(a, c), sizeof(solver_pack));
       if (const unsigned lanes = mask_bits(left)) [[unlikely]]
         for (int k = 0; k < filled; ++k)
           if (lanes >> k & 1) {
-            solve_scalar(first + k);
+            solve_scalar(given, step, first + k);
             ++by_fallback;
           }
     }
     return by_fallback;
   }
-  [[gnu::noinline]] void solve_scalar(int k) {
+
+ private:
+  template <class Prepared>
+  static mask_of<solver_pack> solve_one(const solver& law, const typename solver::problem& p,
+                                        typename solver::answer& a, const Prepared& prepared) {
+    if constexpr (requires { law.solve(p, a, prepared); })
+      return law.solve(p, a, prepared);
+    else
+      return law.solve(p, a);
+  }
+  void take_parameters(solver& law, int first, int filled) {
+    for (int c = 0; c < parameter_count<Law>; ++c)
+      if (varying >> c & 1) {
+        for (int k = filled; k < solver_pack::size; ++k) parameter[c][first + k] = parameter[c][first];
+        __builtin_memcpy(&solver::parameters[c].member.varying_in(law), parameter[c] + first, sizeof(solver_pack));
+      }
+  }
+  [[gnu::noinline]] void solve_scalar(const Law& given, const step_sizes& step, int k) {
     using scalar = law_on_t<Law, double>;
+    scalar law = given;
+    for (int c = 0; c < parameter_count<Law>; ++c)
+      if (varying >> c & 1) scalar::parameters[c].member.set(law, parameter[c][k]);
     typename scalar::problem p;
     typename scalar::answer a{};
     for (int c = 0; c < problems; ++c) __builtin_memcpy(place_in<double>(p, c), problem[c] + k, sizeof(double));
-    scalar::solve_scalar(p, a);
+    const auto prepared = kit::prepared(law, step);
+    if constexpr (requires { law.solve_scalar(p, a, prepared); })
+      law.solve_scalar(p, a, prepared);
+    else
+      law.solve_scalar(p, a);
     for (int c = 0; c < answers; ++c) __builtin_memcpy(answer[c] + k, place_in<double>(a, c), sizeof(double));
   }
 };
@@ -158,8 +191,12 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
   using answer = typename Wide::answer;
   using problems_type = open_problems<Law>;
 
-  ILAW_KIT_INLINE static void keep(const problem& p, unsigned open, problems_type& all) {
+  ILAW_KIT_INLINE static void keep(const Wide& law, const problem& p, unsigned open, problems_type& all) {
     if (!open) return;
+    if (all.varying) [[unlikely]]
+      for (int c = 0; c < parameter_count<Law>; ++c)
+        if (all.varying >> c & 1)
+          put_packed(Wide::parameters[c].member.varying_in(law), open, all.parameter[c] + all.count);
 #pragma GCC unroll 64
     for (int c = 0; c < problems_type::problems; ++c)
       put_packed(reinterpret_cast<const V*>(&p)[c], open, all.problem[c] + all.count);
@@ -197,7 +234,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
         }
         return true;
       }
-    keep(open_problem, open, all);
+    keep(law, open_problem, open, all);
     return true;
   }
 
@@ -216,13 +253,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     loaded p = base::load(prepared, b, i, l, c);
     base::take_state(p.node, b, i, l, c);
     if constexpr (!careful) c = {};  // its input was checked when it was asked
-    node_type closed = p.node;
-    problem unused;
-    const asked<V> before = law.ask(closed, unused);
-    const status_of<V> finished = law.finish(p.node, a);
-    const mask is_open = mask_from<V>(open);
-    choose(p.node, closed, is_open);
-    const status_of<V> status = select(is_open, finished, before.status);
+    const status_of<V> status = finish_lanes(law, p.node, a, open);
     base::check_result(p.node, b, c);
     const mask bad = c.bad();
     if constexpr (!careful)
@@ -235,6 +266,17 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
       base::add_limit(limits, law, p.node, b, !bad);
     if constexpr (careful) base::add_bad(found, c, i, l);
     return true;
+  }
+  ILAW_KIT_INLINE static status_of<V> finish_lanes(const Wide& law, node_type& n, const answer& a, unsigned open) {
+    constexpr unsigned every = (1U << width) - 1;
+    if (open == every) return law.finish(n, a);
+    node_type closed = n;
+    problem unused;
+    const asked<V> before = law.ask(closed, unused);
+    const status_of<V> finished = law.finish(n, a);
+    const mask is_open = mask_from<V>(open);
+    choose(n, closed, is_open);
+    return select(is_open, finished, before.status);
   }
   ILAW_KIT_INLINE static void choose(node_type& a, const node_type& b, mask first) {
     a.impulse = select(first, a.impulse, b.impulse);
@@ -278,6 +320,8 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     auto prepared = kit::prepared(law, b.step);
     limit limits;
     problems_type all;
+    for (int c = 0; c < parameter_count<Law>; ++c)
+      if (b.parameters[c]) all.varying |= std::uint64_t{1} << c;
     mask good = V(0.0) == V(0.0);
     const auto take = [&](std::int64_t i) ILAW_KIT_LAMBDA {
       if (b.varying) [[unlikely]] {
@@ -297,7 +341,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
             !ask_pack(law, prepared, b, i, all_lanes<V>(), good, all, k, limits)) [[unlikely]]
           ask_carefully(given, b, i, all, k, limits);
       }
-      if (all.count > 0) found.by_scalar_fallback += all.solve();
+      if (all.count > 0) found.by_scalar_fallback += all.solve(given, b.step);
       int first = 0;
       k = 0;
       for (std::int64_t i = start; i < end; i += width, ++k) {
