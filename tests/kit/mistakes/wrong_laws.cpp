@@ -367,12 +367,12 @@ struct full_unserved {
 
 // ---- solvers
 
-// solve must be static mask_of<V> solve(const problem& p, answer& a), and solve_scalar static void: parameters come by the problem, they may differ from node to node
-WRONG(solve_with_a_parameter)
+// solve must be mask_of<V> solve(const problem& p, answer& a) const, and solve_scalar the same without result; both may take what prepare gave as well
+WRONG(mutable_solve)
   PROBLEM
   ASK
   FINISH
-  mask_of<V> solve(const problem& p, answer& found) const {
+  mask_of<V> solve(const problem& p, answer& found) {
     found.y = a * p.x;
     return V{} < 0.0;
   }
@@ -492,7 +492,7 @@ SEEN(status_that_is_a_number);
 SEEN(no_step);
 SEEN(diagonal_alone);
 SEEN(full_unserved);
-SEEN(solve_with_a_parameter);
+SEEN(mutable_solve);
 SEEN(mutable_ask);
 SEEN(ask_without_status);
 SEEN(mutable_finish);

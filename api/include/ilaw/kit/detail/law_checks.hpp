@@ -252,15 +252,29 @@ constexpr bool problems_are_of_V() {
   }
   return true;
 }
-// Static: with parameters per node there is no law that a pack of problems could ask.
+// Either may take what prepare gave as well.
 template <class Law>
 constexpr bool solves_rightly() {
   if constexpr (names_ask<Law>) {
     using two = law_on_t<Law, pack_of<2>>;
-    return requires(const typename two::problem& p, typename two::answer& a) {
-      { two::solve(p, a) } -> std::same_as<mask_of<pack_of<2>>>;
+    using lanes = mask_of<pack_of<2>>;
+    constexpr bool solves_packs =
+        requires(const two& law, const typename two::problem& p, typename two::answer& a) {
+      { law.solve(p, a) } -> std::same_as<lanes>;
     }
-    &&requires(const typename Law::problem& p, typename Law::answer& a) { Law::solve_scalar(p, a); };
+    || requires(const two& law, const typename two::problem& p, typename two::answer& a,
+                const prepared_t<two>& own) {
+      { law.solve(p, a, own) } -> std::same_as<lanes>;
+    };
+    constexpr bool solves_one =
+        requires(const Law& law, const typename Law::problem& p, typename Law::answer& a) {
+      law.solve_scalar(p, a);
+    }
+    || requires(const Law& law, const typename Law::problem& p, typename Law::answer& a,
+                const prepared_t<Law>& own) {
+      law.solve_scalar(p, a, own);
+    };
+    return solves_packs && solves_one;
   }
   return true;
 }
@@ -394,8 +408,8 @@ struct checked_members {
                  "the members of problem and answer must all be of type V");
   ILAW_KIT_CHECK(
       has_solve, solves_rightly<Law>(),
-      "solve must be static mask_of<V> solve(const problem& p, answer& a), and solve_scalar static void: "
-      "parameters come by the problem, they may differ from node to node");
+      "solve must be mask_of<V> solve(const problem& p, answer& a) const, and solve_scalar the same without "
+      "result; both may take what prepare gave as well");
   ILAW_KIT_FUNCTION(asks, bool, "bool asks() const");
   ILAW_KIT_FUNCTION(conflict, const char*, "const char* conflict() const");
   ILAW_KIT_FUNCTION(inputs, std::uint32_t, "std::uint32_t inputs() const");
