@@ -91,7 +91,7 @@ struct pack_probe {
       {.member = &pack_probe::viscosity, .name = "viscosity", .unit = "N.s/m", .doc = "c", .required = true,
        .infinity_allowed = false, .axes = over_temperature},
       {.member = &pack_probe::temperature, .name = "temperature", .unit = "K", .default_value = 300.0, .is_field = true},
-      {.member = &pack_probe::hardness, .name = "hardness", .default_value = 1.0, .is_field = true},
+      {.member = &pack_probe::hardness, .name = "hardness", .default_value = 1.0, .minimum_excluded = true, .is_field = true},
       {.member = &pack_probe::rate, .name = "rate", .unit = "1/s", .doc = "the memory fades at", .default_value = 100.0},
       {.member = &pack_probe::rests, .name = "rests", .choices = yes_or_no}};
   struct state {

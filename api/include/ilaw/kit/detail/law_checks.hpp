@@ -134,6 +134,22 @@ constexpr bool members_differ() {
   return true;
 }
 
+constexpr bool same_text(const char* a, const char* b) {
+  while (*a && *a == *b) ++a, ++b;
+  return *a == *b;
+}
+template <class Law>
+constexpr bool axes_are_known() {
+  for (const auto& p : Law::parameters)
+    for (std::uint32_t k = 0; k < p.axes.count; ++k) {
+      bool is_known = same_text(p.axes.values[k], "time");
+      for (const auto& field : Law::parameters)
+        is_known = is_known || (field.is_field && same_text(p.axes.values[k], field.name));
+      if (!is_known) return false;
+    }
+  return true;
+}
+
 // Structs whose members are V and nothing else grow as V does.
 template <class OfPack, class OfTwo>
 inline constexpr bool all_of_V = sizeof(OfTwo) == 2 * sizeof(OfPack) && std::is_trivially_copyable_v<OfPack>;
@@ -398,6 +414,8 @@ struct checked_members {
   ILAW_KIT_CHECK(has_fields,
                  all_parameters<Wide>([](const auto& p) { return !p.is_field || p.member.may_vary(); }),
                  "a field differs from node to node: its member is a V");
+  ILAW_KIT_CHECK(has_axes, axes_are_known<Law>(),
+                 "a table is over \"time\" or a field, a parameter with .is_field = true");
   ILAW_KIT_CHECK(has_state_of_V, state_is_of_V<Law>(),
                  "the members of struct state must be V, vector<V> or tangential_vector<V>");
   ILAW_KIT_CHECK(gives_state_members, state_is_given<Law>(),
@@ -437,12 +455,13 @@ struct checked_members {
       "a history is static constexpr history_card history and either std::int64_t history_size() const with "
       "record, or window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)");
 
-  static constexpr bool passes =
-      has_texts && reads_known_inputs && serves_something && serves_turned && gives_members && has_one_each &&
-      describes_all && has_few && chooses_once && has_fields && has_state_of_V && gives_state_members &&
-      describes_state && has_problems_of_V && has_solve && has_right_asks && has_right_conflict &&
-      has_right_inputs && has_right_capabilities && has_right_permissions && has_right_tells_tangents_apart &&
-      has_prepare && has_initialise && has_extension && has_amounts && has_history;
+  static constexpr bool passes = has_texts && reads_known_inputs && serves_something && serves_turned &&
+                                 gives_members && has_one_each && describes_all && has_few && chooses_once &&
+                                 has_fields && has_axes && has_state_of_V && gives_state_members &&
+                                 describes_state && has_problems_of_V && has_solve && has_right_asks &&
+                                 has_right_conflict && has_right_inputs && has_right_capabilities &&
+                                 has_right_permissions && has_right_tells_tangents_apart && has_prepare &&
+                                 has_initialise && has_extension && has_amounts && has_history;
 };
 
 // What needs all of them: nodes.
