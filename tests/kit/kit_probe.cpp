@@ -84,8 +84,7 @@ struct pack_probe {
                                  .title = "Viscous contact that counts and sums, in packs",
                                  .doc = "r = -c v where closed; remembers what it gave, which fades.",
                                  .inputs = reads_gap | reads_area | reads_v_previous,
-                                 .capabilities = can_adhere,
-                                 .permissions = may_skip_free};
+                                 .capabilities = can_adhere};
   static constexpr auto& references = no_references;
   static constexpr parameter<pack_probe> parameters[] = {
       {.member = &pack_probe::viscosity, .name = "viscosity", .unit = "N.s/m", .doc = "c", .required = true,
@@ -142,6 +141,7 @@ struct solver_probe {
                                  .title = "Impulse from Lambert's function",
                                  .doc = "h_N r exp(r) = offset - v_free, where closed and that is positive.",
                                  .inputs = reads_gap,
+                                 .capabilities = can_store_energy,
                                  .permissions = may_skip_fresh | may_skip_free};
   static constexpr auto& references = no_references;
   static constexpr parameter<solver_probe> parameters[] = {{.member = &solver_probe::offset, .name = "offset"}};
@@ -160,7 +160,6 @@ struct solver_probe {
   template <class Node>
   asked<V> ask(Node& node, problem& open) const {
     open.w = (offset - node.v_free.n) / node.delassus.normal();
-    node.amounts[0] = 1.0;
     return {(node.gap <= 0.0) & (open.w > 0.0), status::free};
   }
   static V newton(V x, V w) {
