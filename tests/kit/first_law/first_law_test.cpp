@@ -4,7 +4,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 namespace ilaw::testing {
@@ -109,6 +111,26 @@ TEST_F(FirstLaw, IsTheSameAgainstTheBuildTree) {
   run("diff -r " ILAW_SOURCE "/api/include " + (folder / "ilaw" / "include").string(), folder / "log");
   EXPECT_NE(text_of(build / "CTestTestfile.cmake", ILAW_BUILD, "BUILD").find("BUILD/bin/ilaw"),
             std::string::npos);
+}
+
+// Every name that law_checks.hpp knows, on the page and at the top of law.hpp.
+TEST(FirstLawPage, ListsAllNames) {
+  const auto text = [](const char* file) {
+    std::ostringstream all;
+    all << std::ifstream(file).rdbuf();
+    return all.str();
+  };
+  const std::string checks = text(ILAW_SOURCE "/api/include/ilaw/kit/detail/law_checks.hpp");
+  const std::string law = text(ILAW_SOURCE "/api/include/ilaw/kit/law.hpp"), page = text(ILAW_PAGE);
+  const std::regex name("\nILAW_KIT_NAME\\((\\w+)\\);");
+  int names = 0;
+  for (std::sregex_iterator it(checks.begin(), checks.end(), name), end; it != end; ++it, ++names) {
+    EXPECT_NE(page.find("`" + (*it)[1].str() + "`"), std::string::npos) << (*it)[1];
+    EXPECT_TRUE(std::regex_search(law.substr(0, law.find("#pragma once")), std::regex("\\b" + (*it)[1].str() + "\\b")))
+        << (*it)[1];
+  }
+  EXPECT_GT(names, 20);
+  EXPECT_LE(std::count(page.begin(), page.end(), '\n'), 150);
 }
 
 TEST(ViscousLaw, InPlainCGivesTheSame) {
