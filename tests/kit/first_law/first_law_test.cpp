@@ -126,7 +126,8 @@ TEST(FirstLawPage, ListsAllNames) {
   int names = 0;
   for (std::sregex_iterator it(checks.begin(), checks.end(), name), end; it != end; ++it, ++names) {
     EXPECT_NE(page.find("`" + (*it)[1].str() + "`"), std::string::npos) << (*it)[1];
-    EXPECT_TRUE(std::regex_search(law.substr(0, law.find("#pragma once")), std::regex("\\b" + (*it)[1].str() + "\\b")))
+    EXPECT_TRUE(std::regex_search(law.substr(0, law.find("#pragma once")),
+                                  std::regex("\\b" + (*it)[1].str() + "\\b")))
         << (*it)[1];
   }
   EXPECT_GT(names, 20);
@@ -144,7 +145,8 @@ TEST(ViscousLaw, InPlainCGivesTheSame) {
     return std::string("not refused");
   };
   EXPECT_NE(refusal(SetupBuilder({})).find("parameter 'viscosity' is missing"), std::string::npos);
-  EXPECT_NE(refusal(SetupBuilder({{{"viscosity", -1.0}}, {}})).find("found -1, expected 0 to 1e+300"), std::string::npos);
+  EXPECT_NE(refusal(SetupBuilder({{{"viscosity", -1.0}}, {}})).find("found -1, expected 0 to 1e+300"),
+            std::string::npos);
   EXPECT_NE(refusal(SetupBuilder({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_FULL)).find("form of H"),
             std::string::npos);
 }
