@@ -130,7 +130,7 @@ TEST(Create, RefusesAMemoryThatVaries) {
   per_node.per_node = {"memory"};
   for (const std::string law : {"postit", "tie"})
     for (const auto& [varying, words] :
-         {std::pair{tables_of({{"memory", {0.0, 0.1, 1.0, 0.2}}}), "a table in time"},
+         {std::pair{tables_of({{"memory", {0.0, 0.1, 1.0, 0.2}}}), "a table"},
           {per_node, "a value per node"}})
       EXPECT_EQ(refusal_of(law, varying), "law '" + law + "': parameter 'memory' was given as " + words +
                                               ": expected a number in [0, inf]")

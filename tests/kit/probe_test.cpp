@@ -87,7 +87,7 @@ class ViscosityOf {
 MATCHER_P(IsNear, expected, "") { return std::abs(arg - expected) <= 1e-14 * std::abs(expected); }
 
 // At 300 K the probe's own heating is 1.
-const Axis times{"time", {0.0, 2.0}}, degrees{"temperature", {200.0, 300.0, 400.0}};
+const Axis seconds{"time", {0.0, 2.0}}, degrees{"temperature", {200.0, 300.0, 400.0}};
 
 TEST(Tables, AreReadAtTheFieldOfTheBatch) {
   const ilaw::interface law =
@@ -113,7 +113,7 @@ TEST(Tables, AreReadAtTheFieldOfEachNode) {
 TEST(Tables, AreBilinearOverTimeAndAField) {
   const Axis two{"temperature", {300.0, 400.0}};
   const ilaw::interface law = Probe("pack_probe")
-                                  .table("viscosity", {times, two}, {1.0, 3.0, 5.0, 11.0})
+                                  .table("viscosity", {seconds, two}, {1.0, 3.0, 5.0, 11.0})
                                   .per_node("temperature")
                                   .make();
   const auto at = [&](double time, double kelvin) {
@@ -131,7 +131,7 @@ TEST(Tables, HaveThreeAxes) {
   const Axis hard{"hardness", {1.0, 2.0}}, two{"temperature", {300.0, 400.0}};
   const std::vector<double> sums = {1, 2, 3, 4, 5, 6, 7, 8};
   const ilaw::interface law = Probe("pack_probe")
-                                  .table("viscosity", {hard, times, two}, sums)
+                                  .table("viscosity", {hard, seconds, two}, sums)
                                   .number("temperature", 300.0)
                                   .per_node("hardness")
                                   .make();
@@ -145,7 +145,7 @@ TEST(Tables, HaveThreeAxes) {
 TEST(Tables, AreReadAtAFieldThatIsATableOverTime) {
   const ilaw::interface law = Probe("pack_probe")
                                   .table("viscosity", {degrees}, {1.0, 2.0, 4.0})
-                                  .table("temperature", {times}, {200.0, 300.0})
+                                  .table("temperature", {seconds}, {200.0, 300.0})
                                   .make();
   EXPECT_THAT(ViscosityOf(law).at(0.0), Each(IsNear(0.9)));
   EXPECT_THAT(ViscosityOf(law).at(2.0), Each(IsNear(2.0)));
@@ -165,10 +165,10 @@ TEST(Tables, AreRefusedByWhatIsWrong) {
   EXPECT_THAT(refusal({{"moisture", {0.0}}}, {1}),
               HasSubstr("axis 'moisture' of the table is unknown: expected one of 'time', "
                         "'temperature', 'hardness'"));
-  EXPECT_THAT(refusal({times, times}, {1, 2, 3, 4}), HasSubstr("the table has twice the axis time"));
+  EXPECT_THAT(refusal({seconds, seconds}, {1, 2, 3, 4}), HasSubstr("the table has twice the axis time"));
   EXPECT_THAT(refusal({{"time", {1.0, 1.0}}}, {1, 2}),
               HasSubstr("point 1 of axis 'time' is 1: expected finite, increasing points"));
-  EXPECT_THAT(refusal({times}, {1, -2}), HasSubstr("'viscosity' = -2 is not allowed"));
+  EXPECT_THAT(refusal({seconds}, {1, -2}), HasSubstr("'viscosity' = -2 is not allowed"));
 }
 
 // Values that go together at each node only.
