@@ -643,7 +643,8 @@ struct kernel {
   template <class Prepared>
   ILAW_KIT_INLINE static bool get_ready(Wide& law, Prepared& prepared, const Law& given, const view_type& b,
                                         std::int64_t i) {
-    if (b.in_memory) prefetch(b, i + prefetch_distance, width);
+    if constexpr (std::is_same_v<Number, double>)
+      if (b.in_memory) prefetch(b, i + prefetch_distance, width);
     if (!b.varying) return true;
     Wide own = law;
     const mask good = take_parameters(own, given, b, i);

@@ -357,7 +357,7 @@ class batch_walk {
     v.is_scalar = made_.delassus_numbers() == 1;
     v.frame_follows = made_.frame_follows;
     v.varying = made_.per_node_count > 0;
-    v.in_memory = n.count >= prefetch_from;
+    v.in_memory = std::is_same_v<Number, double> && n.count >= prefetch_from;
     open_inputs(v, n);
     open_outputs(v, n);
     open_state(v, n);
