@@ -70,7 +70,11 @@ using one_mask = one_ints;
 ILAW_KIT_INLINE one_mask and_of(one_mask a, one_mask b) { return a & b; }
 ILAW_KIT_INLINE one_mask or_of(one_mask a, one_mask b) { return a | b; }
 ILAW_KIT_INLINE one_mask not_of(one_mask a) { return ~a; }
+#if defined(__AVX__)
 ILAW_KIT_INLINE one blend(one_mask m, one a, one b) { return m ? a : b; }
+#else  // GCC 12 stops with an internal error at m ? a : b where it is not optimised
+ILAW_KIT_INLINE one blend(one_mask m, one a, one b) { return (one)((m & (one_ints)a) | (~m & (one_ints)b)); }
+#endif
 ILAW_KIT_INLINE one zeroed(one_mask m, one a) { return (one)(m & (one_ints)a); }
 ILAW_KIT_INLINE unsigned bits_of_mask(one_mask m) {
 #if defined(__AVX__)
@@ -174,6 +178,7 @@ struct pack_mask {
   ILAW_KIT_INLINE friend pack_mask operator&(bool a, pack_mask b) { return of(a) & b; }
   ILAW_KIT_INLINE friend pack_mask operator|(pack_mask a, bool b) { return a | of(b); }
   ILAW_KIT_INLINE friend pack_mask operator|(bool a, pack_mask b) { return of(a) | b; }
+  explicit operator bool() const = delete;  // write any(mask): is it one for all lanes?
   template <class Other>
   friend void operator&&(pack_mask a, Other b) = delete;  // write & between masks
   template <class Other>

@@ -83,6 +83,26 @@ constexpr parameter_range range_of(const parameter<Law>& p) {
   return parameter_range(p.minimum, p.minimum_excluded, p.maximum, p.infinity_allowed);
 }
 
+// Tables over fields, lane by lane.
+template <class Wide, class Number>
+[[gnu::noinline]] void look_up(Wide& own, const view<Number>& b) {
+  using V = typename number_of_law<Wide>::type;
+  for (int k = 0; k < parameter_count<Wide>; ++k) {
+    const table& t = b.tables[k];
+    if (!t.per_node || !Wide::parameters[k].member.may_vary()) continue;
+    double found[lanes_of<V>];
+    for (int lane = 0; lane < lanes_of<V>; ++lane) {
+      double place[3] = {};
+      for (int a = 0; a < t.axis_count; ++a)
+        place[a] = t.source[a] == table::time
+                       ? b.step.time
+                       : lane_of(Wide::parameters[t.source[a]].member.varying_in(own), lane);
+      found[lane] = t.at(place);
+    }
+    __builtin_memcpy(static_cast<void*>(&Wide::parameters[k].member.varying_in(own)), found, sizeof found);
+  }
+}
+
 // The parameters of the nodes of a pack. Where one is out of range or several do not go together, the law
 // stays as it was, so that no step need stand it; returns which nodes are good.
 template <class Wide, class Law, class Number>
@@ -95,12 +115,13 @@ template <class Wide, class Law, class Number>
       good = good & range_of(Wide::parameters[k]).has(given);
       Wide::parameters[k].member.varying_in(own) = given;
     }
+  if (b.tables) look_up(own, b);
   if constexpr (requires { law.conflict(); }) {
     unsigned fit = 0;
     for (int lane = 0; lane < lanes_of<V>; ++lane) {
       Law here = law;
       for (int k = 0; k < parameter_count<Law>; ++k)
-        if (Wide::parameters[k].member.may_vary() && b.parameters[k])
+        if (Wide::parameters[k].member.may_vary() && b.varies(k))
           Law::parameters[k].member.set(here, lane_of(Wide::parameters[k].member.varying_in(own), lane));
       fit |= here.conflict() ? 0U : 1U << lane;
     }
@@ -108,7 +129,7 @@ template <class Wide, class Law, class Number>
   }
   if (any(!good))
     for (int k = 0; k < parameter_count<Law>; ++k)
-      if (Wide::parameters[k].member.may_vary() && b.parameters[k]) {
+      if (Wide::parameters[k].member.may_vary() && b.varies(k)) {
         V& value = Wide::parameters[k].member.varying_in(own);
         value = select(good, value, V(Law::parameters[k].member.get(law)));
       }

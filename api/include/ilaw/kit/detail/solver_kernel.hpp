@@ -309,7 +309,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     limit limits;
     problems_type all;
     for (int c = 0; c < parameter_count<Law>; ++c)
-      if (b.parameters[c]) all.varying |= std::uint64_t{1} << c;
+      if (b.varies(c)) all.varying |= std::uint64_t{1} << c;
     const int is_special = b.varying + b.in_memory;
     for (std::int64_t start = 0; start < b.count; start += problem_block) {
       const std::int64_t end = b.count - start < problem_block ? b.count : start + problem_block;

@@ -20,6 +20,7 @@ struct instance_base {
   std::uint64_t state_size;
   std::uint32_t per_node_count;
   int per_node_parameters[most_parameters];  // which of the law's
+  const table* node_tables = nullptr;        // by parameter: over fields that come per node; null: none
   std::uint32_t amount_count;
 
   bool is_transverse() const {
@@ -357,6 +358,7 @@ class batch_walk {
     v.is_scalar = made_.delassus_numbers() == 1;
     v.frame_follows = made_.frame_follows;
     v.varying = made_.per_node_count > 0;
+    v.tables = made_.node_tables;
     v.in_memory = std::is_same_v<Number, double> && n.count >= prefetch_from;
     open_inputs(v, n);
     open_outputs(v, n);
