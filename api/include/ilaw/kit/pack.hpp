@@ -67,7 +67,11 @@ using one_mask = one_ints;
 ILAW_KIT_INLINE one_mask and_of(one_mask a, one_mask b) { return a & b; }
 ILAW_KIT_INLINE one_mask or_of(one_mask a, one_mask b) { return a | b; }
 ILAW_KIT_INLINE one_mask not_of(one_mask a) { return ~a; }
+#if defined(__AVX__)
 ILAW_KIT_INLINE one blend(one_mask m, one a, one b) { return m ? a : b; }
+#else  // by its bits: GCC 12 stops at a choice whose mask it folded
+ILAW_KIT_INLINE one blend(one_mask m, one a, one b) { return (one)((m & (one_ints)a) | (~m & (one_ints)b)); }
+#endif
 ILAW_KIT_INLINE one zeroed(one_mask m, one a) { return (one)(m & (one_ints)a); }
 ILAW_KIT_INLINE unsigned bits_of_mask(one_mask m) {
 #if defined(__AVX__)

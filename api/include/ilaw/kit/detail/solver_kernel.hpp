@@ -276,7 +276,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     const view_type b = whole;
     Wide law = broadcast<V>(given);
     auto prepared = kit::prepared(law, b.step);
-    limit limits;
+    limit limits = base::limit_of(given, b);
     problems_type all;
     mask good = V(0.0) == V(0.0);
     const auto take = [&](std::int64_t i) ILAW_KIT_LAMBDA {
