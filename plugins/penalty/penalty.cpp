@@ -158,12 +158,12 @@ struct penalty {
   template <class Node>
   status_of<V> step(Node& node) const {
     if (integration != implicitly) return step_explicitly(node);
+    const mask_of<V> acts = acts_on(node);
     V normal, indentation;
     if (node.prepared.loses)
-      press<true>(spring_of(node), normal, indentation);
+      press(spring_of(node), normal, indentation);
     else
-      press<false>(spring_of(node), normal, indentation);
-    const mask_of<V> acts = acts_on(node);
+      press(lossless_spring_of(node), normal, indentation);
     return give(node, zero_unless(acts, normal), zero_unless(acts, indentation));
   }
 
@@ -177,39 +177,37 @@ struct penalty {
     if constexpr (!is_transverse<Node>) {
       const vector<V> q = 0.5 * sliding_velocity(node, 0.0);
       const V softness = 0.5 * node.prepared.softness;
-      const auto& h = node.delassus;
+      const full<V>& h = node.delassus;
       open.c1 = h.n1;
       open.c2 = h.n2;
-      open.a = {0.5 * h.t11 + softness, 0.5 * h.t22 + softness, 0.5 * h.t12};
+      open.a11 = 0.5 * h.t11 + softness;
+      open.a22 = 0.5 * h.t22 + softness;
+      open.a12 = 0.5 * h.t12;
       open.q1 = q.t1;
       open.q2 = q.t2;
       open.before1 = zero_unless(tangential_stiffness == infinity, node.v_previous.t1);
       open.before2 = zero_unless(tangential_stiffness == infinity, node.v_previous.t2);
     }
-    const mask_of<V> acts = acts_on(node);
+    const mask_of<V> may_push = (open.spring.indentation > 0.0) | (node.v_free.n + node.v_previous.n < 0.0);
+    const mask_of<V> pushes = acts_on(node) & may_push;
     store(node, 0.0, {});
-    return {acts, status::free};
+    return {pushes, status::free};
   }
   static mask_of<V> solve(const problem& p, answer& a) { return penalty_law::solve(p, a); }
-  static void solve_scalar(const problem& p, answer& a) { a = penalty_law::scalar_friction(p).solve(); }
+  static void solve_scalar(const problem& p, answer& a) { a = scalar_friction(p).solve(); }
   template <class Node>
   status_of<V> finish(Node& node, const answer& a) const {
-    node.refuse(a.status == penalty_law::no_solution, refusal::no_solution);
-    if constexpr (!is_transverse<Node>) {
-      const mask_of<V> is_apart = a.status == status::closed.code;
-      if (any(!is_apart)) {
-        mask_of<V> slides = a.status == status::slip.code;
-        vector<V> impulse{a.normal, a.t1, a.t2};
-        if (any(is_apart)) {
-          const mask_of<V> own = is_apart & rub_apart(node, a.normal);
-          slides = slides | own;
-          impulse = select(is_apart, node.impulse, impulse);
-        }
-        node.impulse = impulse;
-        return keep(node, a.indentation, slides);
-      }
+    node.refuse(a.status == no_solution, refusal::no_solution);
+    const mask_of<V> is_apart = a.status == status::closed.code;
+    if (!any(!is_apart)) return give(node, a.normal, a.indentation);
+    mask_of<V> slides = a.status == status::slip.code;
+    vector<V> impulse{a.normal, a.t1, a.t2};
+    if (any(is_apart)) {
+      slides = slides | (is_apart & rub_apart(node, a.normal));
+      impulse = select(is_apart, node.impulse, impulse);
     }
-    return give(node, a.normal, a.indentation);
+    node.impulse = impulse;
+    return keep(node, a.indentation, slides);
   }
 
  private:
@@ -240,25 +238,28 @@ struct penalty {
     return (node.state.indentation > 0.0) | ((!is_out_of_reach(node)) & (middle <= 0.0));
   }
   template <class Node>
-  spring_problem<V> spring_of(const Node& node) const {
-    const V h = node.velocity_step, h_n = node.delassus.normal();
+  normal_spring<V, sure_zero> lossless_spring_of(const Node& node) const {
+    return {V(node.velocity_step), stiffness, exponent, node.v_free.n, node.v_previous.n, node.delassus.normal(),
+            zero_unless(stiffness < infinity, node.state.indentation), {}, {}};
+  }
+  template <class Node>
+  normal_spring<V> spring_of(const Node& node) const {
+    const normal_spring<V, sure_zero> s = lossless_spring_of(node);
     V damper = 0.0;
     if (node.prepared.loses) {
-      const V ratio = node.prepared.ratio, root = square_root(h_n);
+      const V ratio = node.prepared.ratio, root = square_root(s.delassus);
       const V stiff = square_root(zero_unless(stiffness < infinity, stiffness));
       const V c = zero_unless(stiffness < infinity, damping);
-      const V fading = root * (1.0 + (0.25 + 0.5 * ratio) * (h * stiff * root));
-      damper = (2.0 * ratio * stiff + c) / select(ratio > 0.0, fading, 1.0 + 0.5 * h * c * h_n);
+      const V fading = root * (1.0 + (0.25 + 0.5 * ratio) * (s.step * stiff * root));
+      damper = (2.0 * ratio * stiff + c) / select(ratio > 0.0, fading, 1.0 + 0.5 * s.step * c * s.delassus);
     }
-    return {h, stiffness, exponent, node.prepared.lead, damper, node.v_free.n, node.v_previous.n, h_n,
-            zero_unless(stiffness < infinity, node.state.indentation)};
+    return {s.step, s.stiffness, s.exponent, s.free, s.previous, s.delassus, s.indentation, damper, node.prepared.lead};
   }
-  template <bool Loses>
-  static void press(const spring_problem<V>& p, V& normal, V& indentation) {
-    const normal_spring<V, Loses> spring{p};
+  template <class Spring>
+  static void press(const Spring& spring, V& normal, V& indentation) {
     const auto found = spring.linear();
     normal = found.impulse;
-    indentation = spring.next(found.impulse, found.opens);
+    indentation = found.end;
   }
 
   // q + H/2 r is the mean velocity of what slips, of which a rigid stick gives back the part e_T. Twice that, and twice
@@ -280,11 +281,19 @@ struct penalty {
     const V turned = 0.0 - more_than_rounding * tangential_product(node.v_free, node.v_previous);
     return zero_unless(turned > 0.0, turned / larger(turned, speed));
   }
+  // The tangential impulse -q/resistance within the cone; says where the node slips.
+  template <class Node>
+  mask_of<V> rub_against(Node& node, V normal, vector<V> q, V resistance) const {
+    const auto found = rub(resistance, normal, q.scaled_tangential_length(), V(0.0), V(0.0), friction);
+    node.impulse = q.against(normal, found.factor);
+    return found.status == status::slip;
+  }
   template <class Node>
   mask_of<V> rub_apart(Node& node, V normal) const {
     V part = 0.0;
     if (node.prepared.sticks_rigidly) part = turned_part(node);
-    return rub(node, normal, sliding_velocity(node, part), node.delassus.tangential() + node.prepared.softness, friction);
+    const V resistance = node.delassus.tangential() + node.prepared.softness;
+    return rub_against(node, normal, sliding_velocity(node, part), resistance);
   }
   // Gives the node what its normal spring gives, and what friction makes of it.
   template <class Node>
@@ -347,7 +356,7 @@ struct penalty {
     node.impulse.n = normal;
     mask_of<V> slides = normal < 0.0;
     if (p.rubs) {
-      slides = rub(node, normal, p.shear * spring, V(1.0), friction);
+      slides = rub_against(node, normal, p.shear * spring, 1.0);
       const V strains = zero_unless((normal > 0.0) & (p.shear > 0.0), V(node.position_step));
       kept = node.impulse.against(0.0, p.per_shear);
       next = kept + strains * (node.v_free + node.delassus.times(node.impulse));
