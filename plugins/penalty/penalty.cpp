@@ -130,7 +130,7 @@ struct penalty {
   // What all nodes of a batch share.
   struct numbers {
     bool loses, rubs, sticks_rigidly, sticks_softly;
-    V lead, ratio;       // tau, zeta
+    V step, lead, ratio;  // h, tau, zeta
     V softness;          // 4/(h^2 k_T)
     V shear, per_shear;  // h k_T where explicit, and 1/(h k_T)
   };
@@ -143,12 +143,16 @@ struct penalty {
             .rubs = any(friction > 0.0),
             .sticks_rigidly = any((friction > 0.0) & (tangential_stiffness == infinity)),
             .sticks_softly = any((friction > 0.0) & (tangential_stiffness < infinity)),
+            .step = h,
             .lead = 1.0 / (1.0 + restitution) - 0.5,
             .ratio = any(restitution < 1.0) ? damping_ratio(restitution) : V(0.0),
             .softness = 4.0 / h / rate,
             .shear = shear,
             .per_shear = integration == implicitly ? 1.0 / rate : zero_unless(shear > 0.0, 1.0 / shear)};
   }
+
+  using problem = penalty_law::problem<V>;
+  using answer = penalty_law::answer<V>;
 
   // Explicit springs and implicit linear ones have a closed form, with friction where H has one tangential entry.
   bool asks(bool is_transverse_form) const {
@@ -159,21 +163,18 @@ struct penalty {
   status_of<V> step(Node& node) const {
     if (integration != implicitly) return step_explicitly(node);
     const mask_of<V> acts = acts_on(node);
+    const problem p = normal_problem(node);
     V normal, indentation;
     if (node.prepared.loses)
-      press(spring_of(node), normal, indentation);
+      press(spring_of(p, node.prepared), normal, indentation);
     else
-      press(lossless_spring_of(node), normal, indentation);
+      press(lossless_spring_of(p, node.prepared), normal, indentation);
     return give(node, zero_unless(acts, normal), zero_unless(acts, indentation));
   }
 
-  using problem = penalty_law::problem<V>;
-  using answer = penalty_law::answer<V>;
   template <class Node>
   asked<V> ask(Node& node, problem& open) const {
-    open = {};
-    open.spring = spring_of(node);
-    open.friction = friction;
+    open = normal_problem(node);
     if constexpr (!is_transverse<Node>) {
       const vector<V> q = 0.5 * sliding_velocity(node, 0.0);
       const V softness = 0.5 * node.prepared.softness;
@@ -188,13 +189,17 @@ struct penalty {
       open.before1 = zero_unless(tangential_stiffness == infinity, node.v_previous.t1);
       open.before2 = zero_unless(tangential_stiffness == infinity, node.v_previous.t2);
     }
-    const mask_of<V> may_push = (open.spring.indentation > 0.0) | (node.v_free.n + node.v_previous.n < 0.0);
+    const mask_of<V> may_push = (open.indentation > 0.0) | (node.v_free.n + node.v_previous.n < 0.0);
     const mask_of<V> pushes = acts_on(node) & may_push;
     store(node, 0.0, {});
     return {pushes, status::free};
   }
-  static mask_of<V> solve(const problem& p, answer& a) { return penalty_law::solve(p, a); }
-  static void solve_scalar(const problem& p, answer& a) { a = scalar_friction(p).solve(); }
+  mask_of<V> solve(const problem& p, answer& a, const numbers& shared) const {
+    return penalty_law::solve(p, spring_of(p, shared), friction, a);
+  }
+  void solve_scalar(const problem& p, answer& a, const numbers& shared) const {
+    a = scalar_friction(p, spring_of(p, shared), friction).solve();
+  }
   template <class Node>
   status_of<V> finish(Node& node, const answer& a) const {
     node.refuse(a.status == no_solution, refusal::no_solution);
@@ -238,22 +243,24 @@ struct penalty {
     return (node.state.indentation > 0.0) | ((!is_out_of_reach(node)) & (middle <= 0.0));
   }
   template <class Node>
-  normal_spring<V, sure_zero> lossless_spring_of(const Node& node) const {
-    return {V(node.velocity_step), stiffness, exponent, node.v_free.n, node.v_previous.n, node.delassus.normal(),
-            zero_unless(stiffness < infinity, node.state.indentation), {}, {}};
+  problem normal_problem(const Node& node) const {
+    return {node.v_free.n, node.v_previous.n, node.delassus.normal(),
+            zero_unless(stiffness < infinity, node.state.indentation), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   }
-  template <class Node>
-  normal_spring<V> spring_of(const Node& node) const {
-    const normal_spring<V, sure_zero> s = lossless_spring_of(node);
+  normal_spring<V, sure_zero> lossless_spring_of(const problem& p, const numbers& shared) const {
+    return {shared.step, stiffness, exponent, p.free, p.previous, p.delassus, p.indentation, {}, {}};
+  }
+  // With the damper of the step.
+  normal_spring<V> spring_of(const problem& p, const numbers& shared) const {
     V damper = 0.0;
-    if (node.prepared.loses) {
-      const V ratio = node.prepared.ratio, root = square_root(s.delassus);
+    if (shared.loses) {
+      const V h = shared.step, ratio = shared.ratio, root = square_root(p.delassus);
       const V stiff = square_root(zero_unless(stiffness < infinity, stiffness));
       const V c = zero_unless(stiffness < infinity, damping);
-      const V fading = root * (1.0 + (0.25 + 0.5 * ratio) * (s.step * stiff * root));
-      damper = (2.0 * ratio * stiff + c) / select(ratio > 0.0, fading, 1.0 + 0.5 * s.step * c * s.delassus);
+      const V fading = root * (1.0 + (0.25 + 0.5 * ratio) * (h * stiff * root));
+      damper = (2.0 * ratio * stiff + c) / select(ratio > 0.0, fading, 1.0 + 0.5 * h * c * p.delassus);
     }
-    return {s.step, s.stiffness, s.exponent, s.free, s.previous, s.delassus, s.indentation, damper, node.prepared.lead};
+    return {shared.step, stiffness, exponent, p.free, p.previous, p.delassus, p.indentation, damper, shared.lead};
   }
   template <class Spring>
   static void press(const Spring& spring, V& normal, V& indentation) {

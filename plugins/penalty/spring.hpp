@@ -129,21 +129,22 @@ struct normal_spring {
     const V left = positive_part(indentation - way(free + delassus * impulse));
     return select((exponent == 1.0) & (left > 0.0), linear_end(impulse), left);
   }
-  // The impulse r where f(r), the force for a step with r less r itself, is zero; NaN where it has no root, which
-  // only friction that is coupled to the normal brings about. f(0), the force of the free step, is a bound else.
+  // The impulse r that is f(r), the force for a step with r; NaN where there is none, which only friction that is
+  // coupled to the normal brings about. f(0), the force of the free step, is a bound else.
   template <class Function>
   static V impulse_where(mask active, Function f) {
     constexpr int most_doublings = 64;
-    bracket<V> b{0.0, f(V(0.0)), 0.0, 1.0};
-    active = active & (b.at_low > 0.0);
-    b.high = zero_unless(active, 0.5 * b.at_low);
+    V high = f(V(0.0));
+    active = active & (high > 0.0);
     mask rises = active;
-    for (int k = 0; k <= most_doublings && any(rises); ++k) {
-      b.high = select(rises, 2.0 * b.high, b.high);
-      b.at_high = f(b.high);
-      rises = active & (b.at_high > 0.0);
+    for (int k = 0; k < most_doublings && any(rises); ++k) {
+      rises = rises & (f(high) > high);
+      high = select(rises, 2.0 * high, high);
     }
-    return select(rises, V(not_a_number), root_in(b, active & (!rises), f));
+    const V r = root_between(V(0.0), high, high, active & !rises, [&f](V x) {
+      return root_trial<V>{x - f(x), V(1.0), x != x};
+    });
+    return select(rises, V(not_a_number), zero_unless(active, r));
   }
 
   // By what closes the step: closed form, Newton's method or brackets.
@@ -198,7 +199,7 @@ struct normal_spring {
     return select(active, V(not_a_number), z);
   }
   [[gnu::noinline]] void solve_by_brackets(mask left, solution& found) const {
-    const V r = impulse_where(left, [this](V trial) { return given(free + delassus * trial) - trial; });
+    const V r = impulse_where(left, [this](V trial) { return given(free + delassus * trial); });
     found = {select(left, r, found.impulse), select(left, end_with(r), found.end),
              select(left, V(not_a_number), found.inertia)};
   }

@@ -31,7 +31,7 @@ struct postit {
           "under "
           "pressure, each time less after a rupture; contact with Coulomb friction where it is not bonded.",
       .inputs = reads_gap | reads_v_previous | reads_area,
-      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST,
+      .capabilities = ILAW_CAN_ADHERE | acts_at_distance | can_rest,
       .state_version = 2};
 
   static constexpr const char* references[] = {
@@ -104,8 +104,7 @@ struct postit {
   }
   // What is bonded from the start holds at any gap.
   std::uint32_t capabilities() const {
-    return std::uint32_t{ILAW_CAN_ADHERE | ILAW_CAN_REST} |
-           (initial_adhesion > 0.0 ? std::uint32_t{ILAW_CAN_ACT_AT_DISTANCE} : 0U);
+    return ILAW_CAN_ADHERE | can_rest | (initial_adhesion > 0.0 ? acts_at_distance : 0U);
   }
   const char* conflict() const {
     return initial_adhesion > adhesion_limit

@@ -24,7 +24,7 @@ struct tie {
                                      "memory exceed it in pull and shear "
                                      "together; frictionless contact is left.",
                                  .inputs = reads_gap | reads_v_previous | reads_area,
-                                 .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST,
+                                 .capabilities = ILAW_CAN_ADHERE | acts_at_distance | can_rest,
                                  .state_version = 2};
 
   static constexpr const char* references[] = {

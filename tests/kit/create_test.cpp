@@ -3,7 +3,7 @@
 #include "support/numbers.hpp"
 #include "support/small_batch.hpp"
 
-#include <ilaw/profile.h>
+#include <ilaw/ext/draft/profile.h>
 
 #include <set>
 

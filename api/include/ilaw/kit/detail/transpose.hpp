@@ -61,7 +61,8 @@ ILAW_KIT_INLINE one column_of_six(one low, one high, std::integer_sequence<int, 
                                  (K / half * register_lanes + (6 * (K % half) + Column) % register_lanes)...);
 }
 
-// ---- registers in memory ----------------------------------------------------------------------------------------------
+// ---- registers in memory
+// ----------------------------------------------------------------------------------------------
 
 ILAW_KIT_INLINE one one_at(const double* p) {
   one v;
@@ -80,41 +81,6 @@ ILAW_KIT_INLINE void put_one(one v, float* p) {
   const one_floats f = __builtin_convertvector(v, one_floats);
   __builtin_memcpy(p, &f, sizeof f);
 }
-
-ILAW_KIT_INLINE int in_register(int count) {
-  return count < 0 ? 0 : count < register_lanes ? count : register_lanes;
-}
-// The first count lanes; the others: fill.
-template <class Number>
-ILAW_KIT_INLINE one some_at(const Number* p, int count, double fill) {
-  one v = fill - one{};
-  for (int k = 0; k < in_register(count); ++k) v[k] = static_cast<double>(p[k]);
-  return v;
-}
-template <class Number>
-ILAW_KIT_INLINE void put_some(one v, Number* p, int count) {
-  for (int k = 0; k < in_register(count); ++k) p[k] = static_cast<Number>(v[k]);
-}
-#if defined(__AVX512F__)
-ILAW_KIT_INLINE one some_at(const double* p, int count, double fill) {
-  const auto first = static_cast<__mmask8>((1U << in_register(count)) - 1);
-  return (one)_mm512_mask_loadu_pd(_mm512_set1_pd(fill), first, p);
-}
-ILAW_KIT_INLINE void put_some(one v, double* p, int count) {
-  _mm512_mask_storeu_pd(p, static_cast<__mmask8>((1U << in_register(count)) - 1), (__m512d)v);
-}
-#elif defined(__AVX2__)
-ILAW_KIT_INLINE __m256i first_lanes(int count) {
-  return _mm256_cmpgt_epi64(_mm256_set1_epi64x(in_register(count)), _mm256_set_epi64x(3, 2, 1, 0));
-}
-ILAW_KIT_INLINE one some_at(const double* p, int count, double fill) {
-  const __m256i first = first_lanes(count);
-  return (one)_mm256_blendv_pd(_mm256_set1_pd(fill), _mm256_maskload_pd(p, first), (__m256d)first);
-}
-ILAW_KIT_INLINE void put_some(one v, double* p, int count) {
-  _mm256_maskstore_pd(p, first_lanes(count), (__m256d)v);
-}
-#endif
 
 // Whole numbers 0..255 as bytes.
 ILAW_KIT_INLINE void put_bytes(one v, std::uint8_t* p) {
