@@ -28,7 +28,7 @@ auto loop_of(const instance<Law>& made) {
   using run_function = typename batch_walk<Number>::run_function;
   if constexpr (requires(const Wide& law, node_type& n, typename Wide::problem& p) { law.ask(n, p); }) {
     using solving = solver_kernel<Law, V, Number, Frame, Delassus>;
-    if constexpr (can_step && requires { made.law.asks(); })
+    if constexpr (can_step && (requires { made.law.asks(); } || requires { made.law.asks(true); }))
       return made.asks ? run_function(solving::run) : run_function(plain::run);
     else
       return run_function(solving::run);

@@ -154,6 +154,7 @@ ILAW_KIT_INLINE const V& number_in(const State& state, int k) {
 template <class V>
 struct step_limit {
   V least = infinity, most_normal = 0.0, most_tangential = 0.0;
+  bool is_by_node = false;
 };
 
 // ---- a pack from end to end
@@ -554,15 +555,16 @@ struct kernel {
   static constexpr bool by_node = requires(const Wide& law, const node_type& n) {
     law.stable_velocity_step(n);
   };
-  ILAW_KIT_INLINE static V largest_tangential(const transverse<V>& h) { return h.t; }
-  ILAW_KIT_INLINE static V largest_tangential(const full<V>& h) {
-    const V mean = 0.5 * (h.t11 + h.t22), half = 0.5 * (h.t11 - h.t22);
-    return mean + length(half, h.t12);
-  }
+  // Where both forms are given, the one of the node counts where the other gives NaN, and for parameters per node.
   ILAW_KIT_INLINE static void add_limit(limit& found, const Wide& law, const node_type& n, const view_type& b,
                                         mask good) {
+    if constexpr (by_node)
+      if (!by_delassus || found.is_by_node) {
+        found.least = smaller(select(good, law.stable_velocity_step(n), V(infinity)), found.least);
+        return;
+      }
     if constexpr (by_delassus) {
-      const V normal = n.delassus.normal(), tangential = largest_tangential(n.delassus);
+      const V normal = n.delassus.normal(), tangential = n.delassus.largest_tangential();
       if (b.varying) {
         found.least =
             smaller(select(good, law.stable_velocity_step(normal, tangential), V(infinity)), found.least);
@@ -570,9 +572,15 @@ struct kernel {
         found.most_normal = larger(zero_unless(good, normal), found.most_normal);
         found.most_tangential = larger(zero_unless(good, tangential), found.most_tangential);
       }
-    } else if constexpr (by_node) {
-      found.least = smaller(select(good, law.stable_velocity_step(n), V(infinity)), found.least);
     }
+  }
+  static limit limit_of(const Law& law, const view_type& b) {
+    limit made;
+    if constexpr (by_delassus && by_node) {
+      const double step = law.stable_velocity_step(1.0, 1.0);
+      made.is_by_node = b.varying || step != step;
+    }
+    return made;
   }
   static void give_limit(const limit& found, const Law& law, tally& all) {
     double least = infinity, normal = 0.0, tangential = 0.0;
@@ -645,7 +653,7 @@ struct kernel {
     const view_type b = all;
     Wide law = broadcast<V>(given);
     auto prepared = kit::prepared(law, b.step);
-    limit limits;
+    limit limits = limit_of(given, b);
     const int is_special = b.varying + b.in_memory;
     std::int64_t i = 0;
     for (; i + width <= b.count; i += width) {

@@ -306,7 +306,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     const view_type b = whole;
     Wide law = broadcast<V>(given);
     auto prepared = kit::prepared(law, b.step);
-    limit limits;
+    limit limits = base::limit_of(given, b);
     problems_type all;
     for (int c = 0; c < parameter_count<Law>; ++c)
       if (b.varies(c)) all.varying |= std::uint64_t{1} << c;
