@@ -114,6 +114,7 @@ const char* wrong_parameters(const instance<Law>& made, const ilaw_batch& batch,
     if (!range_of(Law::parameters[place]).has(value)) return "a per-node parameter is out of range";
     Law::parameters[place].member.set(law, value);
   }
+  made.read_node_tables(law, batch.time);
   if constexpr (requires { law.conflict(); })
     if (made.per_node_count > 0) return law.conflict();
   return nullptr;

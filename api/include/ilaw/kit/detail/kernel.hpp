@@ -83,6 +83,26 @@ constexpr parameter_range range_of(const parameter<Law>& p) {
   return parameter_range(p.minimum, p.minimum_excluded, p.maximum, p.infinity_allowed);
 }
 
+// Tables over fields, lane by lane.
+template <class Wide, class Number>
+[[gnu::noinline]] void look_up(Wide& own, const view<Number>& b) {
+  using V = typename number_of_law<Wide>::type;
+  for (int k = 0; k < parameter_count<Wide>; ++k) {
+    const table& t = b.tables[k];
+    if (!t.per_node || !Wide::parameters[k].member.may_vary()) continue;
+    double found[lanes_of<V>];
+    for (int lane = 0; lane < lanes_of<V>; ++lane) {
+      double place[3] = {};
+      for (int a = 0; a < t.axis_count; ++a)
+        place[a] = t.source[a] == table::time
+                       ? b.step.time
+                       : lane_of(Wide::parameters[t.source[a]].member.varying_in(own), lane);
+      found[lane] = t.at(place);
+    }
+    __builtin_memcpy(static_cast<void*>(&Wide::parameters[k].member.varying_in(own)), found, sizeof found);
+  }
+}
+
 // The parameters of the nodes of a pack. Where one is out of range or several do not go together, the law
 // stays as it was, so that no step need stand it; returns which nodes are good.
 template <class Wide, class Law, class Number>
@@ -95,12 +115,13 @@ template <class Wide, class Law, class Number>
       good = good & range_of(Wide::parameters[k]).has(given);
       Wide::parameters[k].member.varying_in(own) = given;
     }
+  if (b.tables) look_up(own, b);
   if constexpr (requires { law.conflict(); }) {
     unsigned fit = 0;
     for (int lane = 0; lane < lanes_of<V>; ++lane) {
       Law here = law;
       for (int k = 0; k < parameter_count<Law>; ++k)
-        if (Wide::parameters[k].member.may_vary() && b.parameters[k])
+        if (Wide::parameters[k].member.may_vary() && b.varies(k))
           Law::parameters[k].member.set(here, lane_of(Wide::parameters[k].member.varying_in(own), lane));
       fit |= here.conflict() ? 0U : 1U << lane;
     }
@@ -108,7 +129,7 @@ template <class Wide, class Law, class Number>
   }
   if (any(!good))
     for (int k = 0; k < parameter_count<Law>; ++k)
-      if (Wide::parameters[k].member.may_vary() && b.parameters[k]) {
+      if (Wide::parameters[k].member.may_vary() && b.varies(k)) {
         V& value = Wide::parameters[k].member.varying_in(own);
         value = select(good, value, V(Law::parameters[k].member.get(law)));
       }
@@ -244,8 +265,11 @@ struct kernel {
       return;
     }
     axis<V> a;
-    load_vector(a, b.v_previous, i, found);
-    if (!b.reads_previous) {
+    V read = 0.0;
+    load_vector(a, b.v_previous, i, read);
+    if (b.reads_previous) {
+      found = found + read;
+    } else {
       constexpr double guard = 4.0;
       known = residual(a, V(0.0)) == 0.0;
       const axis<V> wide{guard * a.x, guard * a.y, guard * a.z};
@@ -266,9 +290,7 @@ struct kernel {
     load_vector(free, b.v_free, i, numbers);
     vector_type v_free = frame.to_local(free), v_previous{};
     if constexpr (frame_type::turns) v_free.n = v_free.n + 0.0;
-    V unread = 0.0;
-    if constexpr (reads<Law>(reads_v_previous))
-      load_previous(v_previous, known, b, frame, i, b.reads_previous ? numbers : unread);
+    if constexpr (reads<Law>(reads_v_previous)) load_previous(v_previous, known, b, frame, i, numbers);
     H h;
     load_delassus(h, b, i);
     h = frame.to_local(h, b.dimension);
@@ -586,10 +608,8 @@ struct kernel {
 
   // One pack. False: it has a bad node and was not written. node: which the first of a copied pack is.
   ILAW_KIT_INLINE static bool run_pack(const Wide& law, const prepared_t<Wide>& prepared, const view_type& b,
-                                       std::int64_t i, mask good_parameters, tally& found, limit& limits,
+                                       std::int64_t i, checks_type c, tally& found, limit& limits,
                                        std::int64_t node) {
-    checks_type c;
-    if constexpr (careful) c.require(good_parameters, reason_parameter);
     loaded p = load_pack(prepared, b, i, c);
     take_state(p.node, b, i, c);
     const status_of<V> status = law.step(p.node);
@@ -607,10 +627,10 @@ struct kernel {
                                                                   std::int64_t node, tally& found,
                                                                   limit& limits) {
     Wide law = broadcast<V>(given);
-    mask good = V(0.0) == V(0.0);
-    if (b.varying) good = take_parameters(law, given, b, 0);
+    checks_type c;
+    if (b.varying) c.require(take_parameters(law, given, b, 0), reason_parameter);
     const auto prepared = kit::prepared(law, b.step);
-    run_pack(law, prepared, b, 0, good, found, limits, node);
+    run_pack(law, prepared, b, 0, c, found, limits, node);
   }
   [[gnu::noinline, gnu::cold]] static void run_carefully(const Law& given, const view_type& b, std::int64_t i,
                                                          tally& found, limit& limits) {
@@ -624,28 +644,32 @@ struct kernel {
     Wide law = broadcast<V>(given);
     auto prepared = kit::prepared(law, b.step);
     limit limits = limit_of(given, b);
-    mask good = V(0.0) == V(0.0);
+    const int is_special = b.varying + b.in_memory;
     std::int64_t i = 0;
     for (; i + width <= b.count; i += width) {
-      if (b.varying) [[unlikely]]
-        good = vary(law, prepared, given, b, i);
-      if (b.in_memory) prefetch(b, i + prefetch_distance, width);
-      if ((b.varying && any(!good)) || !run_pack(law, prepared, b, i, good, found, limits, i)) [[unlikely]]
+      bool is_usual = true;
+      if (is_special) [[unlikely]]
+        is_usual = get_ready(law, prepared, given, b, i);
+      if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), found, limits, i)) [[unlikely]]
         run_carefully(given, b, i, found, limits);
     }
     if (i < b.count) run_carefully(given, b, i, found, limits);
     if constexpr (width == 1) found.by_scalar_fallback += b.count;
     give_limit(limits, given, found);
   }
-  // The law of the nodes of a pack. Taken apart from the law that the loop has in registers.
+  // Asks for the arrays of a later pack where no cache holds them, and reads the parameters of this one,
+  // apart from the law that the loop has in registers. False: some node's are bad.
   template <class Prepared>
-  ILAW_KIT_INLINE static mask vary(Wide& law, Prepared& prepared, const Law& given, const view_type& b,
-                                   std::int64_t i) {
+  ILAW_KIT_INLINE static bool get_ready(Wide& law, Prepared& prepared, const Law& given, const view_type& b,
+                                        std::int64_t i) {
+    if constexpr (std::is_same_v<Number, double>)
+      if (b.in_memory) prefetch(b, i + prefetch_distance, width);
+    if (!b.varying) return true;
     Wide own = law;
     const mask good = take_parameters(own, given, b, i);
     law = own;
     if constexpr (requires { law.prepare(b.step); }) refresh(prepared, kit::prepared(law, b.step));
-    return good;
+    return !any(!good);
   }
   template <class Prepared>
   ILAW_KIT_INLINE static void refresh(Prepared& to, const Prepared& from) {

@@ -14,7 +14,7 @@ struct array {
   Number* at = nullptr;
   std::int64_t component = 0;
   int count = 0;  // components
-  bool rows = false;
+  int rows = 0;   // components, 0 for columns
 
   Number& of(std::int64_t node, int c) const { return at[rows ? node * count + c : node + c * component]; }
 };
@@ -26,7 +26,7 @@ struct columns {
   Number* at = nullptr;
   static constexpr std::int64_t component = copy_lanes;
   static constexpr int count = Count;
-  static constexpr bool rows = false;
+  static constexpr int rows = 0;
 };
 
 template <class V, class Number>
@@ -40,15 +40,19 @@ template <class V, class Number>
 ILAW_KIT_INLINE void store(V a, Number* p) {
   if constexpr (lanes_of<V> == 1)
     *p = static_cast<Number>(a);
-  else
+  else {
+#pragma GCC unroll 4
     for (int r = 0; r < V::size / register_lanes; ++r) put_one(a.v[r], p + r * register_lanes);
+  }
 }
 template <class V>
 ILAW_KIT_INLINE void store_bytes(V a, std::uint8_t* p) {
   if constexpr (lanes_of<V> == 1)
     *p = static_cast<std::uint8_t>(a);
-  else
+  else {
+#pragma GCC unroll 4
     for (int r = 0; r < V::size / register_lanes; ++r) put_bytes(a.v[r], p + r * register_lanes);
+  }
 }
 
 // Rows of N numbers, N of 2, 3, 4 and 6, from p on. found: times all numbers read, each in some lane; so
@@ -127,11 +131,9 @@ ILAW_KIT_INLINE void store_rows(const V (&a)[N], Number* p) {
         out[0] = zipped<0>(a[0].v[r], a[1].v[r], each_lane);
         out[1] = zipped<1>(a[0].v[r], a[1].v[r], each_lane);
       } else if constexpr (N == 3) {
-        const one u = moved_to_rows<0>(a[0].v[r], each_lane), v = moved_to_rows<1>(a[1].v[r], each_lane),
-                  w = moved_to_rows<2>(a[2].v[r], each_lane);
-        out[0] = row_of_three<0>(u, v, w, each_lane);
-        out[1] = row_of_three<1>(u, v, w, each_lane);
-        out[2] = row_of_three<2>(u, v, w, each_lane);
+        out[0] = row_of_three<0>(a[0].v[r], a[1].v[r], a[2].v[r], each_lane);
+        out[1] = row_of_three<1>(a[0].v[r], a[1].v[r], a[2].v[r], each_lane);
+        out[2] = row_of_three<2>(a[0].v[r], a[1].v[r], a[2].v[r], each_lane);
       } else {
         static_assert(N == 4);
         const one e = zipped<0>(a[0].v[r], a[2].v[r], each_lane),
@@ -154,8 +156,7 @@ ILAW_KIT_INLINE void store_rows(const V (&a)[3], float* p) requires(lanes_of<V> 
 #pragma GCC unroll 4
   for (int r = 0; r < V::size / register_lanes; ++r) {
     const auto narrow = [&](int c) ILAW_KIT_LAMBDA { return __builtin_convertvector(a[c].v[r], one_floats); };
-    const one_floats u = moved_to_rows<0>(narrow(0), each_lane), v = moved_to_rows<1>(narrow(1), each_lane),
-                     w = moved_to_rows<2>(narrow(2), each_lane);
+    const one_floats u = narrow(0), v = narrow(1), w = narrow(2);
     const one_floats x = row_of_three<0>(u, v, w, each_lane), y = row_of_three<1>(u, v, w, each_lane),
                      z = row_of_three<2>(u, v, w, each_lane);
     float* const q = p + 3 * register_lanes * r;
@@ -169,7 +170,7 @@ ILAW_KIT_INLINE void store_rows(const V (&a)[3], float* p) requires(lanes_of<V> 
 // a struct that comes through a branch goes through memory.
 template <class V, class Array>
 ILAW_KIT_INLINE void load_vector(axis<V>& to, const Array& a, std::int64_t i, V& found) {
-  if (a.rows && a.count == 3) {
+  if (a.rows == 3) {
     V c[3];
     load_rows(c, a.at + 3 * i, found);
     to.x = c[0];
@@ -197,10 +198,10 @@ ILAW_KIT_INLINE void load_vector(axis<V>& to, const Array& a, std::int64_t i, V&
 }
 template <class V, class Array>
 ILAW_KIT_INLINE void store_vector(axis<V> a, const Array& to, std::int64_t i) {
-  if (to.rows && to.count == 3) {
+  if (to.rows == 3) {
     const V c[3] = {a.x, a.y, a.z};
     store_rows(c, to.at + 3 * i);
-  } else if (to.rows && to.count == 2) {
+  } else if (to.rows == 2) {
     const V c[2] = {a.x, a.y};
     store_rows(c, to.at + 2 * i);
   } else {

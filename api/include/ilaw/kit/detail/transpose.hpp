@@ -15,11 +15,19 @@ constexpr int holder_of(int lane) {
   while ((vector * register_lanes + lane) % Numbers / (Numbers / 3) != Group) ++vector;
   return vector;
 }
+// AVX-512 takes any lanes of two registers in one instruction; the others move lanes and blend.
 template <int Column, class One, int... K>
 ILAW_KIT_INLINE One column_of_three(One a, One b, One c, std::integer_sequence<int, K...>) {
-  const One two = __builtin_shufflevector(a, b, (holder_of<3, Column>(K) == 1 ? K + register_lanes : K)...);
-  const One all = __builtin_shufflevector(two, c, (holder_of<3, Column>(K) == 2 ? K + register_lanes : K)...);
-  return __builtin_shufflevector(all, all, (3 * K + Column) % register_lanes...);
+  constexpr int lanes = register_lanes;
+#if defined(__AVX512F__)
+  constexpr auto from = [](int lane) { return 3 * lane + Column; };
+  const One two = __builtin_shufflevector(a, b, (from(K) < 2 * lanes ? from(K) : 0)...);
+  return __builtin_shufflevector(two, c, (from(K) < 2 * lanes ? K : from(K) - lanes)...);
+#else
+  const One two = __builtin_shufflevector(a, b, (holder_of<3, Column>(K) == 1 ? K + lanes : K)...);
+  const One all = __builtin_shufflevector(two, c, (holder_of<3, Column>(K) == 2 ? K + lanes : K)...);
+  return __builtin_shufflevector(all, all, (3 * K + Column) % lanes...);
+#endif
 }
 template <int Column>
 constexpr int row_in_lane(int lane) {
@@ -27,15 +35,21 @@ constexpr int row_in_lane(int lane) {
   while ((3 * row + Column) % register_lanes != lane) ++row;
   return row;
 }
-template <int Column, class One, int... K>
-ILAW_KIT_INLINE One moved_to_rows(One column, std::integer_sequence<int, K...>) {
-  return __builtin_shufflevector(column, column, row_in_lane<Column>(K)...);
-}
 template <int Vector, class One, int... K>
 ILAW_KIT_INLINE One row_of_three(One a, One b, One c, std::integer_sequence<int, K...>) {
-  constexpr int from = Vector * register_lanes;
-  const One two = __builtin_shufflevector(a, b, ((from + K) % 3 == 1 ? K + register_lanes : K)...);
-  return __builtin_shufflevector(two, c, ((from + K) % 3 == 2 ? K + register_lanes : K)...);
+  constexpr int lanes = register_lanes, from = Vector * lanes;
+#if defined(__AVX512F__)
+  constexpr auto row = [](int lane) { return (from + lane) / 3; };
+  constexpr auto column = [](int lane) { return (from + lane) % 3; };
+  const One two = __builtin_shufflevector(a, b, (column(K) == 1 ? row(K) + lanes : row(K))...);
+  return __builtin_shufflevector(two, c, (column(K) == 2 ? row(K) + lanes : K)...);
+#else
+  const One u = __builtin_shufflevector(a, a, row_in_lane<0>(K)...);
+  const One v = __builtin_shufflevector(b, b, row_in_lane<1>(K)...);
+  const One w = __builtin_shufflevector(c, c, row_in_lane<2>(K)...);
+  const One two = __builtin_shufflevector(u, v, ((from + K) % 3 == 1 ? K + lanes : K)...);
+  return __builtin_shufflevector(two, w, ((from + K) % 3 == 2 ? K + lanes : K)...);
+#endif
 }
 
 // Of two registers side by side every second number, from the first or second on; and the reverse.

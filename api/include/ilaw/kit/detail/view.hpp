@@ -4,6 +4,7 @@
 #pragma once
 
 #include <ilaw/kit/detail/load_store.hpp>
+#include <ilaw/kit/detail/parameters.hpp>
 #include <ilaw/kit/law.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -26,6 +27,7 @@ struct view_options {
   bool varying;         // some parameter comes per node
   bool in_memory;       // no cache holds the batch
   bool moves;           // more than impulse and state is asked for
+  const table* tables;  // by the law's parameters, over fields that come per node; null: none
 };
 
 // In the place of a host's number type: a pack of nodes that was copied to columns of doubles.
@@ -58,6 +60,8 @@ struct view : view_options {
   double* history;
   std::int64_t history_node_stride, history_component_stride;
   const std::int64_t* nodes;
+
+  bool varies(int parameter) const { return parameters[parameter] || (tables && tables[parameter].per_node); }
 };
 
 // A pack of nodes as columns of doubles: for the last, unfilled pack and for packs with a bad node. Lanes
@@ -192,8 +196,8 @@ struct tally {
   double stable_velocity_step = infinity;
 };
 
-// How many nodes ahead a loop asks for arrays that no cache holds, and from how many nodes on; 32 to 128 are
-// alike.
+// Of doubles: floats lose by it. How many nodes ahead a loop asks for arrays that no cache holds, and from
+// how many nodes on; 32 to 128 are alike.
 inline constexpr int prefetch_distance = 64;
 inline constexpr std::int64_t prefetch_from = 16384;
 
