@@ -321,8 +321,23 @@ struct bits_of<double> {
   ILAW_KIT_INLINE static double number(type bits) { return std::bit_cast<double>(bits); }
 };
 
-// ---- the lanes of a V
-// ---------------------------------------------------------------------------------------------
+// Whether numbers differ in any bit, as 0 and -0 do.
+ILAW_KIT_INLINE one_mask have_other_bits(one a, one b) {
+#if defined(__AVX512F__)
+  return _mm512_cmpneq_epi64_mask((__m512i)a, (__m512i)b);
+#else
+  return (one_bits)a != (one_bits)b;
+#endif
+}
+template <int Registers>
+ILAW_KIT_INLINE pack_mask<Registers> have_other_bits(pack_of<Registers> a, pack_of<Registers> b) {
+  return pack_mask<Registers>::each([&](int k) ILAW_KIT_LAMBDA { return have_other_bits(a.v[k], b.v[k]); });
+}
+ILAW_KIT_INLINE bool have_other_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) != std::bit_cast<std::uint64_t>(b);
+}
+
+// ---- the lanes of a V ---------------------------------------------------------------------------------------------
 
 template <class V>
 inline constexpr int lanes_of = V::size;

@@ -461,6 +461,7 @@ struct kernel {
       if constexpr (careful) {
         V before[states];
         load_numbers(before, b.state_in, i);
+#pragma GCC unroll 32
         for (int k = 0; k < states; ++k) entries[k] = select(accepted, entries[k], before[k]);
       }
       store_numbers(entries, b.state_out, i);
@@ -474,34 +475,23 @@ struct kernel {
                                           status_of<V> status, mask accepted) {
     if constexpr (can_carry) {
       if (b.tangents_from != tangents::carried) return;
-      using bits = bits_of<V>;
       mask changed = !(sum_of_sizes(p.node.impulse) + status.code() == 0.0);
       if constexpr (reads<Law>(reads_gap)) changed = changed | !is_out_of_reach(p.node);
       if constexpr (states > 0) {
         state_t<Wide> before;
         load_state(before, b, i);
-        for (int k = 0; k < states; ++k) {
-          const auto x = bits::in(number_in<V>(before, k)), y = bits::in(number_in<V>(p.node.state, k));
-          changed = changed | differ(x, y);
-        }
+#pragma GCC unroll 32
+        for (int k = 0; k < states; ++k)
+          changed = changed | have_other_bits(number_in<V>(before, k), number_in<V>(p.node.state, k));
       }
       const mask moves = accepted & (changed | mask_from<V>(b.frame_follows ? ~0U : 0U));
       const V now[6] = {p.frame.n.x, p.frame.n.y, p.frame.n.z, p.frame.t1.x, p.frame.t1.y, p.frame.t1.z};
       V next[6];
       load_numbers(next, b.frame_in, i);
+#pragma GCC unroll 6
       for (int k = 0; k < 6; ++k) next[k] = select(moves, now[k], next[k]);
       store_numbers(next, b.frame_out, i);
     }
-  }
-  ILAW_KIT_INLINE static bool differ(std::uint64_t a, std::uint64_t b) { return a != b; }
-  template <class Bits>
-  ILAW_KIT_INLINE static mask differ(Bits a, Bits b) {
-    unsigned lanes = 0;
-    for (int k = 0; k < width; ++k)
-      lanes |= a.b[k / register_lanes][k % register_lanes] != b.b[k / register_lanes][k % register_lanes]
-                   ? 1U << k
-                   : 0U;
-    return mask_from<V>(lanes);
   }
 
   // Windows are written after their block, histories here.

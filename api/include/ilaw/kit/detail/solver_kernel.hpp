@@ -271,6 +271,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
   }
   ILAW_KIT_INLINE static void choose(node_type& a, const node_type& b, mask first) {
     a.impulse = select(first, a.impulse, b.impulse);
+#pragma GCC unroll 32
     for (int k = 0; k < base::states; ++k) {
       V& x = number_in<V>(a.state, k);
       x = select(first, x, number_in<V>(b.state, k));
