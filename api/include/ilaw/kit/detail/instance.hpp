@@ -359,6 +359,7 @@ class instance_builder {
     made_.frame_follows = has_history<Law> && !(made_.permissions & ILAW_MAY_SKIP_FREE);
     if (made_.carries_frame && made_.frame_follows) made_.permissions &= ~std::uint32_t{ILAW_MAY_SKIP_FRESH};
     if constexpr (requires { made_.law.asks(); }) made_.asks = with_unknowns().asks();
+    if constexpr (requires { made_.law.asks(true); }) made_.asks = with_unknowns().asks(made_.is_transverse());
     made_.amount_count = static_cast<std::uint32_t>(amount_count<Law>);
     if constexpr (requires { made_.law.window(); }) made_.in_blocks = made_.law.window().duration > 0.0;
     return ILAW_OK;

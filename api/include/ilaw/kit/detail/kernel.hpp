@@ -154,6 +154,7 @@ ILAW_KIT_INLINE const V& number_in(const State& state, int k) {
 template <class V>
 struct step_limit {
   V least = infinity, most_normal = 0.0, most_tangential = 0.0;
+  bool is_by_node = false;
 };
 
 // ---- a pack from end to end
@@ -264,8 +265,11 @@ struct kernel {
       return;
     }
     axis<V> a;
-    load_vector(a, b.v_previous, i, found);
-    if (!b.reads_previous) {
+    V read = 0.0;
+    load_vector(a, b.v_previous, i, read);
+    if (b.reads_previous) {
+      found = found + read;
+    } else {
       constexpr double guard = 4.0;
       known = residual(a, V(0.0)) == 0.0;
       const axis<V> wide{guard * a.x, guard * a.y, guard * a.z};
@@ -286,9 +290,7 @@ struct kernel {
     load_vector(free, b.v_free, i, numbers);
     vector_type v_free = frame.to_local(free), v_previous{};
     if constexpr (frame_type::turns) v_free.n = v_free.n + 0.0;
-    V unread = 0.0;
-    if constexpr (reads<Law>(reads_v_previous))
-      load_previous(v_previous, known, b, frame, i, b.reads_previous ? numbers : unread);
+    if constexpr (reads<Law>(reads_v_previous)) load_previous(v_previous, known, b, frame, i, numbers);
     H h;
     load_delassus(h, b, i);
     h = frame.to_local(h, b.dimension);
@@ -459,6 +461,7 @@ struct kernel {
       if constexpr (careful) {
         V before[states];
         load_numbers(before, b.state_in, i);
+#pragma GCC unroll 32
         for (int k = 0; k < states; ++k) entries[k] = select(accepted, entries[k], before[k]);
       }
       store_numbers(entries, b.state_out, i);
@@ -472,34 +475,23 @@ struct kernel {
                                           status_of<V> status, mask accepted) {
     if constexpr (can_carry) {
       if (b.tangents_from != tangents::carried) return;
-      using bits = bits_of<V>;
       mask changed = !(sum_of_sizes(p.node.impulse) + status.code() == 0.0);
       if constexpr (reads<Law>(reads_gap)) changed = changed | !is_out_of_reach(p.node);
       if constexpr (states > 0) {
         state_t<Wide> before;
         load_state(before, b, i);
-        for (int k = 0; k < states; ++k) {
-          const auto x = bits::in(number_in<V>(before, k)), y = bits::in(number_in<V>(p.node.state, k));
-          changed = changed | differ(x, y);
-        }
+#pragma GCC unroll 32
+        for (int k = 0; k < states; ++k)
+          changed = changed | have_other_bits(number_in<V>(before, k), number_in<V>(p.node.state, k));
       }
       const mask moves = accepted & (changed | mask_from<V>(b.frame_follows ? ~0U : 0U));
       const V now[6] = {p.frame.n.x, p.frame.n.y, p.frame.n.z, p.frame.t1.x, p.frame.t1.y, p.frame.t1.z};
       V next[6];
       load_numbers(next, b.frame_in, i);
+#pragma GCC unroll 6
       for (int k = 0; k < 6; ++k) next[k] = select(moves, now[k], next[k]);
       store_numbers(next, b.frame_out, i);
     }
-  }
-  ILAW_KIT_INLINE static bool differ(std::uint64_t a, std::uint64_t b) { return a != b; }
-  template <class Bits>
-  ILAW_KIT_INLINE static mask differ(Bits a, Bits b) {
-    unsigned lanes = 0;
-    for (int k = 0; k < width; ++k)
-      lanes |= a.b[k / register_lanes][k % register_lanes] != b.b[k / register_lanes][k % register_lanes]
-                   ? 1U << k
-                   : 0U;
-    return mask_from<V>(lanes);
   }
 
   // Windows are written after their block, histories here.
@@ -553,15 +545,16 @@ struct kernel {
   static constexpr bool by_node = requires(const Wide& law, const node_type& n) {
     law.stable_velocity_step(n);
   };
-  ILAW_KIT_INLINE static V largest_tangential(const transverse<V>& h) { return h.t; }
-  ILAW_KIT_INLINE static V largest_tangential(const full<V>& h) {
-    const V mean = 0.5 * (h.t11 + h.t22), half = 0.5 * (h.t11 - h.t22);
-    return mean + length(half, h.t12);
-  }
+  // Where both forms are given, the one of the node counts where the other gives NaN, and for parameters per node.
   ILAW_KIT_INLINE static void add_limit(limit& found, const Wide& law, const node_type& n, const view_type& b,
                                         mask good) {
+    if constexpr (by_node)
+      if (!by_delassus || found.is_by_node) {
+        found.least = smaller(select(good, law.stable_velocity_step(n), V(infinity)), found.least);
+        return;
+      }
     if constexpr (by_delassus) {
-      const V normal = n.delassus.normal(), tangential = largest_tangential(n.delassus);
+      const V normal = n.delassus.normal(), tangential = n.delassus.largest_tangential();
       if (b.varying) {
         found.least =
             smaller(select(good, law.stable_velocity_step(normal, tangential), V(infinity)), found.least);
@@ -569,9 +562,15 @@ struct kernel {
         found.most_normal = larger(zero_unless(good, normal), found.most_normal);
         found.most_tangential = larger(zero_unless(good, tangential), found.most_tangential);
       }
-    } else if constexpr (by_node) {
-      found.least = smaller(select(good, law.stable_velocity_step(n), V(infinity)), found.least);
     }
+  }
+  static limit limit_of(const Law& law, const view_type& b) {
+    limit made;
+    if constexpr (by_delassus && by_node) {
+      const double step = law.stable_velocity_step(1.0, 1.0);
+      made.is_by_node = b.varying || step != step;
+    }
+    return made;
   }
   static void give_limit(const limit& found, const Law& law, tally& all) {
     double least = infinity, normal = 0.0, tangential = 0.0;
@@ -609,10 +608,8 @@ struct kernel {
 
   // One pack. False: it has a bad node and was not written. node: which the first of a copied pack is.
   ILAW_KIT_INLINE static bool run_pack(const Wide& law, const prepared_t<Wide>& prepared, const view_type& b,
-                                       std::int64_t i, mask good_parameters, tally& found, limit& limits,
+                                       std::int64_t i, checks_type c, tally& found, limit& limits,
                                        std::int64_t node) {
-    checks_type c;
-    if constexpr (careful) c.require(good_parameters, reason_parameter);
     loaded p = load_pack(prepared, b, i, c);
     take_state(p.node, b, i, c);
     const status_of<V> status = law.step(p.node);
@@ -630,10 +627,10 @@ struct kernel {
                                                                   std::int64_t node, tally& found,
                                                                   limit& limits) {
     Wide law = broadcast<V>(given);
-    mask good = V(0.0) == V(0.0);
-    if (b.varying) good = take_parameters(law, given, b, 0);
+    checks_type c;
+    if (b.varying) c.require(take_parameters(law, given, b, 0), reason_parameter);
     const auto prepared = kit::prepared(law, b.step);
-    run_pack(law, prepared, b, 0, good, found, limits, node);
+    run_pack(law, prepared, b, 0, c, found, limits, node);
   }
   [[gnu::noinline, gnu::cold]] static void run_carefully(const Law& given, const view_type& b, std::int64_t i,
                                                          tally& found, limit& limits) {
@@ -646,29 +643,33 @@ struct kernel {
     const view_type b = all;
     Wide law = broadcast<V>(given);
     auto prepared = kit::prepared(law, b.step);
-    limit limits;
-    mask good = V(0.0) == V(0.0);
+    limit limits = limit_of(given, b);
+    const int is_special = b.varying + b.in_memory;
     std::int64_t i = 0;
     for (; i + width <= b.count; i += width) {
-      if (b.varying) [[unlikely]]
-        good = vary(law, prepared, given, b, i);
-      if (b.in_memory) prefetch(b, i + prefetch_distance, width);
-      if ((b.varying && any(!good)) || !run_pack(law, prepared, b, i, good, found, limits, i)) [[unlikely]]
+      bool is_usual = true;
+      if (is_special) [[unlikely]]
+        is_usual = get_ready(law, prepared, given, b, i);
+      if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), found, limits, i)) [[unlikely]]
         run_carefully(given, b, i, found, limits);
     }
     if (i < b.count) run_carefully(given, b, i, found, limits);
     if constexpr (width == 1) found.by_scalar_fallback += b.count;
     give_limit(limits, given, found);
   }
-  // The law of the nodes of a pack. Taken apart from the law that the loop has in registers.
+  // Asks for the arrays of a later pack where no cache holds them, and reads the parameters of this one,
+  // apart from the law that the loop has in registers. False: some node's are bad.
   template <class Prepared>
-  ILAW_KIT_INLINE static mask vary(Wide& law, Prepared& prepared, const Law& given, const view_type& b,
-                                   std::int64_t i) {
+  ILAW_KIT_INLINE static bool get_ready(Wide& law, Prepared& prepared, const Law& given, const view_type& b,
+                                        std::int64_t i) {
+    if constexpr (std::is_same_v<Number, double>)
+      if (b.in_memory) prefetch(b, i + prefetch_distance, width);
+    if (!b.varying) return true;
     Wide own = law;
     const mask good = take_parameters(own, given, b, i);
     law = own;
     if constexpr (requires { law.prepare(b.step); }) refresh(prepared, kit::prepared(law, b.step));
-    return good;
+    return !any(!good);
   }
   template <class Prepared>
   ILAW_KIT_INLINE static void refresh(Prepared& to, const Prepared& from) {

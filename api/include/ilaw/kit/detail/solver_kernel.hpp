@@ -197,6 +197,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
   using base = kernel<Law, V, Number, Frame, Delassus>;
   using base::careful;
   using base::width;
+  using typename base::checks_type;
   using typename base::limit;
   using typename base::loaded;
   using typename base::mask;
@@ -222,17 +223,15 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
 
   // One pack, asked for its problems or, where finishing, with the answers to them. False: it has a bad node.
   ILAW_KIT_INLINE static bool run_pack(const Wide& law, const prepared_t<Wide>& prepared, const view_type& b,
-                                       std::int64_t i, mask good_parameters, problems_type& all,
-                                       const pass& at, tally& found, limit& limits, std::int64_t node) {
-    typename base::checks_type c;
-    if constexpr (careful) c.require(good_parameters, reason_parameter);
+                                       std::int64_t i, checks_type c, problems_type& all, const pass& at,
+                                       tally& found, limit& limits, std::int64_t node) {
     loaded p = base::load_pack(prepared, b, i, c);
     base::take_state(p.node, b, i, c);
     const mask bad_input = c.bad(), nodes = base::nodes_of(b);
     if constexpr (!careful)
       if (any(bad_input)) [[unlikely]]
         return false;
-    node_type closed = p.node;
+    node_type closed = as_it_came(p.node);
     problem own;
     const asked<V> asked = law.ask(closed, own);
     status_of<V> status = asked.status;
@@ -270,8 +269,26 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     if constexpr (careful) base::add_bad(found, c, nodes, node);
     return true;
   }
+  // Member by member: for a copy of the whole compilers keep both in memory.
+  ILAW_KIT_INLINE static node_type as_it_came(const node_type& n) {
+    return {.time = n.time,
+            .velocity_step = n.velocity_step,
+            .position_step = n.position_step,
+            .per_position_step = n.per_position_step,
+            .wants_energy = n.wants_energy,
+            .prepared = n.prepared,
+            .v_free = n.v_free,
+            .v_previous = n.v_previous,
+            .delassus = n.delassus,
+            .gap = n.gap,
+            .area = n.area,
+            .earlier = n.earlier,
+            .history = n.history,
+            .state = n.state};
+  }
   ILAW_KIT_INLINE static void choose(node_type& a, const node_type& b, mask first) {
     a.impulse = select(first, a.impulse, b.impulse);
+#pragma GCC unroll 32
     for (int k = 0; k < base::states; ++k) {
       V& x = number_in<V>(a.state, k);
       x = select(first, x, number_in<V>(b.state, k));
@@ -289,10 +306,10 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
                                                                   const pass& at, tally& found,
                                                                   limit& limits) {
     Wide law = broadcast<V>(given);
-    mask good = V(0.0) == V(0.0);
-    if (b.varying) good = take_parameters(law, given, b, 0);
+    checks_type c;
+    if (b.varying) c.require(take_parameters(law, given, b, 0), reason_parameter);
     const auto prepared = kit::prepared(law, b.step);
-    run_pack(law, prepared, b, 0, good, all, at, found, limits, node);
+    run_pack(law, prepared, b, 0, c, all, at, found, limits, node);
   }
   [[gnu::noinline, gnu::cold]] static void run_carefully(const Law& given, const view_type& b, std::int64_t i,
                                                          problems_type& all, const pass& at, tally& found,
@@ -307,24 +324,22 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     const view_type b = whole;
     Wide law = broadcast<V>(given);
     auto prepared = kit::prepared(law, b.step);
-    limit limits;
+    limit limits = base::limit_of(given, b);
     problems_type all;
     for (int c = 0; c < parameter_count<Law>; ++c)
       if (b.varies(c)) all.varying |= std::uint64_t{1} << c;
-    mask good = V(0.0) == V(0.0);
+    const int is_special = b.varying + b.in_memory;
     for (std::int64_t start = 0; start < b.count; start += problem_block) {
       const std::int64_t end = b.count - start < problem_block ? b.count : start + problem_block;
       all.count = 0;
       for (pass at{};; at = {.finishing = true}) {
         for (std::int64_t i = start; i < end; i += width, ++at.k) {
           if (at.finishing && all.state[at.k] == pack_state::stored) continue;
-          if (b.in_memory && !at.finishing) prefetch(b, i + prefetch_distance, width);
           bool is_usual = i + width <= end && !(at.finishing && all.state[at.k] == pack_state::careful);
-          if (b.varying && is_usual) [[unlikely]] {
-            good = base::vary(law, prepared, given, b, i);
-            is_usual = !any(!good);
-          }
-          if (!is_usual || !run_pack(law, prepared, b, i, good, all, at, found, limits, i)) [[unlikely]]
+          if (is_special && is_usual) [[unlikely]]
+            is_usual = base::get_ready(law, prepared, given, b, i);
+          if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), all, at, found, limits, i))
+              [[unlikely]]
             run_carefully(given, b, i, all, at, found, limits);
           if (at.finishing) at.first += __builtin_popcount(all.open[at.k]);
         }
