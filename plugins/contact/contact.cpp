@@ -5,20 +5,20 @@ namespace {
 
 using namespace ilaw::kit;
 
+template <class V>
 struct contact {
-  double restitution;
+  V restitution;
   double activation;
 
   static constexpr law_card card{
       .id = "contact",
       .title = "Unilateral contact with restitution",
       .doc =
-          "Signorini-Moreau contact without friction: open nodes get no impulse, closed ones are pushed so "
-          "that "
+          "Signorini-Moreau contact without friction: open nodes get no impulse, closed ones are pushed so that "
           "the normal velocity after the step is at least -e times the one before.",
       .inputs = reads_gap | reads_v_previous,
-      .capabilities = can_rest,
-      .names_tangents = false};
+      .permissions = may_skip_fresh | may_skip_free,
+      .is_isotropic = true};
 
   static constexpr const char* references[] = {
       "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics",
@@ -28,16 +28,12 @@ struct contact {
   static constexpr parameter<contact> parameters[] = {restitution_parameter(&contact::restitution),
                                                       activation_parameter(&contact::activation)};
 
-  static constexpr bool skips_out_of_reach = true;
-  using form_of_floats = contact;
-
   template <class Node>
-  void step(Node& node) const {
-    const contact_condition condition = contact_at(node, restitution, activation);
-    const double normal =
-        condition.slack <= 0.0 ? positive_part(-condition.excess / node.delassus.normal()) : 0.0;
-    node.impulse.n = normal;
-    node.status = normal > 0.0 ? status::closed : status::free;
+  status_of<V> step(Node& node) const {
+    const contact_condition<V> condition = contact_at(node, restitution, activation);
+    const V pressing = positive_part(-condition.excess / node.delassus.normal());
+    node.impulse.n = zero_unless(condition.slack <= 0.0, pressing);
+    return select(node.impulse.n > 0.0, status::closed, status::free);
   }
 };
 

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/kit_batch.hpp>
+#include <ilaw/ilaw.h>
 #include <ilaw/kit/detail/level.hpp>
 #include <ilaw/kit/detail/processor.hpp>
 
@@ -12,7 +12,7 @@
 
 // Runs a checked batch of an instance; the pointers lead to types that are the same at every level.
 // found: a tally. An array of them, one per law of the library, is what a level gives to the baseline.
-using ilaw_kit_walk = void (*)(const void* instance, const ilaw_kit_batch& batch, void* found);
+using ilaw_kit_walk = void (*)(const void* instance, const ilaw_batch& batch, void* found);
 
 #if defined(ILAW_KIT_OTHER_LEVELS)
 extern "C" const ilaw_kit_walk* ilaw_kit_walks_v3();

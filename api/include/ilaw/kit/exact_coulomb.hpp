@@ -1,4 +1,4 @@
-// local_coulomb.hpp - contact with Coulomb friction at one node for any symmetric positive definite H,
+// exact_coulomb.hpp - contact with Coulomb friction at one node for any symmetric positive definite H,
 // exactly:
 //
 //   v = q + H r,  0 <= v_N _|_ r_N >= 0,  |(r_1/mu_1, r_2/mu_2)| <= r_N,  r_T dissipates at most.
@@ -9,9 +9,6 @@
 #pragma once
 
 #include <ilaw/kit/regular_coulomb.hpp>
-
-#include <bit>
-#include <cstdint>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
