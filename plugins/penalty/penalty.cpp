@@ -13,12 +13,7 @@ constexpr double implicitly = 1.0;
 
 template <class V>
 struct penalty {
-  V stiffness;
-  V damping;
-  V exponent;
-  V restitution;
-  V friction;
-  V tangential_stiffness;
+  V stiffness, damping, exponent, restitution, friction, tangential_stiffness;
   double integration;
 
   static constexpr law_card card{
@@ -49,18 +44,9 @@ struct penalty {
        .doc = "Stiffness of a node against penetration; inf (implicit only): contact.",
        .required = true,
        .infinity_allowed = true},
-      {.member = &penalty::damping,
-       .name = "damping",
-       .symbol = "c",
-       .unit = "N.s/m",
-       .doc = "Kelvin-Voigt damping of a node while it penetrates."},
-      {.member = &penalty::exponent,
-       .name = "exponent",
-       .symbol = "p",
-       .doc = "The force is k times the penetration to this power: 1 linear, 1.5 Hertz.",
-       .default_value = 1.0,
-       .minimum = 1.0,
-       .maximum = 8.0},
+      {&penalty::damping, "damping", "c", "N.s/m", "Kelvin-Voigt damping of a node while it penetrates."},
+      {&penalty::exponent, "exponent", "p", "1",
+       "The force is k times the penetration to this power: 1 linear, 1.5 Hertz.", 1.0, 1.0, 8.0},
       restitution_parameter(&penalty::restitution)
           .with_doc(
               "Part of the normal velocity that an impact gives back (implicit; explicit: 1, see damping).")
@@ -84,40 +70,39 @@ struct penalty {
     vector<V> spring;  // its normal component is always zero
   };
   static constexpr state_variable<state> state_variables[] = {
-      {.member = &state::indentation,
-       .name = "indentation",
-       .unit = "m",
-       .doc = "Of the implicit normal spring since it closed.",
-       .minimum = 0.0},
-      {.member = &state::spring,
-       .name = "spring",
-       .unit = "m",
-       .doc = "Elastic part of the slip; normal component zero."}};
+      {&state::indentation, "indentation", "m", "Of the implicit normal spring since it closed.", false, 0.0},
+      {&state::spring, "spring", "m", "Elastic part of the slip; normal component zero."}};
 
   std::uint32_t inputs() const {
     return reads_gap | (integration == implicitly || damping > 0.0 ? reads_v_previous : 0U);
   }
   // A damper lets the node go before the spring is at rest: such a node is free, and may push once more.
   std::uint32_t permissions() const {
-    const bool lets_go_early = integration == implicitly && !(damping == 0.0 && restitution == 1.0);
+    const bool lets_go_early = integration == implicitly && (damping > 0.0 || restitution < 1.0);
     return may_skip_fresh | (lets_go_early ? 0U : may_skip_free);
   }
   const char* conflict() const {
+    const bool is_explicit = integration != implicitly;
     if (restitution < 1.0 && (damping > 0.0 || exponent != 1.0))
       return "parameter 'restitution' below 1 sets the damper of a linear spring: it needs 'damping' 0 and "
              "'exponent' 1";
-    if (integration == implicitly) return nullptr;
-    if (restitution < 1.0)
+    if (is_explicit && restitution < 1.0)
       return "parameter 'restitution' must be 1 where 'integration' is explicit; 'damping' takes energy there";
-    if (stiffness == infinity) return "parameter 'stiffness' must be finite where 'integration' is explicit";
-    if (friction > 0.0 && tangential_stiffness == infinity)
-      return "parameter 'tangential_stiffness' must be finite where 'integration' is explicit and 'friction' "
-             "> 0";
+    if (is_explicit && stiffness == infinity)
+      return "parameter 'stiffness' must be finite where 'integration' is explicit";
+    if (is_explicit && friction > 0.0 && tangential_stiffness == infinity)
+      return "parameter 'tangential_stiffness' must be finite where 'integration' is explicit and 'friction' > 0";
     return nullptr;
   }
 
-  // Of explicit springs, the normal one taken as closed and as stiff as it is now, with a damper that lags: omega h =
-  // 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega) (Belytschko, Liu, Moran 2000, eq. 6.2.31).
+  // Of explicit springs, the normal one taken as closed and as stiff as it is now, with a damper that lags:
+  // omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega) (Belytschko, Liu, Moran 2000, eq. 6.2.31).
+  V limit_with(V h_n, V h_t, V slope) const {
+    if (integration == implicitly) return infinity;
+    const V half_damper = 0.5 * damping * h_n;
+    const V closed = 2.0 / (length(square_root(slope * h_n), half_damper) + half_damper);
+    return smaller(2.0 / square_root(zero_unless(friction > 0.0, tangential_stiffness) * h_t), closed);
+  }
   V stable_velocity_step(V h_n, V h_t) const {
     return select(exponent == 1.0, limit_with(h_n, h_t, stiffness), V(not_a_number));
   }
@@ -131,30 +116,32 @@ struct penalty {
   struct numbers {
     bool loses, rubs, sticks_rigidly, sticks_softly;
     V step, lead, ratio;  // h, tau, zeta
-    V softness;          // 4/(h^2 k_T)
-    V shear, per_shear;  // h k_T where explicit, and 1/(h k_T)
+    V rate, softness;     // h k_T, 0 where there is none; 4/(h^2 k_T)
+    V per_rate;           // 1/(h k_T)
   };
   numbers prepare(const step_sizes& step) const {
     const double h = step.velocity_step;
-    const V rate = h * tangential_stiffness;
+    const mask_of<V> rubs = friction > 0.0, is_rigid = tangential_stiffness == infinity;
     // A spring too soft for 1/(h k_T) to be a number is none.
-    const V shear = zero_unless((friction > 0.0) & (rate >= std::numeric_limits<double>::min()), rate);
-    return {.loses = any((restitution < 1.0) | (damping > 0.0) | (stiffness == infinity)),
-            .rubs = any(friction > 0.0),
-            .sticks_rigidly = any((friction > 0.0) & (tangential_stiffness == infinity)),
-            .sticks_softly = any((friction > 0.0) & (tangential_stiffness < infinity)),
+    const V rate = h * tangential_stiffness, least = std::numeric_limits<double>::min();
+    const mask_of<V> counts = (integration == implicitly) | (rubs & (rate >= least));
+    return {.loses = any((restitution < 1.0) | (damping > 0.0) | (stiffness == infinity) | (exponent != 1.0)),
+            .rubs = any(rubs),
+            .sticks_rigidly = any(rubs & is_rigid),
+            .sticks_softly = any(rubs & !is_rigid),
             .step = h,
             .lead = 1.0 / (1.0 + restitution) - 0.5,
             .ratio = any(restitution < 1.0) ? damping_ratio(restitution) : V(0.0),
+            .rate = zero_unless(counts, rate),
             .softness = 4.0 / h / rate,
-            .shear = shear,
-            .per_shear = integration == implicitly ? 1.0 / rate : zero_unless(shear > 0.0, 1.0 / shear)};
+            .per_rate = zero_unless(counts, 1.0 / rate)};
   }
 
   using problem = penalty_law::problem<V>;
   using answer = penalty_law::answer<V>;
 
-  // Explicit springs and implicit linear ones have a closed form, with friction where H has one tangential entry.
+  // Explicit springs and implicit linear ones have a closed form, with friction where H has one tangential
+  // entry.
   bool asks(bool is_transverse_form) const {
     const bool is_linear = exponent == 1.0 || stiffness == infinity;
     return integration == implicitly && !(is_linear && (is_transverse_form || friction == 0.0));
@@ -162,16 +149,15 @@ struct penalty {
   template <class Node>
   status_of<V> step(Node& node) const {
     if (integration != implicitly) return step_explicitly(node);
-    const mask_of<V> acts = acts_on(node);
     const problem p = normal_problem(node);
-    V normal, indentation;
+    const mask_of<V> acts = acts_on(node);
+    spring_solution<V> found;
     if (node.prepared.loses)
-      press(spring_of(p, node.prepared), normal, indentation);
+      found = spring_of<V>(p, p.free, node.prepared).linear();
     else
-      press(lossless_spring_of(p, node.prepared), normal, indentation);
-    return give(node, zero_unless(acts, normal), zero_unless(acts, indentation));
+      found = spring_of<sure_zero>(p, p.free, node.prepared).linear();
+    return give(node, zero_unless(acts, found.impulse), zero_unless(acts, found.end));
   }
-
   template <class Node>
   asked<V> ask(Node& node, problem& open) const {
     open = normal_problem(node);
@@ -179,63 +165,65 @@ struct penalty {
       const vector<V> q = 0.5 * sliding_velocity(node, 0.0);
       const V softness = 0.5 * node.prepared.softness;
       const full<V>& h = node.delassus;
-      open.c1 = h.n1;
-      open.c2 = h.n2;
-      open.a11 = 0.5 * h.t11 + softness;
-      open.a22 = 0.5 * h.t22 + softness;
-      open.a12 = 0.5 * h.t12;
-      open.q1 = q.t1;
-      open.q2 = q.t2;
-      open.before1 = zero_unless(tangential_stiffness == infinity, node.v_previous.t1);
-      open.before2 = zero_unless(tangential_stiffness == infinity, node.v_previous.t2);
+      const mask_of<V> is_rigid = tangential_stiffness == infinity;
+      open.c1 = h.n1, open.c2 = h.n2;
+      open.a11 = 0.5 * h.t11 + softness, open.a22 = 0.5 * h.t22 + softness, open.a12 = 0.5 * h.t12;
+      open.q1 = q.t1, open.q2 = q.t2;
+      open.before1 = zero_unless(is_rigid, node.v_previous.t1);
+      open.before2 = zero_unless(is_rigid, node.v_previous.t2);
     }
-    const mask_of<V> may_push = (open.indentation > 0.0) | (node.v_free.n + node.v_previous.n < 0.0);
+    const mask_of<V> may_push = (open.indentation > 0.0) | (open.free + open.previous < 0.0);
     const mask_of<V> pushes = acts_on(node) & may_push;
     store(node, 0.0, {});
     return {pushes, status::free};
   }
   mask_of<V> solve(const problem& p, answer& a, const numbers& shared) const {
-    return penalty_law::solve(p, spring_of(p, shared), friction, a);
+    const auto solve_with = [&]<class Loss>(Loss) ILAW_KIT_LAMBDA {
+      const auto spring_at = [&](V free) ILAW_KIT_LAMBDA { return spring_of<Loss>(p, free, shared); };
+      return penalty_law::solve(p, friction, stiffness == infinity, spring_at, a);
+    };
+    return shared.loses ? solve_with(V(0.0)) : solve_with(sure_zero{});
   }
   void solve_scalar(const problem& p, answer& a, const numbers& shared) const {
-    a = scalar_friction(p, spring_of(p, shared), friction).solve();
+    a = scalar_friction{p, spring_of<V>(p, p.free, shared), friction}.solve();
   }
   template <class Node>
   status_of<V> finish(Node& node, const answer& a) const {
     node.refuse(a.status == no_solution, refusal::no_solution);
     const mask_of<V> is_apart = a.status == status::closed.code;
     if (!any(!is_apart)) return give(node, a.normal, a.indentation);
-    mask_of<V> slides = a.status == status::slip.code;
-    vector<V> impulse{a.normal, a.t1, a.t2};
-    if (any(is_apart)) {
-      slides = slides | (is_apart & rub_apart(node, a.normal));
-      impulse = select(is_apart, node.impulse, impulse);
-    }
-    node.impulse = impulse;
-    return keep(node, a.indentation, slides);
+    const mask_of<V> slides = is_apart & rub_apart(node, a.normal);
+    node.impulse = select(is_apart, node.impulse, vector<V>{a.normal, a.t1, a.t2});
+    return keep(node, a.indentation, slides | (a.status == status::slip.code));
   }
 
  private:
-  V limit_with(V h_n, V h_t, V slope) const {
-    if (integration == implicitly) return infinity;
-    const V half_damper = 0.5 * damping * h_n;
-    const V closed = 2.0 / (length(square_root(slope * h_n), half_damper) + half_damper);
-    const V sliding = 2.0 / square_root(zero_unless(friction > 0.0, tangential_stiffness) * h_t);
-    return smaller(sliding, closed);
-  }
   // Energies of the springs; none where they are rigid.
   V potential(V x) const {
     return zero_unless(stiffness < infinity, stiffness * to_exponent(x, exponent) * x / (exponent + 1.0));
   }
   V tangential_potential(vector<V> a, vector<V> b) const {
-    return zero_unless(tangential_stiffness < infinity, 0.5 * tangential_stiffness * tangential_product(a, b));
+    return zero_unless(tangential_stiffness < infinity,
+                       0.5 * tangential_stiffness * tangential_product(a, b));
   }
   template <class Node>
   static vector<V> spring_in(const Node& node) {
     return {0.0, node.state.spring.t1, node.state.spring.t2};
   }
+  // The tangential impulse -q/resistance within the cone; says where the node slips.
+  template <class Node>
+  mask_of<V> rub_against(Node& node, V normal, vector<V> q, V resistance) const {
+    const auto found = rub(resistance, normal, q.scaled_tangential_length(), V(0.0), V(0.0), friction);
+    node.impulse = q.against(normal, found.factor);
+    return found.status == status::slip;
+  }
+  status_of<V> status_with(V normal, mask_of<V> slides) const {
+    const status_of<V> rubbed = select(slides, status::slip, status::stick);
+    return select(normal > 0.0, select(friction > 0.0, rubbed, status::closed), status::free);
+  }
 
-  // ---- implicit: the mean over the step of forces that the step ends with, so that springs give back what they took
+  // ---- implicit: the mean over the step of forces that the step ends with, so that springs give back what
+  // they took
 
   template <class Node>
   mask_of<V> acts_on(const Node& node) const {
@@ -244,56 +232,54 @@ struct penalty {
   }
   template <class Node>
   problem normal_problem(const Node& node) const {
-    return {node.v_free.n, node.v_previous.n, node.delassus.normal(),
-            zero_unless(stiffness < infinity, node.state.indentation), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    const V x = zero_unless(stiffness < infinity, node.state.indentation);
+    return {node.v_free.n,
+            node.v_previous.n,
+            node.delassus.normal(),
+            x,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0};
   }
-  normal_spring<V, sure_zero> lossless_spring_of(const problem& p, const numbers& shared) const {
-    return {shared.step, stiffness, exponent, p.free, p.previous, p.delassus, p.indentation, {}, {}};
-  }
-  // With the damper of the step.
-  normal_spring<V> spring_of(const problem& p, const numbers& shared) const {
-    V damper = 0.0;
-    if (shared.loses) {
-      const V h = shared.step, ratio = shared.ratio, root = square_root(p.delassus);
-      const V stiff = square_root(zero_unless(stiffness < infinity, stiffness));
-      const V c = zero_unless(stiffness < infinity, damping);
-      const V fading = root * (1.0 + (0.25 + 0.5 * ratio) * (h * stiff * root));
-      damper = (2.0 * ratio * stiff + c) / select(ratio > 0.0, fading, 1.0 + 0.5 * h * c * p.delassus);
+  // Loss: see normal_spring. With the damper of the step.
+  template <class Loss>
+  normal_spring<V, Loss> spring_of(const problem& p, V free, const numbers& shared) const {
+    const V h = shared.step, ratio = shared.ratio, h_n = p.delassus, root = square_root(h_n);
+    Loss damper{}, lead{};
+    if constexpr (std::is_same_v<Loss, V>) {
+      const V k = zero_unless(stiffness < infinity, stiffness),
+              c = zero_unless(stiffness < infinity, damping);
+      const V fading = root * (1.0 + (0.25 + 0.5 * ratio) * (h * square_root(k) * root));
+      damper = (2.0 * ratio * square_root(k) + c) / select(ratio > 0.0, fading, 1.0 + 0.5 * h * c * h_n);
+      lead = shared.lead;
     }
-    return {shared.step, stiffness, exponent, p.free, p.previous, p.delassus, p.indentation, damper, shared.lead};
-  }
-  template <class Spring>
-  static void press(const Spring& spring, V& normal, V& indentation) {
-    const auto found = spring.linear();
-    normal = found.impulse;
-    indentation = found.end;
+    return {h, stiffness, exponent, free, p.previous, h_n, p.indentation, damper, lead};
   }
 
-  // q + H/2 r is the mean velocity of what slips, of which a rigid stick gives back the part e_T. Twice that, and twice
-  // what the spring adds to H/2.
+  // q + H/2 r is the mean velocity of what slips, of which a rigid stick gives back the part e_T. Twice that,
+  // and twice what the spring adds to H/2.
   template <class Node>
   vector<V> sliding_velocity(const Node& node, V given_back) const {
-    const numbers& p = node.prepared;
-    if (!p.sticks_softly) return node.v_free + given_back * node.v_previous;
+    if (!node.prepared.sticks_softly) return node.v_free + given_back * node.v_previous;
     const mask_of<V> is_rigid = tangential_stiffness == infinity;
     return node.v_free + select(is_rigid, given_back, V(1.0)) * node.v_previous +
            zero_unless(!is_rigid, V(4.0 / node.velocity_step)) * spring_in(node);
   }
-  // e_T where H is that of a ball in the tangent plane: what of v_T^- the free velocity has turned round, so that the
-  // stick does no work. A little more, as rounding may leave velocities along v^-, which then do none either.
+  // e_T where H is that of a ball in the tangent plane: what of v_T^- the free velocity has turned round, so
+  // that the stick does no work. A little more, as rounding may leave velocities along v^-, which then do
+  // none either.
   template <class Node>
   static V turned_part(const Node& node) {
     constexpr double more_than_rounding = 1.0 + 0x1p-48;
     const V speed = tangential_product(node.v_previous, node.v_previous);
     const V turned = 0.0 - more_than_rounding * tangential_product(node.v_free, node.v_previous);
     return zero_unless(turned > 0.0, turned / larger(turned, speed));
-  }
-  // The tangential impulse -q/resistance within the cone; says where the node slips.
-  template <class Node>
-  mask_of<V> rub_against(Node& node, V normal, vector<V> q, V resistance) const {
-    const auto found = rub(resistance, normal, q.scaled_tangential_length(), V(0.0), V(0.0), friction);
-    node.impulse = q.against(normal, found.factor);
-    return found.status == status::slip;
   }
   template <class Node>
   mask_of<V> rub_apart(Node& node, V normal) const {
@@ -318,25 +304,19 @@ struct penalty {
     store(node, indentation, slip);
     return status_with(normal, slides);
   }
-  status_of<V> status_with(V normal, mask_of<V> slides) const {
-    const status_of<V> rubbed = select(slides, status::slip, status::stick);
-    return select(normal > 0.0, select(friction > 0.0, rubbed, status::closed), status::free);
-  }
-
-  // What the step leaves in the tangential spring. One that sticks moves along; one that slides keeps no more than its
-  // force holds, in the direction of its end.
+  // What the step leaves in the tangential spring. One that sticks moves along; one that slides keeps no more
+  // than its force holds, in the direction of its end.
   template <class Node>
   vector<V> strained(const Node& node, mask_of<V> slides) const {
-    const V h = node.velocity_step, per_impulse = node.prepared.per_shear;
+    const V h = node.velocity_step, per_impulse = node.prepared.per_rate;
     const vector<V> spring = spring_in(node), r = node.impulse, v = node.v_free + node.delassus.times(r);
     const vector<V> moved = spring + (0.5 * h) * (node.v_previous + v);
     const V most = per_impulse * friction_limit(friction, r.n), length = moved.tangential_length();
     const mask_of<V> by_force = (h * h * tangential_stiffness * node.delassus.tangential() > 4.0) & !slides;
-    const V kept = select(slides & (length > most), most / length, V(1.0));
-    const vector<V> pressed = (-2.0 * per_impulse) * r - spring;
+    const vector<V> kept = select(slides & (length > most), most / length, V(1.0)) * moved;
+    const vector<V> next = select(by_force, (-2.0 * per_impulse) * r - spring, kept);
     const mask_of<V> holds = (tangential_stiffness < infinity) & (friction > 0.0);
-    const vector<V> next = zero_unless(holds, select(by_force, pressed, kept * moved));
-    return {0.0, next.t1 + 0.0, next.t2 + 0.0};  // never -0: a node at rest keeps its bits
+    return {0.0, zero_unless(holds, next.t1) + 0.0, zero_unless(holds, next.t2) + 0.0};  // never -0
   }
   template <class Node>
   void store(Node& node, V indentation, vector<V> slip) const {
@@ -354,23 +334,22 @@ struct penalty {
   // The spring is kept as the motion of this step will strain it, so that the next step finds it ready.
   template <class Node>
   status_of<V> step_explicitly(Node& node) const {
-    const numbers& p = node.prepared;
-    const V x = positive_part(-node.gap), h = node.velocity_step, v_before = node.v_previous.n;
-    const V elastic = h * (stiffness * to_exponent(x, exponent)), viscous = zero_unless(x > 0.0, h * damping * v_before);
-    const V normal = positive_part(elastic - viscous);
+    const numbers& shared = node.prepared;
+    const V x = positive_part(-node.gap), h = node.velocity_step,
+            elastic = h * (stiffness * to_exponent(x, exponent));
+    const V normal = positive_part(elastic - zero_unless(x > 0.0, h * damping * node.v_previous.n));
     const vector<V> spring = spring_in(node);
     vector<V> kept{}, next{};
-    node.impulse.n = normal;
     mask_of<V> slides = normal < 0.0;
-    if (p.rubs) {
-      slides = rub_against(node, normal, p.shear * spring, 1.0);
-      const V strains = zero_unless((normal > 0.0) & (p.shear > 0.0), V(node.position_step));
-      kept = node.impulse.against(0.0, p.per_shear);
+    node.impulse.n = normal;
+    if (shared.rubs) {
+      slides = rub_against(node, normal, shared.rate * spring, 1.0);
+      const V strains = zero_unless((normal > 0.0) & (shared.rate > 0.0), V(node.position_step));
+      kept = node.impulse.against(0.0, shared.per_rate);
       next = kept + strains * (node.v_free + node.delassus.times(node.impulse));
-      next.n = 0.0;
     }
     node.refuse(node.state.indentation != 0.0, refusal::impossible_state);
-    node.state = {0.0, next};
+    node.state = {0.0, {0.0, next.t1, next.t2}};
     if (node.wants_energy) {
       // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
       const vector<V> v = node.v_free + node.delassus.times(node.impulse), mean = node.v_previous + v;

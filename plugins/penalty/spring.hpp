@@ -3,8 +3,8 @@
 //     r = h <S - c phi vbar>,    v = v_free + H r,    vbar = (v^- + v)/2,
 //     way = h (vbar + tau <v - v^->),    x' = <x - way>,    phi = min(1, x/way),
 //
-// S: mean force of the spring on its way, phi (P(x) - P(x'))/(x - x'), P = k x^(p+1)/(p+1). The right-hand side
-// never increases with r: one solution. penalty.md derives it.
+// S: mean force of the spring on its way, phi (P(x) - P(x'))/(x - x'), P = k x^(p+1)/(p+1). The right-hand
+// side never increases with r: one solution. penalty.md derives it.
 #pragma once
 
 #include <ilaw/kit/roots.hpp>
@@ -14,9 +14,10 @@ namespace penalty_law {
 
 using namespace ilaw::kit;
 
-// The damper's part of the critical one with which a linear spring that does not pull gives back the part e of
-// a velocity: -ln e = 2 zeta acos(zeta)/sqrt(1 - zeta^2) (Schwager and Poeschel 2007, eq. 17; beyond 1 with the
-// hyperbolic functions). Inverted by a polynomial, to 3e-4 in e. Below the least e nothing would ever let go.
+// The damper's part of the critical one with which a linear spring that does not pull gives back the part e
+// of a velocity: -ln e = 2 zeta acos(zeta)/sqrt(1 - zeta^2) (Schwager and Poeschel 2007, eq. 17; beyond 1
+// with the hyperbolic functions). Inverted by a polynomial, to 3e-4 in e. Below the least e nothing would
+// ever let go.
 template <class V>
 V damping_ratio(V restitution) {
   constexpr double least = 0.03, pi = 3.14159265358979323846;
@@ -37,8 +38,13 @@ ILAW_KIT_INLINE V to_exponent(V x, V p) {
   return any_power(x, p);
 }
 
-// Loss: V, or sure_zero for a linear spring of finite stiffness with c = tau = 0: the same numbers with less to
-// compute.
+template <class V>
+struct spring_solution {
+  V impulse, end, inertia;  // r_N, x', and v_free by which r_N falls by 1
+};
+
+// Loss: V, or sure_zero for a linear spring of finite stiffness with c = tau = 0: the same numbers with less
+// to compute.
 template <class V, class Loss = V>
 struct normal_spring {
   V step, stiffness, exponent;              // h, k, p
@@ -46,12 +52,8 @@ struct normal_spring {
   Loss damping, lead;                       // c, tau
 
   using mask = mask_of<V>;
+  using solution = spring_solution<V>;
   static constexpr bool loses = std::is_same_v<Loss, V>;
-
-  // inertia: v_free by which r falls by 1.
-  struct solution {
-    V impulse, end, inertia;
-  };
 
   ILAW_KIT_INLINE V mean_velocity(V v) const { return 0.5 * (previous + v); }
   ILAW_KIT_INLINE V way(V v) const { return step * (mean_velocity(v) + lead * positive_part(v - previous)); }
@@ -68,7 +70,8 @@ struct normal_spring {
     }
     // Closed to the end all is linear, r/2 = drive/resists, where that does not let it open.
     const V h = delassus, x = indentation, push = 0.5 * step * k, sum = free + previous;
-    const V travel = 0.5 * step * sum + step * tau * (free - previous), give = 2.0 * step * h * (1.0 + 2.0 * tau);
+    const V travel = 0.5 * step * sum + step * tau * (free - previous),
+            give = 2.0 * step * h * (1.0 + 2.0 * tau);
     const V drive = positive_part(push * x - 0.5 * push * travel - 0.25 * step * damping * sum -
                                   rigid * (0.25 * sum + 0.5 * tau * (free - previous)));
     const V resists =
@@ -91,18 +94,21 @@ struct normal_spring {
     return {r, zero_unless(!opens, linear_end(r)), select(opens, root * (0.5 * scale.up), resists) / gain};
   }
 
-  // p = 3/2, tau = 0. With q = h^2 k H/5, B = 1 + h c H/2, a = sqrt(x) and z = x', a spring that stays closed has
+  // p = 3/2, tau = 0. With q = h^2 k H/5, B = 1 + h c H/2, a = sqrt(x) and z = x', a spring that stays closed
+  // has
   //     (q a + B) z + q T(z) = D,    T = z^2/(a + sqrt(z)),    D = B x - h (v_free + v^-)/2 - q a^3.
   ILAW_KIT_INLINE solution hertz() const {
     const V x = indentation, a = square_root(x), c = damping;
-    const V give = 0.5 * step * delassus, travel = 0.5 * step * (free + previous), force = 0.4 * stiffness * step;
+    const V give = 0.5 * step * delassus, travel = 0.5 * step * (free + previous),
+            force = 0.4 * stiffness * step;
     const V q = give * force, b = 1.0 + give * c, d = b * x - travel - q * a * x;
     const mask opens = !(d >= 0.0);
     const V z = hertz_end(a, q, q * a + b, select(opens, V(0.0), d));
 
     // Where the tangents of force and motion meet.
     const V y = square_root(z), sum = a + y, part = zero_unless(sum > 0.0, z / sum);
-    const V tangent = force * (a + part * zero_unless(sum > 0.0, (2.0 * a + 1.5 * y) / sum)), stiff = tangent + c;
+    const V tangent = force * (a + part * zero_unless(sum > 0.0, (2.0 * a + 1.5 * y) / sum)),
+            stiff = tangent + c;
     const V pushes = force * (a * x + a * z + part * z) - c * (x - z);
     const V drive = pushes + stiff * ((x - z) - travel), resists = 1.0 + give * stiff;
 
@@ -124,13 +130,14 @@ struct normal_spring {
     const V phi = select(travel > indentation, indentation / travel, V(1.0));
     return step * positive_part(phi * mean_force(end) - phi * damping * mean_velocity(v));
   }
-  // x' of an impulse.
+  // x' of an impulse, whatever p.
   V end_with(V impulse) const {
     const V left = positive_part(indentation - way(free + delassus * impulse));
-    return select((exponent == 1.0) & (left > 0.0), linear_end(impulse), left);
+    return zero_unless(stiffness < infinity,
+                       select((exponent == 1.0) & (left > 0.0), linear_end(impulse), left));
   }
-  // The impulse r that is f(r), the force for a step with r; NaN where there is none, which only friction that is
-  // coupled to the normal brings about. f(0), the force of the free step, is a bound else.
+  // The impulse r that is f(r), the force for a step with r; NaN where there is none, which only friction
+  // that is coupled to the normal brings about. f(0), the force of the free step, is a bound else.
   template <class Function>
   static V impulse_where(mask active, Function f) {
     constexpr int most_doublings = 64;
@@ -148,11 +155,12 @@ struct normal_spring {
   }
 
   // By what closes the step: closed form, Newton's method or brackets.
-  ILAW_KIT_INLINE solution solve() const {
+  ILAW_KIT_INLINE solution solve() const requires(!loses) { return linear(); }
+  ILAW_KIT_INLINE solution solve() const requires(loses) {
     const mask is_linear = (exponent == 1.0) | (stiffness == infinity);
     if (!any(!is_linear)) return linear();
     solution found = hertz();
-    mask left = (!is_linear) & (!((exponent == 1.5) & (found.impulse < infinity)));
+    mask left = !(is_linear | ((exponent == 1.5) & (found.impulse < infinity)));
     if (any(is_linear)) {
       const solution other = linear();
       found = {select(is_linear, other.impulse, found.impulse), select(is_linear, other.end, found.end),
@@ -173,8 +181,8 @@ struct normal_spring {
     const V given = step * delassus * select(travel <= x, closed, opening) - rigid * previous;
     return given > select(travel <= x, reach, reach * travel);
   }
-  // x' of a linear spring that stays closed: by its motion, and where it is stiff by its force, which then is the
-  // more accurate.
+  // x' of a linear spring that stays closed: by its motion, and where it is stiff by its force, which then is
+  // the more accurate.
   ILAW_KIT_INLINE V linear_end(V impulse) const {
     const V v = free + delassus * impulse, k = loses ? soft() : stiffness;
     const V pressed = 2.0 / (k * step) * impulse + 2.0 / k * (damping * mean_velocity(v)) - indentation;
@@ -182,8 +190,8 @@ struct normal_spring {
     const V end = positive_part(select(by_force, pressed, indentation - way(v)));
     return loses ? zero_unless(stiffness < infinity, end) : end;
   }
-  // T is convex: Newton's method falls to the root from the solution without T, and its next z is a quotient of
-  // sums of positive terms.
+  // T is convex: Newton's method falls to the root from the solution without T, and its next z is a quotient
+  // of sums of positive terms.
   ILAW_KIT_INLINE static V hertz_end(V a, V q, V slope, V d) {
     constexpr int most_steps = 40;
     constexpr double close = 0x1p-26;  // the step that follows squares it
@@ -203,12 +211,14 @@ struct normal_spring {
     found = {select(left, r, found.impulse), select(left, end_with(r), found.end),
              select(left, V(not_a_number), found.inertia)};
   }
-  // (P(x) - P(x'))/(x - x') = k x^p (1 - t^(p+1))/((p + 1) (1 - t)), t = x'/x, by its series where t is close to 1.
+  // (P(x) - P(x'))/(x - x') = k x^p (1 - t^(p+1))/((p + 1) (1 - t)), t = x'/x, by its series where t is close
+  // to 1.
   V mean_force(V end) const {
     constexpr int series_terms = 16;
     const V linear = 0.5 * stiffness * (indentation + end);
     if (!any(exponent != 1.0)) return linear;
-    const V most = larger(indentation, end), t = smaller(indentation, end) / most, q = exponent + 1.0, d = 1.0 - t;
+    const V most = larger(indentation, end), t = smaller(indentation, end) / most, q = exponent + 1.0,
+            d = 1.0 - t;
     V sum = 1.0, term = 1.0;
     for (int k = 1; k < series_terms; ++k) {
       term *= d * (static_cast<double>(k) - q) / (k + 1.0);
