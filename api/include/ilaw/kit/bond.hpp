@@ -1,5 +1,5 @@
 // bond.hpp - a bond with contact and friction for any H: what it shares with others is here, what it is made of is its
-// law's. The equations are derived in docs/theory/bonds.md.
+// law's. plugins/cohesive/cohesive.md derives the equations.
 //
 // The bond acts on the mean of two positions, w = (x_n + x_n+1)/2, which a step moves by h (v^- + v)/2:
 //   w^+ = w^- + h (v^- + v)/2,  r_b = -h A k W (w^+ + w^-)/2,  W = diag(1, weight, weight).
@@ -25,6 +25,11 @@
 #include <ilaw/kit/roots.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+template <class V>
+ILAW_KIT_INLINE mask_of<V> none() {
+  return detail::mask_from<V>(0U);
+}
 
 // ---- stopping a node ------------------------------------------------------------------------------------------------
 
@@ -131,7 +136,7 @@ class held_node<V, transverse<V>> {
     const V normal = zero_unless(!closed, left_n_ * normal_product(sum, after));
     return normal + ratio_ * weight_ * left_t_ * tangential_product(sum, after);
   }
-  ILAW_KIT_INLINE mask_of<V> may_close(mask_of<V>) const { return V(0.0) == V(0.0); }
+  ILAW_KIT_INLINE mask_of<V> may_close(mask_of<V>) const { return !none<V>(); }
   // Of the bond, on a node that would move by d, and of a contact beside it, which takes a closed node to the velocity
   // arrival, whatever the bond does.
   ILAW_KIT_INLINE vector<V> impulse(vector<V> d, V per_step, vector<V> contact, mask_of<V> closed, V closing) const {
@@ -217,7 +222,7 @@ class bond_step {
   V trace() const { return node_.trace(); }
 
   ILAW_KIT_INLINE motion at(V kappa, V friction) const {
-    motion m{kappa, node_, {}, {}, 0.0, V(0.0) != V(0.0), V(0.0) != V(0.0), V(0.0) != V(0.0), 0.0};
+    motion m{kappa, node_, {}, {}, 0.0, none<V>(), none<V>(), none<V>(), 0.0};
     m.node.hold(kappa);
     m.opening = m.node.left(drive_) - p_.state.opening;
     m.closed = m.opening.n < below_;
@@ -294,31 +299,30 @@ class bond_step {
     vector<V> impulse;
   };
   [[gnu::noinline]] void close(motion& m, V friction) const {
-    constexpr bool is_transverse = is_transverse_form<Delassus>;
+    constexpr bool couples = !is_transverse_form<Delassus>;
     const V per_step = 1.0 / step_.velocity_step, target = (ground_ - place_.n) * per_step;
     pressed_node n{m.node.delassus(), {}};
     vector<V> q = V(2.0 * per_step) * (m.opening - place_);
     q.n = (2.0 * m.opening.n - (place_.n + ground_)) * per_step;
     n.impulse.n = positive_part(-q.n / n.delassus.normal());
     m.rubs = m.closed & (friction > 0.0);
-    mask sticks = V(0.0) != V(0.0);
+    mask sticks = none<V>();
     if (any(m.rubs)) {
       const contact_problem<vector<V>> contact{
           0.0, q, {smaller(p_.v_previous.n + target, 0.0), p_.v_previous.t1, p_.v_previous.t2}};
       const V pressing = n.impulse.n;
-      if constexpr (is_transverse)
-        sticks = apply_isotropic_friction(n, contact, friction) == status::stick;
-      else
+      if constexpr (couples)
         rub(m, n, contact, friction);
+      else
+        sticks = m.rubs & (apply_isotropic_friction(n, contact, friction) == status::stick);
       n.impulse = select(m.rubs, n.impulse, {pressing, 0.0, 0.0});
     }
     m.contact = zero_unless(m.closed, n.impulse);
     const vector<V> moved = m.opening + V(0.5 * step_.velocity_step) * n.delassus.times(n.impulse);
-    const mask on_floor = is_transverse ? m.closed : m.closed & !m.rubs;
     m.opening = select(m.closed, moved, m.opening);
-    m.opening.n = select(on_floor, floor_, m.opening.n);
-    m.opening.t1 = select(sticks & m.rubs, place_.t1, m.opening.t1);
-    m.opening.t2 = select(sticks & m.rubs, place_.t2, m.opening.t2);
+    m.opening.n = select(couples ? m.closed & !m.rubs : m.closed, floor_, m.opening.n);
+    m.opening.t1 = select(sticks, place_.t1, m.opening.t1);
+    m.opening.t2 = select(sticks, place_.t2, m.opening.t2);
   }
   // Where friction couples with the normal and would do work, that may leave no push at all: then there is none of it.
   void rub(motion& m, pressed_node& n, const contact_problem<vector<V>>& contact, V friction) const {
@@ -367,24 +371,24 @@ struct adhesive_bond {
   // does not couple.
   template <class Node>
   ILAW_KIT_INLINE asked<V> ask(Node& node, problem& p) const {
-    p = {full_of(node.delassus), node.v_free, node.v_previous, node.gap, node.area, node.state};
+    p = {as_full(node.delassus), node.v_free, node.v_previous, node.gap, node.area, node.state};
     const mask_of<V> may_hold = is_bonded(p), bonded = may_hold & law().bonds();
     answer a = unmoved(p, {}, V(status::free.code));
-    mask_of<V> open = V(0.0) != V(0.0);
+    mask_of<V> open = none<V>();
     if (any(!bonded)) {
       const auto touching = contact(node);
       if constexpr (is_transverse<Node>)
         a.status = apply_isotropic_friction(node, touching, law().friction).code();
       else
-        open = (touching.slack <= 0.0) & (touching.q.n < 0.0);
+        open = (!bonded) & (touching.slack <= 0.0) & (touching.q.n < 0.0);
       a.impulse = node.impulse;
     }
     if (any(may_hold & !bonded)) give_up(may_hold & !bonded, a);
     if (any(bonded)) {
-      open = select_mask(bonded, bonded, open);
-      if constexpr (can_be_rigid) open = open & !stand(node, bonded, p, a);
+      open = open | bonded;
+      if constexpr (can_be_rigid()) open = open & !stand(node, bonded, p, a);
       if constexpr (is_transverse<Node>)
-        if (any(open)) open = open & !stay(node, open, p, a);
+        if (any(open)) open = open & !stay(p, open, a, node.prepared);
     }
     return {open, give(node, a)};
   }
@@ -403,8 +407,176 @@ struct adhesive_bond {
   }
 
  private:
-  using law_type = Law<V>;
-  ILAW_KIT_INLINE const law_type& law() const { return static_cast<const law_type&>(*this); }
+  using mask = mask_of<V>;
+  static constexpr bool is_scalar = std::is_same_v<V, double>;
+  ILAW_KIT_INLINE const Law<V>& law() const { return static_cast<const Law<V>&>(*this); }
+
+  ILAW_KIT_INLINE static full<V> as_full(const full<V>& h) { return h; }
+  ILAW_KIT_INLINE static full<V> as_full(const transverse<V>& h) { return {h.n, h.t, h.t, 0.0, 0.0, 0.0}; }
+  ILAW_KIT_INLINE static mask is_bonded(const problem& p) {
+    return (p.state.memory != Law<V>::broken) & (p.area > 0.0);
+  }
+
+  // ---- without bond
+
+  template <class Node>
+  ILAW_KIT_INLINE static auto contact(const Node& node) {
+    return contact_problem_of(contact_at(node, 0.0, predictive), node.v_free, node.v_previous);
+  }
+  // A bond whose parameters, given as tables, have come to nothing.
+  ILAW_KIT_INLINE static void give_up(mask where, answer& a) {
+    a.state.memory = select(where, V(Law<V>::broken), a.state.memory);
+    a.status = select(where, V(status::broken.code), a.status);
+  }
+  struct touching_node {
+    using number = V;
+    V gap;
+    vector<V> v_free, v_previous;
+    double position_step, per_position_step;
+  };
+  // Contact with any H, as coulomb; returns the lanes left.
+  mask touch(const problem& p, const step_sizes& step, answer& a) const {
+    const touching_node node{p.gap, p.v_free, p.v_previous, step.position_step, step.per_position_step};
+    friction_problem<V> pressed;
+    friction_answer<V> found;
+    fill(pressed, p.h, contact(node), law().friction, law().friction);
+    mask left = solve_friction(pressed, found);
+    if constexpr (is_scalar)
+      if (left) solve_friction_exactly(pressed, found);
+    a.impulse = {found.r[0], found.r[1], found.r[2]};
+    a.status = found.status;
+    a.refused = found.refused;
+    return left;
+  }
+
+  // ---- a bond that stays as it is
+
+  // Rigid, up to its strength: the node is stopped. Where that would do work it is left to the solver.
+  template <class Node>
+  ILAW_KIT_INLINE mask stand(const Node& node, mask bonded, const problem& p, answer& a) const {
+    const mask rigid = bonded & law().is_rigid(p.state.memory);
+    if (!any(rigid)) return rigid;
+    const vector<V> r = -node.delassus.solve(node.v_free);
+    const mask takes = product(r, velocity_before(node.v_previous, node.v_free)) <= 0.0;
+    const mask stands = rigid & takes & law().surely_bears(r, node.velocity_step * node.area);
+    choose(stands, unmoved(p, r, V(status::bonded.code)), a);
+    return stands;
+  }
+  template <class Common>
+  [[gnu::noinline]] mask stay(const problem& p, mask open, answer& a, const Common& common) const {
+    const transverse<V> h{p.h.nn, p.h.t11};
+    const bond_step<V, transverse<V>> step(h, p, law().weight(common), common.step);
+    const auto found = law().as_it_was(step, p.state.memory, common);
+    const mask stays = open & found.holds & !put_in(step, found.motion);
+    choose(stays, step.answer(found.motion, found.memory, status::bonded, 0.0), a);
+    return stays;
+  }
+  template <class Step>
+  ILAW_KIT_INLINE static mask put_in(const Step& step, const typename Step::motion& m) {
+    if (!any(step.is_new)) return step.is_new;
+    return step.is_new & (step.taken_from_before(m) < 0.0);
+  }
+
+  // ---- a bond that changes
+
+  template <class Common>
+  mask solve_with(const problem& p, answer& a, const Common& common) const {
+    const mask may_hold = is_bonded(p), bonded = may_hold & law().bonds();
+    const mask even = (p.h.n1 == 0.0) & (p.h.n2 == 0.0) & (p.h.t12 == 0.0) & (p.h.t11 == p.h.t22);
+    mask left = none<V>();
+    a = unmoved(p, {}, V(status::free.code));
+    if (any(!bonded)) {
+      left = (!bonded) & touch(p, common.step, a);
+      if (any(may_hold & !bonded)) give_up(may_hold & !bonded, a);
+    }
+    if (any(bonded & even))
+      left = left | solve_bond(transverse<V>{p.h.nn, p.h.t11}, p, bonded & even, a, common);
+    if (any(bonded & !even)) left = left | solve_bond(p.h, p, bonded & !even, a, common);
+    return left;
+  }
+
+  template <class Delassus, class Common>
+  [[gnu::noinline]] mask solve_bond(const Delassus& h, const problem& p, mask where, answer& a,
+                                    const Common& common) const {
+    mask open = where;
+    if constexpr (can_be_rigid()) open = open & !stop(h, p, where, a, common.step);
+    if (!any(open)) return open;
+    bond_step<V, Delassus> step(h, p, law().weight(common), common.step);
+    auto found = respond(step, open, common);
+    mask left = found.left | found.motion.unsolved;
+    const mask gains = open & put_in(step, found.motion);
+    if (any(gains)) {
+      if constexpr (is_scalar)
+        make_before(step, common, found);
+      else
+        left = left | gains;
+    }
+    const auto reached =
+        select(found.memory == Law<V>::broken, status_of<V>(status::broken), status_of<V>(status::bonded));
+    choose(open, step.answer(found.motion, found.memory, reached, found.refused), a);
+    return open & left;
+  }
+  static constexpr bool can_be_rigid() {
+    return requires(const Law<V>& l, V x) { l.is_rigid(x); };
+  }
+  template <class Delassus>
+  mask stop(const Delassus& h, const problem& p, mask where, answer& a, const step_sizes& step) const {
+    const mask rigid = where & law().is_rigid(p.state.memory);
+    if (!any(rigid)) return rigid;
+    const vector<V> r = stopping_impulse(h, p.v_free, p.v_previous);
+    const mask stands = rigid & law().bears(r, step.velocity_step * p.area);
+    choose(stands, unmoved(p, r, V(status::bonded.code)), a);
+    return stands;
+  }
+  template <class Step, class Common>
+  bond_result<Step> respond(const Step& step, mask open, const Common& common) const {
+    bond_result<Step> found = law().as_it_was(step, step.problem().state.memory, common);
+    if (const mask changes = open & !found.holds; any(changes)) law().change(step, changes, common, found);
+    return found;
+  }
+  // Where a bond that is made in this step, at the node's position, would put energy in, it is made before, at the least
+  // part of half a step at which it does not.
+  template <class Step, class Common>
+  void make_before(Step& step, const Common& common, bond_result<Step>& found) const {
+    if (found.refused != 0.0) return;
+    const auto taken = [&](double part) {
+      step.make_before(part);
+      found = respond(step, true, common);
+      return step.taken_from_before(found.motion);
+    };
+    const double first = taken(0.0), last = taken(1.0);
+    double part = 1.0;
+    if (last > 0.0)
+      part = root_between(0.0, 1.0, 0.0, true, [&](double x) {
+        return root_trial<double>{taken(x) / (last - first), 1.0, false};
+      });
+    for (double more = 0x1p-52; taken(part) < 0.0 && part < 1.0; more *= 2.0) part = smaller(part + more, 1.0);
+  }
+
+  // ---- what a node is given
+
+  template <class Node>
+  ILAW_KIT_INLINE status_of<V> give(Node& node, const answer& a) const {
+    if (node.wants_energy) give_energy(node, a);
+    node.impulse = a.impulse;
+    node.state = a.state;
+    return status_of<V>::from(a.status);
+  }
+  template <class Node>
+  [[gnu::noinline]] void give_energy(Node& node, const answer& a) const {
+    const V weight = law().weight(node.prepared), rate = 0.5 * node.area * a.stiffness;
+    const vector<V> &before = node.state.opening, &after = a.state.opening;
+    const vector<V> sum = after + before, change = after - before;
+    const auto energy = [&](V memory, vector<V> w) ILAW_KIT_LAMBDA {
+      const V size = square_root(normal_product(w, w) + weight * tangential_product(w, w));
+      return zero_unless(a.stiffness > 0.0, node.area * law().energy(memory, size, node.prepared));
+    };
+    node.normal_gain = rate * normal_product(sum, change);
+    node.tangential_gain = rate * weight * tangential_product(sum, change);
+    node.stored = energy(a.state.memory, after);
+    const V gain = node.normal_gain + node.tangential_gain;
+    node.rupture = positive_part(gain - (node.stored - energy(node.state.memory, before)));
+  }
 };
 
 }  // namespace ilaw::kit

@@ -175,6 +175,12 @@ struct open_problems {
   }
 };
 
+// Where it is asked rarely: once per form of H, whatever the host's numbers and frame.
+template <class Wide, class Node>
+[[gnu::noinline]] auto ask_apart(const Wide& law, Node& node, typename Wide::problem& open) {
+  return law.ask(node, open);
+}
+
 // ---- the loop -----------------------------------------------------------------------------------------------------------------
 
 template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus>
@@ -218,7 +224,11 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
       if (any(bad)) [[unlikely]]
         return false;
     problem open_problem;
-    const asked<V> found = law.ask(p.node, open_problem);
+    asked<V> found{mask_from<V>(0U), status::free};
+    if constexpr (careful)
+      found = ask_apart(law, p.node, open_problem);
+    else
+      found = law.ask(p.node, open_problem);
     const unsigned open = l.own(mask_bits(found.open & !bad));
     all.open[k] = open;
     all.stored[k] = false;
@@ -272,7 +282,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     if (open == every) return law.finish(n, a);
     node_type closed = n;
     problem unused;
-    const asked<V> before = law.ask(closed, unused);
+    const asked<V> before = ask_apart(law, closed, unused);
     const status_of<V> finished = law.finish(n, a);
     const mask is_open = mask_from<V>(open);
     choose(n, closed, is_open);
