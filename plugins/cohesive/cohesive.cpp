@@ -289,7 +289,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
       weights = select(is, {n * (1.0 + b + b * b) / (1.0 + power), power}, weights);
     }
     if (const auto is = y == 2.0; any(is)) weights = select(is, {n * (1.0 + b), b * b}, weights);
-    if (const auto is = (y != 1.0) & (y != 1.5) & (y != 2.0) & (b > 0.0) & (b < 1.0); any(is))
+    if (const auto is = (y != 1.0) & (y != 1.5) & (y != 2.0); any(is))
       weights = select(is, any_weights_of(mix), weights);
     return weights;
   }

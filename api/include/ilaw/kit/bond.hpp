@@ -569,7 +569,7 @@ struct adhesive_bond {
     const vector<V> sum = after + before, change = after - before;
     const auto energy = [&](V memory, vector<V> w) ILAW_KIT_LAMBDA {
       const V size = square_root(normal_product(w, w) + weight * tangential_product(w, w));
-      return zero_unless(a.stiffness > 0.0, node.area * law().energy(memory, size, node.prepared));
+      return node.area * law().energy(memory, size, node.prepared);
     };
     node.normal_gain = rate * normal_product(sum, change);
     node.tangential_gain = rate * weight * tangential_product(sum, change);
