@@ -203,14 +203,16 @@ struct cohesive : adhesive_bond<cohesive, V> {
 
   // Elastic where that stays below the softening.
   template <class Step>
-  bond_result<Step> as_it_was(const Step& step, V damage, const common& all) const {
+  void as_it_was(const Step& step, V damage, const common& all, bond_result<Step>& found) const {
     const secant<V> now = secant_of(damage, all);
     const mask_of<V> is_soft = now.soft > 0.0;
     const V kappa = zero_unless(is_soft, step.compliance * now.stiff / now.soft);
-    const auto m = step.at(kappa, friction_of(damage));
-    const mask_of<V> stays = (strength == infinity) | is_below(damage, now, m, all);
-    const mask_of<V> holds = is_soft & has_scale(kappa, step.compliance) & stays;
-    return {m, damage, holds, none<V>(), 0.0};
+    step.move(found.motion, kappa, friction_of(damage));
+    found.memory = damage;
+    found.left = none<V>();
+    found.refused = 0.0;
+    const mask_of<V> stays = (strength == infinity) | is_below(damage, now, found.motion, all);
+    found.holds = is_soft & has_scale(kappa, step.compliance) & stays;
   }
 
   // Else the mean traction on the way from w^- to w^+, with the friction of the damage after it: the unknown is the
@@ -232,7 +234,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
       root_between(before, V(1.0), first, rubs, [&](V damage) {
         coefficient = select(rubs, friction_of(damage), coefficient);
         soften(step, where, all, before, coefficient, found);
-        return root_trial<V>{damage - found.memory, 1.0, none<V>()};
+        return root_trial<V>{damage - found.memory, 1.0, 1.0, 1.0, none<V>()};
       });
     }
     if constexpr (is_scalar)
@@ -348,43 +350,54 @@ struct cohesive : adhesive_bond<cohesive, V> {
     return (all.is_delayed & (delayed_damage(damage, m.size, s, all) == damage)) | ((!all.is_delayed) & below);
   }
 
-  // kappa = 2 c T/(|w^+| + |w^-|), with the mean traction T on the way.
+  // What is the same for all trials of a step.
+  struct curve_before {
+    V damage;
+    secant<V> now;
+    V stiffness, met;  // the secant's; where it meets the curve of mode I
+    curve_before(V d, const common& all)
+        : damage(d), now(secant_of(d, all)), stiffness(now.stiffness()), met(all.opened.meets(now)) {}
+  };
+
+  // (1 + kappa) (kappa (y + f) - 2 c T) = 0, y = |w^+|, f = |w^-|, with the mean traction T on the way. Where a bilinear
+  // bond opens in one direction this is linear in kappa. y' is known, and dT/dy = (traction - T)/(y - f) along one curve;
+  // elsewhere the softening is taken for the slope.
   template <class Motion, class Step>
-  root_trial<V> trial(const Step& step, const Motion& m, V damage, secant<V> now, V opened_met, const common& all) const {
+  ILAW_KIT_INLINE root_trial<V> trial(const Step& step, const Motion& m, const curve_before& b, const common& all) const {
     const softening<V> s = curve(m, all);
-    const V stiff = now.stiffness(), sum = m.size + step.before;
-    const V met = any(all.mixes) ? s.meets(now) : opened_met;
-    V mean = s.mean_traction_on_path(stiff, met, step.before, m.size);
+    const V sum = m.size + step.before, c = step.compliance;
+    V mean = s.mean_traction_on_path(b.stiffness, any(all.mixes) ? s.meets(b.now) : b.met, step.before, m.size);
     if (any(all.is_delayed)) {
-      const V after = secant_of(delayed_damage(damage, m.size, s, all), all).stiffness();
-      mean = select(all.is_delayed, 0.25 * (stiff + after) * sum, mean);
+      const V after = secant_of(delayed_damage(b.damage, m.size, s, all), all).stiffness();
+      mean = select(all.is_delayed, 0.25 * (b.stiffness + after) * sum, mean);
     }
-    // d(mean)/dy = (T - mean)/(y - f), where y = |w^+| opens along one curve.
-    const V way = m.size - step.before, traction = select(m.size < met, stiff * m.size, s.traction(m.size));
-    const mask_of<V> moves = absolute(way) > 0x1p-26 * sum;
-    const V gain = select(moves, (traction - mean) / way, -0.5 * all.steepest);
-    const V twice = 2.0 * step.compliance / sum;
-    const mask_of<V> is_exact = step.is_smooth(m) & !(all.mixes | all.is_delayed);
-    return {m.kappa - twice * mean, 1.0 + twice * step.gives_way(m) * (gain - mean / sum), is_exact};
+    const mask_of<V> is_simple = (!all.mixes) & (!all.is_delayed) & (shape != exponential);
+    const V end = all.opened.onset + all.opened.width;
+    const V traction = select(m.size < b.met, b.stiffness * m.size, all.steepest * (end - smaller(m.size, end)));
+    const V way = m.size - step.before;
+    const mask_of<V> moves = is_simple & (absolute(way) > 0x1p-26 * sum);
+    const V gain = select(moves, traction - mean, -0.5 * all.steepest), run = m.size * select(moves, way, V(1.0));
+    const V kappa = m.held.kappa, more = 1.0 + kappa, excess = kappa * sum - 2.0 * c * mean;
+    const V slowed = step.gives_way(m) * (kappa * select(moves, way, V(1.0)) - 2.0 * c * gain);
+    return {more * excess, more * sum, run * (excess + more * sum) - more * slowed, run, is_simple & step.is_smooth(m)};
   }
 
   // The step with this coefficient of friction. The bond as it was is the first trial, but not if that is stiff.
   template <class Step>
   [[gnu::noinline]] void soften(const Step& step, mask_of<V> where, const common& all, V damage, V coefficient,
                                 bond_result<Step>& found) const {
-    const secant<V> now = secant_of(damage, all);
-    const V met = all.opened.meets(now), most = most_kappa(step, damage, all);
-    const V first = select(where & (most > 1.0), 0.0, most);
-    root_trial<V> last{};
-    auto m = found.motion;
-    root_between(V(0.0), most, first, where, [&](V kappa) {
-      m = step.at(kappa, coefficient);
-      return last = trial(step, m, damage, now, met, all);
+    const curve_before b(damage, all);
+    const V most = most_kappa(step, damage, all), first = select(where & (most > 1.0), 0.0, most);
+    root_trial<V> last;
+    root_between(V(0.0), most, first, where, [&](V kappa) ILAW_KIT_LAMBDA {
+      step.move(found.motion, kappa, coefficient);
+      return last = trial(step, found.motion, b, all);
     });
-    const mask_of<V> is_found = absolute(last.value) <= 0x1p-44 * (m.kappa + step.compliance * all.steepest);
-    if constexpr (!is_scalar) found.left = found.left | (where & !is_found);
-    found.motion = m;
-    found.memory = select(where, damage_after(m, damage, all), damage);
+    if constexpr (!is_scalar) {
+      const V scale = (found.motion.held.kappa + step.compliance * all.steepest) * last.size;
+      found.left = found.left | (where & !mask_of<V>(absolute(last.value) <= 0x1p-44 * scale));
+    }
+    found.memory = select(where, damage_after(found.motion, damage, all), damage);
   }
   template <class Motion>
   V damage_after(const Motion& m, V damage, const common& all) const {
@@ -423,12 +436,13 @@ struct cohesive : adhesive_bond<cohesive, V> {
   // and nothing says how much of it this step is to do.
   template <class Step>
   bool has_another(const Step& step, double damage, double coefficient, const common& all) const {
-    const secant<double> now = secant_of(damage, all);
+    const curve_before b(damage, all);
     const double ratio = step.trace(), most = most_kappa(step, damage, all), first = 1.0 / (1.0 + ratio * most);
+    typename Step::motion m;
     return changes_sign_again([&](double part) {
       const double left = first + part * (1.0 - first);
-      const auto m = step.at((1.0 - left) / (left * ratio), coefficient);
-      return trial(step, m, damage, now, all.opened.meets(now), all).value;
+      step.move(m, (1.0 - left) / (left * ratio), coefficient);
+      return trial(step, m, b, all).value;
     });
   }
 };
