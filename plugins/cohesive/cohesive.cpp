@@ -379,7 +379,8 @@ struct cohesive : adhesive_bond<cohesive, V> {
     const V gain = select(moves, traction - mean, -0.5 * all.steepest), run = m.size * select(moves, way, V(1.0));
     const V kappa = m.held.kappa, more = 1.0 + kappa, excess = kappa * sum - 2.0 * c * mean;
     const V slowed = step.gives_way(m) * (kappa * select(moves, way, V(1.0)) - 2.0 * c * gain);
-    return {more * excess, more * sum, run * (excess + more * sum) - more * slowed, run, is_simple & step.is_smooth(m)};
+    const mask_of<V> is_exact = is_simple & step.is_smooth(m);
+    return {more * excess, more * sum, run * (excess + more * sum) - more * slowed, run, is_exact};
   }
 
   // The step with this coefficient of friction. The bond as it was is the first trial, but not if that is stiff.

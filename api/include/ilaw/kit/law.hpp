@@ -15,12 +15,14 @@
 //                      prepared),
 //         finish(node, answer)                  and the status with the answer
 //         asks()                              whether these parameters need a solver where step and ask both serve a node
+//                                               (or asks(bool is_transverse), where the form of H matters)
 //         prepare(step_sizes)                 numbers that all nodes of a batch share; node.prepared
 //         initialise(node)                    first state (default: zeros)
 //         conflict()                          why parameters do not go together, or null
 //         inputs(), capabilities(), permissions()   with these parameters (default: the card's)
 //         tells_tangents_apart()              whether these parameters need a tangent per node in the host's axes
-//         stable_velocity_step(node)          or (h_N, h_T) where it falls with both and depends on nothing else
+//         stable_velocity_step(node)          or (h_N, h_T) where it falls with both and depends on nothing else; or both,
+//                                               the second NaN where the first is meant
 //         history_size(), record(node, own)   the doubles of a free history, and how a step writes them; or
 //         window(), adds_to_window(status), clears_window(status)   of one that is a window (window.hpp)
 //         extension(name)                     see ilaw_law

@@ -23,6 +23,7 @@ struct transverse {
 
   ILAW_KIT_INLINE V normal() const { return n; }
   ILAW_KIT_INLINE V tangential() const { return t; }
+  ILAW_KIT_INLINE V largest_tangential() const { return t; }
   ILAW_KIT_INLINE V anisotropy() const { return 0.0; }
   // tr(H) tr(H^-1) = 5 + 2 (n/t + t/n) here. A number that is not finite leaves n - t so.
   ILAW_KIT_INLINE mask_of<V> is_definite() const {
@@ -50,6 +51,10 @@ struct full {
 
   ILAW_KIT_INLINE V normal() const { return nn; }
   ILAW_KIT_INLINE V tangential() const { return t11; }
+  // Not below the largest inverse mass in the tangent plane, with what H couples to the normal.
+  ILAW_KIT_INLINE V largest_tangential() const {
+    return larger(t11 + absolute(n1), t22 + absolute(n2)) + absolute(t12);
+  }
   // Zero where closed forms for H = diag(h_N, h_T, h_T) hold.
   ILAW_KIT_INLINE V anisotropy() const {
     return absolute(t11 - t22) + absolute(n1) + absolute(n2) + absolute(t12);
