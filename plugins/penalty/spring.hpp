@@ -149,7 +149,7 @@ struct normal_spring {
       high = select(rises, 2.0 * high, high);
     }
     const V r = root_between(V(0.0), high, high, active & !rises, [&f](V x) {
-      return root_trial<V>{x - f(x), V(1.0), x != x};
+      return root_trial<V>{x - f(x), 1.0, 1.0, 1.0, x != x};
     });
     return select(rises, V(not_a_number), zero_unless(active, r));
   }

@@ -132,8 +132,8 @@ std::int64_t one_by_one(const ilaw::interface& law, Nodes& nodes) {
   return count;
 }
 
-// Where two axes are nearly one, adjugates would amplify rounding.
-TEST(CohesivePacks, LeaveAnIllConditionedInertia) {
+// Also where two axes are nearly one.
+TEST(CohesivePacks, TakeAnIllConditionedInertia) {
   Draw draw(44);
   const Parameters parameters{{{"strength", 1.0}, {"toughness", 1.0}, {"stiffness", 100.0}},
                               {{"shape", "bilinear"}}};
@@ -147,7 +147,7 @@ TEST(CohesivePacks, LeaveAnIllConditionedInertia) {
       p.inertia.h = {Vector{1.0, coupling, 0.0}, {coupling, 1.0, 0.0}, {0.0, 0.0, 1.0}};
       nodes.set(i, p, p.damage);
     }
-    EXPECT_EQ(one_by_one(law, nodes), is_fair ? 0 : 100);
+    EXPECT_EQ(one_by_one(law, nodes), 0);
   }
 }
 

@@ -1,5 +1,5 @@
 // bond.hpp - a bond with contact and friction for any H: what it shares with others is here, what it is made of is its
-// law's. The equations are derived in docs/theory/bonds.md.
+// law's. plugins/cohesive/cohesive.md derives the equations.
 //
 // The bond acts on the mean of two positions, w = (x_n + x_n+1)/2, which a step moves by h (v^- + v)/2:
 //   w^+ = w^- + h (v^- + v)/2,  r_b = -h A k W (w^+ + w^-)/2,  W = diag(1, weight, weight).
@@ -15,8 +15,8 @@
 //   weight(common)                  of the tangential opening, see W
 //   friction_of(memory)             the coefficient beside what is left of the bond
 //   energy(memory, size, common)    stored per area, size^2 = w.W w
-//   as_it_was(step, memory, common) the step with the memory before, and where that is the answer
-//   change(step, where, common, found)   the step and the memory after it, where it is not
+//   as_it_was(step, memory, common, found)   the step with the memory before, and where that is the answer
+//   change(step, where, common, found)       the step and the memory after it, where it is not
 // and, where a bond may be rigid, is_rigid(memory) and bears(impulse, capacity).
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
@@ -25,6 +25,11 @@
 #include <ilaw/kit/roots.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+template <class V>
+ILAW_KIT_INLINE mask_of<V> none() {
+  return detail::mask_from<V>(0U);
+}
 
 // ---- stopping a node ------------------------------------------------------------------------------------------------
 
@@ -107,80 +112,93 @@ ILAW_KIT_INLINE void choose(mask_of<V> where, const bond_answer<V>& other, bond_
 
 // ---- a node that a bond holds -----------------------------------------------------------------------------------------
 
-// M = (I + kappa A)^-1, A = W^1/2 H W^1/2/h_N, for a trial kappa.
+// M = (I + kappa A)^-1, A = W^1/2 H W^1/2/h_N, as far as H and what a trial kappa makes of it are concerned.
 template <class V, class Delassus>
-class held_node;
+class bonded_inertia;
 
 template <class V>
-class held_node<V, transverse<V>> {
+class bonded_inertia<V, transverse<V>> {
  public:
-  ILAW_KIT_INLINE held_node(const transverse<V>& h, V weight) : h_(h), ratio_(weight * h.t / h.n), weight_(weight) {}
+  struct held {
+    V kappa, left_n, left_t;
+  };
+  ILAW_KIT_INLINE bonded_inertia(const transverse<V>& h, V weight)
+      : h_(h), ratio_(weight * h.t / h.n), weight_(weight) {}
   ILAW_KIT_INLINE V trace() const { return 1.0 + 2.0 * ratio_; }
 
-  ILAW_KIT_INLINE void hold(V kappa) {
-    const V of_n = 1.0 + kappa, of_t = 1.0 + ratio_ * kappa, both = 1.0 / (of_n * of_t);
-    kappa_ = kappa;
-    left_n_ = both * of_t;
-    left_t_ = both * of_n;
+  ILAW_KIT_INLINE held hold(V kappa) const {
+    const V of_n = 1.0 + kappa, of_t = 1.0 + ratio_ * kappa;
+    if constexpr (std::is_same_v<V, double>) return {kappa, 1.0 / of_n, 1.0 / of_t};  // of extreme scales
+    const V both = 1.0 / (of_n * of_t);
+    return {kappa, both * of_t, both * of_n};
   }
   // What is left of a free motion, W^-1/2 M W^1/2 d, and H as the node has it now.
-  ILAW_KIT_INLINE vector<V> left(vector<V> d) const { return {left_n_ * d.n, left_t_ * d.t1, left_t_ * d.t2}; }
-  ILAW_KIT_INLINE transverse<V> delassus() const { return {left_n_ * h_.n, left_t_ * h_.t}; }
-  // -w^+.W d(w^+)/d(kappa), where w^+ + w^- = sum. A closed node does not move along its normal.
-  ILAW_KIT_INLINE V gives_way(vector<V> after, vector<V> sum, mask_of<V> closed) const {
-    const V normal = zero_unless(!closed, left_n_ * normal_product(sum, after));
-    return normal + ratio_ * weight_ * left_t_ * tangential_product(sum, after);
+  ILAW_KIT_INLINE vector<V> left(const held& m, vector<V> d) const {
+    return {m.left_n * d.n, m.left_t * d.t1, m.left_t * d.t2};
   }
-  ILAW_KIT_INLINE mask_of<V> may_close(mask_of<V>) const { return V(0.0) == V(0.0); }
-  // Of the bond, on a node that would move by d, and of a contact beside it, which takes a closed node to the velocity
-  // arrival, whatever the bond does.
-  ILAW_KIT_INLINE vector<V> impulse(vector<V> d, V per_step, vector<V> contact, mask_of<V> closed, V closing) const {
-    const V taken = 2.0 * kappa_ * per_step, taken_t = taken * ratio_ * left_t_ / h_.t;
-    return {-(select(closed, closing, taken * left_n_ * d.n) / h_.n), left_t_ * contact.t1 - taken_t * d.t1,
-            left_t_ * contact.t2 - taken_t * d.t2};
+  ILAW_KIT_INLINE transverse<V> delassus(const held& m) const { return {m.left_n * h_.n, m.left_t * h_.t}; }
+  // -w^+.W d(w^+)/d(kappa), where w^+ + w^- = left(d). A closed node does not move along its normal.
+  ILAW_KIT_INLINE V gives_way(const held& m, vector<V> after, vector<V> d, mask_of<V> closed) const {
+    const V normal = zero_unless(!closed, m.left_n * m.left_n * normal_product(d, after));
+    return normal + ratio_ * weight_ * m.left_t * m.left_t * tangential_product(d, after);
+  }
+  ILAW_KIT_INLINE mask_of<V> is_smooth(mask_of<V> /*closed*/) const { return !none<V>(); }
+  // Of the bond, on a node that would move by d, and of a contact beside it, which stops a closed node from closing,
+  // whatever the bond does.
+  ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact, mask_of<V> closed,
+                                    V closing) const {
+    const V taken = 2.0 * m.kappa * per_step, taken_t = taken * ratio_ * m.left_t / h_.t;
+    return {-(select(closed, closing, taken * m.left_n * d.n) / h_.n), m.left_t * contact.t1 - taken_t * d.t1,
+            m.left_t * contact.t2 - taken_t * d.t2};
   }
 
  private:
   transverse<V> h_;
-  V ratio_, weight_, kappa_, left_n_, left_t_;
+  V ratio_, weight_;
 };
 
 template <class V>
-class held_node<V, full<V>> {
+class bonded_inertia<V, full<V>> {
  public:
-  ILAW_KIT_INLINE held_node(const full<V>& h, V weight) : normal_(h.nn), root_(square_root(weight)), per_root_(1.0 / root_) {
+  struct held {
+    V kappa;
+    typename full<V>::factors m;
+  };
+  ILAW_KIT_INLINE bonded_inertia(const full<V>& h, V weight)
+      : normal_(h.nn), root_(square_root(weight)), per_root_(1.0 / root_) {
     const V w = root_ / h.nn, ww = weight / h.nn;
     a_ = {1.0, ww * h.t11, ww * h.t22, w * h.n1, w * h.n2, ww * h.t12};
   }
   ILAW_KIT_INLINE V trace() const { return 1.0 + (a_.t11 + a_.t22); }
 
-  ILAW_KIT_INLINE void hold(V kappa) {
-    kappa_ = kappa;
-    m_ = full<V>{1.0 + kappa, 1.0 + kappa * a_.t11, 1.0 + kappa * a_.t22, kappa * a_.n1, kappa * a_.n2, kappa * a_.t12}
-             .factorise();
+  ILAW_KIT_INLINE held hold(V k) const {
+    const full<V> sum{1.0 + k, 1.0 + k * a_.t11, 1.0 + k * a_.t22, k * a_.n1, k * a_.n2, k * a_.t12};
+    return {k, sum.factorise()};
   }
-  ILAW_KIT_INLINE vector<V> left(vector<V> d) const { return times_root(m_.solve(times_root(d, root_)), per_root_); }
-  full<V> delassus() const {  // h_N W^-1/2 M A W^-1/2
-    const vector<V> n = m_.solve({1.0, a_.n1, a_.n2}), t1 = m_.solve({a_.n1, a_.t11, a_.t12}),
-                    t2 = m_.solve({a_.n2, a_.t12, a_.t22});
+  ILAW_KIT_INLINE vector<V> left(const held& m, vector<V> d) const {
+    return times_root(m.m.solve(times_root(d, root_)), per_root_);
+  }
+  full<V> delassus(const held& m) const {  // h_N W^-1/2 M A W^-1/2
+    const vector<V> n = m.m.solve({1.0, a_.n1, a_.n2}), t1 = m.m.solve({a_.n1, a_.t11, a_.t12}),
+                    t2 = m.m.solve({a_.n2, a_.t12, a_.t22});
     const V one = normal_ * per_root_, two = one * per_root_;
     return {normal_ * n.n, two * t1.t1, two * t2.t2, one * n.t1, one * n.t2, two * t2.t1};
   }
-  ILAW_KIT_INLINE V gives_way(vector<V> after, vector<V> sum, mask_of<V>) const {
-    return product(times_root(after, root_), m_.solve(a_.times(times_root(sum, root_))));
+  ILAW_KIT_INLINE V gives_way(const held& m, vector<V> after, vector<V> d, mask_of<V>) const {
+    const vector<V> sum = m.m.solve(times_root(d, root_));
+    return product(times_root(after, root_), m.m.solve(a_.times(sum)));
   }
-  ILAW_KIT_INLINE mask_of<V> may_close(mask_of<V> closed) const { return !closed; }
-  ILAW_KIT_INLINE vector<V> impulse(vector<V> d, V per_step, vector<V> contact, mask_of<V>, V) const {
-    const V taken = 2.0 * kappa_ * per_step / normal_;
-    return times_root(m_.solve(times_root(contact, per_root_) - taken * times_root(d, root_)), root_);
+  ILAW_KIT_INLINE mask_of<V> is_smooth(mask_of<V> closed) const { return !closed; }
+  ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact, mask_of<V>, V) const {
+    const V taken = 2.0 * m.kappa * per_step / normal_;
+    return times_root(m.m.solve(times_root(contact, per_root_) - taken * times_root(d, root_)), root_);
   }
 
  private:
   ILAW_KIT_INLINE static vector<V> times_root(vector<V> a, V by) { return {a.n, by * a.t1, by * a.t2}; }
 
-  V normal_, root_, per_root_, kappa_;
+  V normal_, root_, per_root_;
   full<V> a_;
-  typename full<V>::factors m_;
 };
 
 // ---- one bonded node in one step ----------------------------------------------------------------------------------------
@@ -193,20 +211,18 @@ class bond_step {
 
   // What a mean stiffness and a coefficient of friction make of the node.
   struct motion {
-    V kappa;
-    held_node<V, Delassus> node;
-    vector<V> opening, contact;  // w^+; impulse of contact and friction
-    V size;                      // |w^+|, with W
+    typename bonded_inertia<V, Delassus>::held held;
+    vector<V> opening, contact;   // w^+; impulse of contact and friction
+    V size;                       // |w^+|, with W
     mask closed, rubs, unsolved;  // unsolved: its friction is left to the scalar fallback
     V refused;
   };
 
   ILAW_KIT_INLINE bond_step(const Delassus& h, const bond_problem<V>& p, V weight, const step_sizes& step)
-      : p_(p), step_(step), h_(h), weight_(weight), node_(h, weight) {
+      : p_(p), step_(step), weight_(weight), inertia_(h, weight) {
     compliance = 0.25 * step.velocity_step * step.velocity_step * p.area * h.normal();
     before = size_of(p.state.opening);
-    const V moved = sum_of_sizes(p.state.position) + sum_of_sizes(p.state.opening);
-    is_new = moved == 0.0;
+    is_new = sum_of_sizes(p.state.position) + sum_of_sizes(p.state.opening) == 0.0;
     place();
   }
 
@@ -214,33 +230,34 @@ class bond_step {
   V before;      // |w^-|
   mask is_new;   // the bond is made in this step
   const bond_problem<V>& problem() const { return p_; }
-  V trace() const { return node_.trace(); }
+  V trace() const { return inertia_.trace(); }
 
-  ILAW_KIT_INLINE motion at(V kappa, V friction) const {
-    motion m{kappa, node_, {}, {}, 0.0, V(0.0) != V(0.0), V(0.0) != V(0.0), V(0.0) != V(0.0), 0.0};
-    m.node.hold(kappa);
-    m.opening = m.node.left(drive_) - p_.state.opening;
+  ILAW_KIT_INLINE void move(motion& m, V kappa, V friction) const {
+    m.held = inertia_.hold(kappa);
+    m.opening = inertia_.left(m.held, drive_) - p_.state.opening;
     m.closed = m.opening.n < below_;
+    m.rubs = m.unsolved = none<V>();
+    m.contact = {};
+    m.refused = 0.0;
     if (any(m.closed)) close(m, friction);
     m.size = size_of(m.opening);
-    return m;
   }
 
-  // -d|w^+|/d(kappa), and where it is that: without friction, and where contact does not couple.
+  // -|w^+| d|w^+|/d(kappa), and where it is that: without friction, and where contact does not couple.
   ILAW_KIT_INLINE V gives_way(const motion& m) const {
-    return m.node.gives_way(m.opening, m.opening + p_.state.opening, m.closed) / m.size;
+    return inertia_.gives_way(m.held, m.opening, drive_, m.closed);
   }
-  ILAW_KIT_INLINE mask is_smooth(const motion& m) const { return m.node.may_close(m.closed) & !m.rubs; }
+  ILAW_KIT_INLINE mask is_smooth(const motion& m) const { return inertia_.is_smooth(m.closed) & !m.rubs; }
 
   ILAW_KIT_INLINE bond_answer<V> answer(const motion& m, V memory, status_of<V> status, V refused) const {
     const V per_step = 1.0 / step_.velocity_step;
-    const vector<V> impulse = m.node.impulse(drive_, per_step, m.contact, m.closed,
-                                             p_.v_free.n + (place_.n - ground_) * per_step);
+    const vector<V> impulse = inertia_.impulse(m.held, drive_, per_step, m.contact, m.closed,
+                                               p_.v_free.n + (place_.n - ground_) * per_step);
     // Where the steps differ the mean goes on by half a step of the position.
     const V on = step_.position_step / step_.velocity_step;
     const vector<V> next =
         is_even() ? V(2.0) * m.opening - place_ : m.opening + on * (m.opening - place_);
-    return {impulse, {memory, next, m.opening}, m.kappa / compliance, status.code(), larger(refused, m.refused)};
+    return {impulse, {memory, next, m.opening}, m.held.kappa / compliance, status.code(), larger(refused, m.refused)};
   }
 
   // A bond that is made now, at the node's position, would put energy in where this is negative: what its impulse works
@@ -294,31 +311,30 @@ class bond_step {
     vector<V> impulse;
   };
   [[gnu::noinline]] void close(motion& m, V friction) const {
-    constexpr bool is_transverse = is_transverse_form<Delassus>;
+    constexpr bool couples = !is_transverse_form<Delassus>;
     const V per_step = 1.0 / step_.velocity_step, target = (ground_ - place_.n) * per_step;
-    pressed_node n{m.node.delassus(), {}};
+    pressed_node n{inertia_.delassus(m.held), {}};
     vector<V> q = V(2.0 * per_step) * (m.opening - place_);
     q.n = (2.0 * m.opening.n - (place_.n + ground_)) * per_step;
     n.impulse.n = positive_part(-q.n / n.delassus.normal());
     m.rubs = m.closed & (friction > 0.0);
-    mask sticks = V(0.0) != V(0.0);
+    mask sticks = none<V>();
     if (any(m.rubs)) {
       const contact_problem<vector<V>> contact{
           0.0, q, {smaller(p_.v_previous.n + target, 0.0), p_.v_previous.t1, p_.v_previous.t2}};
       const V pressing = n.impulse.n;
-      if constexpr (is_transverse)
-        sticks = apply_isotropic_friction(n, contact, friction) == status::stick;
-      else
+      if constexpr (couples)
         rub(m, n, contact, friction);
+      else
+        sticks = m.rubs & (apply_isotropic_friction(n, contact, friction) == status::stick);
       n.impulse = select(m.rubs, n.impulse, {pressing, 0.0, 0.0});
     }
     m.contact = zero_unless(m.closed, n.impulse);
     const vector<V> moved = m.opening + V(0.5 * step_.velocity_step) * n.delassus.times(n.impulse);
-    const mask on_floor = is_transverse ? m.closed : m.closed & !m.rubs;
     m.opening = select(m.closed, moved, m.opening);
-    m.opening.n = select(on_floor, floor_, m.opening.n);
-    m.opening.t1 = select(sticks & m.rubs, place_.t1, m.opening.t1);
-    m.opening.t2 = select(sticks & m.rubs, place_.t2, m.opening.t2);
+    m.opening.n = select(couples ? m.closed & !m.rubs : m.closed, floor_, m.opening.n);
+    m.opening.t1 = select(sticks, place_.t1, m.opening.t1);
+    m.opening.t2 = select(sticks, place_.t2, m.opening.t2);
   }
   // Where friction couples with the normal and would do work, that may leave no push at all: then there is none of it.
   void rub(motion& m, pressed_node& n, const contact_problem<vector<V>>& contact, V friction) const {
@@ -339,9 +355,8 @@ class bond_step {
 
   const bond_problem<V>& p_;
   const step_sizes& step_;
-  Delassus h_;
   V weight_;
-  held_node<V, Delassus> node_;
+  bonded_inertia<V, Delassus> inertia_;
   vector<V> place_, drive_;    // x at the time of the impulse; w^+ + w^- without bond and contact
   V ground_, floor_, below_;   // lowest next position, lowest w^+
 };
@@ -363,30 +378,41 @@ struct adhesive_bond {
   using problem = bond_problem<V>;
   using answer = bond_answer<V>;
 
-  // At once: bonds that surely stand still, contact without bond and bonds that stay as they are, the latter two where H
-  // does not couple.
+  // At once: bonds that surely stand still, and, where H does not couple, contact without bond and bonds that stay as
+  // they are.
   template <class Node>
   ILAW_KIT_INLINE asked<V> ask(Node& node, problem& p) const {
-    p = {full_of(node.delassus), node.v_free, node.v_previous, node.gap, node.area, node.state};
-    const mask_of<V> may_hold = is_bonded(p), bonded = may_hold & law().bonds();
-    answer a = unmoved(p, {}, V(status::free.code));
-    mask_of<V> open = V(0.0) != V(0.0);
+    const mask_of<V> may_hold = is_bonded(node.state.memory, node.area), bonded = may_hold & law().bonds();
+    status_of<V> status = status::free;
+    mask_of<V> open = none<V>();
     if (any(!bonded)) {
       const auto touching = contact(node);
       if constexpr (is_transverse<Node>)
-        a.status = apply_isotropic_friction(node, touching, law().friction).code();
+        status = apply_isotropic_friction(node, touching, law().friction);
       else
-        open = (touching.slack <= 0.0) & (touching.q.n < 0.0);
-      a.impulse = node.impulse;
+        open = (!bonded) & (touching.slack <= 0.0) & (touching.q.n < 0.0);
     }
-    if (any(may_hold & !bonded)) give_up(may_hold & !bonded, a);
     if (any(bonded)) {
-      open = select_mask(bonded, bonded, open);
-      if constexpr (can_be_rigid) open = open & !stand(node, bonded, p, a);
-      if constexpr (is_transverse<Node>)
-        if (any(open)) open = open & !stay(node, open, p, a);
+      mask_of<V> stands = none<V>();
+      if constexpr (can_be_rigid()) stands = stand(node, bonded);
+      open = open | (bonded & !stands);
+      status = select(stands, status_of<V>(status::bonded), status);
     }
-    return {open, give(node, a)};
+    if (any(open)) {
+      p = {as_full(node.delassus), node.v_free, node.v_previous, node.gap, node.area, node.state};
+      if constexpr (is_transverse<Node>) {
+        answer a;
+        const mask_of<V> stays = stay(p, open, a, node.prepared);
+        give(node, a, stays);
+        status = select(stays, status_of<V>(status::bonded), status);
+        open = open & !stays;
+      }
+    }
+    if (const mask_of<V> lost = may_hold & !bonded; any(lost)) {
+      node.state.memory = select(lost, V(Law<V>::broken), node.state.memory);
+      status = select(lost, status_of<V>(status::broken), status);
+    }
+    return {open, status};
   }
   template <class Common>
   mask_of<V> solve(const problem& p, answer& a, const Common& common) const {
@@ -399,12 +425,184 @@ struct adhesive_bond {
   template <class Node>
   ILAW_KIT_INLINE status_of<V> finish(Node& node, const answer& a) const {
     node.refused = larger(node.refused, a.refused);
-    return give(node, a);
+    give(node, a, !none<V>());
+    return status_of<V>::from(a.status);
   }
 
  private:
-  using law_type = Law<V>;
-  ILAW_KIT_INLINE const law_type& law() const { return static_cast<const law_type&>(*this); }
+  using mask = mask_of<V>;
+  static constexpr bool is_scalar = std::is_same_v<V, double>;
+  ILAW_KIT_INLINE const Law<V>& law() const { return static_cast<const Law<V>&>(*this); }
+
+  ILAW_KIT_INLINE static full<V> as_full(const full<V>& h) { return h; }
+  ILAW_KIT_INLINE static full<V> as_full(const transverse<V>& h) { return {h.n, h.t, h.t, 0.0, 0.0, 0.0}; }
+  ILAW_KIT_INLINE static mask is_bonded(V memory, V area) { return (memory != Law<V>::broken) & (area > 0.0); }
+
+  // ---- without bond
+
+  template <class Node>
+  ILAW_KIT_INLINE static auto contact(const Node& node) {
+    return contact_problem_of(contact_at(node, 0.0, predictive), node.v_free, node.v_previous);
+  }
+  struct touching_node {
+    using number = V;
+    V gap;
+    vector<V> v_free, v_previous;
+    double position_step, per_position_step;
+  };
+  // Contact with any H, as coulomb; returns the lanes left.
+  mask touch(const problem& p, const step_sizes& step, answer& a) const {
+    const touching_node node{p.gap, p.v_free, p.v_previous, step.position_step, step.per_position_step};
+    friction_problem<V> pressed;
+    friction_answer<V> found;
+    fill(pressed, p.h, contact(node), law().friction, law().friction);
+    mask left = solve_friction(pressed, found);
+    if constexpr (is_scalar)
+      if (left) solve_friction_exactly(pressed, found);
+    a.impulse = {found.r[0], found.r[1], found.r[2]};
+    a.status = found.status;
+    a.refused = found.refused;
+    return left;
+  }
+
+  // ---- a bond that stays as it is
+
+  // Rigid, up to its strength: the node is stopped. Where that would do work it is left to the solver.
+  template <class Node>
+  ILAW_KIT_INLINE mask stand(Node& node, mask bonded) const {
+    const mask rigid = bonded & law().is_rigid(node.state.memory);
+    if (!any(rigid)) return rigid;
+    const vector<V> r = -node.delassus.solve(node.v_free);
+    const mask takes = product(r, velocity_before(node.v_previous, node.v_free)) <= 0.0;
+    const mask stands = rigid & takes & law().surely_bears(r, node.velocity_step * node.area);
+    node.impulse = select(stands, r, node.impulse);
+    return stands;
+  }
+  template <class Common>
+  [[gnu::noinline]] mask stay(const problem& p, mask open, answer& a, const Common& common) const {
+    const transverse<V> h{p.h.nn, p.h.t11};
+    const bond_step<V, transverse<V>> step(h, p, law().weight(common), common.step);
+    bond_result<bond_step<V, transverse<V>>> found;
+    law().as_it_was(step, p.state.memory, common, found);
+    a = step.answer(found.motion, found.memory, status::bonded, 0.0);
+    return open & found.holds & !put_in(step, found.motion);
+  }
+  template <class Step>
+  ILAW_KIT_INLINE static mask put_in(const Step& step, const typename Step::motion& m) {
+    if (!any(step.is_new)) return step.is_new;
+    return step.is_new & (step.taken_from_before(m) < 0.0);
+  }
+
+  // ---- a bond that changes
+
+  template <class Common>
+  mask solve_with(const problem& p, answer& a, const Common& common) const {
+    const mask may_hold = is_bonded(p.state.memory, p.area), bonded = may_hold & law().bonds();
+    const mask even = (p.h.n1 == 0.0) & (p.h.n2 == 0.0) & (p.h.t12 == 0.0) & (p.h.t11 == p.h.t22);
+    mask left = none<V>();
+    a = unmoved(p, {}, V(status::free.code));
+    if (any(!bonded)) {
+      left = (!bonded) & touch(p, common.step, a);
+      const mask lost = may_hold & !bonded;
+      a.state.memory = select(lost, V(Law<V>::broken), a.state.memory);
+      a.status = select(lost, V(status::broken.code), a.status);
+    }
+    if (any(bonded & even))
+      left = left | solve_bond(transverse<V>{p.h.nn, p.h.t11}, p, bonded & even, a, common);
+    if (any(bonded & !even)) left = left | solve_bond(p.h, p, bonded & !even, a, common);
+    return left;
+  }
+
+  template <class Delassus, class Common>
+  [[gnu::noinline]] mask solve_bond(const Delassus& h, const problem& p, mask where, answer& a,
+                                    const Common& common) const {
+    mask open = where;
+    if constexpr (can_be_rigid()) open = open & !stop(h, p, where, a, common.step);
+    if (!any(open)) return open;
+    bond_step<V, Delassus> step(h, p, law().weight(common), common.step);
+    bond_result<bond_step<V, Delassus>> found;
+    respond(step, open, common, found);
+    mask left = found.left | found.motion.unsolved;
+    const mask gains = open & put_in(step, found.motion);
+    if (any(gains)) {
+      if constexpr (is_scalar)
+        make_before(step, common, found);
+      else
+        left = left | gains;
+    }
+    const auto reached =
+        select(found.memory == Law<V>::broken, status_of<V>(status::broken), status_of<V>(status::bonded));
+    choose(open, step.answer(found.motion, found.memory, reached, found.refused), a);
+    return open & left;
+  }
+  static constexpr bool can_be_rigid() {
+    return requires(const Law<V>& l, V x) { l.is_rigid(x); };
+  }
+  template <class Delassus>
+  mask stop(const Delassus& h, const problem& p, mask where, answer& a, const step_sizes& step) const {
+    const mask rigid = where & law().is_rigid(p.state.memory);
+    if (!any(rigid)) return rigid;
+    const vector<V> r = stopping_impulse(h, p.v_free, p.v_previous);
+    const mask stands = rigid & law().bears(r, step.velocity_step * p.area);
+    choose(stands, unmoved(p, r, V(status::bonded.code)), a);
+    return stands;
+  }
+  template <class Step, class Common>
+  void respond(const Step& step, mask open, const Common& common, bond_result<Step>& found) const {
+    law().as_it_was(step, step.problem().state.memory, common, found);
+    if (const mask changes = open & !found.holds; any(changes)) law().change(step, changes, common, found);
+  }
+  // Where a bond that is made in this step, at the node's position, would put energy in, it is made before, at the least
+  // part of half a step at which it does not.
+  template <class Step, class Common>
+  void make_before(Step& step, const Common& common, bond_result<Step>& found) const {
+    if (found.refused != 0.0) return;
+    const auto taken = [&](double part) {
+      step.make_before(part);
+      respond(step, true, common, found);
+      return step.taken_from_before(found.motion);
+    };
+    const double first = taken(0.0), last = taken(1.0);
+    double part = 1.0;
+    if (last > 0.0)
+      part = root_between(0.0, 1.0, 0.0, true, [&](double x) {
+        return root_trial<double>{taken(x), last - first, last - first, 1.0, false};
+      });
+    for (double more = 0x1p-52; taken(part) < 0.0 && part < 1.0; more *= 2.0) part = smaller(part + more, 1.0);
+  }
+
+  // ---- what a node is given
+
+  template <class Node>
+  ILAW_KIT_INLINE void give(Node& node, const answer& a, mask where) const {
+    if (node.wants_energy) {
+      const state before = node.state;
+      const energies e = energies_of(before, a, node.area, node.prepared);
+      node.normal_gain = zero_unless(where, e.normal_gain);
+      node.tangential_gain = zero_unless(where, e.tangential_gain);
+      node.stored = zero_unless(where, e.stored);
+      node.rupture = zero_unless(where, e.rupture);
+    }
+    node.impulse = select(where, a.impulse, node.impulse);
+    node.state.memory = select(where, a.state.memory, node.state.memory);
+    node.state.position = select(where, a.state.position, node.state.position);
+    node.state.opening = select(where, a.state.opening, node.state.opening);
+  }
+  struct energies {
+    V normal_gain, tangential_gain, stored, rupture;
+  };
+  template <class Common>
+  [[gnu::noinline]] energies energies_of(const state& before, const answer& a, V area, const Common& common) const {
+    const V weight = law().weight(common), rate = 0.5 * area * a.stiffness;
+    const vector<V> sum = a.state.opening + before.opening, change = a.state.opening - before.opening;
+    const auto stored = [&](const state& s) ILAW_KIT_LAMBDA {
+      const V square = normal_product(s.opening, s.opening) + weight * tangential_product(s.opening, s.opening);
+      return area * law().energy(s.memory, square_root(square), common);
+    };
+    const V normal = rate * normal_product(sum, change), shear = rate * weight * tangential_product(sum, change);
+    const V after = stored(a.state);
+    return {normal, shear, after, positive_part(normal + shear - (after - stored(before)))};
+  }
 };
 
 }  // namespace ilaw::kit

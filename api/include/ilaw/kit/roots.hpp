@@ -6,18 +6,18 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// A function at one place. slope: an estimate, or the derivative where it is exact. value is scaled so that the slope
-// is about 1: the equation x = g(x) has the value x - g(x).
+// A function at one place x. The equation x = g(x) has value = size (x - g(x)), with any size > 0; its slope is rise/run,
+// an estimate or, where it is exact, the derivative.
 template <class V>
 struct root_trial {
-  V value, slope;
+  V value, size, rise, run;
   mask_of<V> is_exact;
 };
 
 // Where f, not positive at low >= 0 and not negative at high, changes sign, in the lanes where active; others keep x.
-// Newton's steps where the slope is exact, else secants (Dekker 1969); the fixed point where these leave the bracket;
-// bisection after most_steps of them. The last place that f is called at is the result, in all lanes: what f keeps of
-// it may be used. A jump across zero is found as well.
+// Newton's steps where the slope is exact, else secants after the first (Dekker 1969); the fixed point where these leave
+// the bracket; bisection after most_steps of them. The last place that f is called at is the result, in all lanes, so
+// what f keeps of it may be used. A jump across zero is found as well.
 template <class V, class Function>
 ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f) {
   constexpr int most_steps = 24, most_bisections = 80;
@@ -25,17 +25,24 @@ ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f
   V before = x, value_before = 0.0;
   for (int k = 0;; ++k) {
     const root_trial<V> t = f(x);
-    active = active & (absolute(t.value) > rounding * absolute(x));
+    active = active & (absolute(t.value) > rounding * (absolute(x) * t.size));
     if (!any(active) || k == most_steps + most_bisections) return x;
     low = select(active & (t.value < 0.0), x, low);
     high = select(active & (t.value >= 0.0), x, high);
-    const mask_of<V> by_slope = k == 0 ? t.value == t.value : t.is_exact;
-    const V run = select(by_slope, 1.0, x - before), rise = select(by_slope, t.slope, t.value - value_before);
+    V rise = t.rise, run = t.run;
+    if (k > 0) {
+      rise = select(t.is_exact, rise, t.value - value_before);
+      run = select(t.is_exact, run, x - before);
+    }
     const V along = x - t.value * run / rise;
-    V next = select((along > low) & (along < high), along, smaller(larger(x - t.value, low), high));
-    if (k >= most_steps) next = halfway(low, high);
-    const V step = absolute(next - x), last = select(by_slope, step, absolute(x - before));
-    const mask_of<V> moves = k < most_steps ? step * last > close * (x * x) : (next > low) & (next < high);
+    const mask_of<V> inside = (along > low) & (along < high);
+    V next = along;
+    if (any(!inside)) next = select(inside, along, smaller(larger(x - t.value / t.size, low), high));
+    if (k >= most_steps) [[unlikely]] next = halfway(low, high);
+    const V step = absolute(next - x);
+    const V last = k == 0 ? step : select(t.is_exact, step, absolute(x - before));
+    mask_of<V> moves = step * last > close * (x * x);
+    if (k >= most_steps) [[unlikely]] moves = (next > low) & (next < high);
     before = select(active, x, before);
     value_before = select(active, t.value, value_before);
     x = select(active, next, x);

@@ -189,8 +189,13 @@ struct open_problems {
   }
 };
 
-// ---- the loop
-// -----------------------------------------------------------------------------------------------------------------
+// Where it is asked rarely: once per form of H, whatever the host's numbers and frame.
+template <class Wide, class Node>
+[[gnu::noinline]] auto ask_apart(const Wide& law, Node& node, typename Wide::problem& open) {
+  return law.ask(node, open);
+}
+
+// ---- the loop -------------------------------------------------------------------------------------------------------
 
 template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus>
 struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
@@ -208,6 +213,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
   using problem = typename Wide::problem;
   using answer = typename Wide::answer;
   using problems_type = open_problems<Law>;
+  static constexpr unsigned all_of_pack = (1U << width) - 1;
 
   ILAW_KIT_INLINE static void keep(const Wide& law, const problem& p, unsigned open, problems_type& all) {
     if (!open) return;
@@ -233,7 +239,13 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
         return false;
     node_type closed = as_it_came(p.node);
     problem own;
-    const asked<V> asked = law.ask(closed, own);
+    kit::asked<V> asked{mask_from<V>(0U), status::free};
+    if (!at.finishing || all.open[at.k] != all_of_pack) {
+      if constexpr (careful)
+        asked = ask_apart(law, closed, own);
+      else
+        asked = law.ask(closed, own);
+    }
     status_of<V> status = asked.status;
     if (at.finishing) {
       const unsigned open = all.open[at.k];
