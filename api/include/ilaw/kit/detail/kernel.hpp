@@ -138,7 +138,6 @@ struct kernel {
   static constexpr bool stays_in_reach = (Law::card.permissions & ILAW_MAY_SKIP_FRESH) != 0 && !has_history<Law> &&
                                          !has_state<Law> && reads<Law>(reads_gap);
   static constexpr bool can_carry = frame_type::has_axes && (has_history<Law> || has_vector_state<Law>());
-  static constexpr bool has_window = requires(const Law& law) { law.window(); };
 
   // ---- load
 
@@ -363,9 +362,12 @@ struct kernel {
       check_finite(n.state, c, reason_state);
       check_ranges(n.state, c, std::make_index_sequence<std::size(Law::state_variables)>{});
     }
-    if constexpr (has_window) {
-      n.earlier = {l.load(b.earlier[0] + i), l.load(b.earlier[1] + i), l.load(b.earlier[2] + i)};
-      n.refused = l.load(b.earlier_refused + i);
+    if constexpr (has_window<Law>) {
+      if (b.windows) {
+        n.earlier = {l.load(b.windows->earlier[0] + i), l.load(b.windows->earlier[1] + i),
+                     l.load(b.windows->earlier[2] + i)};
+        n.refused = l.load(b.windows->refused + i);
+      }
     } else if constexpr (has_history<Law>) {
       n.history = history_of(b, i);
     }
@@ -486,14 +488,20 @@ struct kernel {
   template <class Lanes>
   ILAW_KIT_INLINE static void store_history(const Wide& law, const loaded& p, const view_type& b, std::int64_t i,
                                             Lanes l, status_of<V> status, mask accepted) {
-    if constexpr (has_window) {
-      if constexpr (has_tangents<node_type>) {
-        l.store(p.node.impulse.n, b.given[0] + i);
-        l.store(p.node.impulse.t1, b.given[1] + i);
-        l.store(p.node.impulse.t2, b.given[2] + i);
-        l.store(status.code(), b.reached + i);
-        l.store(zero_unless(accepted, V(1.0)), b.accepted + i);
+    if constexpr (has_window<Law>) {
+      if (!b.windows) return;
+      l.store(p.node.impulse.n, b.windows->impulse[0] + i);
+      l.store(p.node.impulse.t1, b.windows->impulse[1] + i);
+      l.store(p.node.impulse.t2, b.windows->impulse[2] + i);
+      mask adds = V(0.0) != V(0.0), clears = adds;
+#pragma GCC unroll 8
+      for (ilaw_status s = ILAW_FREE; s <= ILAW_HEALED; ++s) {
+        const mask is = status.code() == V(s);
+        if (Law::adds_to_window(s)) adds = adds | is;
+        if (Law::clears_window(s)) clears = clears | is;
       }
+      l.store(zero_unless(accepted & adds, V(1.0)), b.windows->adds + i);
+      l.store(zero_unless(accepted & clears, V(1.0)), b.windows->clears + i);
     } else if constexpr (has_history<Law>) {
       if (accepted) law.record(p.node, history_of(b, i));
     }

@@ -13,6 +13,16 @@ inline constexpr int most_parameters = 32, most_amounts = 8;
 // Where the tangents of nodes in the host's axes come from.
 enum class tangents { of_plane, given, carried, chosen };
 
+// The nodes worked on together where arrays are copied or windows summed.
+inline constexpr int block_nodes = 64;
+
+// Windows of a block: what they sum up to before the step, and codes of refusals; and what the step gave: the impulse
+// in the local frame, and 1 or 0 for windows that take it in, and for those that are emptied before.
+struct window_sums {
+  alignas(64) double earlier[3][block_nodes], refused[block_nodes];
+  alignas(64) double impulse[3][block_nodes], adds[block_nodes], clears[block_nodes];
+};
+
 template <class Number>
 struct view {
   std::int64_t count;
@@ -36,9 +46,7 @@ struct view {
   array<double> state_out;
   array<const double> frame_in;  // six numbers
   array<double> frame_out;
-  // Windows: what they sum up to, and codes of refusals; the impulse for them, statuses, and 1 where accepted.
-  const double *earlier[3], *earlier_refused;
-  double *given[3], *reached, *accepted;
+  window_sums* windows;  // null: the law has none, or remembers nothing
   // Free histories: of the node at position 0, and the nodes where they are listed.
   double* history;
   std::int64_t history_node_stride, history_component_stride;

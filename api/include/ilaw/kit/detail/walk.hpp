@@ -4,6 +4,7 @@
 #pragma once
 
 #include <ilaw/kit/detail/view.hpp>
+#include <ilaw/kit/window.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
@@ -13,7 +14,7 @@ struct instance_base {
   std::uint32_t inputs, balance_inputs;
   bool carries_frame, frame_follows;
   bool asks = false;          // these parameters need the solver, where the law has a step beside it
-  bool in_blocks;             // the law works with more than the arrays of a block: windows
+  window_size window{};       // duration 0: none
   int states;                 // numbers of struct state, and for each the entry of the host's state; -1: none
   const int* state_entries;
   std::int64_t history_offset, history_size, frame_offset;
@@ -45,7 +46,6 @@ auto numbers_in(const Array& a) {
 }
 
 // The nodes of a part of a batch.
-inline constexpr int block_nodes = 64;
 struct node_range {
   std::int64_t first, count;
   bool listed;
@@ -66,7 +66,7 @@ bool stays(const Array& a, int components) {
   return a.node_stride == 1 || (a.node_stride == components && a.component_stride == 1);
 }
 
-template <class Number>
+template <class Number, bool HasWindow = false>
 class batch_walk {
  public:
   using run_function = void (*)(const void* law, const view<Number>&, tally&);
@@ -77,7 +77,7 @@ class batch_walk {
 
   [[gnu::noinline]] tally run(run_function loop, const void* law) {
     tally all;
-    if (!made_.in_blocks && all_stay()) {
+    if (made_.window.duration == 0.0 && all_stay()) {
       run_part(node_range(b_, 0, b_.node_count), loop, law, all);
     } else {
       for (std::int64_t first = 0; first < b_.node_count; first += block_nodes) {
@@ -286,6 +286,54 @@ class batch_walk {
                        frame + k * block_nodes);
   }
 
+  // ---- windows
+
+  // Calls work with the windows of each pack of nodes; lanes without a node have that of the last one.
+  template <class Work>
+  static void for_windows(const view<Number>& v, Work work) {
+    constexpr int lanes = lanes_of<pack>;
+    for (std::int64_t i = 0; i < v.count; i += lanes) {
+      if (v.history_node_stride == 1 && !v.nodes && i + lanes <= v.count) {
+        work(i, window_columns<pack>{v.history + i, v.history_component_stride});
+      } else {
+        window_rows own;
+        own.stride = v.history_component_stride;
+        for (int lane = 0; lane < lanes; ++lane) {
+          const std::int64_t k = i + lane < v.count ? i + lane : v.count - 1;
+          own.first[lane] = v.history + (v.nodes ? v.nodes[k] : k) * v.history_node_stride;
+        }
+        work(i, own);
+      }
+    }
+  }
+  [[gnu::noinline]] static void read_windows(const window& w, const view<Number>& v, window_sums& sums) {
+    constexpr all_lanes<pack> l;
+    for_windows(v, [&](std::int64_t i, const auto& own) {
+      vector<pack> sum;
+      const pack refused = w.read(own, sum);
+      l.store(sum.n, sums.earlier[0] + i);
+      l.store(sum.t1, sums.earlier[1] + i);
+      l.store(sum.t2, sums.earlier[2] + i);
+      l.store(refused, sums.refused + i);
+    });
+  }
+  [[gnu::noinline]] static void write_windows(const window& w, const view<Number>& v, window_sums& sums) {
+    constexpr all_lanes<pack> l;
+    for (std::int64_t i = v.count; i % lanes_of<pack> != 0; ++i) sums.adds[i] = sums.clears[i] = 0.0;
+    for_windows(v, [&](std::int64_t i, const auto& own) {
+      const vector<pack> impulse{l.load(sums.impulse[0] + i), l.load(sums.impulse[1] + i), l.load(sums.impulse[2] + i)};
+      w.write(own, l.load(sums.clears + i) != 0.0, l.load(sums.adds + i) != 0.0, impulse);
+    });
+  }
+  void run_with_windows(view<Number>& v, run_function loop, const void* law, tally& found) {
+    const window w(made_.window, {b_.time + 0.5 * b_.position_step, b_.velocity_step});
+    window_sums sums;
+    v.windows = &sums;
+    read_windows(w, v, sums);
+    loop(law, v, found);
+    write_windows(w, v, sums);
+  }
+
   // ---- a part of the batch
 
   // Whether energy or an amount is asked for.
@@ -344,7 +392,14 @@ class batch_walk {
     open_outputs(v, n);
     open_state(v, n);
     tally found;
-    loop(law, v, found);
+    if constexpr (HasWindow) {
+      if (made_.window.duration > 0.0)
+        run_with_windows(v, loop, law, found);
+      else
+        loop(law, v, found);
+    } else {
+      loop(law, v, found);
+    }
     add(all, found, n);
     scatter(b_.impulse, v.impulse, n, s_.impulse);
     scatter(b_.velocity, v.velocity, n, s_.velocity);
