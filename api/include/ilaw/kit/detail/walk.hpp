@@ -266,10 +266,21 @@ class batch_walk {
     const ilaw_input& in = b_.state_in;
     const ilaw_output& out = b_.state_out;
     if (in.values == out.values || made_.history_size == 0) return;
-    for (std::int64_t i = 0; i < n.count; ++i)
-      for (std::int64_t c = made_.history_offset; c < made_.history_offset + made_.history_size; ++c)
-        out.values[n(i) * out.node_stride + c * out.component_stride] =
-            in.values[n(i) * in.node_stride + c * in.component_stride];
+    const auto first = made_.history_offset, size = made_.history_size;
+    if (in.component_stride == 1 && out.component_stride == 1) {
+      for (std::int64_t i = 0; i < n.count; ++i)
+        __builtin_memcpy(out.values + n(i) * out.node_stride + first, in.values + n(i) * in.node_stride + first,
+                         static_cast<std::size_t>(size) * sizeof(double));
+      return;
+    }
+    for (std::int64_t c = first; c < first + size; ++c) {
+      const double* const from = in.values + c * in.component_stride;
+      double* const to = out.values + c * out.component_stride;
+      if (!n.listed && in.node_stride == 1 && out.node_stride == 1)
+        __builtin_memcpy(to + n.first, from + n.first, static_cast<std::size_t>(n.count) * sizeof(double));
+      else
+        for (std::int64_t i = 0; i < n.count; ++i) to[n(i) * out.node_stride] = from[n(i) * in.node_stride];
+    }
   }
   void close_state(const view<Number>& v, const node_range& n) const {
     if (made_.state_size == 0) return;
