@@ -80,13 +80,16 @@ struct tie {
   template <class Node>
   status_of<V> step(Node& node) const {
     const vector<V> trial = stopping_impulse(node);
-    const V normal = contact_impulse(node), broken = node.state.broken;
-    const auto overloads = exceeds(node.earlier + trial, limit(node)), bonded = broken == 0.0;
-    const auto holds = bonded & !overloads;
+    const V broken = node.state.broken;
+    const mask_of<V> bonded = broken == 0.0;
+    mask_of<V> holds = bonded;
+    if (any((strength < infinity) | (force < infinity))) holds = bonded & !exceeds(node.earlier + trial, limit(node));
+    V normal = 0.0;
+    if (any(!holds)) normal = contact_impulse(node);
     node.impulse = select(holds, trial, vector<V>{normal});
-    node.state.broken = select(holds, V(0.0), V(1.0));
-    const status_of<V> open = select(bonded, status_of<V>(status::broken), select(normal > 0.0, status::closed, status::free));
-    return select(holds, status_of<V>(status::bonded), open);
+    node.state.broken = select(holds, broken, V(1.0));
+    const status_of<V> touches = select(normal > 0.0, status::closed, status::free);
+    return select(holds, status_of<V>(status::bonded), select(bonded, status_of<V>(status::broken), touches));
   }
 
  private:

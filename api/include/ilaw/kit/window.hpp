@@ -78,34 +78,26 @@ class window {
         now_(on_grid(end_) ? floor_of(end_) : 0.0),
         has_grid_(duration_ > 0.0 && duration_ < infinity && on_grid(end_)),
         is_short_(step.length < duration_),
+        counts_(has_grid_ && is_short_),
+        stamp_(stamp_of(now_)),
         ring_size_(static_cast<std::int64_t>(buckets_) - 1),
         edge_(edge_at(now_)),
         shares_(has_grid_ ? shares_at(now_) : shares{}) {}
 
   // The sums of the impulses before the step, within tau of its end. Returns the code of a refusal.
   template <class Own>
-  auto read(const Own& own, vector<typename Own::number>& sum) const {
+  ILAW_KIT_INLINE auto read(const Own& own, vector<typename Own::number>& sum) const {
     using V = typename Own::number;
-    sum = {};
-    if (duration_ == 0.0) return V(0.0);
     V refused = 0.0;
     if (duration_ == infinity) {
       sum = own.vector_at(0);
     } else {
       const V stamp = own.number_at(0);
-      const mask_of<V> is_stamp = (absolute(stamp) <= largest_number) & is_whole(stamp);
-      refused = select(is_stamp, refused, code_of<V>(refusal::impossible_state));
-      mask_of<V> left = is_stamp & (stamp != empty) & has_grid_;
-      while (any(left)) {
-        const double number = first_of(left, stamp), newest = bucket_of(number);
-        const mask_of<V> same = left & (stamp == number);
-        left = left & !same;
-        // A host whose position step is not the next one may fall back by a part of its last step.
-        if (now_ < newest - 1.0) refused = select(same, code_of<V>(refusal::time_before_history), refused);
-        const double k = larger(now_, newest);
-        if (now_ >= newest - 1.0 && is_short_ && k - newest <= buckets_)
-          sum = select(same, sum_at(own, k, k - newest), sum);
-      }
+      const mask_of<V> open = (stamp == stamp_) & counts_;
+      sum = {};
+      if (any(open)) sum = zero_unless(open, open_sum(own, edge_));
+      const mask_of<V> others = !(open | (stamp == empty));
+      if (any(others)) refused = read_others(own, others, stamp, sum);
     }
     return select(residual(sum, V(0.0)) == 0.0, refused, code_of<V>(refusal::impossible_state));
   }
@@ -113,7 +105,7 @@ class window {
   // Empties the windows of some nodes, and then takes in the impulse at some. The history is one that read() did not
   // refuse.
   template <class Own, class V = typename Own::number>
-  void write(const Own& own, mask_of<V> clears, mask_of<V> adds, vector<V> impulse) const {
+  ILAW_KIT_INLINE void write(const Own& own, mask_of<V> clears, mask_of<V> adds, vector<V> impulse) const {
     mask_of<V> left = adds & ((impulse.n != 0.0) | (impulse.t1 != 0.0) | (impulse.t2 != 0.0));
     if (duration_ == infinity) {
       if (any(clears | left))
@@ -122,21 +114,12 @@ class window {
     }
     if (any(clears)) own.put_number(clears, 0, empty);  // of an empty window no other number counts
     left = left & has_grid_;
-    if (!any(left)) return;
-    const V stamp = own.number_at(0);
     if (begin_ >= now_) {  // the step lies in one bucket
-      const mask_of<V> open = left & (stamp == stamp_of(now_));
+      const mask_of<V> open = left & (own.number_at(0) == stamp_);
       if (any(open)) own.add(open, current, impulse);
       left = left & !open;
     }
-    while (any(left)) {
-      const double newest = first_of(left, stamp);
-      const mask_of<V> same = left & (stamp == newest);
-      left = left & !same;
-      const double k = newest == empty ? now_ : larger(now_, bucket_of(newest));
-      const double turns = newest == empty ? buckets_ + 1.0 : smaller(k - bucket_of(newest), buckets_ + 1.0);
-      take_in(own, same, impulse, k, turns);
-    }
+    if (any(left)) write_others(own, left, impulse);
   }
 
  private:
@@ -205,16 +188,48 @@ class window {
     return {smaller(larger(difference.n, -most), most), factor * difference.t1, factor * difference.t2};
   }
 
-  // The sum with bucket k as the newest, so many after that of the history.
+  // Where the newest bucket stays open.
   template <class Own>
-  auto sum_at(const Own& own, double k, double turns) const {
-    const edge e = k == now_ ? edge_ : edge_at(k);
-    if (turns == 0.0)
-      return own.linear([&](auto value) ILAW_KIT_LAMBDA {
-        return e.sum(value(middle_sum), value(current), value(oldest_bucket), value(oldest_slope));
-      });
-    const auto f = front_at(own, k, turns);
-    return e.sum(f.middle, f.newest, f.oldest, limited_difference(f.oldest, f.next));
+  ILAW_KIT_INLINE static auto open_sum(const Own& own, edge e) {
+    return own.linear([&](auto value) ILAW_KIT_LAMBDA {
+      return e.sum(value(middle_sum), value(current), value(oldest_bucket), value(oldest_slope));
+    });
+  }
+  // Where the newest bucket is another than that of the step.
+  template <class Own, class V>
+  [[gnu::noinline]] V read_others(const Own& own, mask_of<V> left, V stamp, vector<V>& sum) const {
+    const mask_of<V> is_stamp = (absolute(stamp) <= largest_number) & is_whole(stamp);
+    V refused = select(is_stamp, V(0.0), code_of<V>(refusal::impossible_state));
+    left = left & is_stamp & has_grid_;
+    while (any(left)) {
+      const double number = first_of(left, stamp), newest = bucket_of(number);
+      const mask_of<V> same = left & (stamp == number);
+      left = left & !same;
+      // A host whose position step is not the next one may fall back by a part of its last step.
+      if (now_ < newest - 1.0) refused = select(same, code_of<V>(refusal::time_before_history), refused);
+      const double k = larger(now_, newest);
+      if (now_ < newest - 1.0 || !is_short_ || k - newest > buckets_) continue;
+      const edge e = k == now_ ? edge_ : edge_at(k);
+      if (k == newest) {
+        sum = select(same, open_sum(own, e), sum);
+      } else {
+        const front<V> f = front_at(own, k, k - newest);
+        sum = select(same, e.sum(f.middle, f.newest, f.oldest, limited_difference(f.oldest, f.next)), sum);
+      }
+    }
+    return refused;
+  }
+  template <class Own, class V>
+  [[gnu::noinline]] void write_others(const Own& own, mask_of<V> left, vector<V> impulse) const {
+    const V stamp = own.number_at(0);
+    while (any(left)) {
+      const double newest = first_of(left, stamp);
+      const mask_of<V> same = left & (stamp == newest);
+      left = left & !same;
+      const double k = newest == empty ? now_ : larger(now_, bucket_of(newest));
+      const double turns = newest == empty ? buckets_ + 1.0 : smaller(k - bucket_of(newest), buckets_ + 1.0);
+      take_in(own, same, impulse, k, turns);
+    }
   }
 
   // The buckets that a step changes: the newest, k; the sum of the middle ones; the oldest, k - B, and the one after
@@ -271,7 +286,7 @@ class window {
   // Bucket k becomes the newest, or is it still, and the impulse is spread over the buckets that the step covers; the
   // last takes what is left, so that the whole arrives. The step may end before bucket k.
   template <class Own, class V>
-  [[gnu::noinline]] void take_in(const Own& own, mask_of<V> where, vector<V> impulse, double k, double turns) const {
+  void take_in(const Own& own, mask_of<V> where, vector<V> impulse, double k, double turns) const {
     front<V> f = front_at(own, k, turns);
     const double before = k - turns, closing = turns < buckets_ ? before : k;  // k: none
     for (double j = larger(before, k - buckets_) + 1.0; j < k; j += 1.0) own.put(where, at(place_of(j)), vector<V>{});
@@ -308,7 +323,8 @@ class window {
   }
 
   double duration_, buckets_, end_, begin_, now_;
-  bool has_grid_, is_short_;
+  bool has_grid_, is_short_, counts_;  // counts: what lies before the step
+  double stamp_;                       // of bucket now_
   std::int64_t ring_size_;
   edge edge_;
   shares shares_;

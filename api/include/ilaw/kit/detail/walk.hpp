@@ -309,15 +309,16 @@ class batch_walk {
       } else {
         window_rows own;
         own.stride = v.history_component_stride;
+        const std::int64_t last = v.count - 1 - i;
         for (int lane = 0; lane < lanes; ++lane) {
-          const std::int64_t k = i + lane < v.count ? i + lane : v.count - 1;
+          const std::int64_t k = i + (lane < last ? lane : last);
           own.first[lane] = v.history + (v.nodes ? v.nodes[k] : k) * v.history_node_stride;
         }
         work(i, own);
       }
     }
   }
-  [[gnu::noinline]] static void read_windows(const window& w, const view<Number>& v, window_sums& sums) {
+  [[gnu::noinline, gnu::flatten]] static void read_windows(const window& w, const view<Number>& v, window_sums& sums) {
     constexpr all_lanes<pack> l;
     for_windows(v, [&](std::int64_t i, const auto& own) {
       vector<pack> sum;
@@ -328,7 +329,7 @@ class batch_walk {
       l.store(refused, sums.refused + i);
     });
   }
-  [[gnu::noinline]] static void write_windows(const window& w, const view<Number>& v, window_sums& sums) {
+  [[gnu::noinline, gnu::flatten]] static void write_windows(const window& w, const view<Number>& v, window_sums& sums) {
     constexpr all_lanes<pack> l;
     for (std::int64_t i = v.count; i % lanes_of<pack> != 0; ++i) sums.adds[i] = sums.clears[i] = 0.0;
     for_windows(v, [&](std::int64_t i, const auto& own) {
