@@ -97,7 +97,11 @@ class window {
       sum = {};
       if (any(open)) sum = zero_unless(open, open_sum(own, edge_));
       const mask_of<V> others = !(open | (stamp == empty));
-      if (any(others)) refused = read_others(own, others, stamp, sum);
+      if (any(others)) [[unlikely]] {
+        vector<V> all = sum;
+        refused = read_others(own, others, stamp, all);
+        sum = all;
+      }
     }
     return select(residual(sum, V(0.0)) == 0.0, refused, code_of<V>(refusal::impossible_state));
   }
@@ -119,7 +123,8 @@ class window {
       if (any(open)) own.add(open, current, impulse);
       left = left & !open;
     }
-    if (any(left)) write_others(own, left, impulse);
+    if (any(left)) [[unlikely]]
+      write_others(own, left, impulse);
   }
 
  private:

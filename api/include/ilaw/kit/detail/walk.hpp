@@ -310,6 +310,7 @@ class batch_walk {
         window_rows own;
         own.stride = v.history_component_stride;
         const std::int64_t last = v.count - 1 - i;
+#pragma GCC unroll 8
         for (int lane = 0; lane < lanes; ++lane) {
           const std::int64_t k = i + (lane < last ? lane : last);
           own.first[lane] = v.history + (v.nodes ? v.nodes[k] : k) * v.history_node_stride;

@@ -78,12 +78,11 @@ struct window_rows {
     ILAW_KIT_INLINE row zero() const { return row{}; }
   };
 
-  ILAW_KIT_INLINE pack number_at(std::int64_t k) const {
-    one v{};
-#pragma GCC unroll 8
-    for (int lane = 0; lane < register_lanes; ++lane) v[lane] = first[lane][k * stride];
-    return pack::each([&](int) ILAW_KIT_LAMBDA { return v; });
+  template <int... K>
+  ILAW_KIT_INLINE pack number_at(std::int64_t k, std::integer_sequence<int, K...>) const {
+    return pack::each([&](int) ILAW_KIT_LAMBDA { return one{first[K][k * stride]...}; });
   }
+  ILAW_KIT_INLINE pack number_at(std::int64_t k) const { return number_at(k, each_lane); }
   template <class F>
   ILAW_KIT_INLINE vector<pack> linear(F f) const {
     row rows[register_lanes];
