@@ -462,6 +462,7 @@ struct kernel {
       if constexpr (states > 0) {
         state_t<Wide> before;
         load_state(before, b, i, l);
+#pragma GCC unroll 32
         for (int k = 0; k < states; ++k) {
           const auto x = bits::in(number_in<V>(before, k)), y = bits::in(number_in<V>(p.node.state, k));
           changed = changed | differ(x, y);
@@ -471,6 +472,7 @@ struct kernel {
       const V now[6] = {p.frame.n.x, p.frame.n.y, p.frame.n.z, p.frame.t1.x, p.frame.t1.y, p.frame.t1.z};
       V next[6];
       load_numbers(next, b.frame_in, i, l);
+#pragma GCC unroll 6
       for (int k = 0; k < 6; ++k) next[k] = select(moves, now[k], next[k]);
       store_numbers(next, b.frame_out, i, l);
     }
@@ -478,10 +480,7 @@ struct kernel {
   ILAW_KIT_INLINE static bool differ(std::uint64_t a, std::uint64_t b) { return a != b; }
   template <class Bits>
   ILAW_KIT_INLINE static mask differ(Bits a, Bits b) {
-    unsigned lanes = 0;
-    for (int k = 0; k < width; ++k)
-      lanes |= a.b[k / register_lanes][k % register_lanes] != b.b[k / register_lanes][k % register_lanes] ? 1U << k : 0U;
-    return mask_from<V>(lanes);
+    return mask::each([&](int r) ILAW_KIT_LAMBDA { return are_different(a.b[r], b.b[r]); });
   }
 
   // Windows are written after their block, histories here.
