@@ -7,7 +7,7 @@ packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev
           libvtk9-dev zlib1g-dev)
 for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsiconos-numerics-dev qemu-user
            dpkg-dev pkgconf python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv
-           python3-matplotlib)
+           python3-matplotlib python3-pycparser)
 # Solvers that the laws are tried in, and MPI. They are large: 1 GB with what they bring.
 for_hosts=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade)
 [ "${2:-}" = without-hosts ] || for_tests+=("${for_hosts[@]}")

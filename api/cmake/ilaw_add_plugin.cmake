@@ -1,11 +1,19 @@
 # ilaw_add_plugin(name source) makes the law library <name>.so, as portable as a library can be: nothing exported
-# but the entry, nothing needed but libc and libm, the same bits on every processor. On x86-64 the source is compiled
-# once per instruction-set level; the library takes the best one that it finds when an instance is created.
+# but the entry, nothing needed but libc and libm, the same bits on every processor. On x86-64 a source in C++ is
+# compiled once per instruction-set level; the library takes the best one that it finds when an instance is created.
+# A source in C (ilaw/plain_c.h) is compiled once.
 function(ilaw_add_plugin name source)
   add_library(${name} MODULE ${source})
-  target_link_libraries(${name} PRIVATE ilaw::kit)
+  if(source MATCHES "[.]c$")
+    target_link_libraries(${name} PRIVATE ilaw::abi m)
+    target_compile_options(${name} PRIVATE -ffp-contract=off -fvisibility=hidden)
+    target_link_options(${name} PRIVATE -static-libgcc LINKER:--as-needed)
+    set_target_properties(${name} PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
+  else()
+    target_link_libraries(${name} PRIVATE ilaw::kit)
+  endif()
   # Instrumented and debug builds look for mistakes, not for speed: one level is enough.
-  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT ILAW_SANITIZE AND
+  if(NOT source MATCHES "[.]c$" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT ILAW_SANITIZE AND
      NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
     target_compile_definitions(${name} PRIVATE ILAW_KIT_OTHER_LEVELS)
     foreach(level v3 v4)
@@ -16,6 +24,7 @@ function(ilaw_add_plugin name source)
   set_target_properties(${name} PROPERTIES
     PREFIX "" SUFFIX ".so"
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/ilaw)
+  ilaw_describe_plugin(${name})
 endfunction()
 
 # The source at one level, as an object whose only global symbol is the function that gives its walks. All else is

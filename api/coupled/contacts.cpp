@@ -3,6 +3,8 @@
 
 #include "sizes.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +35,7 @@ void write_form(const Symmetric& h, const Vector& normal, std::uint32_t form, st
   }
 }
 
-ilaw_input input_of(const std::vector<Vector>& vectors) { return {vectors.data()->data(), 3, 1}; }
+ilaw_input input_of(const std::vector<Vector>& vectors) { return ilaw::input(vectors.data()->data(), 3, 1); }
 
 bool is_zero(const Vector& a) { return a[0] == 0.0 && a[1] == 0.0 && a[2] == 0.0; }
 
@@ -57,6 +59,8 @@ const char* Contacts::complaint() const {
       given_.delassus_form != ILAW_DELASSUS_FULL)
     return "delassus_form is neither scalar, transverse nor full";
   if (theirs_.node_count < 0) return "node_count is negative";
+  if (theirs_.impulse.floats || theirs_.energy.floats || theirs_.state_in.floats || theirs_.state_out.floats)
+    return "an array of a batch has floats; expected doubles";
   if (theirs_.index || theirs_.index64) return "contacts have no list of nodes";
   if (theirs_.node_count == 0) return nullptr;
   if (!given_.body || !given_.counterpart) return "body or counterpart is missing";
@@ -68,7 +72,7 @@ const char* Contacts::complaint_of_law(const Bodies& bodies) {
   info_ = {};
   info_.struct_size = sizeof info_;
   if (given_.law->info(given_.instance, &info_) != ILAW_OK) return "info refuses the instance";
-  const std::uint32_t read = info_.inputs | (theirs_.energy.values ? info_.energy_inputs : 0U);
+  const std::uint32_t read = info_.inputs | (asks_balance() ? info_.balance_inputs : 0U);
   constexpr std::uint32_t known =
       ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT;
   if (read & ~known) return "the law reads an input that coupled contacts do not know";
@@ -142,7 +146,7 @@ void Contacts::read(const Bodies& bodies) {
         contact.counterpart < 0 ? Symmetric{} : bodies.delassus(contact.counterpart, contact.counterpart_arm);
     v_previous_[k] = previous(contact, bodies);
     const ilaw_output& start = theirs_.impulse;
-    answer_[k] = vector({start.values, start.node_stride, start.component_stride}, i, dimension_);
+    answer_[k] = vector(ilaw::input(start.values, start.node_stride, start.component_stride), i, dimension_);
     if (!std::isfinite(dot(answer_[k], answer_[k]))) answer_[k] = {};
     contact.active = !is_zero(answer_[k]);
     trial_[k] = before_[k] = answer_[k];
@@ -156,12 +160,13 @@ void Contacts::describe_batch() {
   if (contacts_.empty()) return;
   const auto state_size = static_cast<std::int64_t>(info_.state_size);
   ours_.v_free = input_of(v_free_);
-  ours_.delassus = {delassus_.data(), static_cast<std::int64_t>(form_size_), 1};
+  ours_.delassus = ilaw::input(delassus_.data(), static_cast<std::int64_t>(form_size_), 1);
   ours_.v_previous = input_of(v_previous_);
-  ours_.state_out = {state_.data(), state_size, 1};
-  ours_.impulse = {answer_.data()->data(), 3, 1};
+  ours_.state_out = ilaw::output(state_.data(), state_size, 1);
+  ours_.impulse = ilaw::output(answer_.data()->data(), 3, 1);
   ours_.velocity = {};
   ours_.energy = {};
+  ours_.amounts = nullptr;
   const bool has_status = (given_.law->outputs & ILAW_OUTPUT_STATUS) != 0;
   ours_.status = has_status ? status_.data() : nullptr;
   ours_.status_stride = 1;
@@ -263,11 +268,12 @@ void Contacts::extrapolate(double by) {
 std::int32_t Contacts::write(const std::vector<Motion>& of_answer, const Bodies& bodies,
                              ilaw_coupled_report& report) {
   const auto state_size = static_cast<std::int64_t>(info_.state_size);
-  if (theirs_.energy.values && !contacts_.empty()) {
+  if (asks_balance() && !contacts_.empty()) {
     spare_state_.resize(state_.size());
     ilaw_batch batch = ours_;
-    batch.energy = {energy_.data(), ILAW_ENERGY_COUNT, 1};
-    batch.impulse = {trial_.data()->data(), 3, 1};  // of no use any more, as the state
+    if (theirs_.energy.values) batch.energy = ilaw::output(energy_.data(), ILAW_ENERGY_COUNT, 1);
+    batch.amounts = theirs_.amounts;
+    batch.impulse = ilaw::output(trial_.data()->data(), 3, 1);  // of no use any more, as the state
     batch.state_out.values = spare_state_.data();
     batch.status = nullptr;
     if (const std::int32_t code = call(batch, of_answer, answer_); code < 0) return code;

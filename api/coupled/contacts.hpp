@@ -49,6 +49,7 @@ class Contacts {
   const char* complaint() const;
   const char* complaint_of_bodies(const Bodies& bodies) const;
   const char* complaint_of_law(const Bodies& bodies);
+  bool asks_balance() const { return theirs_.energy.values || theirs_.amounts; }
   bool has_arm_aside(std::int64_t k) const;
   void read(const Bodies& bodies);
   void make_room();

@@ -9,13 +9,13 @@ struct ilaw_coupled {
   ilaw::coupled::Solver solver;
 };
 
-ilaw_coupled* ilaw_coupled_create(void) { return new (std::nothrow) ilaw_coupled; }
+ilaw_coupled* ILAW_CALL ilaw_coupled_create(void) { return new (std::nothrow) ilaw_coupled; }
 
-void ilaw_coupled_destroy(ilaw_coupled* solver) { delete solver; }
+void ILAW_CALL ilaw_coupled_destroy(ilaw_coupled* solver) { delete solver; }
 
-int32_t ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies* bodies,
-                           const ilaw_contacts* const* groups, int64_t group_count,
-                           const ilaw_coupled_options* options, ilaw_coupled_report* report) {
+ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies* bodies,
+                                         const ilaw_contacts* const* groups, int64_t group_count,
+                                         const ilaw_coupled_options* options, ilaw_coupled_report* report) {
   using namespace ilaw;
   if (!solver || (report && !sized::cleared(report)) || (options && !sized::is_complete(options)))
     return ILAW_INVALID_ARGUMENT;

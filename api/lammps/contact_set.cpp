@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact_set.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
@@ -106,13 +108,13 @@ const ilaw_contacts* ContactSet::describe(double time, double position_step) {
   batch_.time = time;
   batch_.velocity_step = velocity_step_;
   batch_.position_step = position_step;
-  batch_.gap = {gap_.data(), 1, 0};
-  batch_.area = {area_.data(), 1, 0};
-  batch_.normal = {normal_.data(), 3, 1};
-  batch_.state_in = {state_.data(), state_size, 1};
-  batch_.state_out = {state_.data(), state_size, 1};
-  batch_.impulse = {impulse_.data(), 3, 1};
-  batch_.energy = {energy_.data(), ILAW_ENERGY_COUNT, 1};
+  batch_.gap = ilaw::input(gap_.data(), 1, 0);
+  batch_.area = ilaw::input(area_.data(), 1, 0);
+  batch_.normal = ilaw::input(normal_.data(), 3, 1);
+  batch_.state_in = ilaw::input(state_.data(), state_size, 1);
+  batch_.state_out = ilaw::output(state_.data(), state_size, 1);
+  batch_.impulse = ilaw::output(impulse_.data(), 3, 1);
+  batch_.energy = ilaw::output(energy_.data(), ILAW_ENERGY_COUNT, 1);
   batch_.status = status_.data();
   batch_.status_stride = 1;
   initialise_new(batch_);
@@ -124,9 +126,9 @@ const ilaw_contacts* ContactSet::describe(double time, double position_step) {
   described_.batch = &batch_;
   described_.body = body_.data();
   described_.counterpart = counterpart_.data();
-  described_.arm = {arm_.data(), 3, 1};
-  described_.counterpart_arm = {counterpart_arm_.data(), 3, 1};
-  described_.wall_velocity = {wall_.data(), 3, 1};
+  described_.arm = ilaw::input(arm_.data(), 3, 1);
+  described_.counterpart_arm = ilaw::input(counterpart_arm_.data(), 3, 1);
+  described_.wall_velocity = ilaw::input(wall_.data(), 3, 1);
   return &described_;
 }
 

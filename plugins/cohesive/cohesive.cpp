@@ -22,7 +22,7 @@ struct cohesive : bond {
           "origin; contact and friction take over as it breaks. Solved with any H for any initial stiffness, "
           "also infinite, without a limit on the time step.",
       .inputs = reads_gap | reads_v_previous | reads_area,
-      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST};
+      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY | acts_at_distance | can_rest};
 
   static constexpr const char* references[] = {
       "G. T. Camacho, M. Ortiz, 1996, Computational modelling of impact damage in brittle materials",

@@ -10,7 +10,8 @@ using namespace ilaw::kit;
 constexpr const char* rupture_choices[] = {"brittle", "saturated"};
 constexpr double saturated = 1.0;
 
-// A pull exactly at the limit holds, whatever the rounding of its windowed sum; the criterion is of its square.
+// A pull exactly at the limit holds, whatever the rounding of its windowed sum; the criterion is of its
+// square.
 constexpr double at_the_limit = 1.0 + 2.0 * window_slack;
 
 template <class V>
@@ -65,7 +66,8 @@ struct postit {
       friction_parameter(&postit::friction),
       {.member = &postit::rupture,
        .name = "rupture",
-       .doc = "brittle: the breaking step gives no adhesive impulse; saturated: it gives what was left up to the limit.",
+       .doc =
+           "brittle: the breaking step gives no adhesive impulse; saturated: it gives what was left up to the limit.",
        .choices = rupture_choices},
       {.member = &postit::initial_adhesion,
        .name = "initial_adhesion",
@@ -118,9 +120,7 @@ struct postit {
 
   // Friction in closed form where H is transverse; elsewhere nodes that touch are asked for it.
   template <class Node>
-  status_of<V> step(Node& node) const
-    requires is_transverse<Node>
-  {
+  status_of<V> step(Node& node) const requires is_transverse<Node> {
     const trial bond = tried(node);
     const status_of<V> of_contact = apply_isotropic_friction(node, contact_beside(node, bond), friction);
     return settle(node, bond, of_contact);
@@ -128,9 +128,7 @@ struct postit {
   using problem = friction_problem<V>;
   using answer = friction_answer<V>;
   template <class Node>
-  asked<V> ask(Node& node, problem& open) const
-    requires(!is_transverse<Node>)
-  {
+  asked<V> ask(Node& node, problem& open) const requires(!is_transverse<Node>) {
     const trial bond = tried(node);
     const asked<V> pressed = ask_friction(node, contact_beside(node, bond), friction, friction, open);
     return {pressed.open & !bond.holds, settle(node, bond, pressed.status)};
@@ -156,7 +154,8 @@ struct postit {
     const mask_of<V> holds = was_bonded & is_within(node.earlier + r, adhesion, at_the_limit);
     const mask_of<V> breaks = was_bonded & !holds;
     vector<V> kept;
-    if (rupture == saturated && any(breaks)) kept = zero_unless(breaks, held_part(node.earlier, r, adhesion) * r);
+    if (rupture == saturated && any(breaks))
+      kept = zero_unless(breaks, held_part(node.earlier, r, adhesion) * r);
     return {r, kept, holds, breaks};
   }
   template <class Node>
@@ -166,8 +165,9 @@ struct postit {
     return contact_without_bond(node, v);
   }
 
-  // <-S_N>^2 + (<|S_T| - mu <S_N>>/lambda)^2 <= R_Y^2 times a factor near 1, without a division by R_Y: both sides are
-  // brought near 1 by a power of two. False where S has overflowed. An infinite lambda leaves -S_N <= R_Y times the root.
+  // <-S_N>^2 + (<|S_T| - mu <S_N>>/lambda)^2 <= R_Y^2 times a factor near 1, without a division by R_Y: both
+  // sides are brought near 1 by a power of two. False where S has overflowed. An infinite lambda leaves -S_N
+  // <= R_Y times the root.
   mask_of<V> is_within(vector<V> sum, V adhesion, double factor) const {
     const V of_pull = sum.n + (0.5 + 0.5 * factor) * adhesion;
     if (!any(tangent_influence < infinity)) return of_pull >= 0.0;
@@ -198,14 +198,16 @@ struct postit {
   // (held + r).(v^- + v_free + H (held + r))/2, is not positive; that of what is held alone counts as none.
   template <class Node>
   static V joining_part(const Node& node, vector<V> held, vector<V> r) {
-    const auto product = [](vector<V> a, vector<V> b) { return normal_product(a, b) + tangential_product(a, b); };
+    const auto product = [](vector<V> a, vector<V> b) {
+      return normal_product(a, b) + tangential_product(a, b);
+    };
     const vector<V> of_held = node.delassus.times(held), motion = node.v_previous + node.v_free + of_held;
     const V c2 = product(r, node.delassus.times(r)), c1 = product(r, motion + of_held);
     const fraction<V> root = root_of_work(c2, c1, smaller(product(held, motion), 0.0));
     return select(root.numerator < root.denominator, root.numerator / root.denominator, 1.0);
   }
-  // What is held and then contact and friction do no positive work each, and yet may together: friction is scaled first,
-  // as where there is no bond, and then contact with it, if that was not enough.
+  // What is held and then contact and friction do no positive work each, and yet may together: friction is
+  // scaled first, as where there is no bond, and then contact with it, if that was not enough.
   template <class Node>
   static vector<V> joined(const Node& node, vector<V> held, vector<V> r) {
     const vector<V> normal{r.n}, rubs{0.0, r.t1, r.t2};
@@ -226,8 +228,8 @@ struct postit {
     return select(heals & !was_bonded, status_of<V>(status::healed), given);
   }
 
-  // Sliding under pressure bonds and breaks in every step. A rupture counts only if the node was free since the last
-  // one, or the bond held for the window, and for one step at least.
+  // Sliding under pressure bonds and breaks in every step. A rupture counts only if the node was free since
+  // the last one, or the bond held for the window, and for one step at least.
   void count_rupture(state& s, double step, const trial& bond, mask_of<V> touches) const {
     const double whole = smaller(larger(duration, step), std::numeric_limits<double>::max());
     const V rest = s.grace - step, left = zero_unless(rest > window_slack * step, rest);
@@ -235,7 +237,8 @@ struct postit {
     s.grace = select(bond.breaks, V(whole), select(bond.holds, left, zero_unless(touches, s.grace)));
   }
 
-  // Pressing bonds: R_Y = max(R_Y, min(eta(b) <S_N>, R_Y,max)). A rupture has cleared the window. Returns where.
+  // Pressing bonds: R_Y = max(R_Y, min(eta(b) <S_N>, R_Y,max)). A rupture has cleared the window. Returns
+  // where.
   template <class Node>
   mask_of<V> heal(Node& node, const trial& bond) const {
     V efficiency = 1.0;

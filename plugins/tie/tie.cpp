@@ -47,7 +47,8 @@ struct tie {
        .doc = "Mean force over the memory that the bond of one node can carry, whatever its area.",
        .default_value = infinity,
        .infinity_allowed = true},
-      memory_parameter(&tie::duration), buckets_parameter(&tie::buckets)};
+      memory_parameter(&tie::duration),
+      buckets_parameter(&tie::buckets)};
 
   struct state {
     V broken;
@@ -83,7 +84,8 @@ struct tie {
     const V broken = node.state.broken;
     const mask_of<V> bonded = broken == 0.0;
     mask_of<V> holds = bonded;
-    if (any((strength < infinity) | (force < infinity))) holds = bonded & !exceeds(node.earlier + trial, limit(node));
+    if (any((strength < infinity) | (force < infinity)))
+      holds = bonded & !exceeds(node.earlier + trial, limit(node));
     V normal = 0.0;
     if (any(!holds)) normal = contact_impulse(node);
     node.impulse = select(holds, trial, vector<V>{normal});
@@ -106,7 +108,8 @@ struct tie {
   // 0 <= v_N _|_ r_N >= 0 where the gap is closed.
   template <class Node>
   static V contact_impulse(const Node& node) {
-    const contact_condition<V> contact = contact_leaving_at<V>(0.0, node.gap, node.v_free.n, node.v_previous.n);
+    const contact_condition<V> contact =
+        contact_leaving_at<V>(0.0, node.gap, node.v_free.n, node.v_previous.n);
     return zero_unless(contact.slack <= 0.0, positive_part(-contact.excess / node.delassus.normal()));
   }
 };

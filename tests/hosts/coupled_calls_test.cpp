@@ -3,6 +3,7 @@
 #include "coupled_scene.hpp"
 
 #include <gtest/gtest.h>
+#include <ilaw/arrays.hpp>
 #include <ilaw/coupled.hpp>
 #include <ilaw/loader.hpp>
 
@@ -58,7 +59,7 @@ TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
       {"delassus_form is transverse, and bodies are no spheres",
        [](Call& c) {
          c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
-         c.bodies.inverse_inertia = {six, 0, 1};
+         c.bodies.inverse_inertia = ilaw::input(six, 0, 1);
        }},
       {"delassus_form is transverse, and the normal is missing", [](Call& c) {
          c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
@@ -156,12 +157,12 @@ TEST(Coupled, PointsThatAreTiedMoveAsOne) {
       batch.struct_size = sizeof batch;
       batch.node_count = 1;
       batch.velocity_step = batch.position_step = batch.time = h;
-      batch.gap = {&gap, 1, 0};
-      batch.area = {&area, 1, 0};
-      batch.normal = {normal.data(), d, 1};
-      batch.state_in = {state.data(), size, 1};
-      batch.state_out = {state.data(), size, 1};
-      batch.impulse = {impulse.data(), d, 1};
+      batch.gap = ilaw::input(&gap, 1, 0);
+      batch.area = ilaw::input(&area, 1, 0);
+      batch.normal = ilaw::input(normal.data(), d, 1);
+      batch.state_in = ilaw::input(state.data(), size, 1);
+      batch.state_out = ilaw::output(state.data(), size, 1);
+      batch.impulse = ilaw::output(impulse.data(), d, 1);
       ASSERT_EQ(law.initialise(batch), ILAW_OK) << "form " << form;
       ilaw_contacts contacts{};
       contacts.struct_size = sizeof contacts;
@@ -175,9 +176,9 @@ TEST(Coupled, PointsThatAreTiedMoveAsOne) {
       bodies.struct_size = sizeof bodies;
       bodies.dimension = dimension;
       bodies.count = bodies.owned_count = 2;
-      bodies.inverse_mass = {inverse_mass.data(), 1, 0};
-      bodies.v_free = bodies.v_previous = {start.data(), d, 1};
-      bodies.velocity = {v.data(), d, 1};
+      bodies.inverse_mass = ilaw::input(inverse_mass.data(), 1, 0);
+      bodies.v_free = bodies.v_previous = ilaw::input(start.data(), d, 1);
+      bodies.velocity = ilaw::output(v.data(), d, 1);
       const ilaw_contacts* groups[] = {&contacts};
       ilaw_coupled* solver = ilaw_coupled_create();
       EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, groups, 1, nullptr, nullptr), ILAW_OK) << "form " << form;

@@ -188,8 +188,8 @@ TEST(Tangent, ThatIsNoneIsBadInput) {
         Given{{0.0, 0.0, 1.0}, false}, Given{{0.3, 0.4, 0.0}, false}, Given{{0.0, 0.0, 0.0}, false},
         Given{{nan_value, 0.8, 0.0}, false}, Given{{0.6, inf_value, 0.0}, false}}) {
     SmallBatch node(1, {1.0, 0.5, -1.0});
-    node.b.normal = {normal, 0, 1};
-    node.b.tangent = {given.tangent.data(), 0, 1};
+    node.b.normal = ilaw::input(normal, 0, 1);
+    node.b.tangent = ilaw::input(given.tangent.data(), 0, 1);
     EXPECT_EQ(law.evaluate(node.b, &node.report), given.good ? ILAW_OK : ILAW_BAD_NODES) << given.tangent[2];
     EXPECT_STREQ(node.report.reason,
                  given.good ? nullptr : "the tangent is not a unit vector orthogonal to the normal");
@@ -206,7 +206,7 @@ TEST(FullDelassus, IsAcceptedOrRefusedWhateverItsRotation) {
   std::normal_distribution<double> normal;
   SmallBatch node(1, {-1.0, 0.5, 0.2});
   const auto code_of = [&](const ilaw::interface& served, const double* h) {
-    node.b.delassus = {h, 0, 1};
+    node.b.delassus = ilaw::input(h, 0, 1);
     return served.evaluate(node.b);
   };
   for (const double scale : {1.0, 1e-200, 1e150})

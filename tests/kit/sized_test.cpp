@@ -87,7 +87,7 @@ TEST(Sized, SetupsAndArgumentsAreReadUpToTheirSizeAndFromThatOfVersionOneOn) {
   setup.known.argument_count = 1;
   char message[200];
   ilaw_instance* instance = nullptr;
-  const auto create = [&] { return law.create(&setup.known, &instance, message, sizeof message); };
+  const auto create = [&] { return law.create(law.id, &setup.known, &instance, message, sizeof message); };
   EXPECT_EQ(create(), ILAW_OK) << message;
   law.destroy(instance);
   argument.known.struct_size = ILAW_ARGUMENT_SIZE_1_0 - 1;
@@ -124,7 +124,7 @@ TEST(Sized, SizesThatNoVersionHasAreRefused) {
     info.struct_size = size;
     EXPECT_EQ(law.law().info(law.instance(), &info), ILAW_INVALID_ARGUMENT) << "size " << size;
     other.struct_size = size;
-    EXPECT_EQ(law.law().create(&other, &instance, nullptr, 0), ILAW_INVALID_ARGUMENT) << "size " << size;
+    EXPECT_EQ(law.law().create("coulomb", &other, &instance, nullptr, 0), ILAW_INVALID_ARGUMENT) << "size " << size;
   }
 }
 

@@ -370,4 +370,20 @@ TEST(Window, RefusesASumThatIsNotFinite) {
     }
 }
 
+// The tangential part turns with the impulses: no axis is preferred.
+TEST(Window, IsIsotropicInTheTangentPlane) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  Window plain(1.0, 4, 0.0), turned(1.0, 4, 0.0);
+  for (int k = 0; k < 20000; ++k) {
+    const vector r{uniform(random), uniform(random), uniform(random)};
+    const vector a = plain.step(0.0137, r);
+    const vector b = turned.step(0.0137, {r.n, c * r.t1 - s * r.t2, s * r.t1 + c * r.t2});
+    ASSERT_EQ(a.n, b.n) << k;
+    ASSERT_NEAR(c * a.t1 - s * a.t2, b.t1, 1e-13) << k;
+    ASSERT_NEAR(s * a.t1 + c * a.t2, b.t2, 1e-13) << k;
+  }
+}
+
 }  // namespace

@@ -26,9 +26,9 @@ extern "C" {
 #pragma GCC visibility push(default)
 #endif
 
-/* Bodies that contacts name: grains, or nodes of a mesh. With ranks: those that this rank owns, then copies
- * of bodies of other ranks. Masses and velocities are wanted at both. In dimensions 1 and 2 bodies do not
- * rotate; a code in the plane whose bodies do passes three components. */
+/* All arrays hold doubles. Bodies that contacts name: grains, or nodes of a mesh. With ranks: those that this
+ * rank owns, then copies of bodies of other ranks. Masses and velocities are wanted at both. In dimensions 1
+ * and 2 bodies do not rotate; a code in the plane whose bodies do passes three components. */
 typedef struct ilaw_bodies {
   uint32_t struct_size;
   uint32_t dimension;          /* d: 1, 2 or 3, that of all instances */
@@ -50,11 +50,11 @@ typedef struct ilaw_bodies {
 /* The contacts that have one law. */
 typedef struct ilaw_contacts {
   uint32_t struct_size;
-  uint32_t delassus_form;        /* the instance was created with: ILAW_DELASSUS_SCALAR where nothing rotates,
-                                    ILAW_DELASSUS_TRANSVERSE for spheres with arms along the normal, else
-                                    ILAW_DELASSUS_FULL */
+  ilaw_delassus_forms delassus_form; /* the instance was created with: ILAW_DELASSUS_SCALAR where nothing
+                                    rotates, ILAW_DELASSUS_TRANSVERSE for spheres with arms along the normal,
+                                    else ILAW_DELASSUS_FULL */
   const ilaw_law* law;           /* ilaw_interface_law, ilaw_interface_instance of an interface that was */
-  const ilaw_instance* instance; /* created for ILAW_FRAME_GLOBAL */
+  const ilaw_instance* instance; /* created for ILAW_FRAME_GLOBAL and ILAW_NUMBERS_DOUBLE */
   /* As for evaluate, but without v_free, delassus, v_previous, velocity and lists of nodes: contacts 0 to
    * node_count - 1. impulse is read, too: the sweeps begin with it. Leave there what the last step left
    * (times the new step over the old one, where it changes), and zero at contacts that are new. */
@@ -68,6 +68,10 @@ typedef struct ilaw_contacts {
   ilaw_input wall_previous;   /* d, optional: the same of the step before; absent: as wall_velocity */
 } ilaw_contacts;
 
+/* Callbacks of the host, in exchange. */
+typedef void(ILAW_CALL* ilaw_sum_bodies_function)(void* context, double* values, int64_t components);
+typedef void(ILAW_CALL* ilaw_reduce_function)(void* context, double* values, int64_t count);
+
 /* How ranks agree. All of them call ilaw_coupled_solve together, those without contacts as well. */
 typedef struct ilaw_exchange {
   uint32_t struct_size;
@@ -76,10 +80,10 @@ typedef struct ilaw_exchange {
   /* values has `components` doubles per body: the sums over the contacts of this rank. Makes them the sums
    * over the contacts of all ranks, with the same bits at each copy of a body. Where both ranks have each
    * contact that crosses their border, the owner's sums are complete, and are handed to the copies. */
-  void (*sum_bodies)(void* context, double* values, int64_t components);
+  ilaw_sum_bodies_function sum_bodies;
   /* The largest over all ranks, the sum over all ranks, of each of `count` values; the same on all. */
-  void (*largest)(void* context, double* values, int64_t count);
-  void (*sum)(void* context, double* values, int64_t count);
+  ilaw_reduce_function largest;
+  ilaw_reduce_function sum;
 } ilaw_exchange;
 
 /* All zero asks for what the comments say. */
@@ -109,8 +113,8 @@ typedef struct ilaw_coupled_report {
 typedef struct ilaw_coupled ilaw_coupled;
 
 /* Null: out of memory. */
-ilaw_coupled* ilaw_coupled_create(void);
-void ilaw_coupled_destroy(ilaw_coupled* solver); /* null is allowed */
+ilaw_coupled* ILAW_CALL ilaw_coupled_create(void);
+void ILAW_CALL ilaw_coupled_destroy(ilaw_coupled* solver); /* null is allowed */
 
 /* Solves a step: impulses, states, status and energies of all contacts, velocities and impulses of the
  * bodies. State, impulse and status belong to the last sweep; energies are evaluated once more with the
@@ -118,9 +122,9 @@ void ilaw_coupled_destroy(ilaw_coupled* solver); /* null is allowed */
  * options and report may be null. work, energy and counts of the report are those of this rank's contacts.
  * Returns ILAW_OK; ILAW_BAD_NODES, when some contacts had bad input and no impulse; or a negative code with
  * nothing written, on all ranks if on one. Reaching most_sweeps is no error: look at the residual. */
-int32_t ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies* bodies,
-                           const ilaw_contacts* const* groups, int64_t group_count,
-                           const ilaw_coupled_options* options, ilaw_coupled_report* report);
+ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies* bodies,
+                                         const ilaw_contacts* const* groups, int64_t group_count,
+                                         const ilaw_coupled_options* options, ilaw_coupled_report* report);
 
 /* Size of each struct in its first version, the least that is accepted. */
 #define ILAW_BODIES_SIZE_1_0 ILAW_SIZE_TO(ilaw_bodies, angular_impulse)

@@ -1,12 +1,15 @@
-"""The structs and functions of <ilaw/coupled.h>, for ctypes: member for member as the header has them."""
+"""Structs and functions of coupled contacts, for ctypes.
+
+Made by api/bindings/generate.py from <ilaw/coupled.h>: do not edit, change the header and run
+the script. The header says what each member means, in which unit and who owns it. Names lose their `ilaw_` or `ILAW_`.
+"""
 from __future__ import annotations
 
 import ctypes
-import functools
-from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
+from ctypes import CFUNCTYPE, POINTER
+from ctypes import c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
 
 from . import _abi
-from ._loader import open_library
 
 
 class bodies(ctypes.Structure):
@@ -44,7 +47,8 @@ class contacts(ctypes.Structure):
     ]
 
 
-call_with_values = CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)
+sum_bodies_function = CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)
+reduce_function = CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)
 
 
 class exchange(ctypes.Structure):
@@ -52,9 +56,9 @@ class exchange(ctypes.Structure):
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
         ("context", c_void_p),
-        ("sum_bodies", call_with_values),
-        ("largest", call_with_values),
-        ("sum", call_with_values),
+        ("sum_bodies", sum_bodies_function),
+        ("largest", reduce_function),
+        ("sum", reduce_function),
     ]
 
 
@@ -73,7 +77,7 @@ class coupled_report(ctypes.Structure):
         ("sweeps", c_uint32),
         ("residual", c_double),
         ("work", c_double),
-        ("energy", c_double * _abi.ENERGY_COUNT),
+        ("energy", c_double * 4),
         ("bad_count", c_int64),
         ("bad_group", c_int64),
         ("bad_contact", c_int64),
@@ -85,21 +89,8 @@ class coupled_report(ctypes.Structure):
 SIGNATURES = {
     "ilaw_coupled_create": (c_void_p, []),
     "ilaw_coupled_destroy": (None, [c_void_p]),
-    "ilaw_coupled_solve": (
-        c_int32,
-        [
-            c_void_p,
-            POINTER(bodies),
-            POINTER(POINTER(contacts)),
-            c_int64,
-            POINTER(coupled_options),
-            POINTER(coupled_report),
-        ],
-    ),
+    "ilaw_coupled_solve": (c_int32, [
+        c_void_p, POINTER(bodies), POINTER(POINTER(contacts)), c_int64, POINTER(coupled_options),
+        POINTER(coupled_report)
+    ]),
 }
-
-
-@functools.cache
-def library() -> ctypes.CDLL:
-    """The functions of coupled contacts, with their types. Calls release the interpreter's lock."""
-    return open_library("libilaw_coupled.so.1", "ILAW_COUPLED", SIGNATURES)

@@ -17,6 +17,7 @@ What it does, and the method, is in ilaw/coupled.h and docs/hosts.md.
 from __future__ import annotations
 
 import ctypes
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -25,17 +26,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _abi, _coupled_abi, arrays
-from ._coupled_abi import library
-from ._loader import loader
+from ._loader import loader, open_library
+from ._objects import Handle, NotCopied, sized, whole
 from .errors import BadNodes, InvalidArgument, raise_for
 from .interface import Interface
 
 __all__ = ["Bodies", "Contacts", "Exchange", "Report", "Solver"]
 
 
+@functools.cache
+def library() -> ctypes.CDLL:
+    """The functions of coupled contacts, with their types. Calls release the interpreter's lock."""
+    return open_library("libilaw_coupled.so.1", "ILAW_COUPLED", _coupled_abi.SIGNATURES)
+
+
 @dataclass(frozen=True)
 class Report:
-    """What a solve has to say.
+    """Findings of a solve.
 
     residual: largest difference between a contact's velocity and that for which its law gave the impulse,
     relative to the largest velocity. work [J]: of all impulses, with the velocities that came out. energy (4,)
@@ -86,12 +93,12 @@ class _Arrays:
         if given is False:
             return None
         array = np.zeros((self.count, components)) if given is None or given is True else given
-        setattr(self.struct, member or name, arrays.written(name, array, self.count, components))
+        setattr(self.struct, member or name, arrays.written(name, array, (self.count, components)))
         self.outputs[name] = array
         return array
 
 
-class Bodies:
+class Bodies(NotCopied):
     """Bodies that contacts name: grains, or nodes of a mesh. n is their number, d the dimension (that of v_free).
 
     Inputs, float64, read where they are by every solve:
@@ -124,9 +131,9 @@ class Bodies:
         if not isinstance(v_free, np.ndarray) or v_free.ndim != 2:
             raise InvalidArgument(f"v_free: {type(v_free).__name__}, expected an array of shape (bodies, dimension)")
         count, d = v_free.shape
-        self._struct = _abi.sized(_coupled_abi.bodies)
+        self._struct = sized(_coupled_abi.bodies)
         self._struct.dimension, self._struct.count = d, count
-        self._struct.owned_count = count if owned is None else owned
+        self._struct.owned_count = count if owned is None else whole("owned", owned, 0, count)
         self.count, self.dimension = count, d
         made = self._arrays = _Arrays(self._struct, count)
         made.read("v_free", v_free, d)
@@ -161,15 +168,7 @@ class Bodies:
         arrays.check_apart(outputs, inputs)
 
 
-def _as_numbers(name: str, value: Any, count: int) -> NDArray[np.int32]:
-    """int32, contiguous: the array itself where it is that."""
-    array = np.ascontiguousarray(value)
-    if array.shape != (count,) or (count and not np.issubdtype(array.dtype, np.integer)):
-        raise InvalidArgument(f"{name}: {array.dtype} of shape {array.shape}, expected {count} numbers of bodies")
-    return array.astype(np.int32, copy=False)
-
-
-class Contacts:
+class Contacts(NotCopied):
     """The contacts that have one law. k is their number, d the dimension.
 
     law: an `Interface` for the global frame, with delassus "full" where bodies rotate, else "scalar".
@@ -204,19 +203,22 @@ class Contacts:
     ) -> None:
         if law.frame != "global":
             raise InvalidArgument(f"frame: {law.frame!r}, coupled contacts expect an interface for the global frame")
+        if law.numbers != "double":
+            raise InvalidArgument(f"numbers: {law.numbers!r}, coupled contacts expect an interface of doubles")
         if law.per_node_parameters:
             raise InvalidArgument(f"{next(iter(law.per_node_parameters))}: one value per node, expected one for all")
         d, count = law.dimension, len(body)
         self.law, self.count = law, count
-        self.body, self.counterpart = _as_numbers("body", body, count), _as_numbers("counterpart", counterpart, count)
-        self._batch = _abi.sized(_abi.batch)
+        self.body = arrays.as_bodies("body", body, count)
+        self.counterpart = arrays.as_bodies("counterpart", counterpart, count)
+        self._batch = sized(_abi.batch)
         self._batch.node_count = count
         made = self._arrays = _Arrays(self._batch, count)
         for name, value in {"normal": normal, "tangent": tangent}.items():
             made.read(name, value, d)
         for name, value in {"gap": gap, "gap_offset": gap_offset, "area": area}.items():
             made.read(name, value, 1)
-        self._check_complete(law.inputs | (law.energy_inputs if energy is not False else 0))
+        self._check_complete(law.inputs | (law.balance_inputs if energy is not False else 0))
         self._struct = self._describe()
         for name, value in {"arm": arm, "counterpart_arm": counterpart_arm}.items():
             made.read(name, value, 3, self._struct)
@@ -231,7 +233,7 @@ class Contacts:
         arrays.check_apart(made.outputs, made.inputs)
 
     def _describe(self) -> _coupled_abi.contacts:
-        made, law = _abi.sized(_coupled_abi.contacts), self.law
+        made, law = sized(_coupled_abi.contacts), self.law
         made.delassus_form = _abi.Delassus[law.delassus.upper()]
         made.law = loader().ilaw_interface_law(law.handle)
         made.instance = loader().ilaw_interface_instance(law.handle)
@@ -250,7 +252,7 @@ class Contacts:
         chosen = np.arange(self.count) if index is None else arrays.as_index(index, self.count)
         part = _abi.batch.from_buffer_copy(self._batch)
         part.time, part.node_count, part.index64 = time, len(chosen), chosen.ctypes.data
-        report = _abi.sized(_abi.report)
+        report = sized(_abi.report)
         code = loader().ilaw_interface_initialise(self.law.handle, ctypes.byref(part), ctypes.byref(report))
         raise_for(code, f"{self.law.law.id}: {(report.reason or b'').decode(errors='replace')}")
 
@@ -260,12 +262,13 @@ class _Calls:
 
     def __init__(self, exchange: Exchange, bodies: int) -> None:
         self.raised: BaseException | None = None
-        self.struct = _abi.sized(_coupled_abi.exchange)
-        self.struct.sum_bodies = self._call(exchange.sum_bodies, lambda components: (bodies, components))
-        self.struct.largest = self._call(exchange.largest, lambda count: (count,))
-        self.struct.sum = self._call(exchange.sum, lambda count: (count,))
+        self.struct = sized(_coupled_abi.exchange)
+        sum_bodies, reduce = _coupled_abi.sum_bodies_function, _coupled_abi.reduce_function
+        self.struct.sum_bodies = self._call(sum_bodies, exchange.sum_bodies, lambda components: (bodies, components))
+        self.struct.largest = self._call(reduce, exchange.largest, lambda count: (count,))
+        self.struct.sum = self._call(reduce, exchange.sum, lambda count: (count,))
 
-    def _call(self, function: Any, shape: Any) -> Any:
+    def _call(self, kind: Any, function: Any, shape: Any) -> Any:
         def call(_context: Any, values: Any, count: int) -> None:
             try:
                 if self.raised is None:
@@ -275,21 +278,17 @@ class _Calls:
             except BaseException as raised:  # C cannot pass it on
                 self.raised = raised
 
-        return _coupled_abi.call_with_values(call)
+        return kind(call)
 
 
-class Solver:
+class Solver(NotCopied):
     """Solves steps; keeps work arrays from one to the next. One solve at a time, different solvers are independent."""
 
     def __init__(self) -> None:
-        self._handle = library().ilaw_coupled_create()
-        if not self._handle:
+        handle = library().ilaw_coupled_create()
+        if not handle:
             raise MemoryError
-        self._destroy = library().ilaw_coupled_destroy  # at the interpreter's end modules are empty
-
-    def __del__(self) -> None:
-        if getattr(self, "_handle", None):
-            self._destroy(self._handle)
+        self._handle = Handle(ctypes.c_void_p(handle), library().ilaw_coupled_destroy)
 
     def solve(
         self,
@@ -323,13 +322,13 @@ class Solver:
             if group.law.dimension != bodies.dimension:
                 raise InvalidArgument(f"dimension: {group.law.dimension} of contacts, {bodies.dimension} of bodies")
         pointers = (ctypes.POINTER(_coupled_abi.contacts) * len(groups))(*(ctypes.pointer(g._struct) for g in groups))
-        options = _abi.sized(_coupled_abi.coupled_options)
-        options.most_sweeps, options.tolerance = most_sweeps, tolerance
+        options = sized(_coupled_abi.coupled_options)
+        options.most_sweeps, options.tolerance = whole("most_sweeps", most_sweeps, 0, 2**32 - 1), tolerance
         calls = None
         if exchange is not None:
             calls = _Calls(exchange, bodies.count)
             options.exchange = ctypes.pointer(calls.struct)
-        report = _abi.sized(_coupled_abi.coupled_report)
+        report = sized(_coupled_abi.coupled_report)
         code = library().ilaw_coupled_solve(
             self._handle,
             ctypes.byref(bodies._struct),

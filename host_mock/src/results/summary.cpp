@@ -16,6 +16,13 @@ using nlohmann::json;
 constexpr const char* status_names[ILAW_STATUS_COUNT] = {"free",   "closed", "stick",  "slip",
                                                          "bonded", "broken", "healed", "bad_input"};
 
+json describe_amounts(const Interface& interface) {
+  json amounts = json::object();
+  for (std::size_t k = 0; k < interface.amounts().size(); ++k)
+    amounts[interface.info().amounts[k]->name] = interface.amounts()[k];
+  return amounts;
+}
+
 json describe_interface(const Interface& interface) {
   return {{"name", interface.name()},
           {"law", interface.setup().law},
@@ -23,6 +30,7 @@ json describe_interface(const Interface& interface) {
           {"library_version", interface.library().plugin().version},
           {"nodes", interface.nodes().size()},
           {"state_size", interface.info().state_size},
+          {"amounts", describe_amounts(interface)},
           {"bytes_per_node", interface.bytes_per_contact()}};
 }
 

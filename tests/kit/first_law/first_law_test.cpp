@@ -69,8 +69,8 @@ void expect_works(const std::string& file) {
   SmallBatch nodes(3, {-1.0, 2.0, -3.0});
   nodes.h[0] = 0.5;
   nodes.area = 2.0;
-  nodes.b.gap = {gap, 1, 1};
-  nodes.b.v_previous = {before, 3, 1};
+  nodes.b.gap = {gap, nullptr, 1, 1};
+  nodes.b.v_previous = {before, nullptr, 3, 1};
   nodes.b.velocity_step = nodes.b.position_step = 0.01;
   ASSERT_EQ(law.evaluate(nodes.b), ILAW_OK);
   for (std::size_t c = 0; c < 3; ++c) {
@@ -121,9 +121,9 @@ TEST(ViscousLaw, InPlainCGivesTheSame) {
     }
     return std::string("not refused");
   };
-  EXPECT_NE(refusal(SetupBuilder({})).find("viscosity must be given"), std::string::npos);
-  EXPECT_NE(refusal(SetupBuilder({{{"viscosity", -1.0}}, {}})).find("in [0, 1e300]"), std::string::npos);
-  EXPECT_NE(refusal(SetupBuilder({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_FULL)).find("scalar H"),
+  EXPECT_NE(refusal(SetupBuilder({})).find("parameter 'viscosity' is missing"), std::string::npos);
+  EXPECT_NE(refusal(SetupBuilder({{{"viscosity", -1.0}}, {}})).find("found -1, expected 0 to 1e+300"), std::string::npos);
+  EXPECT_NE(refusal(SetupBuilder({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_FULL)).find("form of H"),
             std::string::npos);
 }
 

@@ -10,22 +10,25 @@
 //   does  step(node)                          its equations in closed form; returns the status
 //         problem, answer,                    where a solver is needed, step in parts: structs whose members are V,
 //         ask(node, problem),                   what is left to solve, and the status as if nothing were,
-//         solve(problem, answer),               in full packs; returns the lanes left to
-//         solve_scalar(problem, answer),        this one, for a double,
+//         solve(problem, answer, prepared),     in full packs; returns the lanes left to
+//         solve_scalar(problem, answer,         this one, for a double,
+//                      prepared),
 //         finish(node, answer)                  and the status with the answer
 //         asks()                              whether these parameters need a solver where step and ask both serve a node
+//                                               (or asks(bool is_transverse), where the form of H matters)
 //         prepare(step_sizes)                 numbers that all nodes of a batch share; node.prepared
 //         initialise(node)                    first state (default: zeros)
 //         conflict()                          why parameters do not go together, or null
 //         inputs(), capabilities(), permissions()   with these parameters (default: the card's)
 //         tells_tangents_apart()              whether these parameters need a tangent per node in the host's axes
-//         stable_velocity_step(node)          or (h_N, h_T) where it falls with both and depends on nothing else
+//         stable_velocity_step(node)          or (h_N, h_T) where it falls with both and depends on nothing else; or both,
+//                                               the second NaN where the first is meant
 //         history_size(), record(node, own)   the doubles of a free history, and how a step writes them; or
 //         window(), adds_to_window(status), clears_window(status)   of one that is a window (window.hpp)
 //         extension(name)                     see ilaw_law
 //
-// step, ask and finish are const templates on the node (node.hpp); solve and solve_scalar are static; all others are
-// called with V = double. A law gives no other option: what can be switched stands in its card.
+// step, ask and finish are const templates on the node (node.hpp); solve and solve_scalar may be static and go without
+// prepared; all others are called with V = double. A law gives no other option: what can be switched stands in its card.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -58,6 +61,8 @@ struct law_card {
   // No step or ask without tells_tangents_apart() names t1 or t2, and no vector is remembered: then nodes in the
   // host's axes need no tangent.
   bool is_isotropic = false;
+  // It gives all that rupture dissipates as node.rupture: what else a step that breaks dissipates is friction and impact.
+  bool gives_rupture = false;
 };
 
 // A list of texts of static storage.
@@ -95,7 +100,10 @@ class parameter_member {
   constexpr bool is_given() const { return varying_ || fixed_; }
   constexpr bool may_vary() const { return varying_; }  // not known where V is double
   constexpr bool operator==(const parameter_member&) const = default;
-  ILAW_KIT_INLINE number& varying_in(Law& law) const { return law.*varying_; }
+  template <class Either>  // Law, or const Law
+  ILAW_KIT_INLINE auto& varying_in(Either& law) const {
+    return law.*varying_;
+  }
   ILAW_KIT_INLINE void set(Law& law, double value) const {
     if (varying_)
       law.*varying_ = value;

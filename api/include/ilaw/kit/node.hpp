@@ -88,11 +88,11 @@ struct node {
   const double time, velocity_step, position_step, per_position_step;
   const bool wants_energy;  // whether what follows "stored" below is asked for
   const prepared_t<Law>& prepared;
-  Vector v_free;  // relative velocity without interface
-  input_t<Law, reads_v_previous, Vector, undeclared_vector<Vector>> v_previous;  // of the half step before
-  Delassus delassus;
-  input_t<Law, reads_gap, V, undeclared_input<V, reads_gap>> gap;  // offset already taken off
-  input_t<Law, reads_area, V, undeclared_input<V, reads_area>> area;
+  const Vector v_free;  // relative velocity without interface
+  const input_t<Law, reads_v_previous, Vector, undeclared_vector<Vector>> v_previous;  // of the half step before
+  const Delassus delassus;
+  const input_t<Law, reads_gap, V, undeclared_input<V, reads_gap>> gap;  // offset already taken off
+  const input_t<Law, reads_area, V, undeclared_input<V, reads_area>> area;
   vector<V> earlier = {};          // what the law's window sums up to before the step
   const_history history = {};      // of laws with a free history
 

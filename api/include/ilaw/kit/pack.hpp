@@ -1,7 +1,8 @@
 // pack.hpp - the number type V of a law: a double, or a pack of doubles side by side, one per node (lane).
 //
-// A lane gets the bits that a double gets: one rounding per operation, with -ffp-contract=off. Comparisons of packs
-// give masks, of doubles bools; mask_of<V> is either. The same words serve both: select, zero_unless, any, larger.
+// A lane gets the bits that a double gets: one rounding per operation, with -ffp-contract=off. Comparisons of
+// packs give masks, of doubles bools; mask_of<V> is either. The same words serve both: select, zero_unless,
+// any, larger.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -21,7 +22,8 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-// ---- doubles ----------------------------------------------------------------------------------------------------
+// ---- doubles
+// ----------------------------------------------------------------------------------------------------
 
 constexpr bool any(bool m) { return m; }
 constexpr double select(bool m, double a, double b) { return m ? a : b; }
@@ -34,7 +36,8 @@ ILAW_KIT_INLINE double square_root(double x) { return __builtin_sqrt(x); }
 
 namespace detail {
 
-// ---- one register -----------------------------------------------------------------------------------------------
+// ---- one register
+// -----------------------------------------------------------------------------------------------
 
 #if defined(__AVX512F__)
 inline constexpr int register_lanes = 8;
@@ -67,7 +70,11 @@ using one_mask = one_ints;
 ILAW_KIT_INLINE one_mask and_of(one_mask a, one_mask b) { return a & b; }
 ILAW_KIT_INLINE one_mask or_of(one_mask a, one_mask b) { return a | b; }
 ILAW_KIT_INLINE one_mask not_of(one_mask a) { return ~a; }
+#if defined(__AVX__)
 ILAW_KIT_INLINE one blend(one_mask m, one a, one b) { return m ? a : b; }
+#else  // GCC 12 stops with an internal error at m ? a : b where it is not optimised
+ILAW_KIT_INLINE one blend(one_mask m, one a, one b) { return (one)((m & (one_ints)a) | (~m & (one_ints)b)); }
+#endif
 ILAW_KIT_INLINE one zeroed(one_mask m, one a) { return (one)(m & (one_ints)a); }
 ILAW_KIT_INLINE unsigned bits_of_mask(one_mask m) {
 #if defined(__AVX__)
@@ -141,12 +148,14 @@ ILAW_KIT_INLINE one root_of(one x) {
 
 }  // namespace detail
 
-// ---- packs ------------------------------------------------------------------------------------------------------
+// ---- packs
+// ------------------------------------------------------------------------------------------------------
 
 template <int Registers>
 struct pack_of;
 
-// One truth per lane. Masks are joined by & and |, and have no && or ||, which would be one truth for all lanes.
+// One truth per lane. Masks are joined by & and |, and have no && or ||, which would be one truth for all
+// lanes.
 template <int Registers>
 struct pack_mask {
   detail::one_mask m[Registers];
@@ -177,6 +186,7 @@ struct pack_mask {
   ILAW_KIT_INLINE friend pack_mask operator&(bool a, pack_mask b) { return of(a) & b; }
   ILAW_KIT_INLINE friend pack_mask operator|(pack_mask a, bool b) { return a | of(b); }
   ILAW_KIT_INLINE friend pack_mask operator|(bool a, pack_mask b) { return of(a) | b; }
+  explicit operator bool() const = delete;  // write any(mask): is it one for all lanes?
   template <class Other>
   friend void operator&&(pack_mask a, Other b) = delete;  // write & between masks
   template <class Other>
@@ -184,13 +194,14 @@ struct pack_mask {
 
   ILAW_KIT_INLINE unsigned bits() const {  // one per lane
     unsigned all = detail::bits_of_mask(m[0]);
+#pragma GCC unroll 4
     for (int k = 1; k < Registers; ++k) all |= detail::bits_of_mask(m[k]) << (detail::register_lanes * k);
     return all;
   }
   ILAW_KIT_INLINE friend bool any(pack_mask a) { return a.bits() != 0; }
   ILAW_KIT_INLINE friend pack_of<Registers> select(pack_mask a, pack_of<Registers> x, pack_of<Registers> y) {
-    return pack_of<Registers>::each(
-        [&](int k) ILAW_KIT_LAMBDA { return detail::blend(a.m[k], x.v[k], y.v[k]); });
+    return pack_of<Registers>::each([&](int k)
+                                        ILAW_KIT_LAMBDA { return detail::blend(a.m[k], x.v[k], y.v[k]); });
   }
   ILAW_KIT_INLINE friend pack_of<Registers> zero_unless(pack_mask a, pack_of<Registers> x) {
     return pack_of<Registers>::each([&](int k) ILAW_KIT_LAMBDA { return detail::zeroed(a.m[k], x.v[k]); });
@@ -215,17 +226,17 @@ struct pack_of {
     return pack_of(f, std::make_integer_sequence<int, Registers>{});
   }
 
-#define ILAW_KIT_OPERATION(op)                                                       \
-  ILAW_KIT_INLINE friend pack_of operator op(pack_of a, pack_of b) {                 \
-    return each([&](int k) ILAW_KIT_LAMBDA { return a.v[k] op b.v[k]; });            \
+#define ILAW_KIT_OPERATION(op)                                            \
+  ILAW_KIT_INLINE friend pack_of operator op(pack_of a, pack_of b) {      \
+    return each([&](int k) ILAW_KIT_LAMBDA { return a.v[k] op b.v[k]; }); \
   }
   ILAW_KIT_OPERATION(+)
   ILAW_KIT_OPERATION(-)
   ILAW_KIT_OPERATION(*)
   ILAW_KIT_OPERATION(/)
 #undef ILAW_KIT_OPERATION
-#define ILAW_KIT_COMPARISON(op, name)                                                     \
-  ILAW_KIT_INLINE friend mask operator op(pack_of a, pack_of b) {                         \
+#define ILAW_KIT_COMPARISON(op, name)                                                       \
+  ILAW_KIT_INLINE friend mask operator op(pack_of a, pack_of b) {                           \
     return mask::each([&](int k) ILAW_KIT_LAMBDA { return detail::name(a.v[k], b.v[k]); }); \
   }
   ILAW_KIT_COMPARISON(<, is_below)
@@ -270,7 +281,8 @@ using mask_of = decltype(V{} < V{});
 
 namespace detail {
 
-// ---- the bits of a number, for functions made from its exponent ---------------------------------------------------
+// ---- the bits of a number, for functions made from its exponent
+// ---------------------------------------------------
 
 template <class V>
 struct bits_of {  // of a pack
@@ -280,6 +292,7 @@ struct bits_of {  // of a pack
   template <class F>
   ILAW_KIT_INLINE static bits_of each(F f) {
     bits_of a;
+#pragma GCC unroll 4
     for (int k = 0; k < V::size / register_lanes; ++k) a.b[k] = f(k);
     return a;
   }
@@ -292,8 +305,8 @@ struct bits_of {  // of a pack
   ILAW_KIT_INLINE static V number(bits_of a) {
     return V::each([&](int k) ILAW_KIT_LAMBDA { return (one)a.b[k]; });
   }
-#define ILAW_KIT_OPERATION(op)                                             \
-  ILAW_KIT_INLINE friend bits_of operator op(bits_of a, bits_of b) {       \
+#define ILAW_KIT_OPERATION(op)                                            \
+  ILAW_KIT_INLINE friend bits_of operator op(bits_of a, bits_of b) {      \
     return each([&](int k) ILAW_KIT_LAMBDA { return a.b[k] op b.b[k]; }); \
   }
   ILAW_KIT_OPERATION(+)
@@ -315,6 +328,22 @@ struct bits_of<double> {
   ILAW_KIT_INLINE static type of(std::uint64_t all) { return all; }
   ILAW_KIT_INLINE static double number(type bits) { return std::bit_cast<double>(bits); }
 };
+
+// Whether numbers differ in any bit, as 0 and -0 do.
+ILAW_KIT_INLINE one_mask have_other_bits(one a, one b) {
+#if defined(__AVX512F__)
+  return _mm512_cmpneq_epi64_mask((__m512i)a, (__m512i)b);
+#else
+  return (one_bits)a != (one_bits)b;
+#endif
+}
+template <int Registers>
+ILAW_KIT_INLINE pack_mask<Registers> have_other_bits(pack_of<Registers> a, pack_of<Registers> b) {
+  return pack_mask<Registers>::each([&](int k) ILAW_KIT_LAMBDA { return have_other_bits(a.v[k], b.v[k]); });
+}
+ILAW_KIT_INLINE bool have_other_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) != std::bit_cast<std::uint64_t>(b);
+}
 
 // ---- the lanes of a V ---------------------------------------------------------------------------------------------
 

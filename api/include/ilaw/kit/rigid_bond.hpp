@@ -1,4 +1,5 @@
-// rigid_bond.hpp - the impulse of a bond without elasticity, which stops the node, and the contact that is left of it.
+// rigid_bond.hpp - the impulse of a bond without elasticity, which stops the node, and the contact that is
+// left of it.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,8 +7,8 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// The part of v_free that rounding may leave of it: v_free + H r, which is 0, is the velocity before of a node that is
-// held from step to step.
+// The part of v_free that rounding may leave of it: v_free + H r, which is 0, is the velocity before of a
+// node that is held from step to step.
 inline constexpr double left_by_rounding = 0x1p-48;
 // v^- beyond that. The work r.v^-/2 that is left then grows from 0 as v^- does, with no jump.
 template <class Vector>
@@ -15,8 +16,8 @@ ILAW_KIT_INLINE Vector velocity_before(Vector v_previous, Vector v_free) {
   return v_previous + left_by_rounding * v_free;
 }
 
-// r = -H^-1 v_free, which stops the node, without positive work: all of it unless the node was moving before and turned
-// round within the step.
+// r = -H^-1 v_free, which stops the node, without positive work: all of it unless the node was moving before
+// and turned round within the step.
 template <class Node>
 ILAW_KIT_INLINE auto stopping_impulse(const Node& node) {
   using V = number_of<Node>;

@@ -23,6 +23,7 @@ struct transverse {
 
   ILAW_KIT_INLINE V normal() const { return n; }
   ILAW_KIT_INLINE V tangential() const { return t; }
+  ILAW_KIT_INLINE V largest_tangential() const { return t; }
   ILAW_KIT_INLINE V anisotropy() const { return 0.0; }
   // tr(H) tr(H^-1) = 5 + 2 (n/t + t/n) here. A number that is not finite leaves n - t so.
   ILAW_KIT_INLINE mask_of<V> is_definite() const {
@@ -50,6 +51,10 @@ struct full {
 
   ILAW_KIT_INLINE V normal() const { return nn; }
   ILAW_KIT_INLINE V tangential() const { return t11; }
+  // Not below the largest inverse mass in the tangent plane, with what H couples to the normal.
+  ILAW_KIT_INLINE V largest_tangential() const {
+    return larger(t11 + absolute(n1), t22 + absolute(n2)) + absolute(t12);
+  }
   // Zero where closed forms for H = diag(h_N, h_T, h_T) hold.
   ILAW_KIT_INLINE V anisotropy() const {
     return absolute(t11 - t22) + absolute(n1) + absolute(n2) + absolute(t12);
@@ -59,6 +64,14 @@ struct full {
   // when the pivots are positive.
   struct factors {
     V d0, d1, d2, by_d0, by_d1, l10, l20, l21;
+
+    ILAW_KIT_INLINE vector<V> solve(vector<V> v) const {
+      const V y1 = v.t1 - l10 * v.n;
+      const V y2 = (v.t2 - l20 * v.n) - l21 * y1;
+      const V x2 = 1.0 / d2 * y2;
+      const V x1 = y1 * by_d1 - l21 * x2;
+      return {(v.n * by_d0 - l10 * x1) - l20 * x2, x1, x2};
+    }
 
     // Without a division: tr(H^-1) is the sum of these products over that of the pivots.
     ILAW_KIT_INLINE mask_of<V> is_fair(V trace) const {
@@ -87,14 +100,7 @@ struct full {
   ILAW_KIT_INLINE axis<V> row_times(axis<V> a) const {
     return {nn * a.x + n1 * a.y + n2 * a.z, n1 * a.x + t11 * a.y + t12 * a.z, n2 * a.x + t12 * a.y + t22 * a.z};
   }
-  ILAW_KIT_INLINE vector<V> solve(vector<V> v) const {
-    const factors f = factorise();
-    const V y1 = v.t1 - f.l10 * v.n;
-    const V y2 = (v.t2 - f.l20 * v.n) - f.l21 * y1;
-    const V x2 = 1.0 / f.d2 * y2;
-    const V x1 = y1 * f.by_d1 - f.l21 * x2;
-    return {(v.n * f.by_d0 - f.l10 * x1) - f.l20 * x2, x1, x2};
-  }
+  ILAW_KIT_INLINE vector<V> solve(vector<V> v) const { return factorise().solve(v); }
 };
 
 // Whether closed forms for H = diag(h_N, h_T, h_T) do not hold, beyond the rounding that turning H to other axes leaves

@@ -1,24 +1,26 @@
-// window.hpp - the sum of a node's impulses over the last tau, from a bounded number of buckets and for any time steps.
+// window.hpp - the sum of a node's impulses over the last tau, from a bounded number of buckets and for any
+// time steps.
 //
-// The impulse of a step is spread evenly over the step's interval [e - h, e], which ends half a position step after
-// the configuration: the intervals of successive steps touch, also when the step varies. Buckets of width w = tau/B
-// stand on a fixed grid in absolute time, b_j over [j w, (j + 1) w). With k = floor(e/w) and theta = (k + 1) - e/w, the
-// part of the oldest bucket that tau still covers, the sum is
+// The impulse of a step is spread evenly over the step's interval [e - h, e], which ends half a position step
+// after the configuration: the intervals of successive steps touch, also when the step varies. Buckets of
+// width w = tau/B stand on a fixed grid in absolute time, b_j over [j w, (j + 1) w). With k = floor(e/w) and
+// theta = (k + 1) - e/w, the part of the oldest bucket that tau still covers, the sum is
 //   S = r + b_k + (b_{k-1} + ... + b_{k-B+1}) + theta b_{k-B} + theta (1 - theta)/2 sigma,
-// its last term from a force that is linear in the oldest bucket: sigma = b_{k-B+1} - b_{k-B}, limited to twice b_{k-B}
-// so that no force changes its sign within a bucket (van Leer 1979, in normal and tangential part). The step's own
-// impulse counts in full: where h >= tau, S = r.
+// its last term from a force that is linear in the oldest bucket: sigma = b_{k-B+1} - b_{k-B}, limited to
+// twice b_{k-B} so that no force changes its sign within a bucket (van Leer 1979, in normal and tangential
+// part). The step's own impulse counts in full: where h >= tau, S = r.
 //
-// Error, for a force F that is smooth over the two oldest buckets: for F = x^2/2 over buckets [0, 1] and [1, 2],
-// b = 1/6 and sigma = 1, and with u = 1 - theta the sum of the oldest is off by u (1 - u) (2 - u)/6, at most
-// 1/(9 sqrt 3). Hence |S - integral of F| <= w^3 |F''|/(9 sqrt 3), and constant and linear forces are exact. Where the
-// slope is limited, or unknown since the step began less than a bucket after the oldest (h > tau - 2 w),
-// |S - integral| <= w^2 |F'|/8 (linear interpolation of the integral). A step that the edge of a bucket cuts adds up to
-// h^2 |F'|/8. Where F jumps by J within the oldest bucket: w J/4. A shock is exact until tau - w after it, and fades
-// over the width of its bucket.
+// Error, for a force F that is smooth over the two oldest buckets: for F = x^2/2 over buckets [0, 1] and [1,
+// 2], b = 1/6 and sigma = 1, and with u = 1 - theta the sum of the oldest is off by u (1 - u) (2 - u)/6, at
+// most 1/(9 sqrt 3). Hence |S - integral of F| <= w^3 |F''|/(9 sqrt 3), and constant and linear forces are
+// exact. Where the slope is limited, or unknown since the step began less than a bucket after the oldest (h >
+// tau - 2 w), |S - integral| <= w^2 |F'|/8 (linear interpolation of the integral). A step that the edge of a
+// bucket cuts adds up to h^2 |F'|/8. Where F jumps by J within the oldest bucket: w J/4. A shock is exact
+// until tau - w after it, and fades over the width of its bucket.
 //
-// No running sum is kept: that of the middle buckets is formed anew whenever k changes, so nothing drifts. The only time
-// in the state is the number of the newest bucket. A step without impulse leaves the state as it is, bit for bit.
+// No running sum is kept: that of the middle buckets is formed anew whenever k changes, so nothing drifts.
+// The only time in the state is the number of the newest bucket. A step without impulse leaves the state as
+// it is, bit for bit.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -27,8 +29,8 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// Sums are compared with limits up to this part of the limit: an e/w of 1e6 leaves some 1e-10 of rounding, as does a
-// clock that adds up its steps.
+// Sums are compared with limits up to this part of the limit: an e/w of 1e6 leaves some 1e-10 of rounding, as
+// does a clock that adds up its steps.
 inline constexpr double window_slack = 1e-9;
 
 // What a law's window() gives: the duration tau and the number of buckets B.
@@ -106,8 +108,8 @@ class window {
     return select(residual(sum, V(0.0)) == 0.0, refused, code_of<V>(refusal::impossible_state));
   }
 
-  // Empties the windows of some nodes, and then takes in the impulse at some. The history is one that read() did not
-  // refuse.
+  // Empties the windows of some nodes, and then takes in the impulse at some. The history is one that read()
+  // did not refuse.
   template <class Own, class V = typename Own::number>
   ILAW_KIT_INLINE void write(const Own& own, mask_of<V> clears, mask_of<V> adds, vector<V> impulse) const {
     mask_of<V> left = adds & ((impulse.n != 0.0) | (impulse.t1 != 0.0) | (impulse.t2 != 0.0));
@@ -128,11 +130,12 @@ class window {
   }
 
  private:
-  // What every step needs stands in front: the number of the newest bucket, which is open, its sum, that of the middle
-  // ones, the oldest bucket and the slope in it. Behind are the middle buckets, as a ring.
-  static constexpr std::int64_t current = 1, middle_sum = 4, oldest_bucket = 7, oldest_slope = 10, first_bucket = 13;
-  // Numbers of buckets that a double and a cast hold with room to spare. A grid finer than that is finer than the clock:
-  // no step lies within tau of another.
+  // What every step needs stands in front: the number of the newest bucket, which is open, its sum, that of
+  // the middle ones, the oldest bucket and the slope in it. Behind are the middle buckets, as a ring.
+  static constexpr std::int64_t current = 1, middle_sum = 4, oldest_bucket = 7, oldest_slope = 10,
+                                first_bucket = 13;
+  // Numbers of buckets that a double and a cast hold with room to spare. A grid finer than that is finer than
+  // the clock: no step lies within tau of another.
   static constexpr double largest_number = 0x1p51;
 
   // The newest bucket is kept as a number other than zero, so that zeros are an empty window.
@@ -150,8 +153,8 @@ class window {
   }
   static double first_of(bool, double x) { return x; }
 
-  // Places in the ring: bucket j stands at j modulo B - 1, so that the bucket that closes takes the place of the one
-  // that becomes the oldest.
+  // Places in the ring: bucket j stands at j modulo B - 1, so that the bucket that closes takes the place of
+  // the one that becomes the oldest.
   std::int64_t place_of(double bucket) const {
     const double size = buckets_ - 1.0;
     if (size < 1.0) return 0;
@@ -186,7 +189,8 @@ class window {
     const V scale = power_scale_of(larger(larger(absolute(bucket.t1), absolute(bucket.t2)),
                                           larger(absolute(difference.t1), absolute(difference.t2))))
                         .down;
-    const V a1 = scale * bucket.t1, a2 = scale * bucket.t2, b1 = scale * difference.t1, b2 = scale * difference.t2;
+    const V a1 = scale * bucket.t1, a2 = scale * bucket.t2, b1 = scale * difference.t1,
+            b2 = scale * difference.t2;
     const V allowed = 4.0 * (a1 * a1 + a2 * a2), found = b1 * b1 + b2 * b2;
     const mask_of<V> is_steep = found > allowed;
     const V factor = square_root(select(is_steep, allowed, V(1.0)) / select(is_steep, found, V(1.0)));
@@ -237,8 +241,8 @@ class window {
     }
   }
 
-  // The buckets that a step changes: the newest, k; the sum of the middle ones; the oldest, k - B, and the one after
-  // it; and the one that closes.
+  // The buckets that a step changes: the newest, k; the sum of the middle ones; the oldest, k - B, and the
+  // one after it; and the one that closes.
   template <class V>
   struct front {
     vector<V> newest, middle, oldest, next, closing;
@@ -248,7 +252,8 @@ class window {
     using V = typename Own::number;
     front<V> f;
     if (turns > buckets_) return f;
-    const std::int64_t place = place_of(k - 1.0), next = place + 1 < ring_size_ ? place + 1 : 0;  // k - B, the next one
+    const std::int64_t place = place_of(k - 1.0),
+                       next = place + 1 < ring_size_ ? place + 1 : 0;  // k - B, the next one
     if (turns == 0.0) {
       f.newest = own.vector_at(current);
       f.middle = own.vector_at(middle_sum);
@@ -275,8 +280,9 @@ class window {
     return f;
   }
 
-  // How a step is spread over the buckets that it covers, as far as tau reaches: from bucket first, which gets its
-  // share, over others that get one each to the newest, which gets what is left where the whole counts, else its share.
+  // How a step is spread over the buckets that it covers, as far as tau reaches: from bucket first, which
+  // gets its share, over others that get one each to the newest, which gets what is left where the whole
+  // counts, else its share.
   struct shares {
     double first, of_first, of_others, of_last;
     bool is_whole;
@@ -288,13 +294,14 @@ class window {
             (end_ - larger(now_, begin_)) / length, is_whole};
   }
 
-  // Bucket k becomes the newest, or is it still, and the impulse is spread over the buckets that the step covers; the
-  // last takes what is left, so that the whole arrives. The step may end before bucket k.
+  // Bucket k becomes the newest, or is it still, and the impulse is spread over the buckets that the step
+  // covers; the last takes what is left, so that the whole arrives. The step may end before bucket k.
   template <class Own, class V>
   void take_in(const Own& own, mask_of<V> where, vector<V> impulse, double k, double turns) const {
     front<V> f = front_at(own, k, turns);
     const double before = k - turns, closing = turns < buckets_ ? before : k;  // k: none
-    for (double j = larger(before, k - buckets_) + 1.0; j < k; j += 1.0) own.put(where, at(place_of(j)), vector<V>{});
+    for (double j = larger(before, k - buckets_) + 1.0; j < k; j += 1.0)
+      own.put(where, at(place_of(j)), vector<V>{});
     const shares s = k == now_ ? shares_ : shares_at(k);
     vector<V> left = impulse;
     for (double j = s.first; j <= now_; j += 1.0) {
@@ -312,7 +319,8 @@ class window {
     own.put_number(where, 0, stamp_of(k));
   }
   template <class Own, class V>
-  void put_in(const Own& own, mask_of<V> where, front<V>& f, vector<V> part, double j, double k, double closing) const {
+  void put_in(const Own& own, mask_of<V> where, front<V>& f, vector<V> part, double j, double k,
+              double closing) const {
     if (j == k) {
       f.newest = f.newest + part;
     } else if (j == k - buckets_) {

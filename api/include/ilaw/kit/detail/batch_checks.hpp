@@ -13,6 +13,27 @@ bool is_absent(const instance_base& made, const Array& a) {
   return made.numbers == ILAW_NUMBERS_FLOAT ? !a.floats : !a.values;
 }
 
+// An array of numbers that are not the setup's, or with both pointers.
+template <class Array>
+bool is_of_other_numbers(const instance_base& made, const Array& a) {
+  return made.numbers == ILAW_NUMBERS_FLOAT ? static_cast<bool>(a.values) : static_cast<bool>(a.floats);
+}
+// Of the arrays that are read or written; those of a state are always doubles.
+inline const char* other_numbers(const instance_base& made, const ilaw_batch& b, std::uint32_t read) {
+  const auto other = [&](const auto& a) { return is_of_other_numbers(made, a); };
+  bool is_bad = other(b.v_free) || other(b.delassus) || other(b.impulse) || other(b.velocity) || other(b.energy);
+  is_bad = is_bad || ((read & ILAW_INPUT_GAP) && (other(b.gap) || other(b.gap_offset)));
+  is_bad = is_bad || ((read & ILAW_INPUT_V_PREVIOUS) && other(b.v_previous));
+  is_bad = is_bad || ((read & ILAW_INPUT_AREA) && other(b.area));
+  is_bad = is_bad || ((read & ILAW_INPUT_NORMAL) && other(b.normal));
+  is_bad = is_bad || ((read & ILAW_INPUT_TANGENT) && other(b.tangent));
+  is_bad = is_bad || (made.state_size > 0 && (b.state_in.floats || b.state_out.floats));
+  for (std::uint32_t k = 0; b.per_node_parameters && k < made.per_node_count; ++k)
+    is_bad = is_bad || other(b.per_node_parameters[k]);
+  for (std::uint32_t k = 0; b.amounts && k < made.amount_count; ++k) is_bad = is_bad || other(b.amounts[k]);
+  return is_bad ? "an array is of other numbers than the setup's, or has both pointers" : nullptr;
+}
+
 // The first of the arrays that evaluate or initialise needs and that is absent; null when none is.
 inline const char* missing_input(const instance_base& made, const ilaw_batch& b, std::uint32_t needed) {
   if ((needed & ILAW_INPUT_GAP) && is_absent(made, b.gap)) return "gap is null";
@@ -92,7 +113,9 @@ inline const char* wrong_batch(const instance_base& made, const ilaw_batch& b) {
   if (is_absent(made, b.impulse)) return "impulse is null";
   if (made.state_size > 0 && !b.state_in.values) return "state_in is null";
   if (const char* wrong = colliding_output(made, b)) return wrong;
-  return missing_input(made, b, made.inputs | (wants_balance(made, b) ? made.balance_inputs : 0U));
+  const std::uint32_t read = made.inputs | (wants_balance(made, b) ? made.balance_inputs : 0U);
+  if (const char* wrong = missing_input(made, b, read)) return wrong;
+  return other_numbers(made, b, read);
 }
 
 inline const char* wrong_initial(const instance_base& made, const ilaw_batch& b) {

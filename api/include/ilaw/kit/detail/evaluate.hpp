@@ -28,7 +28,7 @@ auto loop_of(const instance<Law>& made) {
   using run_function = typename batch_walk<Number>::run_function;
   if constexpr (requires(const Wide& law, node_type& n, typename Wide::problem& p) { law.ask(n, p); }) {
     using solving = solver_kernel<Law, V, Number, Frame, Delassus>;
-    if constexpr (can_step && requires { made.law.asks(); })
+    if constexpr (can_step && (requires { made.law.asks(); } || requires { made.law.asks(true); }))
       return made.asks ? run_function(solving::run) : run_function(plain::run);
     else
       return run_function(solving::run);
@@ -114,6 +114,7 @@ const char* wrong_parameters(const instance<Law>& made, const ilaw_batch& batch,
     if (!range_of(Law::parameters[place]).has(value)) return "a per-node parameter is out of range";
     Law::parameters[place].member.set(law, value);
   }
+  made.read_node_tables(law, batch.time);
   if constexpr (requires { law.conflict(); })
     if (made.per_node_count > 0) return law.conflict();
   return nullptr;

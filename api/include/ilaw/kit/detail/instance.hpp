@@ -45,7 +45,7 @@ struct instance : instance_base {
   Law law;
   ilaw_kit_walk walk = nullptr;  // null: this level's own
   std::uint32_t capabilities, permissions;
-  time_table tables[parameter_count<Law> + 1];  // by parameter; without times: none
+  table tables[parameter_count<Law> + 1];  // by parameter
   std::uint32_t table_count = 0;
   const char* per_node_names[parameter_count<Law> + 1];
   ilaw_state_variable variables[variable_capacity];
@@ -54,17 +54,32 @@ struct instance : instance_base {
 
   bool varies() const { return table_count > 0 || per_node_count > 0; }
 
-  // The law as it is at a time: tables read.
+  // The law as it is at a time: tables read, but those over a field that comes per node. Fields first.
   Law at(double time) const {
     Law now = law;
     if (table_count > 0)
-      for (int k = 0; k < parameter_count<Law>; ++k)
-        if (tables[k].times) Law::parameters[k].member.set(now, tables[k].at(time));
+      for (const bool over_time_alone : {true, false})
+        for (int k = 0; k < parameter_count<Law>; ++k)
+          if (tables[k].axis_count > 0 && !tables[k].per_node && tables[k].is_over_time_alone() == over_time_alone)
+            read_table_of(now, k, time);
     return now;
+  }
+  // And with the fields of a node.
+  void read_node_tables(Law& now, double time) const {
+    for (int k = 0; k < parameter_count<Law>; ++k)
+      if (tables[k].per_node) read_table_of(now, k, time);
+  }
+  void read_table_of(Law& now, int k, double time) const {
+    double place[3] = {};
+    for (int a = 0; a < tables[k].axis_count; ++a) {
+      const int source = tables[k].source[a];
+      place[a] = source == table::time ? time : Law::parameters[source].member.get(now);
+    }
+    Law::parameters[k].member.set(now, tables[k].at(place));
   }
 
   ~instance() {
-    for (time_table& table : tables) std::free(table.times);
+    for (const table& t : tables) std::free(t.points[0]);
   }
 };
 
@@ -76,7 +91,7 @@ class instance_builder {
 
   ilaw_result build() {
     for (auto step : {&instance_builder::check_setup, &instance_builder::read_arguments,
-                      &instance_builder::require_arguments, &instance_builder::check_together,
+                      &instance_builder::require_arguments, &instance_builder::check_fields, &instance_builder::check_together,
                       &instance_builder::lay_out_state, &instance_builder::state_needs})
       if (const ilaw_result code = (this->*step)(); code != ILAW_OK) return code;
     return ILAW_OK;
@@ -174,18 +189,33 @@ class instance_builder {
   }
 
   ilaw_result keep_table(const ilaw_parameter& p, std::size_t place, const ilaw_argument& a) {
-    ilaw_axis axis{};
-    if (const ilaw_result code = check_table(id, p, a, axis, text_); code != ILAW_OK) return code;
-    auto* times = static_cast<double*>(std::malloc(2 * axis.count * sizeof(double)));
-    if (!times) {
-      text_.add("law '%s': out of memory for the table of parameter '%s'", id, p.name);
-      return ILAW_OUT_OF_MEMORY;
+    table& made = made_.tables[place];
+    if (const ilaw_result code = read_table(id, p, a, made, text_); code != ILAW_OK) return code;
+    for (int i = 0; i < made.axis_count; ++i) {
+      made.source[i] = table::time;
+      for (std::size_t k = 0; k < count; ++k)
+        if (std::strcmp(Law::parameters[k].name, sized::read(a.axes[i]).name) == 0) made.source[i] = static_cast<int>(k);
     }
-    std::memcpy(times, axis.points, axis.count * sizeof(double));
-    std::memcpy(times + axis.count, a.values, axis.count * sizeof(double));
-    made_.tables[place] = {times, axis.count};
     ++made_.table_count;
     Law::parameters[place].member.set(made_.law, a.values[0]);
+    return ILAW_OK;
+  }
+  // Fields that are axes must be given, as numbers, per node, or as tables over the time.
+  ilaw_result check_fields() {
+    for (std::size_t k = 0; k < count; ++k)
+      for (int a = 0; a < made_.tables[k].axis_count; ++a) {
+        const int field = made_.tables[k].source[a];
+        if (field == table::time) continue;
+        const auto f = static_cast<std::size_t>(field);
+        if (!given_[f] || (made_.tables[f].axis_count > 0 && !made_.tables[f].is_over_time_alone())) {
+          text_.add("law '%s': parameter '%s' is a table over '%s': expected a value, a value per node or a table over "
+                    "time for that", id, Law::parameters[k].name, Law::parameters[f].name);
+          return ILAW_INVALID_PARAMETER;
+        }
+        for (std::uint32_t n = 0; n < made_.per_node_count; ++n)
+          if (made_.per_node_parameters[n] == field) made_.tables[k].per_node = true;
+        if (made_.tables[k].per_node) made_.node_tables = made_.tables;
+      }
     return ILAW_OK;
   }
 
@@ -235,21 +265,22 @@ class instance_builder {
   ilaw_result check_conflicts() {
     if (made_.per_node_count > 0) return ILAW_OK;
     if (made_.table_count == 0) return check_conflict(made_.law, nullptr);
-    for (const time_table& table : made_.tables)
-      for (std::uint64_t j = 0; j < table.count; ++j) {
-        const double time = table.times[j], between = time + 0.5 * (next_time(time) - time);
-        for (const double instant : {time, between})
-          if (const ilaw_result code = check_conflict(made_.at(instant), &instant); code != ILAW_OK)
-            return code;
-      }
-    return ILAW_OK;
+    bool has_times = false;
+    for (const table& t : made_.tables)
+      for (int a = 0; a < t.axis_count; ++a)
+        for (std::uint64_t j = 0; t.source[a] == table::time && j < t.count[a]; ++j) {
+          const double time = t.points[a][j], between = time + 0.5 * (next_time(time) - time);
+          has_times = true;
+          for (const double instant : {time, between})
+            if (const ilaw_result code = check_conflict(made_.at(instant), &instant); code != ILAW_OK) return code;
+        }
+    return has_times ? ILAW_OK : check_conflict(made_.at(0.0), nullptr);
   }
 
   // Of any table; the same where none follows.
   double next_time(double time) const {
     double next = infinity;
-    for (const time_table& table : made_.tables)
-      if (table.times) next = smaller(next, table.next_time(time));
+    for (const table& t : made_.tables) next = smaller(next, t.next_time(time));
     return next < infinity ? next : time;
   }
 
@@ -286,7 +317,7 @@ class instance_builder {
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
       Law::parameters[made_.per_node_parameters[k]].member.set(law, not_a_number);
     for (std::size_t k = 0; k < count; ++k)
-      if (made_.tables[k].times) Law::parameters[k].member.set(law, not_a_number);
+      if (made_.tables[k].axis_count > 0) Law::parameters[k].member.set(law, not_a_number);
     return law;
   }
 
@@ -330,6 +361,7 @@ class instance_builder {
     made_.frame_follows = has_history<Law> && !(made_.permissions & ILAW_MAY_SKIP_FREE);
     if (made_.carries_frame && made_.frame_follows) made_.permissions &= ~std::uint32_t{ILAW_MAY_SKIP_FRESH};
     if constexpr (requires { made_.law.asks(); }) made_.asks = with_unknowns().asks();
+    if constexpr (requires { made_.law.asks(true); }) made_.asks = with_unknowns().asks(made_.is_transverse());
     made_.amount_count = static_cast<std::uint32_t>(amount_count<Law>);
     return ILAW_OK;
   }

@@ -34,34 +34,49 @@ class message {
   std::size_t size_, used_ = 0;
 };
 
-// A parameter given as a table in time: piecewise linear, constant beyond its ends.
-struct time_table {
-  double* times = nullptr;  // owned by the instance; behind them the values
-  std::uint64_t count = 0;
+// A parameter given as a table over one to three axes: linear along each, constant beyond its ends. The last axis varies
+// fastest.
+struct table {
+  static constexpr int time = -1;
 
-  const double* values() const { return times + count; }
-  // Position of the first time after one.
-  std::uint64_t after(double time) const {
-    std::uint64_t low = 0, high = count;
+  int axis_count = 0;  // 0: none
+  int source[3] = {};  // of an axis: time, or a field's place among the law's parameters
+  bool per_node = false;
+  std::uint64_t count[3] = {};
+  double* points[3] = {};  // owned, with the values behind them
+  double* values = nullptr;
+
+  bool is_over_time_alone() const { return axis_count == 1 && source[0] == time; }
+  double at(const double (&place)[3]) const { return between(0, 0, place); }
+
+  // Position of the first point after a place on an axis.
+  std::uint64_t after(int axis, double place) const {
+    std::uint64_t low = 0, high = count[axis];
     while (low < high) {
       const std::uint64_t middle = (low + high) / 2;
-      if (times[middle] > time)
+      if (points[axis][middle] > place)
         high = middle;
       else
         low = middle + 1;
     }
     return low;
   }
-  double next_time(double time) const {
-    const std::uint64_t k = after(time);
-    return k < count ? times[k] : infinity;
+  double next_time(double after_time) const {
+    for (int a = 0; a < axis_count; ++a)
+      if (source[a] == time)
+        if (const std::uint64_t k = after(a, after_time); k < count[a]) return points[a][k];
+    return infinity;
   }
-  double at(double time) const {
-    const std::uint64_t k = after(time);
-    if (k == 0) return values()[0];
-    if (k == count) return values()[count - 1];
-    const double t0 = times[k - 1], t1 = times[k], y0 = values()[k - 1], y1 = values()[k];
-    const double fraction = (time - t0) / (t1 - t0);
+
+ private:
+  double between(int axis, std::uint64_t row, const double (&place)[3]) const {
+    if (axis == axis_count) return values[row];
+    const auto value = [&](std::uint64_t k) { return between(axis + 1, row * count[axis] + k, place); };
+    const std::uint64_t k = after(axis, place[axis]);
+    if (k == 0) return value(0);
+    if (k == count[axis]) return value(k - 1);
+    const double x0 = points[axis][k - 1], x1 = points[axis][k], y0 = value(k - 1), y1 = value(k);
+    const double fraction = (place[axis] - x0) / (x1 - x0);
     // At its ends a segment has their values, also beside an infinite one.
     if (y0 == y1 || fraction == 0.0) return y0;
     return fraction == 1.0 ? y1 : y0 * (1.0 - fraction) + y1 * fraction;
@@ -166,34 +181,58 @@ inline ilaw_result read_number(const char* law, const ilaw_parameter& p, const i
   return ILAW_INVALID_PARAMETER;
 }
 
-// Checks a table over time: points finite and increasing, values in range.
-inline ilaw_result check_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a, ilaw_axis& axis,
-                               message& text) {
-  const auto refuse = [&](const char* what) {
-    text.add("law '%s': parameter '%s': the table %s", law, p.name, what);
+// Checks a table, and keeps it: axes known, each once, points finite and increasing, values in range.
+inline ilaw_result read_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a, table& made, message& text) {
+  const auto refuse = [&](const char* what, const char* axis = "") {
+    text.add("law '%s': parameter '%s': the table %s%s", law, p.name, what, axis);
     return ILAW_INVALID_PARAMETER;
   };
-  if (a.axis_count != 1 || !a.axes) return refuse("has no or several axes, expected 1");
-  if (!sized::is_complete(a.axes[0])) return refuse("has an axis that is null or whose struct_size is of no version");
-  axis = sized::read(a.axes[0]);
-  if (!axis.name || std::strcmp(axis.name, "time") != 0) {
-    text.add("law '%s': parameter '%s': axis '%s' of the table is unknown: expected 'time'", law, p.name,
-             axis.name ? axis.name : "");
-    return ILAW_INVALID_PARAMETER;
-  }
-  if (!axis.points || !a.values || axis.count == 0) return refuse("has no point, expected at least 1");
-  if (axis.count > ILAW_TABLE_MAX_VALUES) return refuse("has more than 16777216 points");
-  for (std::uint64_t k = 0; k < axis.count; ++k) {
-    const double time = axis.points[k];
-    if (!is_finite(time) || (k > 0 && time <= axis.points[k - 1])) {
-      text.add("law '%s': parameter '%s': time ", law, p.name);
-      add_number(text, time);
-      text.add(" of point %llu of the table is not allowed: expected finite, increasing times",
-               static_cast<unsigned long long>(k));
+  if (a.axis_count < 1 || a.axis_count > 3 || !a.axes) return refuse("has no axis or more than three, expected 1 to 3");
+  if (!a.values) return refuse("has no values");
+  ilaw_axis axes[3];
+  std::uint64_t size = 1, stored = 0;
+  for (std::uint32_t i = 0; i < a.axis_count; ++i) {
+    if (!sized::is_complete(a.axes[i])) return refuse("has an axis that is null or whose struct_size is of no version");
+    axes[i] = sized::read(a.axes[i]);
+    if (!axes[i].name || !axes[i].points || axes[i].count == 0)
+      return refuse("has an axis without a name or point, expected at least 1 point");
+    std::uint32_t known = 0;
+    while (known < p.axis_count && std::strcmp(p.axes[known], axes[i].name) != 0) ++known;
+    if (known == p.axis_count) {
+      text.add("law '%s': parameter '%s': axis '%s' of the table is unknown: expected one of ", law, p.name, axes[i].name);
+      for (std::uint32_t k = 0; k < p.axis_count; ++k) text.add("%s'%s'", k ? ", " : "", p.axes[k]);
       return ILAW_INVALID_PARAMETER;
     }
-    if (const ilaw_result code = check_number(law, p, a.values[k], text); code != ILAW_OK) return code;
+    for (std::uint32_t k = 0; k < i; ++k)
+      if (std::strcmp(axes[k].name, axes[i].name) == 0) return refuse("has twice the axis ", axes[i].name);
+    if (axes[i].count > ILAW_TABLE_MAX_VALUES / size) return refuse("has more than 16777216 values");
+    size *= axes[i].count;
+    stored += axes[i].count;
+    for (std::uint64_t k = 0; k < axes[i].count; ++k)
+      if (const double x = axes[i].points[k]; !is_finite(x) || (k > 0 && x <= axes[i].points[k - 1])) {
+        text.add("law '%s': parameter '%s': point %llu of axis '%s' is ", law, p.name, static_cast<unsigned long long>(k),
+                 axes[i].name);
+        add_number(text, x);
+        text.add(": expected finite, increasing points");
+        return ILAW_INVALID_PARAMETER;
+      }
   }
+  for (std::uint64_t k = 0; k < size; ++k)
+    if (const ilaw_result code = check_number(law, p, a.values[k], text); code != ILAW_OK) return code;
+  auto* memory = static_cast<double*>(std::malloc((stored + size) * sizeof(double)));
+  if (!memory) {
+    text.add("law '%s': out of memory for the table of parameter '%s'", law, p.name);
+    return ILAW_OUT_OF_MEMORY;
+  }
+  made.axis_count = static_cast<int>(a.axis_count);
+  for (std::uint32_t i = 0; i < a.axis_count; ++i) {
+    made.count[i] = axes[i].count;
+    made.points[i] = memory;
+    std::memcpy(memory, axes[i].points, axes[i].count * sizeof(double));
+    memory += axes[i].count;
+  }
+  made.values = memory;
+  std::memcpy(memory, a.values, size * sizeof(double));
   return ILAW_OK;
 }
 

@@ -1,5 +1,5 @@
-// walk.hpp - a batch as views: all of it at once where its arrays are rows or columns, else blocks of nodes, of which
-// the other arrays are copied. Once per level and number type, not per law.
+// walk.hpp - a batch as views: all of it at once where its arrays are rows or columns, else blocks of nodes,
+// of which the other arrays are copied. Once per level and number type, not per law.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,14 +13,15 @@ struct instance_base {
   std::uint32_t dimension, delassus_form, frame, has_tangent, numbers;
   std::uint32_t inputs, balance_inputs;
   bool carries_frame, frame_follows;
-  bool asks = false;          // these parameters need the solver, where the law has a step beside it
-  window_size window{};       // duration 0: none
-  int states;                 // numbers of struct state, and for each the entry of the host's state; -1: none
+  bool asks = false;     // these parameters need the solver, where the law has a step beside it
+  window_size window{};  // duration 0: none
+  int states;            // numbers of struct state, and for each the entry of the host's state; -1: none
   const int* state_entries;
   std::int64_t history_offset, history_size, frame_offset;
   std::uint64_t state_size;
   std::uint32_t per_node_count;
   int per_node_parameters[most_parameters];  // which of the law's
+  const table* node_tables = nullptr;        // by parameter: over fields that come per node; null: none
   std::uint32_t amount_count;
 
   bool is_transverse() const {
@@ -29,10 +30,14 @@ struct instance_base {
   int delassus_numbers() const {
     const int d = static_cast<int>(dimension);
     switch (delassus_form) {
-      case ILAW_DELASSUS_SCALAR: return 1;
-      case ILAW_DELASSUS_TRANSVERSE: return d == 1 ? 1 : 2;
-      case ILAW_DELASSUS_DIAGONAL: return d;
-      default: return d * (d + 1) / 2;
+      case ILAW_DELASSUS_SCALAR:
+        return 1;
+      case ILAW_DELASSUS_TRANSVERSE:
+        return d == 1 ? 1 : 2;
+      case ILAW_DELASSUS_DIAGONAL:
+        return d;
+      default:
+        return d * (d + 1) / 2;
     }
   }
 };
@@ -46,12 +51,14 @@ auto numbers_in(const Array& a) {
 }
 
 // The nodes of a part of a batch.
+inline constexpr int block_nodes = 64;
 struct node_range {
   std::int64_t first, count;
   bool listed;
   std::int64_t where[block_nodes];
 
-  node_range(const ilaw_batch& b, std::int64_t start, std::int64_t n) : first(start), count(n), listed(b.index || b.index64) {
+  node_range(const ilaw_batch& b, std::int64_t start, std::int64_t n)
+      : first(start), count(n), listed(b.index || b.index64) {
     if (b.index64)
       for (std::int64_t i = 0; i < n; ++i) where[i] = b.index64[start + i] - b.index_base;
     else if (b.index)
@@ -110,28 +117,33 @@ class batch_walk {
            a.node_stride == made_.states && a.component_stride == 1;
   }
   bool all_stay() const {
-    bool stay = !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) && stays_or_absent(b_.v_free, d_) &&
-                stays_or_absent(b_.v_previous, d_) && stays_or_absent(b_.normal, d_) &&
-                stays_or_absent(b_.tangent, d_) && delassus_stays() && stays_or_absent(b_.gap, 1) &&
-                stays_or_absent(b_.gap_offset, 1) && stays_or_absent(b_.area, 1) && stays_or_absent(b_.impulse, d_) &&
+    bool stay = !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) &&
+                stays_or_absent(b_.v_free, d_) && stays_or_absent(b_.v_previous, d_) &&
+                stays_or_absent(b_.normal, d_) && stays_or_absent(b_.tangent, d_) && delassus_stays() &&
+                stays_or_absent(b_.gap, 1) && stays_or_absent(b_.gap_offset, 1) &&
+                stays_or_absent(b_.area, 1) && stays_or_absent(b_.impulse, d_) &&
                 stays_or_absent(b_.velocity, d_) && stays_or_absent(b_.energy, ILAW_ENERGY_COUNT) &&
                 state_stays(b_.state_in) && state_stays(b_.state_out);
-    for (std::uint32_t k = 0; k < made_.per_node_count; ++k) stay = stay && stays(b_.per_node_parameters[k], 1);
-    for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k) stay = stay && stays_or_absent(b_.amounts[k], 1);
+    for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
+      stay = stay && stays(b_.per_node_parameters[k], 1);
+    for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k)
+      stay = stay && stays_or_absent(b_.amounts[k], 1);
     return stay;
   }
 
   // ---- copies of a block
 
   template <class T, class From>
-  [[gnu::noinline]] static void gather_column(const From* values, std::int64_t stride, const node_range& n, T* to) {
+  [[gnu::noinline]] static void gather_column(const From* values, std::int64_t stride, const node_range& n,
+                                              T* to) {
     if (n.listed)
       for (std::int64_t i = 0; i < n.count; ++i) to[i] = values[n.where[i] * stride];
     else
       for (std::int64_t i = 0; i < n.count; ++i) to[i] = values[(n.first + i) * stride];
   }
   template <class T>
-  [[gnu::noinline]] static void scatter_column(T* values, std::int64_t stride, const node_range& n, const T* from) {
+  [[gnu::noinline]] static void scatter_column(T* values, std::int64_t stride, const node_range& n,
+                                               const T* from) {
     if (n.listed)
       for (std::int64_t i = 0; i < n.count; ++i) values[n.where[i] * stride] = from[i];
     else
@@ -159,7 +171,8 @@ class batch_walk {
     }
   }
   template <class T>
-  static void prefetch_block(const T* values, std::int64_t stride, std::int64_t component, const node_range& n) {
+  static void prefetch_block(const T* values, std::int64_t stride, std::int64_t component,
+                             const node_range& n) {
     if (n.listed || component != 1 || stride > 8) return;
     for (std::int64_t k = 0; k < block_nodes * stride; k += 64 / static_cast<int>(sizeof(T)))
       __builtin_prefetch(values + (n.first + block_nodes) * stride + k);
@@ -169,14 +182,15 @@ class batch_walk {
     const Number* const values = numbers_in<Number>(a);
     if (!values) return {};
     if (!n.listed && stays(a, components))
-      return {values + n.first * a.node_stride, a.component_stride, components, a.node_stride != 1};
+      return {values + n.first * a.node_stride, a.component_stride, components,
+              a.node_stride != 1 ? components : 0};
     prefetch_block(values, a.node_stride, a.component_stride, n);
     if (components == 3)
       gather_three(values, a.node_stride, a.component_stride, n, copy);
     else
       for (int c = 0; c < components; ++c)
         gather_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
-    return {copy, block_nodes, components, false};
+    return {copy, block_nodes, components, 0};
   }
   const Number* gather_scalar(const ilaw_input& a, const node_range& n, Number* copy) const {
     return gather(a, 1, n, copy).at;
@@ -187,23 +201,26 @@ class batch_walk {
     if (made_.is_transverse() || d_ == 3) return gather(b_.delassus, numbers, n, s_.delassus);
     const Number* const values = numbers_in<Number>(b_.delassus);
     const auto take = [&](int from, int to) {
-      gather_column(values + from * b_.delassus.component_stride, b_.delassus.node_stride, n, s_.delassus + to * block_nodes);
+      gather_column(values + from * b_.delassus.component_stride, b_.delassus.node_stride, n,
+                    s_.delassus + to * block_nodes);
     };
     take(0, 0);
     take(d_ > 1 ? 1 : 0, 1);
     take(d_ > 1 ? 1 : 0, 2);  // or it would pass for anisotropic
     for (int k = 3 * block_nodes; k < 6 * block_nodes; ++k) s_.delassus[k] = 0;
     if (numbers == 3) take(2, 3);
-    return {s_.delassus, block_nodes, 6, false};
+    return {s_.delassus, block_nodes, 6, 0};
   }
   array<Number> aim(const ilaw_output& a, int components, const node_range& n, Number* copy) const {
     Number* const values = numbers_in<Number>(a);
     if (!values) return {};
     if (!n.listed && stays(a, components))
-      return {values + n.first * a.node_stride, a.component_stride, components, a.node_stride != 1};
-    return {copy, block_nodes, components, false};
+      return {values + n.first * a.node_stride, a.component_stride, components,
+              a.node_stride != 1 ? components : 0};
+    return {copy, block_nodes, components, 0};
   }
-  void scatter(const ilaw_output& a, const array<Number>& aimed, const node_range& n, const Number* copy) const {
+  void scatter(const ilaw_output& a, const array<Number>& aimed, const node_range& n,
+               const Number* copy) const {
     if (aimed.at != copy) return;
     Number* const values = numbers_in<Number>(a);
     prefetch_block(values, a.node_stride, a.component_stride, n);
@@ -221,7 +238,8 @@ class batch_walk {
     double* const out = in + made_.states * block_nodes;
     const ilaw_input& from = b_.state_in;
     if (!n.listed && state_stays(from)) {
-      v.state_in = {from.values + n.first * from.node_stride, from.component_stride, made_.states, from.node_stride != 1};
+      v.state_in = {from.values + n.first * from.node_stride, from.component_stride, made_.states,
+                    from.node_stride != 1 ? made_.states : 0};
     } else {
       for (int k = 0; k < made_.states; ++k) {
         const int entry = made_.state_entries[k];
@@ -231,15 +249,17 @@ class batch_walk {
         else
           for (std::int64_t i = 0; i < n.count; ++i) to[i] = 0.0;
       }
-      v.state_in = {in, block_nodes, made_.states, false};
+      v.state_in = {in, block_nodes, made_.states, 0};
     }
     const ilaw_output& to = b_.state_out;
     if (!n.listed && state_stays(to))
-      v.state_out = {to.values + n.first * to.node_stride, to.component_stride, made_.states, to.node_stride != 1};
+      v.state_out = {to.values + n.first * to.node_stride, to.component_stride, made_.states,
+                     to.node_stride != 1 ? made_.states : 0};
     else
-      v.state_out = {out, block_nodes, made_.states, false};
+      v.state_out = {out, block_nodes, made_.states, 0};
     open_frame(v, n, out + made_.states * block_nodes);
-    v.history = to.values + made_.history_offset * to.component_stride + (n.listed ? 0 : n.first * to.node_stride);
+    v.history =
+        to.values + made_.history_offset * to.component_stride + (n.listed ? 0 : n.first * to.node_stride);
     v.history_node_stride = to.node_stride;
     v.history_component_stride = to.component_stride;
     v.nodes = n.listed ? n.where : nullptr;
@@ -250,16 +270,16 @@ class batch_walk {
     const ilaw_input& in = b_.state_in;
     const ilaw_output& out = b_.state_out;
     if (!n.listed && in.node_stride == 1) {
-      v.frame_in = {in.values + at * in.component_stride + n.first, in.component_stride, 6, false};
+      v.frame_in = {in.values + at * in.component_stride + n.first, in.component_stride, 6, 0};
     } else {
       for (int k = 0; k < 6; ++k)
         gather_column(in.values + (at + k) * in.component_stride, in.node_stride, n, copy + k * block_nodes);
-      v.frame_in = {copy, block_nodes, 6, false};
+      v.frame_in = {copy, block_nodes, 6, 0};
     }
     if (!n.listed && out.node_stride == 1)
-      v.frame_out = {out.values + at * out.component_stride + n.first, out.component_stride, 6, false};
+      v.frame_out = {out.values + at * out.component_stride + n.first, out.component_stride, 6, 0};
     else
-      v.frame_out = {copy + 6 * block_nodes, block_nodes, 6, false};
+      v.frame_out = {copy + 6 * block_nodes, block_nodes, 6, 0};
   }
   // A history is worked on in state_out, which therefore starts as state_in.
   void copy_unnamed(const node_range& n) const {
@@ -269,7 +289,8 @@ class batch_walk {
     const auto first = made_.history_offset, size = made_.history_size;
     if (in.component_stride == 1 && out.component_stride == 1) {
       for (std::int64_t i = 0; i < n.count; ++i)
-        __builtin_memcpy(out.values + n(i) * out.node_stride + first, in.values + n(i) * in.node_stride + first,
+        __builtin_memcpy(out.values + n(i) * out.node_stride + first,
+                         in.values + n(i) * in.node_stride + first,
                          static_cast<std::size_t>(size) * sizeof(double));
       return;
     }
@@ -319,32 +340,42 @@ class batch_walk {
       }
     }
   }
-  [[gnu::noinline, gnu::flatten]] static void read_windows(const window& w, const view<Number>& v, window_sums& sums) {
-    constexpr all_lanes<pack> l;
+  struct window_block {
+    alignas(64) double earlier[3][block_nodes], refused[block_nodes];
+    alignas(64) double given[3][block_nodes], adds[block_nodes], clears[block_nodes];
+  };
+  [[gnu::noinline, gnu::flatten]] static void read_windows(const window& w, const view<Number>& v,
+                                                           window_block& block) {
     for_windows(v, [&](std::int64_t i, const auto& own) {
       vector<pack> sum;
-      const pack refused = w.read(own, sum);
-      l.store(sum.n, sums.earlier[0] + i);
-      l.store(sum.t1, sums.earlier[1] + i);
-      l.store(sum.t2, sums.earlier[2] + i);
-      l.store(refused, sums.refused + i);
+      store(w.read(own, sum), block.refused + i);
+      store(sum.n, block.earlier[0] + i);
+      store(sum.t1, block.earlier[1] + i);
+      store(sum.t2, block.earlier[2] + i);
     });
   }
-  [[gnu::noinline, gnu::flatten]] static void write_windows(const window& w, const view<Number>& v, window_sums& sums) {
-    constexpr all_lanes<pack> l;
-    for (std::int64_t i = v.count; i % lanes_of<pack> != 0; ++i) sums.adds[i] = sums.clears[i] = 0.0;
+  [[gnu::noinline, gnu::flatten]] static void write_windows(const window& w, const view<Number>& v,
+                                                            window_block& block) {
+    for (std::int64_t i = v.count; i % lanes_of<pack> != 0; ++i) block.adds[i] = block.clears[i] = 0.0;
     for_windows(v, [&](std::int64_t i, const auto& own) {
-      const vector<pack> impulse{l.load(sums.impulse[0] + i), l.load(sums.impulse[1] + i), l.load(sums.impulse[2] + i)};
-      w.write(own, l.load(sums.clears + i) != 0.0, l.load(sums.adds + i) != 0.0, impulse);
+      const vector<pack> impulse{load<pack>(block.given[0] + i), load<pack>(block.given[1] + i),
+                                 load<pack>(block.given[2] + i)};
+      w.write(own, load<pack>(block.clears + i) != 0.0, load<pack>(block.adds + i) != 0.0, impulse);
     });
   }
   void run_with_windows(view<Number>& v, run_function loop, const void* law, tally& found) {
     const window w(made_.window, {b_.time + 0.5 * b_.position_step, b_.velocity_step});
-    window_sums sums;
-    v.windows = &sums;
-    read_windows(w, v, sums);
+    window_block block;
+    for (int c = 0; c < 3; ++c) {
+      v.earlier[c] = block.earlier[c];
+      v.given[c] = block.given[c];
+    }
+    v.earlier_refused = block.refused;
+    v.adds = block.adds;
+    v.clears = block.clears;
+    read_windows(w, v, block);
     loop(law, v, found);
-    write_windows(w, v, sums);
+    write_windows(w, v, block);
   }
 
   // ---- a part of the batch
@@ -359,8 +390,7 @@ class batch_walk {
   void open_inputs(view<Number>& v, const node_range& n) {
     v.v_free = gather(b_.v_free, d_, n, s_.v_free);
     v.reads_previous = made_.inputs & ILAW_INPUT_V_PREVIOUS;
-    if (v.reads_previous || wants_balance())
-      v.v_previous = gather(b_.v_previous, d_, n, s_.v_previous);
+    if (v.reads_previous || wants_balance()) v.v_previous = gather(b_.v_previous, d_, n, s_.v_previous);
     if (made_.frame == ILAW_FRAME_GLOBAL) v.normal = gather(b_.normal, d_, n, s_.normal);
     if (made_.inputs & ILAW_INPUT_TANGENT) v.tangent = gather(b_.tangent, d_, n, s_.tangent);
     v.delassus = gather_delassus(n);
@@ -370,7 +400,8 @@ class batch_walk {
     }
     if (made_.inputs & ILAW_INPUT_AREA) v.area = gather_scalar(b_.area, n, s_.area);
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
-      v.parameters[made_.per_node_parameters[k]] = gather_scalar(b_.per_node_parameters[k], n, s_.parameters[k]);
+      v.parameters[made_.per_node_parameters[k]] =
+          gather_scalar(b_.per_node_parameters[k], n, s_.parameters[k]);
   }
   void open_outputs(view<Number>& v, const node_range& n) {
     v.impulse = aim(b_.impulse, d_, n, s_.impulse);
@@ -400,7 +431,8 @@ class batch_walk {
     v.is_scalar = made_.delassus_numbers() == 1;
     v.frame_follows = made_.frame_follows;
     v.varying = made_.per_node_count > 0;
-    v.in_memory = n.count >= prefetch_from;
+    v.tables = made_.node_tables;
+    v.in_memory = std::is_same_v<Number, double> && n.count >= prefetch_from;
     open_inputs(v, n);
     open_outputs(v, n);
     open_state(v, n);
@@ -420,7 +452,7 @@ class batch_walk {
     if (v.status == s_.status)
       for (std::int64_t i = 0; i < n.count; ++i) b_.status[n(i) * b_.status_stride] = s_.status[i];
     for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k)
-      if (v.amounts[k] == s_.amounts[k]) scatter(b_.amounts[k], {v.amounts[k], 0, 1, false}, n, s_.amounts[k]);
+      if (v.amounts[k] == s_.amounts[k]) scatter(b_.amounts[k], {v.amounts[k], 0, 1, 0}, n, s_.amounts[k]);
     close_state(v, n);
   }
   static void add(tally& all, const tally& found, const node_range& n) {
@@ -435,7 +467,8 @@ class batch_walk {
   }
 
   struct alignas(64) scratch {
-    Number v_free[3 * block_nodes], v_previous[3 * block_nodes], normal[3 * block_nodes], tangent[3 * block_nodes];
+    Number v_free[3 * block_nodes], v_previous[3 * block_nodes], normal[3 * block_nodes],
+        tangent[3 * block_nodes];
     Number delassus[6 * block_nodes], gap[block_nodes], gap_offset[block_nodes], area[block_nodes];
     Number parameters[most_parameters][block_nodes];
     Number impulse[3 * block_nodes], velocity[3 * block_nodes], energy[ILAW_ENERGY_COUNT * block_nodes];

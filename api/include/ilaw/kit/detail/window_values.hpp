@@ -1,9 +1,9 @@
-// window_values.hpp - where the numbers of windows (window.hpp) stand: those of a node side by side, or those of the
-// nodes. Both have the same members, on the numbers k, k + 1, k + 2 of each window, a vector.
+// window_values.hpp - where the numbers of windows (window.hpp) stand: those of a node side by side, or those
+// of the nodes. Both have the same members, on the numbers k, k + 1, k + 2 of each window, a vector.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/transpose.hpp>
+#include <ilaw/kit/detail/load_store.hpp>
 #include <ilaw/kit/vector.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -39,7 +39,8 @@ struct window_columns {
     if constexpr (lanes_of<V> == 1)
       first[k * stride] = x;
     else
-      for (int r = 0; r < V::size / register_lanes; ++r) put_one(x.v[r], first + k * stride + r * register_lanes);
+      for (int r = 0; r < V::size / register_lanes; ++r)
+        put_one(x.v[r], first + k * stride + r * register_lanes);
   }
   ILAW_KIT_INLINE void put_number(mask_of<V> where, std::int64_t k, V x) const {
     store(k, select(where, x, number_at(k)));
@@ -49,7 +50,9 @@ struct window_columns {
     put_number(where, k + 1, a.t1);
     put_number(where, k + 2, a.t2);
   }
-  ILAW_KIT_INLINE void add(mask_of<V> where, std::int64_t k, vector<V> a) const { put(where, k, vector_at(k) + a); }
+  ILAW_KIT_INLINE void add(mask_of<V> where, std::int64_t k, vector<V> a) const {
+    put(where, k, vector_at(k) + a);
+  }
 };
 
 // The windows of the nodes in the lanes of a pack begin anywhere; stride: between the numbers of a node.
@@ -126,7 +129,8 @@ struct window_rows {
  private:
   // Four rows fill four registers, half a row or several each, and come out as columns; and back.
   template <int... K>
-  ILAW_KIT_INLINE static vector<pack> to_lanes(const row (&rows)[register_lanes], std::integer_sequence<int, K...> all) {
+  ILAW_KIT_INLINE static vector<pack> to_lanes(const row (&rows)[register_lanes],
+                                               std::integer_sequence<int, K...> all) {
     one in[4];
 #pragma GCC unroll 4
     for (int c = 0; c < 4; ++c) {
@@ -139,8 +143,10 @@ struct window_rows {
     }
     const one a = every_second<0>(in[0], in[1], all), b = every_second<1>(in[0], in[1], all);
     const one c = every_second<0>(in[2], in[3], all), d = every_second<1>(in[2], in[3], all);
-    const auto wide = [](one v) ILAW_KIT_LAMBDA { return pack::each([&](int) ILAW_KIT_LAMBDA { return v; }); };
-    return {wide(every_second<0>(b, d, all)), wide(every_second<1>(a, c, all)), wide(every_second<1>(b, d, all))};
+    const auto wide = [](one v)
+                          ILAW_KIT_LAMBDA { return pack::each([&](int) ILAW_KIT_LAMBDA { return v; }); };
+    return {wide(every_second<0>(b, d, all)), wide(every_second<1>(a, c, all)),
+            wide(every_second<1>(b, d, all))};
   }
   template <int... K, class One = one>
   ILAW_KIT_INLINE static void to_rows(vector<pack> a, double before, row (&rows)[register_lanes],
@@ -148,7 +154,8 @@ struct window_rows {
     const one first = before - one{};
     const one e = zipped<0>(first, a.t1.v[0], all), f = zipped<0>(a.n.v[0], a.t2.v[0], all);
     const one g = zipped<1>(first, a.t1.v[0], all), h = zipped<1>(a.n.v[0], a.t2.v[0], all);
-    const One out[4] = {zipped<0>(e, f, all), zipped<1>(e, f, all), zipped<0>(g, h, all), zipped<1>(g, h, all)};
+    const One out[4] = {zipped<0>(e, f, all), zipped<1>(e, f, all), zipped<0>(g, h, all),
+                        zipped<1>(g, h, all)};
 #pragma GCC unroll 8
     for (int lane = 0; lane < register_lanes; ++lane) {
       if constexpr (register_lanes == 8)

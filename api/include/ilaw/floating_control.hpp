@@ -1,5 +1,5 @@
-// floating_control.hpp - how the processor rounds, traps and flushes to zero; not the flags that
-// operations raise. Reading it costs some nanoseconds, where fegetenv costs a hundred.
+// floating_control.hpp - for C++ hosts: how the processor rounds, traps and flushes to zero, without the exception
+// flags. A library that changes it makes all later code of its thread wrong. Reading it takes some nanoseconds.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,15 +10,15 @@
 #include <x86intrin.h>
 #endif
 
-namespace ilaw::host {
+namespace ilaw {
 
-class FloatingControl {
+class floating_control {
  public:
-  bool operator==(const FloatingControl&) const = default;
+  bool operator==(const floating_control&) const = default;
 
 #ifdef __x86_64__
-  static FloatingControl now() {
-    FloatingControl control;
+  static floating_control now() {
+    floating_control control;
     control.sse_ = _mm_getcsr() & ~flags;
     asm volatile("fnstcw %0" : "=m"(control.x87_));
     return control;
@@ -33,8 +33,8 @@ class FloatingControl {
   std::uint32_t sse_ = 0;
   std::uint16_t x87_ = 0;
 #else
-  static FloatingControl now() {
-    FloatingControl control;
+  static floating_control now() {
+    floating_control control;
     control.rounding_ = std::fegetround();
     return control;
   }
@@ -45,4 +45,4 @@ class FloatingControl {
 #endif
 };
 
-}  // namespace ilaw::host
+}  // namespace ilaw

@@ -1,0 +1,92 @@
+// roots.hpp - roots of functions of one number, in all lanes side by side.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/math.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+// A function at one place. slope: an estimate, or the derivative where it is exact. value is scaled so that the slope
+// is about 1: the equation x = g(x) has the value x - g(x).
+template <class V>
+struct root_trial {
+  V value, slope;
+  mask_of<V> is_exact;
+};
+
+// Where f, not positive at low >= 0 and not negative at high, changes sign, in the lanes where active; others keep x.
+// Newton's steps where the slope is exact, else secants (Dekker 1969); the fixed point where these leave the bracket;
+// bisection after most_steps of them. The last place that f is called at is the result, in all lanes: what f keeps of
+// it may be used. A jump across zero is found as well.
+template <class V, class Function>
+ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f) {
+  constexpr int most_steps = 24, most_bisections = 80;
+  constexpr double rounding = 0x1p-50, close = 0x1p-54;  // close: of the product of the last two errors
+  V before = x, value_before = 0.0;
+  for (int k = 0;; ++k) {
+    const root_trial<V> t = f(x);
+    active = active & (absolute(t.value) > rounding * absolute(x));
+    if (!any(active) || k == most_steps + most_bisections) return x;
+    low = select(active & (t.value < 0.0), x, low);
+    high = select(active & (t.value >= 0.0), x, high);
+    const mask_of<V> by_slope = k == 0 ? t.value == t.value : t.is_exact;
+    const V run = select(by_slope, 1.0, x - before), rise = select(by_slope, t.slope, t.value - value_before);
+    const V along = x - t.value * run / rise;
+    V next = select((along > low) & (along < high), along, smaller(larger(x - t.value, low), high));
+    if (k >= most_steps) next = halfway(low, high);
+    const V step = absolute(next - x), last = select(by_slope, step, absolute(x - before));
+    const mask_of<V> moves = k < most_steps ? step * last > close * (x * x) : (next > low) & (next < high);
+    before = select(active, x, before);
+    value_before = select(active, t.value, value_before);
+    x = select(active, next, x);
+    active = active & moves;
+  }
+}
+
+// Whether f, positive at both ends of [low, high] and with one minimum between them, is anywhere not: golden section
+// (Kiefer 1953), to 1e-6 of the interval.
+template <class Function>
+bool dips(double low, double high, Function f) {
+  constexpr double golden = 0.6180339887498949;
+  double a = high - golden * (high - low), b = low + golden * (high - low), fa = f(a), fb = f(b);
+  for (int k = 0; k < 28 && fa > 0.0 && fb > 0.0; ++k)
+    if (fa < fb) {
+      high = b;
+      b = a;
+      fb = fa;
+      a = high - golden * (high - low);
+      fa = f(a);
+    } else {
+      low = a;
+      a = b;
+      fa = fb;
+      b = low + golden * (high - low);
+      fb = f(b);
+    }
+  return !(fa > 0.0 && fb > 0.0);
+}
+
+// Whether f, positive at 0 and negative at 1, changes sign more than once. Two changes between samples show as an
+// extremum towards zero. More samples near 0, the scale of stiff directions.
+template <class Function>
+bool changes_sign_again(Function f) {
+  constexpr int samples = 32;
+  double x[3] = {}, y[3] = {infinity, infinity, infinity};  // the last three samples
+  int changes = 0;
+  for (int k = 1; k <= samples; ++k) {
+    const double part = static_cast<double>(k) / samples;
+    x[0] = x[1];
+    x[1] = x[2];
+    x[2] = part * part * part;
+    y[0] = y[1];
+    y[1] = y[2];
+    y[2] = f(x[2]);
+    const double sign = y[1] > 0.0 ? 1.0 : -1.0;
+    if (!(sign * y[2] > 0.0) && ++changes > 1) return true;
+    const bool turns = sign * y[0] >= sign * y[1] && sign * y[1] <= sign * y[2];
+    if (turns && dips(x[0], x[2], [&](double p) { return sign * f(p); })) return true;
+  }
+  return false;
+}
+
+}  // namespace ilaw::kit
