@@ -231,6 +231,10 @@ class batch_walk {
 
   // ---- state
 
+  // The state begins with three numbers in the order of struct state.
+  bool has_three_states() const {
+    return made_.states >= 3 && made_.state_entries[0] == 0 && made_.state_entries[1] == 1 && made_.state_entries[2] == 2;
+  }
   void open_state(view<Number>& v, const node_range& n) {
     if (made_.state_size == 0) return;
     copy_unnamed(n);
@@ -241,7 +245,9 @@ class batch_walk {
       v.state_in = {from.values + n.first * from.node_stride, from.component_stride, made_.states,
                     from.node_stride != 1 ? made_.states : 0};
     } else {
-      for (int k = 0; k < made_.states; ++k) {
+      if (has_three_states())
+        gather_three(from.values, from.node_stride, from.component_stride, n, in);
+      for (int k = has_three_states() ? 3 : 0; k < made_.states; ++k) {
         const int entry = made_.state_entries[k];
         double* const to = in + k * block_nodes;
         if (entry >= 0)
@@ -272,8 +278,9 @@ class batch_walk {
     if (!n.listed && in.node_stride == 1) {
       v.frame_in = {in.values + at * in.component_stride + n.first, in.component_stride, 6, 0};
     } else {
-      for (int k = 0; k < 6; ++k)
-        gather_column(in.values + (at + k) * in.component_stride, in.node_stride, n, copy + k * block_nodes);
+      for (int k = 0; k < 6; k += 3)
+        gather_three(in.values + (at + k) * in.component_stride, in.node_stride, in.component_stride, n,
+                     copy + k * block_nodes);
       v.frame_in = {copy, block_nodes, 6, 0};
     }
     if (!n.listed && out.node_stride == 1)
@@ -307,15 +314,17 @@ class batch_walk {
     if (made_.state_size == 0) return;
     const ilaw_output& to = b_.state_out;
     const double* const out = state_scratch_ + made_.states * block_nodes;
-    if (v.state_out.at == out)
-      for (int k = 0; k < made_.states; ++k)
+    if (v.state_out.at == out) {
+      if (has_three_states()) scatter_three(to.values, to.node_stride, to.component_stride, n, out);
+      for (int k = has_three_states() ? 3 : 0; k < made_.states; ++k)
         if (const int entry = made_.state_entries[k]; entry >= 0)
           scatter_column(to.values + entry * to.component_stride, to.node_stride, n, out + k * block_nodes);
+    }
     const double* const frame = out + made_.states * block_nodes + 6 * block_nodes;
     if (made_.carries_frame && v.frame_out.at == frame)
-      for (int k = 0; k < 6; ++k)
-        scatter_column(to.values + (made_.frame_offset + k) * to.component_stride, to.node_stride, n,
-                       frame + k * block_nodes);
+      for (int k = 0; k < 6; k += 3)
+        scatter_three(to.values + (made_.frame_offset + k) * to.component_stride, to.node_stride,
+                      to.component_stride, n, frame + k * block_nodes);
   }
 
   // ---- windows
