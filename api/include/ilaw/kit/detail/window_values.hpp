@@ -70,7 +70,7 @@ struct window_rows {
 
     ILAW_KIT_INLINE row operator()(std::int64_t k) const {
       row r;
-      if (stride == 1) {
+      if (stride == 1 && k > 0) {
         __builtin_memcpy(&r, first + k - 1, sizeof r);
       } else {
         const double* const at = first + k * stride;
