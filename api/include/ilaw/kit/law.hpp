@@ -172,6 +172,8 @@ concept has_state = requires { typename Law::state; };
 template <class Law>
 concept has_history = requires { Law::history; };
 template <class Law>
+concept has_window = requires(const Law& law) { law.window(); };
+template <class Law>
 concept has_amounts = requires { Law::amounts; };
 
 struct stateless {};

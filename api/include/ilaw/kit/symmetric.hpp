@@ -34,12 +34,20 @@ struct transverse {
   ILAW_KIT_INLINE projected<V> times(projected<V> r) const { return {n * r.n, t * r.x, t * r.y, t * r.z}; }
   // Both forms multiply by an inverse, so that their bits are the same.
   ILAW_KIT_INLINE vector<V> solve(vector<V> v) const {
-    const V by_n = 1.0 / n, by_t = 1.0 / t;
+    const V by_n = 1.0 / n, by_t = inverse_tangential(by_n);
     return {by_n * v.n, by_t * v.t1, by_t * v.t2};
   }
   ILAW_KIT_INLINE projected<V> solve(projected<V> v) const {
-    const V by_n = 1.0 / n, by_t = 1.0 / t;
+    const V by_n = 1.0 / n, by_t = inverse_tangential(by_n);
     return {by_n * v.n, by_t * v.x, by_t * v.y, by_t * v.z};
+  }
+
+ private:
+  // A scalar H is divided by once.
+  ILAW_KIT_INLINE V inverse_tangential(V by_n) const {
+    V by_t = by_n;
+    if (any(n != t)) by_t = 1.0 / t;
+    return by_t;
   }
 };
 

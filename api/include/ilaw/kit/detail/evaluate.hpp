@@ -15,9 +15,7 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // Free histories are read and written node by node.
 template <class Law>
-inline constexpr bool has_free_history = has_history<Law> && !requires(const Law& law) {
-  law.window();
-};
+inline constexpr bool has_free_history = has_history<Law> && !has_window<Law>;
 template <class Law>
 using loop_number = std::conditional_t<has_free_history<Law>, double, pack>;
 
@@ -75,9 +73,9 @@ typename batch_walk<Number>::run_function choose_loop(const instance<Law>& made)
 template <class Law, class Number>
 tally walk_in(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
-  constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || state_numbers < Law >> 0 ? 6 : 0));
+  constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || (state_numbers<Law>) > 0 ? 6 : 0));
   alignas(64) double state_scratch[columns * block_nodes + 1];
-  batch_walk<Number> walk(made, batch, state_scratch);
+  batch_walk<Number, has_window<Law>> walk(made, batch, state_scratch);
   return walk.run(choose_loop<Law, Number>(made), &law);
 }
 

@@ -322,10 +322,12 @@ class instance_builder {
   }
 
   ilaw_result lay_out_state() {
-    if constexpr (requires { made_.law.window(); })
-      made_.history_size = window_history_size(made_.law.window());
-    else if constexpr (has_history<Law>)
+    if constexpr (has_window<Law>) {
+      made_.window = made_.law.window();
+      made_.history_size = window::doubles(made_.window);
+    } else if constexpr (has_history<Law>) {
       made_.history_size = made_.law.history_size();
+    }
     const auto declared = abi_state_variables<Law>(static_cast<int>(made_.dimension),
                                                    static_cast<std::uint64_t>(made_.history_size));
     for (const ilaw_state_variable& v : declared) append(v);
@@ -361,7 +363,6 @@ class instance_builder {
     if constexpr (requires { made_.law.asks(); }) made_.asks = with_unknowns().asks();
     if constexpr (requires { made_.law.asks(true); }) made_.asks = with_unknowns().asks(made_.is_transverse());
     made_.amount_count = static_cast<std::uint32_t>(amount_count<Law>);
-    if constexpr (requires { made_.law.window(); }) made_.in_blocks = made_.law.window().duration > 0.0;
     return ILAW_OK;
   }
 

@@ -178,7 +178,6 @@ struct kernel {
   static constexpr bool stays_in_reach = (Law::card.permissions & ILAW_MAY_SKIP_FRESH) != 0 &&
                                          !has_history<Law> && !has_state<Law> && reads<Law>(reads_gap);
   static constexpr bool can_carry = frame_type::has_axes && (has_history<Law> || has_vector_state<Law>());
-  static constexpr bool has_window = requires(const Law& law) { law.window(); };
 
   // ---- load
 
@@ -384,9 +383,11 @@ struct kernel {
       check_finite(n.state, c, reason_state);
       check_ranges(n.state, c, std::make_index_sequence<std::size(Law::state_variables)>{});
     }
-    if constexpr (has_window) {
-      n.earlier = {load<V>(b.earlier[0] + i), load<V>(b.earlier[1] + i), load<V>(b.earlier[2] + i)};
-      n.refused = load<V>(b.earlier_refused + i);
+    if constexpr (has_window<Law>) {
+      if (b.earlier[0]) {
+        n.earlier = {load<V>(b.earlier[0] + i), load<V>(b.earlier[1] + i), load<V>(b.earlier[2] + i)};
+        n.refused = load<V>(b.earlier_refused + i);
+      }
     } else if constexpr (has_history<Law>) {
       n.history = history_of(b, i);
     }
@@ -497,14 +498,20 @@ struct kernel {
   // Windows are written after their block, histories here.
   ILAW_KIT_INLINE static void store_history(const Wide& law, const loaded& p, const view_type& b,
                                             std::int64_t i, status_of<V> status, mask accepted) {
-    if constexpr (has_window) {
-      if constexpr (has_tangents<node_type>) {
-        detail::store(p.node.impulse.n, b.given[0] + i);
-        detail::store(p.node.impulse.t1, b.given[1] + i);
-        detail::store(p.node.impulse.t2, b.given[2] + i);
-        detail::store(status.code(), b.reached + i);
-        detail::store(zero_unless(accepted, V(1.0)), b.accepted + i);
+    if constexpr (has_window<Law>) {
+      if (!b.earlier[0]) return;
+      detail::store(p.node.impulse.n, b.given[0] + i);
+      detail::store(p.node.impulse.t1, b.given[1] + i);
+      detail::store(p.node.impulse.t2, b.given[2] + i);
+      mask adds = V(0.0) != V(0.0), clears = adds;
+#pragma GCC unroll 8
+      for (ilaw_status s = ILAW_FREE; s <= ILAW_HEALED; ++s) {
+        const mask is = status.code() == V(s);
+        if (Law::adds_to_window(s)) adds = adds | is;
+        if (Law::clears_window(s)) clears = clears | is;
       }
+      detail::store(zero_unless(accepted & adds, V(1.0)), b.adds + i);
+      detail::store(zero_unless(accepted & clears, V(1.0)), b.clears + i);
     } else if constexpr (has_history<Law>) {
       if (accepted) law.record(p.node, history_of(b, i));
     }
@@ -545,7 +552,8 @@ struct kernel {
   static constexpr bool by_node = requires(const Wide& law, const node_type& n) {
     law.stable_velocity_step(n);
   };
-  // Where both forms are given, the one of the node counts where the other gives NaN, and for parameters per node.
+  // Where both forms are given, the one of the node counts where the other gives NaN, and for parameters per
+  // node.
   ILAW_KIT_INLINE static void add_limit(limit& found, const Wide& law, const node_type& n, const view_type& b,
                                         mask good) {
     if constexpr (by_node)

@@ -52,10 +52,10 @@ struct view : view_options {
   array_of<double, most_states> state_out;
   array_of<const double, 6> frame_in;
   array_of<double, 6> frame_out;
-  // Windows: what they sum up to, and codes of refusals; the impulse for them, statuses, and 1 where
-  // accepted.
+  // Windows: what they sum up to, and codes of refusals; the impulse, and 1 or 0 for windows that take it in,
+  // and for those that are emptied before. Null: the law has none, or remembers nothing.
   const double *earlier[3], *earlier_refused;
-  double *given[3], *reached, *accepted;
+  double *given[3], *adds, *clears;
   // Free histories: of the node at position 0, and the nodes where they are listed.
   double* history;
   std::int64_t history_node_stride, history_component_stride;
@@ -103,8 +103,8 @@ class pack_copy {
       pack.given[c] = given_[c];
     }
     pack.earlier_refused = take(b.earlier_refused, earlier_[3]);
-    pack.reached = given_[3];
-    pack.accepted = given_[4];
+    pack.adds = given_[3];
+    pack.clears = given_[4];
     pack.history = b.history + (b.nodes ? b.nodes[i] : i) * b.history_node_stride;
     pack.history_component_stride = b.history_component_stride;
   }
@@ -121,8 +121,8 @@ class pack_copy {
     give(b.state_out, state_out_);
     give(b.frame_out, frame_out_);
     for (int c = 0; c < 3; ++c) give(b.given[c], given_[c]);
-    give(b.reached, given_[3]);
-    give(b.accepted, given_[4]);
+    give(b.adds, given_[3]);
+    give(b.clears, given_[4]);
   }
 
  private:
