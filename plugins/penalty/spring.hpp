@@ -1,10 +1,6 @@
-// spring.hpp - one step of the implicit normal spring, an equation with one unknown:
-//
-//     r = h <S - c phi vbar>,    v = v_free + H r,    vbar = (v^- + v)/2,
-//     way = h (vbar + tau <v - v^->),    x' = <x - way>,    phi = min(1, x/way),
-//
-// S: mean force of the spring on its way, phi (P(x) - P(x'))/(x - x'), P = k x^(p+1)/(p+1). The right-hand
-// side never increases with r: one solution. penalty.md derives it.
+// spring.hpp - one step of the implicit normal spring, an equation with one unknown (penalty.md):
+//     r = h <S - c phi vbar>,  v = v_free + H r,  vbar = (v^- + v)/2,  way = h (vbar + tau <v - v^->),
+//     x' = <x - way>,  S = phi (P(x) - P(x'))/(x - x'),  P = k x^(p+1)/(p+1),  phi = min(1, x/way).
 #pragma once
 
 #include <ilaw/kit/roots.hpp>
@@ -41,6 +37,10 @@ ILAW_KIT_INLINE V to_exponent(V x, V p) {
 template <class V>
 struct spring_solution {
   V impulse, end, inertia;  // r_N, x', and v_free by which r_N falls by 1
+
+  ILAW_KIT_INLINE friend spring_solution select(mask_of<V> m, spring_solution a, spring_solution b) {
+    return {select(m, a.impulse, b.impulse), select(m, a.end, b.end), select(m, a.inertia, b.inertia)};
+  }
 };
 
 // Loss: V, or sure_zero for a linear spring of finite stiffness with c = tau = 0: the same numbers with less
@@ -141,8 +141,10 @@ struct normal_spring {
   template <class Function>
   static V impulse_where(mask active, Function f) {
     constexpr int most_doublings = 64;
-    V high = f(V(0.0));
-    active = active & (high > 0.0);
+    constexpr double jump = 0x1p-20;
+    const V free_force = f(V(0.0));
+    active = active & (free_force > 0.0);
+    V high = free_force;
     mask rises = active;
     for (int k = 0; k < most_doublings && any(rises); ++k) {
       rises = rises & (f(high) > high);
@@ -151,7 +153,8 @@ struct normal_spring {
     const V r = root_between(V(0.0), high, high, active & !rises, [&f](V x) {
       return root_trial<V>{x - f(x), V(1.0), x != x};
     });
-    return select(rises, V(not_a_number), zero_unless(active, r));
+    const mask fails = active & (rises | (absolute(r - f(r)) > jump * free_force));
+    return select(fails, V(not_a_number), zero_unless(active, r));
   }
 
   // By what closes the step: closed form, Newton's method or brackets.
@@ -160,12 +163,8 @@ struct normal_spring {
     const mask is_linear = (exponent == 1.0) | (stiffness == infinity);
     if (!any(!is_linear)) return linear();
     solution found = hertz();
-    mask left = !(is_linear | ((exponent == 1.5) & (found.impulse < infinity)));
-    if (any(is_linear)) {
-      const solution other = linear();
-      found = {select(is_linear, other.impulse, found.impulse), select(is_linear, other.end, found.end),
-               select(is_linear, other.inertia, found.inertia)};
-    }
+    const mask left = !(is_linear | ((exponent == 1.5) & (found.impulse < infinity)));
+    if (any(is_linear)) found = select(is_linear, linear(), found);
     if (any(left)) solve_by_brackets(left, found);
     return found;
   }
@@ -208,8 +207,7 @@ struct normal_spring {
   }
   [[gnu::noinline]] void solve_by_brackets(mask left, solution& found) const {
     const V r = impulse_where(left, [this](V trial) { return given(free + delassus * trial); });
-    found = {select(left, r, found.impulse), select(left, end_with(r), found.end),
-             select(left, V(not_a_number), found.inertia)};
+    found = select(left, solution{r, end_with(r), V(not_a_number)}, found);
   }
   // (P(x) - P(x'))/(x - x') = k x^p (1 - t^(p+1))/((p + 1) (1 - t)), t = x'/x, by its series where t is close
   // to 1.
