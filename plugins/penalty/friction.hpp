@@ -13,10 +13,10 @@ namespace penalty_law {
 // q + c r_N/2 + A r_T is the mean velocity of what slips.
 template <class V>
 struct problem {
-  V free, previous, delassus, indentation;  // see normal_spring
-  V c1, c2, a11, a22, a12;                  // A = H_T/2 + 2/(h^2 k_T)
-  V q1, q2;
-  V before1, before2;  // v_T^- of a rigid stick, whose q is that of e_T = 0; else zero
+  V free, previous, delassus, indentation;                // see normal_spring
+  V c1 = 0.0, c2 = 0.0, a11 = 0.0, a22 = 0.0, a12 = 0.0;  // A = H_T/2 + 2/(h^2 k_T)
+  V q1 = 0.0, q2 = 0.0, before1 = 0.0,
+    before2 = 0.0;  // before: v_T^- of a rigid stick, whose q is that of e_T = 0
 };
 // status: closed where friction has a closed form or there is none; no_solution: none of them.
 template <class V>

@@ -115,9 +115,8 @@ struct penalty {
   // What all nodes of a batch share.
   struct numbers {
     bool loses, rubs, sticks_rigidly, sticks_softly;
-    V step, lead, ratio;  // h, tau, zeta
-    V rate, softness;     // h k_T, 0 where there is none; 4/(h^2 k_T)
-    V per_rate;           // 1/(h k_T)
+    V step, lead, ratio;         // h, tau, zeta
+    V rate, per_rate, softness;  // h k_T and 1/(h k_T), 0 where there is none; 4/(h^2 k_T)
   };
   numbers prepare(const step_sizes& step) const {
     const double h = step.velocity_step;
@@ -133,15 +132,14 @@ struct penalty {
             .lead = 1.0 / (1.0 + restitution) - 0.5,
             .ratio = any(restitution < 1.0) ? damping_ratio(restitution) : V(0.0),
             .rate = zero_unless(counts, rate),
-            .softness = 4.0 / h / rate,
-            .per_rate = zero_unless(counts, 1.0 / rate)};
+            .per_rate = zero_unless(counts, 1.0 / rate),
+            .softness = 4.0 / h / rate};
   }
 
   using problem = penalty_law::problem<V>;
   using answer = penalty_law::answer<V>;
 
-  // Explicit springs and implicit linear ones have a closed form, with friction where H has one tangential
-  // entry.
+  // Explicit and implicit linear springs have a closed form, with friction where H has one tangential entry.
   bool asks(bool is_transverse_form) const {
     const bool is_linear = exponent == 1.0 || stiffness == infinity;
     return integration == implicitly && !(is_linear && (is_transverse_form || friction == 0.0));
@@ -174,8 +172,7 @@ struct penalty {
     }
     const mask_of<V> may_push = (open.indentation > 0.0) | (open.free + open.previous < 0.0);
     const mask_of<V> pushes = acts_on(node) & may_push;
-    store(node, 0.0, {});
-    return {pushes, status::free};
+    return {pushes, keep(node, 0.0, may_push & !may_push)};
   }
   mask_of<V> solve(const problem& p, answer& a, const numbers& shared) const {
     const auto solve_with = [&]<class Loss>(Loss) ILAW_KIT_LAMBDA {
@@ -206,10 +203,6 @@ struct penalty {
     return zero_unless(tangential_stiffness < infinity,
                        0.5 * tangential_stiffness * tangential_product(a, b));
   }
-  template <class Node>
-  static vector<V> spring_in(const Node& node) {
-    return {0.0, node.state.spring.t1, node.state.spring.t2};
-  }
   // The tangential impulse -q/resistance within the cone; says where the node slips.
   template <class Node>
   mask_of<V> rub_against(Node& node, V normal, vector<V> q, V resistance) const {
@@ -217,13 +210,13 @@ struct penalty {
     node.impulse = q.against(normal, found.factor);
     return found.status == status::slip;
   }
-  status_of<V> status_with(V normal, mask_of<V> slides) const {
+  template <class Node>
+  status_of<V> status_of_pressed(const Node& node, mask_of<V> slides) const {
     const status_of<V> rubbed = select(slides, status::slip, status::stick);
-    return select(normal > 0.0, select(friction > 0.0, rubbed, status::closed), status::free);
+    return select(node.impulse.n > 0.0, select(friction > 0.0, rubbed, status::closed), status::free);
   }
 
-  // ---- implicit: the mean over the step of forces that the step ends with, so that springs give back what
-  // they took
+  // ---- implicit: the mean force over the step, so that springs give back what they took
 
   template <class Node>
   mask_of<V> acts_on(const Node& node) const {
@@ -233,19 +226,7 @@ struct penalty {
   template <class Node>
   problem normal_problem(const Node& node) const {
     const V x = zero_unless(stiffness < infinity, node.state.indentation);
-    return {node.v_free.n,
-            node.v_previous.n,
-            node.delassus.normal(),
-            x,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            0.0};
+    return {node.v_free.n, node.v_previous.n, node.delassus.normal(), x};
   }
   // Loss: see normal_spring. With the damper of the step.
   template <class Loss>
@@ -253,8 +234,8 @@ struct penalty {
     const V h = shared.step, ratio = shared.ratio, h_n = p.delassus, root = square_root(h_n);
     Loss damper{}, lead{};
     if constexpr (std::is_same_v<Loss, V>) {
-      const V k = zero_unless(stiffness < infinity, stiffness),
-              c = zero_unless(stiffness < infinity, damping);
+      const mask_of<V> is_soft = stiffness < infinity;
+      const V k = zero_unless(is_soft, stiffness), c = zero_unless(is_soft, damping);
       const V fading = root * (1.0 + (0.25 + 0.5 * ratio) * (h * square_root(k) * root));
       damper = (2.0 * ratio * square_root(k) + c) / select(ratio > 0.0, fading, 1.0 + 0.5 * h * c * h_n);
       lead = shared.lead;
@@ -269,47 +250,50 @@ struct penalty {
     if (!node.prepared.sticks_softly) return node.v_free + given_back * node.v_previous;
     const mask_of<V> is_rigid = tangential_stiffness == infinity;
     return node.v_free + select(is_rigid, given_back, V(1.0)) * node.v_previous +
-           zero_unless(!is_rigid, V(4.0 / node.velocity_step)) * spring_in(node);
+           zero_unless(!is_rigid, V(4.0 / node.velocity_step)) * node.state.spring;
   }
-  // e_T where H is that of a ball in the tangent plane: what of v_T^- the free velocity has turned round, so
-  // that the stick does no work. A little more, as rounding may leave velocities along v^-, which then do
-  // none either.
-  template <class Node>
-  static V turned_part(const Node& node) {
-    constexpr double more_than_rounding = 1.0 + 0x1p-48;
-    const V speed = tangential_product(node.v_previous, node.v_previous);
-    const V turned = 0.0 - more_than_rounding * tangential_product(node.v_free, node.v_previous);
-    return zero_unless(turned > 0.0, turned / larger(turned, speed));
-  }
+  // With one tangential entry of H, e_T is what of v_T^- the free velocity has turned round, so that the
+  // stick does no work. A little more, as rounding may leave velocities along v^-, which then do none either.
   template <class Node>
   mask_of<V> rub_apart(Node& node, V normal) const {
+    constexpr double more_than_rounding = 1.0 + 0x1p-48;
     V part = 0.0;
-    if (node.prepared.sticks_rigidly) part = turned_part(node);
+    if (node.prepared.sticks_rigidly) {
+      const V speed = tangential_product(node.v_previous, node.v_previous);
+      const V turned = 0.0 - more_than_rounding * tangential_product(node.v_free, node.v_previous);
+      part = zero_unless(turned > 0.0, turned / larger(turned, speed));
+    }
     const V resistance = node.delassus.tangential() + node.prepared.softness;
     return rub_against(node, normal, sliding_velocity(node, part), resistance);
   }
   // Gives the node what its normal spring gives, and what friction makes of it.
   template <class Node>
   status_of<V> give(Node& node, V normal, V indentation) const {
-    if (node.prepared.rubs) return keep(node, indentation, rub_apart(node, normal));
+    mask_of<V> slides = normal < 0.0;
     node.impulse.n = normal;
-    store(node, indentation, {});
-    return select(normal > 0.0, status::closed, status::free);
+    if (node.prepared.rubs) slides = rub_apart(node, normal);
+    return keep(node, indentation, slides);
   }
   template <class Node>
   status_of<V> keep(Node& node, V indentation, mask_of<V> slides) const {
-    const V normal = node.impulse.n;
     vector<V> slip{};
-    if (node.prepared.sticks_softly) slip = strained(node, slides | !(friction * normal > 0.0));
-    store(node, indentation, slip);
-    return status_with(normal, slides);
+    if (node.prepared.sticks_softly) slip = strained(node, slides | !(friction * node.impulse.n > 0.0));
+    if (node.wants_energy) {
+      const vector<V> before = node.state.spring;
+      const V normal = potential(indentation), tangential = tangential_potential(slip, slip);
+      node.normal_gain = normal - potential(node.state.indentation);
+      node.tangential_gain = tangential - tangential_potential(before, before);
+      node.stored = normal + tangential;
+    }
+    node.state = {indentation, slip};
+    return status_of_pressed(node, slides);
   }
   // What the step leaves in the tangential spring. One that sticks moves along; one that slides keeps no more
   // than its force holds, in the direction of its end.
   template <class Node>
   vector<V> strained(const Node& node, mask_of<V> slides) const {
     const V h = node.velocity_step, per_impulse = node.prepared.per_rate;
-    const vector<V> spring = spring_in(node), r = node.impulse, v = node.v_free + node.delassus.times(r);
+    const vector<V> spring = node.state.spring, r = node.impulse, v = node.v_free + node.delassus.times(r);
     const vector<V> moved = spring + (0.5 * h) * (node.v_previous + v);
     const V most = per_impulse * friction_limit(friction, r.n), length = moved.tangential_length();
     const mask_of<V> by_force = (h * h * tangential_stiffness * node.delassus.tangential() > 4.0) & !slides;
@@ -318,16 +302,6 @@ struct penalty {
     const mask_of<V> holds = (tangential_stiffness < infinity) & (friction > 0.0);
     return {0.0, zero_unless(holds, next.t1) + 0.0, zero_unless(holds, next.t2) + 0.0};  // never -0
   }
-  template <class Node>
-  void store(Node& node, V indentation, vector<V> slip) const {
-    if (node.wants_energy) {
-      const V normal = potential(indentation), tangential = tangential_potential(slip, slip);
-      node.normal_gain = normal - potential(node.state.indentation);
-      node.tangential_gain = tangential - tangential_potential(spring_in(node), spring_in(node));
-      node.stored = normal + tangential;
-    }
-    node.state = {indentation, slip};
-  }
 
   // ---- explicit: forces of the configuration and the half step before
 
@@ -335,10 +309,10 @@ struct penalty {
   template <class Node>
   status_of<V> step_explicitly(Node& node) const {
     const numbers& shared = node.prepared;
-    const V x = positive_part(-node.gap), h = node.velocity_step,
-            elastic = h * (stiffness * to_exponent(x, exponent));
+    const V h = node.velocity_step, x = positive_part(-node.gap);
+    const V elastic = h * (stiffness * to_exponent(x, exponent));
     const V normal = positive_part(elastic - zero_unless(x > 0.0, h * damping * node.v_previous.n));
-    const vector<V> spring = spring_in(node);
+    const vector<V> spring = node.state.spring;
     vector<V> kept{}, next{};
     mask_of<V> slides = normal < 0.0;
     node.impulse.n = normal;
@@ -358,7 +332,7 @@ struct penalty {
       node.normal_gain = -0.5 * elastic * mean.n;
       node.tangential_gain = tangential_product(node.impulse, V(1.0 / h) * (spring - kept) - V(0.5) * mean);
     }
-    return status_with(normal, slides);
+    return status_of_pressed(node, slides);
   }
 };
 

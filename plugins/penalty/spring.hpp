@@ -1,10 +1,6 @@
-// spring.hpp - one step of the implicit normal spring, an equation with one unknown:
-//
-//     r = h <S - c phi vbar>,    v = v_free + H r,    vbar = (v^- + v)/2,
-//     way = h (vbar + tau <v - v^->),    x' = <x - way>,    phi = min(1, x/way),
-//
-// S: mean force of the spring on its way, phi (P(x) - P(x'))/(x - x'), P = k x^(p+1)/(p+1). The right-hand
-// side never increases with r: one solution. penalty.md derives it.
+// spring.hpp - one step of the implicit normal spring, an equation with one unknown (penalty.md):
+//     r = h <S - c phi vbar>,  v = v_free + H r,  vbar = (v^- + v)/2,  way = h (vbar + tau <v - v^->),
+//     x' = <x - way>,  S = phi (P(x) - P(x'))/(x - x'),  P = k x^(p+1)/(p+1),  phi = min(1, x/way).
 #pragma once
 
 #include <ilaw/kit/roots.hpp>
@@ -41,6 +37,10 @@ ILAW_KIT_INLINE V to_exponent(V x, V p) {
 template <class V>
 struct spring_solution {
   V impulse, end, inertia;  // r_N, x', and v_free by which r_N falls by 1
+
+  ILAW_KIT_INLINE friend spring_solution select(mask_of<V> m, spring_solution a, spring_solution b) {
+    return {select(m, a.impulse, b.impulse), select(m, a.end, b.end), select(m, a.inertia, b.inertia)};
+  }
 };
 
 // Loss: V, or sure_zero for a linear spring of finite stiffness with c = tau = 0: the same numbers with less
@@ -70,28 +70,22 @@ struct normal_spring {
     }
     // Closed to the end all is linear, r/2 = drive/resists, where that does not let it open.
     const V h = delassus, x = indentation, push = 0.5 * step * k, sum = free + previous;
-    const V travel = 0.5 * step * sum + step * tau * (free - previous),
-            give = 2.0 * step * h * (1.0 + 2.0 * tau);
+    const V travel = 0.5 * step * sum + step * tau * (free - previous);
+    const V give = 2.0 * step * h * (1.0 + 2.0 * tau), open = x - travel;
     const V drive = positive_part(push * x - 0.5 * push * travel - 0.25 * step * damping * sum -
                                   rigid * (0.25 * sum + 0.5 * tau * (free - previous)));
     const V resists =
         (1.0 - rigid) * V(1.0) + 0.25 * push * give + 0.5 * step * damping * h + rigid * (h * (0.5 + tau));
-    const V open = x - travel;
     const mask opens = give * drive - (open + open) * resists - never > 0.0;
 
-    // If that lets it open, r way = h x <k x/2 - c vbar>, a quadratic equation. Lengths that are squared are
-    // brought to [2, 4) by a power of two, to stay within the range of numbers.
-    const power_scale<V> scale = power_scale_of(larger(step * (absolute(free) + absolute(previous)), x));
-    const V held = positive_part(push * x - 0.5 * step * damping * sum), small = scale.down * x;
-    const V linear = travel + 0.5 * step * x * damping * h, b = scale.down * linear;
-    const V root = square_root(b * b + give * (small * (scale.down * held)));
-    const V numerator = select(linear > 0.0, small * held, (root - b) * (0.5 * scale.up));
-    const V denominator = select(linear > 0.0, b + root, give);
-
-    const V half = select(opens, numerator, drive) / select(opens, denominator, resists), r = half + half;
-    const V stretch = step * (0.5 + tau), opening = r * stretch + 0.5 * step * x * damping;
-    const V gain = select(opens, opening, 0.5 * step * (k * stretch + damping));
-    return {r, zero_unless(!opens, linear_end(r)), select(opens, root * (0.5 * scale.up), resists) / gain};
+    // Where it opens within the step, S = P(x)/way.
+    const V held = positive_part(push * x - 0.5 * step * damping * sum);
+    const quotient open_way = opening(travel + 0.5 * step * x * damping * h, give, held);
+    const V half = select(opens, open_way.numerator, drive) / select(opens, open_way.denominator, resists);
+    const V r = half + half, stretch = step * (0.5 + tau);
+    const V gain =
+        select(opens, r * stretch + 0.5 * step * x * damping, 0.5 * step * (k * stretch + damping));
+    return {r, zero_unless(!opens, linear_end(r)), select(opens, open_way.root, resists) / gain};
   }
 
   // p = 3/2, tau = 0. With q = h^2 k H/5, B = 1 + h c H/2, a = sqrt(x) and z = x', a spring that stays closed
@@ -99,29 +93,25 @@ struct normal_spring {
   //     (q a + B) z + q T(z) = D,    T = z^2/(a + sqrt(z)),    D = B x - h (v_free + v^-)/2 - q a^3.
   ILAW_KIT_INLINE solution hertz() const {
     const V x = indentation, a = square_root(x), c = damping;
-    const V give = 0.5 * step * delassus, travel = 0.5 * step * (free + previous),
-            force = 0.4 * stiffness * step;
+    const V give = 0.5 * step * delassus, travel = 0.5 * step * (free + previous);
+    const V force = 0.4 * stiffness * step;
     const V q = give * force, b = 1.0 + give * c, d = b * x - travel - q * a * x;
     const mask opens = !(d >= 0.0);
     const V z = hertz_end(a, q, q * a + b, select(opens, V(0.0), d));
 
     // Where the tangents of force and motion meet.
     const V y = square_root(z), sum = a + y, part = zero_unless(sum > 0.0, z / sum);
-    const V tangent = force * (a + part * zero_unless(sum > 0.0, (2.0 * a + 1.5 * y) / sum)),
-            stiff = tangent + c;
+    const V stiff = force * (a + part * zero_unless(sum > 0.0, (2.0 * a + 1.5 * y) / sum)) + c;
     const V pushes = force * (a * x + a * z + part * z) - c * (x - z);
     const V drive = pushes + stiff * ((x - z) - travel), resists = 1.0 + give * stiff;
 
-    // As for the linear spring; P(x) = k x^(5/2)/(5/2).
-    const V linear = travel + give * c * x, constant = x * positive_part(force * (a * x) - c * travel);
-    const V root = square_root(linear * linear + 4.0 * give * constant);
-    const V numerator = select(linear > 0.0, 2.0 * constant, root - linear);
-    const V denominator = select(linear > 0.0, linear + root, 2.0 * give);
-
-    const V r = select(opens, numerator, positive_part(drive)) / select(opens, denominator, resists);
-    const V gain = 0.5 * step * select(opens, r + c * x, stiff);
+    const V held = positive_part(force * (a * x) - c * travel);  // P(x) = k x^(5/2)/(5/2)
+    const quotient open_way = opening(travel + give * c * x, 4.0 * give, held);
+    const V half = select(opens, open_way.numerator, positive_part(drive)) /
+                   select(opens, open_way.denominator, resists + resists);
+    const V r = half + half, gain = 0.5 * step * select(opens, r + c * x, stiff);
     return {r, zero_unless(!opens, select(drive > 0.0, z, positive_part(x - travel))),
-            select(opens, root, resists) / gain};
+            select(opens, open_way.root, resists) / gain};
   }
 
   // Any p: the impulse h <S - c phi vbar> that spring and damper give on a way that ends with v.
@@ -141,8 +131,10 @@ struct normal_spring {
   template <class Function>
   static V impulse_where(mask active, Function f) {
     constexpr int most_doublings = 64;
-    V high = f(V(0.0));
-    active = active & (high > 0.0);
+    constexpr double jump = 0x1p-20;
+    const V free_force = f(V(0.0));
+    active = active & (free_force > 0.0);
+    V high = free_force;
     mask rises = active;
     for (int k = 0; k < most_doublings && any(rises); ++k) {
       rises = rises & (f(high) > high);
@@ -151,7 +143,8 @@ struct normal_spring {
     const V r = root_between(V(0.0), high, high, active & !rises, [&f](V x) {
       return root_trial<V>{x - f(x), 1.0, 1.0, 1.0, x != x};
     });
-    return select(rises, V(not_a_number), zero_unless(active, r));
+    const mask fails = active & (rises | (absolute(r - f(r)) > jump * free_force));
+    return select(fails, V(not_a_number), zero_unless(active, r));
   }
 
   // By what closes the step: closed form, Newton's method or brackets.
@@ -160,17 +153,27 @@ struct normal_spring {
     const mask is_linear = (exponent == 1.0) | (stiffness == infinity);
     if (!any(!is_linear)) return linear();
     solution found = hertz();
-    mask left = !(is_linear | ((exponent == 1.5) & (found.impulse < infinity)));
-    if (any(is_linear)) {
-      const solution other = linear();
-      found = {select(is_linear, other.impulse, found.impulse), select(is_linear, other.end, found.end),
-               select(is_linear, other.inertia, found.inertia)};
-    }
+    const mask left = !(is_linear | ((exponent == 1.5) & (found.impulse < infinity)));
+    if (any(is_linear)) found = select(is_linear, linear(), found);
     if (any(left)) solve_by_brackets(left, found);
     return found;
   }
 
  private:
+  // r (linear + give r/4) = x held, the quadratic equation of a spring that opens: r/2, not yet divided.
+  // Lengths that are squared are brought to [2, 4) by a power of two, to stay within the range of numbers.
+  struct quotient {
+    V numerator, denominator, root;
+  };
+  ILAW_KIT_INLINE quotient opening(V linear, V give, V held) const {
+    const power_scale<V> scale =
+        power_scale_of(larger(step * (absolute(free) + absolute(previous)), indentation));
+    const V x = scale.down * indentation, b = scale.down * linear;
+    const V root = square_root(b * b + give * (x * (scale.down * held)));
+    const V unscaled = 0.5 * scale.up;
+    return {select(linear > 0.0, x * held, (root - b) * unscaled), select(linear > 0.0, b + root, give),
+            root * unscaled};
+  }
   // What a rigid spring multiplies by it counts nowhere.
   ILAW_KIT_INLINE V soft() const { return zero_unless(stiffness < infinity, stiffness); }
   // Whether v > v^- in the end: whether at v = v^- the spring gives more than leads there.
@@ -208,8 +211,7 @@ struct normal_spring {
   }
   [[gnu::noinline]] void solve_by_brackets(mask left, solution& found) const {
     const V r = impulse_where(left, [this](V trial) { return given(free + delassus * trial); });
-    found = {select(left, r, found.impulse), select(left, end_with(r), found.end),
-             select(left, V(not_a_number), found.inertia)};
+    found = select(left, solution{r, end_with(r), V(not_a_number)}, found);
   }
   // (P(x) - P(x'))/(x - x') = k x^p (1 - t^(p+1))/((p + 1) (1 - t)), t = x'/x, by its series where t is close
   // to 1.
@@ -217,8 +219,8 @@ struct normal_spring {
     constexpr int series_terms = 16;
     const V linear = 0.5 * stiffness * (indentation + end);
     if (!any(exponent != 1.0)) return linear;
-    const V most = larger(indentation, end), t = smaller(indentation, end) / most, q = exponent + 1.0,
-            d = 1.0 - t;
+    const V most = larger(indentation, end), t = smaller(indentation, end) / most;
+    const V q = exponent + 1.0, d = 1.0 - t;
     V sum = 1.0, term = 1.0;
     for (int k = 1; k < series_terms; ++k) {
       term *= d * (static_cast<double>(k) - q) / (k + 1.0);
