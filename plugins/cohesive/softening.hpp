@@ -25,15 +25,16 @@ V sinh_ratio(V z) {
   return select(z < 0.5, series, (exp(z) - exp(-z)) / (2.0 * z));
 }
 
-// Shares of mode I and of shear, which is mode II, in the squared opening, and what the page weighs the modes with; their
-// sum is 1. Both are kept, since a large exponent or ratio of strengths makes much of a tiny one.
+// Shares of mode I and of shear, which is mode II, in the squared opening, and what the page weighs the modes
+// with; their sum is 1. Both are kept, since a large exponent or ratio of strengths makes much of a tiny one.
 template <class V>
 struct mode_mix {
   V normal, shear;
 
   // From the mode that has more of it: a difference of large numbers is none of a small rest.
   V mean(V of_normal, V of_shear) const {
-    return select(shear > 0.5, of_shear + normal * (of_normal - of_shear), of_normal + shear * (of_shear - of_normal));
+    return select(shear > 0.5, of_shear + normal * (of_normal - of_shear),
+                  of_normal + shear * (of_shear - of_normal));
   }
   friend mode_mix select(mask_of<V> m, mode_mix a, mode_mix b) {
     return {select(m, a.normal, b.normal), select(m, a.shear, b.shear)};
@@ -42,7 +43,8 @@ struct mode_mix {
 template <class V>
 mode_mix<V> mix_of(V normal_square, V shear_square, V square) {
   const mask_of<V> moves = square > 0.0;
-  return {select(moves, normal_square / square, 1.0), zero_unless(moves, smaller(shear_square / square, V(1.0)))};
+  return {select(moves, normal_square / square, 1.0),
+          zero_unless(moves, smaller(shear_square / square, V(1.0)))};
 }
 
 // The secant stiffness of a damaged bond, stiff / soft: rigid is soft = 0, broken is stiff = 0.
