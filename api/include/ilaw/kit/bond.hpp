@@ -407,7 +407,7 @@ struct adhesive_bond {
   // stay as they are.
   template <class Node>
   ILAW_KIT_INLINE asked<V> ask(Node& node, problem& p) const {
-    const mask_of<V> may_hold = is_bonded(node.state.memory, node.area), bonded = may_hold & bonds();
+    const mask_of<V> may_hold = is_bonded(node.state.memory, node.area), bonded = may_hold & makes_bond();
     status_of<V> status = status::free;
     mask_of<V> open = none<V>();
     if (any(!bonded)) {
@@ -461,7 +461,7 @@ struct adhesive_bond {
  private:
   using mask = mask_of<V>;
   static constexpr bool is_scalar = std::is_same_v<V, double>;
-  ILAW_KIT_INLINE mask bonds() const {
+  ILAW_KIT_INLINE mask makes_bond() const {
     if constexpr (requires(const Law<V>& l) { l.bonds(); })
       return law().bonds();
     else
@@ -540,7 +540,7 @@ struct adhesive_bond {
 
   template <class Common>
   mask solve_with(const problem& p, answer& a, const Common& common) const {
-    const mask may_hold = is_bonded(p.state.memory, p.area), bonded = may_hold & bonds();
+    const mask may_hold = is_bonded(p.state.memory, p.area), bonded = may_hold & makes_bond();
     const mask even = (p.h.n1 == 0.0) & (p.h.n2 == 0.0) & (p.h.t12 == 0.0) & (p.h.t11 == p.h.t22);
     mask left = none<V>();
     a = unmoved(p, {}, V(status::free.code));
