@@ -191,7 +191,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
   void as_it_was(const Step& step, V damage, const common& all, bond_result<Step>& found) const {
     const secant<V> now = secant_of(damage, all);
     const mask_of<V> is_soft = now.soft > 0.0;
-    const V kappa = zero_unless(is_soft, step.compliance * now.stiff / now.soft);
+    const V kappa = zero_unless(is_soft, step.compliance * now.stiffness());
     step.move(found.motion, kappa, friction_of(damage));
     const mask_of<V> stays = (strength == infinity) | is_below(damage, now, found.motion, all);
     found.holds = is_soft & step.has_scale(kappa) & stays;
@@ -262,7 +262,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
     const V peak = select(weights.shear > 0.0, square_root(weights.mean(s1 * s1, s2 * s2)), s1);
     const double full = softening<V>::fullness(shape == exponential);
     const V width = positive_part(energy / peak - 0.5 * peak * flexibility()) / full;
-    return {peak, peak * flexibility(), width, shape == exponential};
+    return {peak, peak * flexibility(), width, peak / width, shape == exponential};
   }
   // B^eta and 1 - B^eta.
   mode_mix<V> weights_of(mode_mix<V> mix) const {
@@ -314,7 +314,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
 
   template <class Step>
   static V most_kappa(const Step& step, secant<V> now) {
-    return select(now.soft > 0.0, step.compliance * now.stiff / now.soft, V(most_rigid));
+    return select(now.soft > 0.0, step.compliance * now.stiffness(), V(most_rigid));
   }
 
   template <class Motion>

@@ -85,11 +85,12 @@ constexpr auto bond_variables(const char* name, const char* doc) {
       part(&State::opening, &vec::t2, "mean_slip_2", "Mean of the last two of slip_2.", true)};
 }
 
-// What is the same at all nodes. weight: of the tangential opening, see W.
+// What is the same at all nodes. weight: of the tangential opening, see W; root: its square root.
 template <class V>
 struct bond_common {
   step_sizes step;
-  V weight;
+  V weight, root, per_root;
+  bond_common(const step_sizes& s, V w) : step(s), weight(w), root(square_root(w)), per_root(1.0 / root) {}
 };
 
 template <class V>
@@ -103,7 +104,7 @@ template <class V>
 struct bond_answer {
   vector<V> impulse;
   bond_state<V> state;
-  V stiffness;  // k
+  V rate;  // A k/2
   V status, refused;
 };
 // What stays where it was.
@@ -117,7 +118,7 @@ ILAW_KIT_INLINE void choose(mask_of<V> where, const bond_answer<V>& other, bond_
   a.state.memory = select(where, other.state.memory, a.state.memory);
   a.state.position = select(where, other.state.position, a.state.position);
   a.state.opening = select(where, other.state.opening, a.state.opening);
-  a.stiffness = select(where, other.stiffness, a.stiffness);
+  a.rate = select(where, other.rate, a.rate);
   a.status = select(where, other.status, a.status);
   a.refused = select(where, other.refused, a.refused);
 }
@@ -134,8 +135,9 @@ class bonded_inertia<V, transverse<V>> {
   struct held {
     V kappa, left_n, left_t;
   };
-  ILAW_KIT_INLINE bonded_inertia(const transverse<V>& h, V weight)
-      : h_(h), ratio_(weight * h.t / h.n), weight_(weight) {}
+  ILAW_KIT_INLINE bonded_inertia(const transverse<V>& h, const bond_common<V>& all)
+      : h_(h), per_normal_(1.0 / h.n), weight_(all.weight), ratio_(weight_ * h.t * per_normal_) {}
+  ILAW_KIT_INLINE V per_normal() const { return per_normal_; }
   ILAW_KIT_INLINE V trace() const { return 1.0 + 2.0 * ratio_; }
 
   ILAW_KIT_INLINE held hold(V kappa) const {
@@ -159,58 +161,68 @@ class bonded_inertia<V, transverse<V>> {
   // closing, whatever the bond does.
   ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact,
                                     mask_of<V> closed, V closing) const {
-    const V taken = 2.0 * m.kappa * per_step, taken_t = taken * ratio_ * m.left_t / h_.t;
-    return {-(select(closed, closing, taken * m.left_n * d.n) / h_.n), m.left_t * contact.t1 - taken_t * d.t1,
-            m.left_t * contact.t2 - taken_t * d.t2};
+    const V taken = 2.0 * m.kappa * per_step, taken_t = taken * weight_ * m.left_t;
+    return {-(select(closed, closing, taken * m.left_n * d.n) * per_normal_),
+            m.left_t * contact.t1 - taken_t * d.t1 * per_normal_,
+            m.left_t * contact.t2 - taken_t * d.t2 * per_normal_};
   }
 
  private:
   transverse<V> h_;
-  V ratio_, weight_;
+  V per_normal_, weight_, ratio_;
 };
 
 template <class V>
 class bonded_inertia<V, full<V>> {
  public:
+  // LDL^T without quotients but one: the minors are a, d = a d_1 and e = a d d_2.
   struct held {
-    V kappa;
-    typename full<V>::factors m;
+    V kappa, by_d0, by_d1, by_d2, l10, l20, l21;
+    ILAW_KIT_INLINE vector<V> solve(vector<V> v) const {
+      const V y1 = v.t1 - l10 * v.n, y2 = (v.t2 - l20 * v.n) - l21 * y1;
+      const V x2 = by_d2 * y2, x1 = y1 * by_d1 - l21 * x2;
+      return {(v.n * by_d0 - l10 * x1) - l20 * x2, x1, x2};
+    }
   };
-  ILAW_KIT_INLINE bonded_inertia(const full<V>& h, V weight)
-      : normal_(h.nn), root_(square_root(weight)), per_root_(1.0 / root_) {
-    const V w = root_ / h.nn, ww = weight / h.nn;
+  ILAW_KIT_INLINE bonded_inertia(const full<V>& h, const bond_common<V>& all)
+      : normal_(h.nn), per_normal_(1.0 / h.nn), root_(all.root), per_root_(all.per_root) {
+    const V w = root_ * per_normal_, ww = all.weight * per_normal_;
     a_ = {1.0, ww * h.t11, ww * h.t22, w * h.n1, w * h.n2, ww * h.t12};
   }
+  ILAW_KIT_INLINE V per_normal() const { return per_normal_; }
   ILAW_KIT_INLINE V trace() const { return 1.0 + (a_.t11 + a_.t22); }
 
   ILAW_KIT_INLINE held hold(V k) const {
-    const full<V> sum{1.0 + k, 1.0 + k * a_.t11, 1.0 + k * a_.t22, k * a_.n1, k * a_.n2, k * a_.t12};
-    return {k, sum.factorise()};
+    const V a = 1.0 + k, n1 = k * a_.n1, n2 = k * a_.n2;
+    const V d = a * (1.0 + k * a_.t11) - n1 * n1, f = a * (k * a_.t12) - n1 * n2;
+    const V e = d * (a * (1.0 + k * a_.t22) - n2 * n2) - f * f, ad = a * d, inverse = 1.0 / (ad * e);
+    const V by_a = inverse * (d * e), by_d = inverse * (a * e);
+    return {k, by_a, a * by_d, ad * (inverse * ad), n1 * by_a, n2 * by_a, f * by_d};
   }
   ILAW_KIT_INLINE vector<V> left(const held& m, vector<V> d) const {
-    return times_root(m.m.solve(times_root(d, root_)), per_root_);
+    return times_root(m.solve(times_root(d, root_)), per_root_);
   }
   full<V> delassus(const held& m) const {  // h_N W^-1/2 M A W^-1/2
-    const vector<V> n = m.m.solve({1.0, a_.n1, a_.n2}), t1 = m.m.solve({a_.n1, a_.t11, a_.t12}),
-                    t2 = m.m.solve({a_.n2, a_.t12, a_.t22});
+    const vector<V> n = m.solve({1.0, a_.n1, a_.n2}), t1 = m.solve({a_.n1, a_.t11, a_.t12}),
+                    t2 = m.solve({a_.n2, a_.t12, a_.t22});
     const V one = normal_ * per_root_, two = one * per_root_;
     return {normal_ * n.n, two * t1.t1, two * t2.t2, one * n.t1, one * n.t2, two * t2.t1};
   }
   ILAW_KIT_INLINE V gives_way(const held& m, vector<V> after, vector<V> d, mask_of<V>) const {
-    const vector<V> sum = m.m.solve(times_root(d, root_));
-    return product(times_root(after, root_), m.m.solve(a_.times(sum)));
+    const vector<V> sum = m.solve(times_root(d, root_));
+    return product(times_root(after, root_), m.solve(a_.times(sum)));
   }
   ILAW_KIT_INLINE mask_of<V> is_smooth(mask_of<V> closed) const { return !closed; }
   ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact, mask_of<V>,
                                     V) const {
-    const V taken = 2.0 * m.kappa * per_step / normal_;
-    return times_root(m.m.solve(times_root(contact, per_root_) - taken * times_root(d, root_)), root_);
+    const V taken = 2.0 * m.kappa * per_step * per_normal_;
+    return times_root(m.solve(times_root(contact, per_root_) - taken * times_root(d, root_)), root_);
   }
 
  private:
   ILAW_KIT_INLINE static vector<V> times_root(vector<V> a, V by) { return {a.n, by * a.t1, by * a.t2}; }
 
-  V normal_, root_, per_root_;
+  V normal_, per_normal_, root_, per_root_;
   full<V> a_;
 };
 
@@ -231,9 +243,9 @@ class bond_step {
     V refused;
   };
 
-  ILAW_KIT_INLINE bond_step(const Delassus& h, const bond_problem<V>& p, V weight, const step_sizes& step)
-      : p_(p), step_(step), weight_(weight), inertia_(h, weight) {
-    compliance = 0.25 * step.velocity_step * step.velocity_step * p.area * h.normal();
+  ILAW_KIT_INLINE bond_step(const Delassus& h, const bond_problem<V>& p, const bond_common<V>& all)
+      : p_(p), step_(all.step), weight_(all.weight), inertia_(h, all) {
+    compliance = 0.25 * step_.velocity_step * step_.velocity_step * p.area * h.normal();
     before = size_of(p.state.opening);
     is_new = sum_of_sizes(p.state.position) + sum_of_sizes(p.state.opening) == 0.0;
     place();
@@ -523,7 +535,7 @@ struct adhesive_bond {
   template <class Common>
   [[gnu::noinline]] mask stay(const problem& p, mask open, answer& a, const Common& common) const {
     const transverse<V> h{p.h.nn, p.h.t11};
-    const bond_step<V, transverse<V>> step(h, p, common.weight, common.step);
+    const bond_step<V, transverse<V>> step(h, p, common);
     bond_result<bond_step<V, transverse<V>>> found(p.state.memory);
     law().as_it_was(step, p.state.memory, common, found);
     const mask stays = open & found.holds & !put_in(step, found.motion);
@@ -562,7 +574,7 @@ struct adhesive_bond {
     mask open = where;
     if constexpr (can_be_rigid()) open = open & !stop(h, p, where, a, common.step);
     if (!any(open)) return open;
-    bond_step<V, Delassus> step(h, p, common.weight, common.step);
+    bond_step<V, Delassus> step(h, p, common);
     bond_result<bond_step<V, Delassus>> found(p.state.memory);
     respond(step, open, common, found);
     mask left = found.left | found.motion.unsolved;
@@ -642,7 +654,7 @@ struct adhesive_bond {
   template <class Common>
   [[gnu::noinline]] energies energies_of(const state& before, const answer& a, V area,
                                          const Common& common) const {
-    const V weight = common.weight, rate = 0.5 * area * a.stiffness;
+    const V weight = common.weight, rate = a.rate;
     const vector<V> sum = a.state.opening + before.opening, change = a.state.opening - before.opening;
     const auto stored = [&](const state& s) ILAW_KIT_LAMBDA {
       const V square =

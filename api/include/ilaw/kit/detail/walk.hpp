@@ -148,6 +148,64 @@ class batch_walk {
     else
       for (std::int64_t i = 0; i < n.count; ++i) values[(n.first + i) * stride] = from[i];
   }
+  // Rows of four numbers or more, four nodes by four numbers at a time; the last four may overlap the others.
+  using four = double __attribute__((vector_size(32)));
+  ILAW_KIT_INLINE static void transpose(four (&m)[4]) {
+    const four a = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6),
+               b = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7),
+               c = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6),
+               d = __builtin_shufflevector(m[2], m[3], 1, 5, 3, 7);
+    m[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    m[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    m[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    m[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+  }
+  [[gnu::noinline]] static void gather_rows(const double* values, std::int64_t stride, int count,
+                                            const node_range& n, double* to) {
+    std::int64_t i = 0;
+    for (; i + 4 <= n.count; i += 4) {
+      const double* const at[4] = {values + n(i) * stride, values + n(i + 1) * stride,
+                                   values + n(i + 2) * stride, values + n(i + 3) * stride};
+      for (int c = 0; c < count; c += 4) {
+        const int first = c + 4 <= count ? c : count - 4;
+        four m[4];
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(&m[k], at[k] + first, sizeof(four));
+        transpose(m);
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(to + (first + k) * block_nodes + i, &m[k], sizeof(four));
+      }
+    }
+    for (; i < n.count; ++i)
+      for (int c = 0; c < count; ++c) to[c * block_nodes + i] = values[n(i) * stride + c];
+  }
+  [[gnu::noinline]] static void scatter_rows(double* values, std::int64_t stride, int count,
+                                             const node_range& n, const double* from) {
+    std::int64_t i = 0;
+    for (; i + 4 <= n.count; i += 4) {
+      double* const at[4] = {values + n(i) * stride, values + n(i + 1) * stride, values + n(i + 2) * stride,
+                             values + n(i + 3) * stride};
+      for (int c = 0; c < count; c += 4) {
+        const int first = c + 4 <= count ? c : count - 4;
+        four m[4];
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k)
+          __builtin_memcpy(&m[k], from + (first + k) * block_nodes + i, sizeof(four));
+        transpose(m);
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(at[k] + first, &m[k], sizeof(four));
+      }
+    }
+    for (; i < n.count; ++i)
+      for (int c = 0; c < count; ++c) values[n(i) * stride + c] = from[c * block_nodes + i];
+  }
+  // Whether the law's numbers are rows in the host's order.
+  template <class Array>
+  bool has_rows(const Array& a) const {
+    bool are_in_order = made_.states >= 4 && a.component_stride == 1;
+    for (int k = 0; k < made_.states; ++k) are_in_order = are_in_order && made_.state_entries[k] == k;
+    return are_in_order;
+  }
   // Components that lie in other lines of memory: node by node.
   template <class T>
   [[gnu::noinline]] static void gather_three(const T* values, std::int64_t stride, std::int64_t component,
@@ -239,6 +297,9 @@ class batch_walk {
     if (!n.listed && state_stays(from)) {
       v.state_in = {from.values + n.first * from.node_stride, from.component_stride, made_.states,
                     from.node_stride != 1 ? made_.states : 0};
+    } else if (has_rows(from)) {
+      gather_rows(from.values, from.node_stride, made_.states, n, in);
+      v.state_in = {in, block_nodes, made_.states, 0};
     } else {
       for (int k = 0; k < made_.states; ++k) {
         const int entry = made_.state_entries[k];
@@ -294,7 +355,9 @@ class batch_walk {
     if (made_.state_size == 0) return;
     const ilaw_output& to = b_.state_out;
     const double* const out = state_scratch_ + made_.states * block_nodes;
-    if (v.state_out.at == out)
+    if (v.state_out.at == out && has_rows(to))
+      scatter_rows(to.values, to.node_stride, made_.states, n, out);
+    else if (v.state_out.at == out)
       for (int k = 0; k < made_.states; ++k)
         if (const int entry = made_.state_entries[k]; entry >= 0)
           scatter_column(to.values + entry * to.component_stride, to.node_stride, n, out + k * block_nodes);
