@@ -95,8 +95,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
        .default_value = infinity,
        .minimum_excluded = true,
        .infinity_allowed = true},
-      friction_parameter(&cohesive::friction)
-          .with_doc("Coefficient of friction of what is broken."),
+      friction_parameter(&cohesive::friction).with_doc("Coefficient of friction of what is broken."),
       {.member = &cohesive::delay_time,
        .name = "delay_time",
        .symbol = "tau_c",
@@ -109,19 +108,8 @@ struct cohesive : adhesive_bond<cohesive, V> {
        .default_value = 1.0,
        .minimum_excluded = true}};
 
-  using state = bond_state<V>;
   static constexpr double broken = 1.0;
-  static constexpr state_variable<state> state_variables[] = {{.member = &state::memory,
-                                                               .name = "damage",
-                                                               .doc = "0: intact, 1: broken.",
-                                                               .minimum = 0.0,
-                                                               .maximum = 1.0},
-                                                              bond_variable<state>(0),
-                                                              bond_variable<state>(1),
-                                                              bond_variable<state>(2),
-                                                              bond_variable<state>(3),
-                                                              bond_variable<state>(4),
-                                                              bond_variable<state>(5)};
+  static constexpr auto state_variables = bond_variables("damage", "0: intact, 1: broken.");
 
   const char* conflict() const {
     if ((strength == infinity) != (shear_strength() == infinity))
@@ -156,9 +144,8 @@ struct cohesive : adhesive_bond<cohesive, V> {
 
   // ---- what is the same at all nodes
 
-  struct common {
-    step_sizes step;
-    V weight, steepest;            // beta^2; the steepest -T' of all mode mixes
+  struct common : bond_common<V> {
+    V steepest;                    // -T' of all mode mixes
     V flexibility, softness;       // 1/K, b
     softening<V> opened;           // mode I
     mask_of<V> mixes, is_delayed;  // whether modes differ; whether damage takes time
@@ -167,20 +154,18 @@ struct cohesive : adhesive_bond<cohesive, V> {
     const V ratio = shape == camacho_ortiz ? shear_strength() / strength : V(1.0);
     const softening<V> opened = softening_at(mode_1());
     const V steep = opened.steepest();
-    return {.step = step,
-            .weight = ratio * ratio,
-            .steepest = select(mixes(), larger(steep, softening_at(mode_2()).steepest()), steep),
-            .flexibility = flexibility(),
-            .softness = zero_unless(strength < infinity, softness_scale()),
-            .opened = opened,
-            .mixes = mixes(),
-            .is_delayed = mask_of<V>((delay_time > 0.0) & (strength < infinity))};
+    return {{step, ratio * ratio},
+            select(mixes(), larger(steep, softening_at(mode_2()).steepest()), steep),
+            flexibility(),
+            zero_unless(strength < infinity, softness_scale()),
+            opened,
+            mixes(),
+            mask_of<V>((delay_time > 0.0) & (strength < infinity))};
   }
 
   // ---- the bond, for the kit (bond.hpp)
 
   mask_of<V> bonds() const { return (strength > 0.0) & (toughness > 0.0); }
-  static V weight(const common& all) { return all.weight; }
   V friction_of(V damage) const { return zero_unless(damage > 0.0, friction * damage); }
   static V energy(V damage, V size, const common& all) {
     const secant<V> s = secant_of(damage, all);
@@ -206,37 +191,34 @@ struct cohesive : adhesive_bond<cohesive, V> {
   void as_it_was(const Step& step, V damage, const common& all, bond_result<Step>& found) const {
     const secant<V> now = secant_of(damage, all);
     const mask_of<V> is_soft = now.soft > 0.0;
-    const V kappa = zero_unless(is_soft, step.compliance * now.stiff / now.soft);
+    const V kappa = zero_unless(is_soft, step.compliance * now.stiffness());
     step.move(found.motion, kappa, friction_of(damage));
-    found.memory = damage;
-    found.left = none<V>();
-    found.refused = 0.0;
     const mask_of<V> stays = (strength == infinity) | is_below(damage, now, found.motion, all);
-    found.holds = is_soft & has_scale(kappa, step.compliance) & stays;
+    found.holds = is_soft & step.has_scale(kappa) & stays;
   }
 
-  // Else the mean traction on the way from w^- to w^+, with the friction of the damage after it: the unknown is the
-  // damage, d = D(w(d)), which falls with more friction.
+  // Else the mean traction on the way from w^- to w^+, with the friction of the damage after it: the unknown
+  // is the damage, d = D(w(d)), which falls with more friction.
   template <class Step>
   void change(const Step& step, mask_of<V> where, const common& all, bond_result<Step>& found) const {
     const mask_of<V> is_unique = step.compliance * step.trace() * all.steepest <= 1.0;
     if constexpr (!is_scalar) {
-      found.left = where & !mask_of<V>(is_unique & has_scale(most_kappa(step, found.memory, all), step.compliance));
+      found.left =
+          where & !mask_of<V>(is_unique & step.has_scale(most_kappa(step, secant_of(found.memory, all))));
       where = where & !found.left;
       if (!any(where)) return;
     }
-    const V before = found.memory;
-    soften(step, where, all, before, friction_of(before), found);
-    const mask_of<V> rubs = where & found.motion.closed & (friction > 0.0) & (found.memory > before);
-    V coefficient = friction_of(before);
-    if (any(rubs)) {
-      const V first = found.memory;
-      root_between(before, V(1.0), first, rubs, [&](V damage) {
-        coefficient = select(rubs, friction_of(damage), coefficient);
-        soften(step, where, all, before, coefficient, found);
-        return root_trial<V>{damage - found.memory, 1.0, 1.0, 1.0, none<V>()};
-      });
-    }
+    const curve_before before(found.memory, all);
+    V coefficient = friction_of(before.damage);
+    bool is_tried = true;
+    root_between(before.damage, V(1.0), before.damage, where, [&](V damage) ILAW_KIT_LAMBDA {
+      coefficient = select(where, friction_of(damage), coefficient);
+      soften(step, where, all, before, coefficient, is_tried, found);
+      is_tried = false;
+      const mask_of<V> grows = (found.memory > before.damage) | (damage > before.damage);
+      const mask_of<V> rubs = where & grows & found.motion.closed & (friction > 0.0);
+      return root_trial<V>{zero_unless(rubs, damage - found.memory), 1.0, 1.0, 1.0, none<V>()};
+    });
     if constexpr (is_scalar)
       if (!is_unique && has_another(step, before, coefficient, all))
         found.refused = static_cast<double>(refusal::several_solutions);
@@ -280,7 +262,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
     const V peak = select(weights.shear > 0.0, square_root(weights.mean(s1 * s1, s2 * s2)), s1);
     const double full = softening<V>::fullness(shape == exponential);
     const V width = positive_part(energy / peak - 0.5 * peak * flexibility()) / full;
-    return {peak, peak * flexibility(), width, shape == exponential};
+    return {peak, peak * flexibility(), width, peak / width, shape == exponential};
   }
   // B^eta and 1 - B^eta.
   mode_mix<V> weights_of(mode_mix<V> mix) const {
@@ -295,7 +277,8 @@ struct cohesive : adhesive_bond<cohesive, V> {
       weights = select(is, any_weights_of(mix), weights);
     return weights;
   }
-  // The logarithm is that of 1 - n where b is near 1, with what the difference rounds off, as in log_one_plus.
+  // The logarithm is that of 1 - n where b is near 1, with what the difference rounds off, as in
+  // log_one_plus.
   [[gnu::noinline]] mode_mix<V> any_weights_of(mode_mix<V> mix) const {
     const mask_of<V> is_near = mix.normal < 0.5;
     const V left = select(is_near, 1.0 - mix.normal, mix.shear);
@@ -310,8 +293,8 @@ struct cohesive : adhesive_bond<cohesive, V> {
     return softening_at(select(all.mixes, mix_of(n, shear, m.size * m.size), mode_1()));
   }
 
-  // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent. Close to 1
-  // it has only 53 bits, of which a shear that is much softer would leave none.
+  // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
+  // Close to 1 it has only 53 bits, of which a shear that is much softer would leave none.
   V softness_at(mode_mix<V> mode) const {
     const softening<V> s = softening_at(mode);
     return s.width / s.strength;
@@ -329,14 +312,9 @@ struct cohesive : adhesive_bond<cohesive, V> {
 
   // ---- a step
 
-  // Whether no product on the way overflows or underflows; else a node is left to the scalar fallback.
-  static mask_of<V> has_scale(V most, V compliance) {
-    return is_scalar ? most == most : (most < 2.0 * most_rigid) & (compliance > 0x1p-900);
-  }
   template <class Step>
-  static V most_kappa(const Step& step, V damage, const common& all) {
-    const secant<V> now = secant_of(damage, all);
-    return select(now.soft > 0.0, step.compliance * now.stiff / now.soft, V(most_rigid));
+  static V most_kappa(const Step& step, secant<V> now) {
+    return select(now.soft > 0.0, step.compliance * now.stiffness(), V(most_rigid));
   }
 
   template <class Motion>
@@ -347,7 +325,8 @@ struct cohesive : adhesive_bond<cohesive, V> {
     const mask_of<V> below = (all.mixes & (surely | (held <= now.soft * s.traction(m.size)))) |
                              ((!all.mixes) & (m.size <= s.meets(now)));
     if (!any(all.is_delayed)) return below;
-    return (all.is_delayed & (delayed_damage(damage, m.size, s, all) == damage)) | ((!all.is_delayed) & below);
+    return (all.is_delayed & (delayed_damage(damage, m.size, s, all) == damage)) |
+           ((!all.is_delayed) & below);
   }
 
   // What is the same for all trials of a step.
@@ -359,46 +338,52 @@ struct cohesive : adhesive_bond<cohesive, V> {
         : damage(d), now(secant_of(d, all)), stiffness(now.stiffness()), met(all.opened.meets(now)) {}
   };
 
-  // (1 + kappa) (kappa (y + f) - 2 c T) = 0, y = |w^+|, f = |w^-|, with the mean traction T on the way. Where a bilinear
-  // bond opens in one direction this is linear in kappa. y' is known, and dT/dy = (traction - T)/(y - f) along one curve;
-  // elsewhere the softening is taken for the slope.
+  // (1 + kappa) (kappa (y + f) - 2 c T) = 0, y = |w^+|, f = |w^-|, with the mean traction T on the way. Where
+  // a bilinear bond opens in one direction this is linear in kappa. y' is known, and dT/dy = (traction -
+  // T)/(y - f) along one curve; elsewhere the softening is taken for the slope.
   template <class Motion, class Step>
-  ILAW_KIT_INLINE root_trial<V> trial(const Step& step, const Motion& m, const curve_before& b, const common& all) const {
+  ILAW_KIT_INLINE root_trial<V> trial(const Step& step, const Motion& m, const curve_before& b,
+                                      const common& all) const {
     const softening<V> s = curve(m, all);
     const V sum = m.size + step.before, c = step.compliance;
-    V mean = s.mean_traction_on_path(b.stiffness, any(all.mixes) ? s.meets(b.now) : b.met, step.before, m.size);
+    V mean =
+        s.mean_traction_on_path(b.stiffness, any(all.mixes) ? s.meets(b.now) : b.met, step.before, m.size);
     if (any(all.is_delayed)) {
       const V after = secant_of(delayed_damage(b.damage, m.size, s, all), all).stiffness();
       mean = select(all.is_delayed, 0.25 * (b.stiffness + after) * sum, mean);
     }
     const mask_of<V> is_simple = (!all.mixes) & (!all.is_delayed) & (shape != exponential);
     const V end = all.opened.onset + all.opened.width;
-    const V traction = select(m.size < b.met, b.stiffness * m.size, all.steepest * (end - smaller(m.size, end)));
+    const V traction =
+        select(m.size < b.met, b.stiffness * m.size, all.steepest * (end - smaller(m.size, end)));
     const V way = m.size - step.before;
     const mask_of<V> moves = is_simple & (absolute(way) > 0x1p-26 * sum);
-    const V gain = select(moves, traction - mean, -0.5 * all.steepest), run = m.size * select(moves, way, V(1.0));
+    const V gain = select(moves, traction - mean, -0.5 * all.steepest),
+            run = m.size * select(moves, way, V(1.0));
     const V kappa = m.held.kappa, more = 1.0 + kappa, excess = kappa * sum - 2.0 * c * mean;
     const V slowed = step.gives_way(m) * (kappa * select(moves, way, V(1.0)) - 2.0 * c * gain);
     const mask_of<V> is_exact = is_simple & step.is_smooth(m);
     return {more * excess, more * sum, run * (excess + more * sum) - more * slowed, run, is_exact};
   }
 
-  // The step with this coefficient of friction. The bond as it was is the first trial, but not if that is stiff.
+  // The step with this coefficient of friction. The bond as it was is the first trial, but not if that is
+  // stiff. is_tried: found is that.
   template <class Step>
-  [[gnu::noinline]] void soften(const Step& step, mask_of<V> where, const common& all, V damage, V coefficient,
-                                bond_result<Step>& found) const {
-    const curve_before b(damage, all);
-    const V most = most_kappa(step, damage, all), first = select(where & (most > 1.0), 0.0, most);
+  ILAW_KIT_INLINE void soften(const Step& step, mask_of<V> where, const common& all, const curve_before& b,
+                              V coefficient, bool is_tried, bond_result<Step>& found) const {
+    const V most = most_kappa(step, b.now), first = select(where & (most > 1.0), 0.0, most);
+    is_tried = is_tried && !any(where & (first != found.motion.held.kappa));
     root_trial<V> last;
     root_between(V(0.0), most, first, where, [&](V kappa) ILAW_KIT_LAMBDA {
-      step.move(found.motion, kappa, coefficient);
+      if (!is_tried) step.move(found.motion, kappa, coefficient);
+      is_tried = false;
       return last = trial(step, found.motion, b, all);
     });
     if constexpr (!is_scalar) {
       const V scale = (found.motion.held.kappa + step.compliance * all.steepest) * last.size;
       found.left = found.left | (where & !mask_of<V>(absolute(last.value) <= 0x1p-44 * scale));
     }
-    found.memory = select(where, damage_after(found.motion, damage, all), damage);
+    found.memory = select(where, damage_after(found.motion, b.damage, all), b.damage);
   }
   template <class Motion>
   V damage_after(const Motion& m, V damage, const common& all) const {
@@ -409,14 +394,15 @@ struct cohesive : adhesive_bond<cohesive, V> {
     return after;
   }
 
-  // Exact for the constant target f that the opening at the end of the step sets (Allix and Deu 1997), z = f - d before
-  // the step: d grows by -ln(1 - q)/a, q = (1 - exp(-a z)) (1 - exp(-a h/tau_c)). It may be tiny: a stiff bond of great
-  // toughness is soft already at a damage of 1e-16. Where q is large, the same is
-  // f - ln(1 + (exp(a z) - 1) exp(-a h/tau_c))/a.
+  // Exact for the constant target f that the opening at the end of the step sets (Allix and Deu 1997), z = f
+  // - d before the step: d grows by -ln(1 - q)/a, q = (1 - exp(-a z)) (1 - exp(-a h/tau_c)). It may be tiny:
+  // a stiff bond of great toughness is soft already at a damage of 1e-16. Where q is large, the same is f -
+  // ln(1 + (exp(a z) - 1) exp(-a h/tau_c))/a.
   [[gnu::noinline]] V delayed_damage(V damage, V size, const softening<V>& s, const common& all) const {
     const V progress = s.progress(size);
     const mask_of<V> softens = (progress < 1.0) & (progress > 0.0);
-    const V target = select(softens, damage_of(size, s.traction(size), all), progress), distance = target - damage;
+    const V target = select(softens, damage_of(size, s.traction(size), all), progress),
+            distance = target - damage;
     const mask_of<V> grows = distance > 0.0;
     if (!any(grows)) return damage;
     const V a = delay_exponent, decline = a * all.step.position_step / delay_time;
@@ -432,13 +418,12 @@ struct cohesive : adhesive_bond<cohesive, V> {
     return select(grows, next, damage);
   }
 
-  // There is one solution where the softening is not steeper than the node gives way, c tr(H W) |T'| <= 1. Beyond, the
-  // sign changes of the excess are counted as the node is left ever more of its free motion. Several are a snap-back,
-  // and nothing says how much of it this step is to do.
+  // There is one solution where the softening is not steeper than the node gives way, c tr(H W) |T'| <= 1.
+  // Beyond, the sign changes of the excess are counted as the node is left ever more of its free motion.
+  // Several are a snap-back, and nothing says how much of it this step is to do.
   template <class Step>
-  bool has_another(const Step& step, double damage, double coefficient, const common& all) const {
-    const curve_before b(damage, all);
-    const double ratio = step.trace(), most = most_kappa(step, damage, all), first = 1.0 / (1.0 + ratio * most);
+  bool has_another(const Step& step, const curve_before& b, double coefficient, const common& all) const {
+    const double ratio = step.trace(), most = most_kappa(step, b.now), first = 1.0 / (1.0 + ratio * most);
     typename Step::motion m;
     return changes_sign_again([&](double part) {
       const double left = first + part * (1.0 - first);

@@ -1,23 +1,23 @@
-// bond.hpp - a bond with contact and friction for any H: what it shares with others is here, what it is made of is its
-// law's. plugins/cohesive/cohesive.md derives the equations.
+// bond.hpp - a bond with contact and friction for any H: what it shares with others is here, what it is made
+// of is its law's. plugins/cohesive/cohesive.md derives the equations.
 //
 // The bond acts on the mean of two positions, w = (x_n + x_n+1)/2, which a step moves by h (v^- + v)/2:
 //   w^+ = w^- + h (v^- + v)/2,  r_b = -h A k W (w^+ + w^-)/2,  W = diag(1, weight, weight).
-// So the work of r_b is -A k (w^+.W w^+ - w^-.W w^-)/2 for any H, and a law that takes as k the mean stiffness on the
-// way from w^- to w^+ stores and dissipates exactly that. With kappa = h^2 A h_N k/4:
+// So the work of r_b is -A k (w^+.W w^+ - w^-.W w^-)/2 for any H, and a law that takes as k the mean
+// stiffness on the way from w^- to w^+ stores and dissipates exactly that. With kappa = h^2 A h_N k/4:
 //   (I + kappa H W/h_N) (w^+ + w^-) = h v_free/2 + x + w^-.
 //
-// A law derives from adhesive_bond<law, V> and has, as functions of numbers on V,
-//   broken                          its memory when nothing is left: 1 of a damage, 0 of an intensity of adhesion
-//   friction                        a parameter: the coefficient without bond
-//   prepare(step_sizes)             what is the same at all nodes; a struct with .step; "common" below
-//   bonds()                         whether these parameters make a bond at all
-//   weight(common)                  of the tangential opening, see W
-//   friction_of(memory)             the coefficient beside what is left of the bond
-//   energy(memory, size, common)    stored per area, size^2 = w.W w
-//   as_it_was(step, memory, common, found)   the step with the memory before, and where that is the answer
-//   change(step, where, common, found)       the step and the memory after it, where it is not
-// and, where a bond may be rigid, is_rigid(memory) and bears(impulse, capacity).
+// A law derives from adhesive_bond<law, V> and has, on V,
+//   broken                             its memory when nothing is left: 1 of damage, 0 of adhesion
+//   friction                           a parameter: the coefficient without bond
+//   prepare(step_sizes)                a bond_common, or what derives from it: "all" below
+//   friction_of(memory)                the coefficient beside what is left of the bond
+//   energy(memory, size, all)          stored per area; size^2 = w.W w
+//   as_it_was(step, memory, all, found)   the motion with the memory before, and where it holds
+//   change(step, where, all, found)    motion and memory where it does not
+// and may have
+//   bonds()                            whether these parameters make a bond at all
+// and, where a bond may be rigid, is_rigid(memory), bears(impulse, capacity) and a quick surely_bears.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -31,10 +31,10 @@ ILAW_KIT_INLINE mask_of<V> none() {
   return detail::mask_from<V>(0U);
 }
 
-// ---- stopping a node ------------------------------------------------------------------------------------------------
+// ---- stopping a node -------------------------------------------------------------------------------------
 
-// The part of v_free that rounding may leave: v_free + H r, which is 0, is the velocity before of a node that is held
-// from step to step.
+// The part of v_free that rounding may leave: v_free + H r, which is 0, is the velocity before of a node that
+// is held from step to step.
 inline constexpr double left_by_rounding = 0x1p-48;
 // v^- beyond that.
 template <class V>
@@ -45,8 +45,8 @@ template <class V>
 ILAW_KIT_INLINE V product(vector<V> a, vector<V> b) {
   return normal_product(a, b) + tangential_product(a, b);
 }
-// The impulse that stops the node, r = -H^-1 v_free, less what would be positive work: only where the node turned round
-// within the step.
+// The impulse that stops the node, r = -H^-1 v_free, less what would be positive work: only where the node
+// turned round within the step.
 template <class V, class Delassus>
 vector<V> stopping_impulse(const Delassus& h, vector<V> v_free, vector<V> v_previous) {
   const vector<V> r = -h.solve(v_free);
@@ -57,7 +57,7 @@ vector<V> stopping_impulse(const Delassus& h, vector<V> v_free, vector<V> v_prev
   return {a.r[0], a.r[1], a.r[2]};
 }
 
-// ---- problem and answer ---------------------------------------------------------------------------------------------
+// ---- problem and answer ----------------------------------------------------------------------------------
 
 template <class V>
 struct bond_state {
@@ -65,20 +65,33 @@ struct bond_state {
   vector<V> position;  // at the time of the next impulse
   vector<V> opening;   // half a step before: w
 };
-// The variables of a bond after its memory: k from 0 to 5.
-template <class State>
-constexpr state_variable<State> bond_variable(int k) {
-  constexpr const char* names[] = {"opening", "slip_1", "slip_2", "mean_opening", "mean_slip_1", "mean_slip_2"};
-  constexpr const char* docs[] = {"Normal displacement since the start.", "First tangential displacement.",
-                                  "Second tangential displacement.",      "Mean of the last two openings.",
-                                  "Mean of the last two of slip_1.",      "Mean of the last two of slip_2."};
-  constexpr double vector<double>::*parts[] = {&vector<double>::n, &vector<double>::t1, &vector<double>::t2};
-  return {.member = {k < 3 ? &State::position : &State::opening, parts[k % 3]},
-          .name = names[k],
-          .unit = "m",
-          .doc = docs[k],
-          .internal = k >= 3};
+// The variables of a bond: its memory, from 0 to 1, and where it is.
+constexpr auto bond_variables(const char* name, const char* doc) {
+  using vec = vector<double>;
+  using State = bond_state<double>;
+  using variable = state_variable<State>;
+  const auto part = [](vec State::*member, double vec::*component, const char* called, const char* says,
+                       bool internal) {
+    return variable{
+        .member = {member, component}, .name = called, .unit = "m", .doc = says, .internal = internal};
+  };
+  return std::array<variable, 7>{
+      variable{.member = &State::memory, .name = name, .doc = doc, .minimum = 0.0, .maximum = 1.0},
+      part(&State::position, &vec::n, "opening", "Normal displacement since the start.", false),
+      part(&State::position, &vec::t1, "slip_1", "First tangential displacement.", false),
+      part(&State::position, &vec::t2, "slip_2", "Second tangential displacement.", false),
+      part(&State::opening, &vec::n, "mean_opening", "Mean of the last two openings.", true),
+      part(&State::opening, &vec::t1, "mean_slip_1", "Mean of the last two of slip_1.", true),
+      part(&State::opening, &vec::t2, "mean_slip_2", "Mean of the last two of slip_2.", true)};
 }
+
+// What is the same at all nodes. weight: of the tangential opening, see W; root: its square root.
+template <class V>
+struct bond_common {
+  step_sizes step;
+  V weight, root, per_root;
+  bond_common(const step_sizes& s, V w) : step(s), weight(w), root(square_root(w)), per_root(1.0 / root) {}
+};
 
 template <class V>
 struct bond_problem {
@@ -91,7 +104,7 @@ template <class V>
 struct bond_answer {
   vector<V> impulse;
   bond_state<V> state;
-  V stiffness;  // k
+  V rate;  // A k/2
   V status, refused;
 };
 // What stays where it was.
@@ -105,12 +118,12 @@ ILAW_KIT_INLINE void choose(mask_of<V> where, const bond_answer<V>& other, bond_
   a.state.memory = select(where, other.state.memory, a.state.memory);
   a.state.position = select(where, other.state.position, a.state.position);
   a.state.opening = select(where, other.state.opening, a.state.opening);
-  a.stiffness = select(where, other.stiffness, a.stiffness);
+  a.rate = select(where, other.rate, a.rate);
   a.status = select(where, other.status, a.status);
   a.refused = select(where, other.refused, a.refused);
 }
 
-// ---- a node that a bond holds -----------------------------------------------------------------------------------------
+// ---- a node that a bond holds ----------------------------------------------------------------------------
 
 // M = (I + kappa A)^-1, A = W^1/2 H W^1/2/h_N, as far as H and what a trial kappa makes of it are concerned.
 template <class V, class Delassus>
@@ -122,8 +135,9 @@ class bonded_inertia<V, transverse<V>> {
   struct held {
     V kappa, left_n, left_t;
   };
-  ILAW_KIT_INLINE bonded_inertia(const transverse<V>& h, V weight)
-      : h_(h), ratio_(weight * h.t / h.n), weight_(weight) {}
+  ILAW_KIT_INLINE bonded_inertia(const transverse<V>& h, const bond_common<V>& all)
+      : h_(h), per_normal_(1.0 / h.n), weight_(all.weight), ratio_(weight_ * h.t * per_normal_) {}
+  ILAW_KIT_INLINE V per_normal() const { return per_normal_; }
   ILAW_KIT_INLINE V trace() const { return 1.0 + 2.0 * ratio_; }
 
   ILAW_KIT_INLINE held hold(V kappa) const {
@@ -143,65 +157,76 @@ class bonded_inertia<V, transverse<V>> {
     return normal + ratio_ * weight_ * m.left_t * m.left_t * tangential_product(d, after);
   }
   ILAW_KIT_INLINE mask_of<V> is_smooth(mask_of<V> /*closed*/) const { return !none<V>(); }
-  // Of the bond, on a node that would move by d, and of a contact beside it, which stops a closed node from closing,
-  // whatever the bond does.
-  ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact, mask_of<V> closed,
-                                    V closing) const {
-    const V taken = 2.0 * m.kappa * per_step, taken_t = taken * ratio_ * m.left_t / h_.t;
-    return {-(select(closed, closing, taken * m.left_n * d.n) / h_.n), m.left_t * contact.t1 - taken_t * d.t1,
-            m.left_t * contact.t2 - taken_t * d.t2};
+  // Of the bond, on a node that would move by d, and of a contact beside it, which stops a closed node from
+  // closing, whatever the bond does.
+  ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact,
+                                    mask_of<V> closed, V closing) const {
+    const V taken = 2.0 * m.kappa * per_step, taken_t = taken * weight_ * m.left_t;
+    return {-(select(closed, closing, taken * m.left_n * d.n) * per_normal_),
+            m.left_t * contact.t1 - taken_t * d.t1 * per_normal_,
+            m.left_t * contact.t2 - taken_t * d.t2 * per_normal_};
   }
 
  private:
   transverse<V> h_;
-  V ratio_, weight_;
+  V per_normal_, weight_, ratio_;
 };
 
 template <class V>
 class bonded_inertia<V, full<V>> {
  public:
+  // LDL^T without quotients but one: the minors are a, d = a d_1 and e = a d d_2.
   struct held {
-    V kappa;
-    typename full<V>::factors m;
+    V kappa, by_d0, by_d1, by_d2, l10, l20, l21;
+    ILAW_KIT_INLINE vector<V> solve(vector<V> v) const {
+      const V y1 = v.t1 - l10 * v.n, y2 = (v.t2 - l20 * v.n) - l21 * y1;
+      const V x2 = by_d2 * y2, x1 = y1 * by_d1 - l21 * x2;
+      return {(v.n * by_d0 - l10 * x1) - l20 * x2, x1, x2};
+    }
   };
-  ILAW_KIT_INLINE bonded_inertia(const full<V>& h, V weight)
-      : normal_(h.nn), root_(square_root(weight)), per_root_(1.0 / root_) {
-    const V w = root_ / h.nn, ww = weight / h.nn;
+  ILAW_KIT_INLINE bonded_inertia(const full<V>& h, const bond_common<V>& all)
+      : normal_(h.nn), per_normal_(1.0 / h.nn), root_(all.root), per_root_(all.per_root) {
+    const V w = root_ * per_normal_, ww = all.weight * per_normal_;
     a_ = {1.0, ww * h.t11, ww * h.t22, w * h.n1, w * h.n2, ww * h.t12};
   }
+  ILAW_KIT_INLINE V per_normal() const { return per_normal_; }
   ILAW_KIT_INLINE V trace() const { return 1.0 + (a_.t11 + a_.t22); }
 
   ILAW_KIT_INLINE held hold(V k) const {
-    const full<V> sum{1.0 + k, 1.0 + k * a_.t11, 1.0 + k * a_.t22, k * a_.n1, k * a_.n2, k * a_.t12};
-    return {k, sum.factorise()};
+    const V a = 1.0 + k, n1 = k * a_.n1, n2 = k * a_.n2;
+    const V d = a * (1.0 + k * a_.t11) - n1 * n1, f = a * (k * a_.t12) - n1 * n2;
+    const V e = d * (a * (1.0 + k * a_.t22) - n2 * n2) - f * f, ad = a * d, inverse = 1.0 / (ad * e);
+    const V by_a = inverse * (d * e), by_d = inverse * (a * e);
+    return {k, by_a, a * by_d, ad * (inverse * ad), n1 * by_a, n2 * by_a, f * by_d};
   }
   ILAW_KIT_INLINE vector<V> left(const held& m, vector<V> d) const {
-    return times_root(m.m.solve(times_root(d, root_)), per_root_);
+    return times_root(m.solve(times_root(d, root_)), per_root_);
   }
   full<V> delassus(const held& m) const {  // h_N W^-1/2 M A W^-1/2
-    const vector<V> n = m.m.solve({1.0, a_.n1, a_.n2}), t1 = m.m.solve({a_.n1, a_.t11, a_.t12}),
-                    t2 = m.m.solve({a_.n2, a_.t12, a_.t22});
+    const vector<V> n = m.solve({1.0, a_.n1, a_.n2}), t1 = m.solve({a_.n1, a_.t11, a_.t12}),
+                    t2 = m.solve({a_.n2, a_.t12, a_.t22});
     const V one = normal_ * per_root_, two = one * per_root_;
     return {normal_ * n.n, two * t1.t1, two * t2.t2, one * n.t1, one * n.t2, two * t2.t1};
   }
   ILAW_KIT_INLINE V gives_way(const held& m, vector<V> after, vector<V> d, mask_of<V>) const {
-    const vector<V> sum = m.m.solve(times_root(d, root_));
-    return product(times_root(after, root_), m.m.solve(a_.times(sum)));
+    const vector<V> sum = m.solve(times_root(d, root_));
+    return product(times_root(after, root_), m.solve(a_.times(sum)));
   }
   ILAW_KIT_INLINE mask_of<V> is_smooth(mask_of<V> closed) const { return !closed; }
-  ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact, mask_of<V>, V) const {
-    const V taken = 2.0 * m.kappa * per_step / normal_;
-    return times_root(m.m.solve(times_root(contact, per_root_) - taken * times_root(d, root_)), root_);
+  ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact, mask_of<V>,
+                                    V) const {
+    const V taken = 2.0 * m.kappa * per_step * per_normal_;
+    return times_root(m.solve(times_root(contact, per_root_) - taken * times_root(d, root_)), root_);
   }
 
  private:
   ILAW_KIT_INLINE static vector<V> times_root(vector<V> a, V by) { return {a.n, by * a.t1, by * a.t2}; }
 
-  V normal_, root_, per_root_;
+  V normal_, per_normal_, root_, per_root_;
   full<V> a_;
 };
 
-// ---- one bonded node in one step ----------------------------------------------------------------------------------------
+// ---- one bonded node in one step -------------------------------------------------------------------------
 
 template <class V, class Delassus>
 class bond_step {
@@ -218,9 +243,9 @@ class bond_step {
     V refused;
   };
 
-  ILAW_KIT_INLINE bond_step(const Delassus& h, const bond_problem<V>& p, V weight, const step_sizes& step)
-      : p_(p), step_(step), weight_(weight), inertia_(h, weight) {
-    compliance = 0.25 * step.velocity_step * step.velocity_step * p.area * h.normal();
+  ILAW_KIT_INLINE bond_step(const Delassus& h, const bond_problem<V>& p, const bond_common<V>& all)
+      : p_(p), step_(all.step), weight_(all.weight), inertia_(h, all) {
+    compliance = 0.25 * step_.velocity_step * step_.velocity_step * p.area * h.normal();
     before = size_of(p.state.opening);
     is_new = sum_of_sizes(p.state.position) + sum_of_sizes(p.state.opening) == 0.0;
     place();
@@ -231,6 +256,10 @@ class bond_step {
   mask is_new;   // the bond is made in this step
   const bond_problem<V>& problem() const { return p_; }
   V trace() const { return inertia_.trace(); }
+  // Whether no product on the way overflows or underflows; else a node is left to the scalar fallback.
+  mask has_scale(V kappa) const {
+    return std::is_same_v<V, double> ? kappa == kappa : (kappa < 0x1p101) & (compliance > 0x1p-900);
+  }
 
   ILAW_KIT_INLINE void move(motion& m, V kappa, V friction) const {
     m.held = inertia_.hold(kappa);
@@ -255,13 +284,16 @@ class bond_step {
                                                p_.v_free.n + (place_.n - ground_) * per_step);
     // Where the steps differ the mean goes on by half a step of the position.
     const V on = step_.position_step / step_.velocity_step;
-    const vector<V> next =
-        is_even() ? V(2.0) * m.opening - place_ : m.opening + on * (m.opening - place_);
-    return {impulse, {memory, next, m.opening}, m.held.kappa / compliance, status.code(), larger(refused, m.refused)};
+    const vector<V> next = is_even() ? V(2.0) * m.opening - place_ : m.opening + on * (m.opening - place_);
+    return {impulse,
+            {memory, next, m.opening},
+            m.held.kappa / compliance,
+            status.code(),
+            larger(refused, m.refused)};
   }
 
-  // A bond that is made now, at the node's position, would put energy in where this is negative: what its impulse works
-  // on v^-, against its sign. Then it is made before, at so large a part of half a step.
+  // A bond that is made now, at the node's position, would put energy in where this is negative: what its
+  // impulse works on v^-, against its sign. Then it is made before, at so large a part of half a step.
   ILAW_KIT_INLINE V taken_from_before(const motion& m) const {
     const vector<V> v = velocity_before(p_.v_previous, p_.v_free);
     return normal_product(v, m.opening) + weight_ * tangential_product(v, m.opening);
@@ -278,16 +310,16 @@ class bond_step {
     return square_root(normal_product(w, w) + weight_ * tangential_product(w, w));
   }
 
-  // The lowest next position: where the bond was made, or as deep as the node is. A node that was leaving turns round at
-  // most at the speed with which it left (contact_leaving_at).
+  // The lowest next position: where the bond was made, or as deep as the node is. A node that was leaving
+  // turns round at most at the speed with which it left (contact_leaving_at).
   ILAW_KIT_INLINE static V ground_below(V position, V v_previous, double step) {
     return smaller(smaller(position, V(0.0)), position - step * v_previous);
   }
-  // Where the bond is at the time of the impulse, and its ground, as if both steps were that of the velocity: so the
-  // opening grows as the work does, whatever the steps and the axes of the step before.
+  // Where the bond is at the time of the impulse, and its ground, as if both steps were that of the velocity:
+  // so the opening grows as the work does, whatever the steps and the axes of the step before.
   ILAW_KIT_INLINE void place() {
     const double step = step_.velocity_step;
-    const vector<V> &position = p_.state.position, on = p_.state.opening + V(0.5 * step) * p_.v_previous;
+    const vector<V>&position = p_.state.position, on = p_.state.opening + V(0.5 * step) * p_.v_previous;
     place_ = select(is_new, position, on);
     if (is_even()) {
       ground_ = ground_below(place_.n, p_.v_previous.n, step);
@@ -297,7 +329,8 @@ class bond_step {
     }
     drive();
   }
-  // below_: what of a mean position is below the ground and not rounding of it, which a stiff bond would store.
+  // below_: what of a mean position is below the ground and not rounding of it, which a stiff bond would
+  // store.
   ILAW_KIT_INLINE void drive() {
     drive_ = V(0.5 * step_.velocity_step) * p_.v_free + (place_ + p_.state.opening);
     floor_ = 0.5 * (place_.n + ground_);
@@ -336,7 +369,8 @@ class bond_step {
     m.opening.t1 = select(sticks, place_.t1, m.opening.t1);
     m.opening.t2 = select(sticks, place_.t2, m.opening.t2);
   }
-  // Where friction couples with the normal and would do work, that may leave no push at all: then there is none of it.
+  // Where friction couples with the normal and would do work, that may leave no push at all: then there is
+  // none of it.
   void rub(motion& m, pressed_node& n, const contact_problem<vector<V>>& contact, V friction) const {
     friction_problem<V> p;
     friction_answer<V> a;
@@ -357,20 +391,23 @@ class bond_step {
   const step_sizes& step_;
   V weight_;
   bonded_inertia<V, Delassus> inertia_;
-  vector<V> place_, drive_;    // x at the time of the impulse; w^+ + w^- without bond and contact
-  V ground_, floor_, below_;   // lowest next position, lowest w^+
+  vector<V> place_, drive_;   // x at the time of the impulse; w^+ + w^- without bond and contact
+  V ground_, floor_, below_;  // lowest next position, lowest w^+
 };
 
 // What comes of a step. left: to the scalar fallback.
 template <class Step>
 struct bond_result {
+  using V = typename Step::number;
   typename Step::motion motion;
-  typename Step::number memory;
-  mask_of<typename Step::number> holds, left;
-  typename Step::number refused;
+  V memory;
+  mask_of<V> holds, left = none<V>();
+  V refused = 0.0;
+
+  ILAW_KIT_INLINE explicit bond_result(V before) : memory(before) {}
 };
 
-// ---- the law ------------------------------------------------------------------------------------------------------------
+// ---- the law ---------------------------------------------------------------------------------------------
 
 template <template <class> class Law, class V>
 struct adhesive_bond {
@@ -378,11 +415,11 @@ struct adhesive_bond {
   using problem = bond_problem<V>;
   using answer = bond_answer<V>;
 
-  // At once: bonds that surely stand still, and, where H does not couple, contact without bond and bonds that stay as
-  // they are.
+  // At once: bonds that surely stand still, and, where H does not couple, contact without bond and bonds that
+  // stay as they are.
   template <class Node>
   ILAW_KIT_INLINE asked<V> ask(Node& node, problem& p) const {
-    const mask_of<V> may_hold = is_bonded(node.state.memory, node.area), bonded = may_hold & law().bonds();
+    const mask_of<V> may_hold = is_bonded(node.state.memory, node.area), bonded = may_hold & makes_bond();
     status_of<V> status = status::free;
     mask_of<V> open = none<V>();
     if (any(!bonded)) {
@@ -401,11 +438,15 @@ struct adhesive_bond {
     if (any(open)) {
       p = {as_full(node.delassus), node.v_free, node.v_previous, node.gap, node.area, node.state};
       if constexpr (is_transverse<Node>) {
-        answer a;
-        const mask_of<V> stays = stay(p, open, a, node.prepared);
-        give(node, a, stays);
-        status = select(stays, status_of<V>(status::bonded), status);
-        open = open & !stays;
+        const mask_of<V> changes = (node.state.memory != 1.0 - Law<V>::broken) & opens(node);
+        if (any(open & !changes)) {
+          answer a;
+          if (const mask_of<V> stays = stay(p, open, a, node.prepared); any(stays)) {
+            give(node, a, stays);
+            status = select(stays, status_of<V>(status::bonded), status);
+            open = open & !stays;
+          }
+        }
       }
     }
     if (const mask_of<V> lost = may_hold & !bonded; any(lost)) {
@@ -432,11 +473,19 @@ struct adhesive_bond {
  private:
   using mask = mask_of<V>;
   static constexpr bool is_scalar = std::is_same_v<V, double>;
+  ILAW_KIT_INLINE mask makes_bond() const {
+    if constexpr (requires(const Law<V>& l) { l.bonds(); })
+      return law().bonds();
+    else
+      return !none<V>();
+  }
   ILAW_KIT_INLINE const Law<V>& law() const { return static_cast<const Law<V>&>(*this); }
 
   ILAW_KIT_INLINE static full<V> as_full(const full<V>& h) { return h; }
   ILAW_KIT_INLINE static full<V> as_full(const transverse<V>& h) { return {h.n, h.t, h.t, 0.0, 0.0, 0.0}; }
-  ILAW_KIT_INLINE static mask is_bonded(V memory, V area) { return (memory != Law<V>::broken) & (area > 0.0); }
+  ILAW_KIT_INLINE static mask is_bonded(V memory, V area) {
+    return (memory != Law<V>::broken) & (area > 0.0);
+  }
 
   // ---- without bond
 
@@ -478,14 +527,20 @@ struct adhesive_bond {
     node.impulse = select(stands, r, node.impulse);
     return stands;
   }
+  // A bond that has changed before and opens further most likely changes: it is left to the solver untried.
+  template <class Node>
+  ILAW_KIT_INLINE static mask opens(const Node& node) {
+    return product(node.state.opening, node.v_free) > 0.0;
+  }
   template <class Common>
   [[gnu::noinline]] mask stay(const problem& p, mask open, answer& a, const Common& common) const {
     const transverse<V> h{p.h.nn, p.h.t11};
-    const bond_step<V, transverse<V>> step(h, p, law().weight(common), common.step);
-    bond_result<bond_step<V, transverse<V>>> found;
+    const bond_step<V, transverse<V>> step(h, p, common);
+    bond_result<bond_step<V, transverse<V>>> found(p.state.memory);
     law().as_it_was(step, p.state.memory, common, found);
-    a = step.answer(found.motion, found.memory, status::bonded, 0.0);
-    return open & found.holds & !put_in(step, found.motion);
+    const mask stays = open & found.holds & !put_in(step, found.motion);
+    if (any(stays)) a = step.answer(found.motion, found.memory, status::bonded, 0.0);
+    return stays;
   }
   template <class Step>
   ILAW_KIT_INLINE static mask put_in(const Step& step, const typename Step::motion& m) {
@@ -497,7 +552,7 @@ struct adhesive_bond {
 
   template <class Common>
   mask solve_with(const problem& p, answer& a, const Common& common) const {
-    const mask may_hold = is_bonded(p.state.memory, p.area), bonded = may_hold & law().bonds();
+    const mask may_hold = is_bonded(p.state.memory, p.area), bonded = may_hold & makes_bond();
     const mask even = (p.h.n1 == 0.0) & (p.h.n2 == 0.0) & (p.h.t12 == 0.0) & (p.h.t11 == p.h.t22);
     mask left = none<V>();
     a = unmoved(p, {}, V(status::free.code));
@@ -519,8 +574,8 @@ struct adhesive_bond {
     mask open = where;
     if constexpr (can_be_rigid()) open = open & !stop(h, p, where, a, common.step);
     if (!any(open)) return open;
-    bond_step<V, Delassus> step(h, p, law().weight(common), common.step);
-    bond_result<bond_step<V, Delassus>> found;
+    bond_step<V, Delassus> step(h, p, common);
+    bond_result<bond_step<V, Delassus>> found(p.state.memory);
     respond(step, open, common, found);
     mask left = found.left | found.motion.unsolved;
     const mask gains = open & put_in(step, found.motion);
@@ -549,11 +604,15 @@ struct adhesive_bond {
   }
   template <class Step, class Common>
   void respond(const Step& step, mask open, const Common& common, bond_result<Step>& found) const {
-    law().as_it_was(step, step.problem().state.memory, common, found);
+    const V before = step.problem().state.memory;
+    found.memory = before;
+    found.left = none<V>();
+    found.refused = 0.0;
+    law().as_it_was(step, before, common, found);
     if (const mask changes = open & !found.holds; any(changes)) law().change(step, changes, common, found);
   }
-  // Where a bond that is made in this step, at the node's position, would put energy in, it is made before, at the least
-  // part of half a step at which it does not.
+  // Where a bond that is made in this step, at the node's position, would put energy in, it is made before,
+  // at the least part of half a step at which it does not.
   template <class Step, class Common>
   void make_before(Step& step, const Common& common, bond_result<Step>& found) const {
     if (found.refused != 0.0) return;
@@ -568,7 +627,8 @@ struct adhesive_bond {
       part = root_between(0.0, 1.0, 0.0, true, [&](double x) {
         return root_trial<double>{taken(x), last - first, last - first, 1.0, false};
       });
-    for (double more = 0x1p-52; taken(part) < 0.0 && part < 1.0; more *= 2.0) part = smaller(part + more, 1.0);
+    for (double more = 0x1p-52; taken(part) < 0.0 && part < 1.0; more *= 2.0)
+      part = smaller(part + more, 1.0);
   }
 
   // ---- what a node is given
@@ -592,14 +652,17 @@ struct adhesive_bond {
     V normal_gain, tangential_gain, stored, rupture;
   };
   template <class Common>
-  [[gnu::noinline]] energies energies_of(const state& before, const answer& a, V area, const Common& common) const {
-    const V weight = law().weight(common), rate = 0.5 * area * a.stiffness;
+  [[gnu::noinline]] energies energies_of(const state& before, const answer& a, V area,
+                                         const Common& common) const {
+    const V weight = common.weight, rate = a.rate;
     const vector<V> sum = a.state.opening + before.opening, change = a.state.opening - before.opening;
     const auto stored = [&](const state& s) ILAW_KIT_LAMBDA {
-      const V square = normal_product(s.opening, s.opening) + weight * tangential_product(s.opening, s.opening);
+      const V square =
+          normal_product(s.opening, s.opening) + weight * tangential_product(s.opening, s.opening);
       return area * law().energy(s.memory, square_root(square), common);
     };
-    const V normal = rate * normal_product(sum, change), shear = rate * weight * tangential_product(sum, change);
+    const V normal = rate * normal_product(sum, change),
+            shear = rate * weight * tangential_product(sum, change);
     const V after = stored(a.state);
     return {normal, shear, after, positive_part(normal + shear - (after - stored(before)))};
   }

@@ -6,18 +6,18 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// A function at one place x. The equation x = g(x) has value = size (x - g(x)), with any size > 0; its slope is rise/run,
-// an estimate or, where it is exact, the derivative.
+// A function at one place x. The equation x = g(x) has value = size (x - g(x)), with any size > 0; its slope
+// is rise/run, an estimate or, where it is exact, the derivative.
 template <class V>
 struct root_trial {
   V value, size, rise, run;
   mask_of<V> is_exact;
 };
 
-// Where f, not positive at low >= 0 and not negative at high, changes sign, in the lanes where active; others keep x.
-// Newton's steps where the slope is exact, else secants after the first (Dekker 1969); the fixed point where these leave
-// the bracket; bisection after most_steps of them. The last place that f is called at is the result, in all lanes, so
-// what f keeps of it may be used. A jump across zero is found as well.
+// Where f, not positive at low >= 0 and not negative at high, changes sign, in the lanes where active; others
+// keep x. Newton's steps where the slope is exact, else secants after the first (Dekker 1969); the fixed
+// point where these leave the bracket; bisection after most_steps of them. The last place that f is called at
+// is the result, in all lanes, so what f keeps of it may be used. A jump across zero is found as well.
 template <class V, class Function>
 ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f) {
   constexpr int most_steps = 24, most_bisections = 80;
@@ -38,11 +38,13 @@ ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f
     const mask_of<V> inside = (along > low) & (along < high);
     V next = along;
     if (any(!inside)) next = select(inside, along, smaller(larger(x - t.value / t.size, low), high));
-    if (k >= most_steps) [[unlikely]] next = halfway(low, high);
+    if (k >= most_steps) [[unlikely]]
+      next = halfway(low, high);
     const V step = absolute(next - x);
     const V last = k == 0 ? step : select(t.is_exact, step, absolute(x - before));
     mask_of<V> moves = step * last > close * (x * x);
-    if (k >= most_steps) [[unlikely]] moves = (next > low) & (next < high);
+    if (k >= most_steps) [[unlikely]]
+      moves = (next > low) & (next < high);
     before = select(active, x, before);
     value_before = select(active, t.value, value_before);
     x = select(active, next, x);
@@ -50,8 +52,8 @@ ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f
   }
 }
 
-// Whether f, positive at both ends of [low, high] and with one minimum between them, is anywhere not: golden section
-// (Kiefer 1953), to 1e-6 of the interval.
+// Whether f, positive at both ends of [low, high] and with one minimum between them, is anywhere not: golden
+// section (Kiefer 1953), to 1e-6 of the interval.
 template <class Function>
 bool dips(double low, double high, Function f) {
   constexpr double golden = 0.6180339887498949;
@@ -73,8 +75,8 @@ bool dips(double low, double high, Function f) {
   return !(fa > 0.0 && fb > 0.0);
 }
 
-// Whether f, positive at 0 and negative at 1, changes sign more than once. Two changes between samples show as an
-// extremum towards zero. More samples near 0, the scale of stiff directions.
+// Whether f, positive at 0 and negative at 1, changes sign more than once. Two changes between samples show
+// as an extremum towards zero. More samples near 0, the scale of stiff directions.
 template <class Function>
 bool changes_sign_again(Function f) {
   constexpr int samples = 32;

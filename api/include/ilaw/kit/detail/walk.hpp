@@ -4,7 +4,6 @@
 #pragma once
 
 #include <ilaw/kit/detail/view.hpp>
-#include <ilaw/kit/window.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
@@ -13,9 +12,9 @@ struct instance_base {
   std::uint32_t dimension, delassus_form, frame, has_tangent, numbers;
   std::uint32_t inputs, balance_inputs;
   bool carries_frame, frame_follows;
-  bool asks = false;     // these parameters need the solver, where the law has a step beside it
-  window_size window{};  // duration 0: none
-  int states;            // numbers of struct state, and for each the entry of the host's state; -1: none
+  bool asks = false;  // these parameters need the solver, where the law has a step beside it
+  bool in_blocks;     // the law works with more than the arrays of a block: windows
+  int states;         // numbers of struct state, and for each the entry of the host's state; -1: none
   const int* state_entries;
   std::int64_t history_offset, history_size, frame_offset;
   std::uint64_t state_size;
@@ -73,7 +72,7 @@ bool stays(const Array& a, int components) {
   return a.node_stride == 1 || (a.node_stride == components && a.component_stride == 1);
 }
 
-template <class Number, bool HasWindow = false>
+template <class Number>
 class batch_walk {
  public:
   using run_function = void (*)(const void* law, const view<Number>&, tally&);
@@ -84,7 +83,7 @@ class batch_walk {
 
   [[gnu::noinline]] tally run(run_function loop, const void* law) {
     tally all;
-    if (made_.window.duration == 0.0 && all_stay()) {
+    if (!made_.in_blocks && all_stay()) {
       run_part(node_range(b_, 0, b_.node_count), loop, law, all);
     } else {
       for (std::int64_t first = 0; first < b_.node_count; first += block_nodes) {
@@ -148,6 +147,64 @@ class batch_walk {
       for (std::int64_t i = 0; i < n.count; ++i) values[n.where[i] * stride] = from[i];
     else
       for (std::int64_t i = 0; i < n.count; ++i) values[(n.first + i) * stride] = from[i];
+  }
+  // Rows of four numbers or more, four nodes by four numbers at a time; the last four may overlap the others.
+  using four = double __attribute__((vector_size(32)));
+  ILAW_KIT_INLINE static void transpose(four (&m)[4]) {
+    const four a = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6),
+               b = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7),
+               c = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6),
+               d = __builtin_shufflevector(m[2], m[3], 1, 5, 3, 7);
+    m[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    m[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    m[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    m[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+  }
+  [[gnu::noinline]] static void gather_rows(const double* values, std::int64_t stride, int count,
+                                            const node_range& n, double* to) {
+    std::int64_t i = 0;
+    for (; i + 4 <= n.count; i += 4) {
+      const double* const at[4] = {values + n(i) * stride, values + n(i + 1) * stride,
+                                   values + n(i + 2) * stride, values + n(i + 3) * stride};
+      for (int c = 0; c < count; c += 4) {
+        const int first = c + 4 <= count ? c : count - 4;
+        four m[4];
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(&m[k], at[k] + first, sizeof(four));
+        transpose(m);
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(to + (first + k) * block_nodes + i, &m[k], sizeof(four));
+      }
+    }
+    for (; i < n.count; ++i)
+      for (int c = 0; c < count; ++c) to[c * block_nodes + i] = values[n(i) * stride + c];
+  }
+  [[gnu::noinline]] static void scatter_rows(double* values, std::int64_t stride, int count,
+                                             const node_range& n, const double* from) {
+    std::int64_t i = 0;
+    for (; i + 4 <= n.count; i += 4) {
+      double* const at[4] = {values + n(i) * stride, values + n(i + 1) * stride, values + n(i + 2) * stride,
+                             values + n(i + 3) * stride};
+      for (int c = 0; c < count; c += 4) {
+        const int first = c + 4 <= count ? c : count - 4;
+        four m[4];
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k)
+          __builtin_memcpy(&m[k], from + (first + k) * block_nodes + i, sizeof(four));
+        transpose(m);
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(at[k] + first, &m[k], sizeof(four));
+      }
+    }
+    for (; i < n.count; ++i)
+      for (int c = 0; c < count; ++c) values[n(i) * stride + c] = from[c * block_nodes + i];
+  }
+  // Whether the law's numbers are rows in the host's order.
+  template <class Array>
+  bool has_rows(const Array& a) const {
+    bool are_in_order = made_.states >= 4 && a.component_stride == 1;
+    for (int k = 0; k < made_.states; ++k) are_in_order = are_in_order && made_.state_entries[k] == k;
+    return are_in_order;
   }
   // Components that lie in other lines of memory: node by node.
   template <class T>
@@ -231,10 +288,6 @@ class batch_walk {
 
   // ---- state
 
-  // The state begins with three numbers in the order of struct state.
-  bool has_three_states() const {
-    return made_.states >= 3 && made_.state_entries[0] == 0 && made_.state_entries[1] == 1 && made_.state_entries[2] == 2;
-  }
   void open_state(view<Number>& v, const node_range& n) {
     if (made_.state_size == 0) return;
     copy_unnamed(n);
@@ -244,10 +297,11 @@ class batch_walk {
     if (!n.listed && state_stays(from)) {
       v.state_in = {from.values + n.first * from.node_stride, from.component_stride, made_.states,
                     from.node_stride != 1 ? made_.states : 0};
+    } else if (has_rows(from)) {
+      gather_rows(from.values, from.node_stride, made_.states, n, in);
+      v.state_in = {in, block_nodes, made_.states, 0};
     } else {
-      if (has_three_states())
-        gather_three(from.values, from.node_stride, from.component_stride, n, in);
-      for (int k = has_three_states() ? 3 : 0; k < made_.states; ++k) {
+      for (int k = 0; k < made_.states; ++k) {
         const int entry = made_.state_entries[k];
         double* const to = in + k * block_nodes;
         if (entry >= 0)
@@ -278,9 +332,8 @@ class batch_walk {
     if (!n.listed && in.node_stride == 1) {
       v.frame_in = {in.values + at * in.component_stride + n.first, in.component_stride, 6, 0};
     } else {
-      for (int k = 0; k < 6; k += 3)
-        gather_three(in.values + (at + k) * in.component_stride, in.node_stride, in.component_stride, n,
-                     copy + k * block_nodes);
+      for (int k = 0; k < 6; ++k)
+        gather_column(in.values + (at + k) * in.component_stride, in.node_stride, n, copy + k * block_nodes);
       v.frame_in = {copy, block_nodes, 6, 0};
     }
     if (!n.listed && out.node_stride == 1)
@@ -293,98 +346,26 @@ class batch_walk {
     const ilaw_input& in = b_.state_in;
     const ilaw_output& out = b_.state_out;
     if (in.values == out.values || made_.history_size == 0) return;
-    const auto first = made_.history_offset, size = made_.history_size;
-    if (in.component_stride == 1 && out.component_stride == 1) {
-      for (std::int64_t i = 0; i < n.count; ++i)
-        __builtin_memcpy(out.values + n(i) * out.node_stride + first,
-                         in.values + n(i) * in.node_stride + first,
-                         static_cast<std::size_t>(size) * sizeof(double));
-      return;
-    }
-    for (std::int64_t c = first; c < first + size; ++c) {
-      const double* const from = in.values + c * in.component_stride;
-      double* const to = out.values + c * out.component_stride;
-      if (!n.listed && in.node_stride == 1 && out.node_stride == 1)
-        __builtin_memcpy(to + n.first, from + n.first, static_cast<std::size_t>(n.count) * sizeof(double));
-      else
-        for (std::int64_t i = 0; i < n.count; ++i) to[n(i) * out.node_stride] = from[n(i) * in.node_stride];
-    }
+    for (std::int64_t i = 0; i < n.count; ++i)
+      for (std::int64_t c = made_.history_offset; c < made_.history_offset + made_.history_size; ++c)
+        out.values[n(i) * out.node_stride + c * out.component_stride] =
+            in.values[n(i) * in.node_stride + c * in.component_stride];
   }
   void close_state(const view<Number>& v, const node_range& n) const {
     if (made_.state_size == 0) return;
     const ilaw_output& to = b_.state_out;
     const double* const out = state_scratch_ + made_.states * block_nodes;
-    if (v.state_out.at == out) {
-      if (has_three_states()) scatter_three(to.values, to.node_stride, to.component_stride, n, out);
-      for (int k = has_three_states() ? 3 : 0; k < made_.states; ++k)
+    if (v.state_out.at == out && has_rows(to))
+      scatter_rows(to.values, to.node_stride, made_.states, n, out);
+    else if (v.state_out.at == out)
+      for (int k = 0; k < made_.states; ++k)
         if (const int entry = made_.state_entries[k]; entry >= 0)
           scatter_column(to.values + entry * to.component_stride, to.node_stride, n, out + k * block_nodes);
-    }
     const double* const frame = out + made_.states * block_nodes + 6 * block_nodes;
     if (made_.carries_frame && v.frame_out.at == frame)
-      for (int k = 0; k < 6; k += 3)
-        scatter_three(to.values + (made_.frame_offset + k) * to.component_stride, to.node_stride,
-                      to.component_stride, n, frame + k * block_nodes);
-  }
-
-  // ---- windows
-
-  // Calls work with the windows of each pack of nodes; lanes without a node have that of the last one.
-  template <class Work>
-  static void for_windows(const view<Number>& v, Work work) {
-    constexpr int lanes = lanes_of<pack>;
-    for (std::int64_t i = 0; i < v.count; i += lanes) {
-      if (v.history_node_stride == 1 && !v.nodes && i + lanes <= v.count) {
-        work(i, window_columns<pack>{v.history + i, v.history_component_stride});
-      } else {
-        window_rows own;
-        own.stride = v.history_component_stride;
-        const std::int64_t last = v.count - 1 - i;
-#pragma GCC unroll 8
-        for (int lane = 0; lane < lanes; ++lane) {
-          const std::int64_t k = i + (lane < last ? lane : last);
-          own.first[lane] = v.history + (v.nodes ? v.nodes[k] : k) * v.history_node_stride;
-        }
-        work(i, own);
-      }
-    }
-  }
-  struct window_block {
-    alignas(64) double earlier[3][block_nodes], refused[block_nodes];
-    alignas(64) double given[3][block_nodes], adds[block_nodes], clears[block_nodes];
-  };
-  [[gnu::noinline, gnu::flatten]] static void read_windows(const window& w, const view<Number>& v,
-                                                           window_block& block) {
-    for_windows(v, [&](std::int64_t i, const auto& own) {
-      vector<pack> sum;
-      store(w.read(own, sum), block.refused + i);
-      store(sum.n, block.earlier[0] + i);
-      store(sum.t1, block.earlier[1] + i);
-      store(sum.t2, block.earlier[2] + i);
-    });
-  }
-  [[gnu::noinline, gnu::flatten]] static void write_windows(const window& w, const view<Number>& v,
-                                                            window_block& block) {
-    for (std::int64_t i = v.count; i % lanes_of<pack> != 0; ++i) block.adds[i] = block.clears[i] = 0.0;
-    for_windows(v, [&](std::int64_t i, const auto& own) {
-      const vector<pack> impulse{load<pack>(block.given[0] + i), load<pack>(block.given[1] + i),
-                                 load<pack>(block.given[2] + i)};
-      w.write(own, load<pack>(block.clears + i) != 0.0, load<pack>(block.adds + i) != 0.0, impulse);
-    });
-  }
-  void run_with_windows(view<Number>& v, run_function loop, const void* law, tally& found) {
-    const window w(made_.window, {b_.time + 0.5 * b_.position_step, b_.velocity_step});
-    window_block block;
-    for (int c = 0; c < 3; ++c) {
-      v.earlier[c] = block.earlier[c];
-      v.given[c] = block.given[c];
-    }
-    v.earlier_refused = block.refused;
-    v.adds = block.adds;
-    v.clears = block.clears;
-    read_windows(w, v, block);
-    loop(law, v, found);
-    write_windows(w, v, block);
+      for (int k = 0; k < 6; ++k)
+        scatter_column(to.values + (made_.frame_offset + k) * to.component_stride, to.node_stride, n,
+                       frame + k * block_nodes);
   }
 
   // ---- a part of the batch
@@ -446,14 +427,7 @@ class batch_walk {
     open_outputs(v, n);
     open_state(v, n);
     tally found;
-    if constexpr (HasWindow) {
-      if (made_.window.duration > 0.0)
-        run_with_windows(v, loop, law, found);
-      else
-        loop(law, v, found);
-    } else {
-      loop(law, v, found);
-    }
+    loop(law, v, found);
     add(all, found, n);
     scatter(b_.impulse, v.impulse, n, s_.impulse);
     scatter(b_.velocity, v.velocity, n, s_.velocity);
