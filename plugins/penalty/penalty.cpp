@@ -119,12 +119,12 @@ struct penalty {
   // Of explicit springs, the normal one taken as closed and as stiff as it is now, with a damper that lags: omega h =
   // 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega) (Belytschko, Liu, Moran 2000, eq. 6.2.31).
   V stable_velocity_step(V h_n, V h_t) const {
-    return select(exponent == 1.0, stable_step(h_n, h_t, stiffness), V(not_a_number));
+    return select(exponent == 1.0, limit_with(h_n, h_t, stiffness), V(not_a_number));
   }
   template <class Node>
   V stable_velocity_step(const Node& node) const {
     const V slope = exponent * stiffness * to_exponent(positive_part(-node.gap), exponent - 1.0);
-    return stable_step(node.delassus.normal(), node.delassus.largest_tangential(), slope);
+    return limit_with(node.delassus.normal(), node.delassus.largest_tangential(), slope);
   }
 
   // What all nodes of a batch share.
@@ -216,7 +216,7 @@ struct penalty {
   }
 
  private:
-  V stable_step(V h_n, V h_t, V slope) const {
+  V limit_with(V h_n, V h_t, V slope) const {
     if (integration == implicitly) return infinity;
     const V half_damper = 0.5 * damping * h_n;
     const V closed = 2.0 / (length(square_root(slope * h_n), half_damper) + half_damper);

@@ -150,7 +150,7 @@ struct postit {
   trial tried(const Node& node) const {
     const V adhesion = node.state.adhesion;
     const mask_of<V> was_bonded = adhesion > 0.0;
-    const vector<V> r = stopping_impulse(node);
+    const vector<V> r = stopping_impulse(node.delassus, node.v_free, node.v_previous);
     const mask_of<V> holds = was_bonded & is_within(node.earlier + r, adhesion, at_the_limit);
     const mask_of<V> breaks = was_bonded & !holds;
     vector<V> kept;
@@ -182,7 +182,7 @@ struct postit {
   }
 
   // The part of the trial impulse that takes the sum to the limit; bisection to the last bit.
-  V held_part(vector<V> earlier, vector<V> r, V adhesion) const {
+  [[gnu::noinline, gnu::cold]] V held_part(vector<V> earlier, vector<V> r, V adhesion) const {
     V holds = 0.0, breaks = 1.0, middle = 0.5;
     for (mask_of<V> open = is_within(earlier, adhesion, 1.0); any(open);
          open = open & (middle > holds) & (middle < breaks)) {
@@ -194,32 +194,13 @@ struct postit {
     return holds;
   }
 
-  // The largest part up to 1 of r that may join what is held, so that the work of both, which is
-  // (held + r).(v^- + v_free + H (held + r))/2, is not positive; that of what is held alone counts as none.
-  template <class Node>
-  static V joining_part(const Node& node, vector<V> held, vector<V> r) {
-    const auto product = [](vector<V> a, vector<V> b) {
-      return normal_product(a, b) + tangential_product(a, b);
-    };
-    const vector<V> of_held = node.delassus.times(held), motion = node.v_previous + node.v_free + of_held;
-    const V c2 = product(r, node.delassus.times(r)), c1 = product(r, motion + of_held);
-    const fraction<V> root = root_of_work(c2, c1, smaller(product(held, motion), 0.0));
-    return select(root.numerator < root.denominator, root.numerator / root.denominator, 1.0);
-  }
-  // What is held and then contact and friction do no positive work each, and yet may together: friction is
-  // scaled first, as where there is no bond, and then contact with it, if that was not enough.
-  template <class Node>
-  static vector<V> joined(const Node& node, vector<V> held, vector<V> r) {
-    const vector<V> normal{r.n}, rubs{0.0, r.t1, r.t2};
-    r = normal + joining_part(node, held + normal, rubs) * rubs;
-    return held + joining_part(node, held, r) * r;
-  }
-
   // The node comes with the impulse of contact, is given that of its bond, and heals.
   template <class Node>
   status_of<V> settle(Node& node, const trial& bond, status_of<V> of_contact) const {
     if (rupture == saturated && any(bond.breaks))
-      node.impulse = select(bond.breaks, joined(node, bond.kept, node.impulse), node.impulse);
+      node.impulse =
+          select(bond.breaks, joined(node.delassus, node.v_previous + node.v_free, bond.kept, node.impulse),
+                 node.impulse);
     count_rupture(node.state, node.velocity_step, bond, node.impulse.n > 0.0);
     node.impulse = select(bond.holds, bond.r, node.impulse);
     const mask_of<V> was_bonded = bond.holds | bond.breaks, heals = heal(node, bond);

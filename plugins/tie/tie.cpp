@@ -80,7 +80,7 @@ struct tie {
 
   template <class Node>
   status_of<V> step(Node& node) const {
-    const vector<V> trial = stopping_impulse(node);
+    const vector<V> trial = stopping_impulse(node.delassus, node.v_free, node.v_previous);
     const V broken = node.state.broken;
     const mask_of<V> bonded = broken == 0.0;
     mask_of<V> holds = bonded;

@@ -21,36 +21,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/friction.hpp>
+#include <ilaw/kit/rigid_bond.hpp>
 #include <ilaw/kit/roots.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
-
-// ---- stopping a node ------------------------------------------------------------------------------------------------
-
-// The part of v_free that rounding may leave: v_free + H r, which is 0, is the velocity before of a node that is held
-// from step to step.
-inline constexpr double left_by_rounding = 0x1p-48;
-// v^- beyond that.
-template <class V>
-ILAW_KIT_INLINE vector<V> velocity_before(vector<V> v_previous, vector<V> v_free) {
-  return v_previous + V(left_by_rounding) * v_free;
-}
-template <class V>
-ILAW_KIT_INLINE V product(vector<V> a, vector<V> b) {
-  return normal_product(a, b) + tangential_product(a, b);
-}
-// The impulse that stops the node, r = -H^-1 v_free, less what would be positive work: only where the node turned round
-// within the step.
-template <class V, class Delassus>
-vector<V> stopping_impulse(const Delassus& h, vector<V> v_free, vector<V> v_previous) {
-  const vector<V> r = -h.solve(v_free);
-  friction_problem<V> problem;
-  fill(problem, h, {0.0, v_free, velocity_before(v_previous, v_free)}, 0.0, 0.0);
-  friction_answer<V> a{{r.n, r.t1, r.t2}, status::stick.code, 0.0};
-  take_off_positive_work(problem, a);
-  return {a.r[0], a.r[1], a.r[2]};
-}
 
 // ---- problem and answer ---------------------------------------------------------------------------------------------
 

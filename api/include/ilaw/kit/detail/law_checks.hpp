@@ -428,7 +428,10 @@ struct checked_members {
       has_solve, solves_rightly<Law>(),
       "solve must be mask_of<V> solve(const problem& p, answer& a) const, and solve_scalar the same without "
       "result; both may take what prepare gave as well");
-  ILAW_KIT_FUNCTION(asks, bool, "bool asks() const");
+  ILAW_KIT_CHECK(has_right_asks,
+                 !names_asks<Law> || requires(const Law& law) { { law.asks() } -> std::same_as<bool>; } ||
+                     requires(const Law& law) { { law.asks(true) } -> std::same_as<bool>; },
+                 "asks must be bool asks() const or bool asks(bool is_transverse) const");
   ILAW_KIT_FUNCTION(conflict, const char*, "const char* conflict() const");
   ILAW_KIT_FUNCTION(inputs, std::uint32_t, "std::uint32_t inputs() const");
   ILAW_KIT_FUNCTION(capabilities, std::uint32_t, "std::uint32_t capabilities() const");

@@ -231,7 +231,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     if constexpr (!careful)
       if (any(bad_input)) [[unlikely]]
         return false;
-    node_type closed = p.node;
+    node_type closed = as_it_came(p.node);
     problem own;
     const asked<V> asked = law.ask(closed, own);
     status_of<V> status = asked.status;
@@ -268,6 +268,23 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
     base::add_limit(limits, law, p.node, b, nodes & !bad);
     if constexpr (careful) base::add_bad(found, c, nodes, node);
     return true;
+  }
+  // Member by member: for a copy of the whole compilers keep both in memory.
+  ILAW_KIT_INLINE static node_type as_it_came(const node_type& n) {
+    return {.time = n.time,
+            .velocity_step = n.velocity_step,
+            .position_step = n.position_step,
+            .per_position_step = n.per_position_step,
+            .wants_energy = n.wants_energy,
+            .prepared = n.prepared,
+            .v_free = n.v_free,
+            .v_previous = n.v_previous,
+            .delassus = n.delassus,
+            .gap = n.gap,
+            .area = n.area,
+            .earlier = n.earlier,
+            .history = n.history,
+            .state = n.state};
   }
   ILAW_KIT_INLINE static void choose(node_type& a, const node_type& b, mask first) {
     a.impulse = select(first, a.impulse, b.impulse);
