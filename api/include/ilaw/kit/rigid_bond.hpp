@@ -53,11 +53,16 @@ V joining_part(const Delassus& h, vector<V> motion, vector<V> held, vector<V> r)
 // What is held and then contact and friction do no positive work each, and yet may together: friction is
 // scaled first, as where there is no bond, and then contact with it, if that was not enough.
 template <class V, class Delassus>
-[[gnu::noinline, gnu::cold]] vector<V> joined(const Delassus& h, vector<V> motion, vector<V> held,
-                                              vector<V> r) {
+[[gnu::noinline, gnu::cold]] vector<V> joined_for(const Delassus& h, vector<V> motion, vector<V> held,
+                                                  vector<V> r) {
   const vector<V> normal{r.n}, rubs{0.0, r.t1, r.t2};
   r = normal + joining_part(h, motion, held + normal, rubs) * rubs;
   return held + joining_part(h, motion, held, r) * r;
+}
+
+template <class Node, class V>
+ILAW_KIT_INLINE vector<V> joined(const Node& node, vector<V> held, vector<V> r) {
+  return joined_for(node.delassus, node.v_previous + node.v_free, held, r);
 }
 
 // Contact where the gap is closed and nothing rebounds, for v_free as given.
