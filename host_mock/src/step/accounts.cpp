@@ -149,7 +149,7 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
   if (tally_.unconverged > 0 && tally_.coupling_energy > rounding_energy * energy.scale)
     say("contacts that share nodes are not solved in %lld of %lld steps, the start included: residual up to %.1e after %d sweeps, "
         "expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
-        static_cast<long long>(tally_.unconverged), static_cast<long long>(steps + 1),
+        static_cast<long long>(tally_.unconverged), static_cast<long long>(steps) + 1,
         tally_.coupling_residual_max, CoupledContacts::most_sweeps, CoupledContacts::tolerance,
         tally_.coupling_energy, energy.scale);
   if (tally_.left_surface > 0)
