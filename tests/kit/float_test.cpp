@@ -12,8 +12,9 @@ namespace ilaw::testing {
 namespace {
 
 // The same law for another type of the host's numbers.
-ilaw::interface made_for(std::uint32_t numbers, const std::string& law, const Parameters& parameters, int d = 3,
-                         std::uint32_t form = ILAW_DELASSUS_SCALAR, std::uint32_t frame = ILAW_FRAME_LOCAL) {
+ilaw::interface made_for(std::uint32_t numbers, const std::string& law, const Parameters& parameters,
+                         int d = 3, std::uint32_t form = ILAW_DELASSUS_SCALAR,
+                         std::uint32_t frame = ILAW_FRAME_LOCAL) {
   SetupBuilder builder(parameters, static_cast<std::uint32_t>(d), form, frame);
   builder.setup.numbers = numbers;
   return make_tested_law(law, builder);
@@ -66,12 +67,14 @@ class FloatBatch {
     return {a.values, a.values + size};
   }
   ilaw_input input(const ilaw_input& a, std::int64_t count) {
-    return ilaw::input(a.values ? inputs_.emplace_back(copy(a, count)).data() : static_cast<const float*>(nullptr),
-                       a.node_stride, a.component_stride);
+    return ilaw::input(
+        a.values ? inputs_.emplace_back(copy(a, count)).data() : static_cast<const float*>(nullptr),
+        a.node_stride, a.component_stride);
   }
   ilaw_output output(const ilaw_output& a, std::int64_t count, std::vector<float>& own) const {
     own = copy(ilaw::input(a.values, a.node_stride, a.component_stride), count);
-    return ilaw::output(a.values ? own.data() : static_cast<float*>(nullptr), a.node_stride, a.component_stride);
+    return ilaw::output(a.values ? own.data() : static_cast<float*>(nullptr), a.node_stride,
+                        a.component_stride);
   }
 
   std::int64_t nodes_;
@@ -99,8 +102,7 @@ class Floats : public ::testing::TestWithParam<LawCase> {
   }
 
   // Some steps in doubles and in floats, each with a state of its own; in the second one gaps have offsets.
-  static void expect_doubles_rounded(const Both& law, Nodes nodes, const Layout& layout,
-                                     bool global) {
+  static void expect_doubles_rounded(const Both& law, Nodes nodes, const Layout& layout, bool global) {
     for (auto* values :
          {&nodes.v_free, &nodes.v_previous, &nodes.gap, &nodes.area, &nodes.normal, &nodes.delassus})
       round_to_floats(*values);
@@ -259,8 +261,9 @@ TEST(FloatArrays, RefuseArraysOfDoubles) {
     node.b.gap = ilaw::input(&gap, 1, 1);
     if (both) node.b.gap.floats = &node.gap;
     EXPECT_EQ(node.evaluate(), ILAW_INVALID_ARGUMENT);
-    EXPECT_STREQ(node.report.reason,
-                 both ? "an array is of other numbers than the setup's, or has both pointers" : "gap is null");
+    EXPECT_STREQ(
+        node.report.reason,
+        both ? "an array is of other numbers than the setup's, or has both pointers" : "gap is null");
   }
 }
 

@@ -16,14 +16,15 @@ struct sums {
   V count;
   vector<V> sum;  // of impulses
 };
-// r = -c (v_free + H r), solved for r, plus a pull along the remembered sum, so that memory matters. Solves for H of any
-// form as if it were its normal entry alone.
+// r = -c (v_free + H r), solved for r, plus a pull along the remembered sum, so that memory matters. Solves
+// for H of any form as if it were its normal entry alone.
 template <class V, class Node>
 status_of<V> sum_up(Node& node, V viscosity, V last) {
   const auto closed = node.gap <= 0.0;
   const V c = zero_unless(closed, viscosity), factor = -c / (1.0 + c * node.delassus.normal());
   const vector<V> slip = node.state.slip;
-  node.impulse = factor * node.v_free - V(0.125) * vector<V>{last, node.state.sum.t1, node.state.sum.t2} - V(0.25) * slip;
+  node.impulse = factor * node.v_free - V(0.125) * vector<V>{last, node.state.sum.t1, node.state.sum.t2} -
+                 V(0.25) * slip;
   node.state.count += 1.0;
   node.state.sum = node.state.sum + node.impulse;
   const vector<V> v = node.v_free + node.delassus.times(node.impulse);
@@ -47,7 +48,12 @@ struct kit_probe {
       {.member = &kit_probe::viscosity, .name = "viscosity", .unit = "N.s/m", .doc = "c", .required = true}};
   using state = sums<V>;
   static constexpr state_variable<state> state_variables[] = {
-      {.member = &state::count, .name = "count", .doc = "steps", .minimum = 0.0, .maximum = 1e6, .whole = true},
+      {.member = &state::count,
+       .name = "count",
+       .doc = "steps",
+       .minimum = 0.0,
+       .maximum = 1e6,
+       .whole = true},
       {.member = &state::sum, .name = "sum", .unit = "N.s", .doc = "impulses"},
       {.member = &state::slip, .name = "slip", .unit = "m", .doc = "of closed steps"}};
   static constexpr history_card history{.name = "last", .doc = "last two v_N", .internal = true};
@@ -68,7 +74,8 @@ struct kit_probe {
   }
 };
 
-// In packs: a field, a table over it, an amount, numbers that a batch shares, a first state, refusals, permissions.
+// In packs: a field, a table over it, an amount, numbers that a batch shares, a first state, refusals,
+// permissions.
 constexpr const char* yes_or_no[] = {"no", "yes"};
 constexpr const char* over_temperature[] = {"time", "temperature", "hardness"};
 
@@ -87,11 +94,28 @@ struct pack_probe {
                                  .capabilities = can_adhere};
   static constexpr auto& references = no_references;
   static constexpr parameter<pack_probe> parameters[] = {
-      {.member = &pack_probe::viscosity, .name = "viscosity", .unit = "N.s/m", .doc = "c", .required = true,
-       .infinity_allowed = false, .axes = over_temperature},
-      {.member = &pack_probe::temperature, .name = "temperature", .unit = "K", .default_value = 300.0, .is_field = true},
-      {.member = &pack_probe::hardness, .name = "hardness", .default_value = 1.0, .minimum_excluded = true, .is_field = true},
-      {.member = &pack_probe::rate, .name = "rate", .unit = "1/s", .doc = "the memory fades at", .default_value = 100.0},
+      {.member = &pack_probe::viscosity,
+       .name = "viscosity",
+       .unit = "N.s/m",
+       .doc = "c",
+       .required = true,
+       .infinity_allowed = false,
+       .axes = over_temperature},
+      {.member = &pack_probe::temperature,
+       .name = "temperature",
+       .unit = "K",
+       .default_value = 300.0,
+       .is_field = true},
+      {.member = &pack_probe::hardness,
+       .name = "hardness",
+       .default_value = 1.0,
+       .minimum_excluded = true,
+       .is_field = true},
+      {.member = &pack_probe::rate,
+       .name = "rate",
+       .unit = "1/s",
+       .doc = "the memory fades at",
+       .default_value = 100.0},
       {.member = &pack_probe::rests, .name = "rests", .choices = yes_or_no}};
   struct state {
     tangential_vector<V> slip;
@@ -107,7 +131,9 @@ struct pack_probe {
   static constexpr amount_card amounts[] = {{.name = "heat", .unit = "J"}, {.name = "wear", .unit = "m"}};
 
   std::uint32_t permissions() const { return rests == 1.0 ? may_skip_free : 0U; }
-  const char* conflict() const { return viscosity > 1e6 * hardness ? "parameter 'viscosity' is above 1e6 'hardness'" : nullptr; }
+  const char* conflict() const {
+    return viscosity > 1e6 * hardness ? "parameter 'viscosity' is above 1e6 'hardness'" : nullptr;
+  }
   struct shared {
     V left;
   };
@@ -131,8 +157,8 @@ struct pack_probe {
   }
 };
 
-// A solver whose packs leave a third of the problems to the scalar fallback: r = -(v_free + e^-|v_free|)/H where v_free < 0,
-// by Newton's method on x, x exp(x) = w, so that lanes take different numbers of steps.
+// A solver whose packs leave a third of the problems to the scalar fallback: r = -(v_free + e^-|v_free|)/H
+// where v_free < 0, by Newton's method on x, x exp(x) = w, so that lanes take different numbers of steps.
 template <class V>
 struct solver_probe {
   V offset;
@@ -144,11 +170,13 @@ struct solver_probe {
                                  .capabilities = can_store_energy,
                                  .permissions = may_skip_fresh | may_skip_free};
   static constexpr auto& references = no_references;
-  static constexpr parameter<solver_probe> parameters[] = {{.member = &solver_probe::offset, .name = "offset"}};
+  static constexpr parameter<solver_probe> parameters[] = {
+      {.member = &solver_probe::offset, .name = "offset"}};
   struct state {
     V total;
   };
-  static constexpr state_variable<state> state_variables[] = {{.member = &state::total, .name = "total", .unit = "N.s"}};
+  static constexpr state_variable<state> state_variables[] = {
+      {.member = &state::total, .name = "total", .unit = "N.s"}};
   static constexpr amount_card amounts[] = {{.name = "wear", .unit = "m"}};
 
   struct problem {
@@ -192,7 +220,8 @@ template <class V>
 struct limit_probe {
   V stiffness;
 
-  static constexpr law_card card{.id = "limit_probe", .title = "Limit by H", .doc = "h = 2/sqrt(k (h_N + h_T/4))", .inputs = 0};
+  static constexpr law_card card{
+      .id = "limit_probe", .title = "Limit by H", .doc = "h = 2/sqrt(k (h_N + h_T/4))", .inputs = 0};
   static constexpr auto& references = no_references;
   static constexpr parameter<limit_probe> parameters[] = {
       {.member = &limit_probe::stiffness, .name = "stiffness", .default_value = 1.0}};
@@ -206,7 +235,8 @@ template <class V>
 struct node_limit_probe {
   V stiffness;
 
-  static constexpr law_card card{.id = "node_limit_probe", .title = "Limit by node", .doc = "h = 2/sqrt(k h_N), where closed"};
+  static constexpr law_card card{
+      .id = "node_limit_probe", .title = "Limit by node", .doc = "h = 2/sqrt(k h_N), where closed"};
   static constexpr auto& references = no_references;
   static constexpr parameter<node_limit_probe> parameters[] = {
       {.member = &node_limit_probe::stiffness, .name = "stiffness", .default_value = 1.0}};
@@ -233,8 +263,10 @@ struct promise_breaker {
                                  .delassus_forms = ILAW_DELASSUS_SCALAR,
                                  .permissions = may_skip_fresh};
   static constexpr auto& references = no_references;
-  static constexpr parameter<promise_breaker> parameters[] = {
-      {.member = &promise_breaker::breaks, .name = "breaks", .doc = "Which promise.", .choices = breaks_choices}};
+  static constexpr parameter<promise_breaker> parameters[] = {{.member = &promise_breaker::breaks,
+                                                               .name = "breaks",
+                                                               .doc = "Which promise.",
+                                                               .choices = breaks_choices}};
   template <class Node>
   status_of<V> step(Node& node) const {
     static_assert(is_transverse<Node>, "what the card does not serve is not compiled");
@@ -247,5 +279,5 @@ struct promise_breaker {
 
 }  // namespace
 
-ILAW_PLUGIN("kit_probe", "1.0.0", "tests", "BSD-3-Clause", kit_probe, pack_probe, solver_probe, limit_probe, node_limit_probe,
-            promise_breaker)
+ILAW_PLUGIN("kit_probe", "1.0.0", "tests", "BSD-3-Clause", kit_probe, pack_probe, solver_probe, limit_probe,
+            node_limit_probe, promise_breaker)

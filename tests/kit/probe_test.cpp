@@ -1,5 +1,5 @@
-// What no shipped law has all of: tables over fields, amounts, numbers that a batch shares, first states, refusals, a
-// solver with a scalar fallback, stable steps. kit_probe.cpp has the equations.
+// What no shipped law has all of: tables over fields, amounts, numbers that a batch shares, first states,
+// refusals, a solver with a scalar fallback, stable steps. kit_probe.cpp has the equations.
 #include "kit_probe.hpp"
 
 #include "support/numbers.hpp"
@@ -31,7 +31,9 @@ class Probe {
     setup_.numbers = ILAW_NUMBERS_DOUBLE;
   }
   Probe& number(const std::string& name, double value) { return arguments_.number(name, value), *this; }
-  Probe& text(const std::string& name, const std::string& value) { return arguments_.text(name, value), *this; }
+  Probe& text(const std::string& name, const std::string& value) {
+    return arguments_.text(name, value), *this;
+  }
   Probe& per_node(const std::string& name) { return arguments_.per_node(name), *this; }
   Probe& table(const std::string& name, const std::vector<Axis>& axes, const std::vector<double>& values) {
     std::vector<ilaw::parameters::axis> all;
@@ -62,7 +64,8 @@ class Probe {
 // Of pack_probe at rest, where r_N = -c v/(1 + c) for H = 1: the viscosity c that acted on v = -1.
 class ViscosityOf {
  public:
-  explicit ViscosityOf(const ilaw::interface& law) : law_(law), nodes_(19, {-1.0, 0.0, 0.0}, law.info().state_size) {}
+  explicit ViscosityOf(const ilaw::interface& law)
+      : law_(law), nodes_(19, {-1.0, 0.0, 0.0}, law.info().state_size) {}
 
   std::vector<double> at(double time, std::vector<std::vector<double>> per_node = {}) {
     std::vector<ilaw_input> inputs;
@@ -87,12 +90,14 @@ MATCHER_P(IsNear, expected, "") { return std::abs(arg - expected) <= 1e-14 * std
 const Axis times{"time", {0.0, 2.0}}, degrees{"temperature", {200.0, 300.0, 400.0}};
 
 TEST(Tables, AreReadAtTheFieldOfTheBatch) {
-  const ilaw::interface law = Probe("pack_probe").table("viscosity", {degrees}, {1.0, 2.0, 4.0}).number("temperature", 300.0).make();
+  const ilaw::interface law =
+      Probe("pack_probe").table("viscosity", {degrees}, {1.0, 2.0, 4.0}).number("temperature", 300.0).make();
   EXPECT_THAT(ViscosityOf(law).at(0.0), Each(IsNear(2.0)));
 }
 
 TEST(Tables, AreReadAtTheFieldOfEachNode) {
-  const ilaw::interface law = Probe("pack_probe").table("viscosity", {degrees}, {1.0, 2.0, 4.0}).per_node("temperature").make();
+  const ilaw::interface law =
+      Probe("pack_probe").table("viscosity", {degrees}, {1.0, 2.0, 4.0}).per_node("temperature").make();
   std::vector<double> kelvin(19), expected(19);
   for (std::size_t i = 0; i < 19; ++i) {
     kelvin[i] = 150.0 + 25.0 * static_cast<double>(i % 13);  // from below the table to beyond it
@@ -107,8 +112,10 @@ TEST(Tables, AreReadAtTheFieldOfEachNode) {
 // The last axis varies fastest; linear along each.
 TEST(Tables, AreBilinearOverTimeAndAField) {
   const Axis two{"temperature", {300.0, 400.0}};
-  const ilaw::interface law =
-      Probe("pack_probe").table("viscosity", {times, two}, {1.0, 3.0, 5.0, 11.0}).per_node("temperature").make();
+  const ilaw::interface law = Probe("pack_probe")
+                                  .table("viscosity", {times, two}, {1.0, 3.0, 5.0, 11.0})
+                                  .per_node("temperature")
+                                  .make();
   const auto at = [&](double time, double kelvin) {
     return ViscosityOf(law).at(time, {std::vector<double>(19, kelvin)})[3] / (1.0 + 0.001 * (kelvin - 300.0));
   };
@@ -123,8 +130,11 @@ TEST(Tables, AreBilinearOverTimeAndAField) {
 TEST(Tables, HaveThreeAxes) {
   const Axis hard{"hardness", {1.0, 2.0}}, two{"temperature", {300.0, 400.0}};
   const std::vector<double> sums = {1, 2, 3, 4, 5, 6, 7, 8};
-  const ilaw::interface law =
-      Probe("pack_probe").table("viscosity", {hard, times, two}, sums).number("temperature", 300.0).per_node("hardness").make();
+  const ilaw::interface law = Probe("pack_probe")
+                                  .table("viscosity", {hard, times, two}, sums)
+                                  .number("temperature", 300.0)
+                                  .per_node("hardness")
+                                  .make();
   EXPECT_THAT(ViscosityOf(law).at(0.0, {std::vector<double>(19, 1.0)}), Each(IsNear(1.0)));
   EXPECT_THAT(ViscosityOf(law).at(2.0, {std::vector<double>(19, 1.0)}), Each(IsNear(3.0)));
   EXPECT_THAT(ViscosityOf(law).at(0.0, {std::vector<double>(19, 2.0)}), Each(IsNear(5.0)));
@@ -142,24 +152,31 @@ TEST(Tables, AreReadAtAFieldThatIsATableOverTime) {
 }
 
 TEST(Tables, AreRefusedByWhatIsWrong) {
-  const auto refusal = [](const std::vector<Axis>& axes, const std::vector<double>& values, bool has_field = true) {
+  const auto refusal = [](const std::vector<Axis>& axes, const std::vector<double>& values,
+                          bool has_field = true) {
     Probe probe("pack_probe");
     if (has_field) probe.per_node("temperature");
     return probe.table("viscosity", axes, values).refusal();
   };
-  EXPECT_THAT(refusal({degrees}, {1, 2, 3}, false),
-              HasSubstr("'viscosity' is a table over 'temperature': expected a value, a value per node or a table over time"));
-  EXPECT_THAT(refusal({{"moisture", {0.0}}}, {1}), HasSubstr("axis 'moisture' of the table is unknown: expected one of 'time', "
-                                                             "'temperature', 'hardness'"));
+  EXPECT_THAT(
+      refusal({degrees}, {1, 2, 3}, false),
+      HasSubstr(
+          "'viscosity' is a table over 'temperature': expected a value, a value per node or a table over time"));
+  EXPECT_THAT(refusal({{"moisture", {0.0}}}, {1}),
+              HasSubstr("axis 'moisture' of the table is unknown: expected one of 'time', "
+                        "'temperature', 'hardness'"));
   EXPECT_THAT(refusal({times, times}, {1, 2, 3, 4}), HasSubstr("the table has twice the axis time"));
-  EXPECT_THAT(refusal({{"time", {1.0, 1.0}}}, {1, 2}), HasSubstr("point 1 of axis 'time' is 1: expected finite, increasing points"));
+  EXPECT_THAT(refusal({{"time", {1.0, 1.0}}}, {1, 2}),
+              HasSubstr("point 1 of axis 'time' is 1: expected finite, increasing points"));
   EXPECT_THAT(refusal({times}, {1, -2}), HasSubstr("'viscosity' = -2 is not allowed"));
 }
 
 // Values that go together at each node only.
 TEST(Tables, AreJudgedForConflictsAtEachNode) {
-  const ilaw::interface law =
-      Probe("pack_probe").table("viscosity", {{"hardness", {1e-6, 1.0}}}, {5.0, 5.0}).per_node("hardness").make();
+  const ilaw::interface law = Probe("pack_probe")
+                                  .table("viscosity", {{"hardness", {1e-6, 1.0}}}, {5.0, 5.0})
+                                  .per_node("hardness")
+                                  .make();
   SmallBatch nodes(3, {-1.0, 0.0, 0.0}, law.info().state_size);
   const double hardness[] = {1.0, 1e-6, 1.0};
   const ilaw_input given = ilaw::input(hardness, 1, 1);
@@ -279,7 +296,8 @@ TEST(Solver, GivesEachNodeItsAnswer) {
 TEST(Solver, LeavesABadNodeAlone) {
   const ilaw::interface law = Probe("solver_probe").per_node("offset").make();
   constexpr std::size_t count = 37;
-  SmallBatch nodes(count, {-1.0, 0.0, 0.0}, law.info().state_size), good(count, {-1.0, 0.0, 0.0}, law.info().state_size);
+  SmallBatch nodes(count, {-1.0, 0.0, 0.0}, law.info().state_size),
+      good(count, {-1.0, 0.0, 0.0}, law.info().state_size);
   std::vector<double> offset(count, 0.5), gap(count, 0.0);
   const ilaw_input given = ilaw::input(offset.data(), 1, 1);
   good.b.per_node_parameters = nodes.b.per_node_parameters = &given;
@@ -303,7 +321,8 @@ TEST(StableStep, OfHAloneIsTheSmallestOfTheBatch) {
   const double h[] = {0.5, 2.0, 1.0, 4.0, 0.25}, k[] = {1.0, 1.0, 9.0, 1.0, 1.0};
   const ilaw_input given = ilaw::input(k, 1, 1);
   for (const bool per_node : {false, true}) {
-    const ilaw::interface law = per_node ? Probe("limit_probe").per_node("stiffness").make() : Probe("limit_probe").make();
+    const ilaw::interface law =
+        per_node ? Probe("limit_probe").per_node("stiffness").make() : Probe("limit_probe").make();
     for (const std::int64_t count : {1, 3, 5}) {
       SmallBatch nodes(5, {});
       nodes.b.node_count = count;
@@ -311,7 +330,8 @@ TEST(StableStep, OfHAloneIsTheSmallestOfTheBatch) {
       nodes.b.per_node_parameters = &given;
       ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_OK);
       double largest = 0.0;
-      for (std::int64_t i = 0; i < count; ++i) largest = std::max(largest, (per_node ? k[i] : 1.0) * 1.25 * h[i]);
+      for (std::int64_t i = 0; i < count; ++i)
+        largest = std::max(largest, (per_node ? k[i] : 1.0) * 1.25 * h[i]);
       EXPECT_DOUBLE_EQ(nodes.report.stable_velocity_step, 2.0 / std::sqrt(largest)) << count;
     }
   }
@@ -331,7 +351,8 @@ TEST(StableStep, OfNodesIsTheSmallestOfGoodOnes) {
   EXPECT_DOUBLE_EQ(nodes.report.stable_velocity_step, 2.0);
 }
 
-// A law that gives what its card does not announce: with outputs and without, the node is refused, with the promise.
+// A law that gives what its card does not announce: with outputs and without, the node is refused, with the
+// promise.
 TEST(Promises, ThatALawBreaksAreRefusedAtTheirNode) {
   struct Broken {
     const char* promise;
@@ -339,10 +360,11 @@ TEST(Promises, ThatALawBreaksAreRefusedAtTheirNode) {
     const char* reason;
   };
   const double gap[] = {-0.1, 1e-4, 1.0};
-  for (const auto& [promise, node, reason] : {Broken{"none", -1, nullptr},
-                                              {"number", 0, "the law gave an impulse that is not a number"},
-                                              {"pull", 0, "the law pulled, which needs can_adhere in its card"},
-                                              {"far", 2, "the law acted out of reach, which may_skip_fresh of its card excludes"}})
+  for (const auto& [promise, node, reason] :
+       {Broken{"none", -1, nullptr},
+        {"number", 0, "the law gave an impulse that is not a number"},
+        {"pull", 0, "the law pulled, which needs can_adhere in its card"},
+        {"far", 2, "the law acted out of reach, which may_skip_fresh of its card excludes"}})
     for (const bool outputs : {true, false}) {
       SCOPED_TRACE(::testing::Message() << promise << (outputs ? ", outputs" : ""));
       const ilaw::interface law = Probe("promise_breaker").text("breaks", promise).make();

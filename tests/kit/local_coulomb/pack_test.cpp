@@ -128,14 +128,14 @@ TEST(Pack, ComputesWhatDoublesDo) {
     for (const double b : values) {
       const pack x(a), y(b);
       ASSERT_TRUE(same_bits(pack(a)[0], a)) << "b " << b;
-      ASSERT_TRUE(same_bits(kit::larger(x, y)[0], kit::larger(a, b))) << a << ' ' << b;
-      ASSERT_TRUE(same_bits(kit::smaller(x, y)[0], kit::smaller(a, b))) << a << ' ' << b;
-      ASSERT_TRUE(same_bits(kit::absolute(x)[0], kit::absolute(a))) << "b " << b;
-      ASSERT_TRUE(same_bits(kit::positive_part(x)[0], kit::positive_part(a))) << "b " << b;
+      ASSERT_TRUE(same_bits(larger(x, y)[0], kit::larger(a, b))) << a << ' ' << b;
+      ASSERT_TRUE(same_bits(smaller(x, y)[0], kit::smaller(a, b))) << a << ' ' << b;
+      ASSERT_TRUE(same_bits(absolute(x)[0], kit::absolute(a))) << "b " << b;
+      ASSERT_TRUE(same_bits(positive_part(x)[0], kit::positive_part(a))) << "b " << b;
       ASSERT_EQ(lane_of(x < y, pack_size - 1), a < b) << "b " << b;
       ASSERT_EQ(lane_of(x != y, pack_size - 1), a != b) << "b " << b;
-      ASSERT_EQ(kit::any((x <= y) & !(x == y)), (a <= b) && a != b) << "b " << b;
-      const double root = kit::square_root(x)[pack_size - 1];
+      ASSERT_EQ(any((x <= y) & !(x == y)), (a <= b) && a != b) << "b " << b;
+      const double root = square_root(x)[pack_size - 1];
       ASSERT_TRUE(!(a >= 0.0) || same_bits(root, std::sqrt(a))) << a;
     }
 }

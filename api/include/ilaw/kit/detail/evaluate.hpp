@@ -10,13 +10,21 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// ---- the loop of a batch ------------------------------------------------------------------------------------------------
+// ---- the loop of a batch
+// ------------------------------------------------------------------------------------------------
 
 // Free histories are read and written node by node.
 template <class Law>
-inline constexpr bool has_free_history = has_history<Law> && !requires(const Law& law) { law.window(); };
+inline constexpr bool has_free_history = has_history<Law> && !requires(const Law& law) {
+  law.window();
+};
 template <class Law>
 using loop_number = std::conditional_t<has_free_history<Law>, double, pack>;
+
+template <class Law, class Node>
+concept can_ask = requires(const Law& law, Node& n, typename Law::problem& p) {
+  law.ask(n, p);
+};
 
 template <class Law, class Number, template <class> class Frame, template <class> class Delassus>
 auto loop_of(const instance<Law>& made) {
@@ -26,9 +34,10 @@ auto loop_of(const instance<Law>& made) {
   using node_type = typename plain::node_type;
   constexpr bool can_step = requires(const Wide& law, node_type& n) { law.step(n); };
   using run_function = typename batch_walk<Number>::run_function;
-  if constexpr (requires(const Wide& law, node_type& n, typename Wide::problem& p) { law.ask(n, p); }) {
+  if constexpr (can_ask<Wide, node_type>) {
     using solving = solver_kernel<Law, V, Number, Frame, Delassus>;
-    if constexpr (can_step && (requires { made.law.asks(); } || requires { made.law.asks(true); }))
+    if constexpr (can_step && (
+                                  requires { made.law.asks(); } || requires { made.law.asks(true); }))
       return made.asks ? run_function(solving::run) : run_function(plain::run);
     else
       return run_function(solving::run);
@@ -42,7 +51,8 @@ template <class Law>
 inline constexpr bool serves_transverse = (Law::card.delassus_forms &
                                            (ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE)) != 0;
 template <class Law>
-inline constexpr bool serves_full = (Law::card.delassus_forms & (ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL)) != 0;
+inline constexpr bool serves_full = (Law::card.delassus_forms &
+                                     (ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL)) != 0;
 
 template <class Law, class Number>
 typename batch_walk<Number>::run_function choose_loop(const instance<Law>& made) {
@@ -65,7 +75,7 @@ typename batch_walk<Number>::run_function choose_loop(const instance<Law>& made)
 template <class Law, class Number>
 tally walk_in(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
-  constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || state_numbers<Law> > 0 ? 6 : 0));
+  constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || state_numbers < Law >> 0 ? 6 : 0));
   alignas(64) double state_scratch[columns * block_nodes + 1];
   batch_walk<Number> walk(made, batch, state_scratch);
   return walk.run(choose_loop<Law, Number>(made), &law);
@@ -80,7 +90,8 @@ template <class Law>
                                                                    : walk_in<Law, double>(made, batch);
 }
 
-// ---- why a node is bad ----------------------------------------------------------------------------------------------------
+// ---- why a node is bad
+// ----------------------------------------------------------------------------------------------------
 
 // "state variable '...' has a value that the law cannot have written", as static text.
 template <class Law, std::size_t V>
@@ -105,7 +116,8 @@ const char* text_of_variable(int variable, std::index_sequence<K...>) {
 
 // The parameters of one node; says what is wrong with them, null where nothing is.
 template <class Law>
-const char* wrong_parameters(const instance<Law>& made, const ilaw_batch& batch, std::int64_t node, Law& law) {
+const char* wrong_parameters(const instance<Law>& made, const ilaw_batch& batch, std::int64_t node,
+                             Law& law) {
   for (std::uint32_t k = 0; k < made.per_node_count; ++k) {
     const ilaw_input& given = batch.per_node_parameters[k];
     const std::int64_t at = node * given.node_stride;
@@ -131,29 +143,47 @@ const char* reason_text(const instance<Law>& made, const ilaw_batch& batch, cons
       return text_of_variable<Law>(found.reason - reason_of_first_variable,
                                    std::make_index_sequence<std::size(Law::state_variables)>{});
   switch (found.reason) {
-    case reason_normal: return "the normal is not a unit vector";
-    case reason_tangent: return "the tangent is not a unit vector orthogonal to the normal";
-    case reason_v_free: return "v_free is not finite";
-    case reason_delassus: return "H is not finite and positive definite";
-    case reason_gap: return "the gap is not finite";
-    case reason_v_previous: return "v_previous is not finite";
-    case reason_area: return "the area is not a finite number >= 0";
-    case reason_frame: return "the state holds no frame: it is not one that the law can have written";
-    case reason_state: return "the state is not finite";
+    case reason_normal:
+      return "the normal is not a unit vector";
+    case reason_tangent:
+      return "the tangent is not a unit vector orthogonal to the normal";
+    case reason_v_free:
+      return "v_free is not finite";
+    case reason_delassus:
+      return "H is not finite and positive definite";
+    case reason_gap:
+      return "the gap is not finite";
+    case reason_v_previous:
+      return "v_previous is not finite";
+    case reason_area:
+      return "the area is not a finite number >= 0";
+    case reason_frame:
+      return "the state holds no frame: it is not one that the law can have written";
+    case reason_state:
+      return "the state is not finite";
     case reason_several_solutions:
       return "the law's equations have several solutions for this H and step: a smaller step is needed";
-    case reason_no_solution: return "the law's equations have no solution for this H";
-    case reason_impossible_state: return "the state is not one that the law can have written";
-    case reason_time_before_history: return "the time lies before what the state remembers";
-    case reason_not_a_number: return "the law gave an impulse that is not a number";
-    case reason_overflow: return "the impulse or the state overflows";
-    case reason_pull: return "the law pulled, which needs can_adhere in its card";
-    case reason_reach: return "the law acted out of reach, which may_skip_fresh of its card excludes";
-    default: return nullptr;
+    case reason_no_solution:
+      return "the law's equations have no solution for this H";
+    case reason_impossible_state:
+      return "the state is not one that the law can have written";
+    case reason_time_before_history:
+      return "the time lies before what the state remembers";
+    case reason_not_a_number:
+      return "the law gave an impulse that is not a number";
+    case reason_overflow:
+      return "the impulse or the state overflows";
+    case reason_pull:
+      return "the law pulled, which needs can_adhere in its card";
+    case reason_reach:
+      return "the law acted out of reach, which may_skip_fresh of its card excludes";
+    default:
+      return nullptr;
   }
 }
 
-// ---- evaluate and initialise ------------------------------------------------------------------------------------------------
+// ---- evaluate and initialise
+// ------------------------------------------------------------------------------------------------
 
 inline ilaw_result refuse(ilaw_report* report, const char* reason, ilaw_result code = ILAW_INVALID_ARGUMENT) {
   if (report)
@@ -166,16 +196,15 @@ inline ilaw_result refuse(ilaw_report* report, const char* reason, ilaw_result c
   return code;
 }
 template <class Law>
-ilaw_result give_report(ilaw_report* report, const instance<Law>& made, const ilaw_batch& batch, const tally& found,
-                        const char* reason = nullptr) {
+ilaw_result give_report(ilaw_report* report, const instance<Law>& made, const ilaw_batch& batch,
+                        const tally& found, const char* reason = nullptr) {
   if (report)
-    sized::write(report,
-                 {.struct_size = 0,
-                  .reserved = 0,
-                  .bad_count = found.bad_count,
-                  .first_bad_node = found.first_bad_node,
-                  .reason = found.bad_count == 0 || reason ? reason : reason_text(made, batch, found),
-                  .stable_velocity_step = found.stable_velocity_step});
+    sized::write(report, {.struct_size = 0,
+                          .reserved = 0,
+                          .bad_count = found.bad_count,
+                          .first_bad_node = found.first_bad_node,
+                          .reason = found.bad_count == 0 || reason ? reason : reason_text(made, batch, found),
+                          .stable_velocity_step = found.stable_velocity_step});
   return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
 
@@ -197,8 +226,8 @@ ilaw_result with_batch(const ilaw_instance* opaque, const ilaw_batch* given, ila
 
 // by_scalar_fallback: as ilaw/ext/draft/profile.h counts them; may be null.
 template <class Law>
-ilaw_result ILAW_CALL evaluate_counting(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report,
-                                        std::int64_t* by_scalar_fallback) {
+ilaw_result ILAW_CALL evaluate_counting(const ilaw_instance* opaque, const ilaw_batch* given,
+                                        ilaw_report* report, std::int64_t* by_scalar_fallback) {
   return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
     if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
     tally found;
@@ -216,7 +245,8 @@ ilaw_result ILAW_CALL evaluate(const ilaw_instance* opaque, const ilaw_batch* gi
 template <class Law>
 class first_states {
  public:
-  first_states(const instance<Law>& made, const ilaw_batch& batch) : made_(made), b_(batch), law_(made.at(batch.time)) {}
+  first_states(const instance<Law>& made, const ilaw_batch& batch)
+      : made_(made), b_(batch), law_(made.at(batch.time)) {}
 
   // Says why the state of a node cannot be given: then it is zero.
   const char* write(std::int64_t node) const {
@@ -231,7 +261,7 @@ class first_states {
       if (!is_unit(frame.n)) return "the normal is not a unit vector";
       frame.t1 = any_tangent(frame.n);
     }
-    if constexpr (requires(initial_node<Law>& n) { law.initialise(n); }) {
+    if constexpr (requires(initial_node<Law> & n) { law.initialise(n); }) {
       initial_node<Law> fresh{.time = b_.time, .area = {}, .state = {}};
       if constexpr (reads<Law>(reads_area)) {
         initial_node<Law> with_area{.time = b_.time, .area = area, .state = {}};
@@ -247,7 +277,8 @@ class first_states {
           at(node, entry) = number_in<double>(fresh.state, k);
     }
     if (made_.carries_frame) {
-      const double entries[frame_size] = {frame.n.x, frame.n.y, frame.n.z, frame.t1.x, frame.t1.y, frame.t1.z};
+      const double entries[frame_size] = {frame.n.x,  frame.n.y,  frame.n.z,
+                                          frame.t1.x, frame.t1.y, frame.t1.z};
       for (int k = 0; k < frame_size; ++k) at(node, made_.frame_offset + k) = entries[k];
     }
     return nullptr;

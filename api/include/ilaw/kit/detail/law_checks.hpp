@@ -261,10 +261,10 @@ constexpr bool has_whole_solver() {
 template <class Law>
 constexpr bool problems_are_of_V() {
   if constexpr (names_ask<Law>) {
-    using one = law_on_t<Law, pack>;
+    using narrow = law_on_t<Law, pack>;
     using two = law_on_t<Law, pack_of<2>>;
-    return all_of_V<typename one::problem, typename two::problem> &&
-           all_of_V<typename one::answer, typename two::answer>;
+    return all_of_V<typename narrow::problem, typename two::problem> &&
+           all_of_V<typename narrow::answer, typename two::answer>;
   }
   return true;
 }
