@@ -284,7 +284,8 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
             .area = n.area,
             .earlier = n.earlier,
             .history = n.history,
-            .state = n.state};
+            .state = n.state,
+            .refused = n.refused};
   }
   ILAW_KIT_INLINE static void choose(node_type& a, const node_type& b, mask first) {
     a.impulse = select(first, a.impulse, b.impulse);
