@@ -20,23 +20,19 @@ ILAW_KIT_INLINE V product(vector<V> a, vector<V> b) {
   return normal_product(a, b) + tangential_product(a, b);
 }
 
-template <class V, class Delassus>
-[[gnu::noinline, gnu::cold]] vector<V> without_positive_work(const Delassus& h, vector<V> r, vector<V> v_free,
-                                                             vector<V> before) {
-  friction_problem<V> problem;
-  fill(problem, h, {0.0, v_free, before}, 0.0, 0.0);
-  friction_answer<V> a{{r.n, r.t1, r.t2}, status::stick.code, 0.0};
-  take_off_positive_work(problem, a);
-  return {a.r[0], a.r[1], a.r[2]};
-}
 // The impulse that stops the node, r = -H^-1 v_free, less what would be positive work: only where the node
 // turned round within the step.
 template <class V, class Delassus>
 ILAW_KIT_INLINE vector<V> stopping_impulse(const Delassus& h, vector<V> v_free, vector<V> v_previous) {
   vector<V> r = -h.solve(v_free);
   const vector<V> before = velocity_before(v_previous, v_free);
-  if (any(product(r, before) > 0.0)) [[unlikely]]
-    r = without_positive_work(h, r, v_free, before);
+  if (any(product(r, before) > 0.0)) [[unlikely]] {
+    friction_problem<V> problem;
+    fill(problem, h, {0.0, v_free, before}, 0.0, 0.0);
+    friction_answer<V> a{{r.n, r.t1, r.t2}, status::stick.code, 0.0};
+    take_off_positive_work(problem, a);
+    r = {a.r[0], a.r[1], a.r[2]};
+  }
   return r;
 }
 
@@ -44,7 +40,7 @@ ILAW_KIT_INLINE vector<V> stopping_impulse(const Delassus& h, vector<V> v_free, 
 // (held + r).(motion + H (held + r))/2 with motion = v^- + v_free, is not positive; that of what is held
 // alone counts as none.
 template <class V, class Delassus>
-V joining_part(const Delassus& h, vector<V> motion, vector<V> held, vector<V> r) {
+ILAW_KIT_INLINE V joining_part(const Delassus& h, vector<V> motion, vector<V> held, vector<V> r) {
   const vector<V> of_held = h.times(held), moved = motion + of_held;
   const V c2 = product(r, h.times(r)), c1 = product(r, moved + of_held);
   const fraction<V> root = root_of_work(c2, c1, smaller(product(held, moved), V(0.0)));
@@ -52,17 +48,11 @@ V joining_part(const Delassus& h, vector<V> motion, vector<V> held, vector<V> r)
 }
 // What is held and then contact and friction do no positive work each, and yet may together: friction is
 // scaled first, as where there is no bond, and then contact with it, if that was not enough.
-template <class V, class Delassus>
-[[gnu::noinline, gnu::cold]] vector<V> joined_for(const Delassus& h, vector<V> motion, vector<V> held,
-                                                  vector<V> r) {
-  const vector<V> normal{r.n}, rubs{0.0, r.t1, r.t2};
-  r = normal + joining_part(h, motion, held + normal, rubs) * rubs;
-  return held + joining_part(h, motion, held, r) * r;
-}
-
 template <class Node, class V>
 ILAW_KIT_INLINE vector<V> joined(const Node& node, vector<V> held, vector<V> r) {
-  return joined_for(node.delassus, node.v_previous + node.v_free, held, r);
+  const vector<V> motion = node.v_previous + node.v_free, normal{r.n}, rubs{0.0, r.t1, r.t2};
+  r = normal + joining_part(node.delassus, motion, held + normal, rubs) * rubs;
+  return held + joining_part(node.delassus, motion, held, r) * r;
 }
 
 // Contact where the gap is closed and nothing rebounds, for v_free as given.

@@ -46,7 +46,7 @@ ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f
 // The largest part of [0, 1] at which `holds` is true, as it is at 0 where active, and false at 1: bisection to
 // neighbouring numbers. 0 in other lanes.
 template <class V, class Predicate>
-[[gnu::noinline, gnu::cold]] V last_part(mask_of<V> active, Predicate holds) {
+ILAW_KIT_INLINE V last_part(mask_of<V> active, Predicate holds) {
   V low = 0.0, high = 1.0, middle = 0.5;
   for (; any(active); active = active & (middle > low) & (middle < high)) {
     const mask_of<V> is_so = holds(middle);

@@ -73,6 +73,61 @@ bool stays(const Array& a, int components) {
   return a.node_stride == 1 || (a.node_stride == components && a.component_stride == 1);
 }
 
+// ---- windows: read before the loop over a block, written after it --------------------------------------
+
+struct window_block {
+  alignas(64) double earlier[3][block_nodes], refused[block_nodes];
+  alignas(64) double given[3][block_nodes], adds[block_nodes], clears[block_nodes];
+};
+// Of the node at position 0, and the nodes where they are listed.
+struct window_place {
+  double* first;
+  std::int64_t node_stride, component_stride, count;
+  const std::int64_t* nodes;
+
+  // Calls work with the windows of each pack of nodes; lanes without a node have that of the last one.
+  template <class Work>
+  ILAW_KIT_INLINE void for_packs(Work work) const {
+    constexpr int lanes = lanes_of<pack>;
+    for (std::int64_t i = 0; i < count; i += lanes) {
+      if (node_stride == 1 && !nodes && i + lanes <= count) {
+        work(i, window_columns<pack>{first + i, component_stride});
+      } else {
+        window_rows own;
+        own.stride = component_stride;
+        const std::int64_t last = count - 1 - i;
+#pragma GCC unroll 8
+        for (int lane = 0; lane < lanes; ++lane) {
+          const std::int64_t k = i + (lane < last ? lane : last);
+          own.first[lane] = first + (nodes ? nodes[k] : k) * node_stride;
+        }
+        work(i, own);
+      }
+    }
+  }
+};
+[[gnu::noinline, gnu::flatten]] inline void read_windows(const window& w, const window_place& place,
+                                                         window_block& block) {
+  place.for_packs([&](std::int64_t i, const auto& own) {
+    vector<pack> sum;
+    store(w.read(own, sum), block.refused + i);
+    store(sum.n, block.earlier[0] + i);
+    store(sum.t1, block.earlier[1] + i);
+    store(sum.t2, block.earlier[2] + i);
+  });
+}
+[[gnu::noinline, gnu::flatten]] inline void write_windows(const window& w, const window_place& place,
+                                                          window_block& block) {
+  for (std::int64_t i = place.count; i % lanes_of<pack> != 0; ++i) block.adds[i] = block.clears[i] = 0.0;
+  place.for_packs([&](std::int64_t i, const auto& own) {
+    const vector<pack> impulse{load<pack>(block.given[0] + i), load<pack>(block.given[1] + i),
+                               load<pack>(block.given[2] + i)};
+    w.write(own, load<pack>(block.clears + i) != 0.0, load<pack>(block.adds + i) != 0.0, impulse);
+  });
+}
+
+// ---- the walk -----------------------------------------------------------------------------------------
+
 template <class Number, bool HasWindow = false>
 class batch_walk {
  public:
@@ -233,7 +288,8 @@ class batch_walk {
 
   // The state begins with three numbers in the order of struct state.
   bool has_three_states() const {
-    return made_.states >= 3 && made_.state_entries[0] == 0 && made_.state_entries[1] == 1 && made_.state_entries[2] == 2;
+    return made_.states >= 3 && made_.state_entries[0] == 0 && made_.state_entries[1] == 1 &&
+           made_.state_entries[2] == 2;
   }
   void open_state(view<Number>& v, const node_range& n) {
     if (made_.state_size == 0) return;
@@ -245,8 +301,7 @@ class batch_walk {
       v.state_in = {from.values + n.first * from.node_stride, from.component_stride, made_.states,
                     from.node_stride != 1 ? made_.states : 0};
     } else {
-      if (has_three_states())
-        gather_three(from.values, from.node_stride, from.component_stride, n, in);
+      if (has_three_states()) gather_three(from.values, from.node_stride, from.component_stride, n, in);
       for (int k = has_three_states() ? 3 : 0; k < made_.states; ++k) {
         const int entry = made_.state_entries[k];
         double* const to = in + k * block_nodes;
@@ -327,53 +382,9 @@ class batch_walk {
                       to.component_stride, n, frame + k * block_nodes);
   }
 
-  // ---- windows
-
-  // Calls work with the windows of each pack of nodes; lanes without a node have that of the last one.
-  template <class Work>
-  static void for_windows(const view<Number>& v, Work work) {
-    constexpr int lanes = lanes_of<pack>;
-    for (std::int64_t i = 0; i < v.count; i += lanes) {
-      if (v.history_node_stride == 1 && !v.nodes && i + lanes <= v.count) {
-        work(i, window_columns<pack>{v.history + i, v.history_component_stride});
-      } else {
-        window_rows own;
-        own.stride = v.history_component_stride;
-        const std::int64_t last = v.count - 1 - i;
-#pragma GCC unroll 8
-        for (int lane = 0; lane < lanes; ++lane) {
-          const std::int64_t k = i + (lane < last ? lane : last);
-          own.first[lane] = v.history + (v.nodes ? v.nodes[k] : k) * v.history_node_stride;
-        }
-        work(i, own);
-      }
-    }
-  }
-  struct window_block {
-    alignas(64) double earlier[3][block_nodes], refused[block_nodes];
-    alignas(64) double given[3][block_nodes], adds[block_nodes], clears[block_nodes];
-  };
-  [[gnu::noinline, gnu::flatten]] static void read_windows(const window& w, const view<Number>& v,
-                                                           window_block& block) {
-    for_windows(v, [&](std::int64_t i, const auto& own) {
-      vector<pack> sum;
-      store(w.read(own, sum), block.refused + i);
-      store(sum.n, block.earlier[0] + i);
-      store(sum.t1, block.earlier[1] + i);
-      store(sum.t2, block.earlier[2] + i);
-    });
-  }
-  [[gnu::noinline, gnu::flatten]] static void write_windows(const window& w, const view<Number>& v,
-                                                            window_block& block) {
-    for (std::int64_t i = v.count; i % lanes_of<pack> != 0; ++i) block.adds[i] = block.clears[i] = 0.0;
-    for_windows(v, [&](std::int64_t i, const auto& own) {
-      const vector<pack> impulse{load<pack>(block.given[0] + i), load<pack>(block.given[1] + i),
-                                 load<pack>(block.given[2] + i)};
-      w.write(own, load<pack>(block.clears + i) != 0.0, load<pack>(block.adds + i) != 0.0, impulse);
-    });
-  }
   void run_with_windows(view<Number>& v, run_function loop, const void* law, tally& found) {
     const window w(made_.window, {b_.time + 0.5 * b_.position_step, b_.velocity_step});
+    const window_place place{v.history, v.history_node_stride, v.history_component_stride, v.count, v.nodes};
     window_block block;
     for (int c = 0; c < 3; ++c) {
       v.earlier[c] = block.earlier[c];
@@ -382,9 +393,9 @@ class batch_walk {
     v.earlier_refused = block.refused;
     v.adds = block.adds;
     v.clears = block.clears;
-    read_windows(w, v, block);
+    read_windows(w, place, block);
     loop(law, v, found);
-    write_windows(w, v, block);
+    write_windows(w, place, block);
   }
 
   // ---- a part of the batch
