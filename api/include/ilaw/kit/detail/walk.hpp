@@ -51,7 +51,7 @@ auto numbers_in(const Array& a) {
 }
 
 // The nodes of a part of a batch.
-inline constexpr int block_nodes = 64;
+inline constexpr int block_nodes = 128;  // at most
 struct node_range {
   std::int64_t first, count;
   bool listed;
@@ -131,6 +131,8 @@ struct window_place {
 template <class Number, bool HasWindow = false>
 class batch_walk {
  public:
+  // Copies of 64 nodes stay in the first cache; windows cost more than them.
+  static constexpr std::int64_t block = HasWindow ? block_nodes : 64;
   using run_function = void (*)(const void* law, const view<Number>&, tally&);
 
   // state_scratch: block_nodes for each number of state_in, state_out and twice the frame.
@@ -142,9 +144,9 @@ class batch_walk {
     if (made_.window.duration == 0.0 && all_stay()) {
       run_part(node_range(b_, 0, b_.node_count), loop, law, all);
     } else {
-      for (std::int64_t first = 0; first < b_.node_count; first += block_nodes) {
+      for (std::int64_t first = 0; first < b_.node_count; first += block) {
         const std::int64_t left = b_.node_count - first;
-        run_part(node_range(b_, first, left < block_nodes ? left : block_nodes), loop, law, all);
+        run_part(node_range(b_, first, left < block ? left : block), loop, law, all);
       }
     }
     return all;
@@ -229,8 +231,8 @@ class batch_walk {
   static void prefetch_block(const T* values, std::int64_t stride, std::int64_t component,
                              const node_range& n) {
     if (n.listed || component != 1 || stride > 8) return;
-    for (std::int64_t k = 0; k < block_nodes * stride; k += 64 / static_cast<int>(sizeof(T)))
-      __builtin_prefetch(values + (n.first + block_nodes) * stride + k);
+    for (std::int64_t k = 0; k < block * stride; k += 64 / static_cast<int>(sizeof(T)))
+      __builtin_prefetch(values + (n.first + block) * stride + k);
   }
 
   array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* copy) const {
@@ -385,17 +387,17 @@ class batch_walk {
   void run_with_windows(view<Number>& v, run_function loop, const void* law, tally& found) {
     const window w(made_.window, {b_.time + 0.5 * b_.position_step, b_.velocity_step});
     const window_place place{v.history, v.history_node_stride, v.history_component_stride, v.count, v.nodes};
-    window_block block;
+    window_block windows;
     for (int c = 0; c < 3; ++c) {
-      v.earlier[c] = block.earlier[c];
-      v.given[c] = block.given[c];
+      v.earlier[c] = windows.earlier[c];
+      v.given[c] = windows.given[c];
     }
-    v.earlier_refused = block.refused;
-    v.adds = block.adds;
-    v.clears = block.clears;
-    read_windows(w, place, block);
+    v.earlier_refused = windows.refused;
+    v.adds = windows.adds;
+    v.clears = windows.clears;
+    read_windows(w, place, windows);
     loop(law, v, found);
-    write_windows(w, place, block);
+    write_windows(w, place, windows);
   }
 
   // ---- a part of the batch
