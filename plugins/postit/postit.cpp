@@ -207,7 +207,8 @@ struct postit {
     V efficiency = 1.0;
     if (any(efficiency_decrease < infinity)) efficiency = exp(-node.state.ruptures / efficiency_decrease);
     const V limit = adhesion_limit * node.area;  // not a number: inf, and no area is read
-    const V pressed = efficiency * (zero_unless(!bond.breaks, node.earlier.n) + node.impulse.n);
+    const V summed = zero_unless(!bond.breaks, node.earlier.n);
+    const V pressed = efficiency * (summed + node.impulse.n);
     const V gained = zero_unless(node.impulse.n > 0.0, select(limit < pressed, limit, pressed));
     node.state.adhesion = larger(gained, zero_unless(!bond.breaks, node.state.adhesion));
     return gained > 0.0;

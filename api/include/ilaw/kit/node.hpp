@@ -150,9 +150,5 @@ ILAW_KIT_INLINE auto is_out_of_reach(const Node& node) {
 struct step_interval {
   double end, length;
 };
-template <class Node>
-step_interval interval_of(const Node& node) {
-  return {node.time + 0.5 * node.position_step, node.velocity_step};
-}
 
 }  // namespace ilaw::kit
