@@ -161,13 +161,16 @@ class bonded_inertia<V, transverse<V>> {
   // closing, whatever the bond does.
   ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact,
                                     mask_of<V> closed, V closing) const {
-    const V taken = 2.0 * m.kappa * per_step, taken_t = taken * weight_ * m.left_t;
-    return {-(select(closed, closing, taken * m.left_n * d.n) * per_normal_),
-            m.left_t * contact.t1 - taken_t * d.t1 * per_normal_,
-            m.left_t * contact.t2 - taken_t * d.t2 * per_normal_};
+    const V twice = 2.0 * per_step, normal = twice * taken(m.kappa, m.left_n) * d.n;
+    const V by_t = 1.0 / h_.t, shear = twice * taken(ratio_ * m.kappa, m.left_t) * by_t;
+    return {-(select(closed, closing, normal) * per_normal_), m.left_t * contact.t1 - shear * d.t1,
+            m.left_t * contact.t2 - shear * d.t2};
   }
 
  private:
+  // kappa/(1 + kappa), what is not left: with all its digits also where that is little.
+  ILAW_KIT_INLINE static V taken(V kappa, V left) { return select(kappa > 1.0, 1.0 - left, kappa * left); }
+
   transverse<V> h_;
   V per_normal_, weight_, ratio_;
 };
@@ -287,7 +290,7 @@ class bond_step {
     const vector<V> next = is_even() ? V(2.0) * m.opening - place_ : m.opening + on * (m.opening - place_);
     return {impulse,
             {memory, next, m.opening},
-            m.held.kappa / compliance,
+            2.0 * m.held.kappa * (per_step * per_step) * inertia_.per_normal(),
             status.code(),
             larger(refused, m.refused)};
   }
