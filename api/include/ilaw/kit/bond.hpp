@@ -247,7 +247,7 @@ class bond_step {
   };
 
   ILAW_KIT_INLINE bond_step(const Delassus& h, const bond_problem<V>& p, const bond_common<V>& all)
-      : p_(p), step_(all.step), weight_(all.weight), inertia_(h, all) {
+      : p_(p), step_(all.step), weight_(all.weight), root_(all.root), inertia_(h, all) {
     compliance = 0.25 * step_.velocity_step * step_.velocity_step * p.area * h.normal();
     before = size_of(p.state.opening);
     is_new = sum_of_sizes(p.state.position) + sum_of_sizes(p.state.opening) == 0.0;
@@ -310,6 +310,8 @@ class bond_step {
  private:
   bool is_even() const { return step_.velocity_step == step_.position_step; }
   ILAW_KIT_INLINE V size_of(vector<V> w) const {
+    if constexpr (std::is_same_v<V, double>)
+      return length(w.n, root_ * w.t1, root_ * w.t2);  // of extreme scales
     return square_root(normal_product(w, w) + weight_ * tangential_product(w, w));
   }
 
@@ -392,7 +394,7 @@ class bond_step {
 
   const bond_problem<V>& p_;
   const step_sizes& step_;
-  V weight_;
+  V weight_, root_;
   bonded_inertia<V, Delassus> inertia_;
   vector<V> place_, drive_;   // x at the time of the impulse; w^+ + w^- without bond and contact
   V ground_, floor_, below_;  // lowest next position, lowest w^+
@@ -580,7 +582,9 @@ struct adhesive_bond {
     bond_step<V, Delassus> step(h, p, common);
     bond_result<bond_step<V, Delassus>> found(p.state.memory);
     respond(step, open, common, found);
-    mask left = found.left | found.motion.unsolved;
+    const V sum = found.motion.size + step.before;
+    const mask has_scale = is_scalar ? found.holds | !found.holds : (sum > 0x1p-200) & (sum < 0x1p200);
+    mask left = found.left | found.motion.unsolved | !(found.holds | has_scale);
     const mask gains = open & put_in(step, found.motion);
     if (any(gains)) {
       if constexpr (is_scalar)
