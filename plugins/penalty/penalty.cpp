@@ -187,11 +187,16 @@ struct penalty {
   template <class Node>
   status_of<V> finish(Node& node, const answer& a) const {
     node.refuse(a.status == no_solution, refusal::no_solution);
+    if (is_transverse<Node>) return give(node, a.normal, a.indentation);
+    mask_of<V> slides = a.status == status::slip.code;
+    vector<V> impulse{a.normal, a.t1, a.t2};
     const mask_of<V> is_apart = a.status == status::closed.code;
-    if (!any(!is_apart)) return give(node, a.normal, a.indentation);
-    const mask_of<V> slides = is_apart & rub_apart(node, a.normal);
-    node.impulse = select(is_apart, node.impulse, vector<V>{a.normal, a.t1, a.t2});
-    return keep(node, a.indentation, slides | (a.status == status::slip.code));
+    if (any(is_apart) && node.prepared.rubs) {
+      slides = slides | (is_apart & rub_apart(node, a.normal));
+      impulse = select(is_apart, node.impulse, impulse);
+    }
+    node.impulse = impulse;
+    return keep(node, a.indentation, slides);
   }
 
  private:

@@ -131,10 +131,9 @@ struct normal_spring {
   template <class Function>
   static V impulse_where(mask active, Function f) {
     constexpr int most_doublings = 64;
-    constexpr double jump = 0x1p-20;
-    const V free_force = f(V(0.0));
-    active = active & (free_force > 0.0);
-    V high = free_force;
+    constexpr double least = std::numeric_limits<double>::min();  // below it f jumps at 0
+    V high = f(V(0.0));
+    active = active & (high > 0.0);
     mask rises = active;
     for (int k = 0; k < most_doublings && any(rises); ++k) {
       rises = rises & (f(high) > high);
@@ -143,8 +142,7 @@ struct normal_spring {
     const V r = root_between(V(0.0), high, high, active & !rises, [&f](V x) {
       return root_trial<V>{x - f(x), 1.0, 1.0, 1.0, x != x};
     });
-    const mask fails = active & (rises | (absolute(r - f(r)) > jump * free_force));
-    return select(fails, V(not_a_number), zero_unless(active, r));
+    return select(active & (rises | (r < least)), V(not_a_number), zero_unless(active, r));
   }
 
   // By what closes the step: closed form, Newton's method or brackets.

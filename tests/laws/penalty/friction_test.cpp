@@ -1,5 +1,5 @@
-// Normal spring and friction coupled by H: the solver of packs against their equations in long double, against the
-// scalar fallback, and with the bits of a node on its own.
+// Normal spring and friction coupled by H: the solver of packs against their equations in long double,
+// against the scalar fallback, and with the bits of a node on its own.
 #include "friction.hpp"
 #include "support/sizes.hpp"
 
@@ -83,7 +83,8 @@ struct Random {
 };
 
 // What the normal spring gives for an impulse less the impulse itself, which falls as the impulse grows.
-long double excess_of(const Spring& spring, const problem<double>& p, const answer<double>& a, long double r) {
+long double excess_of(const Spring& spring, const problem<double>& p, const answer<double>& a,
+                      long double r) {
   const long double h = spring.step, k = spring.stiffness, x = p.indentation;
   const long double v = p.free + p.delassus * r + p.c1 * a.t1 + p.c2 * a.t2, mean = 0.5L * (p.previous + v);
   const long double way = h * (mean + spring.lead * std::max(v - p.previous, 0.0L));

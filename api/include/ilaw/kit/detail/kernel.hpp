@@ -278,8 +278,9 @@ struct kernel {
     to = frame.to_local(a);
   }
 
+  // is_checked: H has been found definite before, which takes the longest.
   ILAW_KIT_INLINE static loaded load_pack(const prepared_t<Wide>& prepared, const view_type& b,
-                                          std::int64_t i, checks_type& c) {
+                                          std::int64_t i, checks_type& c, bool is_checked = false) {
     frame_type frame;
     mask framed = V(0.0) == V(0.0), known = framed;
     load_frame(frame, b, i, c, framed);
@@ -307,7 +308,7 @@ struct kernel {
       c.finite_vector(v_free, reason_v_free, true);
     else
       c.finite(numbers, reason_v_free);
-    c.require(h.is_definite(), reason_delassus);
+    if (!is_checked) c.require(h.is_definite(), reason_delassus);
     if constexpr (reads<Law>(reads_gap)) c.finite(gap, reason_gap);
     if constexpr (reads<Law>(reads_v_previous) && (careful || frame_type::turns))
       c.finite_vector(v_previous, reason_v_previous, true);

@@ -231,7 +231,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
   ILAW_KIT_INLINE static bool run_pack(const Wide& law, const prepared_t<Wide>& prepared, const view_type& b,
                                        std::int64_t i, checks_type c, problems_type& all, const pass& at,
                                        tally& found, limit& limits, std::int64_t node) {
-    loaded p = base::load_pack(prepared, b, i, c);
+    loaded p = base::load_pack(prepared, b, i, c, at.finishing && !careful);
     base::take_state(p.node, b, i, c);
     const mask bad_input = c.bad(), nodes = base::nodes_of(b);
     if constexpr (!careful)
