@@ -74,9 +74,13 @@ TEST(Rccm, DissipatesWhatItsEquationSays) {
       if (node.step(free) != ILAW_OK) break;  // several solutions
       const double after = node.named("intensity"), lost = before - after;
       const Vector y = mean_opening(node);
-      for (std::size_t c = 0; c < 3; ++c)
-        ASSERT_NEAR(y[c] - w[c], k == 0 ? y[c] : 0.5 * step * (v_before[c] + node.v[c]),
-                    1e-12 * step * (std::abs(v_before[c]) + std::abs(free[c]) + 1e-3));
+      const double pushed = std::abs(node.r[0]) + std::abs(node.r[1]) + std::abs(node.r[2]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double rounding =
+            16 * ulp * (step * (std::abs(v_before[c]) + std::abs(free[c]) + 2.0 * pushed) + std::abs(w[c]));
+        ASSERT_NEAR(y[c], w[c] + 0.5 * step * (v_before[c] + node.v[c]), rounding)
+            << "bond " << bond << ", step " << k;
+      }
       const double q = 0.5 * (law.square(w) + law.square(y));
       const double balance = 0.5 * (before + after) * q - law.energy - law.viscosity * lost / step;
       const double size = q + law.energy + law.viscosity / step;
@@ -110,17 +114,17 @@ TEST(Rccm, DissipatesWhatItsEquationSays) {
              terms = node.energy[ILAW_ENERGY_STORED] + stored;
       for (std::size_t c = 0; c < 3; ++c) {
         work += node.energy[c] + 0.5 * node.r[c] * (v_before[c] + node.v[c]);
-        terms += std::abs(node.r[c]) * (std::abs(v_before[c]) + std::abs(node.v[c]) + scale);
+        terms += std::abs(node.r[c]) * (std::abs(v_before[c]) + std::abs(free[c]) + 2.0 * pushed);
       }
       ASSERT_NEAR(work, 0.0, 1e-13 * terms) << "bond " << bond << ", step " << k;
     }
   }
   EXPECT_GT(weakened, 1000);
-  EXPECT_GT(broken, 20);
+  EXPECT_GT(broken, 10);
   EXPECT_GT(touched, 1000);
 }
 
-// beta at the time 1 of b beta' = -(w - beta q)^-, q = C_N (v t)^2 + C_T (u t)^2, by Runge and Kutta's fourth
+// b beta' = -(beta q - w)^+, q = C_N (v t)^2 + C_T (u t)^2, from t = 0.5 to 1.5, by Runge and Kutta's fourth
 // order.
 double intensity_of_ode(const Adhesion& law, const Vector& velocity) {
   constexpr int steps = 100000;
@@ -130,52 +134,62 @@ double intensity_of_ode(const Adhesion& law, const Vector& velocity) {
   };
   double beta = 1.0;
   for (int k = 0; k < steps; ++k) {
-    const double h = 1.0 / steps, t = k * h, a = slope(t, beta), b = slope(t + 0.5 * h, beta + 0.5 * h * a),
-                 c = slope(t + 0.5 * h, beta + 0.5 * h * b), d = slope(t + h, beta + h * c);
+    const double h = 1.0 / steps, t = 0.5 + k * h, a = slope(t, beta),
+                 b = slope(t + 0.5 * h, beta + 0.5 * h * a), c = slope(t + 0.5 * h, beta + 0.5 * h * b),
+                 d = slope(t + h, beta + h * c);
     beta += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
   }
   return beta;
 }
-// The same by the law, on a mass that the bond does not slow. The mean opening starts half a step back: at
-// the k-th call it is that of t = (k + 1/2) h - h/2, so velocities start at the half.
+// The same by the law, on a mass that the bond does not slow.
 double intensity_of_law(const Adhesion& law, const Vector& velocity, int steps) {
-  const double h = 1.0 / steps;
+  const double h = 1.0 / steps, at = 0.5 + 0.5 * h;
   NodeRun node("rccm", law.parameters(), h);
   node.h[0] = 1e-14;
-  node.v_previous = {};
-  node.step(velocity);  // the opening h v/2: half a step
-  for (int k = 1; k < steps; ++k) node.step(velocity);
-  const double before = node.named("intensity");
-  node.step(velocity);
-  return 0.5 * (before + node.named("intensity"));  // at (steps - 1/2) h and (steps + 1/2) h
+  node.v_previous = velocity;
+  node.state = {1.0};
+  for (const double time : {at, 0.5})
+    for (const double component : velocity) node.state.push_back(time * component);
+  for (int k = 0; k < steps; ++k) EXPECT_EQ(node.step(velocity), ILAW_OK);
+  return node.named("intensity");
 }
 
 TEST(Rccm, ConvergesToItsEquationAtSecondOrder) {
   const Adhesion law{40.0, 25.0, 0.7, 0.9, 0.0};
   const Vector velocity{0.3, 0.2, 0.1};
   const double exact = intensity_of_ode(law, velocity);
-  EXPECT_GT(exact, 0.3);
+  EXPECT_GT(exact, 0.05);
   EXPECT_LT(exact, 0.9);
   double last = 0.0;
   for (const int steps : {50, 113, 257, 601}) {
-    const double error = std::abs(intensity_of_law(law, velocity, steps) - exact) * steps * steps;
-    EXPECT_LT(error, 0.5) << steps;
-    if (last > 0.0) EXPECT_NEAR(error / last, 1.0, 0.25) << steps;
-    last = error;
+    const double constant = std::abs(intensity_of_law(law, velocity, steps) - exact) * steps * steps;
+    if (last > 0.0) {
+      EXPECT_NEAR(constant / last, 1.0, 0.05) << steps;
+    }
+    last = constant;
   }
+  EXPECT_GT(last, 1e-3);
 }
 
-// Without viscosity adhesion is w/q, beyond where its energy reaches w.
+// Without viscosity the mean adhesion of a step times its mean energy is w, and adhesion is w/q to what it
+// changes by in a step.
 TEST(Rccm, FollowsTheEnergyWithoutViscosity) {
   const Adhesion law{100.0, 30.0, 0.5, 0.0, 0.0};
-  for (const int steps : {200, 400}) {
+  for (const int steps : {100, 370}) {
     const double h = 1.0 / steps;
     NodeRun node("rccm", law.parameters(), h);
     node.h[0] = 1e-14;
-    node.v_previous = {};
-    for (int k = 0; k < steps; ++k) node.step({0.2, 0.1, 0.0});
-    const double q = law.square(mean_opening(node));
-    EXPECT_NEAR(node.named("intensity"), law.energy / q, 30.0 * h * h);
+    int weakened = 0;
+    for (int k = 0; k < steps; ++k) {
+      const double before = node.named("intensity"), q = law.square(mean_opening(node));
+      ASSERT_EQ(node.step({0.2, 0.1, 0.0}), ILAW_OK);
+      const double after = node.named("intensity"), end = law.square(mean_opening(node));
+      if (after == before) continue;
+      ++weakened;
+      EXPECT_NEAR(0.25 * (before + after) * (q + end), law.energy, 1e-13);
+      EXPECT_NEAR(after, law.energy / end, law.energy / q - law.energy / end) << k;
+    }
+    EXPECT_GT(weakened, steps / 4);
   }
 }
 
@@ -247,46 +261,46 @@ TEST(Rccm, IsCoulombWithoutAdhesion) {
   }
 }
 
-// A bond that is stiff for its step may snap back: then its node is refused, and no other is.
-TEST(Rccm, SaysWhereItHasSeveralSolutions) {
+// A bond that is far stiffer than its step resolves, in one direction: the step has the one solution that a
+// dense search finds.
+TEST(Rccm, SolvesItsEquationWhereTheBondIsStiff) {
   Random random(4);
-  int several = 0, one = 0;
+  int weakened = 0, broken = 0, held = 0;
   for (int k = 0; k < 3000; ++k) {
     const double f = random.between(0.0, 1.0), beta = random.between(0.3, 1.0),
-                 c = random.power_of_ten(-1.0, 1.0);
-    const double drive = f * random.power_of_ten(0.3, 1.5) + random.between(0.0, 3.0),
-                 w = random.power_of_ten(-2.0, 1.0);
-    const double b = k % 3 ? 0.0 : random.power_of_ten(-2.0, 0.0);
-    NodeRun node("rccm", Adhesion{1.0, 1.0, w, b, 0.0}.parameters(), 1.0);
-    node.h[0] = 4.0 * c;
-    node.state = {beta, f, 0.0, 0.0, f, 0.0, 0.0};
+                 c = random.power_of_ten(-1.0, 2.0);
+    const double b = k % 3 ? 0.0 : random.power_of_ten(-2.0, 0.0), w = random.power_of_ten(-2.0, 0.5);
+    const double drive = f * 1.5 * (1.0 + c * beta * beta) + random.power_of_ten(-2.0, 1.0);
     const auto residual = [&](double x) {
       const double y = drive / (1.0 + 0.5 * c * (beta * beta + x * x)) - f, q = 0.5 * (f * f + y * y);
       return 0.5 * (beta + x) * q - w - b * (beta - x);
     };
-    if (drive / (1.0 + c * beta * beta) - f < 0.0 || f == 0.0) continue;  // contact
-    int changes = 0;
-    bool is_close = false;
-    constexpr int samples = 4000;
-    for (int i = 0; i < samples; ++i) {
-      const double at = residual(beta * i / samples), next = residual(beta * (i + 1) / samples);
-      changes += (at > 0.0) != (next > 0.0);
-      is_close = is_close || std::abs(next) < 1e-4 * (w + b);
-    }
-    const bool solved = node.step({2.0 * (drive - 2.0 * f), 0.0, 0.0}) == ILAW_OK;
+    NodeRun node("rccm", Adhesion{1.0, 1.0, w, b, 0.0}.parameters(), 1.0);
+    node.h[0] = 4.0 * c;
+    node.state = {beta, f, 0.0, 0.0, f, 0.0, 0.0};
+    ASSERT_EQ(node.step({2.0 * (drive - 2.0 * f), 0.0, 0.0}), ILAW_OK) << k << ": " << node.report.reason;
+    const double found = node.named("intensity");
     if (residual(beta) <= 0.0) {
-      ASSERT_TRUE(solved);
-      ASSERT_EQ(node.named("intensity"), beta);
-    } else if (changes > 1) {
-      ASSERT_FALSE(solved) << k;
-      ++several;
-    } else if (!is_close || solved) {
-      ASSERT_TRUE(solved) << k << ": " << node.report.reason;
-      ++one;
+      ASSERT_EQ(found, beta) << k;
+      ++held;
+      continue;
+    }
+    int changes = 0;
+    constexpr int samples = 1000;
+    for (int i = 0; i < samples; ++i)
+      changes += (residual(beta * i / samples) > 0.0) != (residual(beta * (i + 1) / samples) > 0.0);
+    ASSERT_LE(changes, 1) << k;
+    if (residual(0.0) < 0.0) {
+      ASSERT_NEAR(residual(found), 0.0, 1e-12 * (drive * drive + w + b)) << k;
+      ++weakened;
+    } else {
+      ASSERT_EQ(found, 0.0) << k;
+      ++broken;
     }
   }
-  EXPECT_GT(several, 30);
-  EXPECT_GT(one, 500);
+  EXPECT_GT(held, 100);
+  EXPECT_GT(weakened, 100);
+  EXPECT_GT(broken, 300);
 }
 
 TEST(Rccm, NeedsAFiniteStiffness) {

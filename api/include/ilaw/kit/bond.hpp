@@ -161,13 +161,16 @@ class bonded_inertia<V, transverse<V>> {
   // closing, whatever the bond does.
   ILAW_KIT_INLINE vector<V> impulse(const held& m, vector<V> d, V per_step, vector<V> contact,
                                     mask_of<V> closed, V closing) const {
-    const V taken = 2.0 * m.kappa * per_step, taken_t = taken * weight_ * m.left_t;
-    return {-(select(closed, closing, taken * m.left_n * d.n) * per_normal_),
-            m.left_t * contact.t1 - taken_t * d.t1 * per_normal_,
-            m.left_t * contact.t2 - taken_t * d.t2 * per_normal_};
+    const V twice = 2.0 * per_step, normal = twice * taken(m.kappa, m.left_n) * d.n;
+    const V by_t = 1.0 / h_.t, shear = twice * taken(ratio_ * m.kappa, m.left_t) * by_t;
+    return {-(select(closed, closing, normal) * per_normal_), m.left_t * contact.t1 - shear * d.t1,
+            m.left_t * contact.t2 - shear * d.t2};
   }
 
  private:
+  // kappa/(1 + kappa), what is not left: with all its digits also where that is little.
+  ILAW_KIT_INLINE static V taken(V kappa, V left) { return select(kappa > 1.0, 1.0 - left, kappa * left); }
+
   transverse<V> h_;
   V per_normal_, weight_, ratio_;
 };
@@ -244,7 +247,7 @@ class bond_step {
   };
 
   ILAW_KIT_INLINE bond_step(const Delassus& h, const bond_problem<V>& p, const bond_common<V>& all)
-      : p_(p), step_(all.step), weight_(all.weight), inertia_(h, all) {
+      : p_(p), step_(all.step), weight_(all.weight), root_(all.root), inertia_(h, all) {
     compliance = 0.25 * step_.velocity_step * step_.velocity_step * p.area * h.normal();
     before = size_of(p.state.opening);
     is_new = sum_of_sizes(p.state.position) + sum_of_sizes(p.state.opening) == 0.0;
@@ -287,7 +290,7 @@ class bond_step {
     const vector<V> next = is_even() ? V(2.0) * m.opening - place_ : m.opening + on * (m.opening - place_);
     return {impulse,
             {memory, next, m.opening},
-            m.held.kappa / compliance,
+            2.0 * m.held.kappa * (per_step * per_step) * inertia_.per_normal(),
             status.code(),
             larger(refused, m.refused)};
   }
@@ -307,6 +310,8 @@ class bond_step {
  private:
   bool is_even() const { return step_.velocity_step == step_.position_step; }
   ILAW_KIT_INLINE V size_of(vector<V> w) const {
+    if constexpr (std::is_same_v<V, double>)
+      return length(w.n, root_ * w.t1, root_ * w.t2);  // of extreme scales
     return square_root(normal_product(w, w) + weight_ * tangential_product(w, w));
   }
 
@@ -389,7 +394,7 @@ class bond_step {
 
   const bond_problem<V>& p_;
   const step_sizes& step_;
-  V weight_;
+  V weight_, root_;
   bonded_inertia<V, Delassus> inertia_;
   vector<V> place_, drive_;   // x at the time of the impulse; w^+ + w^- without bond and contact
   V ground_, floor_, below_;  // lowest next position, lowest w^+
@@ -577,7 +582,9 @@ struct adhesive_bond {
     bond_step<V, Delassus> step(h, p, common);
     bond_result<bond_step<V, Delassus>> found(p.state.memory);
     respond(step, open, common, found);
-    mask left = found.left | found.motion.unsolved;
+    const V sum = found.motion.size + step.before;
+    const mask has_scale = is_scalar ? found.holds | !found.holds : (sum > 0x1p-200) & (sum < 0x1p200);
+    mask left = found.left | found.motion.unsolved | !(found.holds | has_scale);
     const mask gains = open & put_in(step, found.motion);
     if (any(gains)) {
       if constexpr (is_scalar)

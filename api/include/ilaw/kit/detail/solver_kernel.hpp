@@ -85,7 +85,7 @@ ILAW_KIT_INLINE void get_packed(double& v, unsigned lanes, const double* from) {
 
 inline constexpr int problem_block = 128;  // nodes
 
-using solver_pack = pack_of<1>;
+using solver_pack = pack_of<2>;
 
 template <class Struct, class V>
 inline constexpr int numbers_in_struct = static_cast<int>(sizeof(Struct) / sizeof(V));
