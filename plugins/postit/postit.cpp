@@ -1,6 +1,7 @@
 // Rigid, perfectly brittle adhesion that heals under pressure, with contact and friction. See postit.md.
 #include <ilaw/kit.hpp>
 #include <ilaw/kit/rigid_bond.hpp>
+#include <ilaw/kit/roots.hpp>
 #include <ilaw/kit/window.hpp>
 
 namespace {
@@ -109,21 +110,19 @@ struct postit {
   // What is bonded from the start holds at any gap.
   std::uint32_t permissions() const { return may_skip_free | (initial_adhesion > 0.0 ? 0U : may_skip_fresh); }
   const char* conflict() const {
-    return initial_adhesion > adhesion_limit
-               ? "parameter 'initial_adhesion' is larger than 'adhesion_limit', expected at most that"
-               : nullptr;
+    if (initial_adhesion <= adhesion_limit) return nullptr;
+    return "parameter 'initial_adhesion' is larger than 'adhesion_limit', expected at most that";
   }
   template <class Node>
   void initialise(Node& node) const {
-    node.state.adhesion = initial_adhesion > 0.0 ? initial_adhesion * node.area : 0.0;
+    node.state.adhesion = initial_adhesion * node.area;
   }
 
   // Friction in closed form where H is transverse; elsewhere nodes that touch are asked for it.
   template <class Node>
   status_of<V> step(Node& node) const requires is_transverse<Node> {
     const trial bond = tried(node);
-    const status_of<V> of_contact = apply_isotropic_friction(node, contact_beside(node, bond), friction);
-    return settle(node, bond, of_contact);
+    return settle(node, bond, apply_isotropic_friction(node, contact_beside(node, bond), friction));
   }
   using problem = friction_problem<V>;
   using answer = friction_answer<V>;
@@ -149,13 +148,14 @@ struct postit {
   template <class Node>
   trial tried(const Node& node) const {
     const V adhesion = node.state.adhesion;
+    const vector<V> r = stopping_impulse(node.delassus, node.v_free, node.v_previous);
     const mask_of<V> was_bonded = adhesion > 0.0;
-    const vector<V> r = stopping_impulse(node);
-    const mask_of<V> holds = was_bonded & is_within(node.earlier + r, adhesion, at_the_limit);
-    const mask_of<V> breaks = was_bonded & !holds;
-    vector<V> kept;
+    const mask_of<V> holds = was_bonded & is_within(node.earlier + r, adhesion, at_the_limit),
+                     breaks = was_bonded & !holds;
+    vector<V> kept;  // takes the sum to the limit
+    const auto within = [&](V part) { return is_within(node.earlier + part * r, adhesion, 1.0); };
     if (rupture == saturated && any(breaks))
-      kept = zero_unless(breaks, held_part(node.earlier, r, adhesion) * r);
+      kept = zero_unless(breaks, last_part<V>(within(0.0), within) * r);
     return {r, kept, holds, breaks};
   }
   template <class Node>
@@ -166,53 +166,17 @@ struct postit {
   }
 
   // <-S_N>^2 + (<|S_T| - mu <S_N>>/lambda)^2 <= R_Y^2 times a factor near 1, without a division by R_Y: both
-  // sides are brought near 1 by a power of two. False where S has overflowed. An infinite lambda leaves -S_N
-  // <= R_Y times the root.
+  // sides are brought near 1 by a power of two. False where S has overflowed.
   mask_of<V> is_within(vector<V> sum, V adhesion, double factor) const {
     const V of_pull = sum.n + (0.5 + 0.5 * factor) * adhesion;
     if (!any(tangent_influence < infinity)) return of_pull >= 0.0;
     const V scale = power_scale_of(adhesion).down, limit = scale * adhesion;
     const vector<V> s = scale * sum;
-    const V pull = positive_part(-s.n), held_by_friction = friction_limit(friction, s.n);
-    const V length = square_root(s.t1 * s.t1 + s.t2 * s.t2);
-    const V by_influence = smaller(1.0 / tangent_influence, V(std::numeric_limits<double>::max()));
-    const V shear = positive_part(length - held_by_friction) * by_influence;
+    const V pull = positive_part(-s.n), length = square_root(s.t1 * s.t1 + s.t2 * s.t2);
+    const V by_lambda = smaller(1.0 / tangent_influence, V(std::numeric_limits<double>::max()));
+    const V shear = positive_part(length - friction_limit(friction, s.n)) * by_lambda;
     const V of_both = factor * (limit * limit) - (pull * pull + shear * shear);
     return select(tangent_influence == infinity, of_pull, of_both) >= 0.0;
-  }
-
-  // The part of the trial impulse that takes the sum to the limit; bisection to the last bit.
-  V held_part(vector<V> earlier, vector<V> r, V adhesion) const {
-    V holds = 0.0, breaks = 1.0, middle = 0.5;
-    for (mask_of<V> open = is_within(earlier, adhesion, 1.0); any(open);
-         open = open & (middle > holds) & (middle < breaks)) {
-      const mask_of<V> within = is_within(earlier + middle * r, adhesion, 1.0);
-      holds = select(open & within, middle, holds);
-      breaks = select(open & !within, middle, breaks);
-      middle = 0.5 * (holds + breaks);
-    }
-    return holds;
-  }
-
-  // The largest part up to 1 of r that may join what is held, so that the work of both, which is
-  // (held + r).(v^- + v_free + H (held + r))/2, is not positive; that of what is held alone counts as none.
-  template <class Node>
-  static V joining_part(const Node& node, vector<V> held, vector<V> r) {
-    const auto product = [](vector<V> a, vector<V> b) {
-      return normal_product(a, b) + tangential_product(a, b);
-    };
-    const vector<V> of_held = node.delassus.times(held), motion = node.v_previous + node.v_free + of_held;
-    const V c2 = product(r, node.delassus.times(r)), c1 = product(r, motion + of_held);
-    const fraction<V> root = root_of_work(c2, c1, smaller(product(held, motion), 0.0));
-    return select(root.numerator < root.denominator, root.numerator / root.denominator, 1.0);
-  }
-  // What is held and then contact and friction do no positive work each, and yet may together: friction is
-  // scaled first, as where there is no bond, and then contact with it, if that was not enough.
-  template <class Node>
-  static vector<V> joined(const Node& node, vector<V> held, vector<V> r) {
-    const vector<V> normal{r.n}, rubs{0.0, r.t1, r.t2};
-    r = normal + joining_part(node, held + normal, rubs) * rubs;
-    return held + joining_part(node, held, r) * r;
   }
 
   // The node comes with the impulse of contact, is given that of its bond, and heals.
@@ -237,14 +201,14 @@ struct postit {
     s.grace = select(bond.breaks, V(whole), select(bond.holds, left, zero_unless(touches, s.grace)));
   }
 
-  // Pressing bonds: R_Y = max(R_Y, min(eta(b) <S_N>, R_Y,max)). A rupture has cleared the window. Returns
-  // where.
+  // Pressing bonds: R_Y = max(R_Y, min(eta(b) <S_N>, R_Y,max)). A rupture has cleared the window.
   template <class Node>
   mask_of<V> heal(Node& node, const trial& bond) const {
     V efficiency = 1.0;
     if (any(efficiency_decrease < infinity)) efficiency = exp(-node.state.ruptures / efficiency_decrease);
     const V limit = adhesion_limit * node.area;  // not a number: inf, and no area is read
-    const V pressed = efficiency * (zero_unless(!bond.breaks, node.earlier.n) + node.impulse.n);
+    const V summed = zero_unless(!bond.breaks, node.earlier.n);
+    const V pressed = efficiency * (summed + node.impulse.n);
     const V gained = zero_unless(node.impulse.n > 0.0, select(limit < pressed, limit, pressed));
     node.state.adhesion = larger(gained, zero_unless(!bond.breaks, node.state.adhesion));
     return gained > 0.0;

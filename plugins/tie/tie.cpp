@@ -67,11 +67,11 @@ struct tie {
   static constexpr bool clears_window(ilaw_status s) { return s == ILAW_BROKEN; }
 
   const char* conflict() const {
-    if (force == infinity) return nullptr;
-    if (strength < infinity) return "parameters 'strength' and 'force' are two limits, expected one of them";
-    return duration > 0.0 && duration < infinity
-               ? nullptr
-               : "parameter 'force' is a mean over 'memory', which must be above 0 and finite";
+    if (force < infinity && strength < infinity)
+      return "parameters 'strength' and 'force' are two limits, expected one of them";
+    if (force < infinity && !(duration > 0.0 && duration < infinity))
+      return "parameter 'force' is a mean over 'memory', which must be above 0 and finite";
+    return nullptr;
   }
   std::uint32_t inputs() const {
     if (strength < infinity) return card.inputs;
@@ -80,14 +80,13 @@ struct tie {
 
   template <class Node>
   status_of<V> step(Node& node) const {
-    const vector<V> trial = stopping_impulse(node);
+    const vector<V> trial = stopping_impulse(node.delassus, node.v_free, node.v_previous);
     const V broken = node.state.broken;
     const mask_of<V> bonded = broken == 0.0;
     mask_of<V> holds = bonded;
-    if (any((strength < infinity) | (force < infinity)))
-      holds = bonded & !exceeds(node.earlier + trial, limit(node));
+    if (any((strength < infinity) | (force < infinity))) holds = bonded & !overloads(node, trial);
     V normal = 0.0;
-    if (any(!holds)) normal = contact_impulse(node);
+    if (any(!holds)) normal = pressing_impulse(node.delassus, contact_without_bond(node, node.v_free));
     node.impulse = select(holds, trial, vector<V>{normal});
     node.state.broken = select(holds, broken, V(1.0));
     const status_of<V> touches = select(normal > 0.0, status::closed, status::free);
@@ -95,22 +94,13 @@ struct tie {
   }
 
  private:
-  // R_Y A or F_Y tau_Y. Not a number: inf, and no area is read.
+  // sqrt(<-S_N>^2 + |S_T|^2) > R_Y A or F_Y tau_Y. A limit that is not a number: inf, and no area is read.
   template <class Node>
-  V limit(const Node& node) const {
-    return select(force < infinity, force * duration, strength * node.area) * at_the_limit;
-  }
-  // Pull and shear count alike, a press does not: nothing is torn by it.
-  static mask_of<V> exceeds(vector<V> sum, V limit) {
+  mask_of<V> overloads(const Node& node, vector<V> trial) const {
+    const V limit = select(force < infinity, force * duration, strength * node.area) * at_the_limit;
+    const vector<V> sum = node.earlier + trial;
     const scaled_length<V> load = scaled_length_of(positive_part(-sum.n), sum.t1, sum.t2);
     return load.square > (load.down * limit) * (load.down * limit);
-  }
-  // 0 <= v_N _|_ r_N >= 0 where the gap is closed.
-  template <class Node>
-  static V contact_impulse(const Node& node) {
-    const contact_condition<V> contact =
-        contact_leaving_at<V>(0.0, node.gap, node.v_free.n, node.v_previous.n);
-    return zero_unless(contact.slack <= 0.0, positive_part(-contact.excess / node.delassus.normal()));
   }
 };
 

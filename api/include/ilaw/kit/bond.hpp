@@ -21,7 +21,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/friction.hpp>
+#include <ilaw/kit/rigid_bond.hpp>
 #include <ilaw/kit/roots.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
@@ -31,33 +31,7 @@ ILAW_KIT_INLINE mask_of<V> none() {
   return detail::mask_from<V>(0U);
 }
 
-// ---- stopping a node -------------------------------------------------------------------------------------
-
-// The part of v_free that rounding may leave: v_free + H r, which is 0, is the velocity before of a node that
-// is held from step to step.
-inline constexpr double left_by_rounding = 0x1p-48;
-// v^- beyond that.
-template <class V>
-ILAW_KIT_INLINE vector<V> velocity_before(vector<V> v_previous, vector<V> v_free) {
-  return v_previous + V(left_by_rounding) * v_free;
-}
-template <class V>
-ILAW_KIT_INLINE V product(vector<V> a, vector<V> b) {
-  return normal_product(a, b) + tangential_product(a, b);
-}
-// The impulse that stops the node, r = -H^-1 v_free, less what would be positive work: only where the node
-// turned round within the step.
-template <class V, class Delassus>
-vector<V> stopping_impulse(const Delassus& h, vector<V> v_free, vector<V> v_previous) {
-  const vector<V> r = -h.solve(v_free);
-  friction_problem<V> problem;
-  fill(problem, h, {0.0, v_free, velocity_before(v_previous, v_free)}, 0.0, 0.0);
-  friction_answer<V> a{{r.n, r.t1, r.t2}, status::stick.code, 0.0};
-  take_off_positive_work(problem, a);
-  return {a.r[0], a.r[1], a.r[2]};
-}
-
-// ---- problem and answer ----------------------------------------------------------------------------------
+// ---- problem and answer
 
 template <class V>
 struct bond_state {
@@ -123,7 +97,7 @@ ILAW_KIT_INLINE void choose(mask_of<V> where, const bond_answer<V>& other, bond_
   a.refused = select(where, other.refused, a.refused);
 }
 
-// ---- a node that a bond holds ----------------------------------------------------------------------------
+// ---- a node that a bond holds
 
 // M = (I + kappa A)^-1, A = W^1/2 H W^1/2/h_N, as far as H and what a trial kappa makes of it are concerned.
 template <class V, class Delassus>
@@ -229,7 +203,7 @@ class bonded_inertia<V, full<V>> {
   full<V> a_;
 };
 
-// ---- one bonded node in one step -------------------------------------------------------------------------
+// ---- one bonded node in one step
 
 template <class V, class Delassus>
 class bond_step {
@@ -412,7 +386,7 @@ struct bond_result {
   ILAW_KIT_INLINE explicit bond_result(V before) : memory(before) {}
 };
 
-// ---- the law ---------------------------------------------------------------------------------------------
+// ---- the law
 
 template <template <class> class Law, class V>
 struct adhesive_bond {

@@ -17,10 +17,10 @@ struct contact_condition {
   V slack, excess, rest;
 };
 
-// A contact that must leave with v_N = target, were it not for its energy: in a central-difference host the work of r
-// over the step is r.(v^- + v)/2, whatever the steps. So v_N <= -v_N^- where it is pressed: a node that was leaving is
-// not stopped, but turns round at most at the speed with which it left. Near the critical step such nodes occur, and
-// stopping them makes the motion diverge. Restitution asks for less by itself.
+// A contact that must leave with v_N = target, were it not for its energy: in a central-difference host the
+// work of r over the step is r.(v^- + v)/2, whatever the steps. So v_N <= -v_N^- where it is pressed: a node
+// that was leaving is not stopped, but turns round at most at the speed with which it left. Near the critical
+// step such nodes occur, and stopping them makes the motion diverge. Restitution asks for less by itself.
 template <class V>
 ILAW_KIT_INLINE contact_condition<V> contact_leaving_at(std::type_identity_t<V> target, V slack, V v_free,
                                                         V v_previous) {
@@ -28,9 +28,9 @@ ILAW_KIT_INLINE contact_condition<V> contact_leaving_at(std::type_identity_t<V> 
 }
 
 // moreau: where the gap is closed, v_N + e v_N^- >= 0 (Moreau 1988).
-// predictive: where the next gap would not be positive, v_N >= -g/h, so that it is never negative. An impact with
-// restitution leaves with -e v_N^- at once, which is larger. A gap that is negative already must not grow; pushing it
-// out would create energy.
+// predictive: where the next gap would not be positive, v_N >= -g/h, so that it is never negative. An impact
+// with restitution leaves with -e v_N^- at once, which is larger. A gap that is negative already must not
+// grow; pushing it out would create energy.
 template <class Node>
 ILAW_KIT_INLINE auto contact_at(const Node& node, number_of<Node> restitution, double activation) {
   using V = number_of<Node>;
@@ -40,7 +40,8 @@ ILAW_KIT_INLINE auto contact_at(const Node& node, number_of<Node> restitution, d
   const V open = positive_part(node.gap), arrival = open * rate;
   const V slack = open + step * node.v_free.n;  // next_gap to the last bit where the gap is positive
   const V rebound = -restitution * node.v_previous.n;
-  return contact_leaving_at<V>(select(rebound > 0.0, rebound, arrival), slack, node.v_free.n, node.v_previous.n);
+  return contact_leaving_at<V>(select(rebound > 0.0, rebound, arrival), slack, node.v_free.n,
+                               node.v_previous.n);
 }
 
 template <class Law>
@@ -53,11 +54,12 @@ constexpr parameter<Law> restitution_parameter(typename number_of_law<Law>::type
 }
 template <class Law>
 constexpr parameter<Law> activation_parameter(double Law::*member) {
-  return {.member = member,
-          .name = "activation",
-          .doc = "moreau: acts where the gap is closed; predictive: acts where the next gap would be negative.",
-          .default_value = predictive,
-          .choices = activation_choices};
+  return {
+      .member = member,
+      .name = "activation",
+      .doc = "moreau: acts where the gap is closed; predictive: acts where the next gap would be negative.",
+      .default_value = predictive,
+      .choices = activation_choices};
 }
 
 }  // namespace ilaw::kit

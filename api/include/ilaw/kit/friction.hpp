@@ -7,7 +7,7 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// ---- the problem ------------------------------------------------------------------------------------------------------
+// ---- the problem
 
 // 0 <= q_N + (H r)_N _|_ r_N >= 0 and Coulomb's law for q + H r, where slack <= 0; r = 0 elsewhere.
 // rest = v_free + v^- - q, so that the work of r is r.(q + H r + rest)/2.
@@ -55,7 +55,7 @@ constexpr parameter<Law> friction_parameter(typename number_of_law<Law>::type La
           .infinity_allowed = true};
 }
 
-// ---- closed form ------------------------------------------------------------------------------------------------------
+// ---- closed form
 
 // A number in [0, 1], not yet divided.
 template <class V>
@@ -63,8 +63,8 @@ struct fraction {
   V numerator, denominator;
 };
 
-// The largest s in [0, 1] with c2 s^2 + c1 s + c0 <= 0, where c0 <= 0 <= c2 and that does not hold at 1; without
-// cancellation.
+// The largest s in [0, 1] with c2 s^2 + c1 s + c0 <= 0, where c0 <= 0 <= c2 and that does not hold at 1;
+// without cancellation.
 template <class V>
 ILAW_KIT_INLINE fraction<V> root_of_work(V c2, V c1, V c0) {
   const V root = square_root(c1 * c1 - 4.0 * c2 * c0);
@@ -81,20 +81,24 @@ struct friction_factor {
   status_of<V> status;
 };
 
-// Of -q_T/h_T, which stops the slip, the part that may act, scaled back to the cone. With the part s the work of the
-// whole impulse, times 2 h_T, is s^2 q_T^2 - s q_T.(q_T + rest_T) + h_T r_N rest_N, and must not be positive: the part
-// is less than 1 only where the motion turned round within the step, as it does on a stiff spring, and the impact takes
-// less than it costs to stop that from behind. speed: that of q_T; along: speed.down q_T.rest_T.
+// Of -q_T/h_T, which stops the slip, the part that may act, scaled back to the cone. With the part s the work
+// of the whole impulse, times 2 h_T, is s^2 q_T^2 - s q_T.(q_T + rest_T) + h_T r_N rest_N, and must not be
+// positive: the part is less than 1 only where the motion turned round within the step, as it does on a stiff
+// spring, and the impact takes less than it costs to stop that from behind. speed: that of q_T; along:
+// speed.down q_T.rest_T.
 template <class V>
-ILAW_KIT_INLINE friction_factor<V> rub(V h_t, V normal, scaled_length<V> speed, V along, V rest_n, V friction) {
-  const V impact = h_t * (speed.down * normal) * rest_n, limit = speed.down * friction_limit(friction, normal);
+ILAW_KIT_INLINE friction_factor<V> rub(V h_t, V normal, scaled_length<V> speed, V along, V rest_n,
+                                       V friction) {
+  const V impact = h_t * (speed.down * normal) * rest_n,
+          limit = speed.down * friction_limit(friction, normal);
   const V slip = speed.root();
   const auto slips = slip > limit * h_t;
   V factor = select(slips, limit, V(1.0)) / select(slips, slip, h_t);
   V code = select(slips, V(status::slip.code), V(status::stick.code));
   const auto gains = along < impact;
   if (any(gains)) [[unlikely]] {
-    const fraction<V> part = root_of_work(speed.square, -(speed.square + speed.down * along), speed.down * impact);
+    const fraction<V> part =
+        root_of_work(speed.square, -(speed.square + speed.down * along), speed.down * impact);
     const auto far = part.denominator == infinity;  // v^- is so much larger than q that nothing is left
     const V numerator = select(gains, zero_unless(!far, part.numerator), 1.0);
     const V denominator = select(gains & !far, part.denominator, 1.0);
@@ -106,15 +110,22 @@ ILAW_KIT_INLINE friction_factor<V> rub(V h_t, V normal, scaled_length<V> speed, 
   return {factor, status_of<V>::from(code)};
 }
 
-// Solves q + H r = u, 0 <= u_N _|_ r_N >= 0, |r_T| <= mu r_N with r_T opposite to u_T where u_T != 0, in closed form
-// for H = diag(h_N, h_T, h_T): the normal row stands alone (Signorini), and the slip u_T is parallel to q_T, so that
-// sliding scales the sticking impulse back to the cone (de Saxce and Feng 1991). Gives the impulse, returns the status.
+// r_N where the tangential impulse does not act on it.
+template <class Delassus, class Vector>
+ILAW_KIT_INLINE auto pressing_impulse(const Delassus& h, const contact_problem<Vector>& contact) {
+  return zero_unless(contact.slack <= 0.0, positive_part(-contact.q.n / h.normal()));
+}
+
+// Solves q + H r = u, 0 <= u_N _|_ r_N >= 0, |r_T| <= mu r_N with r_T opposite to u_T where u_T != 0, in
+// closed form for H = diag(h_N, h_T, h_T): the normal row stands alone (Signorini), and the slip u_T is
+// parallel to q_T, so that sliding scales the sticking impulse back to the cone (de Saxce and Feng 1991).
+// Gives the impulse, returns the status.
 template <class Node, class Vector>
-ILAW_KIT_INLINE status_of<number_of<Node>> apply_isotropic_friction(Node& node, const contact_problem<Vector>& contact,
+ILAW_KIT_INLINE status_of<number_of<Node>> apply_isotropic_friction(Node& node,
+                                                                    const contact_problem<Vector>& contact,
                                                                     number_of<Node> friction) {
   using V = number_of<Node>;
-  const V pressing = positive_part(-contact.q.n / node.delassus.normal());
-  const V normal = zero_unless(contact.slack <= 0.0, pressing);
+  const V normal = pressing_impulse(node.delassus, contact);
   const scaled_length<V> speed = contact.q.scaled_tangential_length();
   const V along = tangential_product(speed.down * contact.q, contact.rest);
   const friction_factor<V> found =
@@ -123,7 +134,7 @@ ILAW_KIT_INLINE status_of<number_of<Node>> apply_isotropic_friction(Node& node, 
   return select(normal > 0.0, found.status, status::free);
 }
 
-// ---- any H, and coefficients along the tangents -------------------------------------------------------------------------
+// ---- any H, and coefficients along the tangents
 
 // A pressed contact, and its answer.
 template <class V>
@@ -152,8 +163,9 @@ ILAW_KIT_INLINE void fill(local_problem<V>& p, const full<V>& h) {
   p.h[5] = h.t12;
 }
 template <class V, class Delassus>
-ILAW_KIT_INLINE void fill(friction_problem<V>& p, const Delassus& delassus, const contact_problem<vector<V>>& contact,
-                          std::type_identity_t<V> friction_1, std::type_identity_t<V> friction_2) {
+ILAW_KIT_INLINE void fill(friction_problem<V>& p, const Delassus& delassus,
+                          const contact_problem<vector<V>>& contact, std::type_identity_t<V> friction_1,
+                          std::type_identity_t<V> friction_2) {
   fill(p.contact, delassus);
   p.contact.q[0] = contact.q.n;
   p.contact.q[1] = contact.q.t1;
@@ -235,7 +247,7 @@ mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
 }
 
 [[gnu::noinline]] inline void solve_friction_exactly(const friction_problem<double>& p,
-                                                   friction_answer<double>& a) {
+                                                     friction_answer<double>& a) {
   a = {};
   const contact_mode mode = solve_pressed(p.contact, a.r);
   a.status = (mode == contact_mode::slip ? status::slip : status::stick).code;
@@ -246,7 +258,8 @@ mask_of<V> solve_friction(const friction_problem<V>& p, friction_answer<V>& a) {
 
 // What of it is left to a solver at a node: nothing where the contact is open.
 template <class Node>
-ILAW_KIT_INLINE asked<number_of<Node>> ask_friction(Node& node, const contact_problem<vector<number_of<Node>>>& contact,
+ILAW_KIT_INLINE asked<number_of<Node>> ask_friction(Node& node,
+                                                    const contact_problem<vector<number_of<Node>>>& contact,
                                                     std::type_identity_t<number_of<Node>> friction_1,
                                                     std::type_identity_t<number_of<Node>> friction_2,
                                                     friction_problem<number_of<Node>>& problem) {
@@ -254,7 +267,8 @@ ILAW_KIT_INLINE asked<number_of<Node>> ask_friction(Node& node, const contact_pr
   return {(contact.slack <= 0.0) & (contact.q.n < 0.0), status::free};
 }
 template <class Node>
-ILAW_KIT_INLINE status_of<number_of<Node>> finish_friction(Node& node, const friction_answer<number_of<Node>>& a) {
+ILAW_KIT_INLINE status_of<number_of<Node>> finish_friction(Node& node,
+                                                           const friction_answer<number_of<Node>>& a) {
   using V = number_of<Node>;
   node.impulse = {a.r[0], a.r[1], a.r[2]};
   node.refused = larger(node.refused, a.refused);

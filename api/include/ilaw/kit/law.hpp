@@ -1,34 +1,38 @@
 // law.hpp - how a law describes itself, and every name that it may define.
 //
-// A law is one struct template on its number type V (pack.hpp). Its members are its parameters, each with an entry of
-// parameters[]: V may vary from node to node and in time, double is the same at all nodes and fixed at create.
+// A law is one struct template on its number type V (pack.hpp). Its members are its parameters, each with an
+// entry of parameters[]: V may vary from node to node and in time, double is the same at all nodes and fixed
+// at create.
 //
 //   is    card, references, parameters        what it is called, serves and reads
 //         state, state_variables              named memory (state.hpp)
 //         history                             a memory of any number of doubles
 //         amounts                             scalars that it gives per node and step: heat, wear
 //   does  step(node)                          its equations in closed form; returns the status
-//         problem, answer,                    where a solver is needed, step in parts: structs whose members are V,
-//         ask(node, problem),                   what is left to solve, and the status as if nothing were,
-//         solve(problem, answer, prepared),     in full packs; returns the lanes left to
+//         problem, answer,                    where a solver is needed, step in parts: structs whose members
+//         are V, ask(node, problem),                   what is left to solve, and the status as if nothing
+//         were, solve(problem, answer, prepared),     in full packs; returns the lanes left to
 //         solve_scalar(problem, answer,         this one, for a double,
 //                      prepared),
 //         finish(node, answer)                  and the status with the answer
-//         asks()                              whether these parameters need a solver where step and ask both serve a node
+//         asks()                              whether these parameters need a solver where step and ask both
+//         serve a node
 //                                               (or asks(bool is_transverse), where the form of H matters)
 //         prepare(step_sizes)                 numbers that all nodes of a batch share; node.prepared
 //         initialise(node)                    first state (default: zeros)
 //         conflict()                          why parameters do not go together, or null
 //         inputs(), capabilities(), permissions()   with these parameters (default: the card's)
-//         tells_tangents_apart()              whether these parameters need a tangent per node in the host's axes
-//         stable_velocity_step(node)          or (h_N, h_T) where it falls with both and depends on nothing else; or both,
+//         tells_tangents_apart()              whether these parameters need a tangent per node in the host's
+//         axes stable_velocity_step(node)          or (h_N, h_T) where it falls with both and depends on
+//         nothing else; or both,
 //                                               the second NaN where the first is meant
 //         history_size(), record(node, own)   the doubles of a free history, and how a step writes them; or
 //         window(), adds_to_window(status), clears_window(status)   of one that is a window (window.hpp)
 //         extension(name)                     see ilaw_law
 //
-// step, ask and finish are const templates on the node (node.hpp); solve and solve_scalar may be static and go without
-// prepared; all others are called with V = double. A law gives no other option: what can be switched stands in its card.
+// step, ask and finish are const templates on the node (node.hpp); solve and solve_scalar may be static and
+// go without prepared; all others are called with V = double. A law gives no other option: what can be
+// switched stands in its card.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -58,10 +62,11 @@ struct law_card {
   std::uint32_t capabilities = 0;
   std::uint32_t permissions = 0;    // promises to a host, see ilaw.h
   std::uint32_t state_version = 1;  // raised with every change of what a state means
-  // No step or ask without tells_tangents_apart() names t1 or t2, and no vector is remembered: then nodes in the
-  // host's axes need no tangent.
+  // No step or ask without tells_tangents_apart() names t1 or t2, and no vector is remembered: then nodes in
+  // the host's axes need no tangent.
   bool is_isotropic = false;
-  // It gives all that rupture dissipates as node.rupture: what else a step that breaks dissipates is friction and impact.
+  // It gives all that rupture dissipates as node.rupture: what else a step that breaks dissipates is friction
+  // and impact.
   bool gives_rupture = false;
 };
 
@@ -93,8 +98,7 @@ class parameter_member {
  public:
   constexpr parameter_member() = default;
   constexpr parameter_member(number Law::*member) : varying_(member) {}
-  constexpr parameter_member(
-      std::conditional_t<std::is_same_v<number, double>, none, double Law::*> member)
+  constexpr parameter_member(std::conditional_t<std::is_same_v<number, double>, none, double Law::*> member)
       : fixed_(member) {}
 
   constexpr bool is_given() const { return varying_ || fixed_; }
@@ -110,7 +114,9 @@ class parameter_member {
     else
       law.*fixed_ = value;
   }
-  ILAW_KIT_INLINE double get(const Law& law) const requires std::is_same_v<number, double> { return law.*varying_; }
+  ILAW_KIT_INLINE double get(const Law& law) const requires std::is_same_v<number, double> {
+    return law.*varying_;
+  }
 
  private:
   number Law::*varying_ = nullptr;
@@ -131,9 +137,9 @@ struct parameter {
   bool minimum_excluded = false;
   bool infinity_allowed = false;
   bool whole = false;
-  bool is_field = false;     // of the host's model, such as a temperature
-  texts choices = {};        // a choice: the member is double and holds the index
-  texts axes = over_time;    // over which a V may be a table
+  bool is_field = false;   // of the host's model, such as a temperature
+  texts choices = {};      // a choice: the member is double and holds the index
+  texts axes = over_time;  // over which a V may be a table
 
   // Copies that differ in one thing.
   constexpr parameter with_doc(const char* text) const {
@@ -165,16 +171,24 @@ struct step_sizes {
   double time, velocity_step, position_step, per_position_step;
 };
 
-// ---- questions about a law, L<V> ----------------------------------------------------------------------------------
+// ---- questions about a law, L<V>
 
 template <class Law>
-concept has_state = requires { typename Law::state; };
+concept has_state = requires {
+  typename Law::state;
+};
 template <class Law>
-concept has_history = requires { Law::history; };
+concept has_history = requires {
+  Law::history;
+};
 template <class Law>
-concept has_window = requires(const Law& law) { law.window(); };
+concept has_window = requires(const Law& law) {
+  law.window();
+};
 template <class Law>
-concept has_amounts = requires { Law::amounts; };
+concept has_amounts = requires {
+  Law::amounts;
+};
 
 struct stateless {};
 namespace detail {

@@ -26,7 +26,7 @@ inline double floor_of(double x) {
 template <class V>
 ILAW_KIT_INLINE V halfway(V low, V high) {
   using bits = detail::bits_of<V>;
-  return bits::number(bits::in(low) + ((bits::in(high) - bits::in(low)) >> 1));
+  return bits::number(bits::in(low) + ((bits::in(high)-bits::in(low)) >> 1));
 }
 
 // Powers of two that bring a number to [2, 4) and back: number * down lies there, number = scaled * up / 2.
@@ -103,7 +103,9 @@ ILAW_KIT_INLINE exponential_parts<V> parts_of_exponential(V x) {
   const V p = (0.5 + s * (low + s4 * (middle + s4 * high))) * s2 + s;  // the small terms first
   // 2^j from the bits of j + 1023 behind a 1 that is shifted out: no conversion, which few processors have in
   // vectors.
-  const auto power_of_two = [](V j) ILAW_KIT_LAMBDA { return bits::number(bits::in(j + (0x1p52 + 1023.0)) << 52); };
+  const auto power_of_two = [](V j) ILAW_KIT_LAMBDA {
+    return bits::number(bits::in(j + (0x1p52 + 1023.0)) << 52);
+  };
   const V half = (k * 0.5 + to_integer) - to_integer;
   return {p, power_of_two(half), power_of_two(k - half)};
 }

@@ -7,9 +7,10 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// ---- statuses -------------------------------------------------------------------------------------------------------
+// ---- statuses
 
-// A status of ilaw.h. Statuses of nodes are made from these by select alone, so that a step cannot give another one.
+// A status of ilaw.h. Statuses of nodes are made from these by select alone, so that a step cannot give
+// another one.
 struct status_value {
   double code;
 };
@@ -44,7 +45,7 @@ ILAW_KIT_INLINE status_of<pack_of<Registers>> select(pack_mask<Registers> m, sta
 }
 ILAW_KIT_INLINE status_of<double> select(bool m, status_value a, status_value b) { return m ? a : b; }
 
-// ---- why a law refuses a node ---------------------------------------------------------------------------------------
+// ---- why a law refuses a node
 
 enum class refusal {
   none,
@@ -54,7 +55,7 @@ enum class refusal {
   time_before_history,  // the clock was set back
 };
 
-// ---- a node ---------------------------------------------------------------------------------------------------------
+// ---- a node
 
 // Stands in the place of an input that the law's card does not name: who reads it is told what to write.
 template <class V, std::uint32_t Input>
@@ -78,8 +79,8 @@ struct undeclared_vector {
 template <class Law, std::uint32_t Input, class Declared, class Undeclared>
 using input_t = std::conditional_t<(Law::card.inputs & Input) != 0, Declared, Undeclared>;
 
-// A step reads the first part and writes the second. Law: with its number type. Vector: vector<V>, or projected<V> for
-// isotropic laws in the host's axes. Delassus: transverse<V> or full<V>.
+// A step reads the first part and writes the second. Law: with its number type. Vector: vector<V>, or
+// projected<V> for isotropic laws in the host's axes. Delassus: transverse<V> or full<V>.
 template <class Law, class Vector, class Delassus>
 struct node {
   using number = typename number_of_law<Law>::type;
@@ -89,21 +90,23 @@ struct node {
   const bool wants_energy;  // whether what follows "stored" below is asked for
   const prepared_t<Law>& prepared;
   const Vector v_free;  // relative velocity without interface
-  const input_t<Law, reads_v_previous, Vector, undeclared_vector<Vector>> v_previous;  // of the half step before
+  const input_t<Law, reads_v_previous, Vector, undeclared_vector<Vector>>
+      v_previous;  // of the half step before
   const Delassus delassus;
   const input_t<Law, reads_gap, V, undeclared_input<V, reads_gap>> gap;  // offset already taken off
   const input_t<Law, reads_area, V, undeclared_input<V, reads_area>> area;
-  vector<V> earlier = {};          // what the law's window sums up to before the step
-  const_history history = {};      // of laws with a free history
+  vector<V> earlier = {};      // what the law's window sums up to before the step
+  const_history history = {};  // of laws with a free history
 
   Vector impulse = {};
-  state_t<Law> state = {};         // comes in as it was, leaves as it is
-  V stored = 0.0;                  // energy stored by the interface at the end of the step
-  // What the step added to it, by the normal and by the tangential motion; the rest of the work is dissipated.
+  state_t<Law> state = {};  // comes in as it was, leaves as it is
+  V stored = 0.0;           // energy stored by the interface at the end of the step
+  // What the step added to it, by the normal and by the tangential motion; the rest of the work is
+  // dissipated.
   V normal_gain = 0.0, tangential_gain = 0.0;
-  V rupture = 0.0;                 // part of these gains that is not stored: dissipated by rupture
+  V rupture = 0.0;  // part of these gains that is not stored: dissipated by rupture
   V amounts[amount_count<Law> + 1] = {};
-  V refused = 0.0;                 // code of a refusal
+  V refused = 0.0;  // code of a refusal
 
   ILAW_KIT_INLINE void refuse(mask_of<V> where, refusal reason) {
     refused = select(where, V(static_cast<double>(reason)), refused);
@@ -113,8 +116,8 @@ struct node {
 template <class Node>
 using number_of = typename Node::number;
 
-// Kinds of nodes that laws tell apart when they are compiled: whether H = diag(h_N, h_T, h_T) at all of them, and
-// whether their vectors have tangential components with names.
+// Kinds of nodes that laws tell apart when they are compiled: whether H = diag(h_N, h_T, h_T) at all of them,
+// and whether their vectors have tangential components with names.
 template <class Node>
 inline constexpr bool is_transverse = is_transverse_form<std::remove_cvref_t<decltype(Node::delassus)>>;
 template <class Node>
@@ -150,9 +153,5 @@ ILAW_KIT_INLINE auto is_out_of_reach(const Node& node) {
 struct step_interval {
   double end, length;
 };
-template <class Node>
-step_interval interval_of(const Node& node) {
-  return {node.time + 0.5 * node.position_step, node.velocity_step};
-}
 
 }  // namespace ilaw::kit

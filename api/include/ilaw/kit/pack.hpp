@@ -23,7 +23,6 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 // ---- doubles
-// ----------------------------------------------------------------------------------------------------
 
 constexpr bool any(bool m) { return m; }
 constexpr double select(bool m, double a, double b) { return m ? a : b; }
@@ -37,7 +36,6 @@ ILAW_KIT_INLINE double square_root(double x) { return __builtin_sqrt(x); }
 namespace detail {
 
 // ---- one register
-// -----------------------------------------------------------------------------------------------
 
 #if defined(__AVX512F__)
 inline constexpr int register_lanes = 8;
@@ -149,7 +147,6 @@ ILAW_KIT_INLINE one root_of(one x) {
 }  // namespace detail
 
 // ---- packs
-// ------------------------------------------------------------------------------------------------------
 
 template <int Registers>
 struct pack_of;
@@ -282,7 +279,6 @@ using mask_of = decltype(V{} < V{});
 namespace detail {
 
 // ---- the bits of a number, for functions made from its exponent
-// ---------------------------------------------------
 
 template <class V>
 struct bits_of {  // of a pack
@@ -345,7 +341,7 @@ ILAW_KIT_INLINE bool have_other_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) != std::bit_cast<std::uint64_t>(b);
 }
 
-// ---- the lanes of a V ---------------------------------------------------------------------------------------------
+// ---- the lanes of a V
 
 template <class V>
 inline constexpr int lanes_of = V::size;

@@ -18,8 +18,8 @@ inline constexpr ilaw_kit_walk walks[] = {walk_batch<Laws<double>>...};
 // The functions of the law at a place of its library, which the law does not know.
 template <std::size_t Place, class Law>
 struct functions {
-  static ilaw_result ILAW_CALL create(const char* id, const ilaw_setup* setup, ilaw_instance** result, char* text,
-                                      std::size_t text_size) {
+  static ilaw_result ILAW_CALL create(const char* id, const ilaw_setup* setup, ilaw_instance** result,
+                                      char* text, std::size_t text_size) {
     message said(text, text_size);
     if (!result) return ILAW_INVALID_ARGUMENT;
     const ilaw_kit_walk* best = best_walks();
@@ -86,7 +86,8 @@ inline constexpr ilaw_law abi_law = [] {
 template <bool Checked, class... Laws>
 class library {
  public:
-  static const ilaw_plugin* describe(const char* name, const char* version, const char* vendor, const char* licence) {
+  static const ilaw_plugin* describe(const char* name, const char* version, const char* vendor,
+                                     const char* licence) {
     static const ilaw_plugin plugin{.struct_size = sizeof(ilaw_plugin),
                                     .abi_major = ILAW_ABI_MAJOR,
                                     .abi_minor = ILAW_ABI_MINOR,
@@ -119,8 +120,8 @@ using library_of = library<(checked<Laws>() && ...), Laws<double>...>;
 
 }  // namespace ilaw::kit::detail
 
-// ILAW_PLUGIN(name, version, vendor, licence, law...) makes the one exported symbol of a law library; at the other
-// levels, the hidden one that gives their walks.
+// ILAW_PLUGIN(name, version, vendor, licence, law...) makes the one exported symbol of a law library; at the
+// other levels, the hidden one that gives their walks.
 #if defined(ILAW_KIT_WALKS)
 #define ILAW_PLUGIN(name, version, vendor, licence, ...) \
   extern "C" const ilaw_kit_walk* ILAW_KIT_WALKS() { return ilaw::kit::detail::walks<__VA_ARGS__>; }

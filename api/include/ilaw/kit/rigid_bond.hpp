@@ -7,30 +7,52 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// The part of v_free that rounding may leave of it: v_free + H r, which is 0, is the velocity before of a
-// node that is held from step to step.
+// The part of v_free that rounding may leave: v_free + H r, which is 0, is the velocity before of a node that
+// is held from step to step.
 inline constexpr double left_by_rounding = 0x1p-48;
 // v^- beyond that. The work r.v^-/2 that is left then grows from 0 as v^- does, with no jump.
-template <class Vector>
-ILAW_KIT_INLINE Vector velocity_before(Vector v_previous, Vector v_free) {
-  return v_previous + left_by_rounding * v_free;
+template <class V>
+ILAW_KIT_INLINE vector<V> velocity_before(vector<V> v_previous, vector<V> v_free) {
+  return v_previous + V(left_by_rounding) * v_free;
+}
+template <class V>
+ILAW_KIT_INLINE V product(vector<V> a, vector<V> b) {
+  return normal_product(a, b) + tangential_product(a, b);
 }
 
-// r = -H^-1 v_free, which stops the node, without positive work: all of it unless the node was moving before
-// and turned round within the step.
-template <class Node>
-ILAW_KIT_INLINE auto stopping_impulse(const Node& node) {
-  using V = number_of<Node>;
-  vector<V> r = -node.delassus.solve(node.v_free);
-  const vector<V> before = velocity_before(node.v_previous, node.v_free);
-  if (any(normal_product(r, before) + tangential_product(r, before) > 0.0)) [[unlikely]] {
-    friction_answer<V> answer{{r.n, r.t1, r.t2}, V(status::stick.code), 0.0};
+// The impulse that stops the node, r = -H^-1 v_free, less what would be positive work: only where the node
+// turned round within the step.
+template <class V, class Delassus>
+ILAW_KIT_INLINE vector<V> stopping_impulse(const Delassus& h, vector<V> v_free, vector<V> v_previous) {
+  vector<V> r = -h.solve(v_free);
+  const vector<V> before = velocity_before(v_previous, v_free);
+  if (any(product(r, before) > 0.0)) [[unlikely]] {
     friction_problem<V> problem;
-    fill(problem, node.delassus, {0.0, node.v_free, before}, 0.0, 0.0);
-    take_off_positive_work(problem, answer);
-    r = {answer.r[0], answer.r[1], answer.r[2]};
+    fill(problem, h, {0.0, v_free, before}, 0.0, 0.0);
+    friction_answer<V> a{{r.n, r.t1, r.t2}, status::stick.code, 0.0};
+    take_off_positive_work(problem, a);
+    r = {a.r[0], a.r[1], a.r[2]};
   }
   return r;
+}
+
+// The largest part up to 1 of r that may join what is held, so that the work of both, which is
+// (held + r).(motion + H (held + r))/2 with motion = v^- + v_free, is not positive; that of what is held
+// alone counts as none.
+template <class V, class Delassus>
+ILAW_KIT_INLINE V joining_part(const Delassus& h, vector<V> motion, vector<V> held, vector<V> r) {
+  const vector<V> of_held = h.times(held), moved = motion + of_held;
+  const V c2 = product(r, h.times(r)), c1 = product(r, moved + of_held);
+  const fraction<V> root = root_of_work(c2, c1, smaller(product(held, moved), V(0.0)));
+  return select(root.numerator < root.denominator, root.numerator / root.denominator, 1.0);
+}
+// What is held and then contact and friction do no positive work each, and yet may together: friction is
+// scaled first, as where there is no bond, and then contact with it, if that was not enough.
+template <class Node, class V>
+ILAW_KIT_INLINE vector<V> joined(const Node& node, vector<V> held, vector<V> r) {
+  const vector<V> motion = node.v_previous + node.v_free, normal{r.n}, rubs{0.0, r.t1, r.t2};
+  r = normal + joining_part(node.delassus, motion, held + normal, rubs) * rubs;
+  return held + joining_part(node.delassus, motion, held, r) * r;
 }
 
 // Contact where the gap is closed and nothing rebounds, for v_free as given.

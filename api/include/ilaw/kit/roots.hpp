@@ -52,6 +52,20 @@ ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f
   }
 }
 
+// The largest part of [0, 1] at which `holds` is true, as it is at 0 where active, and false at 1: bisection
+// to neighbouring numbers. 0 in other lanes.
+template <class V, class Predicate>
+ILAW_KIT_INLINE V last_part(mask_of<V> active, Predicate holds) {
+  V low = 0.0, high = 1.0, middle = 0.5;
+  for (; any(active); active = active & (middle > low) & (middle < high)) {
+    const mask_of<V> is_so = holds(middle);
+    low = select(active & is_so, middle, low);
+    high = select(active & !is_so, middle, high);
+    middle = 0.5 * (low + high);
+  }
+  return low;
+}
+
 // Whether f, positive at both ends of [low, high] and with one minimum between them, is anywhere not: golden
 // section (Kiefer 1953), to 1e-6 of the interval.
 template <class Function>

@@ -1,5 +1,5 @@
-// state.hpp - how a law describes what a node remembers: one entry per member of its struct state, which says where the
-// number stands and, by the member's type, what it is. Order and size cannot differ.
+// state.hpp - how a law describes what a node remembers: one entry per member of its struct state, which says
+// where the number stands and, by the member's type, what it is. Order and size cannot differ.
 //   struct state { V damage; vector<V> opening; tangential_vector<V> slip; };
 //   static constexpr state_variable<state> state_variables[] = {
 //       {.member = &state::damage, .name = "damage", .maximum = 1.0, ...}, ...};
@@ -14,8 +14,8 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// The member of a struct state that a variable describes: all of it, or one component of a vector, which then has
-// entries for all three.
+// The member of a struct state that a variable describes: all of it, or one component of a vector, which then
+// has entries for all three.
 template <class State>
 class state_member {
  public:

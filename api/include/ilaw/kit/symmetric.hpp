@@ -1,4 +1,5 @@
-// symmetric.hpp - small symmetric positive definite matrices: H at a node, and the 2x2 block of the tangent plane.
+// symmetric.hpp - small symmetric positive definite matrices: H at a node, and the 2x2 block of the tangent
+// plane.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,8 +12,8 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 // Smallest H allowed: below it 1/H overflows.
 inline constexpr double smallest_delassus = std::numeric_limits<double>::min();
 
-// Largest tr(H) tr(H^-1) allowed, which no rotation changes: beyond it rounding decides whether H is definite. It
-// lies between the condition number and nine times that.
+// Largest tr(H) tr(H^-1) allowed, which no rotation changes: beyond it rounding decides whether H is
+// definite. It lies between the condition number and nine times that.
 inline constexpr double largest_condition = 0x1p43;
 
 // H = diag(h_N, h_T, h_T). A scalar H is this with twice the same value.
@@ -68,8 +69,8 @@ struct full {
     return absolute(t11 - t22) + absolute(n1) + absolute(n2) + absolute(t12);
   }
 
-  // LDL^T: pivots, the inverse of two, which are divided by once, and multipliers. H is positive definite exactly
-  // when the pivots are positive.
+  // LDL^T: pivots, the inverse of two, which are divided by once, and multipliers. H is positive definite
+  // exactly when the pivots are positive.
   struct factors {
     V d0, d1, d2, by_d0, by_d1, l10, l20, l21;
 
@@ -106,13 +107,14 @@ struct full {
   }
   // The same in the host's axes, where rows have no normal or tangential meaning yet.
   ILAW_KIT_INLINE axis<V> row_times(axis<V> a) const {
-    return {nn * a.x + n1 * a.y + n2 * a.z, n1 * a.x + t11 * a.y + t12 * a.z, n2 * a.x + t12 * a.y + t22 * a.z};
+    return {nn * a.x + n1 * a.y + n2 * a.z, n1 * a.x + t11 * a.y + t12 * a.z,
+            n2 * a.x + t12 * a.y + t22 * a.z};
   }
   ILAW_KIT_INLINE vector<V> solve(vector<V> v) const { return factorise().solve(v); }
 };
 
-// Whether closed forms for H = diag(h_N, h_T, h_T) do not hold, beyond the rounding that turning H to other axes leaves
-// where an entry was zero.
+// Whether closed forms for H = diag(h_N, h_T, h_T) do not hold, beyond the rounding that turning H to other
+// axes leaves where an entry was zero.
 template <class Delassus>
 ILAW_KIT_INLINE auto is_anisotropic(const Delassus& h) {
   return h.anisotropy() > 0x1p-46 * (h.normal() + h.tangential());
@@ -123,7 +125,8 @@ inline constexpr bool is_transverse_form = false;
 template <class V>
 inline constexpr bool is_transverse_form<transverse<V>> = true;
 
-// A number that is zero for sure: products with it are not computed, which changes no bit but the sign of a zero.
+// A number that is zero for sure: products with it are not computed, which changes no bit but the sign of a
+// zero.
 struct sure_zero {
   ILAW_KIT_INLINE friend sure_zero operator*(sure_zero, sure_zero) { return {}; }
   template <class V>
@@ -144,7 +147,8 @@ struct sure_zero {
   }
 };
 
-// A 2x2 matrix, and the products with its adjugate, so that a solve is one division. Coupling: V or sure_zero.
+// A 2x2 matrix, and the products with its adjugate, so that a solve is one division. Coupling: V or
+// sure_zero.
 template <class V, class Coupling>
 struct symmetric_2x2 {
   V a11, a22;

@@ -30,16 +30,20 @@ struct vector {
   ILAW_KIT_INLINE friend V tangential_product(vector a, vector b) { return a.t1 * b.t1 + a.t2 * b.t2; }
   ILAW_KIT_INLINE scaled_length<V> scaled_tangential_length() const { return scaled_length_of(t1, t2); }
   ILAW_KIT_INLINE V tangential_length() const { return scaled_tangential_length().length(); }
-  // With this normal component, and tangential ones -factor times these. From zero: what is not rubbed gets 0, not -0.
+  // With this normal component, and tangential ones -factor times these. From zero: what is not rubbed gets
+  // 0, not -0.
   ILAW_KIT_INLINE vector against(V normal, V factor) const {
     return {normal, 0.0 - factor * t1, 0.0 - factor * t2};
   }
-  ILAW_KIT_INLINE friend V sum_of_sizes(vector a) { return absolute(a.n) + (absolute(a.t1) + absolute(a.t2)); }
+  ILAW_KIT_INLINE friend V sum_of_sizes(vector a) {
+    return absolute(a.n) + (absolute(a.t1) + absolute(a.t2));
+  }
   ILAW_KIT_INLINE friend V residual(vector a, V found) { return found * a.n * a.t1 * a.t2; }
 };
 
-// For laws that are isotropic in the tangent plane: normal part and tangential rest, the latter in the host's axes,
-// so that no tangent need be chosen. A step written with the operations that it shares with vector works on both.
+// For laws that are isotropic in the tangent plane: normal part and tangential rest, the latter in the host's
+// axes, so that no tangent need be chosen. A step written with the operations that it shares with vector
+// works on both.
 template <class V>
 struct projected {
   using number = V;
@@ -52,7 +56,9 @@ struct projected {
     return {a.n - b.n, a.x - b.x, a.y - b.y, a.z - b.z};
   }
   ILAW_KIT_INLINE friend projected operator-(projected a) { return {-a.n, -a.x, -a.y, -a.z}; }
-  ILAW_KIT_INLINE friend projected operator*(V s, projected a) { return {s * a.n, s * a.x, s * a.y, s * a.z}; }
+  ILAW_KIT_INLINE friend projected operator*(V s, projected a) {
+    return {s * a.n, s * a.x, s * a.y, s * a.z};
+  }
   ILAW_KIT_INLINE friend projected select(mask_of<V> m, projected a, projected b) {
     return {select(m, a.n, b.n), select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
   }

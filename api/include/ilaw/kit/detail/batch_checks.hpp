@@ -21,7 +21,8 @@ bool is_of_other_numbers(const instance_base& made, const Array& a) {
 // Of the arrays that are read or written; those of a state are always doubles.
 inline const char* other_numbers(const instance_base& made, const ilaw_batch& b, std::uint32_t read) {
   const auto other = [&](const auto& a) { return is_of_other_numbers(made, a); };
-  bool is_bad = other(b.v_free) || other(b.delassus) || other(b.impulse) || other(b.velocity) || other(b.energy);
+  bool is_bad =
+      other(b.v_free) || other(b.delassus) || other(b.impulse) || other(b.velocity) || other(b.energy);
   is_bad = is_bad || ((read & ILAW_INPUT_GAP) && (other(b.gap) || other(b.gap_offset)));
   is_bad = is_bad || ((read & ILAW_INPUT_V_PREVIOUS) && other(b.v_previous));
   is_bad = is_bad || ((read & ILAW_INPUT_AREA) && other(b.area));

@@ -19,25 +19,26 @@ constexpr std::uint32_t flag_if(bool condition, std::uint32_t flag) { return con
 template <class Law>
 constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
   const bool is_choice = p.choices.count > 0, varies = p.member.may_vary();
-  return {.struct_size = sizeof(ilaw_parameter),
-          .kind = static_cast<ilaw_kind>(is_choice ? ILAW_PARAMETER_CHOICE
-                                                   : (p.whole ? ILAW_PARAMETER_COUNT : ILAW_PARAMETER_NUMBER)),
-          .name = p.name,
-          .symbol = p.symbol,
-          .unit = p.unit,
-          .doc = p.doc,
-          .minimum = is_choice ? 0.0 : p.minimum,
-          .maximum = is_choice ? p.choices.count - 1.0 : p.maximum,
-          .default_value = p.default_value,
-          .flags = flag_if(p.required, ILAW_PARAMETER_IS_REQUIRED) |
-                   flag_if(p.minimum_excluded, ILAW_PARAMETER_EXCLUDES_MINIMUM) |
-                   flag_if(p.infinity_allowed, ILAW_PARAMETER_ALLOWS_INFINITY) |
-                   flag_if(varies, ILAW_PARAMETER_ALLOWS_PER_NODE) | flag_if(p.is_field, ILAW_PARAMETER_IS_FIELD),
-          .choice_count = p.choices.count,
-          .choices = p.choices.values,
-          .axes = varies ? p.axes.values : nullptr,
-          .axis_count = varies ? p.axes.count : 0U,
-          .reserved = 0};
+  return {
+      .struct_size = sizeof(ilaw_parameter),
+      .kind = static_cast<ilaw_kind>(is_choice ? ILAW_PARAMETER_CHOICE
+                                               : (p.whole ? ILAW_PARAMETER_COUNT : ILAW_PARAMETER_NUMBER)),
+      .name = p.name,
+      .symbol = p.symbol,
+      .unit = p.unit,
+      .doc = p.doc,
+      .minimum = is_choice ? 0.0 : p.minimum,
+      .maximum = is_choice ? p.choices.count - 1.0 : p.maximum,
+      .default_value = p.default_value,
+      .flags = flag_if(p.required, ILAW_PARAMETER_IS_REQUIRED) |
+               flag_if(p.minimum_excluded, ILAW_PARAMETER_EXCLUDES_MINIMUM) |
+               flag_if(p.infinity_allowed, ILAW_PARAMETER_ALLOWS_INFINITY) |
+               flag_if(varies, ILAW_PARAMETER_ALLOWS_PER_NODE) | flag_if(p.is_field, ILAW_PARAMETER_IS_FIELD),
+      .choice_count = p.choices.count,
+      .choices = p.choices.values,
+      .axes = varies ? p.axes.values : nullptr,
+      .axis_count = varies ? p.axes.count : 0U,
+      .reserved = 0};
 }
 template <class Wide>
 constexpr auto abi_parameters() {
@@ -72,7 +73,8 @@ constexpr auto abi_state_variables(int dimension, std::uint64_t history_size) {
     for (const auto& v : Law::state_variables)
       result[i++] =
           abi_state_variable(v, v.member.kind(), static_cast<std::uint64_t>(v.member.components(dimension)));
-  if constexpr (has_history<Law>) result[i] = abi_state_variable(Law::history, ILAW_STATE_HISTORY, history_size);
+  if constexpr (has_history<Law>)
+    result[i] = abi_state_variable(Law::history, ILAW_STATE_HISTORY, history_size);
   return result;
 }
 
@@ -82,7 +84,8 @@ constexpr auto abi_amounts() {
   std::size_t i = 0;
   if constexpr (has_amounts<Law>)
     for (const amount_card& a : Law::amounts)
-      result[i++] = {.struct_size = sizeof(ilaw_amount), .reserved = 0, .name = a.name, .unit = a.unit, .doc = a.doc};
+      result[i++] = {
+          .struct_size = sizeof(ilaw_amount), .reserved = 0, .name = a.name, .unit = a.unit, .doc = a.doc};
   return result;
 }
 

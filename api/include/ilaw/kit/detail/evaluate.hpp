@@ -11,7 +11,6 @@
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // ---- the loop of a batch
-// ------------------------------------------------------------------------------------------------
 
 // Free histories are read and written node by node.
 template <class Law>
@@ -73,7 +72,7 @@ typename batch_walk<Number>::run_function choose_loop(const instance<Law>& made)
 template <class Law, class Number>
 tally walk_in(const instance<Law>& made, const ilaw_batch& batch) {
   const Law law = made.at(batch.time);
-  constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || (state_numbers<Law>) > 0 ? 6 : 0));
+  constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || has_state<Law> ? 6 : 0));
   alignas(64) double state_scratch[columns * block_nodes + 1];
   batch_walk<Number, has_window<Law>> walk(made, batch, state_scratch);
   return walk.run(choose_loop<Law, Number>(made), &law);
@@ -89,7 +88,6 @@ template <class Law>
 }
 
 // ---- why a node is bad
-// ----------------------------------------------------------------------------------------------------
 
 // "state variable '...' has a value that the law cannot have written", as static text.
 template <class Law, std::size_t V>
@@ -181,7 +179,6 @@ const char* reason_text(const instance<Law>& made, const ilaw_batch& batch, cons
 }
 
 // ---- evaluate and initialise
-// ------------------------------------------------------------------------------------------------
 
 inline ilaw_result refuse(ilaw_report* report, const char* reason, ilaw_result code = ILAW_INVALID_ARGUMENT) {
   if (report)

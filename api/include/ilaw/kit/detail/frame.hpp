@@ -30,10 +30,10 @@ ILAW_KIT_INLINE axis<V> any_tangent(axis<V> n) {
   return {1.0 + sign * n.x * n.x * a, sign * (n.x * n.y * a), -sign * n.x};
 }
 
-// Carries a tangent from one normal to the next by the shortest rotation, which turns nothing about the normal. For t
-// orthogonal to n it is the reflection at the plane orthogonal to m = n + n', R t = t - 2 (t.m)/(m.m) m (from
-// Rodrigues' formula), accurate for every angle. Where the normal has turned to its opposite all rotations are as short:
-// it is then the half turn about the tangent, which stays.
+// Carries a tangent from one normal to the next by the shortest rotation, which turns nothing about the
+// normal. For t orthogonal to n it is the reflection at the plane orthogonal to m = n + n', R t = t - 2
+// (t.m)/(m.m) m (from Rodrigues' formula), accurate for every angle. Where the normal has turned to its
+// opposite all rotations are as short: it is then the half turn about the tangent, which stays.
 template <class V>
 ILAW_KIT_INLINE axis<V> transported_tangent(axis<V> before, axis<V> tangent, axis<V> n) {
   const axis<V> m{before.x + n.x, before.y + n.y, before.z + n.z};
@@ -96,7 +96,8 @@ struct axes_frame {
   // B H B^T. In the plane the second tangent is given the entry of the first, lest H pass for anisotropic.
   ILAW_KIT_INLINE full<V> to_local(full<V> h, int dimension) const {
     if (dimension == 2) h.t22 = t1.x * t1.x * h.nn + t1.y * t1.y * h.t11 + 2.0 * t1.x * t1.y * h.n1;
-    const vector<V> a = to_local(h.row_times(n)), b = to_local(h.row_times(t1)), c = to_local(h.row_times(t2));
+    const vector<V> a = to_local(h.row_times(n)), b = to_local(h.row_times(t1)),
+                    c = to_local(h.row_times(t2));
     return {a.n, b.t1, c.t2, a.t1, a.t2, b.t2};
   }
 

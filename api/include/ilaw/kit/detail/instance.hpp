@@ -13,16 +13,18 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// The local frame is carried along in the state where a law remembers vectors and the host gives only normals.
+// The local frame is carried along in the state where a law remembers vectors and the host gives only
+// normals.
 inline constexpr history_card frame_variables[] = {
     {.name = "frame_normal", .doc = "Normal of the last step.", .internal = true},
     {.name = "frame_tangent", .doc = "First tangent of the last step.", .internal = true}};
 inline constexpr std::int64_t frame_size = 6;
 
-// Whether kernels may work from the normal alone: no tangent named, and no vector remembered, which would need
-// tangents to be written in.
+// Whether kernels may work from the normal alone: no tangent named, and no vector remembered, which would
+// need tangents to be written in.
 template <class Law>
-inline constexpr bool needs_no_tangents = Law::card.is_isotropic && !has_history<Law> && !has_vector_state<Law>();
+inline constexpr bool needs_no_tangents =
+    Law::card.is_isotropic && !has_history<Law> && !has_vector_state<Law>();
 
 // The entries of the host's state in which the numbers of a state stand, of each dimension; see batch_walk.
 // In the order of the entries in space.
@@ -31,7 +33,8 @@ inline constexpr auto state_entries = [] {
   std::array<std::array<int, static_cast<std::size_t>(state_numbers<Law>) + 1>, 4> all{};
   for (int d = 1; d <= 3; ++d)
     for (int k = 0; k < state_numbers<Law>; ++k)
-      all[static_cast<std::size_t>(d)][static_cast<std::size_t>(state_entry<Law>(k, 3))] = state_entry<Law>(k, d);
+      all[static_cast<std::size_t>(d)][static_cast<std::size_t>(state_entry<Law>(k, 3))] =
+          state_entry<Law>(k, d);
   return all;
 }();
 
@@ -60,7 +63,8 @@ struct instance : instance_base {
     if (table_count > 0)
       for (const bool over_time_alone : {true, false})
         for (int k = 0; k < parameter_count<Law>; ++k)
-          if (tables[k].axis_count > 0 && !tables[k].per_node && tables[k].is_over_time_alone() == over_time_alone)
+          if (tables[k].axis_count > 0 && !tables[k].per_node &&
+              tables[k].is_over_time_alone() == over_time_alone)
             read_table_of(now, k, time);
     return now;
   }
@@ -91,8 +95,9 @@ class instance_builder {
 
   ilaw_result build() {
     for (auto step : {&instance_builder::check_setup, &instance_builder::read_arguments,
-                      &instance_builder::require_arguments, &instance_builder::check_fields, &instance_builder::check_together,
-                      &instance_builder::lay_out_state, &instance_builder::state_needs})
+                      &instance_builder::require_arguments, &instance_builder::check_fields,
+                      &instance_builder::check_together, &instance_builder::lay_out_state,
+                      &instance_builder::state_needs})
       if (const ilaw_result code = (this->*step)(); code != ILAW_OK) return code;
     return ILAW_OK;
   }
@@ -180,10 +185,11 @@ class instance_builder {
     given_[i] = true;
     const ilaw_parameter& p = description_type::parameters[i];
     if (a.kind == ILAW_VALUE_TABLE && p.axis_count > 0) return keep_table(p, i, a);
-    if (a.kind == ILAW_VALUE_PER_NODE && (p.flags & ILAW_PARAMETER_ALLOWS_PER_NODE)) return keep_per_node(p, i);
+    if (a.kind == ILAW_VALUE_PER_NODE && (p.flags & ILAW_PARAMETER_ALLOWS_PER_NODE))
+      return keep_per_node(p, i);
     double value = 0.0;
     const ilaw_result code = p.kind == ILAW_PARAMETER_CHOICE ? read_choice(id, p, a, value, text_)
-                                                              : read_number(id, p, a, value, text_);
+                                                             : read_number(id, p, a, value, text_);
     Law::parameters[i].member.set(made_.law, value);
     return code;
   }
@@ -194,7 +200,8 @@ class instance_builder {
     for (int i = 0; i < made.axis_count; ++i) {
       made.source[i] = table::time;
       for (std::size_t k = 0; k < count; ++k)
-        if (std::strcmp(Law::parameters[k].name, sized::read(a.axes[i]).name) == 0) made.source[i] = static_cast<int>(k);
+        if (std::strcmp(Law::parameters[k].name, sized::read(a.axes[i]).name) == 0)
+          made.source[i] = static_cast<int>(k);
     }
     ++made_.table_count;
     Law::parameters[place].member.set(made_.law, a.values[0]);
@@ -208,8 +215,10 @@ class instance_builder {
         if (field == table::time) continue;
         const auto f = static_cast<std::size_t>(field);
         if (!given_[f] || (made_.tables[f].axis_count > 0 && !made_.tables[f].is_over_time_alone())) {
-          text_.add("law '%s': parameter '%s' is a table over '%s': expected a value, a value per node or a table over "
-                    "time for that", id, Law::parameters[k].name, Law::parameters[f].name);
+          text_.add(
+              "law '%s': parameter '%s' is a table over '%s': expected a value, a value per node or a table over "
+              "time for that",
+              id, Law::parameters[k].name, Law::parameters[f].name);
           return ILAW_INVALID_PARAMETER;
         }
         for (std::uint32_t n = 0; n < made_.per_node_count; ++n)
@@ -272,7 +281,8 @@ class instance_builder {
           const double time = t.points[a][j], between = time + 0.5 * (next_time(time) - time);
           has_times = true;
           for (const double instant : {time, between})
-            if (const ilaw_result code = check_conflict(made_.at(instant), &instant); code != ILAW_OK) return code;
+            if (const ilaw_result code = check_conflict(made_.at(instant), &instant); code != ILAW_OK)
+              return code;
         }
     return has_times ? ILAW_OK : check_conflict(made_.at(0.0), nullptr);
   }
@@ -348,7 +358,8 @@ class instance_builder {
     if constexpr (requires { made_.law.inputs(); })
       if (!made_.varies()) mask = made_.law.inputs();
     if (made_.frame == ILAW_FRAME_GLOBAL) mask |= ILAW_INPUT_NORMAL;
-    if (made_.frame == ILAW_FRAME_GLOBAL && made_.has_tangent && made_.dimension == 3) mask |= ILAW_INPUT_TANGENT;
+    if (made_.frame == ILAW_FRAME_GLOBAL && made_.has_tangent && made_.dimension == 3)
+      mask |= ILAW_INPUT_TANGENT;
     made_.inputs = mask;
     made_.balance_inputs = ILAW_INPUT_V_PREVIOUS & ~mask;
     made_.capabilities = Law::card.capabilities;
@@ -361,7 +372,8 @@ class instance_builder {
     made_.frame_follows = has_history<Law> && !(made_.permissions & ILAW_MAY_SKIP_FREE);
     if (made_.carries_frame && made_.frame_follows) made_.permissions &= ~std::uint32_t{ILAW_MAY_SKIP_FRESH};
     if constexpr (requires { made_.law.asks(); }) made_.asks = with_unknowns().asks();
-    if constexpr (requires { made_.law.asks(true); }) made_.asks = with_unknowns().asks(made_.is_transverse());
+    if constexpr (requires { made_.law.asks(true); })
+      made_.asks = with_unknowns().asks(made_.is_transverse());
     made_.amount_count = static_cast<std::uint32_t>(amount_count<Law>);
     return ILAW_OK;
   }

@@ -15,7 +15,6 @@
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // ---- checks
-// -------------------------------------------------------------------------------------------------------------
 
 // Finds bad lanes: a product of all numbers that must be finite, zero where they are. Careful: and why.
 template <class V, bool Careful>
@@ -51,7 +50,6 @@ struct checks<V, true> {
 };
 
 // ---- parameters
-// -----------------------------------------------------------------------------------------------------------
 
 template <class Law, class V>
 struct law_on;
@@ -137,7 +135,6 @@ template <class Wide, class Law, class Number>
 }
 
 // ---- the state of a node, as an array of numbers
-// ------------------------------------------------------------------------
 
 template <class V, class State>
 ILAW_KIT_INLINE V& number_in(State& state, int k) {
@@ -149,7 +146,6 @@ ILAW_KIT_INLINE const V& number_in(const State& state, int k) {
 }
 
 // ---- the stable step
-// ------------------------------------------------------------------------------------------------------
 
 template <class V>
 struct step_limit {
@@ -158,7 +154,6 @@ struct step_limit {
 };
 
 // ---- a pack from end to end
-// ---------------------------------------------------------------------------------------------
 
 template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus>
 struct kernel {

@@ -11,7 +11,6 @@
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // ---- names
-// ----------------------------------------------------------------------------------------------------------
 
 // names_x<Law>: whether a law has a member x of any kind; two of a name are ambiguous.
 #define ILAW_KIT_NAME(name)                        \
@@ -110,7 +109,6 @@ constexpr bool spells_rightly() {
 }
 
 // ---- what the names stand for
-// ---------------------------------------------------------------------------------------
 
 template <class Law>
 constexpr bool has_card() {
@@ -346,7 +344,6 @@ constexpr bool has_amounts_rightly() {
 }
 
 // ---- the checks
-// -----------------------------------------------------------------------------------------------------
 
 #define ILAW_KIT_CHECK(what, condition, text) \
   static constexpr bool what = (condition);   \
@@ -428,10 +425,16 @@ struct checked_members {
       has_solve, solves_rightly<Law>(),
       "solve must be mask_of<V> solve(const problem& p, answer& a) const, and solve_scalar the same without "
       "result; both may take what prepare gave as well");
-  ILAW_KIT_CHECK(has_right_asks,
-                 !names_asks<Law> || requires(const Law& law) { { law.asks() } -> std::same_as<bool>; } ||
-                     requires(const Law& law) { { law.asks(true) } -> std::same_as<bool>; },
-                 "asks must be bool asks() const or bool asks(bool is_transverse) const");
+  ILAW_KIT_CHECK(
+      has_right_asks,
+      !names_asks<Law> ||
+          requires(const Law& law) {
+            { law.asks() } -> std::same_as<bool>;
+          } ||
+          requires(const Law& law) {
+            { law.asks(true) } -> std::same_as<bool>;
+          },
+      "asks must be bool asks() const or bool asks(bool is_transverse) const");
   ILAW_KIT_FUNCTION(conflict, const char*, "const char* conflict() const");
   ILAW_KIT_FUNCTION(inputs, std::uint32_t, "std::uint32_t inputs() const");
   ILAW_KIT_FUNCTION(capabilities, std::uint32_t, "std::uint32_t capabilities() const");

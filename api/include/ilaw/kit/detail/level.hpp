@@ -1,6 +1,6 @@
-// level.hpp - instruction-set levels. ilaw_add_plugin compiles a law's source once per level, with the compiler's
-// -march. Each level lives in an inline namespace of its own, so that the linker never mixes their code. All levels
-// give the same bits: they do the same IEEE operations in the same order.
+// level.hpp - instruction-set levels. ilaw_add_plugin compiles a law's source once per level, with the
+// compiler's -march. Each level lives in an inline namespace of its own, so that the linker never mixes their
+// code. All levels give the same bits: they do the same IEEE operations in the same order.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -7,7 +7,7 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// ---- rows of two, three, four and six numbers to columns and back, in registers --------------------
+// ---- rows of two, three, four and six numbers to columns and back, in registers
 
 using one_floats = float __attribute__((vector_size(4 * register_lanes)));
 
@@ -79,7 +79,6 @@ ILAW_KIT_INLINE one column_of_six(one low, one high, std::integer_sequence<int, 
 }
 
 // ---- registers in memory
-// ----------------------------------------------------------------------------------------------
 
 ILAW_KIT_INLINE one one_at(const double* p) {
   one v;
@@ -113,7 +112,7 @@ ILAW_KIT_INLINE void put_bytes(one v, std::uint8_t* p) {
 #endif
 }
 
-// ---- arrays ------------------------------------------------------------------------------------------
+// ---- arrays
 
 // Component c of node i stands at at[i * count + c] in rows, at[i + c * component] in columns. Null: absent.
 template <class Number>

@@ -34,8 +34,8 @@ class message {
   std::size_t size_, used_ = 0;
 };
 
-// A parameter given as a table over one to three axes: linear along each, constant beyond its ends. The last axis varies
-// fastest.
+// A parameter given as a table over one to three axes: linear along each, constant beyond its ends. The last
+// axis varies fastest.
 struct table {
   static constexpr int time = -1;
 
@@ -145,7 +145,7 @@ inline ilaw_result check_number(const char* law, const ilaw_parameter& p, double
 }
 
 inline ilaw_result read_choice(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
-                                double& value, message& text) {
+                               double& value, message& text) {
   if (a.kind == ILAW_VALUE_TEXT && a.text)
     for (std::uint32_t i = 0; i < p.choice_count; ++i)
       if (std::strcmp(p.choices[i], a.text) == 0) {
@@ -165,7 +165,7 @@ inline ilaw_result read_choice(const char* law, const ilaw_parameter& p, const i
 }
 
 inline ilaw_result read_number(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
-                                double& value, message& text) {
+                               double& value, message& text) {
   if (a.kind == ILAW_VALUE_NUMBER) {
     value = a.number;
     return check_number(law, p, value, text);
@@ -182,24 +182,28 @@ inline ilaw_result read_number(const char* law, const ilaw_parameter& p, const i
 }
 
 // Checks a table, and keeps it: axes known, each once, points finite and increasing, values in range.
-inline ilaw_result read_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a, table& made, message& text) {
+inline ilaw_result read_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a, table& made,
+                              message& text) {
   const auto refuse = [&](const char* what, const char* axis = "") {
     text.add("law '%s': parameter '%s': the table %s%s", law, p.name, what, axis);
     return ILAW_INVALID_PARAMETER;
   };
-  if (a.axis_count < 1 || a.axis_count > 3 || !a.axes) return refuse("has no axis or more than three, expected 1 to 3");
+  if (a.axis_count < 1 || a.axis_count > 3 || !a.axes)
+    return refuse("has no axis or more than three, expected 1 to 3");
   if (!a.values) return refuse("has no values");
   ilaw_axis axes[3];
   std::uint64_t size = 1, stored = 0;
   for (std::uint32_t i = 0; i < a.axis_count; ++i) {
-    if (!sized::is_complete(a.axes[i])) return refuse("has an axis that is null or whose struct_size is of no version");
+    if (!sized::is_complete(a.axes[i]))
+      return refuse("has an axis that is null or whose struct_size is of no version");
     axes[i] = sized::read(a.axes[i]);
     if (!axes[i].name || !axes[i].points || axes[i].count == 0)
       return refuse("has an axis without a name or point, expected at least 1 point");
     std::uint32_t known = 0;
     while (known < p.axis_count && std::strcmp(p.axes[known], axes[i].name) != 0) ++known;
     if (known == p.axis_count) {
-      text.add("law '%s': parameter '%s': axis '%s' of the table is unknown: expected one of ", law, p.name, axes[i].name);
+      text.add("law '%s': parameter '%s': axis '%s' of the table is unknown: expected one of ", law, p.name,
+               axes[i].name);
       for (std::uint32_t k = 0; k < p.axis_count; ++k) text.add("%s'%s'", k ? ", " : "", p.axes[k]);
       return ILAW_INVALID_PARAMETER;
     }
@@ -210,8 +214,8 @@ inline ilaw_result read_table(const char* law, const ilaw_parameter& p, const il
     stored += axes[i].count;
     for (std::uint64_t k = 0; k < axes[i].count; ++k)
       if (const double x = axes[i].points[k]; !is_finite(x) || (k > 0 && x <= axes[i].points[k - 1])) {
-        text.add("law '%s': parameter '%s': point %llu of axis '%s' is ", law, p.name, static_cast<unsigned long long>(k),
-                 axes[i].name);
+        text.add("law '%s': parameter '%s': point %llu of axis '%s' is ", law, p.name,
+                 static_cast<unsigned long long>(k), axes[i].name);
         add_number(text, x);
         text.add(": expected finite, increasing points");
         return ILAW_INVALID_PARAMETER;

@@ -10,7 +10,6 @@
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // ---- some lanes of a register, packed, and back
-// ---------------------------------------------------------------------------
 
 #if defined(__AVX512F__)
 ILAW_KIT_INLINE void put_packed(one v, unsigned lanes, double* to) {
@@ -81,7 +80,6 @@ ILAW_KIT_INLINE void put_packed(double v, unsigned /*lanes*/, double* to) { *to 
 ILAW_KIT_INLINE void get_packed(double& v, unsigned lanes, const double* from) { v = lanes ? *from : 0.0; }
 
 // ---- the problems of a block
-// ------------------------------------------------------------------------------------------------
 
 inline constexpr int problem_block = 128;  // nodes
 
@@ -195,7 +193,7 @@ template <class Wide, class Node>
   return law.ask(node, open);
 }
 
-// ---- the loop -------------------------------------------------------------------------------------------------------
+// ---- the loop
 
 template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus>
 struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
@@ -296,7 +294,8 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
             .area = n.area,
             .earlier = n.earlier,
             .history = n.history,
-            .state = n.state};
+            .state = n.state,
+            .refused = n.refused};
   }
   ILAW_KIT_INLINE static void choose(node_type& a, const node_type& b, mask first) {
     a.impulse = select(first, a.impulse, b.impulse);

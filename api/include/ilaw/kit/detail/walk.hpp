@@ -50,7 +50,7 @@ auto numbers_in(const Array& a) {
 }
 
 // The nodes of a part of a batch.
-inline constexpr int block_nodes = 64;
+inline constexpr int block_nodes = 128;  // at most
 struct node_range {
   std::int64_t first, count;
   bool listed;
@@ -72,9 +72,66 @@ bool stays(const Array& a, int components) {
   return a.node_stride == 1 || (a.node_stride == components && a.component_stride == 1);
 }
 
-template <class Number>
+// ---- windows: read before the loop over a block, written after it
+
+struct window_block {
+  alignas(64) double earlier[3][block_nodes], refused[block_nodes];
+  alignas(64) double given[3][block_nodes], adds[block_nodes], clears[block_nodes];
+};
+// Of the node at position 0, and the nodes where they are listed.
+struct window_place {
+  double* first;
+  std::int64_t node_stride, component_stride, count;
+  const std::int64_t* nodes;
+
+  // Calls work with the windows of each pack of nodes; lanes without a node have that of the last one.
+  template <class Work>
+  ILAW_KIT_INLINE void for_packs(Work work) const {
+    constexpr int lanes = lanes_of<pack>;
+    for (std::int64_t i = 0; i < count; i += lanes) {
+      if (node_stride == 1 && !nodes && i + lanes <= count) {
+        work(i, window_columns<pack>{first + i, component_stride});
+      } else {
+        window_rows own;
+        own.stride = component_stride;
+        const std::int64_t last = count - 1 - i;
+#pragma GCC unroll 8
+        for (int lane = 0; lane < lanes; ++lane) {
+          const std::int64_t k = i + (lane < last ? lane : last);
+          own.first[lane] = first + (nodes ? nodes[k] : k) * node_stride;
+        }
+        work(i, own);
+      }
+    }
+  }
+};
+[[gnu::noinline, gnu::flatten]] inline void read_windows(const window& w, const window_place& place,
+                                                         window_block& block) {
+  place.for_packs([&](std::int64_t i, const auto& own) {
+    vector<pack> sum;
+    store(w.read(own, sum), block.refused + i);
+    store(sum.n, block.earlier[0] + i);
+    store(sum.t1, block.earlier[1] + i);
+    store(sum.t2, block.earlier[2] + i);
+  });
+}
+[[gnu::noinline, gnu::flatten]] inline void write_windows(const window& w, const window_place& place,
+                                                          window_block& block) {
+  for (std::int64_t i = place.count; i % lanes_of<pack> != 0; ++i) block.adds[i] = block.clears[i] = 0.0;
+  place.for_packs([&](std::int64_t i, const auto& own) {
+    const vector<pack> impulse{load<pack>(block.given[0] + i), load<pack>(block.given[1] + i),
+                               load<pack>(block.given[2] + i)};
+    w.write(own, load<pack>(block.clears + i) != 0.0, load<pack>(block.adds + i) != 0.0, impulse);
+  });
+}
+
+// ---- the walk
+
+template <class Number, bool HasWindow = false>
 class batch_walk {
  public:
+  // Copies of 64 nodes stay in the first cache; windows cost more than them.
+  static constexpr std::int64_t block = HasWindow ? block_nodes : 64;
   using run_function = void (*)(const void* law, const view<Number>&, tally&);
 
   // state_scratch: block_nodes for each number of state_in, state_out and twice the frame.
@@ -86,9 +143,9 @@ class batch_walk {
     if (!made_.in_blocks && all_stay()) {
       run_part(node_range(b_, 0, b_.node_count), loop, law, all);
     } else {
-      for (std::int64_t first = 0; first < b_.node_count; first += block_nodes) {
+      for (std::int64_t first = 0; first < b_.node_count; first += block) {
         const std::int64_t left = b_.node_count - first;
-        run_part(node_range(b_, first, left < block_nodes ? left : block_nodes), loop, law, all);
+        run_part(node_range(b_, first, left < block ? left : block), loop, law, all);
       }
     }
     return all;
@@ -231,8 +288,8 @@ class batch_walk {
   static void prefetch_block(const T* values, std::int64_t stride, std::int64_t component,
                              const node_range& n) {
     if (n.listed || component != 1 || stride > 8) return;
-    for (std::int64_t k = 0; k < block_nodes * stride; k += 64 / static_cast<int>(sizeof(T)))
-      __builtin_prefetch(values + (n.first + block_nodes) * stride + k);
+    for (std::int64_t k = 0; k < block * stride; k += 64 / static_cast<int>(sizeof(T)))
+      __builtin_prefetch(values + (n.first + block) * stride + k);
   }
 
   array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* copy) const {
@@ -363,9 +420,25 @@ class batch_walk {
           scatter_column(to.values + entry * to.component_stride, to.node_stride, n, out + k * block_nodes);
     const double* const frame = out + made_.states * block_nodes + 6 * block_nodes;
     if (made_.carries_frame && v.frame_out.at == frame)
-      for (int k = 0; k < 6; ++k)
-        scatter_column(to.values + (made_.frame_offset + k) * to.component_stride, to.node_stride, n,
-                       frame + k * block_nodes);
+      for (int k = 0; k < 6; k += 3)
+        scatter_three(to.values + (made_.frame_offset + k) * to.component_stride, to.node_stride,
+                      to.component_stride, n, frame + k * block_nodes);
+  }
+
+  void run_with_windows(view<Number>& v, run_function loop, const void* law, tally& found) {
+    const window w(made_.window, {b_.time + 0.5 * b_.position_step, b_.velocity_step});
+    const window_place place{v.history, v.history_node_stride, v.history_component_stride, v.count, v.nodes};
+    window_block windows;
+    for (int c = 0; c < 3; ++c) {
+      v.earlier[c] = windows.earlier[c];
+      v.given[c] = windows.given[c];
+    }
+    v.earlier_refused = windows.refused;
+    v.adds = windows.adds;
+    v.clears = windows.clears;
+    read_windows(w, place, windows);
+    loop(law, v, found);
+    write_windows(w, place, windows);
   }
 
   // ---- a part of the batch
@@ -427,7 +500,14 @@ class batch_walk {
     open_outputs(v, n);
     open_state(v, n);
     tally found;
-    loop(law, v, found);
+    if constexpr (HasWindow) {
+      if (made_.window.duration > 0.0)
+        run_with_windows(v, loop, law, found);
+      else
+        loop(law, v, found);
+    } else {
+      loop(law, v, found);
+    }
     add(all, found, n);
     scatter(b_.impulse, v.impulse, n, s_.impulse);
     scatter(b_.velocity, v.velocity, n, s_.velocity);
