@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <stdexcept>
+
 namespace ilaw::host::testing {
 namespace {
 
@@ -112,7 +114,7 @@ TEST(LinearBlock, IsStableUpToItsCriticalStepAndNotBeyond) {
     }
     EXPECT_LT(largest_displacement(scene, 0.99 * bound), 1e3);
     EXPECT_LT(largest_displacement(scene, 0.99 * limit), 1e3);
-    EXPECT_GE(largest_displacement(scene, 1.001 * limit), 1e6);
+    EXPECT_THROW(largest_displacement(scene, 1.001 * limit), std::runtime_error);  // the motion diverged
   }
 }
 

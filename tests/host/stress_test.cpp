@@ -189,7 +189,8 @@ TEST(MotionThatDiverged, IsToldWhereNoNormalCanBeFound) {
       "time": {"dt": 0.06, "end": 60},
       "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "c.z_max"}}]})");
   const StressVerdict mesh = stress_scene(scene);
-  EXPECT_NE(mesh.reason.find("the motion diverged: the kinetic energy is "), std::string::npos) << mesh.reason;
+  EXPECT_NE(mesh.reason.find("the motion diverged: the kinetic energy is "), std::string::npos)
+      << mesh.reason;
   EXPECT_NE(mesh.reason.find("the critical step is "), std::string::npos) << mesh.reason;
 
   scene = json::parse(R"({"model": {"type": "points", "dimension": 2, "points": [

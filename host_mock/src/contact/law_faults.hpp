@@ -27,9 +27,9 @@ Refusal overwriting(const char* input);
 // Inputs of a batch as they were, to see whether a law writes to them.
 class InputCopy {
  public:
-  // Of the steps that are watched: the first, and every thousandth after it. A law that writes to
+  // Watched are the start, the first step and every thousandth after them. A law that writes to
   // its inputs does so at once; `ilaw check` looks at every call.
-  static bool is_due(std::int64_t step) { return step % 1000 == 1; }
+  static bool is_due(std::int64_t step) { return step % 1000 <= 1; }
 
   InputCopy(const ilaw_batch& batch, std::size_t dimension, const ilaw_instance_info& info);
   // The name of the first input that changed; null where none did.

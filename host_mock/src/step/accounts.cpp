@@ -16,8 +16,8 @@ constexpr double much_energy = 0.1;
 // As often the kinetic energy may be the largest energy or work: below 0.995 of the critical step it
 // cannot, for it is at most 1/(1 - cfl^2) times what the scheme conserves.
 constexpr double much_vibration = 100.0;
-// As often the kinetic energy may be what was put in before the run ends, beside the steps to the fourth: unstable
-// runs reach it in some tens of steps.
+// As often the kinetic energy may be what was put in before the run ends, beside the steps to the fourth:
+// unstable runs reach it in some tens of steps.
 constexpr double unstable_growth = 1e6;
 // Part of the energy below which contacts that do not agree differ by rounding.
 constexpr double rounding_energy = 1e-13;
@@ -119,9 +119,9 @@ void Accounts::add_counts(const Interface& interface) {
 }
 
 // Below the critical step the kinetic energy of a linear model is at most 1/(1 - cfl^2) times what the scheme
-// conserves, and that is at most what was put in. At the critical step a disturbance of the fastest vibration grows
-// by the same amplitude in every step, and disturbances in all of n steps to n^2/2 of one: energy as n^4. Beyond it
-// all grow by a factor in every step.
+// conserves, and that is at most what was put in. At the critical step a disturbance of the fastest vibration
+// grows by the same amplitude in every step, and disturbances in all of n steps to n^2/2 of one: energy as
+// n^4. Beyond it all grow by a factor in every step.
 bool Accounts::has_diverged(const Model& model, const Dofs& v, double speed, std::int64_t steps) const {
   const auto n = static_cast<double>(steps);
   const double most = (unstable_growth + n * n * n * n) * energy_.put_in();
@@ -149,7 +149,7 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
   if (tally_.unconverged > 0 && tally_.coupling_energy > rounding_energy * energy.scale)
     say("contacts that share nodes are not solved in %lld of %lld steps, the start included: residual up to %.1e after %d sweeps, "
         "expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
-        static_cast<long long>(tally_.unconverged), static_cast<long long>(steps + 1),
+        static_cast<long long>(tally_.unconverged), static_cast<long long>(steps) + 1,
         tally_.coupling_residual_max, CoupledContacts::most_sweeps, CoupledContacts::tolerance,
         tally_.coupling_energy, energy.scale);
   if (tally_.left_surface > 0)
