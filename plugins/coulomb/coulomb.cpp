@@ -41,8 +41,9 @@ struct coulomb {
       {.member = &coulomb::kinetic_friction,
        .name = "kinetic_friction",
        .symbol = "mu_k",
-       .doc = "Coefficient that friction falls to with the slip speed; above friction, and so by default, there is "
-              "no fall.",
+       .doc =
+           "Coefficient that friction falls to with the slip speed; above friction, and so by default, there is "
+           "no fall.",
        .default_value = infinity,
        .infinity_allowed = true},
       {.member = &coulomb::decay,
@@ -71,9 +72,7 @@ struct coulomb {
 
   // One coefficient, and H = diag(h_N, h_T, h_T).
   template <class Node>
-  status_of<V> step(Node& node) const
-    requires is_transverse<Node>
-  {
+  status_of<V> step(Node& node) const requires is_transverse<Node> {
     return apply_isotropic_friction(node, contact(node), fallen(node, friction));
   }
 
@@ -81,9 +80,7 @@ struct coulomb {
   using problem = friction_problem<V>;
   using answer = friction_answer<V>;
   template <class Node>
-  asked<V> ask(Node& node, problem& open) const
-    requires has_tangents<Node>
-  {
+  asked<V> ask(Node& node, problem& open) const requires has_tangents<Node> {
     const V second = select(friction_2 == infinity, friction, friction_2);
     return ask_friction(node, contact(node), fallen(node, friction), fallen(node, second), open);
   }

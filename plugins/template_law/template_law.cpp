@@ -1,4 +1,5 @@
-// A law to copy: a dashpot that pushes and never pulls. See template_law.md for the equations and for what to replace.
+// A law to copy: a dashpot that pushes and never pulls. See template_law.md for the equations and for what to
+// replace.
 #include <ilaw/kit.hpp>
 
 namespace {
@@ -28,12 +29,13 @@ struct template_law {
                                                             .doc = "Pressure over the speed of approach.",
                                                             .required = true}};
 
-  // r_N = h c A <-(v_N + <v_N^->)>, v_N = v_free + H_NN r_N, solved for r_N: the dashpot is one more inverse mass
-  // beside H_NN. The work r_N (v_N^- + v_N)/2 is never positive (contact.hpp says why).
+  // r_N = h c A <-(v_N + <v_N^->)>, v_N = v_free + H_NN r_N, solved for r_N: the dashpot is one more inverse
+  // mass beside H_NN. The work r_N (v_N^- + v_N)/2 is never positive (contact.hpp says why).
   template <class Node>
   status_of<V> step(Node& node) const {
     const V compliance = 1.0 / (node.velocity_step * damping * node.area);
-    const contact_condition<V> contact = contact_leaving_at<V>(0.0, node.gap, node.v_free.n, node.v_previous.n);
+    const contact_condition<V> contact =
+        contact_leaving_at<V>(0.0, node.gap, node.v_free.n, node.v_previous.n);
     const V impulse = positive_part(-contact.excess / (node.delassus.normal() + compliance));
     node.impulse.n = zero_unless(contact.slack <= 0.0, impulse);
     return select(node.impulse.n > 0.0, status::closed, status::free);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <ilaw/kit/detail/view.hpp>
+#include <ilaw/kit/window.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
@@ -12,9 +13,9 @@ struct instance_base {
   std::uint32_t dimension, delassus_form, frame, has_tangent, numbers;
   std::uint32_t inputs, balance_inputs;
   bool carries_frame, frame_follows;
-  bool asks = false;  // these parameters need the solver, where the law has a step beside it
-  bool in_blocks;     // the law works with more than the arrays of a block: windows
-  int states;         // numbers of struct state, and for each the entry of the host's state; -1: none
+  bool asks = false;     // these parameters need the solver, where the law has a step beside it
+  window_size window{};  // duration 0: none
+  int states;            // numbers of struct state, and for each the entry of the host's state; -1: none
   const int* state_entries;
   std::int64_t history_offset, history_size, frame_offset;
   std::uint64_t state_size;
@@ -140,7 +141,7 @@ class batch_walk {
 
   [[gnu::noinline]] tally run(run_function loop, const void* law) {
     tally all;
-    if (!made_.in_blocks && all_stay()) {
+    if (made_.window.duration == 0.0 && all_stay()) {
       run_part(node_range(b_, 0, b_.node_count), loop, law, all);
     } else {
       for (std::int64_t first = 0; first < b_.node_count; first += block) {
