@@ -10,7 +10,7 @@ function(ilaw_add_plugin name source)
     target_link_options(${name} PRIVATE -static-libgcc LINKER:--as-needed)
     set_target_properties(${name} PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
   else()
-    target_link_libraries(${name} PRIVATE ilaw::kit)
+    ilaw_compile_law(${name})
   endif()
   # Instrumented and debug builds look for mistakes, not for speed: one level is enough.
   if(NOT source MATCHES "[.]c$" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT ILAW_SANITIZE AND
@@ -27,6 +27,12 @@ function(ilaw_add_plugin name source)
   ilaw_describe_plugin(${name})
 endfunction()
 
+# A law throws nothing and asks for no type at run time: tables for that would only make the library larger.
+function(ilaw_compile_law target)
+  target_link_libraries(${target} PRIVATE ilaw::kit)
+  target_compile_options(${target} PRIVATE -fno-exceptions -fno-rtti -fno-asynchronous-unwind-tables)
+endfunction()
+
 # The source at one level, as an object whose only global symbol is the function that gives its walks. All else is
 # made local: an inline function that has the same name at several levels, of a law's own header or of the standard
 # library, would else be merged by the linker, and code for the best processors run on the least.
@@ -34,7 +40,7 @@ function(ilaw_add_level name source level)
   find_program(ILAW_LD NAMES ld.bfd ld REQUIRED)
   find_program(ILAW_OBJCOPY objcopy REQUIRED)
   add_library(${name}_${level} OBJECT ${source})
-  target_link_libraries(${name}_${level} PRIVATE ilaw::kit)
+  ilaw_compile_law(${name}_${level})
   target_compile_definitions(${name}_${level} PRIVATE ILAW_KIT_LEVEL=${level}
                                                       ILAW_KIT_WALKS=ilaw_kit_walks_${level})
   target_compile_options(${name}_${level} PRIVATE -march=x86-64-${level})

@@ -19,7 +19,7 @@ struct Arguments {
     for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
       const ilaw_parameter& p = *law.parameters[k];
       if (p.kind == ILAW_PARAMETER_CHOICE && choice_of == p.name) add(p, ILAW_VALUE_TEXT).text = choice;
-      if (p.kind != ILAW_PARAMETER_CHOICE && (p.required || all_numbers))
+      if (p.kind != ILAW_PARAMETER_CHOICE && ((p.flags & ILAW_PARAMETER_IS_REQUIRED) || all_numbers))
         add(p, ILAW_VALUE_NUMBER).number =
             p.maximum < 1e6 ? 0.25 * p.maximum + 0.75 * p.minimum : p.minimum + 2.0;
     }

@@ -60,7 +60,7 @@ TEST_P(BadInput, IsRefusedAtItsNodeOnly) {
   }
 }
 
-const std::vector<Bad> inputs = {
+const std::vector<Bad> bad_inputs = {
     {"nan_velocity", [](Nodes& n) { n.v_free[211] = nan_value; }, "v_free is not finite"},
     {"infinite_velocity", [](Nodes& n) { n.v_free[210] = inf_value; }, "v_free is not finite"},
     {"nan_previous", [](Nodes& n) { n.v_previous[212] = nan_value; }, "v_previous is not finite",
@@ -91,7 +91,7 @@ std::string name_of(const ::testing::TestParamInfo<std::tuple<LawCase, Bad>>& dr
 
 INSTANTIATE_TEST_SUITE_P(Laws, BadInput,
                          ::testing::Combine(::testing::ValuesIn(law_cases("bad_input")),
-                                            ::testing::ValuesIn(inputs)),
+                                            ::testing::ValuesIn(bad_inputs)),
                          name_of);
 
 INSTANTIATE_TEST_SUITE_P(Coulomb, BadInput,

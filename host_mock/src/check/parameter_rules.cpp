@@ -382,7 +382,7 @@ void node_constant(const Subject& subject) {
 void table_shape(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
     if (!may_be_table(p)) return false;
-    const double value = value_in_table(trial, p), nan = std::nan("");
+    const double value = value_in_table(trial, p), not_a_number = std::nan("");
     const Values values = with_fields(trial);
     const auto expect = [&](const std::vector<double>& points, const std::vector<double>& table) {
       expect_refused(trial, with(values, {p.name, ILAW_VALUE_TABLE, 0.0, {}, {{p.axes[0], points}}, table}));
@@ -390,10 +390,10 @@ void table_shape(const Subject& subject) {
     expect({}, {});
     expect({0.0, 0.0}, {value, value});
     expect({1.0, 0.0}, {value, value});
-    expect({nan}, {value});
+    expect({not_a_number}, {value});
     expect({0.0, infinity}, {value, value});
     expect({0.0, 1.0}, {value, p.minimum - 1.0 - 1e-9 * std::abs(p.minimum)});
-    expect({0.0}, {nan});
+    expect({0.0}, {not_a_number});
     return true;
   });
 }

@@ -267,7 +267,7 @@ TEST(Penalty, PerNodeStiffnessGivesTheSameBits) {
       setup.setup.arguments = pointers.data();
       const ilaw::interface varying = make_law("penalty", setup);
       const double stiffness = 3e3;
-      const ilaw_input per_node{&stiffness, 0, 0};
+      const ilaw_input per_node = ilaw::input(&stiffness, 0, 0);
       std::vector<double> state(node.state.size());
       Vector r{};
       for (int k = 0; k < 1000; ++k) {
