@@ -198,7 +198,8 @@ struct cohesive : adhesive_bond<cohesive, V> {
   }
 
   // Else the mean traction on the way from w^- to w^+, with the friction of the damage after it: the unknown
-  // is the damage, d = D(w(d)), which falls with more friction.
+  // is the damage, d = D(w(d)), which falls with more friction. An infinite coefficient would jump with the
+  // first damage, and is that of the damage before.
   template <class Step>
   void change(const Step& step, mask_of<V> where, const common& all, bond_result<Step>& found) const {
     const mask_of<V> is_unique = step.compliance * step.trace() * all.steepest <= 1.0;
@@ -212,11 +213,11 @@ struct cohesive : adhesive_bond<cohesive, V> {
     V coefficient = friction_of(before.damage);
     bool is_tried = true;
     root_between(before.damage, V(1.0), before.damage, where, [&](V damage) ILAW_KIT_LAMBDA {
-      coefficient = select(where, friction_of(damage), coefficient);
+      coefficient = select(where & (friction < infinity), friction_of(damage), coefficient);
       soften(step, where, all, before, coefficient, is_tried, found);
       is_tried = false;
       const mask_of<V> grows = (found.memory > before.damage) | (damage > before.damage);
-      const mask_of<V> rubs = where & grows & found.motion.closed & (friction > 0.0);
+      const mask_of<V> rubs = where & grows & found.motion.closed & (friction > 0.0) & (friction < infinity);
       return root_trial<V>{zero_unless(rubs, damage - found.memory), 1.0, 1.0, 1.0, none<V>()};
     });
     if constexpr (is_scalar)

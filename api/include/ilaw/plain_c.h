@@ -228,6 +228,17 @@ static inline const char* ilaw_plain_keep(ilaw_instance* own, uint32_t p, const 
   return NULL;
 }
 
+/* ---- the floating-point environment -------------------------------------------------------------- */
+
+/* Rounding to nearest, subnormal numbers and no traps until fesetenv(host) brings the host's back. */
+static inline void ilaw_plain_enter(fenv_t* host) {
+  fegetenv(host);
+  fesetenv(FE_DFL_ENV);
+#if defined(__SSE2__)
+  _mm_setcsr(0x1F80); /* C99 does not say that FE_DFL_ENV ends flush-to-zero */
+#endif
+}
+
 /* ---- instances ---------------------------------------------------------------------------------- */
 
 static inline void ILAW_CALL ilaw_plain_destroy(ilaw_instance* own) {
@@ -311,7 +322,10 @@ static inline ilaw_result ILAW_CALL ilaw_plain_create(const char* id, const ilaw
   own->plain = (const ilaw_plain_law*)(const void*)law;
   own->dimension = s->dimension, own->form = s->delassus_form, own->frame = s->frame;
   own->numbers = s->numbers;
+  fenv_t host;
+  ilaw_plain_enter(&host);
   const ilaw_result code = ilaw_plain_keep_all(own, s, message, size);
+  fesetenv(&host);
   if (code == ILAW_OK)
     *instance = own;
   else
@@ -492,26 +506,17 @@ static inline int ilaw_plain_overflows(const ilaw_instance* own, const double* r
   return !(fabs(r[0]) < limit && fabs(r[1]) < limit && fabs(r[2]) < limit);
 }
 
-static inline ilaw_result ILAW_CALL ilaw_plain_evaluate(const ilaw_instance* own, const ilaw_batch* given,
-                                                        ilaw_report* report) {
-  ilaw_batch copy;
-  const ilaw_batch* b = ilaw_plain_sized(given, &copy);
+static inline ilaw_result ilaw_plain_walk(const ilaw_instance* own, const ilaw_batch* b,
+                                          ilaw_report* report) {
   const char *refused = ilaw_plain_wrong_call(own, b), *reason = NULL;
   int64_t count = 0, first = -1;
   double stable = INFINITY;
-  fenv_t host;
   if (!refused && b->flags)
     return ilaw_plain_report(report, ILAW_UNSUPPORTED, 0, -1, "a flag is not known", 0.0);
   if (!refused) refused = ilaw_plain_wrong_arrays(own, b);
   if (!refused && b->node_count > 1 && b->status && b->status_stride == 0)
     refused = "status has a stride of 0";
   if (refused) return ilaw_plain_report(report, ILAW_INVALID_ARGUMENT, 0, -1, refused, 0.0);
-  fegetenv(&host);
-  fesetenv(FE_DFL_ENV);
-#if defined(__SSE2__)
-  _mm_setcsr(
-      0x1F80); /* C99 does not say that FE_DFL_ENV ends flush-to-zero; fesetenv brings the host's back */
-#endif
   for (int64_t k = 0; k < b->node_count; ++k) {
     const int64_t i = ilaw_node_of(b, k);
     ilaw_node node;
@@ -527,14 +532,11 @@ static inline ilaw_result ILAW_CALL ilaw_plain_evaluate(const ilaw_instance* own
     ilaw_plain_write(own, b, i, &node, &result);
     if (result.stable_velocity_step < stable) stable = result.stable_velocity_step;
   }
-  fesetenv(&host);
   return ilaw_plain_report(report, count ? ILAW_BAD_NODES : ILAW_OK, count, first, reason, stable);
 }
 
-static inline ilaw_result ILAW_CALL ilaw_plain_initialise(const ilaw_instance* own, const ilaw_batch* given,
-                                                          ilaw_report* report) {
-  ilaw_batch copy;
-  const ilaw_batch* b = ilaw_plain_sized(given, &copy);
+static inline ilaw_result ilaw_plain_first_states(const ilaw_instance* own, const ilaw_batch* b,
+                                                  ilaw_report* report) {
   const char* refused = ilaw_plain_wrong_call(own, b);
   if (refused) return ilaw_plain_report(report, ILAW_INVALID_ARGUMENT, 0, -1, refused, 0.0);
   if (b->flags) return ilaw_plain_report(report, ILAW_UNSUPPORTED, 0, -1, "a flag is not known", 0.0);
@@ -542,6 +544,26 @@ static inline ilaw_result ILAW_CALL ilaw_plain_initialise(const ilaw_instance* o
     for (uint32_t s = 0; s < own->plain->law.state_variable_count; ++s)
       ilaw_put(&b->state_out, ilaw_node_of(b, k), s, 0.0);
   return ilaw_plain_report(report, ILAW_OK, 0, -1, NULL, INFINITY);
+}
+
+static inline ilaw_result ILAW_CALL ilaw_plain_evaluate(const ilaw_instance* own, const ilaw_batch* given,
+                                                        ilaw_report* report) {
+  ilaw_batch copy;
+  fenv_t host;
+  ilaw_plain_enter(&host);
+  const ilaw_result code = ilaw_plain_walk(own, ilaw_plain_sized(given, &copy), report);
+  fesetenv(&host);
+  return code;
+}
+
+static inline ilaw_result ILAW_CALL ilaw_plain_initialise(const ilaw_instance* own, const ilaw_batch* given,
+                                                          ilaw_report* report) {
+  ilaw_batch copy;
+  fenv_t host;
+  ilaw_plain_enter(&host);
+  const ilaw_result code = ilaw_plain_first_states(own, ilaw_plain_sized(given, &copy), report);
+  fesetenv(&host);
+  return code;
 }
 
 /* ---- descriptions ------------------------------------------------------------------------------- */

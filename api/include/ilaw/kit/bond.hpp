@@ -348,8 +348,6 @@ class bond_step {
     m.opening.t1 = select(sticks, place_.t1, m.opening.t1);
     m.opening.t2 = select(sticks, place_.t2, m.opening.t2);
   }
-  // Where friction couples with the normal and would do work, that may leave no push at all: then there is
-  // none of it.
   void rub(motion& m, pressed_node& n, const contact_problem<vector<V>>& contact, V friction) const {
     friction_problem<V> p;
     friction_answer<V> a;
@@ -362,8 +360,6 @@ class bond_step {
     }
     n.impulse = {a.r[0], a.r[1], a.r[2]};
     m.refused = zero_unless(m.rubs, a.refused);
-    const V q = contact.q.n, left_n = q + n.delassus.times(n.impulse).n;
-    n.impulse = select(left_n < -0x1p-30 * absolute(q), {-q / n.delassus.normal(), 0.0, 0.0}, n.impulse);
   }
 
   const bond_problem<V>& p_;

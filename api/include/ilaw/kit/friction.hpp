@@ -184,9 +184,9 @@ ILAW_KIT_INLINE V dissipative_part(V r_a, V r_Hr) {
 }
 
 // Takes the positive work off a solution for any H, whose work is r.(rest + u)/2 with u_N = 0, r_T.u_T <= 0.
-// With the part s of r_T alone it is that of c2 s^2 + c1 s + c0; the largest part without positive work is
-// that of the closed form where H does not couple. Where it does, c0 > 0 may be left, and the whole impulse
-// is scaled. Neither leaves the cone.
+// Of r_T the part s may act, with the r_N(s) for which u_N stays 0: the work is that of c2 s^2 + c1 s + c0,
+// c0 = r_N(0) rest_N, and the part the largest without positive work. Between s = 0 and 1 r_N(s) and the cone
+// go along a line, so r stays in it. Where c0 > 0, as it may where a bond pulls, the whole impulse is scaled.
 template <class V>
 void take_off_positive_work(const friction_problem<V>& p, friction_answer<V>& a) {
   const V *h = p.contact.h, *q = p.contact.q, *rest = p.rest;
@@ -198,9 +198,11 @@ void take_off_positive_work(const friction_problem<V>& p, friction_answer<V>& a)
   const V work = r[0] * rest[0] + (r[1] * rest[1] + r[2] * rest[2]) + slip;
   const auto gains = work > 0.0;
   if (!any(gains)) return;
-  const V c2 = r[1] * slid_1 + r[2] * slid_2, c0 = r[0] * (rest[0] - slid_n), c1 = work - c0 - c2;
+  const V c2 = r[1] * slid_1 + r[2] * slid_2 - slid_n * slid_n / h[0], c0 = -q[0] / h[0] * rest[0];
+  const V c1 = work - c0 - c2;
   const fraction<V> root = root_of_work(c2, c1, smaller(c0, 0.0));
   const V part = select(gains & (root.numerator < root.denominator), root.numerator / root.denominator, 1.0);
+  r[0] = select(part < 1.0, -(q[0] + part * slid_n) / h[0], r[0]);
   r[1] = r[1] * part;
   r[2] = r[2] * part;
   const V r_a = r[0] * (q[0] + rest[0]) + (r[1] * (q[1] + rest[1]) + r[2] * (q[2] + rest[2]));
