@@ -72,9 +72,7 @@ TEST(Create, RefusesTablesWhoseTimesDoNotIncrease) {
   for (const double second : {1.0, 0.5, inf_value, nan_value}) {
     const std::string said =
         refusal_of("coulomb", tables_of({{"friction", {1.0, 0.1, second, 0.2, 3.0, 0.3}}}));
-    EXPECT_NE(said.find(": expected finite, increasing points"),
-              std::string::npos)
-        << second << ": " << said;
+    EXPECT_NE(said.find(": expected finite, increasing points"), std::string::npos) << second << ": " << said;
   }
 }
 
@@ -129,9 +127,8 @@ TEST(Create, RefusesAMemoryThatVaries) {
   Parameters per_node;
   per_node.per_node = {"memory"};
   for (const std::string law : {"postit", "tie"})
-    for (const auto& [varying, words] :
-         {std::pair{tables_of({{"memory", {0.0, 0.1, 1.0, 0.2}}}), "a table"},
-          {per_node, "a value per node"}})
+    for (const auto& [varying, words] : {std::pair{tables_of({{"memory", {0.0, 0.1, 1.0, 0.2}}}), "a table"},
+                                         {per_node, "a value per node"}})
       EXPECT_EQ(refusal_of(law, varying), "law '" + law + "': parameter 'memory' was given as " + words +
                                               ": expected a number in [0, inf]")
           << "law " << law;

@@ -48,7 +48,7 @@ class Windows {
       w.write(of(alone_, i), clear, add, {impulses[0][i], impulses[1][i], impulses[2][i]});
     }
     const ilaw::kit::vector<pack> impulse{load<pack>(impulses[0]), load<pack>(impulses[1]),
-                                    load<pack>(impulses[2])};
+                                          load<pack>(impulses[2])};
     with(values_,
          [&](const auto& own) { w.write(own, mask_from<pack>(clears), mask_from<pack>(adds), impulse); });
     ASSERT_EQ(std::memcmp(values_.data(), alone_.data(), values_.size() * sizeof(double)), 0)

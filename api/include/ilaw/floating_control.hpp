@@ -1,5 +1,6 @@
-// floating_control.hpp - for C++ hosts: how the processor rounds, traps and flushes to zero, without the exception
-// flags. A library that changes it makes all later code of its thread wrong. Reading it takes some nanoseconds.
+// floating_control.hpp - for C++ hosts: how the processor rounds, traps and flushes to zero, without the
+// exception flags. A library that changes it makes all later code of its thread wrong. Reading it takes some
+// nanoseconds.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -1,5 +1,5 @@
-// A law without a mistake, beside headers of the standard that have some names in common with the kit: the compiler says
-// nothing. libm's exp and log give other bits on other processors, and do not take a V.
+// A law without a mistake, beside headers of the standard that have some names in common with the kit: the
+// compiler says nothing. libm's exp and log give other bits on other processors, and do not take a V.
 #include <ilaw/kit.hpp>
 
 #include <algorithm>

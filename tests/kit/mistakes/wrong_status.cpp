@@ -10,7 +10,8 @@ struct status_in_some_branches {
   static constexpr law_card card{
       .id = "wrong", .title = "A law", .doc = "A mistake.", .delassus_forms = ILAW_DELASSUS_SCALAR};
   static constexpr const char* references[] = {"none"};
-  static constexpr parameter<status_in_some_branches> parameters[] = {{.member = &status_in_some_branches::a, .name = "a"}};
+  static constexpr parameter<status_in_some_branches> parameters[] = {
+      {.member = &status_in_some_branches::a, .name = "a"}};
   template <class Node>
   status_of<V> step(Node& node) const {
     node.impulse.n = a;
