@@ -4,31 +4,32 @@
 // entry of parameters[]: V may vary from node to node and in time, double is the same at all nodes and fixed
 // at create.
 //
-//   is    card, references, parameters        what it is called, serves and reads
-//         state, state_variables              named memory (state.hpp)
-//         history                             a memory of any number of doubles
-//         amounts                             scalars that it gives per node and step: heat, wear
-//   does  step(node)                          its equations in closed form; returns the status
-//         problem, answer,                    where a solver is needed, step in parts: structs whose members
-//         are V, ask(node, problem),                   what is left to solve, and the status as if nothing
-//         were, solve(problem, answer, prepared),     in full packs; returns the lanes left to
-//         solve_scalar(problem, answer,         this one, for a double,
-//                      prepared),
-//         finish(node, answer)                  and the status with the answer
-//         asks()                              whether these parameters need a solver where step and ask both
-//         serve a node
-//                                               (or asks(bool is_transverse), where the form of H matters)
-//         prepare(step_sizes)                 numbers that all nodes of a batch share; node.prepared
-//         initialise(node)                    first state (default: zeros)
-//         conflict()                          why parameters do not go together, or null
+// clang-format off
+//   is    card, references, parameters       what it is called, serves and reads
+//         state, state_variables             named memory (state.hpp)
+//         history                            a memory of any number of doubles
+//         amounts                            scalars that it gives per node and step: heat, wear
+//   does  step(node)                         its equations in closed form; returns the status
+//         problem, answer                    where a solver is needed, structs whose members are V, for the step
+//                                            in parts:
+//         ask(node, problem)                 what a node leaves to the solver, and its status as if nothing were
+//         solve(problem, answer, prepared)   in full packs; returns the lanes left to solve_scalar
+//         solve_scalar(problem, answer, prepared)   the same for a double
+//         finish(node, answer)               the status with the answer
+//         asks(), asks(bool is_transverse)   whether these parameters need the solver, where step and ask both
+//                                            serve a node
+//         prepare(step_sizes)                numbers that all nodes of a batch share; node.prepared
+//         initialise(node)                   first state (default: zeros)
+//         conflict()                         why parameters do not go together, or null
 //         inputs(), capabilities(), permissions()   with these parameters (default: the card's)
-//         tells_tangents_apart()              whether these parameters need a tangent per node in the host's
-//         axes stable_velocity_step(node)          or (h_N, h_T) where it falls with both and depends on
-//         nothing else; or both,
-//                                               the second NaN where the first is meant
-//         history_size(), record(node, own)   the doubles of a free history, and how a step writes them; or
-//         window(), adds_to_window(status), clears_window(status)   of one that is a window (window.hpp)
-//         extension(name)                     see ilaw_law
+//         tells_tangents_apart()             whether these parameters need a tangent per node in the host's axes
+//         stable_velocity_step(node)         the largest stable step; or of (h_N, h_T), where it falls with both
+//                                            and depends on nothing else; or both, the second NaN where the
+//                                            first is meant
+//         history_size(), record(node, own)  the doubles of a free history, and how a step writes them; or
+//         window(), adds_to_window(status), clears_window(status)   those of a window (window.hpp)
+//         extension(name)                    see ilaw_law
+// clang-format on
 //
 // step, ask and finish are const templates on the node (node.hpp); solve and solve_scalar may be static and
 // go without prepared; all others are called with V = double. A law gives no other option: what can be
