@@ -31,8 +31,8 @@ struct coulomb {
   static constexpr const char* references[] = {
       "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics",
       "G. de Saxce, Z.-Q. Feng, 1991, New inequality and functional for contact with friction",
-      "G. Daviet, F. Bertails-Descoubes, L. Boissieux, 2011, A hybrid iterative solver for robustly capturing "
-      "Coulomb friction in hair dynamics"};
+      ("G. Daviet, F. Bertails-Descoubes, L. Boissieux, 2011, A hybrid iterative solver for robustly capturing "
+       "Coulomb friction in hair dynamics")};
 
   static constexpr parameter<coulomb> parameters[] = {
       friction_parameter(&coulomb::friction)

@@ -28,8 +28,7 @@ struct rccm : adhesive_bond<rccm, V> {
 
   static constexpr const char* references[] = {
       "M. Raous, L. Cangemi, M. Cocu, 1999, A consistent model coupling adhesion, friction, and unilateral contact",
-      "Y. Monerie, M. Raous, 2000, A model coupling adhesion to friction for the interaction between a crack and a "
-      "fibre/matrix interface",
+      "Y. Monerie, M. Raous, 2000, A model coupling adhesion to friction, for a crack and a fibre",
       "P. Larousse, D. Dureisseix, A. Gravouil, J. Georges, 2024, Computational Mechanics"};
 
   static constexpr parameter<rccm> parameters[] = {

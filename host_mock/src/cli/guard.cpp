@@ -132,9 +132,9 @@ void end_guard() { is_ending = 1; }
 
 // In place of the C library's (exported by CMakeLists.txt): a law that calls them skips what atexit
 // registered.
-extern "C" [[noreturn]] ILAW_EXPORT void _exit(int code) {
+extern "C" ILAW_EXPORT void _exit(int code) {
   using ilaw::host::RunningLaw;
   if (const RunningLaw* law = RunningLaw::current()) ilaw::host::end_by(*law, "ended the program", "");
   ilaw::host::end_now(code);
 }
-extern "C" [[noreturn]] ILAW_EXPORT void _Exit(int code) { _exit(code); }
+extern "C" ILAW_EXPORT void _Exit(int code) { _exit(code); }

@@ -302,8 +302,8 @@ struct bits_of {  // of a pack
     return V::each([&](int k) ILAW_KIT_LAMBDA { return (one)a.b[k]; });
   }
 #define ILAW_KIT_OPERATION(op)                                            \
-  ILAW_KIT_INLINE friend bits_of operator op(bits_of a, bits_of b) {      \
-    return each([&](int k) ILAW_KIT_LAMBDA { return a.b[k] op b.b[k]; }); \
+  ILAW_KIT_INLINE friend bits_of operator op(bits_of x, bits_of y) {      \
+    return each([&](int k) ILAW_KIT_LAMBDA { return x.b[k] op y.b[k]; }); \
   }
   ILAW_KIT_OPERATION(+)
   ILAW_KIT_OPERATION(-)

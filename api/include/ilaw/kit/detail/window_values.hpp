@@ -128,10 +128,10 @@ struct window_rows {
 
  private:
   // Four rows fill four registers, half a row or several each, and come out as columns; and back.
-  template <int... K>
+  template <int... K, class One = one>
   ILAW_KIT_INLINE static vector<pack> to_lanes(const row (&rows)[register_lanes],
                                                std::integer_sequence<int, K...> all) {
-    one in[4];
+    One in[4];
 #pragma GCC unroll 4
     for (int c = 0; c < 4; ++c) {
       if constexpr (register_lanes == 8)
@@ -139,7 +139,7 @@ struct window_rows {
       else if constexpr (register_lanes == 4)
         in[c] = rows[c];
       else
-        in[c] = one{rows[c / 2][c % 2 * 2], rows[c / 2][c % 2 * 2 + 1]};
+        in[c] = One{rows[c / 2][c % 2 * 2], rows[c / 2][c % 2 * 2 + 1]};
     }
     const one a = every_second<0>(in[0], in[1], all), b = every_second<1>(in[0], in[1], all);
     const one c = every_second<0>(in[2], in[3], all), d = every_second<1>(in[2], in[3], all);
