@@ -155,6 +155,7 @@ bool Iterations::take_turns(Blocks& blocks) {
   const bool is_small = 3 * scales_of(blocks) <= Newton::max_unknowns;
   std::uint32_t gauss_seidel_part = first_part, splitting_part = first_part;
   best_square_ = infinity;
+  splitting_.reset();
   for (std::uint32_t turn = 0; !is_over(); ++turn) {
     for (double before = infinity; !is_over();) {
       if (anderson(blocks, gauss_seidel_part)) return true;

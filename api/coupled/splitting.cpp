@@ -68,7 +68,6 @@ bool Splitting::open(const Blocks& blocks, const Problem& problem, const Sweep& 
                   [](double s) { return !(s > 0.0); }))
     return false;
   depth_ = depth;
-  rho_ = 1.0;
   iterations_ = last_adapted_ = adaptations_ = 0;
   const std::size_t size = equations_.rows();
   for (auto* vector : {&free_, &state_, &next_, &law_, &law_before_, &linear_, &step_, &correction_})
