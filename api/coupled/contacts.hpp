@@ -51,7 +51,7 @@ class Contacts {
   };
   std::int32_t evaluate(const Block& block, const Call& call, ilaw_report& report) const;
 
-  // Half the work against walls of impulse r at a contact, times two: r.(wall_previous + wall_velocity).
+  // r.(wall_previous + wall_velocity): twice the work that impulse r does at the wall.
   double wall_work(std::int64_t k, const Vector& impulse) const;
   // Outputs of contact k that a lane of a block has.
   void write(const Block& block, std::size_t lane) const;

@@ -25,8 +25,8 @@ class Splitting {
 
   // Another problem: rho begins at 1.
   void reset() { rho_ = 1.0; }
-  // Begins at the present impulses, with the last rho. depth: of Anderson's acceleration, or 0. False where the system is too
-  // large.
+  // Begins at the present impulses, with the last rho. depth: of Anderson's acceleration, or 0. False where
+  // the system is too large.
   bool open(const Blocks& blocks, const Problem& problem, const Sweep& sweep, std::size_t depth);
   // One iteration. False where a law refuses or numbers are not finite.
   bool iterate(const Blocks& blocks, const Problem& problem);
