@@ -43,6 +43,7 @@ CLASSES = [
     ("ILAW_STATE_SCALAR", "StateKind", "IntEnum", "ILAW_STATE_", "Kind of a state variable."),
     ("ILAW_VARIABLE_INTERNAL", "VariableFlag", "Flags", "ILAW_VARIABLE_", "Flags of a state variable."),
     ("ILAW_FREE", "Status", "IntEnum", "ILAW_", "State of a node after a step."),
+    ("ILAW_METHOD_GAUSS_SEIDEL", "Method", "IntEnum", "ILAW_METHOD_", "Method of the last iteration of a solve."),
     ("ILAW_ENERGY_FRICTION", "Energy", "IntEnum", "ILAW_ENERGY_", "Column of the energy output."),
 ]
 # Values of members in a Fortran variable that is merely declared; all others are 0 or null.
@@ -54,6 +55,8 @@ FORTRAN_DEFAULTS = {
     ("ilaw_plugin", "abi_minor"): "ILAW_ABI_MINOR",
     ("ilaw_coupled_report", "bad_group"): "-1",
     ("ilaw_coupled_report", "bad_contact"): "-1",
+    ("ilaw_coupled_report", "worst_group"): "-1",
+    ("ilaw_coupled_report", "worst_contact"): "-1",
 }
 # C type, typedef in front of the parser, size, Fortran kind, ctypes type
 SCALARS = {
@@ -362,7 +365,9 @@ class Python:
             classes += ["", "", f"class {name}({base}):", f'    """{doc}"""', ""]
             classes += [f"    {member.removeprefix(prefix)} = {value}" for member, value in members]
         lines = [f"{name.removeprefix('ILAW_')} = {value}" for name, value in constants]
-        return ["", *lines, "", "", *FLAGS.splitlines(), *classes] if classes else lines
+        if not any("(Flags)" in line for line in classes):
+            return [*lines, *classes]
+        return ["", *lines, "", "", *FLAGS.splitlines(), *classes]
 
     def named(self, name: str) -> str:
         return ("" if name in self.own else "_abi.") + name.removeprefix("ilaw_")
@@ -431,7 +436,7 @@ def bindings(include: Path) -> dict[str, str]:
             "from enum import IntEnum, IntFlag\n",
         ),
         "python/ilaw/_coupled_abi.py": python.module(
-            "Structs and functions of coupled contacts", ["coupled.h"], "\nfrom . import _abi\n"
+            "Structs and functions of coupled contacts", ["coupled.h"], "from enum import IntEnum\n\nfrom . import _abi\n"
         ),
     }
 

@@ -12,11 +12,16 @@ module ilaw_coupled_abi
   implicit none
   public
 
+  integer(c_int32_t), parameter :: &
+    ILAW_METHOD_GAUSS_SEIDEL = 0, ILAW_METHOD_CONJUGATE = 1, ILAW_METHOD_ANDERSON = 2, &
+    ILAW_METHOD_DOUGLAS_RACHFORD = 3, ILAW_METHOD_NEWTON = 4
+
   type, bind(c) :: ilaw_bodies
-    integer(c_int32_t) :: struct_size = 344
+    integer(c_int32_t) :: struct_size = 352
     integer(c_int32_t) :: dimension = 0
     integer(c_int64_t) :: count = 0
     integer(c_int64_t) :: owned_count = 0
+    type(c_ptr) :: id = c_null_ptr
     type(ilaw_input) :: inverse_mass
     type(ilaw_input) :: inverse_inertia
     type(ilaw_input) :: v_free
@@ -30,7 +35,7 @@ module ilaw_coupled_abi
   end type
 
   type, bind(c) :: ilaw_contacts
-    integer(c_int32_t) :: struct_size = 176
+    integer(c_int32_t) :: struct_size = 256
     integer(c_int32_t) :: delassus_form = 0
     type(c_ptr) :: law = c_null_ptr
     type(c_ptr) :: instance = c_null_ptr
@@ -41,6 +46,12 @@ module ilaw_coupled_abi
     type(ilaw_input) :: counterpart_arm
     type(ilaw_input) :: wall_velocity
     type(ilaw_input) :: wall_previous
+    integer(c_int32_t) :: body_count = 0
+    integer(c_int32_t) :: counterpart_count = 0
+    type(ilaw_input) :: body_weight
+    type(ilaw_input) :: counterpart_weight
+    integer(c_int32_t) :: weight_size = 0
+    integer(c_int32_t) :: reserved = 0
   end type
 
   type, bind(c) :: ilaw_exchange
@@ -60,7 +71,7 @@ module ilaw_coupled_abi
   end type
 
   type, bind(c) :: ilaw_coupled_report
-    integer(c_int32_t) :: struct_size = 96
+    integer(c_int32_t) :: struct_size = 136
     integer(c_int32_t) :: sweeps = 0
     real(c_double) :: residual = 0
     real(c_double) :: work = 0
@@ -70,6 +81,12 @@ module ilaw_coupled_abi
     integer(c_int64_t) :: bad_contact = -1
     type(c_ptr) :: reason = c_null_ptr
     real(c_double) :: stable_velocity_step = 0
+    integer(c_int32_t) :: method = 0
+    integer(c_int32_t) :: stalled = 0
+    integer(c_int64_t) :: worst_group = -1
+    integer(c_int64_t) :: worst_contact = -1
+    type(c_ptr) :: law = c_null_ptr
+    type(c_ptr) :: other_law = c_null_ptr
   end type
 
   abstract interface

@@ -64,7 +64,7 @@ void ContactSet::clear(double velocity_step) {
     values->clear();
 }
 
-void ContactSet::add(const Contact& contact, const Row& row, double partner) {
+void ContactSet::add(const Contact& contact, const Row& row) {
   const std::size_t k = contacts_.size();
   contacts_.push_back(contact);
   body_.push_back(contact.body);
@@ -80,7 +80,7 @@ void ContactSet::add(const Contact& contact, const Row& row, double partner) {
   impulse_.resize(3 * (k + 1));
   state_.resize(state_size_ * (k + 1));
   for (std::size_t at = 0; at < row.size(); at += entry_size())
-    if (row[at] == partner) {
+    if (row[at] == contact.partner) {
       const auto entry = row.begin() + static_cast<std::ptrdiff_t>(at);
       for (std::ptrdiff_t c = 0; c < 3; ++c)
         impulse_[3 * k + static_cast<std::size_t>(c)] = velocity_step_ * entry[1 + c];

@@ -8,8 +8,19 @@ from __future__ import annotations
 import ctypes
 from ctypes import CFUNCTYPE, POINTER
 from ctypes import c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
+from enum import IntEnum
 
 from . import _abi
+
+
+class Method(IntEnum):
+    """Method of the last iteration of a solve."""
+
+    GAUSS_SEIDEL = 0
+    CONJUGATE = 1
+    ANDERSON = 2
+    DOUGLAS_RACHFORD = 3
+    NEWTON = 4
 
 
 class bodies(ctypes.Structure):
@@ -18,6 +29,7 @@ class bodies(ctypes.Structure):
         ("dimension", c_uint32),
         ("count", c_int64),
         ("owned_count", c_int64),
+        ("id", c_void_p),
         ("inverse_mass", _abi.input),
         ("inverse_inertia", _abi.input),
         ("v_free", _abi.input),
@@ -44,6 +56,12 @@ class contacts(ctypes.Structure):
         ("counterpart_arm", _abi.input),
         ("wall_velocity", _abi.input),
         ("wall_previous", _abi.input),
+        ("body_count", c_uint32),
+        ("counterpart_count", c_uint32),
+        ("body_weight", _abi.input),
+        ("counterpart_weight", _abi.input),
+        ("weight_size", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -83,6 +101,12 @@ class coupled_report(ctypes.Structure):
         ("bad_contact", c_int64),
         ("reason", c_char_p),
         ("stable_velocity_step", c_double),
+        ("method", c_uint32),
+        ("stalled", c_uint32),
+        ("worst_group", c_int64),
+        ("worst_contact", c_int64),
+        ("law", c_char_p),
+        ("other_law", c_char_p),
     ]
 
 

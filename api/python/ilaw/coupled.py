@@ -31,7 +31,9 @@ from ._objects import Handle, NotCopied, sized, whole
 from .errors import BadNodes, InvalidArgument, raise_for
 from .interface import Interface
 
-__all__ = ["Bodies", "Contacts", "Exchange", "Report", "Solver"]
+Method = _coupled_abi.Method
+
+__all__ = ["Bodies", "Contacts", "Exchange", "Method", "Report", "Solver"]
 
 
 @functools.cache
@@ -44,10 +46,12 @@ def library() -> ctypes.CDLL:
 class Report:
     """Findings of a solve.
 
-    residual: largest difference between a contact's velocity and that for which its law gave the impulse,
+    sweeps: iterations. residual: largest change of a contact's velocity by its own impulse in the last iteration,
     relative to the largest velocity. work [J]: of all impulses, with the velocities that came out. energy (4,)
     [J]: sums of the columns `Energy`. bad_*: contacts with bad input, -1: none. stable_velocity_step [s]: as of
-    `ilaw.Report`, for masses split among contacts. All of this rank, but sweeps and residual.
+    `ilaw.Report`, with masses divided among contacts. method: of the last iteration. stalled: the residual is above
+    the tolerance and falls no more. worst_*: contact with the largest residual, -1: none. incompatible: ids of two
+    laws whose impulses grow without bound. All of this rank, but sweeps, residual, method and stalled.
     """
 
     sweeps: int
@@ -59,6 +63,11 @@ class Report:
     bad_contact: int
     reason: str
     stable_velocity_step: float
+    method: Method
+    stalled: bool
+    worst_group: int
+    worst_contact: int
+    incompatible: tuple[str, str] | None
 
 
 class Exchange(Protocol):
@@ -103,12 +112,13 @@ class Bodies(NotCopied):
 
     Inputs, float64, read where they are by every solve:
       v_free (n, d) [m/s]             velocity without contacts
-      inverse_mass (n,) [1/kg]        0: a body that does not give way
+      inverse_mass (n,) or (n, d) [1/kg]      0: immovable, along this axis
       v_previous (n, d) [m/s]         velocity before the step, for laws that read it
       spin_free, spin_previous (n, 3) [1/s]   angular velocities, where bodies rotate (d = 3)
       inverse_inertia (n, 6) [1/(kg m^2)]     xx yy zz xy xz yz in the axes of all arrays, or (n,): spheres
     inverse_mass and inverse_inertia may be one value for all bodies.
-      owned                           how many of the bodies, the first ones, this rank owns; all without ranks
+      owned                           number of bodies, the first ones, that this rank owns; all without ranks
+      id (n,)                         global numbers of the bodies, in whose order contacts are visited
     Outputs, made here or given: velocity (n, d) and spin (n, 3), which may be the arrays of v_free and spin_free;
     impulse (n, d) [N.s] and angular_impulse (n, 3) [N.m.s], sums over contacts: True or an array to have them.
     """
@@ -123,6 +133,7 @@ class Bodies(NotCopied):
         spin_previous: NDArray[np.float64] | None = None,
         inverse_inertia: Any = None,
         owned: int | None = None,
+        id: Any = None,
         velocity: NDArray[np.float64] | None = None,
         spin: NDArray[np.float64] | None = None,
         impulse: NDArray[np.float64] | bool = False,
@@ -137,7 +148,15 @@ class Bodies(NotCopied):
         self.count, self.dimension = count, d
         made = self._arrays = _Arrays(self._struct, count)
         made.read("v_free", v_free, d)
-        made.read("inverse_mass", inverse_mass, 1)
+        per_axis = isinstance(inverse_mass, np.ndarray) and inverse_mass.shape == (count, d) and d > 1
+        made.read("inverse_mass", inverse_mass, d if per_axis else 1)
+        if not per_axis:
+            self._struct.inverse_mass.component_stride = 0
+        if id is not None:
+            self._id = np.ascontiguousarray(id, np.int64)
+            if self._id.shape != (count,):
+                raise InvalidArgument(f"id: shape {self._id.shape}, expected ({count},)")
+            self._struct.id = self._id.ctypes.data
         made.read("v_previous", v_previous, d)
         self.rotate = inverse_inertia is not None
         if not self.rotate and (spin_free is not None or spin is not None):
@@ -168,6 +187,12 @@ class Bodies(NotCopied):
         arrays.check_apart(outputs, inputs)
 
 
+def _entries(bodies: Any) -> int:
+    """Bodies on a side of each contact."""
+    shape = np.shape(bodies)
+    return shape[1] if len(shape) == 2 else 1
+
+
 class Contacts(NotCopied):
     """The contacts that have one law. k is their number, d the dimension.
 
@@ -176,7 +201,10 @@ class Contacts(NotCopied):
                                     counterpart -1 is a wall. int32 is taken where it is
     gap (k,) [m], normal (k, d), gap_offset, area, tangent: as of `ilaw.Batch`
     arm, counterpart_arm (k, 3) [m] from the centre of each of the two to the contact, where bodies rotate
-    wall_velocity, wall_previous (k, d) [m/s]   of walls, the mean over this step and the one before
+    wall_velocity, wall_previous (k, d) [m/s]   subtracted from the contact's velocity: of walls and belts, the mean
+                                    over this step and the one before
+    body (k, b), counterpart (k, c) with body_weight (k, b), counterpart_weight (k, c): weighted sets of bodies, such
+                                    as facets; -1: no body
     Outputs, made here or given: impulse (k, d) [N.s], which the sweeps also begin with: leave there what the last
     step left, and zero at new contacts; state (k, state_size); energy (k, 4) [J]: True or an array to have it;
     status (k,), uint8.
@@ -197,6 +225,8 @@ class Contacts(NotCopied):
         counterpart_arm: Any = None,
         wall_velocity: Any = None,
         wall_previous: Any = None,
+        body_weight: Any = None,
+        counterpart_weight: Any = None,
         impulse: NDArray[np.float64] | None = None,
         state: NDArray[np.float64] | None = None,
         energy: NDArray[np.float64] | bool = False,
@@ -209,8 +239,11 @@ class Contacts(NotCopied):
             raise InvalidArgument(f"{next(iter(law.per_node_parameters))}: one value per node, expected one for all")
         d, count = law.dimension, len(body)
         self.law, self.count = law, count
-        self.body = arrays.as_bodies("body", body, count)
-        self.counterpart = arrays.as_bodies("counterpart", counterpart, count)
+        self._sides = [_entries(body), _entries(counterpart)]
+        self.body = arrays.as_bodies("body", np.ravel(body), count * self._sides[0]) if self._sides[0] > 1 else (
+            arrays.as_bodies("body", body, count))
+        self.counterpart = arrays.as_bodies("counterpart", np.ravel(counterpart), count * self._sides[1]) if (
+            self._sides[1] > 1) else arrays.as_bodies("counterpart", counterpart, count)
         self._batch = sized(_abi.batch)
         self._batch.node_count = count
         made = self._arrays = _Arrays(self._batch, count)
@@ -222,6 +255,9 @@ class Contacts(NotCopied):
         self._struct = self._describe()
         for name, value in {"arm": arm, "counterpart_arm": counterpart_arm}.items():
             made.read(name, value, 3, self._struct)
+        weights = {"body_weight": body_weight, "counterpart_weight": counterpart_weight}
+        for (name, value), entries in zip(weights.items(), self._sides):
+            made.read(name, value, entries, self._struct)
         for name, value in {"wall_velocity": wall_velocity, "wall_previous": wall_previous}.items():
             made.read(name, value, d, self._struct)
         self.impulse = made.write("impulse", impulse, d)
@@ -239,6 +275,7 @@ class Contacts(NotCopied):
         made.instance = loader().ilaw_interface_instance(law.handle)
         made.batch = ctypes.pointer(self._batch)
         made.body, made.counterpart = self.body.ctypes.data, self.counterpart.ctypes.data
+        made.body_count, made.counterpart_count = self._sides
         return made
 
     def _check_complete(self, needed: int) -> None:
@@ -359,4 +396,9 @@ class Solver(NotCopied):
             report.bad_contact,
             reason,
             report.stable_velocity_step,
+            Method(report.method),
+            bool(report.stalled),
+            report.worst_group,
+            report.worst_contact,
+            (report.law.decode(), report.other_law.decode()) if report.law and report.other_law else None,
         )

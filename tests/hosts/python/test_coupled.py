@@ -148,7 +148,7 @@ def test_ranks_agree():
             barrier.wait()
 
         def sum_bodies(self, values):
-            assert values.shape == (count, 4)
+            assert values.shape in ((count, 1), (count, 3))
             self.combine(values, np.add)
 
         def largest(self, values):
