@@ -34,14 +34,14 @@ inline constexpr double no_work = -std::numeric_limits<double>::denorm_min();
 template <class Node>
 ILAW_KIT_INLINE auto resolve_impact(const Node& node, number_of<Node> restitution, number_of<Node> work) {
   using V = number_of<Node>;
-  const V h = node.delassus.normal(), free = node.v_free.n, before = node.v_previous.n;
+  const V inverse_mass = node.delassus.normal(), free = node.v_free.n, before = node.v_previous.n;
   const V mean = 0.5 * (before + free), change = free - before;
 
   // (v_n)^2 = mean^2 + 2 H W, the rebound of the last step; no more than it may gain, and no pull.
   V gain = 0.0, most = positive_part(-(before + free));
   const mask_of<V> rebounds = work != 0.0;
   if (any(rebounds)) {
-    const V twice = 2.0 * (h * work), speed = square_root(positive_part(mean * mean + twice));
+    const V twice = 2.0 * (inverse_mass * work), speed = square_root(positive_part(mean * mean + twice));
     const mask_of<V> leaves = mean > 0.0;
     const V raised = select(leaves, twice, speed - mean) / select(leaves, speed + mean, V(1.0));
     gain = zero_unless(rebounds, positive_part(raised));
@@ -62,12 +62,12 @@ ILAW_KIT_INLINE auto resolve_impact(const Node& node, number_of<Node> restitutio
     const V target = select(bounces, rest * rise - gamma, -gamma);
     const V needed = positive_part(smaller(target - free, most));
     const V loss = 0.5 * (1.0 - restitution * restitution) * square;
-    const V after = work - (loss + needed * (mean + 0.5 * needed)) / h;
+    const V after = work - (loss + needed * (mean + 0.5 * needed)) / inverse_mass;
     left = zero_unless(hits & bounces & (needed > 0.0),
                        select((after == 0.0) & (needed < most), V(no_work), after));
     gain = select(hits, needed, gain);
   }
-  const V impulse = gain / h;
+  const V impulse = gain / inverse_mass;
   return resolved_impact<V>{impulse, zero_unless(impulse > 0.0, left)};
 }
 
