@@ -452,6 +452,12 @@ WRONG(asks_nothing)
   bool asks() const { return true; }
 };
 
+// remembers says which parameters need the state: the law has no struct state
+WRONG(remembers_nothing)
+  STEP
+  bool remembers() const { return true; }
+};
+
 // The compiler looks at each.
 #define SEEN(law) auto* const seen_##law = &detail::library_of<law>::describe
 SEEN(larger_state);
@@ -500,3 +506,4 @@ SEEN(never_finished);
 SEEN(problem_with_a_number);
 SEEN(undecided);
 SEEN(asks_nothing);
+SEEN(remembers_nothing);

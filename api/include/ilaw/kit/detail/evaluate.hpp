@@ -23,16 +23,19 @@ concept can_ask = requires(const Law& law, Node& n, typename Law::problem& p) {
   law.ask(n, p);
 };
 
-template <class Law, class Number, template <class> class Frame, template <class> class Delassus>
+template <class Law, class Number, template <class> class Frame, template <class> class Delassus,
+          bool Remembers = has_state<Law>>
 auto loop_of(const instance<Law>& made) {
+  if constexpr (Remembers && requires { made.law.remembers(); })
+    if (made.states == 0) return loop_of<Law, Number, Frame, Delassus, false>(made);
   using V = loop_number<Law>;
-  using plain = kernel<Law, V, Number, Frame, Delassus>;
+  using plain = kernel<Law, V, Number, Frame, Delassus, Remembers>;
   using Wide = law_on_t<Law, V>;
   using node_type = typename plain::node_type;
   constexpr bool can_step = requires(const Wide& law, node_type& n) { law.step(n); };
   using run_function = typename batch_walk<Number>::run_function;
   if constexpr (can_ask<Wide, node_type>) {
-    using solving = solver_kernel<Law, V, Number, Frame, Delassus>;
+    using solving = solver_kernel<Law, V, Number, Frame, Delassus, Remembers>;
     if constexpr (can_step && (
                                   requires { made.law.asks(); } || requires { made.law.asks(true); }))
       return made.asks ? run_function(solving::run) : run_function(plain::run);
@@ -265,9 +268,9 @@ class first_states {
       } else {
         law.initialise(fresh);
       }
-      for (int k = 0; k < state_numbers<Law>; ++k)
+      for (int k = 0; k < made_.states; ++k)
         if (!is_finite(number_in<double>(fresh.state, k))) return "the state overflows";
-      for (int k = 0; k < state_numbers<Law>; ++k)
+      for (int k = 0; k < made_.states; ++k)
         if (const int entry = state_entry<Law>(k, static_cast<int>(made_.dimension)); entry >= 0)
           at(node, entry) = number_in<double>(fresh.state, k);
     }

@@ -155,23 +155,26 @@ struct step_limit {
 
 // ---- a pack from end to end
 
-template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus>
+// Remembers: whether the nodes have the law's state.
+template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus,
+          bool Remembers = has_state<Law>>
 struct kernel {
   using Wide = law_on_t<Law, V>;
   using frame_type = Frame<V>;
   using vector_type = typename frame_type::vector_type;
   using H = Delassus<V>;
-  using node_type = node<Wide, vector_type, H>;
+  using state_type = std::conditional_t<Remembers, state_t<Wide>, stateless>;
+  using node_type = node<Wide, vector_type, H, state_type>;
   using view_type = view<Number>;
   using mask = mask_of<V>;
   using limit = step_limit<V>;
   static constexpr bool careful = view_type::is_copy;
   using checks_type = checks<V, careful>;
-  using careful_kernel = kernel<Law, V, copied, Frame, Delassus>;
-  static constexpr int width = lanes_of<V>, states = state_numbers<Law>;
+  using careful_kernel = kernel<Law, V, copied, Frame, Delassus, Remembers>;
+  static constexpr int width = lanes_of<V>, states = Remembers ? state_numbers<Law> : 0;
   static constexpr bool may_pull = (Law::card.capabilities & ILAW_CAN_ADHERE) != 0;
   static constexpr bool stays_in_reach = (Law::card.permissions & ILAW_MAY_SKIP_FRESH) != 0 &&
-                                         !has_history<Law> && !has_state<Law> && reads<Law>(reads_gap);
+                                         !has_history<Law> && !Remembers && reads<Law>(reads_gap);
   static constexpr bool can_carry = frame_type::has_axes && (has_history<Law> || has_vector_state<Law>());
 
   // ---- load
@@ -338,7 +341,7 @@ struct kernel {
       return undeclared_input<V, Input>{};
   }
 
-  ILAW_KIT_INLINE static void load_state(state_t<Wide>& state, const view_type& b, std::int64_t i) {
+  ILAW_KIT_INLINE static void load_state(state_type& state, const view_type& b, std::int64_t i) {
     if constexpr (states > 0) {
       V entries[states];
       load_numbers(entries, b.state_in, i);
@@ -347,29 +350,29 @@ struct kernel {
   }
   // In space; the walk brings states of fewer dimensions to the same order, with zeros.
   template <std::size_t... K>
-  ILAW_KIT_INLINE static void to_struct(state_t<Wide>& state, const V (&entries)[states + (states == 0)],
+  ILAW_KIT_INLINE static void to_struct(state_type& state, const V (&entries)[states + (states == 0)],
                                         std::index_sequence<K...>) {
     ((number_in<V>(state, static_cast<int>(K)) = entries[state_entry<Law>(static_cast<int>(K), 3)]), ...);
   }
   template <std::size_t... K>
-  ILAW_KIT_INLINE static void from_struct(V (&entries)[states + (states == 0)], const state_t<Wide>& state,
+  ILAW_KIT_INLINE static void from_struct(V (&entries)[states + (states == 0)], const state_type& state,
                                           std::index_sequence<K...>) {
     ((entries[state_entry<Law>(static_cast<int>(K), 3)] = number_in<V>(state, static_cast<int>(K))), ...);
   }
 
   template <std::size_t Variable>
-  ILAW_KIT_INLINE static void check_range(const state_t<Wide>& state, checks_type& c) {
+  ILAW_KIT_INLINE static void check_range(const state_type& state, checks_type& c) {
     constexpr const auto& v = Law::state_variables[Variable];
     if constexpr (v.has_range())
       c.require(v.may_be(number_in<V>(state, state_places<Law>[Variable])),
                 static_cast<reason>(reason_of_first_variable + static_cast<int>(Variable)));
   }
   template <std::size_t... K>
-  ILAW_KIT_INLINE static void check_ranges(const state_t<Wide>& state, checks_type& c,
+  ILAW_KIT_INLINE static void check_ranges(const state_type& state, checks_type& c,
                                            std::index_sequence<K...>) {
     (check_range<K>(state, c), ...);
   }
-  ILAW_KIT_INLINE static void check_finite(const state_t<Wide>& state, checks_type& c, reason why) {
+  ILAW_KIT_INLINE static void check_finite(const state_type& state, checks_type& c, reason why) {
 #pragma GCC unroll 32
     for (int k = 0; k < states; ++k) c.finite(number_in<V>(state, k), why);
   }
@@ -475,7 +478,7 @@ struct kernel {
       mask changed = !(sum_of_sizes(p.node.impulse) + status.code() == 0.0);
       if constexpr (reads<Law>(reads_gap)) changed = changed | !is_out_of_reach(p.node);
       if constexpr (states > 0) {
-        state_t<Wide> before;
+        state_type before;
         load_state(before, b, i);
 #pragma GCC unroll 32
         for (int k = 0; k < states; ++k)

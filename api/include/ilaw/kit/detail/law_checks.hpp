@@ -49,6 +49,7 @@ ILAW_KIT_NAME(solve);
 ILAW_KIT_NAME(solve_scalar);
 ILAW_KIT_NAME(finish);
 ILAW_KIT_NAME(asks);
+ILAW_KIT_NAME(remembers);
 ILAW_KIT_NAME(prepare);
 ILAW_KIT_NAME(initialise);
 ILAW_KIT_NAME(conflict);
@@ -371,13 +372,15 @@ struct checked_names {
                  "a law needs template <class Node> status_of<V> step(Node& node) const");
   ILAW_KIT_CHECK(has_both_of_state, names_state<Law> == names_state_variables<Law>,
                  "a memory is struct state and static constexpr state_variable<state> state_variables[]");
+  ILAW_KIT_CHECK(remembers_something, !names_remembers<Law> || names_state<Law>,
+                 "remembers says which parameters need the state: the law has no struct state");
   ILAW_KIT_CHECK(has_solver, has_whole_solver<Law>(),
                  "a solver is problem, answer, ask, solve, solve_scalar and finish: one of them is missing");
   ILAW_KIT_CHECK(needs_asks, !names_asks<Law> || (names_step<Law> && names_ask<Law>),
                  "asks chooses between step and ask: the law has one of them alone");
 
   static constexpr bool passes = has_own_card && has_references && has_parameters && has_step &&
-                                 has_both_of_state && has_solver && needs_asks;
+                                 has_both_of_state && remembers_something && has_solver && needs_asks;
 };
 
 // Law: L<double>.
@@ -435,6 +438,7 @@ struct checked_members {
             { law.asks(true) } -> std::same_as<bool>;
           },
       "asks must be bool asks() const or bool asks(bool is_transverse) const");
+  ILAW_KIT_FUNCTION(remembers, bool, "bool remembers() const");
   ILAW_KIT_FUNCTION(conflict, const char*, "const char* conflict() const");
   ILAW_KIT_FUNCTION(inputs, std::uint32_t, "std::uint32_t inputs() const");
   ILAW_KIT_FUNCTION(capabilities, std::uint32_t, "std::uint32_t capabilities() const");
@@ -461,13 +465,13 @@ struct checked_members {
       "a history is static constexpr history_card history and either std::int64_t history_size() const with "
       "record, or window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)");
 
-  static constexpr bool passes = has_texts && reads_known_inputs && serves_something && serves_turned &&
-                                 gives_members && has_one_each && describes_all && has_few && chooses_once &&
-                                 has_fields && has_axes && has_state_of_V && gives_state_members &&
-                                 describes_state && has_problems_of_V && has_solve && has_right_asks &&
-                                 has_right_conflict && has_right_inputs && has_right_capabilities &&
-                                 has_right_permissions && has_right_tells_tangents_apart && has_prepare &&
-                                 has_initialise && has_extension && has_amounts && has_history;
+  static constexpr bool passes =
+      has_texts && reads_known_inputs && serves_something && serves_turned && gives_members && has_one_each &&
+      describes_all && has_few && chooses_once && has_fields && has_axes && has_state_of_V &&
+      gives_state_members && describes_state && has_problems_of_V && has_solve && has_right_asks &&
+      has_right_remembers && has_right_conflict && has_right_inputs && has_right_capabilities &&
+      has_right_permissions && has_right_tells_tangents_apart && has_prepare && has_initialise &&
+      has_extension && has_amounts && has_history;
 };
 
 // What needs all of them: nodes.

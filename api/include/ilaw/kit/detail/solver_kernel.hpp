@@ -195,9 +195,10 @@ template <class Wide, class Node>
 
 // ---- the loop
 
-template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus>
-struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
-  using base = kernel<Law, V, Number, Frame, Delassus>;
+template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus,
+          bool Remembers = has_state<Law>>
+struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
+  using base = kernel<Law, V, Number, Frame, Delassus, Remembers>;
   using base::careful;
   using base::width;
   using typename base::checks_type;
@@ -207,7 +208,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus> {
   using typename base::node_type;
   using typename base::view_type;
   using typename base::Wide;
-  using careful_kernel = solver_kernel<Law, V, copied, Frame, Delassus>;
+  using careful_kernel = solver_kernel<Law, V, copied, Frame, Delassus, Remembers>;
   using problem = typename Wide::problem;
   using answer = typename Wide::answer;
   using problems_type = open_problems<Law>;
