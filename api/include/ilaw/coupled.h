@@ -3,9 +3,9 @@
  * An impulse of one contact changes v_free of every other contact at the same body, so one evaluate per
  * contact does not solve them: a stack sinks, pieces tied to each other explode. ilaw_coupled_solve finds
  * impulses with which all laws hold at once, by iterations over the pure evaluate of each law. It chooses its
- * method; docs/hosts/coupled.md describes the present one. A law sees any H and any part of a group in a call.
- * The same input gives the same bits. Other orders of contacts and other numbers of ranks give solutions that
- * agree to the tolerance, if the solution is unique.
+ * method; docs/hosts/coupled.md describes the present one. A law sees any H and any part of a group in a
+ * call. The same input gives the same bits. Other orders of contacts and other numbers of ranks give
+ * solutions that agree to the tolerance, if the solution is unique.
  *
  * Structs grow as those of ilaw.h: struct_size first, new members at the end, absent means zero.
  * Threads: one solver serves one solve at a time; different solvers are independent.
@@ -24,9 +24,9 @@ extern "C" {
 #pragma GCC visibility push(default)
 #endif
 
-/* All arrays hold doubles. Bodies that contacts name: grains, or nodes of a mesh. With ranks: first the bodies
- * that this rank owns, then copies of bodies that other ranks own. Masses and velocities are needed at both. In
- * dimensions 1 and 2 bodies do not rotate; a plane code with rotation passes three components. */
+/* All arrays hold doubles. Bodies that contacts name: grains, or nodes of a mesh. With ranks: first the
+ * bodies that this rank owns, then copies of bodies that other ranks own. Masses and velocities are needed at
+ * both. In dimensions 1 and 2 bodies do not rotate; a plane code with rotation passes three components. */
 typedef struct ilaw_bodies {
   uint32_t struct_size;
   uint32_t dimension;          /* d: 1, 2 or 3, that of all instances */
@@ -70,8 +70,8 @@ typedef struct ilaw_contacts {
   ilaw_input wall_velocity;   /* d, optional: subtracted from the velocity of the contact, its mean over the
                                  step: of a wall; between bodies, of a belt or an imposed slip */
   ilaw_input wall_previous;   /* d, optional: the same of the step before; absent: as wall_velocity */
-  uint32_t body_count;        /* entries of body per contact; 0: 1. Entries below index_base are empty, but the
-                                 first of body is not */
+  uint32_t body_count; /* entries of body per contact; 0: 1. Entries below index_base are empty, but the
+                          first of body is not */
   uint32_t counterpart_count; /* the same of counterpart */
   /* Optional, per contact body_count values w_i, or body_count d x d matrices by rows (component stride over
    * all of them), for nodes with axes of their own; absent: 1 for one body. weight_size: 0 or 1: values,
@@ -129,12 +129,12 @@ typedef struct ilaw_coupled_report {
   int64_t bad_group;                /* of the first of them, or of the group that was refused; -1: none */
   int64_t bad_contact;              /* the first of them; -1: none */
   const char* reason;               /* static text, null when none */
-  double stable_velocity_step;      /* as of ilaw_report, with the masses divided among the contacts that push;
-                                       infinity: no limit */
-  uint32_t method;                  /* ILAW_METHOD_* */
-  uint32_t stalled;                 /* 1: the residual is above the tolerance, and the last half of the
-                                       iterations did not lower it by a tenth */
-  int64_t worst_group;              /* contact with the largest residual; -1: none */
+  double stable_velocity_step; /* as of ilaw_report, with the masses divided among the contacts that push;
+                                  infinity: no limit */
+  uint32_t method;             /* ILAW_METHOD_* */
+  uint32_t stalled;            /* 1: the residual is above the tolerance, and the last half of the
+                                  iterations did not lower it by a tenth */
+  int64_t worst_group;         /* contact with the largest residual; -1: none */
   int64_t worst_contact;
   /* Ids of the law of the worst contact and of another law at its bodies (or the same law), where the two are
    * incompatible: impulses grow without bound. Null: not found. */
