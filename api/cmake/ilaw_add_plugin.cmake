@@ -11,6 +11,10 @@ function(ilaw_add_plugin name source)
     set_target_properties(${name} PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
   else()
     ilaw_compile_law(${name})
+    target_link_options(${name} PRIVATE -static-libgcc -static-libstdc++ LINKER:--as-needed LINKER:--exclude-libs,ALL)
+    if(NOT ILAW_SANITIZE)  # clang's sanitizers are in the program alone, so an instrumented library is not complete
+      target_link_options(${name} PRIVATE LINKER:-z,defs)
+    endif()
   endif()
   # Instrumented and debug builds look for mistakes, not for speed: one level is enough.
   if(NOT source MATCHES "[.]c$" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT ILAW_SANITIZE AND
