@@ -50,7 +50,8 @@ bool Iterations::accept(Change change) {
   ranks_.sum(&change.square, 1);
   ++count_;
   if (most[2] > 0.0) failed_ = change.code < 0 ? change.code : std::int32_t{ILAW_INVALID_ARGUMENT};
-  change_ = most[3] > 0.0 ? infinity : most[0];
+  change_ = most[0];
+  if (most[3] > 0.0) change_ = infinity;
   square_ = change.square;
   size_ = most[1];
   if (count_ == 1) first_size_ = size_;
@@ -294,7 +295,8 @@ void Iterations::find_island_residuals(const Blocks& blocks, std::vector<double>
       for (std::size_t c = 0; c < 3; ++c) {
         double& most = residuals[static_cast<std::size_t>(islands_.labels()[k])];
         const double change = std::fabs(response[c * max_stride + q]);
-        most = std::isfinite(change) ? std::max(most, change) : infinity;
+        most = std::max(most, change);
+        if (!std::isfinite(change)) most = infinity;
       }
   }
 }

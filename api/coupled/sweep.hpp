@@ -69,12 +69,12 @@ class Sweep {
   bool evaluate(Block& block, Change& change);
   void scatter(Block& block, Change& change);
 
-  Problem& problem_;
   alignas(64) Columns v_free_{};
   alignas(64) Columns answer_{};
   ilaw_report report_{};
-  std::int32_t failed_group_ = -1;
+  Problem& problem_;
   double stable_step_ = 0.0;
+  std::int32_t failed_group_ = -1;
 };
 
 // Adds an impulse and its moment to a body's velocities.
