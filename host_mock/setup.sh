@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
 # Installs what the project needs and this machine lacks (Debian 12). Does nothing, and needs no network, when all is
-# there. Usage: host_mock/setup.sh [tests|ci|results] [without-hosts], for host_mock/demo.sh without.
+# there. Usage: host_mock/setup.sh [tests|ci|results] [with-solvers]; without arguments for host_mock/demo.sh.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libtinyxml2-dev gnuplot-nox
           libvtk9-dev zlib1g-dev)
 for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsiconos-numerics-dev qemu-user
            dpkg-dev pkgconf python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv
-           python3-matplotlib)
-# Solvers that the laws are tried in, and MPI. They are large: 1 GB with what they bring.
-for_hosts=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade)
-[ "${2:-}" = without-hosts ] || for_tests+=("${for_hosts[@]}")
+           python3-matplotlib python3-pycparser)
+# Foreign solvers in which the laws are tested, and MPI. They are large: 1 GB with their dependencies.
+solvers=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade)
+[ "${2:-}" != with-solvers ] || for_tests+=("${solvers[@]}")
 case ${1:-} in
   tests) packages+=("${for_tests[@]}") ;;
-  ci) packages+=("${for_tests[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache) ;;
+  ci) packages+=("${for_tests[@]}" "${solvers[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache) ;;
   results) packages+=("${for_tests[@]}" jq) ;;
 esac
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Sets up, builds in Release and runs all tests. Arguments go to ctest.
+# Sets up, builds in Release and runs the tests. Arguments go to ctest.
 #
-#   tests/run.sh                 everything
+#   tests/run.sh                 all tests but those in foreign solvers
 #   tests/run.sh -R postit       builds and runs only programs with a test of this name (a regular expression, as
 #                                ctest -R reads it), told from the programs' names and the tests in their sources;
 #                                everything where no name fits, as with parameters that programs make up;
 #                                ctest then has an entry per test (ILAW_TEST_CASES), else one per program
-#   tests/run.sh --without-hosts ...   goes without the solvers that the laws are tried in (LAMMPS, dolfinx, Yade)
+#   tests/run.sh --with-solvers ...    also installs the solvers LAMMPS, dolfinx and Yade (1 GB) and tests the laws in them
 #   tests/run.sh --help          this text
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -48,9 +48,9 @@ targets_of() {
   done <build/release/tests/programs.txt
 }
 
-hosts=ON without=
-if [ "${1:-}" = --without-hosts ]; then
-  hosts=OFF without=without-hosts
+solvers=OFF with=
+if [ "${1:-}" = --with-solvers ]; then
+  solvers=ON with=with-solvers
   shift
 fi
 expression=
@@ -58,9 +58,9 @@ for ((i = 1; i < $#; ++i)); do
   case ${!i} in -R | --tests-regex) next=$((i + 1)) expression=${!next} ;; esac
 done
 
-bash host_mock/setup.sh tests $without
+bash host_mock/setup.sh tests $with
 echo "build: build/release"
-cmake --preset release -DILAW_TESTS=ON -DILAW_LAMMPS=$hosts -DILAW_SOLVERS=$hosts \
+cmake --preset release -DILAW_TESTS=ON -DILAW_LAMMPS=$solvers -DILAW_SOLVERS=$solvers \
       -DILAW_WERROR="${ILAW_WERROR:-OFF}" -DILAW_UNITY="${ILAW_UNITY:-OFF}" >/dev/null
 targets=()
 if [ -n "$expression" ]; then

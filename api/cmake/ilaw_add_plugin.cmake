@@ -1,11 +1,23 @@
 # ilaw_add_plugin(name source) makes the law library <name>.so, as portable as a library can be: nothing exported
-# but the entry, nothing needed but libc and libm, the same bits on every processor. On x86-64 the source is compiled
-# once per instruction-set level; the library takes the best one that it finds when an instance is created.
+# but the entry, nothing needed but libc and libm, the same bits on every processor. On x86-64 a source in C++ is
+# compiled once per instruction-set level; the library takes the best one that it finds when an instance is created.
+# A source in C (ilaw/plain_c.h) is compiled once.
 function(ilaw_add_plugin name source)
   add_library(${name} MODULE ${source})
-  target_link_libraries(${name} PRIVATE ilaw::kit)
+  if(source MATCHES "[.]c$")
+    target_link_libraries(${name} PRIVATE ilaw::abi m)
+    target_compile_options(${name} PRIVATE -ffp-contract=off -fvisibility=hidden)
+    target_link_options(${name} PRIVATE -static-libgcc LINKER:--as-needed)
+    set_target_properties(${name} PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
+  else()
+    ilaw_compile_law(${name})
+    target_link_options(${name} PRIVATE -static-libgcc -static-libstdc++ LINKER:--as-needed LINKER:--exclude-libs,ALL)
+    if(NOT ILAW_SANITIZE)  # clang's sanitizers are in the program alone, so an instrumented library is not complete
+      target_link_options(${name} PRIVATE LINKER:-z,defs)
+    endif()
+  endif()
   # Instrumented and debug builds look for mistakes, not for speed: one level is enough.
-  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT ILAW_SANITIZE AND
+  if(NOT source MATCHES "[.]c$" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT ILAW_SANITIZE AND
      NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
     target_compile_definitions(${name} PRIVATE ILAW_KIT_OTHER_LEVELS)
     foreach(level v3 v4)
@@ -16,6 +28,13 @@ function(ilaw_add_plugin name source)
   set_target_properties(${name} PROPERTIES
     PREFIX "" SUFFIX ".so"
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/ilaw)
+  ilaw_describe_plugin(${name})
+endfunction()
+
+# A law throws nothing and asks for no type at run time: tables for that would only make the library larger.
+function(ilaw_compile_law target)
+  target_link_libraries(${target} PRIVATE ilaw::kit)
+  target_compile_options(${target} PRIVATE -fno-exceptions -fno-rtti -fno-asynchronous-unwind-tables)
 endfunction()
 
 # The source at one level, as an object whose only global symbol is the function that gives its walks. All else is
@@ -25,7 +44,7 @@ function(ilaw_add_level name source level)
   find_program(ILAW_LD NAMES ld.bfd ld REQUIRED)
   find_program(ILAW_OBJCOPY objcopy REQUIRED)
   add_library(${name}_${level} OBJECT ${source})
-  target_link_libraries(${name}_${level} PRIVATE ilaw::kit)
+  ilaw_compile_law(${name}_${level})
   target_compile_definitions(${name}_${level} PRIVATE ILAW_KIT_LEVEL=${level}
                                                       ILAW_KIT_WALKS=ilaw_kit_walks_${level})
   target_compile_options(${name}_${level} PRIVATE -march=x86-64-${level})

@@ -1,83 +1,169 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bodies.hpp"
 
+#include "ranks.hpp"
+#include "sizes.hpp"
+
+#include <algorithm>
+#include <numeric>
+
 namespace ilaw::coupled {
 
-Vector vector(const ilaw_input& array, std::int64_t i, std::uint32_t dimension) {
-  Vector read{};
-  for (std::uint32_t c = 0; c < dimension; ++c) read[c] = value(array, i, c);
-  return read;
-}
-
-void store(const ilaw_output& array, std::int64_t i, std::uint32_t dimension, const Vector& values) {
-  if (!array.values) return;
-  for (std::uint32_t c = 0; c < dimension; ++c)
-    array.values[i * array.node_stride + c * array.component_stride] = values[c];
+const char* Bodies::complaint(const ilaw_bodies* given) {
+  if (!sized::is_complete(given)) return "bodies are missing, or their struct_size is wrong";
+  const ilaw_bodies bodies = sized::read(given);
+  if (bodies.dimension < 1 || bodies.dimension > 3) return "dimension is not 1, 2 or 3";
+  if (bodies.owned_count < 0 || bodies.count < bodies.owned_count) return "counts of bodies are wrong";
+  if (bodies.count >= INT32_MAX) return "count is above 2^31 - 2";
+  for (const ilaw_output* a : {&bodies.velocity, &bodies.spin, &bodies.impulse, &bodies.angular_impulse})
+    if (a->floats || collides(*a, bodies.count, bodies.dimension))
+      return "an output of bodies has floats or a stride of 0";
+  if (bodies.count == 0) return nullptr;
+  if (!bodies.inverse_mass.values || !bodies.v_free.values) return "inverse_mass or v_free is missing";
+  if (!bodies.inverse_inertia.values) return nullptr;
+  if (bodies.dimension != 3) return "bodies rotate in dimension 3 alone";
+  if (!bodies.spin_free.values) return "spin_free is missing";
+  return bodies.v_previous.values && !bodies.spin_previous.values ? "spin_previous is missing" : nullptr;
 }
 
 void Bodies::read(const ilaw_bodies& given) {
   given_ = given;
-  free_.resize(static_cast<std::size_t>(given.count));
-  for (std::int64_t i = 0; i < given.count; ++i)
-    free_[static_cast<std::size_t>(i)] = {vector(given.v_free, i, given.dimension),
-                                          rotate() ? vector(given.spin_free, i, 3) : Vector{}};
+  split_.clear();
+  const auto count = static_cast<std::size_t>(given.count);
+  const bool mass_per_axis = given.inverse_mass.component_stride != 0 && given.dimension > 1;
+  free_.resize(count + 1);
+  movable_.resize(count + 1);
+  inertia_.resize(mass_per_axis || (rotate() && !are_spheres()) ? count + 1 : 0);
+  for (std::size_t b = 0; b < count; ++b) {
+    const auto i = static_cast<std::int64_t>(b);
+    Body& body = free_[b];
+    body.velocity = vector(given.v_free, i, given.dimension);
+    body.inverse_mass = value(given.inverse_mass, i);
+    if (rotate()) {
+      body.spin = vector(given.spin_free, i, 3);
+      body.inverse_inertia = value(given.inverse_inertia, i);
+    } else {
+      body.spin = {};
+      body.inverse_inertia = 0.0;
+    }
+    movable_[b] = body.inverse_mass != 0.0 || body.inverse_inertia != 0.0;
+    if (inertia_.empty()) continue;
+    Inertia& inertia = inertia_[b];
+    inertia.inverse_mass = vector(given.inverse_mass, i, given.dimension);
+    inertia.inverse_inertia = {};
+    const std::int64_t stride = given.inverse_inertia.component_stride;
+    for (std::size_t c = 0; rotate() && c < (stride == 0 ? 3 : 6); ++c)
+      inertia.inverse_inertia[c] = value(given.inverse_inertia, i, static_cast<std::int64_t>(c));
+    const auto is_nonzero = [](double x) { return x != 0.0; };
+    movable_[b] = std::any_of(inertia.inverse_mass.begin(), inertia.inverse_mass.end(), is_nonzero) ||
+                  std::any_of(inertia.inverse_inertia.begin(), inertia.inverse_inertia.end(), is_nonzero);
+  }
+  free_[count] = {};
+  if (!inertia_.empty()) inertia_[count] = {};
+  movable_[count] = 0;
+  now_ = free_;
+  rank_by_id();
 }
 
-Motion Bodies::previous(std::int64_t body) const {
+void Bodies::rank_by_id() {
+  const std::int64_t* id = given_.id;
+  const auto count = static_cast<std::size_t>(given_.count);
+  ranks_.clear();
+  if (!id || std::is_sorted(id, id + count)) return;
+  order_.resize(count);
+  std::iota(order_.begin(), order_.end(), 0);
+  std::stable_sort(order_.begin(), order_.end(),
+                   [id](std::int32_t a, std::int32_t b) { return id[a] < id[b]; });
+  ranks_.resize(count + 1);
+  for (std::size_t place = 0; place < count; ++place)
+    ranks_[static_cast<std::size_t>(order_[place])] = static_cast<std::int32_t>(place);
+  ranks_[count] = static_cast<std::int32_t>(count);
+}
+
+void Bodies::split(const std::vector<double>& copies) {
+  split_.assign(now_.size(), 1.0);
+  for (std::size_t b = 0; b < copies.size(); ++b) {
+    const double share = std::max(1.0, copies[b]);
+    split_[b] = share;
+    free_[b].inverse_mass *= share;
+    free_[b].inverse_inertia *= share;
+    if (inertia_.empty()) continue;
+    inertia_[b].inverse_mass = share * inertia_[b].inverse_mass;
+    inertia_[b].inverse_inertia = share * inertia_[b].inverse_inertia;
+  }
+  now_ = free_;
+}
+
+Motion Bodies::previous(std::int32_t body) const {
+  if (body == wall()) return {};
   return {vector(given_.v_previous, body, given_.dimension),
           rotate() ? vector(given_.spin_previous, body, 3) : Vector{}};
 }
 
-Symmetric Bodies::inverse_inertia(std::int64_t body) const {
-  const ilaw_input& array = given_.inverse_inertia;
-  Symmetric read{};
-  if (array.component_stride == 0)
-    read[0] = read[1] = read[2] = value(array, body);
-  else
-    for (std::size_t c = 0; c < read.size(); ++c) read[c] = value(array, body, static_cast<std::int64_t>(c));
-  return read;
+Inertia Bodies::inertia_of(std::int32_t body) const {
+  const auto b = static_cast<std::size_t>(body);
+  if (!inertia_.empty()) return inertia_[b];
+  const double m = free_[b].inverse_mass, j = free_[b].inverse_inertia;
+  return {{m, m, m}, {j, j, j, 0.0, 0.0, 0.0}};
 }
 
-// I/m - [l] J^-1 [l], column by column: the velocity (J^-1 (l x e)) x l that a unit impulse e makes at l.
-Symmetric Bodies::delassus(std::int64_t body, const Vector& arm) const {
-  const double w = value(given_.inverse_mass, body);
-  Symmetric h{w, w, w, 0.0, 0.0, 0.0};
-  if (!rotate()) return h;
-  const Symmetric inertia = inverse_inertia(body);
-  const auto turned = [&](const Vector& unit) { return cross(inertia * cross(arm, unit), arm); };
-  const Vector x = turned({1, 0, 0}), y = turned({0, 1, 0}), z = turned({0, 0, 1});
-  return h + Symmetric{x[0], y[1], z[2], y[0], z[0], z[1]};
-}
-
-Motion Bodies::change(const std::vector<double>& sums, std::int64_t body) const {
-  const double* of_body = &sums[static_cast<std::size_t>(body * components())];
-  Motion change;
-  change.velocity = value(given_.inverse_mass, body) * Vector{of_body[1], of_body[2], of_body[3]};
-  if (rotate()) change.spin = inverse_inertia(body) * Vector{of_body[4], of_body[5], of_body[6]};
-  return change;
-}
-
-double Bodies::product(const std::vector<double>& sums, const std::vector<Motion>& difference) const {
-  double total = 0.0;
-  for (std::int64_t i = 0; i < given_.owned_count; ++i) {
-    const double* of_body = &sums[static_cast<std::size_t>(i * components())];
-    const Motion& by = difference[static_cast<std::size_t>(i)];
-    total += dot({of_body[1], of_body[2], of_body[3]}, by.velocity);
-    if (rotate()) total += dot({of_body[4], of_body[5], of_body[6]}, by.spin);
+Motion Bodies::change(std::size_t body, const Motion& impulse) const {
+  const double whole = split_.empty() ? 1.0 : 1.0 / split_[body];
+  if (inertia_.empty()) {
+    const Body& of = free_[body];
+    return {(whole * of.inverse_mass) * impulse.velocity, (whole * of.inverse_inertia) * impulse.spin};
   }
-  return total;
+  const Inertia& of = inertia_[body];
+  return {whole * scaled(of.inverse_mass, impulse.velocity), whole * (of.inverse_inertia * impulse.spin)};
 }
 
-void Bodies::write(const std::vector<Motion>& velocities, const std::vector<double>& sums) const {
+double Bodies::set(const std::vector<Motion>& impulses) {
+  double most = 0.0;
+  for (std::size_t b = 0; b < impulses.size(); ++b) {
+    const Motion by = change(b, impulses[b]);
+    const Vector velocity = free_[b].velocity + by.velocity;
+    const double moved = largest(velocity - now_[b].velocity);
+    most = moved > most ? moved : most;
+    now_[b].velocity = velocity;
+    now_[b].spin = free_[b].spin + by.spin;
+  }
+  return most;
+}
+
+void Bodies::exchange(const std::vector<Motion>& start, Ranks& ranks) {
+  changes_.resize(start.size());
+  for (std::size_t b = 0; b < start.size(); ++b) {
+    const double part = split_.empty() ? 1.0 : 1.0 / split_[b];
+    changes_[b] = {part * (now_[b].velocity - start[b].velocity), part * (now_[b].spin - start[b].spin)};
+  }
+  ranks.sum_bodies(changes_, rotate());
+  for (std::size_t b = 0; b < start.size(); ++b) {
+    now_[b].velocity = start[b].velocity + changes_[b].velocity;
+    now_[b].spin = start[b].spin + changes_[b].spin;
+  }
+}
+
+void Bodies::write(const std::vector<Motion>& impulses) const {
   for (std::int64_t i = 0; i < given_.count; ++i) {
-    const Motion& motion = velocities[static_cast<std::size_t>(i)];
-    const double* of_body = &sums[static_cast<std::size_t>(i * components())];
-    store(given_.velocity, i, given_.dimension, motion.velocity);
-    store(given_.impulse, i, given_.dimension, {of_body[1], of_body[2], of_body[3]});
+    const auto b = static_cast<std::size_t>(i);
+    store(given_.velocity, i, given_.dimension, now_[b].velocity);
+    store(given_.impulse, i, given_.dimension, impulses[b].velocity);
     if (!rotate()) continue;
-    store(given_.spin, i, 3, motion.spin);
-    store(given_.angular_impulse, i, 3, {of_body[4], of_body[5], of_body[6]});
+    store(given_.spin, i, 3, now_[b].spin);
+    store(given_.angular_impulse, i, 3, impulses[b].spin);
   }
+}
+
+// A body without impulse may have a velocity that is not a number: its contacts have bad input.
+double Bodies::work(const std::vector<Motion>& impulses) const {
+  double twice = 0.0;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(given_.count); ++b) {
+    const auto& [impulse, moment] = impulses[b];
+    if (is_zero(impulse) && is_zero(moment)) continue;
+    const Motion before = previous(static_cast<std::int32_t>(b));
+    twice += dot(impulse, before.velocity + now_[b].velocity) + dot(moment, before.spin + now_[b].spin);
+  }
+  return 0.5 * twice;
 }
 
 }  // namespace ilaw::coupled

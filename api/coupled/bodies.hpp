@@ -1,8 +1,8 @@
-// bodies.hpp - velocities of the bodies, and what impulses at an arm do to them.
+// bodies.hpp - velocities and inverse masses of the bodies.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "vector.hpp"
+#include "arrays.hpp"
 
 #include <ilaw/coupled.h>
 
@@ -11,26 +11,30 @@
 
 namespace ilaw::coupled {
 
+class Ranks;
+
 struct Motion {
   Vector velocity{}, spin{};
 };
-inline Motion operator+(const Motion& a, const Motion& b) {
-  return {a.velocity + b.velocity, a.spin + b.spin};
-}
-inline Motion operator-(const Motion& a, const Motion& b) {
-  return {a.velocity - b.velocity, a.spin - b.spin};
-}
-inline Motion operator*(double s, const Motion& a) { return {s * a.velocity, s * a.spin}; }
 
-// Component c of entry i; of an absent array, zero.
-inline double value(const ilaw_input& array, std::int64_t i, std::int64_t c = 0) {
-  return array.values ? array.values[i * array.node_stride + c * array.component_stride] : 0.0;
-}
-Vector vector(const ilaw_input& array, std::int64_t i, std::uint32_t dimension);
-void store(const ilaw_output& array, std::int64_t i, std::uint32_t dimension, const Vector& values);
+// One cache line: what an iteration reads and changes of a body that has one mass and one moment of inertia.
+struct alignas(64) Body {
+  Vector velocity{};
+  double inverse_mass = 0.0;
+  Vector spin{};
+  double inverse_inertia = 0.0;
+};
+
+// Of bodies with a tensor, or with a mass per axis.
+struct Inertia {
+  Vector inverse_mass{};
+  Symmetric inverse_inertia{};
+};
 
 class Bodies {
  public:
+  // Why the host's struct is refused, or null.
+  static const char* complaint(const ilaw_bodies* given);
   void read(const ilaw_bodies& given);
 
   std::int64_t count() const { return given_.count; }
@@ -38,27 +42,48 @@ class Bodies {
   bool rotate() const { return given_.inverse_inertia.values != nullptr; }
   bool are_spheres() const { return given_.inverse_inertia.component_stride == 0; }
   bool have_previous() const { return given_.v_previous.values != nullptr; }
+  // One inverse mass and one inverse inertia each: `now` has all that an iteration needs.
+  bool are_isotropic() const { return inertia_.empty(); }
 
-  const std::vector<Motion>& free() const { return free_; }
-  Motion previous(std::int64_t body) const;
+  // Index of a fixed body behind the others, for the missing side of a contact with a wall.
+  std::int32_t wall() const { return static_cast<std::int32_t>(given_.count); }
+  bool is_movable(std::int32_t body) const { return movable_[static_cast<std::size_t>(body)] != 0; }
+  // Position in the order of global numbers.
+  std::int32_t rank(std::int32_t body) const {
+    return ranks_.empty() ? body : ranks_[static_cast<std::size_t>(body)];
+  }
 
-  // What a unit impulse at the arm changes of the velocity there: one body's part of H.
-  Symmetric delassus(std::int64_t body, const Vector& arm) const;
+  // Divides the masses by these numbers of copies of each body (Tonge, Benevolenski, Voroshilov 2012).
+  void split(const std::vector<double>& copies);
+  bool are_split() const { return !split_.empty(); }
 
-  // Sums over contacts: per body how many are active, the impulse and its moment.
-  std::int64_t components() const { return rotate() ? 7 : 4; }
-  // Change of a body's velocities by the sums.
-  Motion change(const std::vector<double>& sums, std::int64_t body) const;
-  // Of this rank's own bodies: impulses of the one, times the difference of velocities that the other makes.
-  double product(const std::vector<double>& sums, const std::vector<Motion>& difference) const;
+  // Velocities in this iteration, with one fixed body behind the others.
+  Body* now() { return now_.data(); }
+  const Body* now() const { return now_.data(); }
+  const Inertia* inertia() const { return inertia_.data(); }
+  Motion previous(std::int32_t body) const;
+  Inertia inertia_of(std::int32_t body) const;
 
-  void write(const std::vector<Motion>& velocities, const std::vector<double>& sums) const;
+  // Velocities without contacts plus the changes by impulses and their moments, one Motion per body. Returns
+  // the largest change of a velocity.
+  double set(const std::vector<Motion>& impulses);
+  // Replaces the changes since `start` by those that the impulses of all ranks make.
+  void exchange(const std::vector<Motion>& start, Ranks& ranks);
+  void write(const std::vector<Motion>& impulses) const;
+  // Work of these impulses over the step with the present velocities.
+  double work(const std::vector<Motion>& impulses) const;
 
  private:
-  Symmetric inverse_inertia(std::int64_t body) const;
+  Motion change(std::size_t body, const Motion& impulse) const;
+  void rank_by_id();
 
   ilaw_bodies given_{};
-  std::vector<Motion> free_;
+  std::vector<Body> free_, now_;
+  std::vector<Inertia> inertia_;
+  std::vector<std::uint8_t> movable_;
+  std::vector<std::int32_t> ranks_, order_;
+  std::vector<double> split_;
+  std::vector<Motion> changes_;
 };
 
 }  // namespace ilaw::coupled

@@ -3,7 +3,10 @@
 
 #include "sizes.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ilaw::coupled {
@@ -11,31 +14,31 @@ namespace {
 
 // Largest part of an arm across the normal of a transverse H: arms that went through single precision pass.
 constexpr double along_tolerance = 1e-6;
+// H of an axis along which nothing gives way, relative to the largest: laws resolve 2^-42 of it.
+constexpr double driven_delassus = 0x1p-40;
+constexpr std::uint32_t max_ends = 1U << 16;
 
-// What is no number is left to the law to refuse, at its contact.
+// Arms that are not numbers are left to the law to refuse, at their contact.
 bool leads_aside(const Vector& arm, const Vector& normal) {
   const Vector across = cross(arm, normal);
   return dot(across, across) > along_tolerance * along_tolerance * dot(arm, arm) * dot(normal, normal);
 }
 
-// H of one node in dimension d, of that in three.
-void write_form(const Symmetric& h, const Vector& normal, std::uint32_t form, std::uint32_t dimension,
-                double* out) {
+void write_form(Block& block, std::size_t lane, const Layout& layout, const Symmetric& h, std::uint32_t form,
+                std::uint32_t dimension, const Vector& normal) {
+  double* out = block.column(layout.delassus) + lane;
+  const std::size_t s = block.stride;
   if (form == ILAW_DELASSUS_TRANSVERSE) {
     out[0] = dot(normal, h * normal);
-    out[1] = 0.5 * (h[0] + h[1] + h[2] - out[0]);
+    out[s] = 0.5 * (h[0] + h[1] + h[2] - out[0]);
   } else if (form == ILAW_DELASSUS_SCALAR || dimension == 1) {
-    out[0] = h[0];
+    out[0] = std::max({h[0], h[1], h[2]});
   } else if (dimension == 2) {
-    out[0] = h[0], out[1] = h[1], out[2] = h[3];
+    out[0] = h[0], out[s] = h[1], out[2 * s] = h[3];
   } else {
-    std::copy(h.begin(), h.end(), out);
+    for (std::size_t c = 0; c < 6; ++c) out[c * s] = h[c];
   }
 }
-
-ilaw_input input_of(const std::vector<Vector>& vectors) { return {vectors.data()->data(), 3, 1}; }
-
-bool is_zero(const Vector& a) { return a[0] == 0.0 && a[1] == 0.0 && a[2] == 0.0; }
 
 }  // namespace
 
@@ -45,9 +48,13 @@ const char* Contacts::open(const ilaw_contacts& given, const Bodies& bodies) {
   if (!sized::is_complete(given_.batch)) return "a batch is missing, or its struct_size is wrong";
   theirs_ = sized::read(given_.batch);
   dimension_ = bodies.dimension();
+  body_count_ = std::max(1U, given_.body_count);
+  counterpart_count_ = std::max(1U, given_.counterpart_count);
   for (const char* reason : {complaint(), complaint_of_law(bodies), complaint_of_bodies(bodies)})
     if (reason) return reason;
-  read(bodies);
+  lay_out(bodies);
+  for (std::int64_t k = 0; k < count(); ++k)
+    if (const char* reason = complaint_of_contact(k, bodies)) return reason;
   return nullptr;
 }
 
@@ -57,18 +64,36 @@ const char* Contacts::complaint() const {
       given_.delassus_form != ILAW_DELASSUS_FULL)
     return "delassus_form is neither scalar, transverse nor full";
   if (theirs_.node_count < 0) return "node_count is negative";
+  if (theirs_.node_count >= INT32_MAX) return "node_count is above 2^31 - 2";
+  if (theirs_.impulse.floats || theirs_.energy.floats || theirs_.state_in.floats || theirs_.state_out.floats)
+    return "an array of a batch has floats; expected doubles";
   if (theirs_.index || theirs_.index64) return "contacts have no list of nodes";
+  if (given_.weight_size > 1 && given_.weight_size != dimension_ * dimension_)
+    return "weight_size is not 0, 1 or d * d";
+  if (body_count_ > max_ends || counterpart_count_ > max_ends)
+    return "body_count or counterpart_count is above 2^16";
   if (theirs_.node_count == 0) return nullptr;
   if (!given_.body || !given_.counterpart) return "body or counterpart is missing";
-  return theirs_.impulse.values ? nullptr : "impulse is missing";
+  if ((body_count_ > 1 && !given_.body_weight.values) ||
+      (counterpart_count_ > 1 && !given_.counterpart_weight.values))
+    return "several bodies on a side, and their weights are missing";
+  if (!theirs_.impulse.values) return "impulse is missing";
+  if (collides(theirs_.impulse, theirs_.node_count, dimension_)) return "impulse has a stride of 0";
+  if (collides(theirs_.energy, theirs_.node_count, ILAW_ENERGY_COUNT)) return "energy has a stride of 0";
+  return theirs_.status && theirs_.node_count > 1 && theirs_.status_stride == 0 ? "status_stride is 0"
+                                                                                : nullptr;
 }
 
 const char* Contacts::complaint_of_law(const Bodies& bodies) {
-  if (!given_.law || !given_.instance) return nullptr;  // said already
+  if (!given_.law || !given_.instance) return nullptr;  // complaint() names it
   info_ = {};
   info_.struct_size = sizeof info_;
   if (given_.law->info(given_.instance, &info_) != ILAW_OK) return "info refuses the instance";
-  const std::uint32_t read = info_.inputs | (theirs_.energy.values ? info_.energy_inputs : 0U);
+  if (!(info_.inputs & ILAW_INPUT_NORMAL))
+    return "the instance is for the local frame; expected the global one";
+  if (theirs_.energy.values && !(given_.law->outputs & ILAW_OUTPUT_ENERGY))
+    return "energies are asked for, which the law does not give";
+  const std::uint32_t read = info_.inputs | (asks_balance() ? info_.balance_inputs : 0U);
   constexpr std::uint32_t known =
       ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT;
   if (read & ~known) return "the law reads an input that coupled contacts do not know";
@@ -77,217 +102,336 @@ const char* Contacts::complaint_of_law(const Bodies& bodies) {
   if (info_.state_size > 0 && theirs_.node_count > 0 &&
       (!theirs_.state_in.values || !theirs_.state_out.values))
     return "state_in or state_out is missing";
+  if (collides(theirs_.state_out, theirs_.node_count, static_cast<std::int64_t>(info_.state_size)))
+    return "state_out has a stride of 0";
+  for (std::uint32_t a = 0; theirs_.amounts && a < info_.amount_count; ++a)
+    if (theirs_.amounts[a].floats || collides(theirs_.amounts[a], theirs_.node_count, 1))
+      return "an array of amounts has floats or a stride of 0";
   return nullptr;
 }
 
 const char* Contacts::complaint_of_bodies(const Bodies& bodies) const {
-  const std::int64_t count = given_.body && given_.counterpart ? theirs_.node_count : 0;
-  if (bodies.rotate() && count > 0) {
+  if (!given_.body || !given_.counterpart || count() == 0) return nullptr;
+  if (bodies.rotate()) {
     if (given_.delassus_form == ILAW_DELASSUS_SCALAR)
       return "bodies rotate, so delassus_form has to be transverse or full";
     if (!given_.arm.values || !given_.counterpart_arm.values) return "bodies rotate, and an arm is missing";
-    if (given_.delassus_form == ILAW_DELASSUS_TRANSVERSE && !bodies.are_spheres())
-      return "delassus_form is transverse, and bodies are no spheres";
   }
-  if (given_.delassus_form == ILAW_DELASSUS_TRANSVERSE && count > 0 && !theirs_.normal.values)
-    return "delassus_form is transverse, and the normal is missing";
-  for (std::int64_t k = 0; k < count; ++k) {
-    const std::int64_t body = std::int64_t{given_.body[k]} - theirs_.index_base;
-    const std::int64_t counterpart = std::int64_t{given_.counterpart[k]} - theirs_.index_base;
-    if (body < 0 || body >= bodies.count() || counterpart >= bodies.count())
-      return "a contact names a body that is not there";
-    if (body == counterpart) return "a contact of a body with itself";
-    if (given_.delassus_form == ILAW_DELASSUS_TRANSVERSE && bodies.rotate() && has_arm_aside(k))
-      return "delassus_form is transverse, and an arm is not along the normal";
-  }
+  if (given_.delassus_form != ILAW_DELASSUS_TRANSVERSE) return nullptr;
+  if (bodies.rotate() && !bodies.are_spheres())
+    return "delassus_form is transverse, and bodies are no spheres";
+  if (!bodies.are_isotropic()) return "delassus_form is transverse, and bodies have masses per axis";
+  if (given_.weight_size > 1) return "delassus_form is transverse, and weights are matrices";
+  return theirs_.normal.values ? nullptr : "delassus_form is transverse, and the normal is missing";
+}
+
+const char* Contacts::complaint_of_contact(std::int64_t k, const Bodies& bodies) const {
+  if (given_.body[k * body_count_] < theirs_.index_base) return "a contact names a body that is not there";
+  for (std::uint32_t e = 0; e < ends(); ++e)
+    if (end(k, e, bodies) > bodies.wall()) return "a contact names a body that is not there";
+  for (std::uint32_t i = 0; i < body_count_; ++i)
+    for (std::uint32_t j = body_count_; j < ends(); ++j)
+      if (const std::int32_t body = end(k, i, bodies); body != bodies.wall() && body == end(k, j, bodies))
+        return "a contact of a body with itself";
   return nullptr;
 }
 
-bool Contacts::has_arm_aside(std::int64_t k) const {
-  const Vector normal = vector(theirs_.normal, k, 3);
-  const bool is_wall = given_.counterpart[k] < theirs_.index_base;
-  return leads_aside(vector(given_.arm, k, 3), normal) ||
-         (!is_wall && leads_aside(vector(given_.counterpart_arm, k, 3), normal));
+// Beyond Bodies::wall() where it names none.
+std::int32_t Contacts::end(std::int64_t k, std::uint32_t e, const Bodies& bodies) const {
+  const std::int64_t given = e < body_count_
+                                 ? std::int64_t{given_.body[k * body_count_ + e]}
+                                 : std::int64_t{given_.counterpart[k * counterpart_count_ + e - body_count_]};
+  const std::int64_t index = given - theirs_.index_base;
+  if (index < 0) return bodies.wall();
+  return index >= bodies.count() ? bodies.wall() + 1 : static_cast<std::int32_t>(index);
 }
 
-void Contacts::make_room() {
-  const auto count = static_cast<std::size_t>(theirs_.node_count);
-  form_size_ = given_.delassus_form == ILAW_DELASSUS_SCALAR       ? 1
-               : given_.delassus_form == ILAW_DELASSUS_TRANSVERSE ? 2
-                                                                  : dimension_ * (dimension_ + 1) / 2;
-  contacts_.resize(count);
-  for (std::vector<Vector>* vectors : {&answer_, &before_, &trial_, &v_free_, &v_previous_})
-    vectors->resize(count);
-  delassus_.resize(count * form_size_);
-  state_.resize(count * info_.state_size);
-  energy_.resize(count * (theirs_.energy.values ? ILAW_ENERGY_COUNT : 0));
-  status_.assign(count, ILAW_FREE);
-}
-
-void Contacts::read(const Bodies& bodies) {
-  make_room();
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const auto i = static_cast<std::int64_t>(k);
-    Contact& contact = contacts_[k];
-    contact.body = std::int64_t{given_.body[i]} - theirs_.index_base;
-    contact.counterpart = std::int64_t{given_.counterpart[i]} - theirs_.index_base;
-    contact.normal = vector(theirs_.normal, i, dimension_);
-    contact.arm = vector(given_.arm, i, 3);
-    contact.counterpart_arm = contact.counterpart < 0 ? Vector{} : vector(given_.counterpart_arm, i, 3);
-    contact.wall = vector(given_.wall_velocity, i, dimension_);
-    contact.wall_previous =
-        given_.wall_previous.values ? vector(given_.wall_previous, i, dimension_) : contact.wall;
-    contact.delassus = bodies.delassus(contact.body, contact.arm);
-    contact.counterpart_delassus =
-        contact.counterpart < 0 ? Symmetric{} : bodies.delassus(contact.counterpart, contact.counterpart_arm);
-    v_previous_[k] = previous(contact, bodies);
-    const ilaw_output& start = theirs_.impulse;
-    answer_[k] = vector({start.values, start.node_stride, start.component_stride}, i, dimension_);
-    if (!std::isfinite(dot(answer_[k], answer_[k]))) answer_[k] = {};
-    contact.active = !is_zero(answer_[k]);
-    trial_[k] = before_[k] = answer_[k];
-  }
-  describe_batch();
-}
-
-void Contacts::describe_batch() {
-  ours_ = theirs_;
-  ours_.struct_size = sizeof ours_;
-  if (contacts_.empty()) return;
-  const auto state_size = static_cast<std::int64_t>(info_.state_size);
-  ours_.v_free = input_of(v_free_);
-  ours_.delassus = {delassus_.data(), static_cast<std::int64_t>(form_size_), 1};
-  ours_.v_previous = input_of(v_previous_);
-  ours_.state_out = {state_.data(), state_size, 1};
-  ours_.impulse = {answer_.data()->data(), 3, 1};
-  ours_.velocity = {};
-  ours_.energy = {};
-  const bool has_status = (given_.law->outputs & ILAW_OUTPUT_STATUS) != 0;
-  ours_.status = has_status ? status_.data() : nullptr;
-  ours_.status_stride = 1;
-}
-
-Vector Contacts::relative(const Contact& contact, const std::vector<Motion>& motions) const {
-  const Motion& body = motions[static_cast<std::size_t>(contact.body)];
-  const Vector velocity = body.velocity + cross(body.spin, contact.arm) - contact.wall;
-  if (contact.counterpart < 0) return velocity;
-  const Motion& other = motions[static_cast<std::size_t>(contact.counterpart)];
-  return velocity - (other.velocity + cross(other.spin, contact.counterpart_arm));
-}
-
-Vector Contacts::previous(const Contact& contact, const Bodies& bodies) const {
-  const Motion body = bodies.previous(contact.body);
-  const Vector velocity = body.velocity + cross(body.spin, contact.arm) - contact.wall_previous;
-  if (contact.counterpart < 0) return velocity;
-  const Motion other = bodies.previous(contact.counterpart);
-  return velocity - (other.velocity + cross(other.spin, contact.counterpart_arm));
-}
-
-void Contacts::add_to(std::vector<double>& sums, const Bodies& bodies) const {
-  const auto add = [&](std::int64_t body, bool active, const Vector& impulse, const Vector& arm) {
-    double* of_body = &sums[static_cast<std::size_t>(body * bodies.components())];
-    of_body[0] += active ? 1.0 : 0.0;
-    for (std::size_t c = 0; c < 3; ++c) of_body[1 + c] += impulse[c];
-    if (!bodies.rotate()) return;
-    const Vector moment = cross(arm, impulse);
-    for (std::size_t c = 0; c < 3; ++c) of_body[4 + c] += moment[c];
+void Contacts::lay_out(const Bodies& bodies) {
+  layout_ = {};
+  layout_.ends = static_cast<int>(body_count_ + counterpart_count_);
+  layout_.weight_size = static_cast<int>(std::max(1U, given_.weight_size));
+  if (layout_.weight_size > 1) layout_.weight_size = 9;
+  layout_.state_size = static_cast<int>(info_.state_size);
+  layout_.delassus_size = given_.delassus_form == ILAW_DELASSUS_SCALAR ? 1
+                          : given_.delassus_form == ILAW_DELASSUS_TRANSVERSE
+                              ? 2
+                              : static_cast<int>(dimension_ * (dimension_ + 1) / 2);
+  const bool weighted = layout_.ends > 2 || given_.body_weight.values || given_.counterpart_weight.values;
+  kind_ = weighted                                           ? Kind::weighted
+          : !bodies.are_isotropic()                          ? Kind::rigid
+          : !bodies.rotate()                                 ? Kind::point
+          : given_.delassus_form == ILAW_DELASSUS_TRANSVERSE ? Kind::sphere
+                                                             : Kind::rigid;
+  int next = layout_.delassus + layout_.delassus_size;
+  const auto take = [&next](bool needed, int columns) {
+    const int first = needed ? next : -1;
+    next += needed ? columns : 0;
+    return first;
   };
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const Contact& contact = contacts_[k];
-    add(contact.body, contact.active, answer_[k], contact.arm);
-    if (contact.counterpart >= 0)
-      add(contact.counterpart, contact.active, -1.0 * answer_[k], contact.counterpart_arm);
+  const std::uint32_t read = info_.inputs | (asks_balance() ? info_.balance_inputs : 0U);
+  const bool has_arms = kind_ == Kind::rigid || (kind_ == Kind::weighted && bodies.rotate());
+  layout_.arm = take(has_arms || kind_ == Kind::sphere, has_arms ? 3 : 1);
+  layout_.counterpart_arm = take(has_arms || kind_ == Kind::sphere, has_arms ? 3 : 1);
+  layout_.weight = take(weighted, layout_.ends * layout_.weight_size);
+  layout_.wall = take(given_.wall_velocity.values != nullptr, 3);
+  layout_.gap = take(theirs_.gap.values != nullptr && (read & ILAW_INPUT_GAP), 1);
+  layout_.gap_offset = take(theirs_.gap_offset.values != nullptr && (read & ILAW_INPUT_GAP), 1);
+  layout_.area = take(theirs_.area.values != nullptr && (read & ILAW_INPUT_AREA), 1);
+  layout_.v_previous = take(read & ILAW_INPUT_V_PREVIOUS, 3);
+  layout_.tangent = take(theirs_.tangent.values != nullptr, 3);
+  layout_.parameters = take(theirs_.per_node_parameters && info_.per_node_parameter_count > 0,
+                            static_cast<int>(info_.per_node_parameter_count));
+  layout_.state_in = take(info_.state_size > 0, layout_.state_size);
+  layout_.state_out = take(info_.state_size > 0, layout_.state_size);
+  layout_.columns = next;
+}
+
+Vector Contacts::start_impulse(std::int64_t k) const {
+  const ilaw_output& a = theirs_.impulse;
+  const Vector start = vector(ilaw::input(a.values, a.node_stride, a.component_stride), k, dimension_);
+  return std::isfinite(dot(start, start)) ? start : Vector{};
+}
+
+Vector Contacts::relative(std::int64_t k, const Bodies& bodies) const {
+  const Body &x = bodies.now()[end(k, 0, bodies)], &y = bodies.now()[end(k, 1, bodies)];
+  Vector u = x.velocity - y.velocity - vector(given_.wall_velocity, k, dimension_);
+  if (bodies.rotate()) {
+    u = u + cross(x.spin, vector(given_.arm, k, 3));
+    if (end(k, 1, bodies) != bodies.wall()) u = u - cross(y.spin, vector(given_.counterpart_arm, k, 3));
   }
+  return u;
 }
 
-void Contacts::split(const std::vector<double>& sums, const Bodies& bodies) {
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const Contact& contact = contacts_[k];
-    const auto share = [&](std::int64_t body) {
-      return body < 0
-                 ? 0.0
-                 : sums[static_cast<std::size_t>(body * bodies.components())] + (contact.active ? 0.0 : 1.0);
-    };
-    const Symmetric h =
-        share(contact.body) * contact.delassus + share(contact.counterpart) * contact.counterpart_delassus;
-    write_form(h, contact.normal, given_.delassus_form, dimension_, &delassus_[k * form_size_]);
-  }
+// The order of operations of ilaw.h, "out of reach".
+bool Contacts::is_out_of_reach(std::int64_t k, const Bodies& bodies) const {
+  constexpr std::uint32_t permitted = ILAW_MAY_SKIP_FREE | ILAW_MAY_SKIP_FRESH;
+  if (!(info_.permissions & permitted) || kind_ == Kind::weighted || !theirs_.gap.values) return false;
+  const double gap = value(theirs_.gap, k) - value(theirs_.gap_offset, k);
+  if (!(gap > 0.0) || !is_zero(start_impulse(k))) return false;
+  return gap + theirs_.position_step * dot(vector(theirs_.normal, k, dimension_), relative(k, bodies)) > 0.0;
 }
 
-Vector Contacts::split_response(std::size_t k, const Vector& impulse) const {
-  const double* h = &delassus_[k * form_size_];
-  if (form_size_ == 1) return h[0] * impulse;
-  if (form_size_ == 2) {
-    const Vector& normal = contacts_[k].normal;
-    return h[1] * impulse + ((h[0] - h[1]) * dot(normal, impulse)) * normal;
-  }
-  if (form_size_ == 3) return Symmetric{h[0], h[1], 0.0, h[2], 0.0, 0.0} * impulse;
-  return Symmetric{h[0], h[1], h[2], h[3], h[4], h[5]} * impulse;
+bool Contacts::is_in_reach(const Block& block, std::size_t lane, const Vector& v) const {
+  double gap = layout_.gap < 0 ? 0.0 : block.column(layout_.gap)[lane];
+  if (layout_.gap_offset >= 0) gap -= block.column(layout_.gap_offset)[lane];
+  const Vector n = block.at(layout_.normal, lane);
+  const double approach = (n[0] * v[0] + n[1] * v[1]) + n[2] * v[2];
+  return !(gap > 0.0 && gap + theirs_.position_step * approach > 0.0);
 }
 
-std::int32_t Contacts::call(const ilaw_batch& batch, const std::vector<Motion>& motions,
-                            const std::vector<Vector>& impulses) {
-  for (std::size_t k = 0; k < contacts_.size(); ++k)
-    v_free_[k] = relative(contacts_[k], motions) - split_response(k, impulses[k]);
-  report_ = {};
-  report_.struct_size = sizeof report_;
-  return given_.law->evaluate(given_.instance, &batch, &report_);
-}
-
-std::int32_t Contacts::evaluate(const std::vector<Motion>& of_trial) {
-  const std::int32_t code = call(ours_, of_trial, trial_);
-  for (std::size_t k = 0; k < contacts_.size(); ++k)
-    if (!is_zero(answer_[k])) contacts_[k].active = true;
-  return code;
-}
-
-Contacts::Residual Contacts::residual(const std::vector<Motion>& of_answer) const {
-  Residual residual{0.0, 0.0};
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    if (is_bad(k)) continue;
-    const Vector own = split_response(k, answer_[k]);
-    residual.difference =
-        std::fmax(residual.difference, largest(relative(contacts_[k], of_answer) - own - v_free_[k]));
-    residual.size = std::fmax(residual.size, std::fmax(largest(own), largest(v_free_[k])));
-  }
-  return residual;
-}
-
-void Contacts::extrapolate(double by) {
-  for (std::size_t k = 0; k < answer_.size(); ++k) {
-    trial_[k] = by == 0.0 ? answer_[k] : answer_[k] + by * (answer_[k] - before_[k]);
-    before_[k] = answer_[k];
-  }
-}
-
-std::int32_t Contacts::write(const std::vector<Motion>& of_answer, const Bodies& bodies,
-                             ilaw_coupled_report& report) {
-  const auto state_size = static_cast<std::int64_t>(info_.state_size);
-  if (theirs_.energy.values && !contacts_.empty()) {
-    spare_state_.resize(state_.size());
-    ilaw_batch batch = ours_;
-    batch.energy = {energy_.data(), ILAW_ENERGY_COUNT, 1};
-    batch.impulse = {trial_.data()->data(), 3, 1};  // of no use any more, as the state
-    batch.state_out.values = spare_state_.data();
-    batch.status = nullptr;
-    if (const std::int32_t code = call(batch, of_answer, answer_); code < 0) return code;
-  }
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const auto i = static_cast<std::int64_t>(k);
-    store(theirs_.impulse, i, dimension_, answer_[k]);
-    for (std::int64_t c = 0; c < state_size; ++c)
-      theirs_.state_out.values[i * theirs_.state_out.node_stride + c * theirs_.state_out.component_stride] =
-          state_[k * info_.state_size + static_cast<std::size_t>(c)];
-    if (theirs_.status) theirs_.status[i * theirs_.status_stride] = status_[k];
-    for (std::size_t part = 0; part < ILAW_ENERGY_COUNT && !energy_.empty(); ++part) {
-      const double energy = energy_[k * ILAW_ENERGY_COUNT + part];
-      theirs_.energy.values[i * theirs_.energy.node_stride +
-                            static_cast<std::int64_t>(part) * theirs_.energy.component_stride] = energy;
-      report.energy[part] += energy;
+bool Contacts::fill(Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const {
+  for (std::uint32_t e = 0; e < ends(); ++e) block.ends[e * block.stride + lane] = end(k, e, bodies);
+  block.contact[lane] = static_cast<std::int32_t>(k);
+  const Vector normal = vector(theirs_.normal, k, dimension_);
+  block.put(layout_.normal, lane, normal);
+  block.put(layout_.impulse, lane, start_impulse(k));
+  block.put(layout_.direction, lane, {});
+  block.put(layout_.change, lane, {});
+  if (layout_.arm >= 0) {
+    const bool is_wall = kind_ != Kind::weighted && end(k, 1, bodies) == bodies.wall();
+    const Vector arm = vector(given_.arm, k, 3);
+    const Vector other = is_wall ? Vector{} : vector(given_.counterpart_arm, k, 3);
+    if (given_.delassus_form == ILAW_DELASSUS_TRANSVERSE &&
+        (leads_aside(arm, normal) || leads_aside(other, normal)))
+      return false;
+    if (kind_ == Kind::sphere) {
+      block.column(layout_.arm)[lane] = dot(arm, normal);
+      block.column(layout_.counterpart_arm)[lane] = dot(other, normal);
+    } else {
+      block.put(layout_.arm, lane, arm);
+      block.put(layout_.counterpart_arm, lane, other);
     }
-    report.work += 0.5 * dot(answer_[k], previous(contacts_[k], bodies) + relative(contacts_[k], of_answer));
   }
-  return ILAW_OK;
+  if (layout_.weight >= 0) fill_weights(block, lane, k);
+  fill_delassus(block, lane, bodies);
+  if (layout_.wall >= 0) block.put(layout_.wall, lane, vector(given_.wall_velocity, k, dimension_));
+  if (layout_.gap >= 0) block.column(layout_.gap)[lane] = value(theirs_.gap, k);
+  if (layout_.gap_offset >= 0) block.column(layout_.gap_offset)[lane] = value(theirs_.gap_offset, k);
+  if (layout_.area >= 0) block.column(layout_.area)[lane] = value(theirs_.area, k);
+  if (layout_.tangent >= 0) block.put(layout_.tangent, lane, vector(theirs_.tangent, k, dimension_));
+  if (layout_.v_previous >= 0) block.put(layout_.v_previous, lane, previous(block, lane, k, bodies));
+  for (std::uint32_t p = 0; layout_.parameters >= 0 && p < info_.per_node_parameter_count; ++p)
+    block.column(layout_.parameters + static_cast<int>(p))[lane] = value(theirs_.per_node_parameters[p], k);
+  for (int c = 0; c < layout_.state_size; ++c)
+    block.column(layout_.state_in + c)[lane] = value(theirs_.state_in, k, c);
+  return true;
+}
+
+// A body that a side names twice has the sum of the weights, so that H is that of one body.
+void Contacts::fill_weights(Block& block, std::size_t lane, std::int64_t k) const {
+  const auto end_at = [&](std::uint32_t e) -> std::int32_t& { return block.ends[e * block.stride + lane]; };
+  const auto weight_at = [&](std::uint32_t e, int c) -> double& {
+    return block.column(layout_.weight + static_cast<int>(e) * layout_.weight_size + c)[lane];
+  };
+  for (std::uint32_t e = 0; e < ends(); ++e) {
+    const bool first_side = e < body_count_;
+    const ilaw_input& given = first_side ? given_.body_weight : given_.counterpart_weight;
+    const std::uint32_t i = first_side ? e : e - body_count_;
+    const double sign = first_side ? 1.0 : -1.0;
+    for (int c = 0; c < layout_.weight_size; ++c) weight_at(e, c) = 0.0;
+    const auto d = static_cast<int>(layout_.weight_size > 1 ? dimension_ : 1);
+    for (int row = 0; row < d; ++row)
+      for (int column = 0; column < d; ++column) {
+        const double unit = row == column ? 1.0 : 0.0;
+        const std::int64_t at = (std::int64_t{i} * d + row) * d + column;
+        weight_at(e, 3 * row + column) = sign * (given.values ? value(given, k, at) : unit);
+      }
+  }
+  for (std::uint32_t e = 0; e < ends(); ++e)
+    for (std::uint32_t f = e + 1; f < (e < body_count_ ? body_count_ : ends()); ++f) {
+      if (end_at(f) != end_at(e)) continue;
+      for (int c = 0; c < layout_.weight_size; ++c) {
+        weight_at(e, c) += weight_at(f, c);
+        weight_at(f, c) = 0.0;
+      }
+    }
+}
+
+// The sum of B M^-1 B' over the bodies of a contact, by the velocity that a unit impulse makes at each.
+void Contacts::fill_delassus(Block& block, std::size_t lane, const Bodies& bodies) const {
+  if (kind_ == Kind::point || kind_ == Kind::sphere) {
+    const Body& x = bodies.now()[block.ends[lane]];
+    const Body& y = bodies.now()[block.ends[block.stride + lane]];
+    const double h = x.inverse_mass + y.inverse_mass;
+    block.column(layout_.delassus)[lane] = h;
+    if (kind_ == Kind::sphere) {
+      const double a = block.column(layout_.arm)[lane], b = block.column(layout_.counterpart_arm)[lane];
+      block.column(layout_.delassus + 1)[lane] = h + x.inverse_inertia * a * a + y.inverse_inertia * b * b;
+      return;
+    }
+    if (layout_.delassus_size == 1) return;
+    write_form(block, lane, layout_, {h, h, h, 0, 0, 0}, given_.delassus_form, dimension_,
+               block.at(layout_.normal, lane));
+    return;
+  }
+  std::array<Vector, 3> rows{};
+  with_kernel(kind_, block, layout_, body_count_, [&](const auto& kernel) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      Vector unit{};
+      unit[c] = 1.0;
+      kernel.apply(lane, unit, [&](std::int32_t body, const Vector& impulse, const Vector& moment) {
+        if (body == bodies.wall()) return;
+        const Inertia inertia = bodies.inertia_of(body);
+        const Vector v = scaled(inertia.inverse_mass, impulse), w = inertia.inverse_inertia * moment;
+        for (std::size_t row = 0; row < 3; ++row) {
+          Vector axis{};
+          axis[row] = 1.0;
+          kernel.apply(lane, axis, [&](std::int32_t other, const Vector& i, const Vector& m) {
+            if (other == body) rows[row][c] += dot(i, v) + dot(m, w);
+          });
+        }
+      });
+    }
+  });
+  Symmetric h{rows[0][0], rows[1][1], rows[2][2], rows[1][0], rows[2][0], rows[2][1]};
+  const double most = std::max({h[0], h[1], h[2]});
+  for (std::uint32_t c = 0; c < dimension_; ++c) h[c] = h[c] == 0.0 ? driven_delassus * most : h[c];
+  write_form(block, lane, layout_, h, given_.delassus_form, dimension_, block.at(layout_.normal, lane));
+}
+
+Vector Contacts::previous(const Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const {
+  const ilaw_input& wall = given_.wall_previous.values ? given_.wall_previous : given_.wall_velocity;
+  Vector velocity = -1.0 * vector(wall, k, dimension_);
+  const auto add = [&](std::int32_t body, const Vector& arm, double sign) {
+    if (body == bodies.wall()) return;
+    const Motion motion = bodies.previous(body);
+    velocity = velocity + sign * (motion.velocity + cross(motion.spin, arm));
+  };
+  if (kind_ != Kind::weighted) {
+    add(block.ends[lane], bodies.rotate() ? vector(given_.arm, k, 3) : Vector{}, 1.0);
+    add(block.ends[block.stride + lane], bodies.rotate() ? vector(given_.counterpart_arm, k, 3) : Vector{},
+        -1.0);
+    return velocity;
+  }
+  const WeightedKernel kernel(block, layout_, body_count_);
+  for (std::size_t c = 0; c < 3; ++c) {
+    Vector axis{};
+    axis[c] = 1.0;
+    kernel.apply(lane, axis, [&](std::int32_t body, const Vector& impulse, const Vector& moment) {
+      if (body == bodies.wall()) return;
+      const Motion motion = bodies.previous(body);
+      velocity[c] += dot(impulse, motion.velocity) + dot(moment, motion.spin);
+    });
+  }
+  return velocity;
+}
+
+std::int32_t Contacts::evaluate(const Block& block, const Call& call, ilaw_report& report) const {
+  const auto stride = static_cast<std::int64_t>(block.stride);
+  const auto input = [&](int column) {
+    return column < 0 ? ilaw_input{} : ilaw::input(block.column(column), 1, stride);
+  };
+  std::array<ilaw_input, 16> parameters;
+  std::vector<ilaw_input> many_parameters;
+  ilaw_batch batch{};
+  batch.struct_size = sizeof batch;
+  batch.node_count = static_cast<std::int64_t>(block.count);
+  batch.flags = theirs_.flags;
+  batch.time = theirs_.time;
+  batch.velocity_step = theirs_.velocity_step;
+  batch.position_step = theirs_.position_step;
+  batch.v_free = ilaw::input(call.v_free, 1, max_stride);
+  batch.delassus = ilaw::input(call.delassus, 1, static_cast<std::int64_t>(call.delassus_stride));
+  batch.gap = input(layout_.gap);
+  batch.gap_offset = input(layout_.gap_offset);
+  batch.v_previous = input(layout_.v_previous);
+  batch.area = input(layout_.area);
+  batch.normal = input(layout_.normal);
+  batch.tangent = input(layout_.tangent);
+  if (layout_.parameters >= 0) {
+    ilaw_input* list = parameters.data();
+    if (info_.per_node_parameter_count > parameters.size()) {
+      many_parameters.resize(info_.per_node_parameter_count);
+      list = many_parameters.data();
+    }
+    for (std::uint32_t p = 0; p < info_.per_node_parameter_count; ++p)
+      list[p] = input(layout_.parameters + static_cast<int>(p));
+    batch.per_node_parameters = list;
+  }
+  batch.state_in = input(layout_.state_in);
+  if (layout_.state_out >= 0)
+    batch.state_out = ilaw::output(
+        call.state_out ? call.state_out : const_cast<double*>(block.column(layout_.state_out)), 1, stride);
+  batch.impulse = ilaw::output(call.impulse, 1, max_stride);
+  if (call.energy) batch.energy = ilaw::output(call.energy, 1, max_stride);
+  std::vector<ilaw_output> amounts;
+  for (std::uint32_t a = 0; call.amounts && a < info_.amount_count; ++a)
+    amounts.push_back(ilaw::output(call.amounts + a * max_stride, 1, 0));
+  if (!amounts.empty()) batch.amounts = amounts.data();
+  if (call.status && (given_.law->outputs & ILAW_OUTPUT_STATUS)) batch.status = call.status;
+  batch.status_stride = 1;
+  report = {};
+  report.struct_size = sizeof report;
+  return given_.law->evaluate(given_.instance, &batch, &report);
+}
+
+double Contacts::wall_work(std::int64_t k, const Vector& impulse) const {
+  const ilaw_input& before = given_.wall_previous.values ? given_.wall_previous : given_.wall_velocity;
+  return dot(impulse, vector(before, k, dimension_) + vector(given_.wall_velocity, k, dimension_));
+}
+
+void Contacts::write(const Block& block, std::size_t lane) const {
+  const std::int64_t k = block.contact[lane];
+  store(theirs_.impulse, k, dimension_, block.at(layout_.impulse, lane));
+  if (theirs_.status) theirs_.status[k * theirs_.status_stride] = block.status[lane];
+  if (layout_.state_size == 0) return;
+  double* state = theirs_.state_out.values + k * theirs_.state_out.node_stride;
+  for (int c = 0; c < layout_.state_size; ++c)
+    state[c * theirs_.state_out.component_stride] = block.column(layout_.state_out + c)[lane];
+}
+
+void Contacts::write_balance(const Block& block, std::size_t lane, const double* energy,
+                             const double* amounts, double* energy_sums) const {
+  const std::int64_t k = block.contact[lane];
+  for (std::size_t part = 0; theirs_.energy.values && part < ILAW_ENERGY_COUNT; ++part) {
+    const double of_part = energy[part * max_stride + lane];
+    theirs_.energy.values[k * theirs_.energy.node_stride +
+                          static_cast<std::int64_t>(part) * theirs_.energy.component_stride] = of_part;
+    energy_sums[part] += of_part;
+  }
+  for (std::uint32_t a = 0; a < amount_count(); ++a)
+    if (const ilaw_output& out = theirs_.amounts[a]; out.values)
+      out.values[k * out.node_stride] = amounts[a * max_stride + lane];
 }
 
 }  // namespace ilaw::coupled

@@ -1,8 +1,11 @@
-// contacts.hpp - the contacts of one law: their impulses, and the law's answers to velocities of bodies.
+// contacts.hpp - the contacts of one law as the host gave them: checks, columns of a block, calls of the law,
+// results.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "blocks.hpp"
 #include "bodies.hpp"
+#include "kernels.hpp"
 
 #include <ilaw/coupled.h>
 
@@ -13,63 +16,67 @@ namespace ilaw::coupled {
 
 class Contacts {
  public:
-  // Reads what the host gave, impulses to begin with among it. Returns why not, or null.
+  // Reads the host's structs. Returns why they are refused, or null.
   const char* open(const ilaw_contacts& given, const Bodies& bodies);
 
-  // Adds count of active contacts, impulses and moments to the sums per body.
-  void add_to(std::vector<double>& sums, const Bodies& bodies) const;
-  // H of each contact with its bodies' masses divided among their active contacts. A contact that is not
-  // active counts itself besides.
-  void split(const std::vector<double>& sums, const Bodies& bodies);
+  std::int64_t count() const { return theirs_.node_count; }
+  const Layout& layout() const { return layout_; }
+  Kind kind() const { return kind_; }
+  std::uint32_t body_count() const { return body_count_; }
+  const char* law_id() const { return given_.law->id; }
+  bool has_wall() const { return layout_.wall >= 0; }
+  bool asks_energy() const { return theirs_.energy.values != nullptr; }
+  bool asks_balance() const { return asks_energy() || theirs_.amounts; }
 
-  // The law's answer to the velocities that the trial impulses make. Returns the law's code.
-  std::int32_t evaluate(const std::vector<Motion>& of_trial);
-  // How far the velocities of the contacts are from those that the law answered to, and how large
-  // velocities are.
-  struct Residual {
-    double difference, size;
+  // Index of end e of contact k: the first body_count() are of the first side. Bodies::wall() where none is.
+  std::int32_t end(std::int64_t k, std::uint32_t e, const Bodies& bodies) const;
+  std::uint32_t ends() const { return static_cast<std::uint32_t>(layout_.ends); }
+  // Whether the contact is open, cannot close at its present velocity, and starts without impulse, and the
+  // law permits to leave it out.
+  bool is_out_of_reach(std::int64_t k, const Bodies& bodies) const;
+
+  // Writes all columns of contact k into a lane; false where an arm is not along the normal.
+  bool fill(Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const;
+  bool is_in_reach(const Block& block, std::size_t lane, const Vector& velocity) const;
+
+  struct Call {
+    const double* v_free;    // columns at distances of max_stride
+    const double* delassus;  // columns at distances of delassus_stride
+    std::size_t delassus_stride;
+    double* impulse;              // columns at distances of max_stride
+    double* state_out = nullptr;  // as the block's columns; null: the block's own
+    std::uint8_t* status = nullptr;
+    double* energy = nullptr;   // ILAW_ENERGY_COUNT columns at distances of max_stride
+    double* amounts = nullptr;  // as many columns as the law has amounts
   };
-  Residual residual(const std::vector<Motion>& of_answer) const;
-  // The next trial: the answer, taken further by so much of its change.
-  void extrapolate(double by);
+  std::int32_t evaluate(const Block& block, const Call& call, ilaw_report& report) const;
 
-  // Writes impulse, state and status of the last answer, and energies with these velocities.
-  std::int32_t write(const std::vector<Motion>& of_answer, const Bodies& bodies, ilaw_coupled_report& report);
-
-  const ilaw_report& report() const { return report_; }
+  // r.(wall_previous + wall_velocity): twice the work that impulse r does at the wall.
+  double wall_work(std::int64_t k, const Vector& impulse) const;
+  // Outputs of contact k that a lane of a block has.
+  void write(const Block& block, std::size_t lane) const;
+  void write_balance(const Block& block, std::size_t lane, const double* energy, const double* amounts,
+                     double* energy_sums) const;
+  std::uint32_t amount_count() const { return theirs_.amounts ? info_.amount_count : 0; }
 
  private:
-  struct Contact {
-    std::int64_t body, counterpart;  // below 0: a wall
-    Vector normal, arm, counterpart_arm, wall, wall_previous;
-    Symmetric delassus, counterpart_delassus;  // of masses that are not split
-    bool active;                               // had an impulse in this step
-  };
-
   const char* complaint() const;
-  const char* complaint_of_bodies(const Bodies& bodies) const;
   const char* complaint_of_law(const Bodies& bodies);
-  bool has_arm_aside(std::int64_t k) const;
-  void read(const Bodies& bodies);
-  void make_room();
-  void describe_batch();
-  Vector relative(const Contact& contact, const std::vector<Motion>& motions) const;
-  Vector split_response(std::size_t k, const Vector& impulse) const;
-  Vector previous(const Contact& contact, const Bodies& bodies) const;
-  std::int32_t call(const ilaw_batch& batch, const std::vector<Motion>& motions,
-                    const std::vector<Vector>& impulses);
-  bool is_bad(std::size_t k) const { return status_[k] == ILAW_BAD_INPUT; }
+  const char* complaint_of_bodies(const Bodies& bodies) const;
+  const char* complaint_of_contact(std::int64_t k, const Bodies& bodies) const;
+  void lay_out(const Bodies& bodies);
+  void fill_weights(Block& block, std::size_t lane, std::int64_t k) const;
+  void fill_delassus(Block& block, std::size_t lane, const Bodies& bodies) const;
+  Vector previous(const Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const;
+  Vector relative(std::int64_t k, const Bodies& bodies) const;
+  Vector start_impulse(std::int64_t k) const;
 
   ilaw_contacts given_{};
-  ilaw_batch theirs_{}, ours_{};
-  ilaw_report report_{};
+  ilaw_batch theirs_{};
   ilaw_instance_info info_{};
-  std::uint32_t dimension_ = 0;
-  std::size_t form_size_ = 0;
-  std::vector<Contact> contacts_;
-  std::vector<Vector> answer_, before_, trial_, v_free_, v_previous_;
-  std::vector<double> delassus_, state_, spare_state_, energy_;
-  std::vector<std::uint8_t> status_;
+  std::uint32_t dimension_ = 3, body_count_ = 1, counterpart_count_ = 1;
+  Kind kind_ = Kind::point;
+  Layout layout_;
 };
 
 }  // namespace ilaw::coupled

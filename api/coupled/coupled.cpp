@@ -4,28 +4,37 @@
 #include "solver.hpp"
 
 #include <new>
+#include <stdexcept>
 
 struct ilaw_coupled {
   ilaw::coupled::Solver solver;
 };
 
-ilaw_coupled* ilaw_coupled_create(void) { return new (std::nothrow) ilaw_coupled; }
+ilaw_coupled* ILAW_CALL ilaw_coupled_create(void) { return new (std::nothrow) ilaw_coupled; }
 
-void ilaw_coupled_destroy(ilaw_coupled* solver) { delete solver; }
+void ILAW_CALL ilaw_coupled_destroy(ilaw_coupled* solver) { delete solver; }
 
-int32_t ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies* bodies,
-                           const ilaw_contacts* const* groups, int64_t group_count,
-                           const ilaw_coupled_options* options, ilaw_coupled_report* report) {
+ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies* bodies,
+                                         const ilaw_contacts* const* groups, int64_t group_count,
+                                         const ilaw_coupled_options* options, ilaw_coupled_report* report) {
   using namespace ilaw;
   if (!solver || (report && !sized::cleared(report)) || (options && !sized::is_complete(options)))
     return ILAW_INVALID_ARGUMENT;
   const ilaw_coupled_options asked = options ? sized::read(options) : ilaw_coupled_options{};
   if (asked.exchange && !sized::is_complete(asked.exchange)) return ILAW_INVALID_ARGUMENT;
   ilaw_coupled_report said{};
+  if (asked.exchange && !(asked.exchange->sum_bodies && asked.exchange->largest && asked.exchange->sum)) {
+    said.bad_group = said.bad_contact = -1;
+    said.reason = "a function of the exchange is null";
+    if (report) sized::write(report, said);
+    return ILAW_INVALID_ARGUMENT;
+  }
   int32_t code = ILAW_OUT_OF_MEMORY;
   try {
     code = solver->solver.solve(bodies, groups, group_count, asked, said);
   } catch (const std::bad_alloc&) {
+    said.reason = "out of memory";
+  } catch (const std::length_error&) {
     said.reason = "out of memory";
   }
   if (report) sized::write(report, said);

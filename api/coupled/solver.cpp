@@ -6,176 +6,305 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
+#include <limits>
 
 namespace ilaw::coupled {
 namespace {
 
 constexpr std::uint32_t default_sweeps = 1000;
 constexpr double default_tolerance = 1e-10;
-// Sweeps without a better residual after which a law is taken for one that jumps, and is not accelerated.
-constexpr std::uint32_t patience = 200;
-
-const char* complaint(const ilaw_bodies* given) {
-  if (!sized::is_complete(given)) return "bodies are missing, or their struct_size is wrong";
-  const ilaw_bodies bodies = sized::read(given);
-  if (bodies.dimension < 1 || bodies.dimension > 3) return "dimension is not 1, 2 or 3";
-  if (bodies.owned_count < 0 || bodies.count < bodies.owned_count) return "counts of bodies are wrong";
-  if (bodies.count == 0) return nullptr;
-  if (!bodies.inverse_mass.values || !bodies.v_free.values) return "inverse_mass or v_free is missing";
-  if (!bodies.inverse_inertia.values) return nullptr;
-  if (bodies.dimension != 3) return "bodies rotate in dimension 3 alone";
-  if (!bodies.spin_free.values) return "spin_free is missing";
-  return bodies.v_previous.values && !bodies.spin_previous.values ? "spin_previous is missing" : nullptr;
-}
+// Laws whose impulses make velocities this many times the first are incompatible.
+constexpr double runaway_growth = 1e9;
 
 }  // namespace
 
 std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const* groups,
                            std::int64_t group_count, const ilaw_coupled_options& options,
                            ilaw_coupled_report& report) {
-  exchange_ = options.exchange;
-  report.bad_group = report.bad_contact = -1;
+  ranks_.use(options.exchange);
+  report.bad_group = report.bad_contact = report.worst_group = report.worst_contact = -1;
   report.stable_velocity_step = std::numeric_limits<double>::infinity();
   report.reason = open(bodies, groups, group_count, report);
   const bool refused_here = report.reason != nullptr;
-  if (any_rank(refused_here)) {
+  if (ranks_.any_rank(refused_here)) {
     if (!refused_here) report.reason = "another rank's call was refused";
     return ILAW_INVALID_ARGUMENT;
   }
+  split_shared_bodies();
+  report.reason = make_blocks(report);
+  if (ranks_.any_rank(report.reason != nullptr)) {
+    if (!report.reason) report.reason = "another rank's call was refused";
+    return ILAW_INVALID_ARGUMENT;
+  }
   report.bad_group = -1;
-  if (const std::int32_t code = iterate(options, report); code < 0) return code;
-  return write(report);
+  sweep_.reset();
+  set_velocities();
+  iterations_.begin(options.most_sweeps > 0 ? options.most_sweeps : default_sweeps,
+                    options.tolerance > 0.0 ? options.tolerance : default_tolerance);
+  const std::int32_t code = iterate(options.tolerance > 0.0 ? options.tolerance : default_tolerance);
+  if (code < 0) {
+    report.bad_group = sweep_.failed_group();
+    report.reason = sweep_.last_report().reason;
+    return code;
+  }
+  report.sweeps = iterations_.count();
+  report.residual = iterations_.residual();
+  report.method = iterations_.method();
+  report.stalled = iterations_.has_stalled();
+  find_bad_contacts(report);
+  find_stable_step(report);
+  find_worst_contact(report);
+  const std::int32_t refused = evaluate_balance(report);
+  if (ranks_.any_rank(refused < 0)) return refused < 0 ? refused : std::int32_t{ILAW_INVALID_ARGUMENT};
+  write(report);
+  return report.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
 
 const char* Solver::open(const ilaw_bodies* bodies, const ilaw_contacts* const* groups,
                          std::int64_t group_count, ilaw_coupled_report& report) {
-  if (const char* reason = complaint(bodies)) return reason;
+  if (const char* reason = Bodies::complaint(bodies)) return reason;
   if (group_count < 0 || (group_count > 0 && !groups)) return "groups are missing";
-  bodies_.read(sized::read(bodies));
-  group_count_ = static_cast<std::size_t>(group_count);
-  if (groups_.size() < group_count_) groups_.resize(group_count_);
-  for (std::size_t g = 0; g < group_count_; ++g) {
+  problem_.bodies.read(sized::read(bodies));
+  problem_.group_count = static_cast<std::size_t>(group_count);
+  if (problem_.groups.size() < problem_.group_count) problem_.groups.resize(problem_.group_count);
+  problem_.layouts.resize(problem_.group_count);
+  for (std::size_t g = 0; g < problem_.group_count; ++g) {
     report.bad_group = static_cast<std::int64_t>(g);
     if (!groups[g]) return "a group is null";
-    if (const char* reason = groups_[g].open(*groups[g], bodies_)) return reason;
+    if (const char* reason = problem_.groups[g].open(*groups[g], problem_.bodies)) return reason;
+    problem_.layouts[g] = problem_.groups[g].layout();
   }
   return nullptr;
 }
 
-std::int32_t Solver::iterate(const ilaw_coupled_options& options, ilaw_coupled_report& report) {
-  const std::uint32_t most = options.most_sweeps > 0 ? options.most_sweeps : default_sweeps;
-  const double tolerance = options.tolerance > 0.0 ? options.tolerance : default_tolerance;
-  sum_answers();
-  sums_before_ = sums_;
-  of_trial_ = of_before_ = of_answer_;
-  nesterov_ = 1.0;
+// Each copy of a body that has contacts counts, whichever rank it is on.
+void Solver::split_shared_bodies() {
+  if (!ranks_.any()) return;
+  counts_.assign(static_cast<std::size_t>(problem_.bodies.count()), 0.0);
+  for (std::size_t g = 0; g < problem_.group_count; ++g)
+    for (std::int64_t k = 0; k < problem_.groups[g].count(); ++k)
+      for (std::uint32_t e = 0; e < problem_.groups[g].ends(); ++e)
+        if (const std::int32_t b = problem_.groups[g].end(k, e, problem_.bodies); b != problem_.bodies.wall())
+          counts_[static_cast<std::size_t>(b)] = 1.0;
+  ranks_.sum_bodies(counts_);
+  problem_.bodies.split(counts_);
+}
+
+const char* Solver::make_blocks(ilaw_coupled_report& report) {
+  blocks_.clear();
+  order_.clear();
+  for (std::size_t g = 0; g < problem_.group_count; ++g)
+    colours_.assign(problem_.groups[g], static_cast<std::int32_t>(g), problem_.bodies, blocks_, order_);
+  blocks_.allocate(problem_.layouts);
+  auto next = order_.begin();
+  for (Block& block : blocks_.list())
+    for (std::size_t lane = 0; lane < block.count; ++lane)
+      if (!problem_.groups[static_cast<std::size_t>(block.group)].fill(block, lane, *next++,
+                                                                       problem_.bodies)) {
+        report.bad_group = block.group;
+        return "delassus_form is transverse, and an arm is not along the normal";
+      }
+  return nullptr;
+}
+
+// Iterations add changes to the velocities, and with them rounding. At their end velocities are made anew
+// from the impulses; where that moves them by more than the tolerance, iterations go on.
+std::int32_t Solver::iterate(double tolerance) {
+  constexpr int most_times = 10;
+  constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+  for (int times = 0;; ++times) {
+    if (const std::int32_t code = iterations_.run(blocks_); code < 0) return code;
+    const double limit = std::max(tolerance, rounding) * iterations_.size();
+    const bool moved = ranks_.any_rank(set_velocities() > limit);
+    if (!moved || times == most_times || iterations_.is_over()) return ILAW_OK;
+  }
+}
+
+double Solver::set_velocities() {
+  here_.assign(static_cast<std::size_t>(problem_.bodies.count()) + 1, {});
+  sweep_.add_impulses(blocks_, here_);
+  here_.pop_back();
+  if (ranks_.any()) {
+    everywhere_ = here_;
+    ranks_.sum_bodies(everywhere_, problem_.bodies.rotate());
+  }
+  return problem_.bodies.set(ranks_.any() ? everywhere_ : here_);
+}
+
+void Solver::find_bad_contacts(ilaw_coupled_report& report) const {
+  for (const Block& block : blocks_.list()) {
+    report.bad_count += block.bad_count;
+    if (block.bad_count == 0) continue;
+    const auto consider = [&](std::size_t lane) {
+      const std::int64_t k = block.contact[lane];
+      const bool is_first = report.bad_group < 0 || block.group < report.bad_group ||
+                            (block.group == report.bad_group && k < report.bad_contact);
+      if (!is_first) return;
+      report.bad_group = block.group;
+      report.bad_contact = k;
+      report.reason = block.reason;
+    };
+    if (block.first_bad >= 0 && block.first_bad < static_cast<std::int64_t>(block.count))
+      consider(static_cast<std::size_t>(block.first_bad));
+    for (std::size_t lane = 0; lane < block.count; ++lane)
+      if (block.status[lane] >= ILAW_BAD_INPUT) consider(lane);
+  }
+}
+
+// Springs between bodies: with masses divided among the contacts that push, no set of them is stiffer than
+// its contacts are one by one. Only where a law has a limit at all.
+void Solver::find_stable_step(ilaw_coupled_report& report) {
+  const bool has_limit = std::isfinite(sweep_.stable_step());
+  if (!ranks_.any_rank(has_limit)) return;
+  counts_.assign(static_cast<std::size_t>(problem_.bodies.count()) + 1, 0.0);
+  const auto for_each_end = [&](const auto& visit) {
+    for (Block& block : blocks_.list()) {
+      const Layout& layout = problem_.layouts[static_cast<std::size_t>(block.group)];
+      for (std::size_t q = 0; q < block.count; ++q)
+        for (int e = 0; e < layout.ends; ++e)
+          visit(block, layout, q,
+                static_cast<std::size_t>(block.ends[static_cast<std::size_t>(e) * block.stride + q]));
+    }
+  };
+  for_each_end([&](const Block& block, const Layout& layout, std::size_t q, std::size_t body) {
+    if (!is_zero(block.at(layout.impulse, q))) counts_[body] += 1.0;
+  });
+  counts_.pop_back();
+  ranks_.sum_bodies(counts_);
+  counts_.push_back(1.0);
+  std::array<double, 3 * max_stride> v_free{}, answer{};
+  std::array<double, 6 * max_stride> delassus{};
+  std::array<std::uint8_t, max_stride> status{};
+  std::vector<double> state;
+  sweep_.reset();
   double least = std::numeric_limits<double>::infinity();
-  std::uint32_t least_at = 0;
-  bool changed = true;
-  for (report.sweeps = 0; report.sweeps < most;) {
-    if (changed)
-      for (Contacts& group : std::span(groups_).first(group_count_)) group.split(sums_, bodies_);
-    const std::int32_t code = evaluate(report);
-    ++report.sweeps;
-    sums_before_.swap(sums_);
-    of_before_.swap(of_answer_);
-    sum_answers();
-
-    std::array<double, 4> found{0.0, 0.0, code < 0 ? 1.0 : 0.0, counts_changed() ? 1.0 : 0.0};
-    for (const Contacts& group : std::span(groups_).first(group_count_)) {
-      const Contacts::Residual residual = group.residual(of_answer_);
-      found[0] = std::fmax(found[0], residual.difference);
-      found[1] = std::fmax(found[1], residual.size);
+  for (Block& block : blocks_.list()) {
+    const auto g = static_cast<std::size_t>(block.group);
+    const Layout& layout = problem_.layouts[g];
+    sweep_.gather(block, v_free.data());
+    for (std::size_t q = 0; q < block.count; ++q) {
+      double share = 1.0;
+      for (int e = 0; e < layout.ends; ++e)
+        share = std::max(
+            share,
+            counts_[static_cast<std::size_t>(block.ends[static_cast<std::size_t>(e) * block.stride + q])]);
+      for (int c = 0; c < layout.delassus_size; ++c)
+        delassus[static_cast<std::size_t>(c) * max_stride + q] = share * block.column(layout.delassus + c)[q];
     }
-    if (exchange_) exchange_->largest(exchange_->context, found.data(), found.size());
-    if (found[2] > 0.0) return code < 0 ? code : ILAW_INVALID_ARGUMENT;
-    report.residual = found[1] > 0.0 ? found[0] / found[1] : 0.0;
-    if (report.residual <= tolerance) break;
+    state.resize(block.stride * static_cast<std::size_t>(layout.state_size) + 1);
+    ilaw_report found{};
+    const std::int32_t code = problem_.groups[g].evaluate(
+        block, {v_free.data(), delassus.data(), max_stride, answer.data(), state.data(), status.data()},
+        found);
+    if (code >= 0 && found.stable_velocity_step > 0.0) least = std::min(least, found.stable_velocity_step);
+  }
+  report.stable_velocity_step = least;
+}
 
-    changed = found[3] > 0.0;
-    if (report.residual < least) least = report.residual, least_at = report.sweeps;
-    extrapolate(momentum(report.sweeps - least_at > patience));
+void Solver::find_worst_contact(ilaw_coupled_report& report) {
+  if (!(report.residual > 0.0)) return;
+  std::array<double, 3 * max_stride> response{};
+  double most = -1.0;
+  const Block* worst = nullptr;
+  std::size_t worst_lane = 0;
+  for (const Block& block : blocks_.list()) {
+    if (block.asleep) continue;
+    const Layout& layout = problem_.layouts[static_cast<std::size_t>(block.group)];
+    sweep_.respond(block, block.column(layout.change), block.stride, response.data());
+    for (std::size_t q = 0; q < block.count; ++q) {
+      const double change = largest({response[q], response[max_stride + q], response[2 * max_stride + q]});
+      if (!(change > most)) continue;
+      most = change;
+      worst = &block;
+      worst_lane = q;
+    }
+  }
+  if (!worst) return;
+  report.worst_group = worst->group;
+  report.worst_contact = worst->contact[worst_lane];
+  if (iterations_.size() > runaway_growth * iterations_.first_size())
+    find_incompatible_laws(*worst, worst_lane, report);
+}
+
+// The other law: of the contact at the same bodies with the largest impulse.
+void Solver::find_incompatible_laws(const Block& worst, std::size_t lane, ilaw_coupled_report& report) const {
+  const auto ends_of = [&](const Block& block) {
+    return problem_.layouts[static_cast<std::size_t>(block.group)].ends;
+  };
+  const auto end = [](const Block& block, int e, std::size_t q) {
+    return block.ends[static_cast<std::size_t>(e) * block.stride + q];
+  };
+  double most = 0.0;
+  for (const Block& block : blocks_.list())
+    for (std::size_t q = 0; q < block.count; ++q) {
+      bool shares = false;
+      for (int e = 0; e < ends_of(block); ++e)
+        for (int f = 0; f < ends_of(worst); ++f)
+          shares = shares ||
+                   (end(block, e, q) == end(worst, f, lane) && problem_.bodies.is_movable(end(block, e, q)));
+      if (!shares || (&block == &worst && q == lane)) continue;
+      const double size =
+          largest(block.at(problem_.layouts[static_cast<std::size_t>(block.group)].impulse, q));
+      if (!(size > most)) continue;
+      most = size;
+      report.other_law = problem_.groups[static_cast<std::size_t>(block.group)].law_id();
+    }
+  if (report.other_law) report.law = problem_.groups[static_cast<std::size_t>(worst.group)].law_id();
+}
+
+// Energies and amounts at the final velocities, kept until no call can be refused any more.
+std::int32_t Solver::evaluate_balance(ilaw_coupled_report& report) {
+  balance_.clear();
+  std::array<double, 3 * max_stride> v_free{}, response{}, answer{};
+  std::array<std::uint8_t, max_stride> status{};
+  std::vector<double> state;
+  for (Block& block : blocks_.list()) {
+    const auto g = static_cast<std::size_t>(block.group);
+    const Contacts& group = problem_.groups[g];
+    if (!group.asks_balance()) continue;
+    const Layout& layout = problem_.layouts[g];
+    sweep_.gather(block, v_free.data());
+    sweep_.respond(block, block.column(layout.impulse), block.stride, response.data());
+    for (std::size_t i = 0; i < v_free.size(); ++i) v_free[i] -= response[i];
+    const std::size_t columns = ILAW_ENERGY_COUNT + group.amount_count(), at = balance_.size();
+    balance_.resize(at + columns * max_stride);
+    state.resize(block.stride * static_cast<std::size_t>(layout.state_size) + 1);
+    double* energy = balance_.data() + at;
+    const Contacts::Call call{v_free.data(),
+                              block.column(layout.delassus),
+                              block.stride,
+                              answer.data(),
+                              state.data(),
+                              status.data(),
+                              group.asks_energy() ? energy : nullptr,
+                              group.amount_count() > 0 ? energy + ILAW_ENERGY_COUNT * max_stride : nullptr};
+    ilaw_report found{};
+    const std::int32_t code = group.evaluate(block, call, found);
+    if (code >= 0) continue;
+    report.bad_group = block.group;
+    report.reason = found.reason;
+    return code;
   }
   return ILAW_OK;
 }
 
-std::int32_t Solver::evaluate(ilaw_coupled_report& report) {
-  report.bad_count = 0;
-  report.bad_group = report.bad_contact = -1;
-  report.reason = nullptr;
-  for (std::size_t g = 0; g < group_count_; ++g) {
-    const std::int32_t code = groups_[g].evaluate(of_trial_);
-    const ilaw_report& said = groups_[g].report();
-    // NaN, or below 0, would pass for no limit at all.
-    if (!(said.stable_velocity_step >= 0.0)) {
-      report.bad_group = static_cast<std::int64_t>(g);
-      report.reason = "a law reported a stable step that is below 0 or not a number";
-      return ILAW_BAD_LIBRARY;
+void Solver::write(ilaw_coupled_report& report) {
+  const double* balance = balance_.data();
+  double twice_wall_work = 0.0;
+  for (const Block& block : blocks_.list()) {
+    const auto g = static_cast<std::size_t>(block.group);
+    const Contacts& group = problem_.groups[g];
+    for (std::size_t lane = 0; lane < block.count; ++lane) {
+      group.write(block, lane);
+      if (group.has_wall())
+        twice_wall_work += group.wall_work(block.contact[lane], block.at(problem_.layouts[g].impulse, lane));
+      if (group.asks_balance())
+        group.write_balance(block, lane, balance, balance + ILAW_ENERGY_COUNT * max_stride, report.energy);
     }
-    if (said.stable_velocity_step > 0.0)
-      report.stable_velocity_step = std::fmin(report.stable_velocity_step, said.stable_velocity_step);
-    if (code == ILAW_OK) continue;
-    if (report.bad_group < 0) {
-      report.bad_group = static_cast<std::int64_t>(g);
-      report.bad_contact = code < 0 ? -1 : said.first_bad_node;
-      report.reason = said.reason;
-    }
-    if (code < 0) return code;
-    report.bad_count += said.bad_count;
+    if (group.asks_balance()) balance += (ILAW_ENERGY_COUNT + group.amount_count()) * max_stride;
   }
-  return ILAW_OK;
-}
-
-void Solver::sum_answers() {
-  sums_.assign(static_cast<std::size_t>(bodies_.count() * bodies_.components()), 0.0);
-  for (const Contacts& group : std::span(groups_).first(group_count_)) group.add_to(sums_, bodies_);
-  if (exchange_) exchange_->sum_bodies(exchange_->context, sums_.data(), bodies_.components());
-  of_answer_ = bodies_.free();
-  for (std::size_t i = 0; i < of_answer_.size(); ++i)
-    of_answer_[i] = of_answer_[i] + bodies_.change(sums_, static_cast<std::int64_t>(i));
-}
-
-bool Solver::counts_changed() const {
-  const auto stride = static_cast<std::size_t>(bodies_.components());
-  for (std::size_t i = 0; i < sums_.size(); i += stride)
-    if (sums_[i] != sums_before_[i]) return true;
-  return false;
-}
-
-// How much of the last change the next trial adds. None where the answer turned back against it: the
-// gradient scheme of O'Donoghue and Candes (2015), equation 13, with the kinetic energy as its product.
-double Solver::momentum(bool learn_anew) {
-  difference_.resize(of_answer_.size());
-  for (std::size_t i = 0; i < difference_.size(); ++i) difference_[i] = of_trial_[i] - of_answer_[i];
-  double uphill = bodies_.product(sums_, difference_) - bodies_.product(sums_before_, difference_);
-  if (exchange_) exchange_->sum(exchange_->context, &uphill, 1);
-  if (uphill > 0.0 || learn_anew) {
-    nesterov_ = 1.0;
-    return 0.0;
-  }
-  const double before = nesterov_;
-  nesterov_ = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * before * before));
-  return (before - 1.0) / nesterov_;
-}
-
-void Solver::extrapolate(double by) {
-  for (Contacts& group : std::span(groups_).first(group_count_)) group.extrapolate(by);
-  for (std::size_t i = 0; i < of_trial_.size(); ++i)
-    of_trial_[i] = by == 0.0 ? of_answer_[i] : of_answer_[i] + by * (of_answer_[i] - of_before_[i]);
-}
-
-std::int32_t Solver::write(ilaw_coupled_report& report) {
-  for (Contacts& group : std::span(groups_).first(group_count_))
-    if (const std::int32_t code = group.write(of_answer_, bodies_, report); code < 0) return code;
-  bodies_.write(of_answer_, sums_);
-  return report.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
-}
-
-bool Solver::any_rank(bool here) const {
-  double any = here ? 1.0 : 0.0;
-  if (exchange_) exchange_->largest(exchange_->context, &any, 1);
-  return any > 0.0;
+  report.work = problem_.bodies.work(here_) - 0.5 * twice_wall_work;
+  problem_.bodies.write(ranks_.any() ? everywhere_ : here_);
 }
 
 }  // namespace ilaw::coupled

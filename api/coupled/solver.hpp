@@ -1,16 +1,13 @@
-// solver.hpp - the sweeps: mass-split Jacobi over all contacts, Nesterov's acceleration with restart.
-//
-// One sweep takes trial impulses y to the answers T(y), each law with H of split masses. For contact
-// without friction that is a projected gradient step on the energy of the impulses, in a metric that bounds
-// it from above, so it converges whatever the number of contacts (Tonge et al. 2012); the next trial is
-// T(y_k) + b_k (T(y_k) - T(y_k-1)) with Nesterov's b_k (Mazhar et al. 2015).
+// solver.hpp - a step of coupled contacts: checks, iterations until the tolerance, results.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "contacts.hpp"
+#include "colours.hpp"
+#include "iterations.hpp"
+#include "ranks.hpp"
+#include "sweep.hpp"
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace ilaw::coupled {
@@ -22,25 +19,29 @@ class Solver {
                      const ilaw_coupled_options& options, ilaw_coupled_report& report);
 
  private:
-  // Why the call is refused, or null.
   const char* open(const ilaw_bodies* bodies, const ilaw_contacts* const* groups, std::int64_t group_count,
                    ilaw_coupled_report& report);
-  std::int32_t iterate(const ilaw_coupled_options& options, ilaw_coupled_report& report);
-  std::int32_t evaluate(ilaw_coupled_report& report);
-  void sum_answers();
-  bool counts_changed() const;
-  double momentum(bool learn_anew);
-  void extrapolate(double by);
-  std::int32_t write(ilaw_coupled_report& report);
-  bool any_rank(bool here) const;
+  const char* make_blocks(ilaw_coupled_report& report);
+  void split_shared_bodies();
+  std::int32_t iterate(double tolerance);
+  // From the impulses. Returns the largest change of a velocity.
+  double set_velocities();
+  void find_bad_contacts(ilaw_coupled_report& report) const;
+  void find_stable_step(ilaw_coupled_report& report);
+  void find_worst_contact(ilaw_coupled_report& report);
+  void find_incompatible_laws(const Block& worst, std::size_t lane, ilaw_coupled_report& report) const;
+  std::int32_t evaluate_balance(ilaw_coupled_report& report);
+  void write(ilaw_coupled_report& report);
 
-  const ilaw_exchange* exchange_ = nullptr;
-  Bodies bodies_;
-  std::vector<Contacts> groups_;
-  std::size_t group_count_ = 0;
-  std::vector<double> sums_, sums_before_;
-  std::vector<Motion> of_answer_, of_before_, of_trial_, difference_;
-  double nesterov_ = 1.0;
+  Problem problem_;
+  Ranks ranks_;
+  Colours colours_;
+  Blocks blocks_;
+  Sweep sweep_{problem_};
+  Iterations iterations_{problem_, ranks_, sweep_};
+  std::vector<std::int32_t> order_;
+  std::vector<Motion> here_, everywhere_;  // sums of impulses per body, of this rank and of all
+  std::vector<double> balance_, counts_;
 };
 
 }  // namespace ilaw::coupled

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact_set.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
@@ -29,32 +31,25 @@ ContactSet::ContactSet(const std::string& law, const std::vector<std::array<std:
   const library opened(law);
   if (opened.plugin().law_count != 1) throw error(ILAW_NOT_FOUND, law + ": not a library of one law");
   const ilaw_law& description = *opened.plugin().laws[0];
-  std::vector<ilaw_argument> arguments(parameters.size());
-  std::vector<const ilaw_argument*> pointers;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const auto& [name, text] = parameters[i];
-    arguments[i].struct_size = sizeof arguments[i];
-    arguments[i].name = name.c_str();
+  ilaw::parameters given;
+  for (const auto& [name, text] : parameters) {
     const ilaw_parameter* known = find(description, name);
-    if (known && known->kind == ILAW_PARAMETER_CHOICE) {
-      arguments[i].kind = ILAW_VALUE_TEXT;
-      arguments[i].text = text.c_str();
-    } else if (known) {
-      arguments[i].number = number(name, text);
-    }
-    pointers.push_back(&arguments[i]);
+    if (known && known->kind == ILAW_PARAMETER_CHOICE)
+      given.text(name, text);
+    else
+      given.number(name, known ? number(name, text) : 0.0);  // create refuses an unknown name
   }
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
   setup.dimension = 3;
   // Spheres that touch: arms along the normal. A library that does not know this form is given the matrix.
   setup.delassus_form = (description.delassus_forms & ILAW_DELASSUS_TRANSVERSE) != 0
-                            ? std::uint32_t{ILAW_DELASSUS_TRANSVERSE}
-                            : std::uint32_t{ILAW_DELASSUS_FULL};
+                            ? ilaw_delassus_forms{ILAW_DELASSUS_TRANSVERSE}
+                            : ilaw_delassus_forms{ILAW_DELASSUS_FULL};
   delassus_form_ = setup.delassus_form;
   setup.frame = ILAW_FRAME_GLOBAL;
-  setup.arguments = pointers.data();
-  setup.argument_count = static_cast<std::uint32_t>(pointers.size());
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
+  given.give(setup);
   interface_ = std::make_unique<ilaw::interface>(opened, "", setup);
   state_size_ = interface_->info().state_size;
 }
@@ -69,7 +64,7 @@ void ContactSet::clear(double velocity_step) {
     values->clear();
 }
 
-void ContactSet::add(const Contact& contact, const Row& row, double partner) {
+void ContactSet::add(const Contact& contact, const Row& row) {
   const std::size_t k = contacts_.size();
   contacts_.push_back(contact);
   body_.push_back(contact.body);
@@ -85,7 +80,7 @@ void ContactSet::add(const Contact& contact, const Row& row, double partner) {
   impulse_.resize(3 * (k + 1));
   state_.resize(state_size_ * (k + 1));
   for (std::size_t at = 0; at < row.size(); at += entry_size())
-    if (row[at] == partner) {
+    if (row[at] == contact.partner) {
       const auto entry = row.begin() + static_cast<std::ptrdiff_t>(at);
       for (std::ptrdiff_t c = 0; c < 3; ++c)
         impulse_[3 * k + static_cast<std::size_t>(c)] = velocity_step_ * entry[1 + c];
@@ -106,13 +101,13 @@ const ilaw_contacts* ContactSet::describe(double time, double position_step) {
   batch_.time = time;
   batch_.velocity_step = velocity_step_;
   batch_.position_step = position_step;
-  batch_.gap = {gap_.data(), 1, 0};
-  batch_.area = {area_.data(), 1, 0};
-  batch_.normal = {normal_.data(), 3, 1};
-  batch_.state_in = {state_.data(), state_size, 1};
-  batch_.state_out = {state_.data(), state_size, 1};
-  batch_.impulse = {impulse_.data(), 3, 1};
-  batch_.energy = {energy_.data(), ILAW_ENERGY_COUNT, 1};
+  batch_.gap = ilaw::input(gap_.data(), 1, 0);
+  batch_.area = ilaw::input(area_.data(), 1, 0);
+  batch_.normal = ilaw::input(normal_.data(), 3, 1);
+  batch_.state_in = ilaw::input(state_.data(), state_size, 1);
+  batch_.state_out = ilaw::output(state_.data(), state_size, 1);
+  batch_.impulse = ilaw::output(impulse_.data(), 3, 1);
+  batch_.energy = ilaw::output(energy_.data(), ILAW_ENERGY_COUNT, 1);
   batch_.status = status_.data();
   batch_.status_stride = 1;
   initialise_new(batch_);
@@ -124,9 +119,9 @@ const ilaw_contacts* ContactSet::describe(double time, double position_step) {
   described_.batch = &batch_;
   described_.body = body_.data();
   described_.counterpart = counterpart_.data();
-  described_.arm = {arm_.data(), 3, 1};
-  described_.counterpart_arm = {counterpart_arm_.data(), 3, 1};
-  described_.wall_velocity = {wall_.data(), 3, 1};
+  described_.arm = ilaw::input(arm_.data(), 3, 1);
+  described_.counterpart_arm = ilaw::input(counterpart_arm_.data(), 3, 1);
+  described_.wall_velocity = ilaw::input(wall_.data(), 3, 1);
   return &described_;
 }
 

@@ -30,17 +30,16 @@ class ContactSet {
 
   // Begins a step, in which a force makes an impulse over velocity_step.
   void clear(double velocity_step);
-  // n points from the counterpart to the body. partner is the name of the other in the row of the first;
-  // `counted` on one rank alone.
+  // n points from the counterpart to the body. partner: name of the other atom, or of the wall, in the row of
+  // the atom that keeps the contact.
   struct Contact {
     int body, counterpart;  // counterpart below 0: a wall
-    double partner_of_body, partner_of_counterpart;
+    double partner;
     Vector normal, wall_velocity;
     double gap, arm, counterpart_arm, area;
-    bool counted;
   };
-  // What the contact left in the row of one of its atoms, the first if it is here.
-  void add(const Contact& contact, const Row& row, double partner);
+  // row: of the atom that keeps the contact.
+  void add(const Contact& contact, const Row& row);
 
   // Arrays in, once all contacts are there. The pointers live until the next clear.
   const ilaw_contacts* describe(double time, double position_step);

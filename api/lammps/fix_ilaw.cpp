@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fix_ilaw.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <atom.h>
 #include <comm.h>
 #include <error.h>
@@ -21,6 +23,7 @@ namespace {
 constexpr int motion_size = 12;  // v_free, spin_free, v_previous, spin_previous
 constexpr double inertia = 0.4;  // of a sphere, over m R^2
 constexpr std::uint32_t default_sweeps = 20;
+constexpr double max_sweeps = 1e6;
 constexpr double default_tolerance = 1e-8;
 enum { CLOSED, SWEEPS, RESIDUAL, OVERLAP, APPROACH, FRICTION, IMPACT, RUPTURE, STORED, OUTPUTS };
 
@@ -62,14 +65,18 @@ void FixIlaw::read_words() {
   for (std::size_t at = 0; at < words_.size();) {
     if (words_[at] == "sweeps") {
       most_sweeps_ = number(words_, at + 1);
-      if (!(most_sweeps_ >= 1.0)) refuse("sweeps must be 1 or more");
+      if (!(most_sweeps_ >= 1.0 && most_sweeps_ <= max_sweeps && most_sweeps_ == std::floor(most_sweeps_)))
+        refuse("sweeps is " + words_[at + 1] + "; expected a whole number from 1 to 1000000");
       at += 2;
     } else if (words_[at] == "tol") {
       tolerance_ = number(words_, at + 1);
-      if (!(tolerance_ > 0.0)) refuse("tol must be larger than 0");
+      if (!(tolerance_ > 0.0 && std::isfinite(tolerance_)))
+        refuse("tol is " + words_[at + 1] + "; expected a finite number above 0");
       at += 2;
     } else if (words_[at] == "area") {
       area_ = number(words_, at + 1);
+      if (!(area_ >= 0.0 && std::isfinite(area_)))
+        refuse("area is " + words_[at + 1] + "; expected a finite number, 0 or above");
       at += 2;
     } else if (const int own = read_own(words_, at); own > 0) {
       at += static_cast<std::size_t>(own);
@@ -185,6 +192,7 @@ void FixIlaw::gather_bodies(double velocity_step) {
   motion_.resize(motion_size * count);
   inverse_mass_.resize(count);
   inverse_inertia_.resize(count);
+  ids_.assign(atom->tag, atom->tag + count);
   for (std::size_t i = 0; i < count; ++i) {
     inverse_mass_[i] = 1.0 / atom->rmass[i];
     inverse_inertia_[i] = 1.0 / (inertia * atom->rmass[i] * atom->radius[i] * atom->radius[i]);
@@ -210,23 +218,26 @@ void FixIlaw::solve() {
   bodies.dimension = 3;
   bodies.count = count;
   bodies.owned_count = atom->nlocal;
-  bodies.inverse_mass = {inverse_mass_.data(), 1, 0};
-  bodies.inverse_inertia = {inverse_inertia_.data(), 1, 0};
-  bodies.v_free = {motion_.data(), motion_size, 1};
-  bodies.spin_free = {motion_.data() + 3, motion_size, 1};
-  bodies.v_previous = {motion_.data() + 6, motion_size, 1};
-  bodies.spin_previous = {motion_.data() + 9, motion_size, 1};
-  bodies.velocity = {after_.data(), 6, 1};
-  bodies.spin = {after_.data() + 3, 6, 1};
-  bodies.impulse = {total_.data(), 6, 1};
-  bodies.angular_impulse = {total_.data() + 3, 6, 1};
+  if (!ids_.empty()) bodies.id = ids_.data();
+  bodies.inverse_mass = ilaw::input(inverse_mass_.data(), 1, 0);
+  bodies.inverse_inertia = ilaw::input(inverse_inertia_.data(), 1, 0);
+  bodies.v_free = ilaw::input(motion_.data(), motion_size, 1);
+  bodies.spin_free = ilaw::input(motion_.data() + 3, motion_size, 1);
+  bodies.v_previous = ilaw::input(motion_.data() + 6, motion_size, 1);
+  bodies.spin_previous = ilaw::input(motion_.data() + 9, motion_size, 1);
+  bodies.velocity = ilaw::output(after_.data(), 6, 1);
+  bodies.spin = ilaw::output(after_.data() + 3, 6, 1);
+  bodies.impulse = ilaw::output(total_.data(), 6, 1);
+  bodies.angular_impulse = ilaw::output(total_.data() + 3, 6, 1);
 
   ilaw_exchange exchange{};
   exchange.struct_size = sizeof exchange;
   exchange.context = this;
-  // Both ranks have a contact across their border, so an owner's sums are complete.
+  // What ghosts got is added at their owners, and the sums go back to the ghosts.
   exchange.sum_bodies = [](void* context, double* values, std::int64_t components) {
-    static_cast<FixIlaw*>(context)->forward(values, static_cast<int>(components));
+    auto* self = static_cast<FixIlaw*>(context);
+    self->reverse(values, static_cast<int>(components));
+    self->forward(values, static_cast<int>(components));
   };
   exchange.largest = [](void* context, double* values, std::int64_t n) {
     MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(n), MPI_DOUBLE, MPI_MAX,
@@ -237,7 +248,8 @@ void FixIlaw::solve() {
                   static_cast<FixIlaw*>(context)->world);
   };
   ilaw_coupled_options options = this->options();
-  options.exchange = &exchange;
+  // Without it the solver knows that it has the whole system.
+  if (comm->nprocs > 1 || atom->nghost > 0) options.exchange = &exchange;
   std::vector<const ilaw_contacts*> groups;
   for (FixIlaw* fix : all_) groups.push_back(fix->contacts_->describe(clock_, update->dt));
   std::string why;
@@ -267,7 +279,8 @@ void FixIlaw::add_forces(double velocity_step) {
     }
 }
 
-// What contacts leave goes to both atoms, as far as they are here: whichever moves to another rank has it.
+// A contact belongs to the rank of its counterpart, a contact with a wall to that of its body: what it leaves
+// goes with this atom when it moves to another rank.
 void FixIlaw::store() {
   const int here = atom->nlocal;
   for (FixIlaw* fix : all_) {
@@ -275,11 +288,10 @@ void FixIlaw::store() {
     const auto& contacts = *fix->contacts_;
     for (std::size_t k = 0; k < contacts.size(); ++k) {
       const auto& contact = contacts[k];
-      if (contact.body < here)
-        contacts.keep(k, contact.partner_of_body, fix->rows_[static_cast<std::size_t>(contact.body)]);
-      if (contact.counterpart >= 0 && contact.counterpart < here)
-        contacts.keep(k, contact.partner_of_counterpart,
-                      fix->rows_[static_cast<std::size_t>(contact.counterpart)]);
+      if (contact.counterpart < 0)
+        contacts.keep(k, contact.partner, fix->rows_[static_cast<std::size_t>(contact.body)]);
+      else
+        contacts.keep(k, contact.partner, fix->rows_[static_cast<std::size_t>(contact.counterpart)]);
     }
     fix->maxexchange = fix->most_packed();
   }
@@ -293,7 +305,6 @@ void FixIlaw::tally() {
   for (std::size_t k = 0; k < contacts_->size(); ++k) {
     const auto& contact = (*contacts_)[k];
     overlap_ = std::max(overlap_, -contact.gap);
-    if (!contact.counted) continue;
     for (std::size_t part = 0; part < 3; ++part) dissipated_[part] += contacts_->energy(k)[part];
     stored_ += contacts_->energy(k)[ILAW_ENERGY_STORED];
     if (contacts_->status(k) == ILAW_FREE) continue;
@@ -334,6 +345,23 @@ int FixIlaw::pack_forward_comm(int n, int* list, double* buffer, int, int*) {
 
 void FixIlaw::unpack_forward_comm(int n, int first, double* buffer) {
   std::copy_n(buffer, n * width_, sent_ + static_cast<std::ptrdiff_t>(first) * width_);
+}
+
+void FixIlaw::reverse(double* values, int width) {
+  sent_ = values;
+  width_ = width;
+  comm->reverse_comm_fix(this, width);
+}
+
+int FixIlaw::pack_reverse_comm(int n, int first, double* buffer) {
+  std::copy_n(sent_ + static_cast<std::ptrdiff_t>(first) * width_, n * width_, buffer);
+  return n * width_;
+}
+
+void FixIlaw::unpack_reverse_comm(int n, int* list, double* buffer) {
+  for (int i = 0; i < n; ++i)
+    for (int c = 0; c < width_; ++c)
+      sent_[static_cast<std::ptrdiff_t>(list[i]) * width_ + c] += buffer[i * width_ + c];
 }
 
 }  // namespace LAMMPS_NS

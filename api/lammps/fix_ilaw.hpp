@@ -41,6 +41,8 @@ class FixIlaw : public Fix {
   void restart(char*) override;
   int pack_forward_comm(int, int*, double*, int, int*) override;
   void unpack_forward_comm(int, int, double*) override;
+  int pack_reverse_comm(int, int, double*) override;
+  void unpack_reverse_comm(int, int*, double*) override;
   double memory_usage() override;
 
  protected:
@@ -73,6 +75,7 @@ class FixIlaw : public Fix {
   void store();
   void tally();
   void forward(double* values, int width);
+  void reverse(double* values, int width);
   int pack(int index, double* buffer) const;
   int unpack(int index, const double* buffer);
   int most_packed() const;
@@ -89,6 +92,7 @@ class FixIlaw : public Fix {
 
   ilaw::coupled solver_;
   std::vector<double> motion_, inverse_mass_, inverse_inertia_, after_, total_;
+  std::vector<std::int64_t> ids_;
   double* sent_ = nullptr;
   int width_ = 0;
   ilaw_coupled_report report_{};

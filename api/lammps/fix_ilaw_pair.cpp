@@ -51,11 +51,11 @@ void FixIlawPair::find() {
 void FixIlawPair::add(int body, int counterpart, double distance) {
   if (atom->tag[body] == atom->tag[counterpart])
     refuse("a grain touches its own image: the box is too small");
+  if (counterpart >= atom->nlocal) return;  // found by the rank of the counterpart, too
   ilaw::lammps::ContactSet::Contact contact{};
   contact.body = body;
   contact.counterpart = counterpart;
-  contact.partner_of_body = atom->tag[counterpart];
-  contact.partner_of_counterpart = atom->tag[body];
+  contact.partner = atom->tag[body];
   for (int c = 0; c < 3; ++c)
     contact.normal[static_cast<std::size_t>(c)] = (atom->x[body][c] - atom->x[counterpart][c]) / distance;
   contact.arm = atom->radius[body];
@@ -63,11 +63,7 @@ void FixIlawPair::add(int body, int counterpart, double distance) {
   contact.gap = distance - contact.arm - contact.counterpart_arm;
   const double smaller = std::min(contact.arm, contact.counterpart_arm);
   contact.area = area_ > 0.0 ? area_ : M_PI * smaller * smaller;
-  contact.counted = counterpart < atom->nlocal;
-  if (body < atom->nlocal)
-    contacts_->add(contact, row(body), contact.partner_of_body);
-  else
-    contacts_->add(contact, row(counterpart), contact.partner_of_counterpart);
+  contacts_->add(contact, row(counterpart));
 }
 
 }  // namespace LAMMPS_NS

@@ -79,11 +79,10 @@ void FixIlawWall::find() {
       if (contact.gap >= contact.arm) continue;  // a wall's contacts begin one radius away
       contact.body = i;
       contact.counterpart = -1;
-      contact.partner_of_body = -1.0 - static_cast<double>(w);
+      contact.partner = -1.0 - static_cast<double>(w);
       contact.wall_velocity = walls_[w].velocity;
       contact.area = area_ > 0.0 ? area_ : M_PI * contact.arm * contact.arm;
-      contact.counted = true;
-      contacts_->add(contact, row(i), contact.partner_of_body);
+      contacts_->add(contact, row(i));
     }
   }
 }

@@ -28,6 +28,17 @@ void checker::mask(std::uint32_t value, std::uint32_t known, const char* what) c
            std::to_string(known));
 }
 
+void checker::choice_of(std::uint32_t value, std::uint32_t known, const char* what) const {
+  mask(value, known, what);
+  if ((value & known) == 0)
+    refuse(std::string(what) + " is " + std::to_string(value) + ", expected at least one of the bits of " +
+           std::to_string(known));
+}
+
+void checker::zero(std::uint32_t value, const char* what) const {
+  if (value != 0 && !newer_) refuse(std::string(what) + " is " + std::to_string(value) + ", expected 0");
+}
+
 void checker::kind(std::uint32_t value, std::uint32_t largest, const char* what) const {
   if (value > largest && !newer_)
     refuse(std::string(what) + " is " + std::to_string(value) + ", expected at most " +

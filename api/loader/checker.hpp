@@ -89,6 +89,10 @@ class checker {
   }
 
   void mask(std::uint32_t value, std::uint32_t known, const char* what) const;
+  // A mask of which a host chooses one entry.
+  void choice_of(std::uint32_t value, std::uint32_t known, const char* what) const;
+  // A member that a newer minor version may use.
+  void zero(std::uint32_t value, const char* what) const;
   void kind(std::uint32_t value, std::uint32_t largest, const char* what) const;
 
  private:

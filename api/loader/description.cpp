@@ -10,9 +10,13 @@ namespace {
 
 constexpr std::uint32_t known_dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3;
 constexpr std::uint32_t known_forms = 2 * ILAW_DELASSUS_TRANSVERSE - 1;
+constexpr std::uint32_t known_frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL;
+constexpr std::uint32_t known_numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT;
 constexpr std::uint32_t known_inputs = 2 * ILAW_INPUT_TANGENT - 1;
 constexpr std::uint32_t known_outputs = 2 * ILAW_OUTPUT_ENERGY - 1;
-constexpr std::uint32_t known_capabilities = 2 * ILAW_CAN_REST - 1;
+constexpr std::uint32_t known_capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY;
+constexpr std::uint32_t known_permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE;
+constexpr std::uint32_t known_parameter_flags = 2 * ILAW_PARAMETER_IS_FIELD - 1;
 
 // Doubles of state per node: 8 MB, more than any law needs.
 constexpr std::uint64_t most_state = std::uint64_t{1} << 20;
@@ -23,9 +27,12 @@ void check_unique(const checker& check, std::set<std::string>& seen, const char*
   if (!seen.insert(name).second) check.refuse(quoted(kind, name) + " is declared twice");
 }
 
+bool has(const ilaw_parameter& p, ilaw_parameter_flags flag) { return (p.flags & flag) != 0; }
+
 bool in_range(const ilaw_parameter& p, double value) {
-  if (value == INFINITY) return p.infinity_allowed != 0;
-  return value <= p.maximum && (p.minimum_excluded ? value > p.minimum : value >= p.minimum);
+  if (value == INFINITY) return has(p, ILAW_PARAMETER_ALLOWS_INFINITY);
+  const bool above = has(p, ILAW_PARAMETER_EXCLUDES_MINIMUM) ? value > p.minimum : value >= p.minimum;
+  return above && value <= p.maximum;
 }
 
 void check_choices(const checker& check, ilaw_parameter& p) {
@@ -34,12 +41,24 @@ void check_choices(const checker& check, ilaw_parameter& p) {
   if (p.kind != ILAW_PARAMETER_CHOICE) return;
   if (p.choice_count == 0) check.refuse("choice_count is 0, expected at least 1");
   const double chosen = p.default_value;
-  if (!p.required && !(chosen >= 0.0 && chosen < p.choice_count && chosen == std::floor(chosen)))
+  if (!has(p, ILAW_PARAMETER_IS_REQUIRED) &&
+      !(chosen >= 0.0 && chosen < p.choice_count && chosen == std::floor(chosen)))
     check.refuse("default " + std::to_string(chosen) + " is no index of its choices");
+}
+
+void check_axes(const checker& check, ilaw_parameter& p) {
+  p.axes = check.array(p.axes, p.axis_count, "axes");
+  std::set<std::string> seen;
+  for (std::uint32_t i = 0; i < p.axis_count; ++i) {
+    check.name(p.axes[i], "an axis");
+    check_unique(check, seen, "axis", p.axes[i]);
+  }
 }
 
 void check_parameter(const checker& check, ilaw_parameter& p) {
   check.kind(p.kind, ILAW_PARAMETER_CHOICE, "kind");
+  check.mask(p.flags, known_parameter_flags, "flags");
+  check.zero(p.reserved, "reserved");
   check.text(p.symbol, "symbol");
   check.text(p.unit, "unit");
   check.prose(p.doc, "doc");
@@ -47,16 +66,23 @@ void check_parameter(const checker& check, ilaw_parameter& p) {
   if (!(p.minimum <= p.maximum))
     check.refuse("minimum " + std::to_string(p.minimum) + " is not below maximum " +
                  std::to_string(p.maximum));
-  if (!p.required && !in_range(p, p.default_value))
+  if (!has(p, ILAW_PARAMETER_IS_REQUIRED) && !in_range(p, p.default_value))
     check.refuse("default " + std::to_string(p.default_value) + " lies outside its own range");
-  check.mask(p.may_be, ILAW_MAY_BE_TABLE | ILAW_MAY_BE_PER_NODE, "may_be");
+  check_axes(check, p);
 }
 
 void check_state_variable(const checker& check, ilaw_state_variable& v) {
   check.kind(v.kind, ILAW_STATE_TANGENTIAL, "kind");
   check.mask(v.flags, ILAW_VARIABLE_INTERNAL, "flags");
+  check.zero(v.reserved, "reserved");
   check.text(v.unit, "unit");
   check.prose(v.doc, "doc");
+}
+
+void check_amount(const checker& check, ilaw_amount& a) {
+  check.zero(a.reserved, "reserved");
+  check.text(a.unit, "unit");
+  check.prose(a.doc, "doc");
 }
 
 // Copies of the elements, each with a name that no other has.
@@ -91,19 +117,22 @@ void check_functions(const checker& check, const ilaw_law& law) {
 void check_law(const checker& check, ilaw_law& law) {
   check.text(law.title, "title");
   check.prose(law.doc, "doc");
-  check.mask(law.dimensions, known_dimensions, "dimensions");
-  check.mask(law.delassus_forms, known_forms, "delassus_forms");
-  if ((law.dimensions & known_dimensions) == 0) check.refuse("dimensions has none of 1, 2 and 3");
-  if (law.delassus_forms == 0) check.refuse("delassus_forms is 0, expected at least one form");
+  check.choice_of(law.dimensions, known_dimensions, "dimensions");
+  check.choice_of(law.delassus_forms, known_forms, "delassus_forms");
+  check.choice_of(law.frames, known_frames, "frames");
+  check.choice_of(law.numbers, known_numbers, "numbers");
   check.mask(law.inputs, known_inputs, "inputs");
   check.mask(law.outputs, known_outputs, "outputs");
   check.mask(law.capabilities, known_capabilities, "capabilities");
+  check.mask(law.permissions, known_permissions, "permissions");
+  check.zero(law.reserved, "reserved");
   law.references = check.array(law.references, law.reference_count, "references");
   check.texts(law.references, law.reference_count, "a reference");
   law.parameters = checked_elements(check, law.parameters, law.parameter_count, "parameters", "parameter",
                                     check_parameter);
   law.state_variables = checked_elements(check, law.state_variables, law.state_variable_count,
                                          "state_variables", "state variable", check_state_variable);
+  law.amounts = checked_elements(check, law.amounts, law.amount_count, "amounts", "amount", check_amount);
   check_functions(check, law);
 }
 
@@ -166,6 +195,23 @@ void check_per_node(const checker& check, const ilaw_setup& setup, ilaw_instance
                  std::to_string(given.size()) + ", the parameters given per node");
 }
 
+// An instance gives amounts of its law.
+void check_amounts(const checker& check, const ilaw_law& law, const ilaw_instance_info& info) {
+  std::set<std::string> known;
+  for (std::uint32_t i = 0; i < law.amount_count; ++i) known.insert(law.amounts[i]->name);
+  for (std::uint32_t i = 0; i < info.amount_count; ++i)
+    if (const char* name = info.amounts[i]->name; !known.contains(name))
+      check.refuse(quoted("amount", name) + " is none of the law's");
+}
+
+// The law's permissions hold for all parameters.
+void check_permissions(const checker& check, const ilaw_law& law, const ilaw_instance_info& info) {
+  check.mask(info.permissions, known_permissions, "permissions");
+  if (law.permissions & known_permissions & ~info.permissions)
+    check.refuse("permissions is " + std::to_string(info.permissions) + ", expected at least the law's, " +
+                 std::to_string(law.permissions));
+}
+
 }  // namespace
 
 const ilaw_plugin* checked_plugin(const std::string& file, const ilaw_plugin* given, storage& kept) {
@@ -179,6 +225,7 @@ const ilaw_plugin* checked_plugin(const std::string& file, const ilaw_plugin* gi
   check.text(plugin.version, "version");
   check.text(plugin.vendor, "vendor");
   check.text(plugin.licence, "licence");
+  check.zero(plugin.reserved, "reserved");
   if (plugin.law_count == 0) check.refuse("law_count is 0, expected at least 1");
   const ilaw_law** laws = check.array(plugin.laws, plugin.law_count, "laws");
   plugin.laws = laws;
@@ -199,15 +246,19 @@ void check_instance_info(const instance_origin& origin, const ilaw_setup& setup,
   const checker check = checker(origin.file, origin.minor > ILAW_ABI_MINOR, kept)
                             .inside(quoted("law", origin.law.id) + ": instance");
   // These ask for arrays: what the loader does not know, no host can give.
-  if (const std::uint32_t asked = info.inputs | info.energy_inputs; (asked & ~known_inputs) != 0)
+  if (const std::uint32_t asked = info.inputs | info.balance_inputs; (asked & ~known_inputs) != 0)
     throw refusal(ILAW_UNSUPPORTED, origin.file + ": law '" + origin.law.id + "': reads inputs " +
                                         std::to_string(asked) + ", expected only the bits of " +
                                         std::to_string(known_inputs));
   check.mask(info.capabilities, known_capabilities, "capabilities");
+  check_permissions(check, origin.law, info);
+  check.zero(info.reserved, "reserved");
   info.state_variables = checked_elements(check, info.state_variables, info.state_variable_count,
                                           "state_variables", "state variable", check_state_variable);
   check_state(check, info, setup.dimension);
   check_per_node(check, setup, info);
+  info.amounts = checked_elements(check, info.amounts, info.amount_count, "amounts", "amount", check_amount);
+  check_amounts(check, origin.law, info);
 }
 
 }  // namespace ilaw::loading

@@ -1,8 +1,11 @@
 // The C interface of ilaw/loader.h.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ilaw/loader.h>
+#include <ilaw/floating_control.hpp>
 
 #include "description.hpp"
+#include "description_file.hpp"
+#include "description_text.hpp"
 #include "dynamic.hpp"
 #include "elf_file.hpp"
 #include "file.hpp"
@@ -87,6 +90,28 @@ std::string other_version(void* handle) {
   return std::string("not a law library: the symbol ") + ILAW_ENTRY_NAME + " is missing";
 }
 
+// Restores the floating-point control that code of a library changed, and refuses that library.
+class control_guard {
+ public:
+  void check(const std::string& path, const char* when) const {
+    if (ilaw::floating_control::now() == before_) return;
+    before_.restore();
+    throw refusal(ILAW_BAD_LIBRARY,
+                  path + ": " + when +
+                      " changed how the processor rounds, traps or flushes to zero; expected no change "
+                      "(linking with -ffast-math makes one)");
+  }
+  ~control_guard() {
+    if (ilaw::floating_control::now() != before_) before_.restore();
+  }
+  control_guard() = default;
+  control_guard(const control_guard&) = delete;
+  control_guard& operator=(const control_guard&) = delete;
+
+ private:
+  const ilaw::floating_control before_ = ilaw::floating_control::now();
+};
+
 const ilaw_plugin* described(const std::string& path, void* handle, ilaw::loading::storage& kept) {
   void* symbol = dlsym(handle, ILAW_ENTRY_NAME);
   if (!symbol) throw refusal(ILAW_BAD_LIBRARY, path + ": " + other_version(handle));
@@ -102,11 +127,15 @@ struct closer {
 ilaw_library* open_checked(std::list<ilaw_library>& open, const std::string& path,
                            const ilaw::loading::file_status& status) {
   ilaw::loading::check_shared_object(path);
+  const auto written = ilaw::loading::read_description(path);  // refused before any code of the library runs
+  const control_guard control;
   std::unique_ptr<void, closer> handle(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL));
   if (!handle) throw refusal(ILAW_BAD_LIBRARY, path + ": cannot be loaded: " + dlerror());
   std::list<ilaw_library> made;
   made.push_back(ilaw_library{path, status.device, status.inode, handle.get()});
   made.back().plugin = described(path, handle.get(), made.back().kept);
+  control.check(path, "loading it");
+  if (written) ilaw::loading::check_same(written->parsed, *made.back().plugin, path);
   open.splice(open.end(), made);
   static_cast<void>(handle.release());  // the list closes it from here on
   return &open.back();
@@ -165,7 +194,7 @@ std::int32_t known_code(std::int32_t code) {
 ilaw_instance* created(const ilaw_library& library, const ilaw_law& law, const ilaw_setup& setup) {
   char text[1024] = "";
   ilaw_instance* instance = nullptr;
-  const std::int32_t code = law.create(&setup, &instance, text, sizeof text);
+  const std::int32_t code = law.create(law.id, &setup, &instance, text, sizeof text);
   text[sizeof text - 1] = '\0';
   if (code == ILAW_OK && instance) return instance;
   const std::string said = line_of(text);
@@ -184,10 +213,13 @@ std::unique_ptr<ilaw_interface> create_interface(ilaw_library& library, const il
     }
   };
   std::unique_ptr<ilaw_interface, unmade> made(new ilaw_interface{&library, &law});
+  const control_guard control;
   made->instance = created(library, law, setup);
+  control.check(library.path, "create");
   made->info.struct_size = sizeof made->info;
   if (law.info(made->instance, &made->info) != ILAW_OK)
     throw refusal(ILAW_BAD_LIBRARY, library.path + ": law '" + law.id + "': info refuses its own instance");
+  control.check(library.path, "info");
   made->info.struct_size = sizeof made->info;
   ilaw::loading::check_instance_info({library.path, law, library.plugin->abi_minor}, setup, made->info,
                                      made->kept);
@@ -205,6 +237,15 @@ std::int32_t with_readable_reason(std::int32_t code, ilaw_report* report) {
 // A report whose struct_size cannot be true is given to no library.
 bool usable(ilaw_report* report) { return !report || ilaw::sized::cleared(report); }
 
+// The text of a description with the library's path, cut at size; returns its length with the zero.
+std::size_t write_description(const std::string& text, const std::string& path, char* buffer,
+                              std::size_t size) {
+  const std::string with_path =
+      text.substr(0, text.rfind('}')) + ", \"file\": " + ilaw::loading::quoted_text(path) + "}";
+  say(buffer, size, with_path.c_str());
+  return with_path.size() + 1;
+}
+
 std::int32_t open_with(std::string (*find)(const std::string&), const char* text, ilaw_library** library,
                        char* message, std::size_t message_size) {
   return guarded(message, message_size, [&]() -> std::int32_t {
@@ -218,37 +259,67 @@ std::int32_t open_with(std::string (*find)(const std::string&), const char* text
 
 }  // namespace
 
-int32_t ilaw_library_open(const char* name_or_path, ilaw_library** library, char* message,
-                          size_t message_size) {
+ilaw_result ILAW_CALL ilaw_library_open(const char* name_or_path, ilaw_library** library, char* message,
+                                        size_t message_size) {
   return open_with(ilaw::loading::find_library, name_or_path, library, message, message_size);
 }
 
-int32_t ilaw_library_open_named(const char* name, ilaw_library** library, char* message,
-                                size_t message_size) {
+ilaw_result ILAW_CALL ilaw_library_open_named(const char* name, ilaw_library** library, char* message,
+                                              size_t message_size) {
   return open_with(ilaw::loading::find_named, name, library, message, message_size);
 }
 
-void ilaw_library_close(ilaw_library* library) {
+ilaw_result ILAW_CALL ilaw_library_read_description(const char* name_or_path, char* buffer, size_t size,
+                                                    size_t* length, char* message, size_t message_size) {
+  return guarded(message, message_size, [&]() -> std::int32_t {
+    say(buffer, size, "");
+    if (length) *length = 0;
+    if (!name_or_path || !*name_or_path || !length)
+      throw refusal(ILAW_INVALID_ARGUMENT,
+                    "the name of the library, or where to put the length, is null or empty");
+    const std::string path = ilaw::loading::find_library(name_or_path);
+    ilaw::loading::check_shared_object(path);
+    const auto found = ilaw::loading::read_description(path);
+    if (!found) return ILAW_OK;
+    ilaw::loading::check_members(found->parsed, ilaw::loading::description_path(path));
+    *length = write_description(found->text, path, buffer, size);
+    return ILAW_OK;
+  });
+}
+
+void ILAW_CALL ilaw_library_close(ilaw_library* library) {
   if (library) release(library);
 }
 
-const ilaw_plugin* ilaw_library_plugin(const ilaw_library* library) {
+const ilaw_plugin* ILAW_CALL ilaw_library_plugin(const ilaw_library* library) {
   return library ? library->plugin : nullptr;
 }
 
-const char* ilaw_library_path(const ilaw_library* library) {
+size_t ILAW_CALL ilaw_library_describe(const ilaw_library* library, char* buffer, size_t size) {
+  std::size_t needed = 0;
+  guarded(buffer, size, [&]() -> std::int32_t {
+    if (library)
+      needed =
+          write_description(ilaw::loading::description_text(*library->plugin), library->path, buffer, size);
+    return ILAW_OK;
+  });
+  if (needed == 0) say(buffer, size, "");
+  return needed;
+}
+
+const char* ILAW_CALL ilaw_library_path(const ilaw_library* library) {
   return library ? library->path.c_str() : nullptr;
 }
 
-const ilaw_law* ilaw_library_law(const ilaw_library* library, const char* id) {
+const ilaw_law* ILAW_CALL ilaw_library_law(const ilaw_library* library, const char* id) {
   if (!library || !id) return nullptr;
   for (std::uint32_t i = 0; i < library->plugin->law_count; ++i)
     if (std::strcmp(library->plugin->laws[i]->id, id) == 0) return library->plugin->laws[i];
   return nullptr;
 }
 
-int32_t ilaw_interface_create(ilaw_library* library, const char* id, const ilaw_setup* setup,
-                              ilaw_interface** interface, char* message, size_t message_size) {
+ilaw_result ILAW_CALL ilaw_interface_create(ilaw_library* library, const char* id, const ilaw_setup* setup,
+                                            ilaw_interface** interface, char* message, size_t message_size) {
   return guarded(message, message_size, [&]() -> std::int32_t {
     if (!library || !setup || !interface)
       throw refusal(ILAW_INVALID_ARGUMENT, "library, setup or interface is null");
@@ -264,7 +335,7 @@ int32_t ilaw_interface_create(ilaw_library* library, const char* id, const ilaw_
   });
 }
 
-void ilaw_interface_destroy(ilaw_interface* interface) {
+void ILAW_CALL ilaw_interface_destroy(ilaw_interface* interface) {
   if (!interface) return;
   ilaw_library* library = interface->library;
   interface->law->destroy(interface->instance);
@@ -272,15 +343,15 @@ void ilaw_interface_destroy(ilaw_interface* interface) {
   release(library);
 }
 
-const ilaw_law* ilaw_interface_law(const ilaw_interface* interface) {
+const ilaw_law* ILAW_CALL ilaw_interface_law(const ilaw_interface* interface) {
   return interface ? interface->law : nullptr;
 }
 
-const ilaw_instance* ilaw_interface_instance(const ilaw_interface* interface) {
+const ilaw_instance* ILAW_CALL ilaw_interface_instance(const ilaw_interface* interface) {
   return interface ? interface->instance : nullptr;
 }
 
-int32_t ilaw_interface_info(const ilaw_interface* interface, ilaw_instance_info* info) {
+ilaw_result ILAW_CALL ilaw_interface_info(const ilaw_interface* interface, ilaw_instance_info* info) {
   if (!interface || !info || !ilaw::sized::cleared(info)) return ILAW_INVALID_ARGUMENT;
   const std::uint32_t room = info->struct_size;
   // Members that only the host and the library know come from the library itself.
@@ -292,19 +363,19 @@ int32_t ilaw_interface_info(const ilaw_interface* interface, ilaw_instance_info*
   return ILAW_OK;
 }
 
-int32_t ilaw_interface_initialise(const ilaw_interface* interface, const ilaw_batch* batch,
-                                  ilaw_report* report) {
+ilaw_result ILAW_CALL ilaw_interface_initialise(const ilaw_interface* interface, const ilaw_batch* batch,
+                                                ilaw_report* report) {
   if (!interface || !usable(report)) return ILAW_INVALID_ARGUMENT;
   return with_readable_reason(interface->law->initialise(interface->instance, batch, report), report);
 }
 
-int32_t ilaw_interface_evaluate(const ilaw_interface* interface, const ilaw_batch* batch,
-                                ilaw_report* report) {
+ilaw_result ILAW_CALL ilaw_interface_evaluate(const ilaw_interface* interface, const ilaw_batch* batch,
+                                              ilaw_report* report) {
   if (!interface || !usable(report)) return ILAW_INVALID_ARGUMENT;
   return with_readable_reason(interface->law->evaluate(interface->instance, batch, report), report);
 }
 
-int32_t ilaw_search(int32_t (*visit)(const char* path, void* context), void* context) {
+int32_t ILAW_CALL ilaw_search(ilaw_visit_function visit, void* context) {
   return guarded(nullptr, 0, [&]() -> std::int32_t {
     if (!visit) return ILAW_INVALID_ARGUMENT;
     for (const std::string& file : ilaw::loading::library_files())
@@ -313,7 +384,7 @@ int32_t ilaw_search(int32_t (*visit)(const char* path, void* context), void* con
   });
 }
 
-size_t ilaw_search_path(char* buffer, size_t size) {
+size_t ILAW_CALL ilaw_search_path(char* buffer, size_t size) {
   std::size_t needed = 0;
   say(buffer, size, "");
   guarded(nullptr, 0, [&]() -> std::int32_t {

@@ -106,12 +106,24 @@ penalty_rows() {
             print row } }' "$2/study_needed.csv"
 }
 
+# Each run: steps, run time over that of the first law's finest run, error of displacement.
+study_runs() {
+  awk -F, '
+    NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
+    !first { first = $1 }
+    $1 == first { finest = $column["seconds"] }
+    { law[NR] = $1; steps[NR] = $column["steps"]; time[NR] = $column["seconds"]; error[NR] = $column["u_L2"] }
+    END { print "law,steps,time,u_L2"
+          for (i = 2; i <= NR; ++i) printf "%s,%d,%.3g,%.3g\n", law[i], steps[i], time[i] / finest, error[i] }' "$1/study.csv"
+}
+
 penalties=$here/tables/study_penalty.csv
 measure_study() {
   local name=$1 scene=$2 out=$work/study_$1
   echo "study: $name"
   "$ilaw" study "$scene" --out "$out" "${@:3}" >"$work/study_$name.txt" 2>&1
   study_table "$out" >"$here/tables/study_$name.csv"
+  study_runs "$out" >"$here/tables/study_runs_$name.csv"
   cp "$out/study.png" "$here/img/study_$name.png"
   if grep --quiet '^explicit' "$out/study.csv"; then penalty_rows "$name" "$out" >>"$penalties"; fi
 }

@@ -1,19 +1,35 @@
 // Cohesive zones: a bond that softens, with contact, friction and bounded damage rate. See cohesive.md.
-#include "bond.hpp"
-#include "coupled.hpp"
-#include "gathered.hpp"
-#include "isotropic.hpp"
-#include "touching.hpp"
+#include "softening.hpp"
 
-#include <ilaw/kit.hpp>
+#include <ilaw/kit/bond.hpp>
+#include <ilaw/kit/plugin.hpp>
 
 namespace {
 
 using namespace cohesive_law;
 
 constexpr const char* shape_choices[] = {"bilinear", "exponential", "camacho_ortiz"};
+constexpr double exponential = 1.0, camacho_ortiz = 2.0;
 
-struct cohesive : bond {
+// kappa of a rigid bond that is to break: it leaves 2^-100 of the free motion.
+constexpr double most_rigid = 0x1p100;
+
+// The scale of damage is at least this part of what shear is soft by, which leaves 43 bits to its traction.
+constexpr double softest_shear = 0x1p-10;
+
+template <class V>
+struct cohesive : adhesive_bond<cohesive, V> {
+  double shape;
+  V strength;
+  V toughness;
+  V strength_2;
+  V toughness_2;
+  V mixing_exponent;
+  V stiffness;
+  V friction;
+  V delay_time;
+  V delay_exponent;
+
   static constexpr law_card card{
       .id = "cohesive",
       .title = "Cohesive zone with contact, friction and delayed damage",
@@ -22,7 +38,9 @@ struct cohesive : bond {
           "origin; contact and friction take over as it breaks. Solved with any H for any initial stiffness, "
           "also infinite, without a limit on the time step.",
       .inputs = reads_gap | reads_v_previous | reads_area,
-      .capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY | ILAW_CAN_ACT_AT_DISTANCE | ILAW_CAN_REST};
+      .capabilities = can_adhere | can_store_energy,
+      .permissions = may_skip_free,
+      .gives_rupture = true};
 
   static constexpr const char* references[] = {
       "G. T. Camacho, M. Ortiz, 1996, Computational modelling of impact damage in brittle materials",
@@ -38,8 +56,7 @@ struct cohesive : bond {
        .name = "shape",
        .doc = "bilinear, exponential: modes mixed by Benzeggagh and Kenane; camacho_ortiz: rigid, then "
               "linear in an effective opening.",
-       .choices = shape_choices,
-       .choice_count = 3},
+       .choices = shape_choices},
       {.member = &cohesive::strength,
        .name = "strength",
        .symbol = "sigma_1",
@@ -78,8 +95,7 @@ struct cohesive : bond {
        .default_value = infinity,
        .minimum_excluded = true,
        .infinity_allowed = true},
-      friction_parameter<cohesive>(&cohesive::friction)
-          .with_doc("Coefficient of friction of what is broken."),
+      friction_parameter(&cohesive::friction).with_doc("Coefficient of friction of what is broken."),
       {.member = &cohesive::delay_time,
        .name = "delay_time",
        .symbol = "tau_c",
@@ -92,43 +108,8 @@ struct cohesive : bond {
        .default_value = 1.0,
        .minimum_excluded = true}};
 
-  struct state {
-    double damage;
-    vector position;  // at the time of the next impulse
-    vector opening;   // half a step before: the bond's
-  };
-  static constexpr state_variable<state> state_variables[] = {{.member = &state::damage,
-                                                               .name = "damage",
-                                                               .doc = "0: intact, 1: broken.",
-                                                               .minimum = 0.0,
-                                                               .maximum = 1.0},
-                                                              {.member = {&state::position, &vector::n},
-                                                               .name = "opening",
-                                                               .unit = "m",
-                                                               .doc = "Normal displacement since the start."},
-                                                              {.member = {&state::position, &vector::t1},
-                                                               .name = "slip_1",
-                                                               .unit = "m",
-                                                               .doc = "First tangential displacement."},
-                                                              {.member = {&state::position, &vector::t2},
-                                                               .name = "slip_2",
-                                                               .unit = "m",
-                                                               .doc = "Second tangential displacement."},
-                                                              {.member = {&state::opening, &vector::n},
-                                                               .name = "mean_opening",
-                                                               .unit = "m",
-                                                               .doc = "Mean of the last two openings.",
-                                                               .internal = true},
-                                                              {.member = {&state::opening, &vector::t1},
-                                                               .name = "mean_slip_1",
-                                                               .unit = "m",
-                                                               .doc = "Mean of the last two of slip_1.",
-                                                               .internal = true},
-                                                              {.member = {&state::opening, &vector::t2},
-                                                               .name = "mean_slip_2",
-                                                               .unit = "m",
-                                                               .doc = "Mean of the last two of slip_2.",
-                                                               .internal = true}};
+  static constexpr double broken = 1.0;
+  static constexpr auto state_variables = bond_variables("damage", "0: intact, 1: broken.");
 
   const char* conflict() const {
     if ((strength == infinity) != (shear_strength() == infinity))
@@ -158,248 +139,300 @@ struct cohesive : bond {
 
   template <class Node>
   void initialise(Node& node) const {
-    node.state.damage = bonds() ? 0.0 : 1.0;
+    node.state.memory = bonds() ? 0.0 : 1.0;
   }
 
-  // Bonds that surely stand still and nodes that are free are done at once; what is left is gathered.
-  struct in_phases;
-  template <class Run>
-  void in_form(Run run) const;
+  // ---- what is the same at all nodes
 
-  template <class Node>
-  void step(Node& node) const;
-  [[gnu::noinline]] void solve_alone(const gathered<double>& given, solved<double>& found) const {
-    auto node = node_of<state>(given);
-    if (!(node.state.damage < 1.0 && node.area > 0.0))
-      touch(node);
-    else if (!bonds())
-      break_at_once(node);
-    else if (!(stiffness == infinity && node.state.damage == 0.0 && stands_still(node)))
-      step_bond(node, given);
-    leave(node, found);
+  struct common : bond_common<V> {
+    V steepest;                    // -T' of all mode mixes
+    V flexibility, softness;       // 1/K, b
+    softening<V> opened;           // mode I
+    mask_of<V> mixes, is_delayed;  // whether modes differ; whether damage takes time
+  };
+  common prepare(const step_sizes& step) const {
+    const V ratio = shape == camacho_ortiz ? shear_strength() / strength : V(1.0);
+    const softening<V> opened = softening_at(mode_1());
+    const V steep = opened.steepest();
+    return {{step, ratio * ratio},
+            select(mixes(), larger(steep, softening_at(mode_2()).steepest()), steep),
+            flexibility(),
+            zero_unless(strength < infinity, softness_scale()),
+            opened,
+            mixes(),
+            mask_of<V>((delay_time > 0.0) & (strength < infinity))};
   }
 
- private:
-  // A rigid bond up to its strength: the same as a tie. Its traction is compared with the weight of the work
-  // that it does.
-  static vector effective(vector r, double weight) {
-    return {positive_part(-r.n), r.t1 / weight, r.t2 / weight};
+  // ---- the bond, for the kit (bond.hpp)
+
+  mask_of<V> bonds() const { return (strength > 0.0) & (toughness > 0.0); }
+  V friction_of(V damage) const { return zero_unless(damage > 0.0, friction * damage); }
+  static V energy(V damage, V size, const common& all) {
+    const secant<V> s = secant_of(damage, all);
+    return select(s.soft > 0.0, 0.5 * s.stiff / s.soft * size * size, 0.0);
   }
-  template <class Node>
-  bool stands_still(Node& node) const {
-    const vector r = stopping_impulse(node), pull = effective(r, weight());
-    if (strength < infinity) {
-      const double capacity = node.velocity_step * node.area, size = length(pull.n, pull.t1, pull.t2);
-      const bool surely = size <= capacity * smaller(strength, shear_strength());
-      if (!surely && !(size <= capacity * softening_along(pull, size).strength)) return false;
+
+  // A rigid bond that holds is a tie. Its traction is compared with the weight of the work that it does.
+  mask_of<V> is_rigid(V damage) const { return (stiffness == infinity) & (damage == 0.0); }
+  mask_of<V> surely_bears(vector<V> r, V capacity) const {
+    const pull p(r, pull_weight());
+    const V most = capacity * smaller(strength, shear_strength());
+    return p.is_clear(most) & (p.square <= most * most);
+  }
+  mask_of<V> bears(vector<V> r, V capacity) const {
+    const pull p(r, pull_weight());
+    const V along = softening_at(select(mixes(), mix_of(p.normal, p.shear, p.square), mode_1())).strength;
+    const V most = capacity * larger(along, smaller(strength, shear_strength()));
+    return (p.is_clear(most) & (p.square <= most * most)) | ((!p.is_clear(most)) & (p.size <= most));
+  }
+
+  // Elastic where that stays below the softening.
+  template <class Step>
+  void as_it_was(const Step& step, V damage, const common& all, bond_result<Step>& found) const {
+    const secant<V> now = secant_of(damage, all);
+    const mask_of<V> is_soft = now.soft > 0.0;
+    const V kappa = zero_unless(is_soft, step.compliance * now.stiffness());
+    step.move(found.motion, kappa, friction_of(damage));
+    const mask_of<V> stays = (strength == infinity) | is_below(damage, now, found.motion, all);
+    found.holds = is_soft & step.has_scale(kappa) & stays;
+  }
+
+  // Else the mean traction on the way from w^- to w^+, with the friction of the damage after it: the unknown
+  // is the damage, d = D(w(d)), which falls with more friction. An infinite coefficient would jump with the
+  // first damage, and is that of the damage before.
+  template <class Step>
+  void change(const Step& step, mask_of<V> where, const common& all, bond_result<Step>& found) const {
+    const mask_of<V> is_unique = step.compliance * step.trace() * all.steepest <= 1.0;
+    if constexpr (!is_scalar) {
+      found.left =
+          where & !mask_of<V>(is_unique & step.has_scale(most_kappa(step, secant_of(found.memory, all))));
+      where = where & !found.left;
+      if (!any(where)) return;
     }
-    node.impulse = r;
-    node.status = status::bonded;
-    return true;
-  }
-  // The traction that any rigid bond holds, whatever its direction.
-  double sure_strength() const {
-    return stiffness == infinity && bonds() ? smaller(strength, shear_strength()) : -1.0;
-  }
-
-  template <class Node>
-  void step_bond(Node& node, const gathered<double>& given) const {
-    if (is_anisotropic(node.delassus))
-      solve_bond<coupled_modes>(node, given);
-    else
-      solve_bond<isotropic_modes>(node, given);
-  }
-
-  template <class Modes, class Node>
-  void solve_bond(Node& node, const gathered<double>& given) const {
-    const auto& s = node.state;
-    const double w = weight();
-    const double step = node.velocity_step;
-    const bool is_new = is_made_now(given);
-    double place[3], ground;
-    place_bond(given, is_new, place, ground);
-    zone<Modes> z{.position = {},
-                  .opening = s.opening,
-                  .v_free = node.v_free,
-                  .v_previous = node.v_previous,
-                  .step = step,
-                  .weight = w,
-                  .friction = s.damage > 0.0 ? friction * s.damage : 0.0,
-                  .compliance_scale = 0.25 * step * step * node.area * node.delassus.normal(),
-                  .modes = Modes(node.delassus, w)};
-    z.place(kept(place), ground);
-    outcome found = answer_of(z, given);
-    if (is_new && found.refused == not_refused) make_before(z, given, found);
-    settle(node, z, found);
-    if (step != node.position_step)
-      node.state.position = uneven_position(node.state.opening, z.position, given);
-  }
-
-  template <class Modes>
-  outcome answer_of(const zone<Modes>& z, const gathered<double>& given) const {
-    return is_delayed() ? delayed(given.damage, given.position_step, z) : at_once(given.damage, z);
-  }
-
-  // Where a bond that is made in this step, at the node's position, would put energy in, it is made before,
-  // at the least part of half a step at which it does not.
-  template <class Modes>
-  void make_before(zone<Modes>& z, const gathered<double>& given, outcome& found) const {
-    const auto taken = [&](double part) {
-      const vector place = (0.5 * part * z.step) * z.v_previous;
-      z.place(place, ground_below(place.n, z.v_previous.n, z.step));
-      found = answer_of(z, given);
-      double opening[3];
-      keep(z.at(found.parts).opening, opening);
-      return taken_from_before(given, opening, z.weight * z.weight);
-    };
-    if (taken(0.0) >= 0.0) return;
-    double part = sign_change(0.0, 1.0, taken);
-    for (double more = 0x1p-52; taken(part) < 0.0 && part < 1.0; more *= 2.0)
-      part = smaller(part + more, 1.0);
-  }
-
-  template <class Modes, class Node>
-  void settle(Node& node, const zone<Modes>& z, const outcome& found) const {
-    auto& s = node.state;
-    const motion m = z.at(found.parts);
-    node.refused = found.refused != not_refused ? found.refused : m.refused;
-    node.impulse = z.impulse(found.parts, m);
-    // The bond's part of the work, which contact and friction have no share in.
-    const double stiff = found.parts.left > 0.0 ? found.parts.stiffness() / z.compliance_scale : 0.0;
-    const double rate = 0.5 * node.area * stiff;
-    const vector sum = m.opening + z.opening, change = m.opening - z.opening;
-    node.normal_gain = rate * normal_product(sum, change);
-    node.tangential_gain = rate * z.weight * z.weight * tangential_product(sum, change);
-    const double stored_before = node.area * energy_of(secant_of(s.damage), z.size(z.opening));
-    node.stored = node.area * energy_of(secant_of(found.damage), m.size);
-    node.rupture = positive_part(node.normal_gain + node.tangential_gain - (node.stored - stored_before));
-    node.status = found.damage < 1.0 ? status::bonded : status::broken;
-    s = {found.damage, z.next_position(m), m.opening};
-  }
-
-  // No bond: contact and friction, by the gap. What the bond remembers stays as it was when it broke.
-  template <class Node>
-  static auto contact(const Node& node) {
-    return contact_problem_of(inelastic_contact_at(node, predictive), node.v_free, node.v_previous);
-  }
-  template <class Node>
-  void touch(Node& node) const {
-    apply_contact_friction(node, contact(node), friction);
-  }
-
-  // Where the strength, given as a table, has come to nothing.
-  template <class Node>
-  void break_at_once(Node& node) const {
-    touch(node);
-    node.state.damage = 1.0;
-    node.status = status::broken;
-  }
-};
-
-struct cohesive::in_phases : cohesive {
-  of_all_nodes all;
-  double surely_held, per_weight;  // squared: sure_strength, 1/weight
-
-  explicit in_phases(const cohesive& law)
-      : cohesive(law),
-        all(law),
-        surely_held(positive_part(law.sure_strength()) * positive_part(law.sure_strength())),
-        per_weight(1.0 / (all.weight * all.weight)) {}
-
-  template <class V>
-  using problem = gathered<V>;
-  template <class V>
-  using answer = solved<V>;
-
-  static constexpr bool asks_leave_state = true;
-  // Bonds that surely stand still, at which their impulse does no positive work, and nodes that are free are
-  // done.
-  template <class Node>
-  bool asks(Node& node, problem<double>& open) const {
-    gather(node, open);
-    const state& s = node.state;
-    const bool bonded = (s.damage < 1.0) & (node.area > 0.0);
-    const stopped_bond stop(node);
-    const double pull = positive_part(stop.pull.n), capacity = stop.scale * (node.velocity_step * node.area);
-    const double square =
-        pull * pull + per_weight * (stop.pull.t1 * stop.pull.t1 + stop.pull.t2 * stop.pull.t2);
-    const double most = capacity * capacity * surely_held;
-    const bool surely = (square <= most) & (square < 0x1p900) & (most > 0x1p-900);
-    const bool holds = bonded & (s.damage == 0.0) & surely & (stop.work >= 0.0);
-    const vector r = -node.delassus.solve(node.v_free);
-    const auto touching = contact(node);
-    const bool rubs = (touching.slack <= 0.0) & (touching.q.n < 0.0);
-    node.impulse = {holds ? r.n : 0.0, holds ? r.t1 : 0.0, holds ? r.t2 : 0.0};
-    node.status = holds ? status::bonded : status::free;
-    return (bonded & !holds) | (!bonded & rubs);
-  }
-
-  // In packs: bonds that need no counting of solutions, and, where H is transverse, nodes that touch.
-  template <class V>
-  [[gnu::noinline]] mask_of<V> solve(const problem<V>& p, answer<V>& a) const {
-    const V* h = p.h;
-    const auto transverse = (h[3] == 0.0) & (h[4] == 0.0) & (h[5] == 0.0) & (h[1] == h[2]);
-    const auto bonded = (p.damage < 1.0) & (p.area > 0.0);
-    mask_of<V> left = !(transverse | bonded);
-    if (any(bonded & transverse)) left = left | solve_bonds(p, bonded & transverse, a);
-    if (any(bonded & !transverse)) left = left | solve_coupled_bonds(p, bonded & !transverse, a);
-    if (any(!bonded)) touch_in_packs(p, friction, !bonded, a);
-    return left;
-  }
-  template <class Node>
-  void answered(Node& node, const answer<double>& a) const {
-    give(node, a);
+    const curve_before before(found.memory, all);
+    V coefficient = friction_of(before.damage);
+    bool is_tried = true;
+    root_between(before.damage, V(1.0), before.damage, where, [&](V damage) ILAW_KIT_LAMBDA {
+      coefficient = select(where & (friction < infinity), friction_of(damage), coefficient);
+      soften(step, where, all, before, coefficient, is_tried, found);
+      is_tried = false;
+      const mask_of<V> grows = (found.memory > before.damage) | (damage > before.damage);
+      const mask_of<V> rubs = where & grows & found.motion.closed & (friction > 0.0) & (friction < infinity);
+      return root_trial<V>{zero_unless(rubs, damage - found.memory), 1.0, 1.0, 1.0, none<V>()};
+    });
+    if constexpr (is_scalar)
+      if (!is_unique && has_another(step, before, coefficient, all))
+        found.refused = static_cast<double>(refusal::several_solutions);
   }
 
  private:
-  template <class V>
-  mask_of<V> solve_bonds(const problem<V>& p, mask_of<V> where, answer<V>& a) const {
-    if (!bonds()) return where;
-    const isotropic_step<V> step(*this, all, p);
-    const auto is_new = where & (p.damage == 0.0);
-    if (stiffness < infinity || !any(is_new)) return step.solve(where, a);
-    // A rigid bond that has not been opened: see stands_still.
-    const friction_answer<V> stop = stopping(p);
-    const V pull = positive_part(-stop.r[0]),
-            shear = per_weight * (stop.r[1] * stop.r[1] + stop.r[2] * stop.r[2]);
-    const V square = pull * pull + shear;
-    V held = smaller(strength, shear_strength());
-    if (mixes()) held = larger(softening_at(mix_of(pull * pull, shear, square)).strength, held);
-    const V most = p.velocity_step * p.area * held;
-    const auto is_clear = (square < 0x1p900) & (most * most > 0x1p-900);
-    const auto stands = is_new & is_clear & (square <= most * most), unclear = is_new & !is_clear;
-    const mask_of<V> left = step.solve(where & !stands & !unclear, a);
-    leave_bond(p, stop.r, V(status::bonded), stands, a);
-    return left | unclear;
+  static constexpr bool is_scalar = std::is_same_v<V, double>;
+
+  // ---- the curve of the page
+
+  static mode_mix<V> mode_1() { return {1.0, 0.0}; }
+  static mode_mix<V> mode_2() { return {0.0, 1.0}; }
+  mask_of<V> mixes() const {
+    if (shape == camacho_ortiz) return none<V>();
+    return (shear_strength() != strength) | (shear_toughness() != toughness);
   }
-  // But for rigid ones that have not been opened.
-  template <class V>
-  [[gnu::noinline]] mask_of<V> solve_coupled_bonds(const problem<V>& p, mask_of<V> where,
-                                                   answer<V>& a) const {
-    if (!bonds()) return where;
-    const auto is_new = stiffness < infinity ? mask_of<V>(false) : where & (p.damage == 0.0);
-    answer<V> found{};
-    const coupled_step<V> step(*this, all, p);
-    const mask_of<V> left = step.solve(where & !is_new, found);
-    choose_answer(where, found, a);
-    return left | is_new;
+  V flexibility() const { return select(stiffness < infinity, 1.0 / stiffness, V(0.0)); }
+  V shear_strength() const { return select(strength_2 > 0.0, strength_2, strength); }
+  V shear_toughness() const { return select(toughness_2 > 0.0, toughness_2, toughness); }
+  V pull_weight() const { return shape == camacho_ortiz ? shear_strength() / strength : V(1.0); }
+  bool stores_more(double peak, double energy) const {
+    return peak < infinity && energy > 0.0 && 0.5 * peak * peak * flexibility() > energy;
+  }
+
+  // Of an impulse, as the bond weighs it.
+  struct pull {
+    V normal, shear, square, size;
+    pull(vector<V> r, V weight) {
+      const V n = positive_part(-r.n), t1 = r.t1 / weight, t2 = r.t2 / weight;
+      normal = n * n;
+      shear = t1 * t1 + t2 * t2;
+      square = normal + shear;
+      size = length(n, t1, t2);
+    }
+    mask_of<V> is_clear(V most) const { return (square < 0x1p900) & (most * most > 0x1p-900); }
+  };
+
+  softening<V> softening_at(mode_mix<V> mix) const {
+    const mode_mix<V> weights = weights_of(mix);
+    const V energy = weights.mean(toughness, shear_toughness()), s1 = strength, s2 = shear_strength();
+    const V peak = select(weights.shear > 0.0, square_root(weights.mean(s1 * s1, s2 * s2)), s1);
+    const double full = softening<V>::fullness(shape == exponential);
+    const V width = positive_part(energy / peak - 0.5 * peak * flexibility()) / full;
+    return {peak, peak * flexibility(), width, peak / width, shape == exponential};
+  }
+  // B^eta and 1 - B^eta.
+  mode_mix<V> weights_of(mode_mix<V> mix) const {
+    const V b = mix.shear, n = mix.normal, y = mixing_exponent;
+    mode_mix<V> weights = mix;
+    if (const auto is = y == 1.5; any(is)) {
+      const V power = b * square_root(b);
+      weights = select(is, {n * (1.0 + b + b * b) / (1.0 + power), power}, weights);
+    }
+    if (const auto is = y == 2.0; any(is)) weights = select(is, {n * (1.0 + b), b * b}, weights);
+    if (const auto is = (y != 1.0) & (y != 1.5) & (y != 2.0); any(is))
+      weights = select(is, any_weights_of(mix), weights);
+    return weights;
+  }
+  // The logarithm is that of 1 - n where b is near 1, with what the difference rounds off, as in
+  // log_one_plus.
+  [[gnu::noinline]] mode_mix<V> any_weights_of(mode_mix<V> mix) const {
+    const mask_of<V> is_near = mix.normal < 0.5;
+    const V left = select(is_near, 1.0 - mix.normal, mix.shear);
+    const V rounded_off = zero_unless(is_near, ((1.0 - left) - mix.normal) / left);
+    const exponentials<V> power = exponentials_of(mixing_exponent * (log(left) + rounded_off));
+    return {-power.minus_one, power.exp};
+  }
+  template <class Motion>
+  softening<V> curve(const Motion& m, const common& all) const {
+    if (!any(all.mixes)) return all.opened;
+    const V n = m.opening.n * m.opening.n, shear = all.weight * tangential_product(m.opening, m.opening);
+    return softening_at(select(all.mixes, mix_of(n, shear, m.size * m.size), mode_1()));
+  }
+
+  // Damage says how soft the bond is; along a bilinear opening it is the part of the toughness that is spent.
+  // Close to 1 it has only 53 bits, of which a shear that is much softer would leave none.
+  V softness_at(mode_mix<V> mode) const {
+    const softening<V> s = softening_at(mode);
+    return s.width / s.strength;
+  }
+  V softness_scale() const {
+    const V opened = softness_at(mode_1());
+    return select(mixes(), larger(opened, softest_shear * softness_at(mode_2())), opened);
+  }
+  static secant<V> secant_of(V damage, const common& all) {
+    return {1.0 - damage, all.flexibility + damage * all.softness};
+  }
+  static V damage_of(V opening, V traction, const common& all) {
+    return (opening - all.flexibility * traction) / (opening + all.softness * traction);
+  }
+
+  // ---- a step
+
+  template <class Step>
+  static V most_kappa(const Step& step, secant<V> now) {
+    return select(now.soft > 0.0, step.compliance * now.stiffness(), V(most_rigid));
+  }
+
+  template <class Motion>
+  mask_of<V> is_below(V damage, secant<V> now, const Motion& m, const common& all) const {
+    const softening<V> s = curve(m, all);
+    const V held = now.stiff * m.size, least = smaller(strength, shear_strength());
+    const mask_of<V> surely = (damage == 0.0) & (held <= now.soft * least);
+    const mask_of<V> below = (all.mixes & (surely | (held <= now.soft * s.traction(m.size)))) |
+                             ((!all.mixes) & (m.size <= s.meets(now)));
+    if (!any(all.is_delayed)) return below;
+    return (all.is_delayed & (delayed_damage(damage, m.size, s, all) == damage)) |
+           ((!all.is_delayed) & below);
+  }
+
+  // What is the same for all trials of a step.
+  struct curve_before {
+    V damage;
+    secant<V> now;
+    V stiffness, met;  // the secant's; where it meets the curve of mode I
+    curve_before(V d, const common& all)
+        : damage(d), now(secant_of(d, all)), stiffness(now.stiffness()), met(all.opened.meets(now)) {}
+  };
+
+  // (1 + kappa) (kappa (y + f) - 2 c T) = 0, y = |w^+|, f = |w^-|, with the mean traction T on the way. Where
+  // a bilinear bond opens in one direction this is linear in kappa. y' is known, and dT/dy = (traction -
+  // T)/(y - f) along one curve; elsewhere the softening is taken for the slope.
+  template <class Motion, class Step>
+  ILAW_KIT_INLINE root_trial<V> trial(const Step& step, const Motion& m, const curve_before& b,
+                                      const common& all) const {
+    const softening<V> s = curve(m, all);
+    const V sum = m.size + step.before, c = step.compliance;
+    V mean =
+        s.mean_traction_on_path(b.stiffness, any(all.mixes) ? s.meets(b.now) : b.met, step.before, m.size);
+    if (any(all.is_delayed)) {
+      const V after = secant_of(delayed_damage(b.damage, m.size, s, all), all).stiffness();
+      mean = select(all.is_delayed, 0.25 * (b.stiffness + after) * sum, mean);
+    }
+    const mask_of<V> is_simple = (!all.mixes) & (!all.is_delayed) & (shape != exponential);
+    const V end = all.opened.onset + all.opened.width;
+    const V traction =
+        select(m.size < b.met, b.stiffness * m.size, all.steepest * (end - smaller(m.size, end)));
+    const V way = m.size - step.before;
+    const mask_of<V> moves = is_simple & (absolute(way) > 0x1p-26 * sum);
+    const V gain = select(moves, traction - mean, -0.5 * all.steepest),
+            run = m.size * select(moves, way, V(1.0));
+    const V kappa = m.held.kappa, more = 1.0 + kappa, excess = kappa * sum - 2.0 * c * mean;
+    const V slowed = step.gives_way(m) * (kappa * select(moves, way, V(1.0)) - 2.0 * c * gain);
+    const mask_of<V> is_exact = is_simple & step.is_smooth(m);
+    return {more * excess, more * sum, run * (excess + more * sum) - more * slowed, run, is_exact};
+  }
+
+  // The step with this coefficient of friction. The bond as it was is the first trial, but not if that is
+  // stiff. is_tried: found is that.
+  template <class Step>
+  ILAW_KIT_INLINE void soften(const Step& step, mask_of<V> where, const common& all, const curve_before& b,
+                              V coefficient, bool is_tried, bond_result<Step>& found) const {
+    const V most = most_kappa(step, b.now), first = select(where & (most > 1.0), 0.0, most);
+    is_tried = is_tried && !any(where & (first != found.motion.held.kappa));
+    root_trial<V> last;
+    root_between(V(0.0), most, first, where, [&](V kappa) ILAW_KIT_LAMBDA {
+      if (!is_tried) step.move(found.motion, kappa, coefficient);
+      is_tried = false;
+      return last = trial(step, found.motion, b, all);
+    });
+    if constexpr (!is_scalar) {
+      const V scale = (found.motion.held.kappa + step.compliance * all.steepest) * last.size;
+      found.left = found.left | (where & !mask_of<V>(absolute(last.value) <= 0x1p-44 * scale));
+    }
+    found.memory = select(where, damage_after(found.motion, b.damage, all), b.damage);
+  }
+  template <class Motion>
+  V damage_after(const Motion& m, V damage, const common& all) const {
+    const softening<V> s = curve(m, all);
+    const V reached = damage_of(m.size, s.traction(m.size), all);
+    V after = select(m.size > s.onset, larger(damage, reached), damage);
+    if (any(all.is_delayed)) after = select(all.is_delayed, delayed_damage(damage, m.size, s, all), after);
+    return after;
+  }
+
+  // Exact for the constant target f that the opening at the end of the step sets (Allix and Deu 1997), z = f
+  // - d before the step: d grows by -ln(1 - q)/a, q = (1 - exp(-a z)) (1 - exp(-a h/tau_c)). It may be tiny:
+  // a stiff bond of great toughness is soft already at a damage of 1e-16. Where q is large, the same is f -
+  // ln(1 + (exp(a z) - 1) exp(-a h/tau_c))/a.
+  [[gnu::noinline]] V delayed_damage(V damage, V size, const softening<V>& s, const common& all) const {
+    const V progress = s.progress(size);
+    const mask_of<V> softens = (progress < 1.0) & (progress > 0.0);
+    const V target = select(softens, damage_of(size, s.traction(size), all), progress),
+            distance = target - damage;
+    const mask_of<V> grows = distance > 0.0;
+    if (!any(grows)) return damage;
+    const V a = delay_exponent, decline = a * all.step.position_step / delay_time;
+    const V q = exp_minus_one(zero_unless(grows, -a * distance)) * exp_minus_one(-decline);
+    const mask_of<V> is_slow = q < 0.5;
+    V next = smaller(damage - log_one_plus(zero_unless(is_slow, -q)) / a, V(1.0));
+    if (any(grows & !is_slow)) {
+      const V ahead = a * distance - decline;
+      const V reached = log((1.0 - exp(-decline)) + exp(smaller(ahead, V(40.0))));
+      const V left = select(ahead < 40.0, reached, ahead);
+      next = select(is_slow, next, larger(damage, smaller(target - left / a, V(1.0))));
+    }
+    return select(grows, next, damage);
+  }
+
+  // There is one solution where the softening is not steeper than the node gives way, c tr(H W) |T'| <= 1.
+  // Beyond, the sign changes of the excess are counted as the node is left ever more of its free motion.
+  // Several are a snap-back, and nothing says how much of it this step is to do.
+  template <class Step>
+  bool has_another(const Step& step, const curve_before& b, double coefficient, const common& all) const {
+    const double ratio = step.trace(), most = most_kappa(step, b.now), first = 1.0 / (1.0 + ratio * most);
+    typename Step::motion m;
+    return changes_sign_again([&](double part) {
+      const double left = first + part * (1.0 - first);
+      step.move(m, (1.0 - left) / (left * ratio), coefficient);
+      return trial(step, m, b, all).value;
+    });
   }
 };
-
-template <class Node>
-void cohesive::step(Node& node) const {
-  const in_phases form(*this);
-  gathered<double> given;
-  if (!form.asks(node, given)) return;
-  solved<double> found{};
-  if (form.solve(given, found)) solve_alone(given, found);
-  give(node, found);
-}
-
-template <class Run>
-void cohesive::in_form(Run run) const {
-  run(in_phases(*this));
-}
 
 }  // namespace
 

@@ -3,10 +3,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit.hpp>
+#include <ilaw/kit/math.hpp>
 
-namespace cohesive_law {
-inline namespace ILAW_KIT_LEVEL {
+namespace cohesive_law::inline ILAW_KIT_LEVEL {
 
 using namespace ilaw::kit;
 
@@ -26,6 +25,28 @@ V sinh_ratio(V z) {
   return select(z < 0.5, series, (exp(z) - exp(-z)) / (2.0 * z));
 }
 
+// Shares of mode I and of shear, which is mode II, in the squared opening, and what the page weighs the modes
+// with; their sum is 1. Both are kept, since a large exponent or ratio of strengths makes much of a tiny one.
+template <class V>
+struct mode_mix {
+  V normal, shear;
+
+  // From the mode that has more of it: a difference of large numbers is none of a small rest.
+  V mean(V of_normal, V of_shear) const {
+    return select(shear > 0.5, of_shear + normal * (of_normal - of_shear),
+                  of_normal + shear * (of_shear - of_normal));
+  }
+  friend mode_mix select(mask_of<V> m, mode_mix a, mode_mix b) {
+    return {select(m, a.normal, b.normal), select(m, a.shear, b.shear)};
+  }
+};
+template <class V>
+mode_mix<V> mix_of(V normal_square, V shear_square, V square) {
+  const mask_of<V> moves = square > 0.0;
+  return {select(moves, normal_square / square, 1.0),
+          zero_unless(moves, smaller(shear_square / square, V(1.0)))};
+}
+
 // The secant stiffness of a damaged bond, stiff / soft: rigid is soft = 0, broken is stiff = 0.
 template <class V>
 struct secant {
@@ -37,6 +58,7 @@ struct secant {
 template <class V>
 struct softening {
   V strength, onset, width;  // traction falls from strength to zero over [onset, onset + width]
+  V slope;                   // strength/width
   bool exponential;
 
   // Toughness over strength times width: area below the softening of unit strength and width.
@@ -45,9 +67,7 @@ struct softening {
   }
 
   // -T' where the traction falls fastest, at the onset.
-  V steepest() const {
-    return exponential ? strength * decay / ((1.0 - decay_end) * width) : strength / width;
-  }
+  V steepest() const { return exponential ? slope * (decay / (1.0 - decay_end)) : slope; }
 
   // Not limited to 1, which it passes at the end of the curve.
   V progress(V opening) const {
@@ -55,29 +75,22 @@ struct softening {
     return select(beyond > 0.0, beyond / width, 0.0);
   }
 
-  V traction(V opening) const { return strength * remaining(smaller(progress(opening), 1.0)); }
+  ILAW_KIT_INLINE V traction(V opening) const {
+    if (exponential) return exponential_traction(opening);
+    const V end = onset + width;
+    return select(opening > onset, zero_unless(opening < end, slope * (end - opening)), strength);
+  }
 
   // Opening at which the softening meets a secant.
-  V meets(secant<V> s) const {
-    if (!exponential) return strength * s.soft * (onset + width) / (strength * s.soft + width * s.stiff);
-    // soft * traction - stiff * opening is convex and falls: Newton's steps from the onset never pass the
-    // root.
-    V opening = onset;
-    auto active = opening == opening;
-    for (int k = 0; k < 60 && any(active); ++k) {
-      const V excess = s.soft * traction(opening) - s.stiff * opening;
-      const V slope = s.soft * steepness(opening) + s.stiff;
-      const V next = opening + positive_part(excess) / slope;
-      active = active & (next > opening);
-      opening = select(active, next, opening);
-    }
-    return opening;
+  ILAW_KIT_INLINE V meets(secant<V> s) const {
+    if (exponential) return exponential_meets(s);
+    return strength * s.soft * (onset + width) / (strength * s.soft + width * s.stiff);
   }
 
   // Mean traction on the way from one opening to another, either of them the larger, of a bond that had at
   // the first the secant stiffness, infinite where it is rigid, that the softening meets at met. Where modes
   // change, it may have had more there than this curve allows.
-  V mean_traction_on_path(V stiffness, V met, V from, V to) const {
+  ILAW_KIT_INLINE V mean_traction_on_path(V stiffness, V met, V from, V to) const {
     const V low = smaller(from, to), high = larger(from, to), reached = larger(met, low);
     const V rate = 0.5 * stiffness;
     const V elastic = select(rate < infinity, rate * (from + to), strength);
@@ -90,24 +103,32 @@ struct softening {
 
  private:
   // Over onset <= from <= to <= onset + width.
-  V mean_traction(V from, V to) const {
-    if (!exponential) return strength / width * ((onset + width) - 0.5 * (from + to));
+  ILAW_KIT_INLINE V mean_traction(V from, V to) const {
+    if (!exponential) return slope * ((onset + width) - 0.5 * (from + to));
     return exponential_mean_traction(from, to);
   }
-  // On its own, so that the bilinear form stays short enough for its loops to take it in.
   [[gnu::noinline]] V exponential_mean_traction(V from, V to) const {
-    const V a = smaller(progress(from), 1.0), b = smaller(progress(to), 1.0);
+    const V a = smaller(progress(from), V(1.0)), b = smaller(progress(to), V(1.0));
     const V unit = exp(-0.5 * decay * (a + b)) * sinh_ratio(0.5 * decay * (b - a));
     return strength * ((unit - decay_end) / (1.0 - decay_end));
   }
-  V remaining(V progress) const {
-    return exponential ? (exp(-decay * progress) - decay_end) / (1.0 - decay_end) : 1.0 - progress;
+  [[gnu::noinline]] V exponential_traction(V opening) const {
+    return strength * ((exp(-decay * smaller(progress(opening), V(1.0))) - decay_end) / (1.0 - decay_end));
   }
-  V steepness(V opening) const {
-    const V p = progress(opening);
-    return select(p < 1.0, strength * decay * exp(-decay * p) / ((1.0 - decay_end) * width), 0.0);
+  // soft * traction - stiff * opening is convex and falls: Newton's steps from the onset never pass the root.
+  [[gnu::noinline]] V exponential_meets(secant<V> s) const {
+    V opening = onset;
+    mask_of<V> active = opening == opening;
+    for (int k = 0; k < 60 && any(active); ++k) {
+      const V left = exp(-decay * progress(opening)),
+              steepness = steepest() * zero_unless(progress(opening) < 1.0, left);
+      const V excess = s.soft * exponential_traction(opening) - s.stiff * opening;
+      const V next = opening + positive_part(excess) / (s.soft * steepness + s.stiff);
+      active = active & (next > opening);
+      opening = select(active, next, opening);
+    }
+    return opening;
   }
 };
 
-}  // namespace ILAW_KIT_LEVEL
 }  // namespace cohesive_law

@@ -1,24 +1,26 @@
 // Signorini-Moreau contact with Newton restitution. See contact.md for the equations.
 #include <ilaw/kit.hpp>
+#include <ilaw/kit/resolved_impact.hpp>
 
 namespace {
 
 using namespace ilaw::kit;
 
+template <class V>
 struct contact {
-  double restitution;
+  V restitution;
   double activation;
 
   static constexpr law_card card{
       .id = "contact",
       .title = "Unilateral contact with restitution",
       .doc =
-          "Signorini-Moreau contact without friction: open nodes get no impulse, closed ones are pushed so "
-          "that "
+          "Signorini-Moreau contact without friction: open nodes get no impulse, closed ones are pushed so that "
           "the normal velocity after the step is at least -e times the one before.",
       .inputs = reads_gap | reads_v_previous,
-      .capabilities = ILAW_CAN_REST,
-      .names_tangents = false};
+      .capabilities = can_store_energy,
+      .permissions = may_skip_fresh | may_skip_free,
+      .is_isotropic = true};
 
   static constexpr const char* references[] = {
       "J.-J. Moreau, 1988, Unilateral contact and dry friction in finite freedom dynamics",
@@ -26,18 +28,38 @@ struct contact {
       "problem"};
 
   static constexpr parameter<contact> parameters[] = {restitution_parameter(&contact::restitution),
-                                                      activation_parameter(&contact::activation)};
+                                                      resolving_activation_parameter(&contact::activation)};
 
-  static constexpr bool skips_out_of_reach = true;
-  using form_of_floats = contact;
+  // Only where activation is resolved.
+  struct state {
+    V work;
+  };
+  static constexpr state_variable<state> state_variables[] = {
+      {.member = &state::work,
+       .name = "waiting_work",
+       .unit = "J",
+       .doc = "Work that the impact of the last step leaves to the impulse of the next one; 0: none."}};
+  bool remembers() const { return activation == resolved; }
+  std::uint32_t capabilities() const { return remembers() ? can_store_energy : 0; }
 
   template <class Node>
-  void step(Node& node) const {
-    const contact_condition condition = contact_at(node, restitution, activation);
-    const double normal =
-        condition.slack <= 0.0 ? positive_part(-condition.excess / node.delassus.normal()) : 0.0;
-    node.impulse.n = normal;
-    node.status = normal > 0.0 ? status::closed : status::free;
+  status_of<V> step(Node& node) const requires has_memory<Node> {
+    const resolved_impact<V> impact = resolve_impact(node, restitution, node.state.work);
+    node.impulse.n = impact.impulse;
+    if (node.wants_energy) {
+      node.stored = positive_part(impact.work);
+      node.normal_gain = node.stored - positive_part(node.state.work);
+    }
+    node.state.work = impact.work;
+    return select(node.impulse.n > 0.0, status::closed, status::free);
+  }
+
+  template <class Node>
+  status_of<V> step(Node& node) const requires(!has_memory<Node>) {
+    const contact_condition<V> condition = contact_at(node, restitution, activation);
+    const V pressing = positive_part(-condition.excess / node.delassus.normal());
+    node.impulse.n = zero_unless(condition.slack <= 0.0, pressing);
+    return select(node.impulse.n > 0.0, status::closed, status::free);
   }
 };
 

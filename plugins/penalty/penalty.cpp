@@ -1,23 +1,19 @@
 // Penalised contact with regularised friction, explicit and locally implicit. See penalty.md.
-#include "alone.hpp"
+#include "friction.hpp"
 
 #include <ilaw/kit.hpp>
 
 namespace {
 
 using namespace ilaw::kit;
+using namespace penalty_law;
 
 constexpr const char* integration_choices[] = {"explicit", "implicit"};
 constexpr double implicitly = 1.0;
-using penalty_law::spring_kind, penalty_law::is_linear, penalty_law::is_plain, penalty_law::is_smooth;
 
+template <class V>
 struct penalty {
-  double stiffness;
-  double damping;
-  double exponent;
-  double restitution;
-  double friction;
-  double tangential_stiffness;
+  V stiffness, damping, exponent, restitution, friction, tangential_stiffness;
   double integration;
 
   static constexpr law_card card{
@@ -29,7 +25,8 @@ struct penalty {
           "then any stiffness, infinite too, leaves the critical time step as it is and gives back the "
           "energy of an impact, or what a coefficient of restitution leaves of it.",
       .inputs = reads_gap | reads_v_previous,
-      .capabilities = ILAW_CAN_STORE_ENERGY | ILAW_CAN_REST};
+      .capabilities = can_store_energy,
+      .permissions = may_skip_fresh};
 
   static constexpr const char* references[] = {
       "H. Hertz, 1882, Ueber die Beruehrung fester elastischer Koerper",
@@ -47,18 +44,9 @@ struct penalty {
        .doc = "Stiffness of a node against penetration; inf (implicit only): contact.",
        .required = true,
        .infinity_allowed = true},
-      {.member = &penalty::damping,
-       .name = "damping",
-       .symbol = "c",
-       .unit = "N.s/m",
-       .doc = "Kelvin-Voigt damping of a node while it penetrates."},
-      {.member = &penalty::exponent,
-       .name = "exponent",
-       .symbol = "p",
-       .doc = "The force is k times the penetration to this power: 1 linear, 1.5 Hertz.",
-       .default_value = 1.0,
-       .minimum = 1.0,
-       .maximum = 8.0},
+      {&penalty::damping, "damping", "c", "N.s/m", "Kelvin-Voigt damping of a node while it penetrates."},
+      {&penalty::exponent, "exponent", "p", "1",
+       "The force is k times the penetration to this power: 1 linear, 1.5 Hertz.", 1.0, 1.0, 8.0},
       restitution_parameter(&penalty::restitution)
           .with_doc(
               "Part of the normal velocity that an impact gives back (implicit; explicit: 1, see damping).")
@@ -75,371 +63,283 @@ struct penalty {
       {.member = &penalty::integration,
        .name = "integration",
        .doc = "explicit: forces from the gap and slip of the step; implicit: from their mean over the step.",
-       .choices = integration_choices,
-       .choice_count = 2}};
+       .choices = integration_choices}};
 
   struct state {
-    double indentation;
-    vector spring;  // its normal component is always zero
+    V indentation;
+    vector<V> spring;  // its normal component is always zero
   };
   static constexpr state_variable<state> state_variables[] = {
-      {.member = &state::indentation,
-       .name = "indentation",
-       .unit = "m",
-       .doc = "Of the implicit normal spring since it closed.",
-       .minimum = 0.0},
-      {.member = &state::spring,
-       .name = "spring",
-       .unit = "m",
-       .doc = "Elastic part of the slip; normal component zero."}};
+      {&state::indentation, "indentation", "m", "Of the implicit normal spring since it closed.", false, 0.0},
+      {&state::spring, "spring", "m", "Elastic part of the slip; normal component zero."}};
 
   std::uint32_t inputs() const {
     return reads_gap | (integration == implicitly || damping > 0.0 ? reads_v_previous : 0U);
   }
+  // A damper lets the node go before the spring is at rest: such a node is free, and may push once more.
+  std::uint32_t permissions() const {
+    const bool lets_go_early = integration == implicitly && (damping > 0.0 || restitution < 1.0);
+    return may_skip_fresh | (lets_go_early ? 0U : may_skip_free);
+  }
   const char* conflict() const {
+    const bool is_explicit = integration != implicitly;
     if (restitution < 1.0 && (damping > 0.0 || exponent != 1.0))
       return "parameter 'restitution' below 1 sets the damper of a linear spring: it needs 'damping' 0 and "
              "'exponent' 1";
-    if (integration == implicitly) return nullptr;
-    if (restitution < 1.0)
+    if (is_explicit && restitution < 1.0)
       return "parameter 'restitution' must be 1 where 'integration' is explicit; 'damping' takes energy there";
-    if (stiffness == infinity) return "parameter 'stiffness' must be finite where 'integration' is explicit";
-    if (friction > 0.0 && tangential_stiffness == infinity)
-      return "parameter 'tangential_stiffness' must be finite where 'integration' is explicit and 'friction' "
-             "> 0";
+    if (is_explicit && stiffness == infinity)
+      return "parameter 'stiffness' must be finite where 'integration' is explicit";
+    if (is_explicit && friction > 0.0 && tangential_stiffness == infinity)
+      return "parameter 'tangential_stiffness' must be finite where 'integration' is explicit and 'friction' > 0";
     return nullptr;
   }
 
-  // A damper lets the node go before the spring is at rest: such a node is free, and may push once more.
-  static constexpr bool rests_by_parameters = true;
-  std::uint32_t capabilities() const {
-    const bool lets_go_early = integration == implicitly && (damping > 0.0 || restitution < 1.0);
-    return card.capabilities & ~(lets_go_early ? std::uint32_t{ILAW_CAN_REST} : 0U);
-  }
-
-  template <class Node>
-  double stable_velocity_step(const Node& node) const {
+  // Of explicit springs, the normal one taken as closed and as stiff as it is now, with a damper that lags:
+  // omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega) (Belytschko, Liu, Moran 2000, eq. 6.2.31).
+  V limit_with(V h_n, V h_t, V slope) const {
     if (integration == implicitly) return infinity;
-    return exponent == 1.0
-               ? stable_with(node, stiffness)
-               : stable_with(node, stiffness * exponent * power(positive_part(-node.gap), exponent - 1.0));
+    const V half_damper = 0.5 * damping * h_n;
+    const V closed = 2.0 / (length(square_root(slope * h_n), half_damper) + half_damper);
+    return smaller(2.0 / square_root(zero_unless(friction > 0.0, tangential_stiffness) * h_t), closed);
+  }
+  V stable_velocity_step(V h_n, V h_t) const {
+    return select(exponent == 1.0, limit_with(h_n, h_t, stiffness), V(not_a_number));
+  }
+  template <class Node>
+  V stable_velocity_step(const Node& node) const {
+    const V slope = exponent * stiffness * to_exponent(positive_part(-node.gap), exponent - 1.0);
+    return limit_with(node.delassus.normal(), node.delassus.largest_tangential(), slope);
   }
 
-  // Explicit or implicit, and the kind of spring: loops without a choice of powers vectorise.
-  template <bool Implicit, spring_kind Kind>
-  struct form;
-  template <class Run>
-  void in_form(Run run) const;
+  // What all nodes of a batch share.
+  struct numbers {
+    bool loses, rubs, sticks_rigidly, sticks_softly;
+    V step, lead, ratio;         // h, tau, zeta
+    V rate, per_rate, softness;  // h k_T and 1/(h k_T), 0 where there is none; 4/(h^2 k_T)
+  };
+  numbers prepare(const step_sizes& step) const {
+    const double h = step.velocity_step;
+    const mask_of<V> rubs = friction > 0.0, is_rigid = tangential_stiffness == infinity;
+    // A spring too soft for 1/(h k_T) to be a number is none.
+    const V rate = h * tangential_stiffness, least = std::numeric_limits<double>::min();
+    const mask_of<V> counts = (integration == implicitly) | (rubs & (rate >= least));
+    return {.loses = any((restitution < 1.0) | (damping > 0.0) | (stiffness == infinity) | (exponent != 1.0)),
+            .rubs = any(rubs),
+            .sticks_rigidly = any(rubs & is_rigid),
+            .sticks_softly = any(rubs & !is_rigid),
+            .step = h,
+            .lead = 1.0 / (1.0 + restitution) - 0.5,
+            .ratio = any(restitution < 1.0) ? damping_ratio(restitution) : V(0.0),
+            .rate = zero_unless(counts, rate),
+            .per_rate = zero_unless(counts, 1.0 / rate),
+            .softness = 4.0 / h / rate};
+  }
+
+  using problem = penalty_law::problem<V>;
+  using answer = penalty_law::answer<V>;
+
+  // Explicit and implicit linear springs have a closed form, with friction where H has one tangential entry.
+  bool asks(bool is_transverse_form) const {
+    const bool is_linear = exponent == 1.0 || stiffness == infinity;
+    return integration == implicitly && !(is_linear && (is_transverse_form || friction == 0.0));
+  }
   template <class Node>
-  void step(Node& node) const {
-    in_form([&node](const auto& chosen) { step_alone(chosen, node); });
+  status_of<V> step(Node& node) const {
+    if (integration != implicitly) return step_explicitly(node);
+    const problem p = normal_problem(node);
+    const mask_of<V> acts = acts_on(node);
+    spring_solution<V> found;
+    if (node.prepared.loses)
+      found = spring_of<V>(p, p.free, node.prepared).linear();
+    else
+      found = spring_of<sure_zero>(p, p.free, node.prepared).linear();
+    return give(node, zero_unless(acts, found.impulse), zero_unless(acts, found.end));
+  }
+  template <class Node>
+  asked<V> ask(Node& node, problem& open) const {
+    open = normal_problem(node);
+    if constexpr (!is_transverse<Node>) {
+      const vector<V> q = 0.5 * sliding_velocity(node, 0.0);
+      const V softness = 0.5 * node.prepared.softness;
+      const full<V>& h = node.delassus;
+      const mask_of<V> is_rigid = tangential_stiffness == infinity;
+      open.c1 = h.n1, open.c2 = h.n2;
+      open.a11 = 0.5 * h.t11 + softness, open.a22 = 0.5 * h.t22 + softness, open.a12 = 0.5 * h.t12;
+      open.q1 = q.t1, open.q2 = q.t2;
+      open.before1 = zero_unless(is_rigid, node.v_previous.t1);
+      open.before2 = zero_unless(is_rigid, node.v_previous.t2);
+    }
+    const mask_of<V> may_push = (open.indentation > 0.0) | (open.free + open.previous < 0.0);
+    const mask_of<V> pushes = acts_on(node) & may_push;
+    return {pushes, keep(node, 0.0, may_push & !may_push)};
+  }
+  mask_of<V> solve(const problem& p, answer& a, const numbers& shared) const {
+    const auto solve_with = [&]<class Loss>(Loss) ILAW_KIT_LAMBDA {
+      const auto spring_at = [&](V free) ILAW_KIT_LAMBDA { return spring_of<Loss>(p, free, shared); };
+      return penalty_law::solve(p, friction, stiffness == infinity, spring_at, a);
+    };
+    return shared.loses ? solve_with(V(0.0)) : solve_with(sure_zero{});
+  }
+  void solve_scalar(const problem& p, answer& a, const numbers& shared) const {
+    a = scalar_friction{p, spring_of<V>(p, p.free, shared), friction}.solve();
+  }
+  template <class Node>
+  status_of<V> finish(Node& node, const answer& a) const {
+    node.refuse(a.status == no_solution, refusal::no_solution);
+    if (is_transverse<Node>) return give(node, a.normal, a.indentation);
+    mask_of<V> slides = a.status == status::slip.code;
+    vector<V> impulse{a.normal, a.t1, a.t2};
+    const mask_of<V> is_apart = a.status == status::closed.code;
+    if (any(is_apart) && node.prepared.rubs) {
+      slides = slides | (is_apart & rub_apart(node, a.normal));
+      impulse = select(is_apart, node.impulse, impulse);
+    }
+    node.impulse = impulse;
+    return keep(node, a.indentation, slides);
   }
 
  private:
-  // For the normal stiffness as it is now.
+  // Energies of the springs; none where they are rigid.
+  V potential(V x) const {
+    return zero_unless(stiffness < infinity, stiffness * to_exponent(x, exponent) * x / (exponent + 1.0));
+  }
+  V tangential_potential(vector<V> a, vector<V> b) const {
+    return zero_unless(tangential_stiffness < infinity,
+                       0.5 * tangential_stiffness * tangential_product(a, b));
+  }
+  // The tangential impulse -q/resistance within the cone; says where the node slips.
   template <class Node>
-  double stable_with(const Node& node, double tangent) const {
-    const double closed = penalty_law::stable_step(node.delassus.normal(), tangent, damping);
-    const double rubs = kept_if(friction > 0.0, tangential_stiffness);  // none: 2/0 limits nothing
-    const double sliding = 2.0 / square_root(rubs * penalty_law::largest_tangential(node.delassus));
-    return smaller(sliding, closed);
+  mask_of<V> rub_against(Node& node, V normal, vector<V> q, V resistance) const {
+    const auto found = rub(resistance, normal, q.scaled_tangential_length(), V(0.0), V(0.0), friction);
+    node.impulse = q.against(normal, found.factor);
+    return found.status == status::slip;
   }
-  // Energy of the normal spring; none when it is rigid.
-  template <spring_kind Kind>
-  double potential(double penetration) const {
-    return kept_if(stiffness < infinity, penalty_law::potential<Kind>(stiffness, exponent, penetration));
-  }
-  double tangential_potential(vector a, vector b) const {
-    return kept_if(tangential_stiffness < infinity, 0.5 * tangential_stiffness * tangential_product(a, b));
+  template <class Node>
+  status_of<V> status_of_pressed(const Node& node, mask_of<V> slides) const {
+    const status_of<V> rubbed = select(slides, status::slip, status::stick);
+    return select(node.impulse.n > 0.0, select(friction > 0.0, rubbed, status::closed), status::free);
   }
 
-  // Gives the node a known normal impulse and the tangential one -q/softness in the cone; says if it slides.
-  template <class Node>
-  bool rub(Node& node, double normal, vector q, double softness) const {
-    const auto result = penalty_law::rub_apart(normal, q, softness, friction);
-    node.impulse = result.impulse;
-    return tell(node, result.slips);
-  }
-  // The status of a node that has its impulse. Who has no cone slides.
-  template <class Node>
-  bool tell(Node& node, bool slips) const {
-    const double normal = node.impulse.n, rubbed = slips ? status::slip : status::stick;
-    const double closed = friction > 0.0 ? rubbed : status::closed;
-    node.status = normal > 0.0 ? closed : status::free;
-    return slips | !(friction * normal > 0.0);
-  }
+  // ---- implicit: the mean force over the step, so that springs give back what they took
 
   template <class Node>
-  bool acts_on(const Node& node) const {
-    const bool enters =
-        !is_out_of_reach(node) & (node.gap + 0.5 * node.position_step * node.v_previous.n <= 0.0);
-    return (node.state.indentation > 0.0) | enters;
-  }
-  // Whether a stick is rigid: known of most before their loop, each of which leaves something out.
-  template <spring_kind Kind>
-  bool sticks_rigidly() const {
-    if constexpr (is_plain(Kind) || penalty_law::sticks_rigidly(Kind))
-      return penalty_law::sticks_rigidly(Kind);
-    return tangential_stiffness == infinity;
-  }
-  // q + H/2 r is the mean velocity of what slips, of which a rigid stick gives back a part. Twice that, and
-  // twice what the spring adds to H/2.
-  template <spring_kind Kind, class Node>
-  vector sliding_velocity(const Node& node, double given_back) const {
-    const bool rigid = sticks_rigidly<Kind>();  // then no spring is strained
-    const vector sum = node.v_free + (rigid ? given_back : 1.0) * node.v_previous;
-    if constexpr (penalty_law::sticks_rigidly(Kind)) return sum;
-    return sum + kept_if(!rigid, 4.0 / node.velocity_step) *
-                     vector{0.0, node.state.spring.t1, node.state.spring.t2};
+  mask_of<V> acts_on(const Node& node) const {
+    const V middle = node.gap + 0.5 * node.position_step * node.v_previous.n;
+    return (node.state.indentation > 0.0) | ((!is_out_of_reach(node)) & (middle <= 0.0));
   }
   template <class Node>
-  double softness_of(const Node& node) const {
-    return 4.0 / node.velocity_step / (node.velocity_step * tangential_stiffness);
+  problem normal_problem(const Node& node) const {
+    const V x = zero_unless(stiffness < infinity, node.state.indentation);
+    return {node.v_free.n, node.v_previous.n, node.delassus.normal(), x};
   }
-  template <class Node>
-  double indentation_of(const Node& node) const {
-    return kept_if(stiffness < infinity, node.state.indentation);
-  }
-
-  // The mean over the step of forces that the step ends with, so that springs give back what they took: see
-  // penalty.md. Here for a linear normal spring.
-  template <spring_kind Kind, class Node>
-  void step_implicitly(Node& node, double damping_ratio) const {
-    const auto spring = spring_of(node.velocity_step, damping_ratio);
-    const double delassus = node.delassus.normal();
-    penalty_law::compression<double, is_plain(Kind)> normal{spring,   node.v_free.n,        node.v_previous.n,
-                                                            delassus, indentation_of(node), {}};
-    if constexpr (!is_plain(Kind)) normal.damping = spring.damper(delassus);
-    const auto found = normal.linear();
-    const bool acts = acts_on(node);
-    give<Kind>(node, kept_if(acts, found.impulse), kept_if(acts, normal.next(found.impulse, found.opens)));
-  }
-
-  // Gives the node what its normal spring gives, and what friction makes of it.
-  template <spring_kind Kind, class Node>
-  void give(Node& node, double impulse, double indentation) const {
-    if constexpr (is_smooth(Kind)) {
-      node.impulse = {impulse, 0.0, 0.0};
-      tell(node, false);
-      store<Kind>(node, indentation, {});
-    } else {
-      const double softness = node.delassus.tangential() + softness_of(node);
-      const double turned = penalty_law::turned_part(node.v_free, node.v_previous);
-      const bool slides = rub(node, impulse, sliding_velocity<Kind>(node, turned), softness);
-      store<Kind>(node, indentation, strained<Kind>(node, slides));
+  // Loss: see normal_spring. With the damper of the step.
+  template <class Loss>
+  normal_spring<V, Loss> spring_of(const problem& p, V free, const numbers& shared) const {
+    const V h = shared.step, ratio = shared.ratio, h_n = p.delassus, root = square_root(h_n);
+    Loss damper{}, lead{};
+    if constexpr (std::is_same_v<Loss, V>) {
+      const mask_of<V> is_soft = stiffness < infinity;
+      const V k = zero_unless(is_soft, stiffness), c = zero_unless(is_soft, damping);
+      const V fading = root * (1.0 + (0.25 + 0.5 * ratio) * (h * square_root(k) * root));
+      damper = (2.0 * ratio * square_root(k) + c) / select(ratio > 0.0, fading, 1.0 + 0.5 * h * c * h_n);
+      lead = shared.lead;
     }
+    return {h, stiffness, exponent, free, p.previous, h_n, p.indentation, damper, lead};
   }
 
+  // q + H/2 r is the mean velocity of what slips, of which a rigid stick gives back the part e_T. Twice that,
+  // and twice what the spring adds to H/2.
+  template <class Node>
+  vector<V> sliding_velocity(const Node& node, V given_back) const {
+    if (!node.prepared.sticks_softly) return node.v_free + given_back * node.v_previous;
+    const mask_of<V> is_rigid = tangential_stiffness == infinity;
+    return node.v_free + select(is_rigid, given_back, V(1.0)) * node.v_previous +
+           zero_unless(!is_rigid, V(4.0 / node.velocity_step)) * node.state.spring;
+  }
+  // With one tangential entry of H, e_T is what of v_T^- the free velocity has turned round, so that the
+  // stick does no work. A little more, as rounding may leave velocities along v^-, which then do none either.
+  template <class Node>
+  mask_of<V> rub_apart(Node& node, V normal) const {
+    constexpr double more_than_rounding = 1.0 + 0x1p-48;
+    V part = 0.0;
+    if (node.prepared.sticks_rigidly) {
+      const V speed = tangential_product(node.v_previous, node.v_previous);
+      const V turned = 0.0 - more_than_rounding * tangential_product(node.v_free, node.v_previous);
+      part = zero_unless(turned > 0.0, turned / larger(turned, speed));
+    }
+    const V resistance = node.delassus.tangential() + node.prepared.softness;
+    return rub_against(node, normal, sliding_velocity(node, part), resistance);
+  }
+  // Gives the node what its normal spring gives, and what friction makes of it.
+  template <class Node>
+  status_of<V> give(Node& node, V normal, V indentation) const {
+    mask_of<V> slides = normal < 0.0;
+    node.impulse.n = normal;
+    if (node.prepared.rubs) slides = rub_apart(node, normal);
+    return keep(node, indentation, slides);
+  }
+  template <class Node>
+  status_of<V> keep(Node& node, V indentation, mask_of<V> slides) const {
+    vector<V> slip{};
+    if (node.prepared.sticks_softly) slip = strained(node, slides | !(friction * node.impulse.n > 0.0));
+    if (node.wants_energy) {
+      const vector<V> before = node.state.spring;
+      const V normal = potential(indentation), tangential = tangential_potential(slip, slip);
+      node.normal_gain = normal - potential(node.state.indentation);
+      node.tangential_gain = tangential - tangential_potential(before, before);
+      node.stored = normal + tangential;
+    }
+    node.state = {indentation, slip};
+    return status_of_pressed(node, slides);
+  }
   // What the step leaves in the tangential spring. One that sticks moves along; one that slides keeps no more
   // than its force holds, in the direction of its end.
-  template <spring_kind Kind, class Node>
-  vector strained(const Node& node, bool slides) const {
-    if constexpr (penalty_law::sticks_rigidly(Kind)) return {};
-    const double h = node.velocity_step, per_impulse = 1.0 / (h * tangential_stiffness);
-    const vector spring{0.0, node.state.spring.t1, node.state.spring.t2}, r = node.impulse;
-    const vector v = node.v_free + node.delassus.times(r), moved = spring + (0.5 * h) * (node.v_previous + v);
-    const double most = per_impulse * friction_limit(friction, r.n), length = moved.tangential_length();
-    const bool is_stiff = h * h * tangential_stiffness * node.delassus.tangential() > 4.0;
-    const double kept = (slides & (length > most)) ? most / length : 1.0;
-    const bool by_force = is_stiff & !slides, holds = tangential_stiffness < infinity && friction > 0.0;
-    const auto next = [&](double before, double after, double impulse) {
-      const double end = by_force ? 0.0 - 2.0 * per_impulse * impulse - before : kept * after;
-      return kept_if(holds, end) + 0.0;  // never -0: a node at rest keeps its bits
-    };
-    return {0.0, next(spring.t1, moved.t1, r.t1), next(spring.t2, moved.t2, r.t2)};
-  }
-  template <spring_kind Kind, class Node>
-  void store(Node& node, double indentation, vector slip) const {
-    const vector before{0.0, node.state.spring.t1, node.state.spring.t2};
-    const double stored_normal = potential<Kind>(indentation);
-    const double stored_tangential = tangential_potential(slip, slip);
-    node.normal_gain = stored_normal - potential<Kind>(node.state.indentation);
-    node.tangential_gain = stored_tangential - tangential_potential(before, before);
-    node.stored = stored_normal + stored_tangential;
-    node.state = {indentation, slip};
+  template <class Node>
+  vector<V> strained(const Node& node, mask_of<V> slides) const {
+    const V h = node.velocity_step, per_impulse = node.prepared.per_rate;
+    const vector<V> spring = node.state.spring, r = node.impulse, v = node.v_free + node.delassus.times(r);
+    const vector<V> moved = spring + (0.5 * h) * (node.v_previous + v);
+    const V most = per_impulse * friction_limit(friction, r.n), length = moved.tangential_length();
+    const mask_of<V> by_force = (h * h * tangential_stiffness * node.delassus.tangential() > 4.0) & !slides;
+    const vector<V> kept = select(slides & (length > most), most / length, V(1.0)) * moved;
+    const vector<V> next = select(by_force, (-2.0 * per_impulse) * r - spring, kept);
+    const mask_of<V> holds = (tangential_stiffness < infinity) & (friction > 0.0);
+    return {0.0, zero_unless(holds, next.t1) + 0.0, zero_unless(holds, next.t2) + 0.0};  // never -0
   }
 
-  penalty_law::normal_spring spring_of(double step, double damping_ratio) const {
-    return {.step = step,
-            .stiffness = stiffness,
-            .exponent = exponent,
-            .lead = 1.0 / (1.0 + restitution) - 0.5,
-            .damping = kept_if(stiffness < infinity, damping),
-            .ratio = damping_ratio};
-  }
+  // ---- explicit: forces of the configuration and the half step before
 
-  // Forces of the configuration and the half step before: the stiffness eats the critical time step. The
-  // spring is kept as the motion of this step will strain it, so that the next step finds it ready.
-  template <spring_kind Kind, class Node>
-  void step_explicitly(Node& node) const {
-    const double penetration = positive_part(-node.gap), h = node.velocity_step;
-    const double elastic = h * penalty_law::spring_force<Kind>(stiffness, exponent, penetration);
-    const double viscous = penetration > 0.0 ? h * damping * node.v_previous.n : 0.0;
-    const vector spring{0.0, node.state.spring.t1, node.state.spring.t2};
-    vector kept{}, next{};
-    node.impulse = {positive_part(elastic - viscous), 0.0, 0.0};
-    if constexpr (is_smooth(Kind)) {
-      tell(node, false);
-    } else {
-      // One too soft for 1/shear to be a number is none.
-      const double rate = h * tangential_stiffness, shear = friction > 0.0 && rate >= 0x1p-1022 ? rate : 0.0;
-      rub(node, node.impulse.n, shear * spring, 1.0);
-      const double per_impulse = shear > 0.0 ? 1.0 / shear : 0.0;
-      const double moves = shear > 0.0 ? node.position_step : 0.0;
-      const double strains = node.impulse.n > 0.0 ? moves : 0.0;
-      const vector v = node.v_free + node.delassus.times(node.impulse);
-      kept = {0.0, 0.0 - per_impulse * node.impulse.t1, 0.0 - per_impulse * node.impulse.t2};
-      next = {0.0, kept.t1 + strains * v.t1, kept.t2 + strains * v.t2};
+  // The spring is kept as the motion of this step will strain it, so that the next step finds it ready.
+  template <class Node>
+  status_of<V> step_explicitly(Node& node) const {
+    const numbers& shared = node.prepared;
+    const V h = node.velocity_step, x = positive_part(-node.gap);
+    const V elastic = h * (stiffness * to_exponent(x, exponent));
+    const V normal = positive_part(elastic - zero_unless(x > 0.0, h * damping * node.v_previous.n));
+    const vector<V> spring = node.state.spring;
+    vector<V> kept{}, next{};
+    mask_of<V> slides = normal < 0.0;
+    node.impulse.n = normal;
+    if (shared.rubs) {
+      slides = rub_against(node, normal, shared.rate * spring, 1.0);
+      const V strains = zero_unless((normal > 0.0) & (shared.rate > 0.0), V(node.position_step));
+      kept = node.impulse.against(0.0, shared.per_rate);
+      next = kept + strains * (node.v_free + node.delassus.times(node.impulse));
     }
-    if (node.state.indentation != 0.0) node.refused = impossible_state;
-    node.state = {0.0, next};
-    // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
-    const vector v = node.v_free + node.delassus.times(node.impulse), mean = node.v_previous + v;
-    const double normal = potential<Kind>(penetration) - 0.5 * elastic / h * node.position_step * v.n;
-    node.stored = positive_part(normal + tangential_potential(kept, next));
-    node.normal_gain = -0.5 * elastic * mean.n;
-    node.tangential_gain = tangential_product(node.impulse, (1.0 / h) * (spring - kept) - 0.5 * mean);
+    node.refuse(node.state.indentation != 0.0, refusal::impossible_state);
+    node.state = {0.0, {0.0, next.t1, next.t2}};
+    if (node.wants_energy) {
+      // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
+      const vector<V> v = node.v_free + node.delassus.times(node.impulse), mean = node.v_previous + v;
+      const V level = potential(x) - 0.5 * elastic / h * node.position_step * v.n;
+      node.stored = positive_part(level + tangential_potential(kept, next));
+      node.normal_gain = -0.5 * elastic * mean.n;
+      node.tangential_gain = tangential_product(node.impulse, V(1.0 / h) * (spring - kept) - V(0.5) * mean);
+    }
+    return status_of_pressed(node, slides);
   }
 };
-
-template <bool Implicit, spring_kind Kind>
-struct penalty::form : penalty {
-  double damping_ratio;
-
-  static constexpr bool is_always_stable = Implicit, needs_previous = Implicit;
-  template <class Node>
-  double stable_velocity_step(const Node& node) const {
-    if constexpr (Kind == spring_kind::any) return penalty::stable_velocity_step(node);
-    if constexpr (Kind == spring_kind::smooth) return stable_step_at(step_falls_with(node));
-    if constexpr (is_linear(Kind)) return stable_with(node, stiffness);
-    return stable_with(node, 1.5 * stiffness * square_root(positive_part(-node.gap)));
-  }
-  template <class Node>
-  double step_falls_with(const Node& node) const requires(Kind == spring_kind::smooth) {
-    return node.delassus.normal();
-  }
-  double stable_step_at(double h) const { return penalty_law::stable_step(h, stiffness, damping); }
-
-  // What has a root to find is solved in packs: springs that are not linear, and friction where H has more
-  // than one tangential entry.
-  static constexpr bool may_stick_rigidly = penalty_law::sticks_rigidly(Kind) || Kind == spring_kind::any;
-  template <class V>
-  using rubbing =
-      std::conditional_t<may_stick_rigidly, penalty_law::rigid_rubbing<V>, penalty_law::rubbing<V>>;
-  template <class V>
-  using problem = std::conditional_t<is_smooth(Kind), penalty_law::pressing<V>, rubbing<V>>;
-  template <class V>
-  using answer = std::conditional_t<is_smooth(Kind), penalty_law::pressed<V>, penalty_law::rubbed<V>>;
-  static constexpr bool answers_every_node = true;
-  template <class Node>
-  static constexpr bool finds_roots =
-      Implicit&& Kind != spring_kind::smooth && !(is_linear(Kind) && has_transverse_delassus<Node>);
-
-  template <class Node>
-  void step(Node& node) const requires(!finds_roots<Node>) {
-    if constexpr (Implicit)
-      step_implicitly<Kind>(node, damping_ratio);
-    else
-      step_explicitly<Kind>(node);
-  }
-
-  template <class Node>
-  bool asks(Node& node, problem<double>& open) const requires finds_roots<Node> {
-    open.step = node.velocity_step;
-    open.free = node.v_free.n;
-    open.previous = node.v_previous.n;
-    open.delassus = node.delassus.normal();
-    open.indentation = indentation_of(node);
-    if constexpr (!is_smooth(Kind) && !has_transverse_delassus<Node>) {
-      const vector q = 0.5 * sliding_velocity<Kind>(node, 0.0);
-      penalty_law::couple(open, node.delassus, q, 0.5 * softness_of(node));
-      if constexpr (may_stick_rigidly) {
-        const bool rigid = sticks_rigidly<Kind>();
-        open.before1 = kept_if(rigid, node.v_previous.t1);
-        open.before2 = kept_if(rigid, node.v_previous.t2);
-      }
-    }
-    const bool acts = acts_on(node), may_push = penalty_law::may_push<is_plain(Kind)>(open);
-    answered(node, {});
-    return acts & may_push;
-  }
-  template <class Problem, class Answer>
-  auto solve(const Problem& p, Answer& a) const {
-    const mask_of<decltype(p.step)> all(true);
-    if constexpr (Kind == spring_kind::any) return all;
-    if (stiffness == infinity) return all;
-    const auto spring = spring_of(penalty_law::first_of(p.step), damping_ratio);
-    return penalty_law::solve<is_linear(Kind), is_plain(Kind)>(spring, friction, p, a);
-  }
-  void solve_alone(const problem<double>& p, answer<double>& a) const {
-    if constexpr (may_stick_rigidly) {
-      if (!is_like_scalar(p)) return stick_alone(p, a);
-      a = penalty_law::stick_like_scalar(p, [this](const penalty_law::rubbing<double>& held) {
-        return solve_by_brackets({held, 0.0, 0.0});
-      });
-    } else if constexpr (is_smooth(Kind)) {
-      const auto found = solve_by_brackets({p, 0.0, 0.0});
-      a = {found.impulse, found.indentation};
-    } else {
-      a = solve_by_brackets({p, 0.0, 0.0});
-    }
-  }
-  penalty_law::rubbed<double> solve_by_brackets(const penalty_law::rigid_rubbing<double>& p) const {
-    const auto spring = spring_of(p.step, damping_ratio);
-    return penalty_law::solve_alone(spring, friction, restitution, p);
-  }
-  // By the solver of packs while one e_T after the other will do.
-  void stick_alone(const problem<double>& p, answer<double>& a) const {
-    if (Kind == spring_kind::any || stiffness == infinity) {
-      a = solve_by_brackets(p);
-      return;
-    }
-    const auto solve_held = [this](const penalty_law::rubbing<double>& held) { return solve_regular(held); };
-    const auto found = penalty_law::stick(p, solve_held);
-    a = found.settled ? found.answer : solve_by_brackets(p);
-  }
-  // Not inlined: most nodes are solved in packs.
-  [[gnu::noinline]] penalty_law::rubbed<double> solve_regular(penalty_law::rubbing<double> p) const {
-    penalty_law::rubbed<double> a{};
-    if (solve(p, a)) a.outcome = penalty_law::has_none;
-    return a;
-  }
-  template <class Node>
-  void answered(Node& node, const answer<double>& a) const {
-    if constexpr (!is_smooth(Kind)) {
-      const bool fails = a.outcome == penalty_law::has_none;
-      node.refused = larger(node.refused, fails ? no_solution : not_refused);
-    }
-    if constexpr (is_smooth(Kind) || has_transverse_delassus<Node>) {
-      give<Kind>(node, a.impulse, a.indentation);
-    } else {
-      node.impulse = {a.impulse, a.t1, a.t2};
-      store<Kind>(node, a.indentation, strained<Kind>(node, tell(node, a.outcome != penalty_law::sticks)));
-    }
-  }
-};
-
-template <class Run>
-void penalty::in_form(Run run) const {
-  const double ratio = restitution < 1.0 ? penalty_law::damping_ratio(restitution) : 0.0;
-  const bool loses = restitution < 1.0 || damping > 0.0, is_soft = exponent == 1.0 && stiffness < infinity;
-  const bool implicit = integration == implicitly, rubs = friction > 0.0;
-  const bool sticks_rigidly = implicit && rubs && tangential_stiffness == infinity;
-  const bool keeps = is_soft && implicit && !loses && stiffness > 0.0;
-  const auto run_kind = [&]<spring_kind Kind>() {
-    implicit ? run(form<true, Kind>{*this, ratio}) : run(form<false, Kind>{*this, ratio});
-  };
-  if (is_soft && !rubs && !(implicit && loses)) return run_kind.template operator()<spring_kind::smooth>();
-  if (keeps && sticks_rigidly) return run(form<true, spring_kind::sticking_plain>{*this, ratio});
-  if (keeps) return run(form<true, spring_kind::plain>{*this, ratio});
-  const bool is_linear = exponent == 1.0 || stiffness == infinity;
-  if (is_linear && sticks_rigidly) return run(form<true, spring_kind::sticking_linear>{*this, ratio});
-  if (is_linear) return run_kind.template operator()<spring_kind::linear>();
-  if (exponent == 1.5 && implicit && !rubs) return run(form<true, spring_kind::smooth_hertz>{*this, ratio});
-  if (exponent == 1.5 && sticks_rigidly) return run(form<true, spring_kind::sticking_hertz>{*this, ratio});
-  if (exponent == 1.5) return run_kind.template operator()<spring_kind::hertz>();
-  run_kind.template operator()<spring_kind::any>();
-}
 
 }  // namespace
 

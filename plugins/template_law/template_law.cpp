@@ -6,8 +6,9 @@ namespace {
 
 using namespace ilaw::kit;
 
+template <class V>
 struct template_law {
-  double damping;
+  V damping;
 
   static constexpr law_card card{.id = "template_law",
                                  .title = "One-sided dashpot",
@@ -16,7 +17,8 @@ struct template_law {
                                      "approach; nothing where the bodies separate, or turn back no faster "
                                      "than they were separating.",
                                  .inputs = reads_gap | reads_v_previous | reads_area,
-                                 .names_tangents = false};
+                                 .permissions = may_skip_fresh,
+                                 .is_isotropic = true};
 
   static constexpr const char* references[] = {"The linear dashpot, made one-sided by this project"};
 
@@ -30,12 +32,13 @@ struct template_law {
   // r_N = h c A <-(v_N + <v_N^->)>, v_N = v_free + H_NN r_N, solved for r_N: the dashpot is one more inverse
   // mass beside H_NN. The work r_N (v_N^- + v_N)/2 is never positive (contact.hpp says why).
   template <class Node>
-  void step(Node& node) const {
-    const double compliance = 1.0 / (node.velocity_step * damping * node.area);
-    const contact_condition contact = contact_leaving_at(0.0, node.gap, node.v_free.n, node.v_previous.n);
-    const double impulse = positive_part(-contact.excess / (node.delassus.normal() + compliance));
-    node.impulse.n = contact.slack <= 0.0 ? impulse : 0.0;
-    node.status = node.impulse.n > 0.0 ? status::closed : status::free;
+  status_of<V> step(Node& node) const {
+    const V compliance = 1.0 / (node.velocity_step * damping * node.area);
+    const contact_condition<V> contact =
+        contact_leaving_at<V>(0.0, node.gap, node.v_free.n, node.v_previous.n);
+    const V impulse = positive_part(-contact.excess / (node.delassus.normal() + compliance));
+    node.impulse.n = zero_unless(contact.slack <= 0.0, impulse);
+    return select(node.impulse.n > 0.0, status::closed, status::free);
   }
 };
 

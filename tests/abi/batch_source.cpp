@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "batch_source.hpp"
 
-#include "support/float_batch.hpp"
-
 #include <utility>
 
 namespace random_batches {
@@ -42,34 +40,49 @@ Array make_array(Draw& draw, Region<Number>& region, Number* Array::*values, std
 }
 
 double value(Draw& draw, const ilaw_parameter& p) {
-  if (p.infinity_allowed && draw.one_in(6)) return of_bits(0x7FF0000000000000);
+  if ((p.flags & ILAW_PARAMETER_ALLOWS_INFINITY) && draw.one_in(6)) return of_bits(0x7FF0000000000000);
   const bool count = p.kind == ILAW_PARAMETER_COUNT;
   const double most = count ? 40.0 : 1e6;  // no state of thousands of doubles
   const double high = p.maximum < most ? p.maximum : most, low = p.minimum > -1e6 ? p.minimum : -1e6;
   if (draw.one_in(6)) return high;
-  if (draw.one_in(6) && !p.minimum_excluded) return low;
+  if (draw.one_in(6) && !(p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM)) return low;
   const double reach = draw.one_in(3) ? 1e4 : 2.0;
   const double drawn = low + (reach < high - low ? reach : high - low) * (1.0 - draw.unit());
   return count ? static_cast<double>(static_cast<std::int64_t>(drawn)) : drawn;
 }
 
-ilaw_argument argument(Draw& draw, const ilaw_parameter& p, std::array<double, 6>& table) {
+// Up to three axes of two points, with what the argument points to.
+struct Table {
+  std::array<std::array<double, 2>, 3> points{};
+  std::array<ilaw_axis, 3> axes{};
+  std::array<const ilaw_axis*, 3> pointers{};
+  std::array<double, 8> values{};
+};
+
+void give_table(Draw& draw, const ilaw_parameter& p, Table& table, ilaw_argument& a) {
+  a.kind = ILAW_VALUE_TABLE;
+  a.axis_count = 1 + static_cast<std::uint32_t>(draw.below(p.axis_count < 3 ? p.axis_count : 3));
+  for (std::uint32_t k = 0; k < a.axis_count; ++k) {
+    table.points[k] = {draw.unit(), 1.0 + draw.within(0.0, 400.0)};
+    table.axes[k] = {sizeof(ilaw_axis), 0, p.axes[k], table.points[k].data(), 2};
+    table.pointers[k] = &table.axes[k];
+  }
+  for (double& one : table.values) one = value(draw, p);
+  a.axes = table.pointers.data();
+  a.values = table.values.data();
+}
+
+ilaw_argument argument(Draw& draw, const ilaw_parameter& p, Table& table) {
   ilaw_argument a{};
   a.struct_size = sizeof a;
   a.name = p.name;
   if (p.kind == ILAW_PARAMETER_CHOICE) {
     a.kind = ILAW_VALUE_TEXT;
     a.text = p.choices[draw.below(p.choice_count)];
-  } else if ((p.may_be & ILAW_MAY_BE_PER_NODE) && draw.one_in(4)) {
+  } else if ((p.flags & ILAW_PARAMETER_ALLOWS_PER_NODE) && draw.one_in(4)) {
     a.kind = ILAW_VALUE_PER_NODE;
-  } else if ((p.may_be & ILAW_MAY_BE_TABLE) && draw.one_in(4)) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      table[2 * k] = static_cast<double>(k);
-      table[2 * k + 1] = value(draw, p);
-    }
-    a.kind = ILAW_VALUE_TABLE;
-    a.values = table.data();
-    a.count = 3;
+  } else if (p.axis_count > 0 && draw.one_in(4)) {
+    give_table(draw, p, table, a);
   } else {
     a.number = value(draw, p);
   }
@@ -86,11 +99,12 @@ std::optional<Drawn> Drawn::of(const ilaw::library& library, Draw& draw) {
   drawn.setup_.dimension = 1 + static_cast<std::uint32_t>(draw.below(3));
   drawn.setup_.delassus_form = 1U << draw.below(4);
   drawn.setup_.frame = draw.one_in(2) ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL;
-  drawn.setup_.tangent_given = drawn.setup_.frame == ILAW_FRAME_GLOBAL && draw.one_in(2);
+  drawn.setup_.numbers = draw.one_in(3) ? ILAW_NUMBERS_FLOAT : ILAW_NUMBERS_DOUBLE;
+  drawn.setup_.has_tangent = drawn.setup_.frame == ILAW_FRAME_GLOBAL && draw.one_in(2);
   std::vector<ilaw_argument> arguments;
-  std::vector<std::array<double, 6>> tables(law.parameter_count);
+  std::vector<Table> tables(law.parameter_count);
   for (std::uint32_t p = 0; p < law.parameter_count; ++p)
-    if (law.parameters[p]->required || draw.one_in(2))
+    if ((law.parameters[p]->flags & ILAW_PARAMETER_IS_REQUIRED) || draw.one_in(2))
       arguments.push_back(argument(draw, *law.parameters[p], tables[p]));
   std::vector<const ilaw_argument*> pointers;
   for (const ilaw_argument& a : arguments) pointers.push_back(&a);
@@ -148,8 +162,9 @@ void Runner::fill(const Array& a, std::size_t begin, std::size_t end, double low
 void Runner::draw_arrays() {
   const std::size_t d = drawn_.dimension();
   const auto make = [this](std::size_t components, bool may_share) {
-    return floats_ ? make_array(draw_, arena_.floats, &Array::floats, components, room_, nodes_, may_share)
-                   : make_array(draw_, arena_.doubles, &Array::values, components, room_, nodes_, may_share);
+    return drawn_.floats()
+               ? make_array(draw_, arena_.floats, &Array::floats, components, room_, nodes_, may_share)
+               : make_array(draw_, arena_.doubles, &Array::values, components, room_, nodes_, may_share);
   };
   const auto in = [&](std::size_t components) { return make(components, true); };
   const auto out = [&](std::size_t components) { return make(components, false); };
@@ -171,6 +186,9 @@ void Runner::draw_arrays() {
   impulse_ = out(d);
   if (draw_.one_in(2)) velocity_ = out(d);
   if (draw_.one_in(2)) energy_ = out(ILAW_ENERGY_COUNT);
+  if (draw_.one_in(2)) amounts_.resize(drawn_.info().amount_count);
+  for (Array& amount : amounts_)
+    if (!draw_.one_in(3)) amount = out(1);
 }
 
 void Runner::describe() {
@@ -182,16 +200,15 @@ void Runner::describe() {
   batch_.area = area_.input();
   batch_.normal = normal_.input();
   batch_.tangent = tangent_.input();
-  for (const Array& a : per_node_) {
-    per_node_inputs_.push_back(a.input());
-    per_node_float_inputs_.push_back(a.float_input());
-  }
+  for (const Array& a : per_node_) per_node_inputs_.push_back(a.input());
+  for (const Array& a : amounts_) amount_outputs_.push_back(a.output());
   batch_.per_node_parameters = per_node_inputs_.empty() ? nullptr : per_node_inputs_.data();
   batch_.state_in = state_in_.input();
   batch_.state_out = state_out_.output();
   batch_.impulse = impulse_.output();
   batch_.velocity = velocity_.output();
   batch_.energy = energy_.output();
+  batch_.amounts = amount_outputs_.empty() ? nullptr : amount_outputs_.data();
   if (draw_.one_in(2)) {
     batch_.status = status_.data();
     batch_.status_stride = 1 + static_cast<std::int64_t>(draw_.below(3));
@@ -203,24 +220,6 @@ void Runner::describe() {
   fill_frames();
   fill(area_, 0, 1, 0.5, 2.0);
   for (const Array& a : per_node_) fill(a, 0, 1, 0.0, 1.0);
-}
-
-// The same batch in arrays of floats.
-ilaw_float_batch Runner::float_batch() const {
-  ilaw_float_batch made = ilaw::testing::float_batch_like(batch_);
-  made.v_free = v_free_.float_input();
-  made.delassus = delassus_.float_input();
-  made.gap = gap_.float_input();
-  made.gap_offset = offset_.float_input();
-  made.v_previous = previous_.float_input();
-  made.area = area_.float_input();
-  made.normal = normal_.float_input();
-  made.tangent = tangent_.float_input();
-  made.per_node_parameters = per_node_float_inputs_.empty() ? nullptr : per_node_float_inputs_.data();
-  made.impulse = impulse_.float_output();
-  made.velocity = velocity_.float_output();
-  made.energy = energy_.float_output();
-  return made;
 }
 
 // Unit normals of any direction, by Cayley's map of two numbers; the tangent is square to it.
@@ -283,21 +282,15 @@ void Runner::fill_state() {
   }
 }
 
-std::int32_t Runner::answer(bool evaluates, ilaw_report& report) const {
-  const ilaw::interface& law = drawn_.interface();
-  if (!floats_) return evaluates ? law.evaluate(batch_, &report) : law.initialise(batch_, &report);
-  const ilaw_float_batch batch = float_batch();
-  return (evaluates ? floats_->evaluate : floats_->initialise)(law.instance(), &batch, &report);
-}
-
 void Runner::call(bool evaluates, Tally& tally) {
   ilaw_report report{};
   report.struct_size = sizeof report;
   if (before) before();
-  const std::int32_t code = answer(evaluates, report);
+  const ilaw::interface& law = drawn_.interface();
+  const std::int32_t code = evaluates ? law.evaluate(batch_, &report) : law.initialise(batch_, &report);
   if (after) after();
   if (evaluates) ++tally.batches;
-  if (evaluates && floats_) ++tally.of_floats;
+  if (evaluates && drawn_.floats()) ++tally.of_floats;
   check(code, report, evaluates, tally);
   tally.add(static_cast<std::uint64_t>(code));
   if (code < 0) return;
@@ -312,8 +305,8 @@ void Runner::check(std::int32_t code, const ilaw_report& report, bool evaluated,
     if (!tally.wrong.empty()) return;
     tally.wrong = std::string(drawn_.interface().law().id) + " (dimension " +
                   std::to_string(drawn_.dimension()) + ", form of H " + std::to_string(drawn_.form()) +
-                  (drawn_.global() ? ", global" : ", local") + (floats_ ? ", floats" : "") + "): batch " +
-                  std::to_string(tally.batches) + ": " + what;
+                  (drawn_.global() ? ", global" : ", local") + (drawn_.floats() ? ", floats" : "") +
+                  "): batch " + std::to_string(tally.batches) + ": " + what;
   };
   if (code < 0) {
     ++tally.refused;
@@ -342,6 +335,9 @@ std::string Runner::wrong_at(std::int64_t node, bool is_bad) const {
   if (is_bad && !zero) return "bad input and an impulse";
   if (batch_.status && status_[static_cast<std::size_t>(node * batch_.status_stride)] >= ILAW_STATUS_COUNT)
     return "a status that is none";
+  for (const Array& amount : amounts_)
+    if (amount.is_given() && (amount.is_nan(node, 0) || (is_bad && amount.get(node, 0) != 0.0)))
+      return "an amount of " + std::to_string(amount.get(node, 0));
   if (!energy_.is_given()) return "";
   for (std::size_t c = 0; c < ILAW_ENERGY_STORED; ++c)
     if (!(energy_.get(node, c) >= 0.0))  // infinite where its terms are beyond the largest number

@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/float.h>
 #include <ilaw/loader.hpp>
 
 #include <array>
@@ -134,10 +133,8 @@ struct Array {
   double* values = nullptr;
   float* floats = nullptr;
   std::int64_t node_stride = 0, component_stride = 0;
-  ilaw_input input() const { return {values, node_stride, component_stride}; }
-  ilaw_output output() const { return {values, node_stride, component_stride}; }
-  ilaw_float_input float_input() const { return {floats, node_stride, component_stride}; }
-  ilaw_float_output float_output() const { return {floats, node_stride, component_stride}; }
+  ilaw_input input() const { return {values, floats, node_stride, component_stride}; }
+  ilaw_output output() const { return {values, floats, node_stride, component_stride}; }
 
   bool is_given() const { return values || floats; }
   double get(std::int64_t node, std::size_t c) const {
@@ -184,13 +181,9 @@ class Drawn {
   const ilaw_instance_info& info() const { return info_; }
   std::size_t dimension() const { return setup_.dimension; }
   bool global() const { return setup_.frame == ILAW_FRAME_GLOBAL; }
-  bool tangent() const { return setup_.tangent_given != 0; }
+  bool tangent() const { return setup_.has_tangent != 0; }
   std::uint32_t form() const { return setup_.delassus_form; }
-  // Null where the law has none.
-  const ilaw_float_functions* floats() const {
-    const auto& extension = interface_->law().extension;
-    return static_cast<const ilaw_float_functions*>(extension ? extension(ILAW_FLOAT) : nullptr);
-  }
+  bool floats() const { return setup_.numbers == ILAW_NUMBERS_FLOAT; }
 
  private:
   std::optional<ilaw::interface> interface_;
@@ -212,11 +205,7 @@ struct Tally {
 class Runner {
  public:
   Runner(const Drawn& drawn, Draw& draw, const Temper& temper, Arena& arena)
-      : drawn_(drawn),
-        draw_(draw),
-        temper_(temper),
-        arena_(arena),
-        floats_(draw.one_in(3) ? drawn.floats() : nullptr) {}
+      : drawn_(drawn), draw_(draw), temper_(temper), arena_(arena) {}
 
   // Before and after each call of the law: a host's floating-point settings.
   void (*before)() = nullptr;
@@ -243,8 +232,6 @@ class Runner {
   void fill_delassus();
   void fill_state();
   void call(bool evaluates, Tally& tally);
-  std::int32_t answer(bool evaluates, ilaw_report& report) const;
-  ilaw_float_batch float_batch() const;
   void check(std::int32_t code, const ilaw_report& report, bool evaluated, Tally& tally);
   std::string wrong_at(std::int64_t node, bool is_bad) const;
   void fill(const Array& a, std::size_t begin, std::size_t end, double low, double high);
@@ -254,16 +241,15 @@ class Runner {
   Draw& draw_;
   Temper temper_;
   Arena& arena_;
-  const ilaw_float_functions* floats_;  // of batches of floats; null where they are of doubles
-  std::vector<std::int64_t> nodes_;     // in use, in the order of the batch
+  std::vector<std::int64_t> nodes_;  // in use, in the order of the batch
   std::int64_t room_ = 0;
   std::vector<std::int32_t> index_;
   std::vector<std::int64_t> index64_;
   Array v_free_, delassus_, gap_, offset_, previous_, area_, normal_, tangent_, state_in_, state_out_,
       impulse_, velocity_, energy_;
-  std::vector<Array> per_node_;
+  std::vector<Array> per_node_, amounts_;
   std::vector<ilaw_input> per_node_inputs_;
-  std::vector<ilaw_float_input> per_node_float_inputs_;
+  std::vector<ilaw_output> amount_outputs_;
   std::array<std::uint8_t, 64> status_{};
   ilaw_batch batch_{};
   bool in_place_ = false;

@@ -1,5 +1,4 @@
 /* The header alone, under -pedantic-errors. */
-#include <ilaw/float.h>
 #include <ilaw/ilaw.h>
 #include <ilaw/loader.h>
 

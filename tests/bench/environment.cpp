@@ -2,6 +2,7 @@
 // compiled without, called in turn in one process. Medians; docs/benchmarks.md tells what was measured.
 // Usage: ilaw_bench_environment [PAIRS]
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ilaw/arrays.hpp>
 #include <ilaw/loader.hpp>
 
 #include <algorithm>
@@ -19,6 +20,8 @@ ilaw::interface contact(const char* file) {
   setup.struct_size = sizeof setup;
   setup.dimension = 3;
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.frame = ILAW_FRAME_LOCAL;
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
   return {ilaw::library(file), "contact", setup};
 }
 
@@ -29,10 +32,10 @@ struct Nodes {
     batch.struct_size = sizeof batch;
     batch.node_count = static_cast<std::int64_t>(n);
     batch.velocity_step = batch.position_step = 1e-3;
-    batch.v_free = batch.v_previous = {v.data(), 3, 1};
-    batch.delassus = {h.data(), 1, 1};
-    batch.gap = {gap.data(), 1, 1};
-    batch.impulse = {r.data(), 3, 1};
+    batch.v_free = batch.v_previous = ilaw::input(v.data(), 3, 1);
+    batch.delassus = ilaw::input(h.data(), 1, 1);
+    batch.gap = ilaw::input(gap.data(), 1, 1);
+    batch.impulse = ilaw::output(r.data(), 3, 1);
   }
   std::vector<double> v, r, h, gap;
   ilaw_batch batch{};

@@ -23,6 +23,8 @@
 
 #include "model/points.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <CLI/CLI.hpp>
 
 #include <omp.h>
@@ -137,15 +139,15 @@ class LawCase {
     batch_.struct_size = sizeof batch_;
     batch_.node_count = static_cast<std::int64_t>(touching);
     batch_.velocity_step = batch_.position_step = dt;
-    batch_.v_free = {v_free_.data(), 3, 1};
-    batch_.v_previous = {v_previous_.data(), 3, 1};
-    batch_.normal = {normal_.data(), 3, 1};
-    batch_.delassus = {delassus_.data(), 1, 1};
-    batch_.gap = {gap_.data(), 1, 1};
-    batch_.area = {delassus_.data(), 1, 1};
-    batch_.impulse = {impulse_.data(), 3, 1};
-    batch_.state_in = {state_.data(), size, 1};
-    batch_.state_out = {state_.data(), size, 1};
+    batch_.v_free = ilaw::input(v_free_.data(), 3, 1);
+    batch_.v_previous = ilaw::input(v_previous_.data(), 3, 1);
+    batch_.normal = ilaw::input(normal_.data(), 3, 1);
+    batch_.delassus = ilaw::input(delassus_.data(), 1, 1);
+    batch_.gap = ilaw::input(gap_.data(), 1, 1);
+    batch_.area = ilaw::input(delassus_.data(), 1, 1);
+    batch_.impulse = ilaw::output(impulse_.data(), 3, 1);
+    batch_.state_in = ilaw::input(state_.data(), size, 1);
+    batch_.state_out = ilaw::output(state_.data(), size, 1);
     batch_.status_stride = 1;
     for (const std::vector<double>* values :
          {&v_free_, &v_previous_, &normal_, &impulse_, &gap_, &delassus_, &energy_, &state_})
@@ -154,7 +156,7 @@ class LawCase {
   }
 
   double run(long steps, bool outputs) {
-    batch_.energy = outputs ? ilaw_output{energy_.data(), ILAW_ENERGY_COUNT, 1} : ilaw_output{};
+    batch_.energy = outputs ? ilaw::output(energy_.data(), ILAW_ENERGY_COUNT, 1) : ilaw_output{};
     batch_.status = outputs ? status_.data() : nullptr;
     const double start = now();
     for (long k = 0; k < steps && batch_.node_count > 0; ++k) {

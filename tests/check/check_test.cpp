@@ -50,7 +50,7 @@ Names with_id_of_rules() {
 
 TEST(Rules, HaveAnIdASentenceAndASource) {
   EXPECT_EQ(with_id_of_rules().size(), rules().size());
-  EXPECT_GE(rules().size(), 90U);
+  EXPECT_GE(rules().size(), 110U);
   for (const Rule& rule : rules()) {
     EXPECT_EQ(std::string(rule.required).back(), '.') << rule.id;
     EXPECT_NE(std::string(rule.source).find(", "), std::string::npos) << rule.id;
@@ -107,6 +107,8 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
       {"extension-unknown: library", "extension of the library gave something"},
       {"info-within: inputs", "the instance reads inputs 32"},
       {"info-within: before", "the instance reads inputs "},
+      {"info-within: permissions", "the instance lacks permissions 1"},
+      {"description-units: amount", "amount 'heat' has the unit \"calorie\""},
       {"info-frame: local", "ILAW_INPUT_NORMAL in the local frame"},
       {"info-frame: tangent", "ILAW_INPUT_TANGENT without tangents"},
       {"functions-return: info", "info returned -"},
@@ -120,6 +122,9 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
       {"functions-return: code", "evaluate returned -"},
       {"call-refused: writes", ", wrote results"},
       {"call-refused: silent", ", gave no reason"},
+      {"array-numbers: amount", "an amount with both pointers"},
+      {"balance-inputs: amounts", "with amounts, evaluate returned 0"},
+      {"table-linear: order", "over temperature {0.25, 0.75, 1}, time {0.25, 0.75} at (0.25, 0.75)"},
       {"report-null: refused", "without a report evaluate returned -"},
       {"report-clean: step", "stable_velocity_step nan"},
       {"report-clean: step beside bad", "stable_velocity_step nan"},
@@ -134,11 +139,17 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
       {"bad-input-node: state", "state_out "},
       {"bad-input-node: status", "status 0"},
       {"bad-input-node: energy", "an energy other than 0"},
+      {"bad-input-node: amount", "an amount of 1"},
+      {"impulse-finite: floats", "impulse "},
       {"foreign-state: impulse", "bad input with an impulse"},
       {"foreign-state: state", "bad input with another state"},
       {"foreign-state: others", "node 3 changed"},
-      {"skip-promise: impulse", "out of reach, impulse "},
-      {"skip-promise: status", "out of reach, status 1"},
+      {"skip-fresh: impulse", "out of reach, impulse "},
+      {"skip-fresh: status", "out of reach, status 1"},
+      {"skip-fresh: energy", "out of reach, energy 0.001"},
+      {"skip-fresh: amount", "out of reach, an amount of 1"},
+      {"amounts-zero: no number", "wear of nan"},
+      {"heat-dissipated: negative", "heat of -"},
       {"status-meaning: number", "status 8"},
       {"status-meaning: closed", "ILAW_CLOSED with the impulse "},
       {"energy-parts: stored", "stored energy 1"},
@@ -146,6 +157,7 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
       {"outputs-written: impulse", "the array impulse was not written"},
       {"outputs-written: state", "the array state_out was not written"},
       {"outputs-written: energy", "the array energy was not written"},
+      {"outputs-written: amounts", "the array amounts was not written"},
       {"outputs-written: status", "the array status was not written"},
       {"step-limits: impulse", "impulse inf"}};
   for (const auto& [breaks, words] : ways) {

@@ -9,12 +9,14 @@
 
 #include <stddef.h>
 
-/* A parameter of an instance: a constant, a table or the value of each node. */
+/* A parameter of an instance: a constant, a table over time and temperature, or the value of each node. */
 typedef struct quantity {
   double constant;
-  double* table; /* owned */
-  uint64_t count;
-  int per_node;
+  uint32_t axis_count; /* 0: no table */
+  int is_time[2];
+  uint64_t count[2];
+  double *points[2], *values; /* owned */
+  int slot;                   /* among the parameters per node, from 1; 0: not per node */
 } quantity;
 
 /* What an instance that breaks a rule remembers of its calls. */
@@ -25,12 +27,13 @@ typedef struct memory {
 
 struct ilaw_instance {
   ilaw_setup setup;
-  quantity damping, friction;
+  quantity damping, friction, temperature;
   double wear;
   int rough;
   const char* mode; /* of an argument that is gone: for a broken rule alone */
   memory* own;
-  const char* per_node[1];
+  int per_node_count;
+  const char* per_node[2];
   ilaw_state_variable variable;
   const ilaw_state_variable* variables[1];
 };
@@ -47,14 +50,20 @@ shared_memory* shared(void);
 int on_first_thread(void);
 
 void throw_something(void);
+const ilaw_law* sample_law(void);
 const ilaw_parameter* parameter_named(const char* name);
-double value_at(const quantity* given, double time);
+double value_at(const quantity* given, double time, double temperature);
 
-int32_t sample_create(const ilaw_setup* setup, ilaw_instance** made, char* message, size_t message_size);
-void sample_destroy(ilaw_instance* made);
-int32_t sample_info(const ilaw_instance* made, ilaw_instance_info* info);
-int32_t sample_initialise(const ilaw_instance* made, const ilaw_batch* batch, ilaw_report* report);
-int32_t sample_evaluate(const ilaw_instance* made, const ilaw_batch* batch, ilaw_report* report);
-const void* sample_extension(const char* name);
+enum { HEAT, WORN, AMOUNT_COUNT };
+
+ilaw_result ILAW_CALL sample_create(const char* id, const ilaw_setup* setup, ilaw_instance** made,
+                                    char* message, size_t message_size);
+void ILAW_CALL sample_destroy(ilaw_instance* made);
+ilaw_result ILAW_CALL sample_info(const ilaw_instance* made, ilaw_instance_info* info);
+ilaw_result ILAW_CALL sample_initialise(const ilaw_instance* made, const ilaw_batch* batch,
+                                        ilaw_report* report);
+ilaw_result ILAW_CALL sample_evaluate(const ilaw_instance* made, const ilaw_batch* batch,
+                                      ilaw_report* report);
+const void* ILAW_CALL sample_extension(const char* name);
 
 #endif

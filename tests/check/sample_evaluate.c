@@ -16,7 +16,7 @@
 #include <xmmintrin.h>
 #endif
 
-static int32_t refuse(ilaw_report* report, int32_t code, const char* reason) {
+static ilaw_result refuse(ilaw_report* report, ilaw_result code, const char* reason) {
   if (!report) return code;
   report->bad_count = 0;
   report->first_bad_node = -1;
@@ -35,11 +35,40 @@ static const char* wrong_list(const ilaw_batch* b) {
   return NULL;
 }
 
+/* Whether an array is missing, or not of the number type of the setup. */
+static int lacks(const ilaw_instance* made, const double* values, const float* floats, int required) {
+  const int is_float = made->setup.numbers == ILAW_NUMBERS_FLOAT;
+  if (!values && !floats) return required;
+  if (breaks("array-numbers")) return is_float ? !floats : !values;
+  return is_float ? !floats || values : !values || floats;
+}
+
+static int needs_previous(const ilaw_batch* b) {
+  if (breaks("balance-inputs")) return 1;
+  return b->energy.values || b->energy.floats || (b->amounts && !breaks("balance-inputs: amounts"));
+}
+
 static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) {
-  if (!b->v_free.values || !b->delassus.values || !b->impulse.values) return "an array is null";
-  if (!b->gap.values || !b->area.values || !b->state_in.values) return "an array is null";
-  if (made->setup.frame == ILAW_FRAME_GLOBAL && !b->normal.values) return "normal is null";
-  if (made->setup.tangent_given && made->setup.dimension == 3 && !b->tangent.values) return "tangent is null";
+  const int global = made->setup.frame == ILAW_FRAME_GLOBAL,
+            tangent = made->setup.has_tangent && made->setup.dimension == 3;
+  int k;
+  if (lacks(made, b->v_free.values, b->v_free.floats, 1) ||
+      lacks(made, b->delassus.values, b->delassus.floats, 1) ||
+      lacks(made, b->gap.values, b->gap.floats, 1) || lacks(made, b->area.values, b->area.floats, 1) ||
+      lacks(made, b->v_previous.values, b->v_previous.floats, needs_previous(b)) ||
+      lacks(made, b->gap_offset.values, b->gap_offset.floats, 0) ||
+      lacks(made, b->normal.values, b->normal.floats, global) ||
+      lacks(made, b->tangent.values, b->tangent.floats, tangent))
+    return "an input is missing or of another number type";
+  if (lacks(made, b->impulse.values, b->impulse.floats, 1) ||
+      lacks(made, b->velocity.values, b->velocity.floats, 0) ||
+      lacks(made, b->energy.values, b->energy.floats, 0))
+    return "an output is missing or of another number type";
+  for (k = 0; b->amounts && k < AMOUNT_COUNT && !breaks("array-numbers: amount"); ++k)
+    if (lacks(made, b->amounts[k].values, b->amounts[k].floats, 0))
+      return "an amount is of another number type";
+  if (!b->state_in.values || b->state_in.floats || b->state_out.floats)
+    return "a state is missing or of floats";
   if (b->node_count > 1 && b->impulse.node_stride == 0) return "impulse has a stride of 0";
   return NULL;
 }
@@ -57,8 +86,8 @@ static const char* wrong_call(const ilaw_instance* made, const ilaw_batch* b, in
   return wrong_arrays(made, b);
 }
 
-static int32_t check_call(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report,
-                          int evaluates) {
+static ilaw_result check_call(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report,
+                              int evaluates) {
   const char* wrong;
   if (!made || !b) return ILAW_INVALID_ARGUMENT;
   if (b->struct_size < ILAW_BATCH_SIZE_1_0 && !breaks("sizes-short"))
@@ -70,14 +99,14 @@ static int32_t check_call(const ilaw_instance* made, const ilaw_batch* b, ilaw_r
   return wrong ? refuse(report, ILAW_INVALID_ARGUMENT, wrong) : ILAW_OK;
 }
 
-int32_t sample_initialise(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report) {
-  const int32_t code = check_call(made, b, report, 0);
+ilaw_result ILAW_CALL sample_initialise(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report) {
+  const ilaw_result code = check_call(made, b, report, 0);
   int64_t k;
   if (code != ILAW_OK) return code;
   for (k = 0; k < b->node_count; ++k) {
     const int64_t node = node_of(b, k);
     double first = 0.0;
-    if (breaks("initialise-reads")) first = 0.0 * *(const volatile double*)b->v_free.values;
+    if (breaks("initialise-reads")) first = 0.0 * read_array(&b->v_free, 0, 0);
     b->state_out.values[node * b->state_out.node_stride] = first;
   }
   refuse(report, ILAW_OK, NULL);
@@ -118,11 +147,12 @@ static void misbehave(const ilaw_batch* b) {
   if (breaks("evaluate-clock") && time(NULL) == 0) abort();
   if (breaks("evaluate-ends") && setjmp(here) != 0) abort();
   if (breaks("evaluate-system") && getppid() < 0) abort();
-  if (breaks("memory-reads")) (void)*(const volatile double*)(b->v_free.values + b->node_count * 7);
-  if (breaks("memory-unneeded")) (void)*(const volatile double*)b->v_previous.values;
+  if (breaks("memory-reads") && b->v_free.values)
+    (void)*(const volatile double*)(b->v_free.values + b->node_count * 7);
+  if (breaks("memory-unneeded") && b->v_previous.values) (void)*(const volatile double*)b->v_previous.values;
 }
 
-static int32_t step_all(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report) {
+static ilaw_result step_all(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report) {
   const char* reason = NULL;
   int64_t k, bad = 0, first = -1;
   for (k = 0; k < b->node_count; ++k) {
@@ -137,11 +167,11 @@ static int32_t step_all(const ilaw_instance* made, const ilaw_batch* b, ilaw_rep
     report->bad_count = bad > 0 && breaks("bad-input-report: count") ? bad + 1 : bad;
     report->first_bad_node = bad == 0 && breaks("report-clean") ? 0 : first;
     report->reason = breaks("bad-input-report") ? NULL : reason;
-    report->stable_velocity_step = breaks("stable-step") ? b->area.values[0] : INFINITY;
+    report->stable_velocity_step = breaks("stable-step") ? read_array(&b->area, 0, 0) : INFINITY;
     if (breaks("report-clean: step")) report->stable_velocity_step = NAN;
     if (breaks("report-clean: step beside bad") && bad > 0) report->stable_velocity_step = NAN;
     if (breaks("report-clean: negative step")) report->stable_velocity_step = -0.5;
-    if (breaks("report-clean: step per node") && made->damping.per_node) report->stable_velocity_step = NAN;
+    if (breaks("report-clean: step per node") && made->damping.slot) report->stable_velocity_step = NAN;
     if (breaks("sizes-long: report") && report->struct_size > sizeof *report)
       memset((char*)report + sizeof *report, 0, report->struct_size - sizeof *report);
   }
@@ -156,8 +186,8 @@ static void enter(const fenv_t* host, int mode, int traps) {
   if (breaks("float-traps")) feenableexcept(traps);
 }
 
-int32_t sample_evaluate(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report) {
-  int32_t code = check_call(made, b, report, 1);
+ilaw_result ILAW_CALL sample_evaluate(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report) {
+  ilaw_result code = check_call(made, b, report, 1);
   fenv_t host;
   const int mode = fegetround(), traps = fegetexcept();
 #if defined(__x86_64__)
@@ -178,9 +208,10 @@ int32_t sample_evaluate(const ilaw_instance* made, const ilaw_batch* b, ilaw_rep
   misbehave(b);
   remember(made, b);
   code = step_all(made, b, report);
-  if (breaks("memory-writes") && !b->index && !b->index64 && b->impulse.component_stride == 1)
+  if (breaks("memory-writes") && b->impulse.values && !b->index && !b->index64 &&
+      b->impulse.component_stride == 1)
     ((volatile double*)b->impulse.values)[b->node_count * b->impulse.node_stride] = 1.0;
-  if (breaks("memory-beside") && b->impulse.component_stride == 2)
+  if (breaks("memory-beside") && b->impulse.values && b->impulse.component_stride == 2)
     b->impulse.values[node_of(b, 0) * b->impulse.node_stride + 1] = 1.0;
   fesetenv(&host);
   if (breaks("float-flags")) feraiseexcept(FE_INEXACT);

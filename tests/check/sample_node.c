@@ -5,9 +5,9 @@
 
 /* What a node is given, and what it gets. */
 typedef struct node {
-  int d, global, strays;
-  double v[3], n[3], t[3], h[3][3], gap, area, damping, friction;
-  double closures, r[3], after[3], energy[4];
+  int d, global, floats, strays;
+  double v[3], n[3], t[3], h[3][3], gap, area, damping, friction, temperature;
+  double closures, r[3], after[3], energy[4], amounts[AMOUNT_COUNT];
   uint8_t status;
 } node;
 
@@ -16,26 +16,58 @@ int64_t node_of(const ilaw_batch* b, int64_t k) {
   return b->index64 ? b->index64[k] - b->index_base : k;
 }
 
-static double read(const ilaw_input* from, int64_t i, int c) {
+double read_array(const ilaw_input* from, int64_t i, int c) {
   int64_t node_stride = from->node_stride, stride = from->component_stride;
   if (breaks("layout-components") && stride > 10) stride = 1;
   if (breaks("layout-strides") && stride == 2) stride = 1;
   if (breaks("layout-shared") && node_stride == 0) node_stride = 1;
-  return from->values[i * node_stride + c * stride];
+  i = i * node_stride + c * stride;
+  return from->values ? from->values[i] : from->floats[i];
 }
 
-double value_at(const quantity* given, double time) {
-  uint64_t k;
-  const double* t = given->table;
-  if (!t) return given->constant;
-  for (k = 0; k < given->count; ++k)
-    if (time <= t[2 * k]) {
-      double part;
-      if (k == 0 || t[2 * k + 1] == t[2 * k - 1]) return t[2 * k + 1];
-      part = (time - t[2 * k - 2]) / (t[2 * k] - t[2 * k - 2]);
-      return t[2 * k - 1] * (1.0 - part) + t[2 * k + 1] * part;
-    }
-  return t[2 * given->count - 1];
+static int has(const ilaw_input* from) { return from->values || from->floats; }
+static int is_wanted(const ilaw_output* to) { return to->values || to->floats; }
+
+static void put(const ilaw_output* to, int64_t i, int c, double x) {
+  i = i * to->node_stride + c * to->component_stride;
+  if (to->values) to->values[i] = x;
+  if (to->floats) to->floats[i] = (float)x;
+}
+
+/* The interval of an axis, and the part of it that lies before x. */
+static uint64_t find(const quantity* given, uint32_t axis, double x, double* part) {
+  const double* points = given->points[axis];
+  const uint64_t count = given->count[axis];
+  uint64_t k = 0;
+  *part = 0.0;
+  if (count == 1 || !(x > points[0])) return 0;
+  while (k + 2 < count && x >= points[k + 1]) ++k;
+  *part = x >= points[k + 1] ? 1.0 : (x - points[k]) / (points[k + 1] - points[k]);
+  if (breaks("table-linear")) *part = *part < 0.5 ? 0.0 : 1.0;
+  return k;
+}
+
+static double between(double a, double b, double part) {
+  return part == 0.0 || a == b ? a : part == 1.0 ? b : (1.0 - part) * a + part * b;
+}
+
+double value_at(const quantity* given, double time, double temperature) {
+  const uint64_t rows = given->count[0];
+  const uint64_t width = given->axis_count == 2 ? given->count[1] : 1;
+  double part[2] = {0.0, 0.0}, row[2];
+  uint64_t at[2] = {0, 0}, k;
+  uint32_t n;
+  if (given->axis_count == 0) return given->constant;
+  for (n = 0; n < given->axis_count; ++n)
+    at[n] = find(given, n, given->is_time[n] ? time : temperature, &part[n]);
+  for (k = 0; k < 2; ++k) {
+    const uint64_t i = at[0] + (given->count[0] > 1 ? k : 0), next = at[1] + (width > 1 ? 1 : 0);
+    if (breaks("table-linear: order") && given->axis_count == 2)
+      row[k] = between(given->values[at[1] * rows + i], given->values[next * rows + i], part[1]);
+    else
+      row[k] = between(given->values[i * width + at[1]], given->values[i * width + next], part[1]);
+  }
+  return between(row[0], row[1], part[0]);
 }
 
 static double sum_of(const ilaw_input* from, const ilaw_batch* b, int width) {
@@ -43,7 +75,7 @@ static double sum_of(const ilaw_input* from, const ilaw_batch* b, int width) {
   int64_t k;
   int c;
   for (k = 0; k < b->node_count; ++k)
-    for (c = 0; c < width; ++c) sum += read(from, node_of(b, k), c) * (double)(1 + k % 7 + 3 * c);
+    for (c = 0; c < width; ++c) sum += read_array(from, node_of(b, k), c) * (double)(1 + k % 7 + 3 * c);
   return sum;
 }
 
@@ -51,10 +83,10 @@ static double sum_of(const ilaw_input* from, const ilaw_batch* b, int width) {
 static double sum_of_all(const ilaw_batch* b, int d) {
   double sum = b->time + b->velocity_step + sum_of(&b->v_free, b, d) + sum_of(&b->delassus, b, 1) +
                sum_of(&b->gap, b, 1) + sum_of(&b->area, b, 1) + sum_of(&b->state_in, b, 1);
-  if (b->energy.values) sum += sum_of(&b->v_previous, b, d);
-  if (b->tangent.values) sum += sum_of(&b->tangent, b, d);
-  if (b->gap_offset.values) sum += sum_of(&b->gap_offset, b, 1);
-  if (b->normal.values) sum += sum_of(&b->normal, b, d);
+  if (is_wanted(&b->energy)) sum += sum_of(&b->v_previous, b, d);
+  if (has(&b->tangent)) sum += sum_of(&b->tangent, b, d);
+  if (has(&b->gap_offset)) sum += sum_of(&b->gap_offset, b, 1);
+  if (has(&b->normal)) sum += sum_of(&b->normal, b, d);
   return sum;
 }
 
@@ -75,10 +107,12 @@ static int strays(const ilaw_instance* made, const ilaw_batch* b) {
   if (breaks("state-in-place")) return b->state_in.values == b->state_out.values;
   if (breaks("batch-parts")) return b->node_count == 7;
   if (breaks("batch-large")) return b->node_count > 100;
-  if (breaks("outputs-asked")) return !b->energy.values;
-  if (breaks("gap-offset")) return b->gap_offset.values != NULL;
-  if (breaks("table-constant")) return made->friction.table != NULL;
-  if (breaks("per-node-constant")) return made->damping.per_node;
+  if (breaks("outputs-asked")) return !is_wanted(&b->energy) && is_wanted(&b->velocity);
+  if (breaks("gap-offset")) return has(&b->gap_offset);
+  if (breaks("amounts-asked")) return b->amounts && !is_wanted(&b->amounts[HEAT]);
+  if (breaks("table-constant"))
+    return made->friction.axis_count > 0 && made->friction.values[0] == made->friction.values[1];
+  if (breaks("per-node-constant")) return made->damping.slot != 0;
   if (breaks("setup-copied")) return own->started && !is_mode(made->mode);
   return breaks("purity-twice") && own->started > 1;
 }
@@ -105,9 +139,9 @@ static void gather_delassus(node* at, const ilaw_instance* made, const ilaw_batc
   static const int rows[3] = {0, 0, 1}, columns[3] = {1, 2, 2};
   const uint32_t form = made->setup.delassus_form;
   int c;
-  for (c = 0; c < at->d; ++c) at->h[c][c] = read(&b->delassus, i, form == ILAW_DELASSUS_SCALAR ? 0 : c);
+  for (c = 0; c < at->d; ++c) at->h[c][c] = read_array(&b->delassus, i, form == ILAW_DELASSUS_SCALAR ? 0 : c);
   for (c = 0; form == ILAW_DELASSUS_FULL && c < at->d * (at->d - 1) / 2; ++c)
-    at->h[rows[c]][columns[c]] = at->h[columns[c]][rows[c]] = read(&b->delassus, i, at->d + c);
+    at->h[rows[c]][columns[c]] = at->h[columns[c]][rows[c]] = read_array(&b->delassus, i, at->d + c);
 }
 
 static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int64_t i) {
@@ -118,20 +152,25 @@ static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int
   at->n[0] = 1.0;
   at->t[1] = 1.0;
   for (c = 0; c < at->d; ++c) {
-    at->v[c] = read(&b->v_free, i, c);
-    if (at->global) at->n[c] = read(&b->normal, i, c);
-    if (at->global && at->d == 3 && made->setup.tangent_given) at->t[c] = read(&b->tangent, i, c);
+    at->v[c] = read_array(&b->v_free, i, c);
+    if (at->global) at->n[c] = read_array(&b->normal, i, c);
+    if (at->global && at->d == 3 && made->setup.has_tangent) at->t[c] = read_array(&b->tangent, i, c);
   }
   if (at->global && at->d == 2) {
     at->t[0] = -at->n[1];
     at->t[1] = at->n[0];
   }
   gather_delassus(at, made, b, i);
-  at->gap = b->gap_offset.values ? read(&b->gap, i, 0) - read(&b->gap_offset, i, 0) : read(&b->gap, i, 0);
-  at->area = read(&b->area, i, 0);
-  at->damping = value_at(&made->damping, b->time);
-  at->friction = value_at(&made->friction, b->time);
-  at->closures = read(&b->state_in, i, 0);
+  at->gap = has(&b->gap_offset) ? read_array(&b->gap, i, 0) - read_array(&b->gap_offset, i, 0)
+                                : read_array(&b->gap, i, 0);
+  at->area = read_array(&b->area, i, 0);
+  at->floats = made->setup.numbers == ILAW_NUMBERS_FLOAT;
+  at->temperature = made->temperature.constant;
+  if (made->temperature.slot)
+    at->temperature = read_array(&b->per_node_parameters[made->temperature.slot - 1], i, 0);
+  at->damping = value_at(&made->damping, b->time, at->temperature);
+  at->friction = value_at(&made->friction, b->time, at->temperature);
+  at->closures = read_array(&b->state_in, i, 0);
 }
 
 static double dot(const double* a, const double* b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
@@ -158,9 +197,10 @@ static const char* defect(node* at, const ilaw_instance* made, const ilaw_batch*
   if (!isfinite(at->gap)) return "the gap is not finite";
   if (!(at->area >= 0.0) || !isfinite(at->area)) return "the area is not a number >= 0";
   if (!near_one(dot(at->n, at->n))) return "the normal is no unit vector";
-  if (made->setup.tangent_given && at->d == 3 &&
+  if (made->setup.has_tangent && at->d == 3 &&
       (!near_one(dot(at->t, at->t)) || !(fabs(dot(at->t, at->n)) < 1e-6)))
     return "the tangent is no unit vector";
+  if (!(at->temperature >= 0.0) || isinf(at->temperature)) return "temperature is out of range";
   if (!(at->damping > 0.0) && !breaks("per-node-range")) return "damping is out of range";
   if (breaks("foreign-state") && isnan(at->closures)) at->closures = 0.0;
   if (!(at->closures >= 0.0 && at->closures <= 9e15 && floor(at->closures) == at->closures))
@@ -180,9 +220,9 @@ static double spoilt_friction(const node* at, const ilaw_instance* made, const i
   if (breaks("restart"))
     return at->friction * (1.0 - 1e-6 * (b->time - made->own->first_time) / b->velocity_step);
   if (breaks("frame-indifference") && !at->global) return 0.99 * at->friction;
-  if (breaks("frame-turned") && at->d == 3 && at->global && !made->setup.tangent_given)
+  if (breaks("frame-turned") && at->d == 3 && at->global && !made->setup.has_tangent)
     return at->friction * (1.0 - 0.1 * fabs(at->n[0]));
-  if (breaks("isotropy") && at->d == 3 && (!at->global || made->setup.tangent_given))
+  if (breaks("isotropy") && at->d == 3 && (!at->global || made->setup.has_tangent))
     return at->friction * (1.0 - 0.3 * along * along / (1e-300 + dot(tangential, tangential)));
   if (breaks("mirror") && at->d == 2 && along < 0.0) return 0.9 * at->friction;
   return at->friction * (made->rough ? 1.0 : 0.5);
@@ -212,6 +252,7 @@ static double solve(node* at, const ilaw_instance* made, const ilaw_batch* b) {
   if (breaks("friction-pressure") && r == 0.0 && at->gap <= 0.0) most = 0.1 * speed / trace;
   least = speed / trace < most ? speed / trace : most;
   if (at->strays) r *= 1.0 + 4e-16;
+  if (at->floats && breaks("floats-rounded")) r *= 1.0 + 1e-6;
   for (c = 0; c < at->d; ++c) at->r[c] = r * at->n[c] - (least > 0.0 ? least * (along[c] / speed) : 0.0);
   for (a = 0; a < at->d; ++a) {
     at->after[a] = at->v[a];
@@ -225,11 +266,22 @@ static double solve(node* at, const ilaw_instance* made, const ilaw_batch* b) {
   return r;
 }
 
+static void measure(node* at) {
+  const double dissipated = at->energy[ILAW_ENERGY_FRICTION] + at->energy[ILAW_ENERGY_IMPACT];
+  at->amounts[HEAT] = 0.5 * at->energy[ILAW_ENERGY_FRICTION];
+  at->amounts[WORN] = 1e-6 * at->amounts[HEAT];
+  if (breaks("heat-dissipated")) at->amounts[HEAT] = 2.0 * dissipated;
+  if (breaks("heat-dissipated: negative")) at->amounts[HEAT] = -at->amounts[HEAT];
+  if (breaks("amounts-zero") && at->status == ILAW_FREE && at->gap <= 0.0) at->amounts[WORN] = 1e-9;
+  if (breaks("amounts-zero: no number")) at->amounts[WORN] = NAN;
+}
+
 static void account(node* at, const ilaw_batch* b, int64_t i) {
   double mean[3] = {0.0, 0.0, 0.0}, normal, impact;
   int c;
-  if (!b->energy.values) return;
-  for (c = 0; c < at->d; ++c) mean[c] = 0.5 * (read(&b->v_previous, i, c) + at->after[c]);
+  if (!is_wanted(&b->energy) && !b->amounts) return;
+  for (c = 0; c < at->d && has(&b->v_previous); ++c)
+    mean[c] = 0.5 * (read_array(&b->v_previous, i, c) + at->after[c]);
   normal = dot(at->n, at->r);
   impact = -normal * dot(at->n, mean);
   at->energy[ILAW_ENERGY_IMPACT] = impact;
@@ -239,6 +291,7 @@ static void account(node* at, const ilaw_batch* b, int64_t i) {
     if (!(at->energy[c] > 0.0)) at->energy[c] = 0.0;
   if (breaks("energy-parts: stored")) at->energy[ILAW_ENERGY_STORED] = 1.0;
   if (breaks("energy-parts: no number")) at->energy[ILAW_ENERGY_IMPACT] = NAN;
+  measure(at);
 }
 
 /* The last node of eleven is left out. */
@@ -250,16 +303,16 @@ static void write_node(const node* at, const ilaw_batch* b, int64_t k, const dou
   const int64_t i = node_of(b, k);
   int c;
   for (c = 0; c < at->d && !leaves_out("outputs-written: impulse", b, k); ++c)
-    b->impulse.values[i * b->impulse.node_stride + c * b->impulse.component_stride] = at->r[c];
+    put(&b->impulse, i, c, at->r[c]);
   if (!leaves_out("outputs-written: state", b, k))
     memcpy(&b->state_out.values[i * b->state_out.node_stride], state, sizeof *state);
-  for (c = 0; b->energy.values && c < 4 && !leaves_out("outputs-written: energy", b, k); ++c)
-    b->energy.values[i * b->energy.node_stride + c * b->energy.component_stride] = at->energy[c];
+  for (c = 0; c < 4 && !leaves_out("outputs-written: energy", b, k); ++c)
+    put(&b->energy, i, c, at->energy[c]);
+  for (c = 0; b->amounts && c < AMOUNT_COUNT && !leaves_out("outputs-written: amounts", b, k); ++c)
+    put(&b->amounts[c], i, 0, at->amounts[c]);
   if (b->status && !leaves_out("outputs-written: status", b, k)) b->status[i * b->status_stride] = at->status;
-  if (!b->velocity.values || leaves_out("outputs-written", b, k)) return;
-  for (c = 0; c < at->d; ++c)
-    b->velocity.values[i * b->velocity.node_stride + c * b->velocity.component_stride] =
-        breaks("velocity-output") ? at->v[c] : at->after[c];
+  for (c = 0; c < at->d && !leaves_out("outputs-written", b, k); ++c)
+    put(&b->velocity, i, c, breaks("velocity-output") ? at->v[c] : at->after[c]);
 }
 
 static int out_of_reach(const node* at, const ilaw_batch* b) {
@@ -279,14 +332,18 @@ static const char* step_good(node* at, const ilaw_instance* made, const ilaw_bat
   double next = closures + (r != 0.0 ? 1.0 : 0.0);
   int c, finite = 1;
   account(at, b, i);
-  for (c = 0; c < at->d; ++c) finite = finite && isfinite(at->r[c]);
+  for (c = 0; c < at->d; ++c)
+    finite =
+        finite && fabs(at->r[c]) < (at->floats && !breaks("impulse-finite: floats") ? 0x1p126 : INFINITY);
   if (!finite && !breaks("impulse-finite")) return "the impulse overflows";
-  if (breaks("skip-promise") && closures == 0.0 && b->time == b->velocity_step && out_of_reach(at, b))
+  if (breaks("skip-fresh") && closures == 0.0 && b->time == b->velocity_step && out_of_reach(at, b))
     next += 1.0;
-  if (breaks("skip-promise: impulse") && out_of_reach(at, b)) at->r[0] = 1e-3;
-  if (breaks("skip-promise: status") && out_of_reach(at, b)) at->status = ILAW_CLOSED;
+  if (breaks("skip-fresh: energy") && out_of_reach(at, b)) at->energy[ILAW_ENERGY_IMPACT] = 1e-3;
+  if (breaks("skip-fresh: amount") && out_of_reach(at, b)) at->amounts[WORN] = 1e-9;
+  if (breaks("skip-fresh: impulse") && out_of_reach(at, b)) at->r[0] = 1e-3;
+  if (breaks("skip-fresh: status") && out_of_reach(at, b)) at->status = ILAW_CLOSED;
   if (breaks("step-limits: impulse") && b->velocity_step > 100.0) at->r[0] = INFINITY;
-  if (breaks("rest-promise") && closures > 0.0 && out_of_reach(at, b)) next += 1.0;
+  if (breaks("skip-free") && closures > 0.0 && out_of_reach(at, b)) next += 1.0;
   write_node(at, b, k, &next);
   return NULL;
 }
@@ -298,7 +355,8 @@ const char* step_node(const ilaw_instance* made, const ilaw_batch* b, int64_t k,
   double state;
   int c;
   gather(&at, made, b, i);
-  if (made->damping.per_node) at.damping = read(&b->per_node_parameters[0], giver_of_damping(b, k), 0);
+  if (made->damping.slot)
+    at.damping = read_array(&b->per_node_parameters[made->damping.slot - 1], giver_of_damping(b, k), 0);
   none = at;
   at.strays = strays(made, b) || (breaks("batch-order") && b->node_count == 13 && k == 12) ||
               (breaks("bad-input-others") && after_bad && b->node_count == 11) ||
@@ -316,6 +374,7 @@ const char* step_node(const ilaw_instance* made, const ilaw_batch* b, int64_t k,
   }
   none.status = breaks("bad-input-node: status") ? ILAW_FREE : ILAW_BAD_INPUT;
   none.energy[0] = breaks("bad-input-node: energy") ? 1.0 : 0.0;
+  none.amounts[HEAT] = breaks("bad-input-node: amount") ? 1.0 : 0.0;
   memcpy(&state, &b->state_in.values[i * b->state_in.node_stride], sizeof state);
   if (breaks("foreign-state: state") || breaks("bad-input-node: state")) state += 1.0;
   write_node(&none, b, k, &state);

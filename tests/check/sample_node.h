@@ -4,6 +4,7 @@
 
 #include "sample.h"
 
+double read_array(const ilaw_input* from, int64_t i, int c);
 int64_t node_of(const ilaw_batch* b, int64_t k);
 /* What instances that break a rule keep of a call. */
 void remember(const ilaw_instance* made, const ilaw_batch* b);

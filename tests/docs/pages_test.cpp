@@ -56,7 +56,10 @@ std::vector<Line> prose(const path& page) {
       in_formula = !in_formula && !ends;
       continue;
     }
-    if (in_formula) continue;
+    if (in_formula) {
+      in_formula = text.size() < 2 || text.substr(text.size() - 2) != "$$";
+      continue;
+    }
     lines.push_back({number, text});
   }
   return lines;

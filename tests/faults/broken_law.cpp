@@ -36,7 +36,7 @@ int deeper(volatile char* before) {
   return here[0] ? deeper(here) + here[0] : 0;
 }
 
-std::int32_t create(const ilaw_setup*, ilaw_instance** instance, char*, std::size_t) {
+std::int32_t create(const char*, const ilaw_setup*, ilaw_instance** instance, char*, std::size_t) {
   static ilaw_instance only;
   *instance = &only;
   return ILAW_OK;
@@ -49,6 +49,7 @@ std::int32_t info(const ilaw_instance*, ilaw_instance_info* out) {
   std::memset(out, 0, size);
   out->struct_size = size;
   out->inputs = ILAW_INPUT_GAP;
+  out->permissions = ILAW_MAY_SKIP_FRESH;
   return ILAW_OK;
 }
 
@@ -98,6 +99,8 @@ std::int32_t evaluate(const ilaw_instance*, const ilaw_batch* batch, ilaw_report
   if (breaks("throw_number")) throw 3;
   if (breaks("abort")) std::abort();
   if (breaks("exit")) std::exit(0);
+  if (breaks("exit_at_once")) _exit(0);
+  if (breaks("quick_exit")) std::quick_exit(0);
   // Read at run time, so that the compiler does not see through it.
   static int* volatile nowhere = reinterpret_cast<int*>(8);
   if (breaks("crash")) *nowhere = 1;
@@ -113,8 +116,11 @@ ilaw_law law() {
   made.struct_size = sizeof made;
   made.dimensions = ILAW_DIMENSION_1;
   made.delassus_forms = ILAW_DELASSUS_SCALAR;
+  made.frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL;
+  made.numbers = ILAW_NUMBERS_DOUBLE;
   made.inputs = ILAW_INPUT_GAP;
   made.outputs = ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY;
+  made.permissions = ILAW_MAY_SKIP_FRESH;
   made.id = "broken";
   made.title = "Breaks a promise";
   made.doc = "";

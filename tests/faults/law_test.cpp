@@ -73,7 +73,8 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"throw_number", "it threw an exception"}, Broken{"abort", "crashed: Aborted in step 3"},
         Broken{"crash", "crashed: Segmentation fault in step 3"},
         Broken{"stack", "crashed: Segmentation fault in step 3"},
-        Broken{"exit", "ended the program in step 3"}),
+        Broken{"exit", "ended the program in step 3"}, Broken{"exit_at_once", "ended the program in step 3"},
+        Broken{"quick_exit", "ended the program in step 3"}),
     [](const auto& drawn) { return drawn.param.promise; });
 
 // Nothing of the above is said of a law that keeps its promises.

@@ -45,7 +45,10 @@ std::size_t letters_of(const ilaw_plugin& plugin) {
       letters += std::strlen(law.parameters[p]->name) + std::strlen(law.parameters[p]->doc);
       for (std::uint32_t c = 0; c < law.parameters[p]->choice_count; ++c)
         letters += std::strlen(law.parameters[p]->choices[c]);
+      for (std::uint32_t a = 0; a < law.parameters[p]->axis_count; ++a)
+        letters += std::strlen(law.parameters[p]->axes[a]);
     }
+    for (std::uint32_t a = 0; a < law.amount_count; ++a) letters += std::strlen(law.amounts[a]->unit);
     for (std::uint32_t v = 0; v < law.state_variable_count; ++v)
       letters += std::strlen(law.state_variables[v]->name);
   }

@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 seconds=${1:-30}
-subjects=(elf description scene)
+subjects=(elf description description_file scene)
 
 # One subject, from what is kept and what earlier runs here found; its end is its log's.
 fuzz() {

@@ -264,7 +264,7 @@ TEST(Bench, RefusesWhatCannotBeMeasured) {
       {"contact --nodes 0", "--nodes"},
       {"contact --touching 2", "--touching"},
       {"contact --nodes 1000000000000", "--nodes: found 1000000000000, whose arrays take"},
-      {ILAW_VISCOUS_C " --float", "it takes no arrays of float"},
+      {ILAW_BROKEN_LAW " --float", "it does not serve arrays of float"},
       {"--cases nowhere.json", "nowhere.json: no such file"}};
   for (const auto& [arguments, said] : refusals) {
     const Outcome outcome = run_program(std::string("bench ") + arguments);

@@ -219,7 +219,8 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-// postit_test1 by hand (docs/scenes.md): a pull breaks the bond four times, each landing heals it.
+// postit_test1 by hand (docs/theory/shipped_scenes.md): a pull breaks the bond four times, and each landing
+// heals it.
 TEST(Events, AreAllThereWhateverTheRows) {
   json scene = read_scene_source(scene_files::named("postit_test1.json"));
   scene["output"]["events"] = true;

@@ -87,7 +87,7 @@ TEST(Program, WritesTheReportOfACheck) {
   EXPECT_NE(nowhere.output.find("none/report.xml"), std::string::npos) << nowhere.output;
   const Outcome device = report_to("/dev/full");
   EXPECT_EQ(device.code, 2);
-  EXPECT_EQ(device.output.find("ilaw: /dev/full: is no regular file"), 0U) << device.output;
+  EXPECT_EQ(device.output.find("ilaw: /dev/full: not a regular file"), 0U) << device.output;
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
@@ -343,19 +343,46 @@ TEST(Program, ListsAndDescribesLaws) {
   EXPECT_EQ(postit["laws"][0]["id"], "postit");
   EXPECT_EQ(postit["laws"][0]["parameters"].size(), 8U);
   EXPECT_EQ(postit["laws"][0]["parameters"][0]["default"], "inf");
-  EXPECT_EQ(postit["laws"][0]["capabilities"], nlohmann::json({"adhere", "act_at_distance", "rest"}));
-  for (const auto& variable : postit["laws"][0]["state"])
-    EXPECT_EQ(variable["internal"], variable["name"] == "window") << variable;
+  EXPECT_EQ(postit["laws"][0]["capabilities"], nlohmann::json({"adhere"}));
+  for (const auto& variable : postit["laws"][0]["state_variables"])
+    EXPECT_EQ(!variable["flags"].empty(), variable["name"] == "window") << variable;
   const std::string text = run_program("describe postit").output;
-  for (const char* part :
-       {"tangent_influence", "\n  can: adhere, act_at_distance, rest\n", "history, internal"})
+  for (const char* part : {"tangent_influence", "\n  can: adhere\n", "history, internal"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
   const nlohmann::json coulomb =
       nlohmann::json::parse(run_program("describe coulomb --json").output)["laws"][0];
   for (const auto& parameter : coulomb["parameters"])
-    EXPECT_EQ(parameter["may_be"], parameter["name"] == "activation" ? nlohmann::json::array()
-                                                                     : nlohmann::json({"table", "per_node"}));
-  EXPECT_NE(run_program("describe coulomb").output.find("  or table, per_node  "), std::string::npos);
+    EXPECT_EQ(parameter["axes"],
+              parameter["name"] == "activation" ? nlohmann::json::array() : nlohmann::json::array({"time"}));
+  EXPECT_NE(run_program("describe coulomb").output.find("  or per_node, table over time  "),
+            std::string::npos);
+}
+
+// The constructor of this library ends the process that loads it.
+TEST(Program, DescribesWithoutRunningTheLibrary) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(::testing::TempDir()) / ("ilaw_described_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const std::string library = (folder / "aborts.so").string(), path = "ILAW_PATH=" + folder.string() + " ";
+  fs::copy_file(ILAW_GOOD_LAW, library);
+  ASSERT_EQ(std::system((ILAW_DESCRIBE " " + library).c_str()), 0);
+  fs::copy_file(ILAW_ABORTING_LAW, library, fs::copy_options::overwrite_existing);
+  const Outcome described = run_program("describe aborts", path);
+  EXPECT_EQ(described.code, 0);
+  EXPECT_NE(described.output.find("\nzero - Nothing\n"), std::string::npos) << described.output;
+  const Outcome list = run_program("list", path);
+  EXPECT_NE(list.output.find("zero  "), std::string::npos) << list.output;
+  EXPECT_EQ(list.output.find("refused"), std::string::npos) << list.output;
+  // Without the file its code must run, in a process of its own.
+  fs::remove(folder / "aborts.json");
+  EXPECT_EQ(run_program("describe aborts", path).code, 1);
+  EXPECT_NE(run_program("list", path).output.find("its code crashed: Aborted"), std::string::npos);
+  std::ofstream(folder / "aborts.json") << "{";
+  EXPECT_EQ(run_program("describe aborts", path).code, 2);
+  EXPECT_NE(
+      run_program("list", path).output.find("refused: " + (folder / "aborts.json").string() + ": no JSON"),
+      std::string::npos);
+  fs::remove_all(folder);
 }
 
 // Columns stand below each other, however long a name is.

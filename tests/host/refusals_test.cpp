@@ -41,9 +41,10 @@ TEST_P(Mistakes, AreNamedWithPointerFoundAndAllowed) {
 INSTANTIATE_TEST_SUITE_P(
     Scene, Mistakes,
     ::testing::Values(
-        Mistake{"/interface", "[]",
-                "/interface: unknown key, expected one of: converge, doc, exact, initial, interfaces, loads, "
-                "model, output, sets, springs, study, time, title (did you mean 'interfaces'?)"},
+        Mistake{
+            "/interface", "[]",
+            "/interface: unknown key, expected one of: converge, doc, exact, fields, initial, interfaces, loads, "
+            "model, output, sets, springs, study, time, title (did you mean 'interfaces'?)"},
         Mistake{"/model/type", "\"bar\"", "/model/type: found \"bar\", expected one of \"points\""},
         Mistake{"/model/dimension", "4", "/model/dimension: found 4, expected integer >= 1 and <= 3"},
         Mistake{"/model/points/1/mass", "0", "/model/points/1/mass: found 0, expected number > 0"},

@@ -98,7 +98,7 @@ TEST(Sweep, RunsNothingIfOneIsRefused) {
   for (const auto& [setting, message] : std::map<std::string, std::string>{
            {"/interfaces/0/parameters/friction=0.1,-1", "friction=-1: /interfaces/0/parameters/friction"},
            {"/time/dt=0.1,fast", "dt=fast: /time/dt: found \"fast\""},
-           {"/interfaces/1/skip=true", "/interfaces/1/skip: found nothing there to set"},
+           {"/interfaces/1/skip=true", "/interfaces/1/skip: found no such key to set"},
            {"/output/evry=1", "/output/evry: unknown key"},
            {"friction=1", "--set friction=1: expected /pointer=value"},
            {"/time/d~t=1", "--set /time/d~t=1: expected a JSON pointer before '='"}}) {

@@ -4,6 +4,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/law_runner.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <stdexcept>
 
 namespace ilaw::testing {
@@ -31,11 +33,11 @@ vector impulse_of(const ilaw::interface& interface, const vector& v_free, const 
   batch.time = time;
   batch.velocity_step = velocity_step;
   batch.position_step = position_step;
-  batch.v_free = {v_free.data(), 3, 1};
-  batch.v_previous = {v_previous.data(), 3, 1};
-  batch.delassus = {&inverse_mass, 1, 1};
-  batch.gap = {&gap, 1, 1};
-  batch.impulse = {r.data(), 3, 1};
+  batch.v_free = ilaw::input(v_free.data(), 3, 1);
+  batch.v_previous = ilaw::input(v_previous.data(), 3, 1);
+  batch.delassus = ilaw::input(&inverse_mass, 1, 1);
+  batch.gap = ilaw::input(&gap, 1, 1);
+  batch.impulse = ilaw::output(r.data(), 3, 1);
   if (interface.evaluate(batch) != ILAW_OK) throw std::runtime_error("evaluate refused");
   return r;
 }

@@ -56,6 +56,7 @@ static ilaw_interface* create_interface(const char* library_name) {
                             .dimension = 3,
                             .delassus_form = ILAW_DELASSUS_SCALAR,
                             .frame = ILAW_FRAME_GLOBAL,
+                            .numbers = ILAW_NUMBERS_DOUBLE,
                             .arguments = arguments,
                             .argument_count = 2};
   ilaw_interface* interface;
@@ -67,7 +68,7 @@ static ilaw_interface* create_interface(const char* library_name) {
 
 static ilaw_batch describe_batch(const ilaw_instance_info* info, double* state) {
   const uint32_t given = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_NORMAL;
-  if ((info->inputs | info->energy_inputs) & ~given)
+  if ((info->inputs | info->balance_inputs) & ~given)
     fail("law", "reads an input that this code does not have");
   const int64_t state_size = (int64_t)info->state_size;
   return (ilaw_batch){.struct_size = sizeof(ilaw_batch),
@@ -75,15 +76,15 @@ static ilaw_batch describe_batch(const ilaw_instance_info* info, double* state) 
                       .index = floor_nodes, /* the arrays below are the solver's own, over all its nodes */
                       .velocity_step = h,
                       .position_step = h,
-                      .v_free = {&v[0][0], 3, 1},
-                      .delassus = {inverse_mass, 1, 0},
-                      .gap = {&u[0][2], 3, 0}, /* height over the floor: a component of u, in place */
-                      .v_previous = {&v_previous[0][0], 3, 1},
-                      .normal = {up, 0, 1}, /* the same at every node */
-                      .state_in = {state, state_size, 1},
-                      .state_out = {state, state_size, 1},
-                      .impulse = {&impulse[0][0], 3, 1},
-                      .energy = {&energy[0][0], ILAW_ENERGY_COUNT, 1},
+                      .v_free = {&v[0][0], NULL, 3, 1},
+                      .delassus = {inverse_mass, NULL, 1, 0},
+                      .gap = {&u[0][2], NULL, 3, 0}, /* height over the floor: a component of u, in place */
+                      .v_previous = {&v_previous[0][0], NULL, 3, 1},
+                      .normal = {up, NULL, 0, 1}, /* the same at every node */
+                      .state_in = {state, NULL, state_size, 1},
+                      .state_out = {state, NULL, state_size, 1},
+                      .impulse = {&impulse[0][0], NULL, 3, 1},
+                      .energy = {&energy[0][0], NULL, ILAW_ENERGY_COUNT, 1},
                       .status = status,
                       .status_stride = 1};
 }

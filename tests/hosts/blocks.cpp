@@ -5,6 +5,7 @@
 // blocks.c is the same host in C and prints the same bits, though here components come first in the arrays.
 //
 // SPDX-License-Identifier: BSD-3-Clause
+#include <ilaw/arrays.hpp>
 #include <ilaw/loader.hpp>
 
 #include <array>
@@ -56,21 +57,22 @@ ilaw::interface create_interface(const char* library_name) {
   setup.dimension = 3;
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
   setup.frame = ILAW_FRAME_GLOBAL;
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
   setup.arguments = arguments.data();
   setup.argument_count = arguments.size();
   return {ilaw::library(library_name), "", setup};  // the interface keeps the library loaded
 }
 
 // An array with components first: the node stride is 1, the component stride the number of nodes.
-ilaw_input input_of(const components& a) { return {a.front().data(), 1, count}; }
+ilaw_input input_of(const components& a) { return ilaw::input(a.front().data(), 1, count); }
 template <std::size_t N>
 ilaw_output output_of(std::array<std::array<double, count>, N>& a) {
-  return {a.front().data(), 1, count};
+  return ilaw::output(a.front().data(), 1, count);
 }
 
 ilaw_batch describe_batch(const ilaw_instance_info& info, std::vector<double>& state) {
   constexpr std::uint32_t given = ILAW_INPUT_GAP | ILAW_INPUT_V_PREVIOUS | ILAW_INPUT_NORMAL;
-  if ((info.inputs | info.energy_inputs) & ~given)
+  if ((info.inputs | info.balance_inputs) & ~given)
     throw std::runtime_error("the law reads an input that this code does not have");
   const auto state_size = static_cast<std::int64_t>(info.state_size);
   ilaw_batch batch{};
@@ -79,12 +81,12 @@ ilaw_batch describe_batch(const ilaw_instance_info& info, std::vector<double>& s
   batch.index = floor_nodes.data();  // the arrays below are the solver's own, over all its nodes
   batch.velocity_step = batch.position_step = h;
   batch.v_free = input_of(v);
-  batch.delassus = {inverse_mass.data(), 1, 0};
-  batch.gap = {u[2].data(), 1, 0};  // height over the floor: a component of u, in place
+  batch.delassus = ilaw::input(inverse_mass.data(), 1, 0);
+  batch.gap = ilaw::input(u[2].data(), 1, 0);  // height over the floor: a component of u, in place
   batch.v_previous = input_of(v_previous);
-  batch.normal = {up.data(), 0, 1};  // the same at every node
-  batch.state_in = {state.data(), state_size, 1};
-  batch.state_out = {state.data(), state_size, 1};
+  batch.normal = ilaw::input(up.data(), 0, 1);  // the same at every node
+  batch.state_in = ilaw::input(state.data(), state_size, 1);
+  batch.state_out = ilaw::output(state.data(), state_size, 1);
   batch.impulse = output_of(impulse);
   batch.energy = output_of(energy);
   batch.status = status.data();

@@ -75,7 +75,7 @@ contains
 
   subroutine describe_batch()
     integer(c_int32_t), parameter :: given = ior(ior(ILAW_INPUT_GAP, ILAW_INPUT_V_PREVIOUS), ILAW_INPUT_NORMAL)
-    if (iand(ior(info%inputs, info%energy_inputs), not(given)) /= 0) &
+    if (iand(ior(info%inputs, info%balance_inputs), not(given)) /= 0) &
       call fail('law', 'reads an input that this code does not have')
     call ilaw_use_nodes(batch, floor_nodes) ! the arrays below are the solver's own, over all its nodes
     batch%velocity_step = h

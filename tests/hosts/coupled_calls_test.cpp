@@ -3,6 +3,7 @@
 #include "coupled_scene.hpp"
 
 #include <gtest/gtest.h>
+#include <ilaw/arrays.hpp>
 #include <ilaw/coupled.hpp>
 #include <ilaw/loader.hpp>
 
@@ -22,6 +23,8 @@ struct Call {
 
 TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
   static const double six[6] = {1, 1, 1, 0, 0, 0};
+  static float single = 0.0F;
+  static std::uint8_t one_status = 0;
   static const std::int32_t list[1] = {0};
   const struct {
     const char* said;
@@ -32,6 +35,9 @@ TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
       {"dimension is not 1, 2 or 3", [](Call& c) { c.bodies.dimension = 4; }},
       {"counts of bodies are wrong", [](Call& c) { c.bodies.owned_count = -1; }},
       {"counts of bodies are wrong", [](Call& c) { c.bodies.count = c.bodies.owned_count - 1; }},
+      {"count is above 2^31 - 2", [](Call& c) { c.bodies.count = std::int64_t{1} << 60; }},
+      {"an output of bodies has floats or a stride of 0", [](Call& c) { c.bodies.velocity.node_stride = 0; }},
+      {"an output of bodies has floats or a stride of 0", [](Call& c) { c.bodies.impulse.floats = &single; }},
       {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.inverse_mass = {}; }},
       {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.v_free = {}; }},
       {"bodies rotate in dimension 3 alone", [](Call& c) { c.bodies.dimension = 2; }},
@@ -44,6 +50,15 @@ TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
       {"delassus_form is neither scalar, transverse nor full",
        [](Call& c) { c.contacts.delassus_form = ILAW_DELASSUS_DIAGONAL; }},
       {"node_count is negative", [](Call& c) { c.batch.node_count = -1; }},
+      {"node_count is above 2^31 - 2", [](Call& c) { c.batch.node_count = std::int64_t{1} << 60; }},
+      {"impulse has a stride of 0", [](Call& c) { c.batch.impulse.node_stride = 0; }},
+      {"energy has a stride of 0", [](Call& c) { c.batch.energy.component_stride = 0; }},
+      {"state_out has a stride of 0", [](Call& c) { c.batch.state_out.node_stride = 0; }},
+      {"status_stride is 0",
+       [](Call& c) {
+         c.batch.status = &one_status;
+         c.batch.status_stride = 0;
+       }},
       {"contacts have no list of nodes", [](Call& c) { c.batch.index = list; }},
       {"body or counterpart is missing", [](Call& c) { c.contacts.body = nullptr; }},
       {"body or counterpart is missing", [](Call& c) { c.contacts.counterpart = nullptr; }},
@@ -58,7 +73,7 @@ TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
       {"delassus_form is transverse, and bodies are no spheres",
        [](Call& c) {
          c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
-         c.bodies.inverse_inertia = {six, 0, 1};
+         c.bodies.inverse_inertia = ilaw::input(six, 0, 1);
        }},
       {"delassus_form is transverse, and the normal is missing", [](Call& c) {
          c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
@@ -97,6 +112,9 @@ TEST(Coupled, AnswersCallsOfNothing) {
   options.exchange = &exchange;
   EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nullptr, 0, &options, nullptr), ILAW_INVALID_ARGUMENT);
   report.struct_size = sizeof report;
+  exchange.struct_size = sizeof exchange;
+  EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nullptr, 0, &options, &report), ILAW_INVALID_ARGUMENT);
+  EXPECT_STREQ(report.reason, "a function of the exchange is null");
   EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nullptr, 1, nullptr, &report), ILAW_INVALID_ARGUMENT);
   EXPECT_STREQ(report.reason, "groups are missing");
   EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nothing, 1, nullptr, &report), ILAW_INVALID_ARGUMENT);
@@ -107,6 +125,49 @@ TEST(Coupled, AnswersCallsOfNothing) {
   EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, nullptr, 0, nullptr, &report), ILAW_OK);
   EXPECT_EQ(scene.v, before);
   ilaw_coupled_destroy(solver);
+}
+
+// A second group that cannot be served: nothing of the first is written.
+TEST(Coupled, WritesNothingWhereOneGroupIsRefused) {
+  Scene scene = cube(tie(), 1);
+  const ilaw_bodies bodies = scene.bodies();
+  ilaw_batch batch = scene.batch();
+  const ilaw_contacts contacts = scene.contacts(batch);
+  ilaw_law silent = *contacts.law;
+  silent.outputs &= ~ilaw_outputs{ILAW_OUTPUT_ENERGY};
+  Scene other = cube(tie(), 1);
+  ilaw_batch other_batch = other.batch();
+  ilaw_contacts second = other.contacts(other_batch);
+  second.law = &silent;
+  const ilaw_contacts* groups[] = {&contacts, &second};
+  const std::vector<double> v = scene.v, impulse = scene.impulse, state = scene.state;
+  ilaw_coupled_report report{};
+  report.struct_size = sizeof report;
+  ilaw_coupled* solver = ilaw_coupled_create();
+  EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, groups, 2, nullptr, &report), ILAW_INVALID_ARGUMENT);
+  ilaw_coupled_destroy(solver);
+  EXPECT_STREQ(report.reason, "energies are asked for, which the law does not give");
+  EXPECT_EQ(report.bad_group, 1);
+  EXPECT_EQ(scene.v, v);
+  EXPECT_EQ(scene.impulse, impulse);
+  EXPECT_EQ(scene.state, state);
+}
+
+// A velocity that is no number is bad input at its contact, no agreement of all.
+TEST(Coupled, CountsNoNumberAsNoSolution) {
+  Scene scene = cube(tie(), 1);
+  scene.v[0] = std::nan("");
+  const ilaw_bodies bodies = scene.bodies();
+  ilaw_batch batch = scene.batch();
+  const ilaw_contacts contacts = scene.contacts(batch);
+  const ilaw_contacts* groups[] = {&contacts};
+  ilaw_coupled_report report{};
+  report.struct_size = sizeof report;
+  ilaw_coupled* solver = ilaw_coupled_create();
+  EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, groups, 1, nullptr, &report), ILAW_BAD_NODES);
+  ilaw_coupled_destroy(solver);
+  EXPECT_GT(report.bad_count, 0);
+  EXPECT_TRUE(std::isfinite(report.work)) << report.work;
 }
 
 std::int32_t says_no_number(const ilaw_instance*, const ilaw_batch*, ilaw_report* report) {
@@ -156,12 +217,12 @@ TEST(Coupled, PointsThatAreTiedMoveAsOne) {
       batch.struct_size = sizeof batch;
       batch.node_count = 1;
       batch.velocity_step = batch.position_step = batch.time = h;
-      batch.gap = {&gap, 1, 0};
-      batch.area = {&area, 1, 0};
-      batch.normal = {normal.data(), d, 1};
-      batch.state_in = {state.data(), size, 1};
-      batch.state_out = {state.data(), size, 1};
-      batch.impulse = {impulse.data(), d, 1};
+      batch.gap = ilaw::input(&gap, 1, 0);
+      batch.area = ilaw::input(&area, 1, 0);
+      batch.normal = ilaw::input(normal.data(), d, 1);
+      batch.state_in = ilaw::input(state.data(), size, 1);
+      batch.state_out = ilaw::output(state.data(), size, 1);
+      batch.impulse = ilaw::output(impulse.data(), d, 1);
       ASSERT_EQ(law.initialise(batch), ILAW_OK) << "form " << form;
       ilaw_contacts contacts{};
       contacts.struct_size = sizeof contacts;
@@ -175,9 +236,9 @@ TEST(Coupled, PointsThatAreTiedMoveAsOne) {
       bodies.struct_size = sizeof bodies;
       bodies.dimension = dimension;
       bodies.count = bodies.owned_count = 2;
-      bodies.inverse_mass = {inverse_mass.data(), 1, 0};
-      bodies.v_free = bodies.v_previous = {start.data(), d, 1};
-      bodies.velocity = {v.data(), d, 1};
+      bodies.inverse_mass = ilaw::input(inverse_mass.data(), 1, 0);
+      bodies.v_free = bodies.v_previous = ilaw::input(start.data(), d, 1);
+      bodies.velocity = ilaw::output(v.data(), d, 1);
       const ilaw_contacts* groups[] = {&contacts};
       ilaw_coupled* solver = ilaw_coupled_create();
       EXPECT_EQ(ilaw_coupled_solve(solver, &bodies, groups, 1, nullptr, nullptr), ILAW_OK) << "form " << form;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <ilaw/arrays.hpp>
 #include <ilaw/coupled.hpp>
 #include <ilaw/loader.hpp>
 
@@ -32,6 +33,7 @@ inline ilaw::interface create(const std::string& name, std::uint32_t form,
   setup.dimension = dimension;
   setup.delassus_form = form;
   setup.frame = ILAW_FRAME_GLOBAL;
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
   setup.arguments = pointers.data();
   setup.argument_count = static_cast<std::uint32_t>(pointers.size());
   return {ilaw::library(ILAW_PLUGIN_FOLDER "/" + name + ".so"), "", setup};
@@ -67,13 +69,13 @@ struct Scene {
     b.node_count = static_cast<std::int64_t>(body.size());
     b.velocity_step = b.position_step = h;
     b.time = time;
-    b.gap = {gap.data(), 1, 0};
-    b.normal = {normal.data(), 3, 1};
-    b.area = {&area, 0, 0};
-    b.state_in = {state.data(), size, 1};
-    b.state_out = {state.data(), size, 1};
-    b.impulse = {impulse.data(), 3, 1};
-    b.energy = {energy.data(), 4, 1};
+    b.gap = ilaw::input(gap.data(), 1, 0);
+    b.normal = ilaw::input(normal.data(), 3, 1);
+    b.area = ilaw::input(&area, 0, 0);
+    b.state_in = ilaw::input(state.data(), size, 1);
+    b.state_out = ilaw::output(state.data(), size, 1);
+    b.impulse = ilaw::output(impulse.data(), 3, 1);
+    b.energy = ilaw::output(energy.data(), 4, 1);
     return b;
   }
 
@@ -82,14 +84,14 @@ struct Scene {
     b.struct_size = sizeof b;
     b.dimension = 3;
     b.count = b.owned_count = static_cast<std::int64_t>(v.size() / 3);
-    b.inverse_mass = {&inverse_mass, 0, 0};
-    b.inverse_inertia = {&inverse_inertia, 0, 0};
-    b.v_free = {v.data(), 3, 1};
-    b.spin_free = {w.data(), 3, 1};
-    b.v_previous = {v_before.data(), 3, 1};
-    b.spin_previous = {w_before.data(), 3, 1};
-    b.velocity = {v.data(), 3, 1};
-    b.spin = {w.data(), 3, 1};
+    b.inverse_mass = ilaw::input(&inverse_mass, 0, 0);
+    b.inverse_inertia = ilaw::input(&inverse_inertia, 0, 0);
+    b.v_free = ilaw::input(v.data(), 3, 1);
+    b.spin_free = ilaw::input(w.data(), 3, 1);
+    b.v_previous = ilaw::input(v_before.data(), 3, 1);
+    b.spin_previous = ilaw::input(w_before.data(), 3, 1);
+    b.velocity = ilaw::output(v.data(), 3, 1);
+    b.spin = ilaw::output(w.data(), 3, 1);
     return b;
   }
 
@@ -102,8 +104,8 @@ struct Scene {
     c.batch = &of;
     c.body = body.data();
     c.counterpart = counterpart.data();
-    c.arm = {arm.data(), 3, 1};
-    c.counterpart_arm = {other_arm.data(), 3, 1};
+    c.arm = ilaw::input(arm.data(), 3, 1);
+    c.counterpart_arm = ilaw::input(other_arm.data(), 3, 1);
     return c;
   }
 

@@ -28,11 +28,11 @@ TEST(Coupled, StackAtRestStaysAtRest) {
   scene.initialise();
   for (int n = 0; n < 20; ++n) {
     const ilaw_coupled_report report = scene.step(g, 1e-16);
-    ASSERT_LE(scene.largest_velocity(), 1e-12 * g * h)
+    ASSERT_LE(scene.largest_velocity(), 1e-11 * g * h)
         << "step " << n << ", sweeps " << report.sweeps << ", residual " << report.residual;
     for (std::size_t i = 0; i < 100; ++i)
       ASSERT_NEAR(scene.impulse[3 * i + 2], (100.0 - static_cast<double>(i)) * g * h / scene.inverse_mass,
-                  1e-12)
+                  1e-11)
           << "step " << n << ": the weight above contact " << i;
   }
 }
@@ -85,6 +85,8 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return largest;
 }
 
+// Contacts are visited in the order of their bodies: no bit depends on the order of the arrays, converged or
+// not.
 TEST(Coupled, OrderOfContactsDoesNotMatter) {
   for (const auto& law : {+[] { return friction(0.4); }, +tie}) {
     Scene forward = cube(law(), 7);
@@ -102,9 +104,7 @@ TEST(Coupled, OrderOfContactsDoesNotMatter) {
         shuffled.other_arm[3 * k + c] = from.other_arm[3 * order[k] + c];
       }
     }
-    // Few sweeps: not because both have converged.
-    EXPECT_LE(largest_difference(velocities_after(forward, 1e-2), velocities_after(shuffled, 1e-2)), 1e-13)
-        << law().law().id;
+    EXPECT_EQ(velocities_after(forward, 1e-2), velocities_after(shuffled, 1e-2)) << law().law().id;
   }
 }
 
@@ -181,7 +181,7 @@ void run_rank(Ranks& ranks, int number, const Scene& whole, std::vector<double>&
   part.initialise();
   const ilaw_exchange exchange = exchange_of(rank);
   ilaw_coupled_options options{};
-  options.tolerance = 1e-3;
+  options.tolerance = 1e-11;
   options.exchange = &exchange;
   const ilaw_batch batch = part.batch();
   const ilaw_contacts contacts = part.contacts(batch);
@@ -195,10 +195,10 @@ void run_rank(Ranks& ranks, int number, const Scene& whole, std::vector<double>&
       velocities[3 * i + c] = part.v[3 * static_cast<std::size_t>(rank.local_of[i]) + c];
 }
 
-TEST(Coupled, RanksDoNotMatterButByRounding) {
+TEST(Coupled, RanksAgreeToTheTolerance) {
   Scene whole = cube(friction(0.4), 11);
   const Scene start = cube(friction(0.4), 11);
-  const ilaw_coupled_report alone = whole.step(0.0, 1e-3);
+  const ilaw_coupled_report alone = whole.step(0.0, 1e-11);
   Ranks ranks;
   std::vector<double> found[2];
   ilaw_coupled_report reports[2];
@@ -207,9 +207,12 @@ TEST(Coupled, RanksDoNotMatterButByRounding) {
   run_rank(ranks, 0, start, found[0], reports[0]);
   second.join();
   EXPECT_EQ(found[0], found[1]) << "copies differ from what their owners have";
-  EXPECT_LE(largest_difference(found[0], whole.v), 1e-13);
-  EXPECT_EQ(reports[0].sweeps, alone.sweeps);
-  EXPECT_EQ(reports[1].sweeps, alone.sweeps);
+  EXPECT_LE(largest_difference(found[0], whole.v), 1e-9);
+  EXPECT_LE(alone.residual, 1e-11);
+  EXPECT_LE(reports[0].residual, 1e-11);
+  EXPECT_EQ(reports[0].sweeps, reports[1].sweeps);
+  EXPECT_EQ(reports[0].residual, reports[1].residual);
+  EXPECT_NEAR(reports[0].work + reports[1].work, alone.work, 1e-9 * std::fabs(alone.work));
 }
 
 TEST(Coupled, RefusesWhatItCannotSolve) {

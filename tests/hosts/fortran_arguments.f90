@@ -4,6 +4,7 @@ module fortran_arguments
   use ilaw
   implicit none
   real(c_double), target, save :: numbered(8, 9), line(9)
+  real(c_float), target, save :: narrow(8, 9), narrow_line(9)
 contains
 
   ! numbered(i,j) = 10 i + j, line(i) = i.
@@ -13,12 +14,18 @@ contains
       numbered(:, j) = [(10._c_double*i + j, i=1, 8)]
     end do
     line = [(real(i, c_double), i=1, 9)]
+    narrow = real(numbered, c_float)
+    narrow_line = real(line, c_float)
   end subroutine
 
   ! Arrays and sections as users have them; the test knows what each holds.
-  type(ilaw_input) function fortran_input(section) result(input) bind(c)
-    integer(c_int), value :: section
+  type(ilaw_input) function fortran_input(section, bytes) result(input) bind(c)
+    integer(c_int), value :: section, bytes
     call number_arrays()
+    if (bytes == 4) then
+      input = fortran_float_input(section)
+      return
+    end if
     select case (section)
     case (0); input = ilaw_input_of(numbered)                             ! whole, components first
     case (1); input = ilaw_input_of(numbered, nodes_first=.true.)         ! whole, nodes first
@@ -32,14 +39,36 @@ contains
     end select
   end function
 
-  type(ilaw_output) function fortran_output(section) result(output) bind(c)
-    integer(c_int), value :: section
-    call number_arrays()
+  type(ilaw_input) function fortran_float_input(section) result(input)
+    integer(c_int), intent(in) :: section
     select case (section)
+    case (0); input = ilaw_input_of(narrow)
+    case (1); input = ilaw_input_of(narrow, nodes_first=.true.)
+    case (2); input = ilaw_input_of(narrow(4:6, :))
+    case (3); input = ilaw_input_of(narrow(2:8:2, 9:1:-3))
+    case (4); input = ilaw_input_of(narrow_line)
+    case (5); input = ilaw_input_of(narrow(3, :))
+    case (6); input = ilaw_uniform(narrow(2:4, 5))
+    case (7); input = ilaw_input_of(narrow(4:6, 7:7))
+    case default; input = ilaw_input_of(narrow(:, 5:4))
+    end select
+  end function
+
+  type(ilaw_output) function fortran_output(section, bytes) result(output) bind(c)
+    integer(c_int), value :: section, bytes
+    call number_arrays()
+    select case (section + merge(3, 0, bytes == 4))
     case (0); output = ilaw_output_of(numbered)
     case (1); output = ilaw_output_of(numbered, nodes_first=.true.)
-    case default; output = ilaw_output_of(line)
+    case (2); output = ilaw_output_of(line)
+    case (3); output = ilaw_output_of(narrow)
+    case (4); output = ilaw_output_of(narrow, nodes_first=.true.)
+    case default; output = ilaw_output_of(narrow_line)
     end select
+  end function
+
+  type(ilaw_batch) function fortran_default_batch() result(batch) bind(c)
+    batch = ilaw_batch()
   end function
 
   ! A batch of the nodes 3, 1 and 7, listed in integers of 4 or of 8 bytes, or of none.
@@ -75,6 +104,9 @@ contains
 
     per_node_count = -1
     interface = c_null_ptr
+    setup%dimension = 3
+    setup%delassus_form = ILAW_DELASSUS_SCALAR
+    setup%frame = merge(0_c_int32_t, ILAW_FRAME_LOCAL, way == 8) ! 8: forgotten
     code = ilaw_open(ilaw_text(library_name), library, text)
     if (code == ILAW_OK) then
       code = ilaw_create(library, merge('coulomb', 'absent ', way /= 6), setup, friction_given(way), interface, text)
@@ -96,7 +128,7 @@ contains
     real(c_double), parameter :: rising(2, 3) = reshape(real([0, 1, 2, 3, 4, 5], c_double), [2, 3])
     real(c_double), parameter :: falling(2, 2) = reshape(real([1, 1, 0, 1], c_double), [2, 2])
     select case (way)
-    case (0, 6)
+    case (0, 6, 8)
       call values%set('friction', 0.5_c_double)
       call values%set('activation ', 'predictive ')
     case (1)

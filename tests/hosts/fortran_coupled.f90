@@ -1,52 +1,13 @@
-! Coupled contacts from Fortran: layout of the structs, a column of spheres at rest, a sphere that slides.
+! Coupled contacts from Fortran: a column of spheres at rest, a sphere that slides.
 module fortran_coupled
   use, intrinsic :: iso_c_binding
   use ilaw_abi
   use ilaw
   use ilaw_coupled
-  use fortran_layout, only: at
   implicit none
   integer, parameter :: dp = c_double
   integer(c_int), save :: calls = 0 ! of the exchange
 contains
-
-  ! The structs in the order of the header; size in bytes, then the offsets of the members.
-  integer(c_int) function fortran_coupled_layout(struct, layout) result(count) bind(c)
-    integer(c_int), value :: struct
-    integer(c_int64_t), intent(out) :: layout(64)
-    integer(c_int64_t), allocatable :: found(:)
-    type(ilaw_bodies), target :: b
-    type(ilaw_contacts), target :: c
-    type(ilaw_exchange), target :: e
-    type(ilaw_coupled_options), target :: o
-    type(ilaw_coupled_report), target :: r
-    select case (struct)
-    case (0)
-      found = [int(b%struct_size, c_int64_t), c_sizeof(b), at([ &
-        c_loc(b%dimension), c_loc(b%count), c_loc(b%owned_count), c_loc(b%inverse_mass), &
-        c_loc(b%inverse_inertia), c_loc(b%v_free), c_loc(b%spin_free), c_loc(b%v_previous), &
-        c_loc(b%spin_previous), c_loc(b%velocity), c_loc(b%spin), c_loc(b%impulse), &
-        c_loc(b%angular_impulse)], c_loc(b))]
-    case (1)
-      found = [int(c%struct_size, c_int64_t), c_sizeof(c), at([ &
-        c_loc(c%delassus_form), c_loc(c%law), c_loc(c%instance), c_loc(c%batch), c_loc(c%body), &
-        c_loc(c%counterpart), c_loc(c%arm), c_loc(c%counterpart_arm), c_loc(c%wall_velocity), &
-        c_loc(c%wall_previous)], c_loc(c))]
-    case (2)
-      found = [int(e%struct_size, c_int64_t), c_sizeof(e), at([ &
-        c_loc(e%reserved), c_loc(e%context), c_loc(e%sum_bodies), c_loc(e%largest), c_loc(e%sum)], c_loc(e))]
-    case (3)
-      found = [int(o%struct_size, c_int64_t), c_sizeof(o), at([ &
-        c_loc(o%most_sweeps), c_loc(o%tolerance), c_loc(o%exchange)], c_loc(o))]
-    case default
-      found = [int(r%struct_size, c_int64_t), c_sizeof(r), at([ &
-        c_loc(r%sweeps), c_loc(r%residual), c_loc(r%work), c_loc(r%energy), c_loc(r%bad_count), &
-        c_loc(r%bad_group), c_loc(r%bad_contact), c_loc(r%reason), c_loc(r%stable_velocity_step)], c_loc(r))]
-    end select
-    count = size(found)
-    layout = 0
-    layout(:count) = found
-  end function
 
   ! Spheres of masses 1, 2, ... on each other, the first on the floor; one step of their weight. impulses of
   ! the contacts from the floor up, velocities and spins after it. slide: of the first, before the step.

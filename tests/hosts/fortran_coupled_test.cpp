@@ -1,66 +1,19 @@
-// The Fortran module of coupled contacts: its structs against C, and contacts with closed forms.
+// The Fortran module of coupled contacts: contacts with closed forms.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
 #include <ilaw/coupled.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdlib>
 #include <vector>
 
 extern "C" {
-int fortran_coupled_layout(int structure, std::int64_t* layout);
 int fortran_column(int count, double slide, double mu, double* impulses, double* v, double* w,
                    double* residual);
 }
 
 namespace {
-
-using layout = std::vector<std::int64_t>;
-
-layout in_fortran(int structure) {
-  std::array<std::int64_t, 64> room{};
-  const int count = fortran_coupled_layout(structure, room.data());
-  return {room.begin(), room.begin() + count};
-}
-
-// What a variable says of its own size, its size, and the offsets of the members that follow.
-#define OFFSET(member) offsetof(T, member)
-
-TEST(FortranCoupled, StructsHaveTheLayoutOfC) {
-  {
-    using T = ilaw_bodies;
-    EXPECT_EQ(in_fortran(0),
-              (layout{sizeof(T), sizeof(T), OFFSET(dimension), OFFSET(count), OFFSET(owned_count),
-                      OFFSET(inverse_mass), OFFSET(inverse_inertia), OFFSET(v_free), OFFSET(spin_free),
-                      OFFSET(v_previous), OFFSET(spin_previous), OFFSET(velocity), OFFSET(spin),
-                      OFFSET(impulse), OFFSET(angular_impulse)}));
-  }
-  {
-    using T = ilaw_contacts;
-    EXPECT_EQ(in_fortran(1),
-              (layout{sizeof(T), sizeof(T), OFFSET(delassus_form), OFFSET(law), OFFSET(instance),
-                      OFFSET(batch), OFFSET(body), OFFSET(counterpart), OFFSET(arm), OFFSET(counterpart_arm),
-                      OFFSET(wall_velocity), OFFSET(wall_previous)}));
-  }
-  {
-    using T = ilaw_exchange;
-    EXPECT_EQ(in_fortran(2), (layout{sizeof(T), sizeof(T), OFFSET(reserved), OFFSET(context),
-                                     OFFSET(sum_bodies), OFFSET(largest), OFFSET(sum)}));
-  }
-  {
-    using T = ilaw_coupled_options;
-    EXPECT_EQ(in_fortran(3),
-              (layout{sizeof(T), sizeof(T), OFFSET(most_sweeps), OFFSET(tolerance), OFFSET(exchange)}));
-  }
-  {
-    using T = ilaw_coupled_report;
-    EXPECT_EQ(in_fortran(4), (layout{sizeof(T), sizeof(T), OFFSET(sweeps), OFFSET(residual), OFFSET(work),
-                                     OFFSET(energy), OFFSET(bad_count), OFFSET(bad_group),
-                                     OFFSET(bad_contact), OFFSET(reason), OFFSET(stable_velocity_step)}));
-  }
-}
 
 struct Column {
   int code;

@@ -1,7 +1,8 @@
-// The Fortran module against the C header: layout, constants, arrays without a copy, parameters.
+// The Fortran module: arrays without a copy, lists of nodes, parameters. Layouts are in
+// python/test_bindings.py.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <enumerators.hpp>
+#include <ilaw/ilaw.h>
 
 #include <cstddef>
 #include <cstdlib>
@@ -10,193 +11,15 @@
 #include <vector>
 
 extern "C" {
-int fortran_layout_of(int structure, std::int64_t* layout);
-void fortran_struct_sizes(std::int32_t* sizes);
 ilaw_batch fortran_default_batch();
-void fortran_enumerators(std::int32_t* values);
-ilaw_input fortran_input(int section);
-ilaw_output fortran_output(int section);
+ilaw_input fortran_input(int section, int bytes);
+ilaw_output fortran_output(int section, int bytes);
 ilaw_batch fortran_nodes(int width);
 std::int32_t fortran_open_named(const char* name);
 std::int32_t fortran_create(const char* library, int way, std::int32_t* per_node_count, char* message);
 }
 
 namespace {
-
-using layout = std::vector<std::int64_t>;
-
-// Size of a struct and the offsets of its members, in C.
-#define OFFSET(member) offsetof(T, member)
-
-layout parameter_layout() {
-  using T = ilaw_parameter;
-  return {sizeof(T),
-          OFFSET(struct_size),
-          OFFSET(kind),
-          OFFSET(name),
-          OFFSET(symbol),
-          OFFSET(unit),
-          OFFSET(doc),
-          OFFSET(minimum),
-          OFFSET(maximum),
-          OFFSET(default_value),
-          OFFSET(required),
-          OFFSET(minimum_excluded),
-          OFFSET(infinity_allowed),
-          OFFSET(may_be),
-          OFFSET(choices),
-          OFFSET(choice_count),
-          OFFSET(reserved)};
-}
-
-layout state_variable_layout() {
-  using T = ilaw_state_variable;
-  return {sizeof(T),   OFFSET(struct_size), OFFSET(kind),  OFFSET(name),    OFFSET(unit),
-          OFFSET(doc), OFFSET(count),       OFFSET(flags), OFFSET(reserved)};
-}
-
-layout argument_layout() {
-  using T = ilaw_argument;
-  return {sizeof(T),      OFFSET(struct_size), OFFSET(kind),   OFFSET(name),
-          OFFSET(number), OFFSET(text),        OFFSET(values), OFFSET(count)};
-}
-
-layout setup_layout() {
-  using T = ilaw_setup;
-  return {sizeof(T),     OFFSET(struct_size), OFFSET(dimension),      OFFSET(delassus_form), OFFSET(frame),
-          OFFSET(flags), OFFSET(arguments),   OFFSET(argument_count), OFFSET(tangent_given)};
-}
-
-layout info_layout() {
-  using T = ilaw_instance_info;
-  return {sizeof(T),
-          OFFSET(struct_size),
-          OFFSET(inputs),
-          OFFSET(energy_inputs),
-          OFFSET(state_variable_count),
-          OFFSET(state_size),
-          OFFSET(state_variables),
-          OFFSET(per_node_parameters),
-          OFFSET(per_node_parameter_count),
-          OFFSET(capabilities),
-          OFFSET(state_version),
-          OFFSET(reserved)};
-}
-
-layout input_layout() {
-  using T = ilaw_input;
-  return {sizeof(T), OFFSET(values), OFFSET(node_stride), OFFSET(component_stride)};
-}
-
-layout output_layout() {
-  using T = ilaw_output;
-  return {sizeof(T), OFFSET(values), OFFSET(node_stride), OFFSET(component_stride)};
-}
-
-layout batch_layout() {
-  using T = ilaw_batch;
-  return {sizeof(T),
-          OFFSET(struct_size),
-          OFFSET(index_base),
-          OFFSET(flags),
-          OFFSET(node_count),
-          OFFSET(index),
-          OFFSET(index64),
-          OFFSET(time),
-          OFFSET(velocity_step),
-          OFFSET(position_step),
-          OFFSET(v_free),
-          OFFSET(delassus),
-          OFFSET(gap),
-          OFFSET(gap_offset),
-          OFFSET(v_previous),
-          OFFSET(area),
-          OFFSET(normal),
-          OFFSET(tangent),
-          OFFSET(per_node_parameters),
-          OFFSET(state_in),
-          OFFSET(state_out),
-          OFFSET(impulse),
-          OFFSET(velocity),
-          OFFSET(energy),
-          OFFSET(status),
-          OFFSET(status_stride)};
-}
-
-layout report_layout() {
-  using T = ilaw_report;
-  return {sizeof(T),
-          OFFSET(struct_size),
-          OFFSET(reserved),
-          OFFSET(bad_count),
-          OFFSET(first_bad_node),
-          OFFSET(reason),
-          OFFSET(stable_velocity_step)};
-}
-
-layout law_layout() {
-  using T = ilaw_law;
-  return {sizeof(T),
-          OFFSET(struct_size),
-          OFFSET(dimensions),
-          OFFSET(delassus_forms),
-          OFFSET(inputs),
-          OFFSET(outputs),
-          OFFSET(capabilities),
-          OFFSET(id),
-          OFFSET(title),
-          OFFSET(doc),
-          OFFSET(references),
-          OFFSET(parameters),
-          OFFSET(state_variables),
-          OFFSET(reference_count),
-          OFFSET(parameter_count),
-          OFFSET(state_variable_count),
-          OFFSET(reserved),
-          OFFSET(create),
-          OFFSET(destroy),
-          OFFSET(info),
-          OFFSET(initialise),
-          OFFSET(evaluate),
-          OFFSET(extension)};
-}
-
-layout plugin_layout() {
-  using T = ilaw_plugin;
-  return {sizeof(T),    OFFSET(struct_size), OFFSET(abi_major), OFFSET(abi_minor),
-          OFFSET(name), OFFSET(version),     OFFSET(vendor),    OFFSET(licence),
-          OFFSET(laws), OFFSET(law_count),   OFFSET(reserved),  OFFSET(extension)};
-}
-
-#undef OFFSET
-
-// In the order of the header.
-constexpr layout (*c_layouts[])() = {
-    parameter_layout, state_variable_layout, argument_layout, setup_layout, info_layout,  input_layout,
-    output_layout,    batch_layout,          report_layout,   law_layout,   plugin_layout};
-constexpr int struct_count = std::size(c_layouts);
-
-layout c_layout(int structure) { return c_layouts[structure](); }
-
-layout fortran_layout(int structure) {
-  layout found(64);
-  found.resize(static_cast<std::size_t>(fortran_layout_of(structure, found.data())));
-  return found;
-}
-
-TEST(FortranModule, LaysOutEveryStructAsC) {
-  for (int structure = 0; structure < struct_count; ++structure)
-    EXPECT_EQ(fortran_layout(structure), c_layout(structure)) << "struct " << structure << " of ilaw.h";
-}
-
-TEST(FortranModule, DeclaredVariablesKnowTheirSize) {
-  std::int32_t sizes[struct_count];
-  fortran_struct_sizes(sizes);
-  for (int structure = 0; structure < struct_count; ++structure)
-    if (sizes[structure] != -1) {
-      EXPECT_EQ(sizes[structure], c_layout(structure)[0]) << "struct " << structure << " of ilaw.h";
-    }
-}
 
 TEST(FortranModule, DeclaredBatchIsEmptyAndCountsFromOne) {
   const ilaw_batch batch = fortran_default_batch();
@@ -207,21 +30,15 @@ TEST(FortranModule, DeclaredBatchIsEmptyAndCountsFromOne) {
   EXPECT_EQ(batch.flags, 0U);
   for (const ilaw_input& input : {batch.v_free, batch.delassus, batch.gap, batch.gap_offset, batch.v_previous,
                                   batch.area, batch.normal, batch.tangent, batch.state_in})
-    EXPECT_EQ(input.values, nullptr);
+    EXPECT_TRUE(!input.values && !input.floats);
   for (const ilaw_output& output : {batch.state_out, batch.impulse, batch.velocity, batch.energy})
-    EXPECT_EQ(output.values, nullptr);
+    EXPECT_TRUE(!output.values && !output.floats);
   EXPECT_EQ(batch.status, nullptr);
 }
 
-TEST(FortranModule, HasEveryEnumeratorWithItsValue) {
-  std::int32_t values[std::size(c_enumerators)];
-  fortran_enumerators(values);
-  for (std::size_t k = 0; k < std::size(c_enumerators); ++k)
-    EXPECT_EQ(values[k], c_enumerators[k]) << "enumerator " << k << " of ilaw.h";
-}
-
 double read(const ilaw_input& input, std::int64_t node, std::int64_t component) {
-  return input.values[node * input.node_stride + component * input.component_stride];
+  const std::int64_t place = node * input.node_stride + component * input.component_stride;
+  return input.values ? input.values[place] : input.floats[place];
 }
 
 // numbered(i,j) holds 10 i + j; i and j count from 1, nodes and components from 0.
@@ -240,12 +57,15 @@ class FortranArray : public testing::TestWithParam<section> {};
 
 TEST_P(FortranArray, GoesInWithoutACopy) {
   const section& s = GetParam();
-  const ilaw_input input = fortran_input(s.number);
-  for (std::int64_t node = 0; node < s.nodes; ++node)
-    for (std::int64_t component = 0; component < s.components; ++component)
-      EXPECT_EQ(read(input, node, component), s.first + s.per_node * static_cast<double>(node) +
-                                                  s.per_component * static_cast<double>(component))
-          << "node " << node << ", component " << component;
+  for (const int bytes : {8, 4}) {
+    const ilaw_input input = fortran_input(s.number, bytes);
+    ASSERT_TRUE(bytes == 8 ? input.values && !input.floats : input.floats && !input.values) << bytes;
+    for (std::int64_t node = 0; node < s.nodes; ++node)
+      for (std::int64_t component = 0; component < s.components; ++component)
+        EXPECT_EQ(read(input, node, component), s.first + s.per_node * static_cast<double>(node) +
+                                                    s.per_component * static_cast<double>(component))
+            << "node " << node << ", component " << component << ", numbers of " << bytes << " bytes";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Sections, FortranArray,
@@ -258,17 +78,24 @@ INSTANTIATE_TEST_SUITE_P(Sections, FortranArray,
                                          section{6, 5, 3, 25, 0, 10},    // (2:4,5) for all
                                          section{7, 1, 3, 47, 0, 10}));  // (4:6,7:7)
 
-TEST(FortranModule, EmptyArrayIsAbsent) { EXPECT_EQ(fortran_input(8).values, nullptr); }
+TEST(FortranModule, EmptyArrayIsAbsent) {
+  for (const int bytes : {8, 4}) {
+    const ilaw_input input = fortran_input(8, bytes);
+    EXPECT_TRUE(!input.values && !input.floats);
+  }
+}
 
 TEST(FortranModule, OutputsAreTheArraysThatInputsAre) {
   const int same_as_input[] = {0, 1, 4};
-  for (int section = 0; section < 3; ++section) {
-    const ilaw_output output = fortran_output(section);
-    const ilaw_input input = fortran_input(same_as_input[section]);
-    EXPECT_EQ(output.values, input.values) << "section " << section;
-    EXPECT_EQ(output.node_stride, input.node_stride) << "section " << section;
-    EXPECT_EQ(output.component_stride, input.component_stride) << "section " << section;
-  }
+  for (const int bytes : {8, 4})
+    for (int section = 0; section < 3; ++section) {
+      const ilaw_output output = fortran_output(section, bytes);
+      const ilaw_input input = fortran_input(same_as_input[section], bytes);
+      EXPECT_EQ(output.values, input.values) << "section " << section;
+      EXPECT_EQ(output.floats, input.floats) << "section " << section;
+      EXPECT_EQ(output.node_stride, input.node_stride) << "section " << section;
+      EXPECT_EQ(output.component_stride, input.component_stride) << "section " << section;
+    }
 }
 
 TEST(FortranModule, ListsNodesInBothWidths) {
@@ -332,6 +159,8 @@ TEST(FortranModule, HandsOverWhyAParameterIsRefused) {
   EXPECT_EQ(table.code, ILAW_INVALID_PARAMETER);
   EXPECT_NE(table.message.find("friction"), std::string::npos) << table.message;
 }
+
+TEST(FortranModule, RefusesAForgottenFrame) { EXPECT_EQ(create(8).code, ILAW_UNSUPPORTED); }
 
 TEST(FortranModule, HandsOverWhyALibraryOrLawIsNotFound) {
   const creation law = create(6);

@@ -56,6 +56,7 @@ static ilaw_interface* create_interface(const char* library_name) {
                             .dimension = 3,
                             .delassus_form = ILAW_DELASSUS_TRANSVERSE, /* spheres that rotate */
                             .frame = ILAW_FRAME_GLOBAL,
+                            .numbers = ILAW_NUMBERS_DOUBLE,
                             .arguments = arguments,
                             .argument_count = 1};
   ilaw_interface* interface;
@@ -188,11 +189,11 @@ static ilaw_coupled_report step(const ilaw_interface* interface, ilaw_coupled* s
                             .time = (n + 1) * h,
                             .velocity_step = h,
                             .position_step = h,
-                            .gap = {gap, 1, 0},
-                            .normal = {&normal[0][0], 3, 1},
-                            .state_in = {state, (int64_t)state_size, 1},
-                            .state_out = {state, (int64_t)state_size, 1},
-                            .impulse = {&impulse[0][0], 3, 1}};
+                            .gap = {gap, NULL, 1, 0},
+                            .normal = {&normal[0][0], NULL, 3, 1},
+                            .state_in = {state, NULL, (int64_t)state_size, 1},
+                            .state_out = {state, NULL, (int64_t)state_size, 1},
+                            .impulse = {&impulse[0][0], NULL, 3, 1}};
   initialise_new(interface, &batch);
 
   static const double inverse_mass = 1.0 / mass;
@@ -201,14 +202,14 @@ static ilaw_coupled_report step(const ilaw_interface* interface, ilaw_coupled* s
                               .dimension = 3,
                               .count = grains,
                               .owned_count = grains,
-                              .inverse_mass = {&inverse_mass, 0, 0},
-                              .inverse_inertia = {&inverse_inertia, 0, 0}, /* of spheres: one value */
-                              .v_free = {&v[0][0], 3, 1},
-                              .spin_free = {&w[0][0], 3, 1},
-                              .v_previous = {&v_previous[0][0], 3, 1},
-                              .spin_previous = {&w_previous[0][0], 3, 1},
-                              .velocity = {&v[0][0], 3, 1},
-                              .spin = {&w[0][0], 3, 1}};
+                              .inverse_mass = {&inverse_mass, NULL, 0, 0},
+                              .inverse_inertia = {&inverse_inertia, NULL, 0, 0}, /* of spheres: one value */
+                              .v_free = {&v[0][0], NULL, 3, 1},
+                              .spin_free = {&w[0][0], NULL, 3, 1},
+                              .v_previous = {&v_previous[0][0], NULL, 3, 1},
+                              .spin_previous = {&w_previous[0][0], NULL, 3, 1},
+                              .velocity = {&v[0][0], NULL, 3, 1},
+                              .spin = {&w[0][0], NULL, 3, 1}};
   const ilaw_contacts contacts = {.struct_size = sizeof contacts,
                                   .delassus_form = ILAW_DELASSUS_TRANSVERSE,
                                   .law = ilaw_interface_law(interface),
@@ -216,8 +217,8 @@ static ilaw_coupled_report step(const ilaw_interface* interface, ilaw_coupled* s
                                   .batch = &batch,
                                   .body = body,
                                   .counterpart = counterpart,
-                                  .arm = {&arm[0][0], 3, 1},
-                                  .counterpart_arm = {&counterpart_arm[0][0], 3, 1}};
+                                  .arm = {&arm[0][0], NULL, 3, 1},
+                                  .counterpart_arm = {&counterpart_arm[0][0], NULL, 3, 1}};
   const ilaw_contacts* const groups[] = {&contacts};
   ilaw_coupled_report report = {.struct_size = sizeof report};
   if (ilaw_coupled_solve(solver, &bodies, groups, 1, options, &report) != ILAW_OK)

@@ -1,5 +1,6 @@
 // all_laws library.so...: steps every law of the libraries in every dimension, form of H and frame, with each
 // of its choices and with all of its numbers other than by default. To be run under an emulated processor.
+#include <ilaw/arrays.hpp>
 #include <ilaw/loader.hpp>
 
 #include <array>
@@ -18,7 +19,7 @@ struct Arguments {
     for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
       const ilaw_parameter& p = *law.parameters[k];
       if (p.kind == ILAW_PARAMETER_CHOICE && choice_of == p.name) add(p, ILAW_VALUE_TEXT).text = choice;
-      if (p.kind != ILAW_PARAMETER_CHOICE && (p.required || all_numbers))
+      if (p.kind != ILAW_PARAMETER_CHOICE && ((p.flags & ILAW_PARAMETER_IS_REQUIRED) || all_numbers))
         add(p, ILAW_VALUE_NUMBER).number =
             p.maximum < 1e6 ? 0.25 * p.maximum + 0.75 * p.minimum : p.minimum + 2.0;
     }
@@ -59,7 +60,7 @@ struct Arrays {
 bool run(const ilaw::library& library, const ilaw_law& law, ilaw_setup setup) {
   char message[300];
   ilaw_instance* instance;
-  const std::int32_t code = law.create(&setup, &instance, message, sizeof message);
+  const std::int32_t code = law.create(law.id, &setup, &instance, message, sizeof message);
   if (code == ILAW_INVALID_PARAMETER || code == ILAW_UNSUPPORTED) return false;
   if (code != ILAW_OK) std::printf("%s: %s\n", law.id, message);
   ilaw_instance_info info{};
@@ -74,19 +75,19 @@ bool run(const ilaw::library& library, const ilaw_law& law, ilaw_setup setup) {
   b.struct_size = sizeof b;
   b.node_count = count;
   b.velocity_step = b.position_step = 1e-3;
-  b.v_free = b.v_previous = {arrays.v[0].data(), 3, 1};
-  b.delassus = {arrays.h[0].data(), 6, 1};
-  b.normal = {arrays.normal[0].data(), setup.dimension == 1 ? 6 : 3, 1};
-  b.gap = {arrays.gap.data(), 1, 1};
-  b.area = {&area, 0, 1};
-  b.state_in = {state.data(), s, 1};
-  b.state_out = {state.data(), s, 1};
-  b.impulse = {r.data(), 3, 1};
+  b.v_free = b.v_previous = ilaw::input(arrays.v[0].data(), 3, 1);
+  b.delassus = ilaw::input(arrays.h[0].data(), 6, 1);
+  b.normal = ilaw::input(arrays.normal[0].data(), setup.dimension == 1 ? 6 : 3, 1);
+  b.gap = ilaw::input(arrays.gap.data(), 1, 1);
+  b.area = ilaw::input(&area, 0, 1);
+  b.state_in = ilaw::input(state.data(), s, 1);
+  b.state_out = ilaw::output(state.data(), s, 1);
+  b.impulse = ilaw::output(r.data(), 3, 1);
   law.initialise(instance, &b, nullptr);
   for (int step = 0; step < 4; ++step) {
     if (step == 2) {
-      b.velocity = {v.data(), 3, 1};
-      b.energy = {energy.data(), 4, 1};
+      b.velocity = ilaw::output(v.data(), 3, 1);
+      b.energy = ilaw::output(energy.data(), 4, 1);
       b.status = status;
       b.status_stride = 1;
     }
@@ -115,6 +116,7 @@ int run_all(const ilaw::library& library, const ilaw_law& law) {
             setup.dimension = d;
             setup.delassus_form = static_cast<std::uint32_t>(form);
             setup.frame = static_cast<std::uint32_t>(frame);
+            setup.numbers = ILAW_NUMBERS_DOUBLE;
             setup.arguments = arguments.pointers.data();
             setup.argument_count = static_cast<std::uint32_t>(arguments.pointers.size());
             runs += run(library, law, setup);

@@ -60,7 +60,7 @@ TEST_P(BadInput, IsRefusedAtItsNodeOnly) {
   }
 }
 
-const std::vector<Bad> inputs = {
+const std::vector<Bad> bad_inputs = {
     {"nan_velocity", [](Nodes& n) { n.v_free[211] = nan_value; }, "v_free is not finite"},
     {"infinite_velocity", [](Nodes& n) { n.v_free[210] = inf_value; }, "v_free is not finite"},
     {"nan_previous", [](Nodes& n) { n.v_previous[212] = nan_value; }, "v_previous is not finite",
@@ -91,7 +91,7 @@ std::string name_of(const ::testing::TestParamInfo<std::tuple<LawCase, Bad>>& dr
 
 INSTANTIATE_TEST_SUITE_P(Laws, BadInput,
                          ::testing::Combine(::testing::ValuesIn(law_cases("bad_input")),
-                                            ::testing::ValuesIn(inputs)),
+                                            ::testing::ValuesIn(bad_inputs)),
                          name_of);
 
 INSTANTIATE_TEST_SUITE_P(Coulomb, BadInput,
@@ -188,8 +188,8 @@ TEST(Tangent, ThatIsNoneIsBadInput) {
         Given{{0.0, 0.0, 1.0}, false}, Given{{0.3, 0.4, 0.0}, false}, Given{{0.0, 0.0, 0.0}, false},
         Given{{nan_value, 0.8, 0.0}, false}, Given{{0.6, inf_value, 0.0}, false}}) {
     SmallBatch node(1, {1.0, 0.5, -1.0});
-    node.b.normal = {normal, 0, 1};
-    node.b.tangent = {given.tangent.data(), 0, 1};
+    node.b.normal = ilaw::input(normal, 0, 1);
+    node.b.tangent = ilaw::input(given.tangent.data(), 0, 1);
     EXPECT_EQ(law.evaluate(node.b, &node.report), given.good ? ILAW_OK : ILAW_BAD_NODES) << given.tangent[2];
     EXPECT_STREQ(node.report.reason,
                  given.good ? nullptr : "the tangent is not a unit vector orthogonal to the normal");
@@ -206,7 +206,7 @@ TEST(FullDelassus, IsAcceptedOrRefusedWhateverItsRotation) {
   std::normal_distribution<double> normal;
   SmallBatch node(1, {-1.0, 0.5, 0.2});
   const auto code_of = [&](const ilaw::interface& served, const double* h) {
-    node.b.delassus = {h, 0, 1};
+    node.b.delassus = ilaw::input(h, 0, 1);
     return served.evaluate(node.b);
   };
   for (const double scale : {1.0, 1e-200, 1e150})

@@ -104,8 +104,8 @@ class Laid {
     return true;
   }
   std::int64_t count() const { return n_; }
-  ilaw_input in() const { return {values_.data(), node_, component_}; }
-  ilaw_output out() { return {values_.data(), node_, component_}; }
+  ilaw_input in() const { return ilaw::input(values_.data(), node_, component_); }
+  ilaw_output out() { return ilaw::output(values_.data(), node_, component_); }
 
  private:
   std::size_t index(std::int64_t i, std::int64_t k) const {

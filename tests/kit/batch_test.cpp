@@ -250,6 +250,8 @@ TEST_P(Contract, InstructionSetsGiveTheSameBits) {
 INSTANTIATE_TEST_SUITE_P(Laws, Contract, ::testing::ValuesIn(law_cases("contract")), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Kit, Contract,
                          ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}},
+                                           LawCase{"pack_probe", "pack_probe", probe_parameters, {}},
+                                           LawCase{"solver_probe", "solver_probe", {}, {}},
                                            LawCase{"tie", "tie_that_cannot_break", {}, {}}),
                          name_of_case);
 

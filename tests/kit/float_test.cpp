@@ -2,7 +2,6 @@
 #include "batch_runner.hpp"
 #include "kit_probe.hpp"
 
-#include "support/float_batch.hpp"
 #include "support/law_cases.hpp"
 #include "support/numbers.hpp"
 
@@ -12,8 +11,13 @@
 namespace ilaw::testing {
 namespace {
 
-const ilaw_float_functions& floats_of(const ilaw::interface& law) {
-  return *static_cast<const ilaw_float_functions*>(law.law().extension(ILAW_FLOAT));
+// The same law for another type of the host's numbers.
+ilaw::interface made_for(std::uint32_t numbers, const std::string& law, const Parameters& parameters,
+                         int d = 3, std::uint32_t form = ILAW_DELASSUS_SCALAR,
+                         std::uint32_t frame = ILAW_FRAME_LOCAL) {
+  SetupBuilder builder(parameters, static_cast<std::uint32_t>(d), form, frame);
+  builder.setup.numbers = numbers;
+  return make_tested_law(law, builder);
 }
 
 void round_to_floats(std::vector<double>& values) {
@@ -24,7 +28,7 @@ void round_to_floats(std::vector<double>& values) {
 class FloatBatch {
  public:
   FloatBatch(const ilaw_batch& of, std::int64_t nodes, std::int64_t d, std::int64_t of_delassus)
-      : b(float_batch_like(of)), nodes_(nodes) {
+      : b(of), nodes_(nodes) {
     b.v_free = input(of.v_free, d);
     b.delassus = input(of.delassus, of_delassus);
     b.gap = input(of.gap, 1);
@@ -45,7 +49,7 @@ class FloatBatch {
            difference("energy", energy_, doubles.energy);
   }
 
-  ilaw_float_batch b;
+  ilaw_batch b;
 
  private:
   static std::string difference(const char* name, const std::vector<float>& floats,
@@ -62,12 +66,15 @@ class FloatBatch {
     const std::int64_t size = (nodes_ - 1) * a.node_stride + (count - 1) * a.component_stride + 1;
     return {a.values, a.values + size};
   }
-  ilaw_float_input input(const ilaw_input& a, std::int64_t count) {
-    return {inputs_.emplace_back(copy(a, count)).data(), a.node_stride, a.component_stride};
+  ilaw_input input(const ilaw_input& a, std::int64_t count) {
+    return ilaw::input(
+        a.values ? inputs_.emplace_back(copy(a, count)).data() : static_cast<const float*>(nullptr),
+        a.node_stride, a.component_stride);
   }
-  ilaw_float_output output(const ilaw_output& a, std::int64_t count, std::vector<float>& own) const {
-    own = copy({a.values, a.node_stride, a.component_stride}, count);
-    return {own.data(), a.node_stride, a.component_stride};
+  ilaw_output output(const ilaw_output& a, std::int64_t count, std::vector<float>& own) const {
+    own = copy(ilaw::input(a.values, a.node_stride, a.component_stride), count);
+    return ilaw::output(a.values ? own.data() : static_cast<float*>(nullptr), a.node_stride,
+                        a.component_stride);
   }
 
   std::int64_t nodes_;
@@ -84,22 +91,25 @@ void expect_same_report(const ilaw_report& a, const ilaw_report& b) {
 
 class Floats : public ::testing::TestWithParam<LawCase> {
  protected:
-  static ilaw::interface made(int d, std::uint32_t form, std::uint32_t frame) {
-    return make_tested_law(GetParam().law,
-                           SetupBuilder(GetParam().parameters, static_cast<std::uint32_t>(d), form, frame));
+  struct Both {
+    ilaw::interface doubles, floats;
+  };
+  static Both made(int d, std::uint32_t form, std::uint32_t frame) {
+    const auto make = [&](std::uint32_t numbers) {
+      return made_for(numbers, GetParam().law, GetParam().parameters, d, form, frame);
+    };
+    return {make(ILAW_NUMBERS_DOUBLE), make(ILAW_NUMBERS_FLOAT)};
   }
 
   // Some steps in doubles and in floats, each with a state of its own; in the second one gaps have offsets.
-  static void expect_doubles_rounded(const ilaw::interface& law, Nodes nodes, const Layout& layout,
-                                     bool global) {
+  static void expect_doubles_rounded(const Both& law, Nodes nodes, const Layout& layout, bool global) {
     for (auto* values :
          {&nodes.v_free, &nodes.v_previous, &nodes.gap, &nodes.area, &nodes.normal, &nodes.delassus})
       round_to_floats(*values);
-    const auto state_size = static_cast<std::int64_t>(law.info().state_size);
+    const auto state_size = static_cast<std::int64_t>(law.doubles.info().state_size);
     Arrays doubles(nodes, state_size, layout, global), floats(nodes, state_size, layout, global);
-    const ilaw_float_functions& of_floats = floats_of(law);
     const FloatBatch first(floats.first_batch(), nodes.count, nodes.d, nodes.hc);
-    ASSERT_EQ(of_floats.initialise(law.instance(), &first.b, nullptr), law.initialise(doubles.first_batch()));
+    ASSERT_EQ(law.floats.initialise(first.b), law.doubles.initialise(doubles.first_batch()));
     std::vector<double> v_free = nodes.v_free;
     for (int step = 1; step <= 3; ++step) {
       ASSERT_EQ(doubles.state.get(), floats.state.get()) << "step " << step;
@@ -112,7 +122,7 @@ class Floats : public ::testing::TestWithParam<LawCase> {
       const FloatBatch mirrored(batch_of(floats), nodes.count, nodes.d, nodes.hc);
       ilaw_report report{}, float_report{};
       report.struct_size = float_report.struct_size = sizeof report;
-      ASSERT_EQ(of_floats.evaluate(law.instance(), &mirrored.b, &float_report), law.evaluate(batch, &report))
+      ASSERT_EQ(law.floats.evaluate(mirrored.b, &float_report), law.doubles.evaluate(batch, &report))
           << "step " << step;
       expect_same_report(float_report, report);
       ASSERT_EQ(mirrored.difference_from(batch), "") << "step " << step;
@@ -134,7 +144,7 @@ TEST_P(Floats, AreTheDoublesRounded) {
                                               {2, ILAW_DELASSUS_TRANSVERSE, 2},
                                               {3, ILAW_DELASSUS_FULL, 6}}) {
       SCOPED_TRACE(::testing::Message() << d << "D, form " << form << ", frame " << frame);
-      const ilaw::interface law = made(d, static_cast<std::uint32_t>(form), frame);
+      const Both law = made(d, static_cast<std::uint32_t>(form), frame);
       const Nodes nodes(270, d, components);
       const bool global = frame == ILAW_FRAME_GLOBAL;
       for (const Layout& layout :
@@ -154,7 +164,7 @@ TEST_P(Floats, ThatStayWhereTheyAreAreTheDoublesRounded) {
       for (const int components : {1, 2}) {
         const std::uint32_t form = components == 1 ? ILAW_DELASSUS_SCALAR : ILAW_DELASSUS_TRANSVERSE;
         SCOPED_TRACE(::testing::Message() << level << ", form " << form << ", frame " << frame);
-        const ilaw::interface law = made(3, form, frame);
+        const Both law = made(3, form, frame);
         Nodes nodes(403, 3, components);
         std::fill_n(nodes.gap.begin() + 128, 128, 2.0);
         nodes.v_free[3 * 5 + 1] = nodes.v_previous[3 * 261] = inf_value;
@@ -172,34 +182,37 @@ TEST_P(Floats, ThatStayWhereTheyAreAreTheDoublesRounded) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, Floats, ::testing::ValuesIn(law_cases("contract")), name_of_case);
-// Its form of floats is none of those cases.
-INSTANTIATE_TEST_SUITE_P(Unbreakable, Floats, ::testing::Values(LawCase{"tie", "tie_unbreakable", {}, {}}),
+INSTANTIATE_TEST_SUITE_P(Kit, Floats,
+                         ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}},
+                                           LawCase{"pack_probe", "pack_probe", probe_parameters, {}},
+                                           LawCase{"solver_probe", "solver_probe", {}, {}},
+                                           LawCase{"tie", "tie_unbreakable", {}, {}}),
                          name_of_case);
 
 // One closed node of coulomb, friction per node.
 struct FloatNode {
-  FloatNode() : law(make_law("coulomb", SetupBuilder({{}, {}, {}, {"friction"}}))) {
+  FloatNode() : law(made_for(ILAW_NUMBERS_FLOAT, "coulomb", {{}, {}, {}, {"friction"}})) {
     b.struct_size = sizeof b;
     b.node_count = 1;
     b.velocity_step = b.position_step = 1e-3;
-    b.v_free = b.v_previous = {v.data(), 3, 1};
-    b.delassus = {&h, 1, 1};
-    b.gap = {&gap, 1, 1};
+    b.v_free = b.v_previous = ilaw::input(v.data(), 3, 1);
+    b.delassus = ilaw::input(&h, 1, 1);
+    b.gap = ilaw::input(&gap, 1, 1);
     b.per_node_parameters = &parameter;
-    b.impulse = {r.data(), 3, 1};
-    b.velocity = {after.data(), 3, 1};
+    b.impulse = ilaw::output(r.data(), 3, 1);
+    b.velocity = ilaw::output(after.data(), 3, 1);
     b.status = &status;
     b.status_stride = 1;
     report.struct_size = sizeof report;
   }
-  std::int32_t evaluate() { return floats_of(law).evaluate(law.instance(), &b, &report); }
+  std::int32_t evaluate() { return law.evaluate(b, &report); }
 
   ilaw::interface law;
   std::array<float, 3> v{-1.0F, 0.25F, 0.0F}, r{}, after{};
   float h = 0.5F, gap = 0.0F, friction = 0.5F;
-  ilaw_float_input parameter{&friction, 1, 1};
+  ilaw_input parameter = ilaw::input(&friction, 1, 1);
   std::uint8_t status = 99;
-  ilaw_float_batch b{};
+  ilaw_batch b{};
   ilaw_report report{};
 };
 
@@ -240,27 +253,18 @@ TEST(FloatArrays, RefuseWhatIsNoNumber) {
     }
 }
 
-// As batches of doubles: sizes of any version, and no flag. Nor may one of doubles say that it holds floats.
-TEST(FloatArrays, GrowAsOtherStructsDo) {
+// An array of doubles in a batch of floats is none of this law's.
+TEST(FloatArrays, RefuseArraysOfDoubles) {
   FloatNode node;
-  struct {
-    ilaw_float_batch known;
-    double later = 1.0;
-  } grown{node.b};
-  grown.known.struct_size = sizeof grown;
-  const ilaw_float_functions& floats = floats_of(node.law);
-  EXPECT_GE(floats.struct_size, ILAW_FLOAT_FUNCTIONS_SIZE_1);
-  EXPECT_EQ(floats.evaluate(node.law.instance(), &grown.known, nullptr), ILAW_OK);
-  node.b.struct_size = sizeof node.b - 1;
-  EXPECT_EQ(node.evaluate(), ILAW_INVALID_ARGUMENT);
-  EXPECT_EQ(floats.evaluate(node.law.instance(), nullptr, nullptr), ILAW_INVALID_ARGUMENT);
-  node.b.struct_size = sizeof node.b;
-  node.b.flags = 1;
-  EXPECT_EQ(node.evaluate(), ILAW_UNSUPPORTED);
-  ilaw_batch doubles{};
-  doubles.struct_size = sizeof doubles;
-  doubles.flags = 1;
-  EXPECT_EQ(node.law.evaluate(doubles, nullptr), ILAW_UNSUPPORTED);
+  const double gap = 0.0;
+  for (const bool both : {false, true}) {
+    node.b.gap = ilaw::input(&gap, 1, 1);
+    if (both) node.b.gap.floats = &node.gap;
+    EXPECT_EQ(node.evaluate(), ILAW_INVALID_ARGUMENT);
+    EXPECT_STREQ(
+        node.report.reason,
+        both ? "an array is of other numbers than the setup's, or has both pointers" : "gap is null");
+  }
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // Vectors in the host's axes, with a normal per node, give what the local frame gives, turned.
 #include "batch_runner.hpp"
 #include "kit_probe.hpp"
-#include "window_in_test.hpp"
 
 #include "support/law_cases.hpp"
 #include "support/small_batch.hpp"
@@ -46,8 +45,8 @@ class TurningNode {
   Vector step(const Matrix& q, const Vector& local_velocity) {
     const Vector n = times(q, {1, 0, 0}), t = times(q, {0, 1, 0});
     node_.v = times(q, local_velocity);
-    node_.b.normal = {n.data(), 0, 1};
-    node_.b.tangent = {t.data(), 0, 1};
+    node_.b.normal = ilaw::input(n.data(), 0, 1);
+    node_.b.tangent = ilaw::input(t.data(), 0, 1);
     node_.b.time = 1e-3 * ++steps_;
     if (steps_ == 1) {
       EXPECT_EQ(law_.initialise(node_.b), ILAW_OK);
@@ -85,7 +84,8 @@ void expect_frame_indifference(const std::string& law, const Parameters& paramet
 
 // Every kind of vector memory: named, and in a history.
 void expect_frame_indifference(const Matrix& start, const Matrix& each_step, bool tangent) {
-  expect_frame_indifference("kit_probe", probe_parameters, start, each_step, tangent);
+  for (const char* law : {"kit_probe", "pack_probe"})
+    expect_frame_indifference(law, probe_parameters, start, each_step, tangent);
   for (const LawCase& law : law_cases("frame"))
     expect_frame_indifference(law.law, law.parameters, start, each_step, tangent);
 }
@@ -119,10 +119,10 @@ TEST(Frame, MemoryFollowsTheNormalByAnyAngle) {
     SmallBatch node(1, {}, s);
     // The frame is at the end of the state, as (normal, tangent).
     const auto tangent = [&] { return Vector{node.state[s - 3], node.state[s - 2], node.state[s - 1]}; };
-    node.b.normal = {n.data(), 0, 1};
+    node.b.normal = ilaw::input(n.data(), 0, 1);
     ASSERT_EQ(law.initialise(node.b), ILAW_OK) << "angle " << angle;
     const Vector t1 = tangent();
-    node.b.normal = {turned.data(), 0, 1};
+    node.b.normal = ilaw::input(turned.data(), 0, 1);
     ASSERT_EQ(law.evaluate(node.b), ILAW_OK) << "angle " << angle;
     const Vector t2 = tangent();
     // Opposite normals: the tangent stays. Else the part along the axis stays, and that across it turns.
@@ -194,24 +194,6 @@ INSTANTIATE_TEST_SUITE_P(Coulomb, GlobalAxes,
                          ::testing::Combine(::testing::Values(1, 2, 3),
                                             ::testing::Values(ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL,
                                                               ILAW_DELASSUS_FULL)));
-
-// ---- windows ---------------------------------------------------------------------------------------------
-
-// The tangential part turns with the impulses: no axis is preferred.
-TEST(Window, IsIsotropicInTheTangentPlane) {
-  std::mt19937_64 random(6);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const double c = std::cos(0.7), s = std::sin(0.7);
-  window_in_test::Window plain(1.0, 4, 0.0), turned(1.0, 4, 0.0);
-  for (int k = 0; k < 20000; ++k) {
-    const kit::vector r{uniform(random), uniform(random), uniform(random)};
-    const kit::vector a = plain.step(0.0137, r);
-    const kit::vector b = turned.step(0.0137, {r.n, c * r.t1 - s * r.t2, s * r.t1 + c * r.t2});
-    ASSERT_EQ(a.n, b.n) << k;
-    ASSERT_NEAR(c * a.t1 - s * a.t2, b.t1, 1e-13) << k;
-    ASSERT_NEAR(s * a.t1 + c * a.t2, b.t2, 1e-13) << k;
-  }
-}
 
 }  // namespace
 }  // namespace ilaw::testing

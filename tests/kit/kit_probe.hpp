@@ -6,7 +6,7 @@
 namespace ilaw::testing {
 
 inline ilaw::interface make_tested_law(const std::string& law, const SetupBuilder& setup) {
-  return {ilaw::library(law == "kit_probe" ? ILAW_KIT_PROBE : plugin_file(law)), law, setup.setup};
+  return {ilaw::library(law.ends_with("_probe") ? ILAW_KIT_PROBE : plugin_file(law)), law, setup.setup};
 }
 
 inline const Parameters probe_parameters{{{"viscosity", 2.0}}, {}};

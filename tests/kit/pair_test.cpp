@@ -61,14 +61,14 @@ class Contact {
     b.node_count = 1;
     b.velocity_step = b.position_step = 1e-3;
     b.time = 1e-3 * ++time_;
-    b.v_free = b.v_previous = {v.data(), 0, 1};
-    b.delassus = b.area = {&one, 0, 1};
-    b.gap = {&gap, 0, 1};
-    b.normal = {axes.n.data(), 0, 1};
-    b.tangent = {axes.t1.data(), 0, 1};
-    b.state_in = {state.data(), 0, 1};
-    b.state_out = {state.data(), 0, 1};
-    b.impulse = {r.data(), 0, 1};
+    b.v_free = b.v_previous = ilaw::input(v.data(), 0, 1);
+    b.delassus = b.area = ilaw::input(&one, 0, 1);
+    b.gap = ilaw::input(&gap, 0, 1);
+    b.normal = ilaw::input(axes.n.data(), 0, 1);
+    b.tangent = ilaw::input(axes.t1.data(), 0, 1);
+    b.state_in = ilaw::input(state.data(), 0, 1);
+    b.state_out = ilaw::output(state.data(), 0, 1);
+    b.impulse = ilaw::output(r.data(), 0, 1);
     if (steps_++ == 0) {
       EXPECT_EQ(law_.initialise(b), ILAW_OK);
     }

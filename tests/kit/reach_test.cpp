@@ -34,9 +34,9 @@ class Node : public SmallBatch {
 
  private:
   explicit Node(ilaw::interface made) : SmallBatch(1, {}, made.info().state_size), law(std::move(made)) {
-    b.v_previous = {v_previous.data(), 0, 1};
-    b.gap_offset = {&gap_offset, 0, 1};
-    b.normal = {normal.data(), 0, 1};
+    b.v_previous = ilaw::input(v_previous.data(), 0, 1);
+    b.gap_offset = ilaw::input(&gap_offset, 0, 1);
+    b.normal = ilaw::input(normal.data(), 0, 1);
   }
 };
 
@@ -71,7 +71,7 @@ TEST(OutOfReach, FreshNodesAreLeftAloneToTheLastBit) {
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
     for (const LawCase& served : law_cases("reach")) {
       Node node(served, frame);
-      if (node.law.info().capabilities & ILAW_CAN_ACT_AT_DISTANCE) continue;
+      if (!(node.law.info().permissions & ILAW_MAY_SKIP_FRESH)) continue;
       const bool global = frame == ILAW_FRAME_GLOBAL;
       std::mt19937_64 random(3);
       int outside = 0, broken = 0;
@@ -93,7 +93,7 @@ TEST(OutOfReach, NodesThatWereFreeRest) {
   for (const std::uint32_t frame : {ILAW_FRAME_LOCAL, ILAW_FRAME_GLOBAL})
     for (const LawCase& served : law_cases("reach")) {
       Node node(served, frame);
-      if (!(node.law.info().capabilities & ILAW_CAN_REST)) continue;
+      if (!(node.law.info().permissions & ILAW_MAY_SKIP_FREE)) continue;
       const bool global = frame == ILAW_FRAME_GLOBAL;
       std::mt19937_64 random(5);
       std::uniform_real_distribution<double> uniform(-1.0, 1.0);

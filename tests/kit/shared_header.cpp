@@ -4,8 +4,9 @@
 
 #include <ilaw/kit.hpp>
 
+template <class V>
 struct shared_header {
-  double viscosity;
+  V viscosity;
 
   static constexpr ilaw::kit::law_card card{.id = "shared_header",
                                             .title = "Viscous contact",
@@ -20,10 +21,11 @@ struct shared_header {
                                                                         .default_value = 1.0}};
 
   template <class Node>
-  void step(Node& n) const {
-    const double c = n.gap <= 0.0 ? shared_twice(viscosity) + 0.0 * shared_series{0.5}.sum(viscosity) : 0.0;
+  ilaw::kit::status_of<V> step(Node& n) const {
+    const double once = shared_twice(1.0) + 0.0 * shared_series{0.5}.sum(1.0);
+    const V c = zero_unless(n.gap <= 0.0, once * viscosity);
     n.impulse = (-c / (1.0 + c * n.delassus.normal())) * n.v_free;
-    n.status = c > 0.0 ? ilaw::kit::status::closed : ilaw::kit::status::free;
+    return select(c > 0.0, ilaw::kit::status::closed, ilaw::kit::status::free);
   }
 };
 

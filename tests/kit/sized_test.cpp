@@ -83,21 +83,24 @@ TEST(Sized, SetupsAndArgumentsAreReadUpToTheirSizeAndFromThatOfVersionOneOn) {
   Longer<ilaw_setup> setup;
   setup.known.dimension = 3;
   setup.known.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.known.frame = ILAW_FRAME_LOCAL;
+  setup.known.numbers = ILAW_NUMBERS_DOUBLE;
   setup.known.arguments = arguments;
   setup.known.argument_count = 1;
   char message[200];
   ilaw_instance* instance = nullptr;
-  const auto create = [&] { return law.create(&setup.known, &instance, message, sizeof message); };
+  const auto create = [&] { return law.create(law.id, &setup.known, &instance, message, sizeof message); };
   EXPECT_EQ(create(), ILAW_OK) << message;
   law.destroy(instance);
   argument.known.struct_size = ILAW_ARGUMENT_SIZE_1_0 - 1;
   EXPECT_EQ(create(), ILAW_INVALID_ARGUMENT);
-  EXPECT_STREQ(message,
-               "law 'coulomb': argument 0 is null, has no name or a struct_size not from 48 to 4096");
+  const auto from = [](std::size_t size) { return "from " + std::to_string(size) + " to 4096"; };
+  EXPECT_EQ(message, "law 'coulomb': argument 0 is null, has no name or a struct_size not " +
+                         from(ILAW_ARGUMENT_SIZE_1_0));
   argument.known.struct_size = sizeof argument;
   setup.known.struct_size = ILAW_SETUP_SIZE_1_0 - 1;
   EXPECT_EQ(create(), ILAW_INVALID_ARGUMENT);
-  EXPECT_STREQ(message, "law 'coulomb': setup is null or its struct_size not from 40 to 4096");
+  EXPECT_EQ(message, "law 'coulomb': setup is null or its struct_size not " + from(ILAW_SETUP_SIZE_1_0));
   EXPECT_EQ(instance, nullptr);
 }
 
@@ -124,7 +127,8 @@ TEST(Sized, SizesThatNoVersionHasAreRefused) {
     info.struct_size = size;
     EXPECT_EQ(law.law().info(law.instance(), &info), ILAW_INVALID_ARGUMENT) << "size " << size;
     other.struct_size = size;
-    EXPECT_EQ(law.law().create(&other, &instance, nullptr, 0), ILAW_INVALID_ARGUMENT) << "size " << size;
+    EXPECT_EQ(law.law().create("coulomb", &other, &instance, nullptr, 0), ILAW_INVALID_ARGUMENT)
+        << "size " << size;
   }
 }
 

@@ -60,8 +60,8 @@ TEST(StableStep, IsTheSmallestOfTheBatchAndOfAllSprings) {
     const double gap[] = {1.0, -1.0, 0.0};
     double h[] = {0.5, 2.0, 1.0};
     SmallBatch nodes(3, {}, law.info().state_size);
-    nodes.b.delassus = {h, 1, 1};
-    nodes.b.gap = {gap, 1, 1};
+    nodes.b.delassus = ilaw::input(h, 1, 1);
+    nodes.b.gap = ilaw::input(gap, 1, 1);
     const double& stable_step = nodes.report.stable_velocity_step;
     ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_OK);
     EXPECT_DOUBLE_EQ(stable_step, 2.0 / std::sqrt(stiffest * 2.0));

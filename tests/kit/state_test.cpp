@@ -36,7 +36,7 @@ std::size_t offset_of(const ilaw_instance_info& info, const std::string& name) {
 struct Three : SmallBatch {
   explicit Three(const ilaw::interface& law)
       : SmallBatch(3, {-1.0, 0.5, 0.0}, law.info().state_size), size(law.info().state_size) {
-    b.normal = {normal, 0, 1};
+    b.normal = ilaw::input(normal, 0, 1);
     EXPECT_EQ(law.initialise(b), ILAW_OK);
   }
 

@@ -24,10 +24,10 @@ TEST(Status, StandsWhereItsStrideSays) {
   ilaw_batch b{};
   b.struct_size = sizeof b;
   b.velocity_step = b.position_step = 1e-3;
-  b.v_free = b.v_previous = {v.data(), 0, 1};
-  b.delassus = {&one, 0, 1};
-  b.gap = {gap.data(), 1, 1};
-  b.impulse = {r.data(), 3, 1};
+  b.v_free = b.v_previous = ilaw::input(v.data(), 0, 1);
+  b.delassus = ilaw::input(&one, 0, 1);
+  b.gap = ilaw::input(gap.data(), 1, 1);
+  b.impulse = ilaw::output(r.data(), 3, 1);
   for (const std::int64_t stride : {1, 2, 3, 24, -1, -5})
     for (const bool listed : {false, true}) {
       const std::int64_t reach = std::abs(stride);

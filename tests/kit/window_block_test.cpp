@@ -1,5 +1,5 @@
-// The windows of a block of nodes against those of each node alone.
-#include <ilaw/kit/detail/window_block.hpp>
+// The windows of the nodes of a pack against those of each node alone.
+#include "window_in_test.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,69 +9,91 @@
 
 namespace {
 
-using ilaw::kit::vector;
-using ilaw::kit::window;
+using namespace ilaw::kit;
 using namespace ilaw::kit::detail;
+constexpr int nodes = lanes_of<pack>;
 
-// The kit reads and writes the windows of a block together, where most stand alike: nobody notices, to the
-// last bit, whether the numbers of a node are neighbours, those of the nodes, or the nodes are listed.
-void compare_with_nodes_alone(double buckets, bool in_rows, bool listed) {
-  constexpr int nodes = block_size - 1;
-  constexpr double duration = 1.0;
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const std::int64_t size = window::doubles(duration, buckets);
-  std::vector<double> values(static_cast<std::size_t>(size * nodes)), values_alone = values;
-  std::vector<std::int64_t> backwards;
-  for (int i = nodes; i-- > 0;) backwards.push_back(i);
-  const auto of = [&](std::vector<double>& all) -> histories {
-    return {all.data(), in_rows ? size : 1, in_rows ? 1 : nodes, listed ? backwards.data() : nullptr};
-  };
-  const histories own = of(values), own_alone = of(values_alone);
-  const window alone(duration, buckets);
-  double end = -3.0;
-  int together = 0;
-  for (int step = 0; step < 1000; ++step) {
-    const double h = step % 50 == 0 ? 0.3 : 0.01 * (1.0 + 0.5 * uniform(random));
-    end += h;
-    const window_block block(alone.in({end, h}));
-    window_block::block_reading read;
-    given_impulses given;
-    block.before(own, nodes, read);
+enum class Layout { rows, columns, rows_with_a_stride };
+
+// The windows of a pack and of its nodes alone, in the same steps.
+class Windows {
+ public:
+  Windows(double buckets, Layout layout)
+      : size_{1.0, buckets},
+        layout_(layout),
+        numbers_(window::doubles(size_)),
+        values_(static_cast<std::size_t>(2 * numbers_ * nodes)),
+        alone_(values_) {}
+
+  void step(double end, double h, bool all_alike, std::mt19937_64& random) {
+    const window w(size_, {end, h});
+    ilaw::kit::vector<pack> sum;
+    pack refused = 0.0;
+    with(values_, [&](const auto& own) { refused = w.read(own, sum); });
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    double impulses[3][nodes];
+    unsigned adds = 0, clears = 0;
     for (int i = 0; i < nodes; ++i) {
-      const window::reading expected = alone.before(own_alone.at(i), {end, h});
-      const double found[4] = {read.sum[0].values[i], read.sum[1].values[i], read.sum[2].values[i],
-                               read.refused.values[i]};
-      const double each[4] = {expected.sum.n, expected.sum.t1, expected.sum.t2, expected.refused};
-      ASSERT_EQ(std::memcmp(found, each, sizeof found), 0) << "step " << step << ", node " << i;
-      together += found[0] != 0.0 ? 1 : 0;
-      const bool all_alike = step > 500;  // before that some lag behind, or are empty
-      const bool adds = all_alike || i % 3 == 0 || uniform(random) > 0.5;
-      const bool clears = !all_alike && i % 7 == 6 && step % 100 == i;
-      const double strength = !all_alike && i % 5 == 4 ? 0.0 : 1.0;
-      const vector impulse = strength * vector{uniform(random), uniform(random), uniform(random)};
-      given.impulse[0].values[i] = impulse.n;
-      given.impulse[1].values[i] = impulse.t1;
-      given.impulse[2].values[i] = impulse.t2;
-      given.adds.values[i] = adds ? 1.0 : 0.0;
-      given.clears.values[i] = clears ? 1.0 : 0.0;
-      if (clears) alone.in({end, h}).clear(own_alone.at(i));
-      if (adds) alone.add(own_alone.at(i), {end, h}, impulse);
+      ilaw::kit::vector<double> sum_alone;
+      const double refused_alone = w.read(of(alone_, i), sum_alone);
+      const double found[4] = {sum.n[i], sum.t1[i], sum.t2[i], refused[i]};
+      const double each[4] = {sum_alone.n, sum_alone.t1, sum_alone.t2, refused_alone};
+      ASSERT_EQ(std::memcmp(found, each, sizeof found), 0) << "end " << end << ", node " << i;
+      sums_ += found[0] != 0.0 ? 1 : 0;
+      const bool add = all_alike || uniform(random) > 0.0, clear = !all_alike && uniform(random) > 0.97;
+      const double strength = !all_alike && uniform(random) > 0.8 ? 0.0 : 1.0;
+      for (auto& component : impulses) component[i] = strength * uniform(random);
+      adds |= add ? 1U << i : 0U;
+      clears |= clear ? 1U << i : 0U;
+      w.write(of(alone_, i), clear, add, {impulses[0][i], impulses[1][i], impulses[2][i]});
     }
-    block.add(own, nodes, given, read);
-    ASSERT_EQ(std::memcmp(values.data(), values_alone.data(), values.size() * sizeof(double)), 0)
-        << "step " << step;
+    const ilaw::kit::vector<pack> impulse{load<pack>(impulses[0]), load<pack>(impulses[1]),
+                                          load<pack>(impulses[2])};
+    with(values_,
+         [&](const auto& own) { w.write(own, mask_from<pack>(clears), mask_from<pack>(adds), impulse); });
+    ASSERT_EQ(std::memcmp(values_.data(), alone_.data(), values_.size() * sizeof(double)), 0)
+        << "end " << end;
   }
-  EXPECT_GT(together, 20000);
-}
+  int sums() const { return sums_; }
 
-TEST(Window, ABlockIsWhatItsNodesAre) {
+ private:
+  std::int64_t stride() const { return layout_ == Layout::columns ? nodes : layout_ == Layout::rows ? 1 : 2; }
+  double* first(std::vector<double>& all, int node) const {
+    return all.data() + (layout_ == Layout::columns ? node : node * numbers_ * stride());
+  }
+  window_columns<double> of(std::vector<double>& all, int node) const { return {first(all, node), stride()}; }
+  template <class Work>
+  void with(std::vector<double>& all, Work work) const {
+    if (layout_ == Layout::columns) return work(window_columns<pack>{all.data(), stride()});
+    window_rows own;
+    own.stride = stride();
+    for (int i = 0; i < nodes; ++i) own.first[i] = first(all, i);
+    work(own);
+  }
+
+  window_size size_;
+  Layout layout_;
+  std::int64_t numbers_;
+  std::vector<double> values_, alone_;
+  int sums_ = 0;
+};
+
+// To the last bit, whether the numbers of a node are neighbours or those of the nodes, and whether the nodes'
+// newest buckets are the same.
+TEST(Window, OfAPackIsThatOfEachNode) {
   for (const double buckets : {1.0, 2.0, 3.0, 8.0, 33.0})
-    for (const bool in_rows : {false, true})
-      for (const bool listed : {false, true}) {
-        SCOPED_TRACE(testing::Message() << buckets << " buckets, rows " << in_rows << ", listed " << listed);
-        compare_with_nodes_alone(buckets, in_rows, listed);
+    for (const Layout layout : {Layout::rows, Layout::columns, Layout::rows_with_a_stride}) {
+      SCOPED_TRACE(testing::Message() << buckets << " buckets, layout " << static_cast<int>(layout));
+      Windows windows(buckets, layout);
+      std::mt19937_64 random(5);
+      std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+      double end = -3.0;
+      for (int step = 0; step < 2000; ++step) {
+        const double h = step % 50 == 0 ? 0.3 : 0.01 * (1.0 + 0.5 * uniform(random));
+        windows.step(end += h, h, step > 1000, random);
       }
+      EXPECT_GT(windows.sums(), 1500 * nodes);
+    }
 }
 
 }  // namespace

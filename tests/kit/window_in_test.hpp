@@ -11,17 +11,31 @@
 
 namespace window_in_test {
 
-using ilaw::kit::not_refused;
-using ilaw::kit::vector;
-using ilaw::kit::window;
+using ilaw::kit::refusal;
+using vector = ilaw::kit::vector<double>;
+
+// The sum of a window before a step, and why there is none.
+struct Reading {
+  vector sum;
+  refusal refused;
+};
+using History = ilaw::kit::detail::window_columns<double>;
+inline Reading read(ilaw::kit::window_size size, ilaw::kit::step_interval step, History own) {
+  Reading found;
+  found.refused = static_cast<refusal>(static_cast<int>(ilaw::kit::window(size, step).read(own, found.sum)));
+  return found;
+}
+inline void write(ilaw::kit::window_size size, ilaw::kit::step_interval step, History own, vector impulse) {
+  ilaw::kit::window(size, step).write(own, false, true, impulse);
+}
 
 // A window with a history of its own, which is told impulses by the interval over which they act.
 class Window {
  public:
   Window(double duration, double buckets, double begin)
       : end(begin),
-        window_(duration, buckets),
-        history(static_cast<std::size_t>(window::doubles(duration, buckets))) {}
+        size_{duration, buckets},
+        history(static_cast<std::size_t>(ilaw::kit::window::doubles(size_))) {}
 
   // The sum with the impulse of a step of length h.
   vector step(double h, vector impulse) {
@@ -30,18 +44,19 @@ class Window {
   }
   vector step_to(double time, double h, vector impulse) {
     end = time;
-    const window::reading earlier = before(h);
-    EXPECT_EQ(earlier.refused, not_refused) << "end " << end;
-    window_.add(own(), {end, h}, impulse);
+    const Reading earlier = before(h);
+    EXPECT_EQ(earlier.refused, refusal::none) << "end " << end;
+    add(h, impulse);
     return earlier.sum + impulse;
   }
-  window::reading before(double h) { return window_.before(own(), {end, h}); }
-  ilaw::kit::history own() { return {history.data(), 1}; }
+  Reading before(double h) { return read(size_, {end, h}, own()); }
+  void add(double h, vector impulse) { write(size_, {end, h}, own(), impulse); }
+  History own() { return {history.data(), 1}; }
 
   double end;
 
  private:
-  window window_;
+  ilaw::kit::window_size size_;
 
  public:
   std::vector<double> history;

@@ -15,18 +15,17 @@
 
 namespace {
 
-using ilaw::kit::impossible_state;
 using ilaw::kit::infinity;
-using ilaw::kit::not_refused;
+using ilaw::kit::refusal;
 using ilaw::kit::step_interval;
-using ilaw::kit::time_before_history;
-using ilaw::kit::vector;
 using ilaw::kit::window;
 
 constexpr double ratios[] = {1.5, 8.5, 33.7, 100.5, 1000.3};  // tau/h
 constexpr double bucket_counts[] = {4, 8, 16, 64};
 
+using window_in_test::Reading;
 using window_in_test::Steps;
+using window_in_test::vector;
 using window_in_test::Window;
 
 // A force by its integral, from which every step gets the exact impulse: what is off is the window.
@@ -47,11 +46,11 @@ double largest_error(const Integral& integral, double tau, double h, double buck
 }
 
 TEST(Window, NeedsAStateThatDependsOnItsParametersAlone) {
-  EXPECT_EQ(window::doubles(0.0, 16), 0);
-  EXPECT_EQ(window::doubles(infinity, 16), 3);
-  EXPECT_EQ(window::doubles(1e-9, 16), 58);
-  EXPECT_EQ(window::doubles(1e9, 16), 58);
-  EXPECT_EQ(window::doubles(1.0, 1), 13);
+  EXPECT_EQ(window::doubles({0.0, 16}), 0);
+  EXPECT_EQ(window::doubles({infinity, 16}), 3);
+  EXPECT_EQ(window::doubles({1e-9, 16}), 58);
+  EXPECT_EQ(window::doubles({1e9, 16}), 58);
+  EXPECT_EQ(window::doubles({1.0, 1}), 13);
 }
 
 // What every step reads stands in front, the ring behind it. Hosts have stored states in this order: who
@@ -75,11 +74,6 @@ TEST(Window, StandsInAStateInTheOrderOfVersion2) {
                                            impulse_in(5.0)})
     expected.insert(expected.end(), three.begin(), three.end());
   EXPECT_EQ(w.history, expected);
-}
-
-TEST(Window, OfNoDurationIsTheOwnImpulse) {
-  Window w(0.0, 16, 0.0);
-  for (int k = 0; k < 10; ++k) EXPECT_EQ(w.step(1e-3, {1.0 + k, 0, 0}).n, 1.0 + k);
 }
 
 TEST(Window, ShorterThanAStepIsTheOwnImpulse) {
@@ -282,10 +276,10 @@ TEST(Window, SeesAClockThatIsSetBack) {
   const double now = w.end;
   for (const double back : {0.2, 1.0, 100.0, 1e6}) {
     w.end = now - back;
-    EXPECT_EQ(w.before(0.01).refused, time_before_history) << back;
+    EXPECT_EQ(w.before(0.01).refused, refusal::time_before_history) << back;
   }
   w.end = now - 0.05;  // less than a bucket: a host whose steps shrink may fall back by part of one
-  EXPECT_EQ(w.before(0.01).refused, not_refused);
+  EXPECT_EQ(w.before(0.01).refused, refusal::none);
   w.step(0.01, {0.01, 0, 0});
 }
 
@@ -309,24 +303,25 @@ TEST(Window, TouchesNothingButItsHistory) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> odd = {nan,  infinity, -infinity,  1e300, -1e300, 9e15, -9e15, 0.5, -1.0,
                                    -0.0, 5e-324,   4611686e12, 1e19,  -1e19,  2e9,  17.0,  16.0};
-  constexpr std::size_t guard = 64, size = 58;
+  constexpr std::size_t guard = 64, numbers = 58;
+  constexpr ilaw::kit::window_size size{1.0, 16.0};
   for (int draw = 0; draw < 200000; ++draw) {
-    std::array<double, guard + size + guard> memory{};
+    std::array<double, guard + numbers + guard> memory{};
     for (double& x : memory) x = odd[random() % odd.size()];
     if (draw % 3 == 0) memory[guard] = static_cast<double>(random() % 2000);
     const auto before = memory;
-    const window w(1.0, 16);
-    const ilaw::kit::history own{memory.data() + guard, 1};
+    const window_in_test::History own{memory.data() + guard, 1};
     const double times[] = {0.0, 30.0, -1e5, 1e20, 0.99 + static_cast<double>(draw % 1999) / 16.0};
     const step_interval step{times[random() % 5], draw % 2 == 0 ? 0.01 : 0.3};
-    const window::reading reading = w.before(own, step);
-    if (reading.refused == not_refused) {
+    const Reading reading = window_in_test::read(size, step, own);
+    if (reading.refused == refusal::none) {
       ASSERT_TRUE(std::isfinite(reading.sum.n) && std::isfinite(reading.sum.t1)) << "draw " << draw;
-      w.add(own, step, {1.0, 0.5, 0.0});
+      window_in_test::write(size, step, own, {1.0, 0.5, 0.0});
     }
     ASSERT_EQ(std::memcmp(memory.data(), before.data(), guard * sizeof(double)), 0) << "draw " << draw;
-    ASSERT_EQ(std::memcmp(memory.data() + guard + size, before.data() + guard + size, guard * sizeof(double)),
-              0)
+    ASSERT_EQ(
+        std::memcmp(memory.data() + guard + numbers, before.data() + guard + numbers, guard * sizeof(double)),
+        0)
         << "draw " << draw;
   }
 }
@@ -344,11 +339,11 @@ TEST(Window, RefusesANumberOfABucketThatItCannotHaveWritten) {
        {0.5, -2.25, 1e16, -1e300, infinity, -infinity, std::numeric_limits<double>::quiet_NaN()}) {
     Window w(1.0, 16, 3.0);
     w.history[0] = stamp;
-    EXPECT_EQ(w.before(0.01).refused, impossible_state) << stamp;
+    EXPECT_EQ(w.before(0.01).refused, refusal::impossible_state) << stamp;
   }
   Window future(1.0, 16, 3.0);
   future.history[0] = 1000.0;
-  EXPECT_EQ(future.before(0.01).refused, time_before_history);
+  EXPECT_EQ(future.before(0.01).refused, refusal::time_before_history);
 }
 
 // A number of the history that is not finite is found as soon as it counts, at the latest when the next
@@ -362,12 +357,28 @@ TEST(Window, RefusesASumThatIsNotFinite) {
       bool refused = false;
       for (int k = 0; k < 8 && !refused; ++k) {  // 0.08 is more than a bucket
         w.end += 0.01;
-        const window::reading reading = w.before(0.01);
-        refused = reading.refused == impossible_state;
-        if (!refused) window(1.0, 16).add(w.own(), {w.end, 0.01}, {0.01, 0.02, 0.03});
+        const Reading reading = w.before(0.01);
+        refused = reading.refused == refusal::impossible_state;
+        if (!refused) w.add(0.01, {0.01, 0.02, 0.03});
       }
       EXPECT_TRUE(refused) << "entry " << entry;
     }
+}
+
+// The tangential part turns with the impulses: no axis is preferred.
+TEST(Window, IsIsotropicInTheTangentPlane) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  Window plain(1.0, 4, 0.0), turned(1.0, 4, 0.0);
+  for (int k = 0; k < 20000; ++k) {
+    const vector r{uniform(random), uniform(random), uniform(random)};
+    const vector a = plain.step(0.0137, r);
+    const vector b = turned.step(0.0137, {r.n, c * r.t1 - s * r.t2, s * r.t1 + c * r.t2});
+    ASSERT_EQ(a.n, b.n) << k;
+    ASSERT_NEAR(c * a.t1 - s * a.t2, b.t1, 1e-13) << k;
+    ASSERT_NEAR(s * a.t1 + c * a.t2, b.t2, 1e-13) << k;
+  }
 }
 
 }  // namespace

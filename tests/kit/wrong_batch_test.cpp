@@ -31,7 +31,7 @@ void list_in_both_widths(ilaw_batch& b) {
 }
 void write_velocities_on_top(ilaw_batch& b) {
   static double velocity[3];
-  b.velocity = {velocity, 0, 1};
+  b.velocity = ilaw::output(velocity, 0, 1);
 }
 
 const Wrong wrongs[] = {
@@ -87,7 +87,7 @@ TEST(WrongBatch, InitialiseRefusesStatesOnTopOfEachOther) {
   SmallBatch nodes(2, {}, law.info().state_size);
   std::fill(nodes.state.begin(), nodes.state.end(), 7.0);
   for (const auto& [node_stride, component_stride] : {std::pair{0, 1}, {10, 0}}) {
-    nodes.b.state_out = {nodes.state.data(), node_stride, component_stride};
+    nodes.b.state_out = ilaw::output(nodes.state.data(), node_stride, component_stride);
     EXPECT_EQ(law.law().initialise(law.instance(), &nodes.b, &nodes.report), ILAW_INVALID_ARGUMENT);
     EXPECT_STREQ(nodes.report.reason, "state_out has a stride of 0");
     EXPECT_EQ(nodes.state[0], 7.0);
@@ -99,11 +99,11 @@ TEST(Initialise, ReadsNoState) {
   const ilaw::interface law = make_probe(ILAW_FRAME_GLOBAL);
   const double normal[] = {0.36, 0.48, 0.8};
   SmallBatch node(1, {}, law.info().state_size);
-  node.b.normal = {normal, 0, 1};
+  node.b.normal = ilaw::input(normal, 0, 1);
   ASSERT_EQ(law.initialise(node.b), ILAW_OK);
   const std::vector<double> expected = node.state, rubbish(node.state.size(), 0.6);
   std::fill(node.state.begin(), node.state.end(), nan_value);
-  node.b.state_in = {rubbish.data(), 0, 1};
+  node.b.state_in = ilaw::input(rubbish.data(), 0, 1);
   ASSERT_EQ(law.initialise(node.b), ILAW_OK);
   EXPECT_EQ(node.state, expected);
 }

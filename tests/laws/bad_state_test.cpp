@@ -3,6 +3,8 @@
 #include "support/law_runner.hpp"
 #include "support/numbers.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -31,9 +33,9 @@ class Trio : public NodeRun {
     ilaw_batch b = batch();
     b.node_count = 3;
     const auto width = static_cast<std::int64_t>(size);
-    b.state_in = {of(0), width, 1};
-    b.state_out = {of(0), width, 1};
-    b.impulse = {impulse.data(), 3, 1};
+    b.state_in = ilaw::input(of(0), width, 1);
+    b.state_out = ilaw::output(of(0), width, 1);
+    b.impulse = ilaw::output(impulse.data(), 3, 1);
     b.status = statuses.data();
     b.status_stride = 1;
     report.struct_size = sizeof report;

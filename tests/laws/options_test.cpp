@@ -28,12 +28,14 @@ class OptionsOf : public ::testing::TestWithParam<LawCase> {
     }
   }
 
-  // Numbers that the law lets be given in this way.
-  std::vector<const ilaw_parameter*> numbers(std::uint32_t way) const {
+  // Numbers that the law accepts per node or as a table over time.
+  std::vector<const ilaw_parameter*> numbers(std::uint32_t kind) const {
     std::vector<const ilaw_parameter*> found;
     const ilaw_law& description = *library.law(law.law);
     for (std::uint32_t k = 0; k < description.parameter_count; ++k)
-      if ((description.parameters[k]->may_be & way) &&
+      if ((kind == ILAW_VALUE_TABLE
+               ? description.parameters[k]->axis_count > 0
+               : (description.parameters[k]->flags & ILAW_PARAMETER_ALLOWS_PER_NODE) != 0) &&
           law.parameters.numbers.contains(description.parameters[k]->name))
         found.push_back(description.parameters[k]);
     return found;
@@ -41,8 +43,8 @@ class OptionsOf : public ::testing::TestWithParam<LawCase> {
 
   // A constant that is given in this way, as "give" writes it, changes no bit.
   template <class Give>
-  void expect_no_change(std::uint32_t way, Give give) {
-    const auto varying = numbers(way);
+  void expect_no_change(std::uint32_t kind, Give give) {
+    const auto varying = numbers(kind);
     EXPECT_GE(varying.size(), 1U);
     for (const ilaw_parameter* parameter : varying) {
       SCOPED_TRACE(parameter->name);
@@ -51,7 +53,7 @@ class OptionsOf : public ::testing::TestWithParam<LawCase> {
       give(parameters, parameter->name, value);
       Runner constant(law.law, law.parameters, nodes), varied(law.law, parameters, nodes);
       const std::vector<double> values(nodes.count, value);
-      varied.per_node = {{values.data(), 1, 1}};
+      varied.per_node = {ilaw::input(values.data(), 1, 1)};
       expect_same(constant, varied);
     }
   }
@@ -62,12 +64,12 @@ class OptionsOf : public ::testing::TestWithParam<LawCase> {
 };
 
 TEST_P(OptionsOf, AConstantGivenPerNodeGivesTheSameBits) {
-  expect_no_change(ILAW_MAY_BE_PER_NODE,
+  expect_no_change(ILAW_VALUE_PER_NODE,
                    [](Parameters& parameters, const char* name, double) { parameters.per_node = {name}; });
 }
 
 TEST_P(OptionsOf, AConstantTableGivesTheSameBits) {
-  expect_no_change(ILAW_MAY_BE_TABLE, [](Parameters& parameters, const char* name, double value) {
+  expect_no_change(ILAW_VALUE_TABLE, [](Parameters& parameters, const char* name, double value) {
     parameters.tables[name] = {0.0, value, 3.5 * RandomNodes::step, value, 1.0, value};
   });
 }
@@ -75,7 +77,7 @@ TEST_P(OptionsOf, AConstantTableGivesTheSameBits) {
 // Each node has the value of its own array entry, whatever the others have: as in a batch where it is the
 // constant.
 TEST_P(OptionsOf, EachNodeHasItsOwnValue) {
-  for (const ilaw_parameter* parameter : numbers(ILAW_MAY_BE_PER_NODE)) {
+  for (const ilaw_parameter* parameter : numbers(ILAW_VALUE_PER_NODE)) {
     Parameters parameters = law.parameters;
     const double value = parameters.numbers.at(parameter->name),
                  other = std::min(1.1 * value, parameter->maximum);
@@ -86,7 +88,7 @@ TEST_P(OptionsOf, EachNodeHasItsOwnValue) {
     Runner a(law.law, law.parameters, nodes), b(law.law, changed, nodes), mixed(law.law, parameters, nodes);
     std::vector<double> values(nodes.count);
     for (std::size_t i = 0; i < nodes.count; ++i) values[i] = i % 2 ? value : other;
-    mixed.per_node = {{values.data(), 1, 1}};
+    mixed.per_node = {ilaw::input(values.data(), 1, 1)};
     for (Runner* runner : {&a, &b, &mixed}) runner->initialise();
     nodes.draw();
     std::fill(nodes.gap.begin(), nodes.gap.end(), -1e-4);
@@ -99,7 +101,7 @@ TEST_P(OptionsOf, EachNodeHasItsOwnValue) {
 
 // A value that may not be, at one node in three, is bad input there and nowhere else.
 TEST_P(OptionsOf, BadValuesAreBadInputAtTheirNodesOnly) {
-  for (const ilaw_parameter* parameter : numbers(ILAW_MAY_BE_PER_NODE))
+  for (const ilaw_parameter* parameter : numbers(ILAW_VALUE_PER_NODE))
     for (const double bad :
          {std::nan(""), parameter->minimum - 1.0, -std::numeric_limits<double>::infinity()}) {
       Parameters parameters = law.parameters;
@@ -107,7 +109,7 @@ TEST_P(OptionsOf, BadValuesAreBadInputAtTheirNodesOnly) {
       parameters.per_node = {parameter->name};
       Runner constant(law.law, law.parameters, nodes), per_node(law.law, parameters, nodes);
       std::vector<double> values(nodes.count, value);
-      per_node.per_node = {{values.data(), 1, 1}};
+      per_node.per_node = {ilaw::input(values.data(), 1, 1)};
       for (Runner* runner : {&constant, &per_node}) runner->initialise();
       for (std::size_t i = 0; i < nodes.count; i += 3) values[i] = bad;
       nodes.draw();
@@ -133,7 +135,7 @@ TEST(Options, ValuesThatDoNotGoTogetherAreRefusedAtTheirNodes) {
   parameters.per_node = {"stiffness"};
   Runner run("cohesive", parameters, nodes);
   const double stiffness[] = {1e3, std::numeric_limits<double>::infinity(), 1e3, 1.0};
-  run.per_node = {{stiffness, 1, 1}};
+  run.per_node = {ilaw::input(stiffness, 1, 1)};
   nodes.draw();
   EXPECT_EQ(run.evaluate(), ILAW_BAD_NODES);
   EXPECT_EQ(run.report.bad_count, 2);
@@ -147,7 +149,7 @@ TEST(Options, ValuesThatDoNotGoTogetherAreRefusedAtTheirNodes) {
 
 // Half way between two instants of a table the value is half way, and outside its ends it is theirs.
 TEST_P(OptionsOf, TablesArePiecewiseLinearInTime) {
-  for (const ilaw_parameter* parameter : numbers(ILAW_MAY_BE_TABLE)) {
+  for (const ilaw_parameter* parameter : numbers(ILAW_VALUE_TABLE)) {
     const double value = law.parameters.numbers.at(parameter->name);
     const double from = std::min(0.75 * value, parameter->maximum), to = 1.25 * value - 0.25 * from;
     Parameters parameters = law.parameters, midway = law.parameters;

@@ -4,6 +4,8 @@
 
 #include "support/law_cases.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <cstring>
 #include <limits>
 #include <random>
@@ -227,7 +229,7 @@ class Runner {
   std::int32_t evaluate_from(const std::vector<double>& state_in) {
     write_inputs();
     ilaw_batch b = batch();
-    b.state_in = {state_in.data(), static_cast<std::int64_t>(size_), 1};
+    b.state_in = ilaw::input(state_in.data(), static_cast<std::int64_t>(size_), 1);
     return interface_.evaluate(b, &report);
   }
 
@@ -298,17 +300,17 @@ class Runner {
     b.time = time * units_.time;
     b.velocity_step = velocity_step * units_.time;
     b.position_step = position_step * units_.time;
-    b.v_free = {v_free_[0].data(), 3, 1};
-    b.v_previous = {v_previous_[0].data(), 3, 1};
-    b.delassus = {h_[0].data(), 6, 1};
-    b.gap = {gap_.data(), 1, 1};
-    b.area = {area_.data(), 1, 1};
-    if (global_) b.normal = {normal_[0].data(), 3, 1};
-    if (global_) b.tangent = {tangent_[0].data(), 3, 1};
-    b.state_out = {state.data(), size, 1};
-    b.impulse = {r[0].data(), 3, 1};
-    b.velocity = {v[0].data(), 3, 1};
-    b.energy = {energy[0].data(), 4, 1};
+    b.v_free = ilaw::input(v_free_[0].data(), 3, 1);
+    b.v_previous = ilaw::input(v_previous_[0].data(), 3, 1);
+    b.delassus = ilaw::input(h_[0].data(), 6, 1);
+    b.gap = ilaw::input(gap_.data(), 1, 1);
+    b.area = ilaw::input(area_.data(), 1, 1);
+    if (global_) b.normal = ilaw::input(normal_[0].data(), 3, 1);
+    if (global_) b.tangent = ilaw::input(tangent_[0].data(), 3, 1);
+    b.state_out = ilaw::output(state.data(), size, 1);
+    b.impulse = ilaw::output(r[0].data(), 3, 1);
+    b.velocity = ilaw::output(v[0].data(), 3, 1);
+    b.energy = ilaw::output(energy[0].data(), 4, 1);
     b.status = status.data();
     b.status_stride = 1;
     b.per_node_parameters = per_node.data();

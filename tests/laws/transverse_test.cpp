@@ -4,6 +4,8 @@
 
 #include "support/numbers.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <optional>
 #include <tuple>
 
@@ -151,10 +153,10 @@ TEST(TransverseInertia, IsAcceptedWhereItIsPositiveDefinite) {
     b.struct_size = sizeof b;
     b.node_count = 1;
     b.velocity_step = b.position_step = 1.0;
-    b.v_free = b.v_previous = {v.data(), 3, 1};
-    b.delassus = {h.data(), 6, 1};
-    b.gap = {&gap, 1, 1};
-    b.impulse = {r.data(), 3, 1};
+    b.v_free = b.v_previous = ilaw::input(v.data(), 3, 1);
+    b.delassus = ilaw::input(h.data(), 6, 1);
+    b.gap = ilaw::input(&gap, 1, 1);
+    b.impulse = ilaw::output(r.data(), 3, 1);
     return law.evaluate(b, nullptr);
   };
   for (const auto& [n, t] : {std::pair{1.0, 1.0},

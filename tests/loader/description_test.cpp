@@ -28,6 +28,9 @@ struct Description {
   std::array<const char*, 1> references{"Author (1999), Title"};
   ilaw_parameter number{}, choice{};
   ilaw_state_variable variable{};
+  std::array<const char*, 2> axes{"time", "slip_speed"};
+  ilaw_amount amount{sizeof amount, 0, "heat", "J", "Of friction."};
+  std::array<const ilaw_amount*, 2> amounts{&amount, &amount};
   ilaw_law law{};
   ilaw_plugin plugin{};
   std::array<const ilaw_parameter*, 2> parameters{&number, &choice};
@@ -35,42 +38,31 @@ struct Description {
   std::array<const ilaw_law*, 2> laws{&law, &law};
 
   Description() {
-    number = {sizeof number,
-              ILAW_PARAMETER_NUMBER,
-              "strength",
-              "s",
-              "Pa",
-              "Of the bond.\n",
-              0.0,
-              1.0,
-              0.5,
-              0,
-              0,
-              0,
-              0,
-              nullptr,
-              0,
-              0};
-    choice = {sizeof choice,
-              ILAW_PARAMETER_CHOICE,
-              "surface",
-              "",
-              "1",
-              "Its finish.",
-              0.0,
-              1.0,
-              1.0,
-              0,
-              0,
-              0,
-              0,
-              choices.data(),
-              2,
-              0};
+    number.struct_size = choice.struct_size = sizeof number;
+    number.kind = ILAW_PARAMETER_NUMBER;
+    number.name = "strength";
+    number.symbol = "s";
+    number.unit = "Pa";
+    number.doc = "Of the bond.\n";
+    number.maximum = 1.0;
+    number.default_value = 0.5;
+    number.flags = ILAW_PARAMETER_ALLOWS_PER_NODE | ILAW_PARAMETER_IS_FIELD;
+    number.axes = axes.data();
+    number.axis_count = 2;
+    choice.kind = ILAW_PARAMETER_CHOICE;
+    choice.name = "surface";
+    choice.symbol = "";
+    choice.unit = "1";
+    choice.doc = "Its finish.";
+    choice.maximum = choice.default_value = 1.0;
+    choice.choices = choices.data();
+    choice.choice_count = 2;
     variable = {sizeof variable, ILAW_STATE_SCALAR, "damage", "1", "Of the bond.", 1, 0, 0};
     law.struct_size = sizeof law;
     law.dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_3;
     law.delassus_forms = ILAW_DELASSUS_SCALAR;
+    law.frames = ILAW_FRAME_LOCAL;
+    law.numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT;
     law.inputs = ILAW_INPUT_GAP;
     law.id = "bond";
     law.title = "Bond";
@@ -81,7 +73,11 @@ struct Description {
     law.parameter_count = 2;
     law.state_variables = variables.data();
     law.state_variable_count = 1;
-    law.create = [](const ilaw_setup*, ilaw_instance**, char*, std::size_t) { return std::int32_t{ILAW_OK}; };
+    law.amounts = amounts.data();
+    law.amount_count = 1;
+    law.create = [](const char*, const ilaw_setup*, ilaw_instance**, char*, std::size_t) {
+      return std::int32_t{ILAW_OK};
+    };
     law.destroy = [](ilaw_instance*) {};
     law.info = [](const ilaw_instance*, ilaw_instance_info*) { return std::int32_t{ILAW_OK}; };
     law.initialise = law.evaluate = [](const ilaw_instance*, const ilaw_batch*, ilaw_report*) {
@@ -138,11 +134,49 @@ INSTANTIATE_TEST_SUITE_P(
               [](Description& d) { d.plugin.laws = static_cast<const ilaw_law* const*>(no_address); },
               "laws points to memory that cannot be read"},
         Fault{"HugeLaw", [](Description& d) { d.law.struct_size = 4097; },
-              "law 0: law has struct_size 4097, expected at least 136 and at most 4096"},
+              "law 0: law has struct_size 4097, expected at least 160 and at most 4096"},
         Fault{"NoDimension", [](Description& d) { d.law.dimensions = 0; },
-              "law 'bond': dimensions has none of 1, 2 and 3"},
+              "law 'bond': dimensions is 0, expected at least one of the bits of 14"},
         Fault{"NoForm", [](Description& d) { d.law.delassus_forms = 0; },
-              "law 'bond': delassus_forms is 0, expected at least one form"},
+              "law 'bond': delassus_forms is 0, expected at least one of the bits of 15"},
+        Fault{"NoFrame", [](Description& d) { d.law.frames = 0; },
+              "law 'bond': frames is 0, expected at least one of the bits of 3"},
+        Fault{"UnknownFrame", [](Description& d) { d.law.frames = 4; },
+              "law 'bond': frames is 4, expected only the bits of 3"},
+        Fault{"NoNumbers", [](Description& d) { d.law.numbers = 0; },
+              "law 'bond': numbers is 0, expected at least one of the bits of 3"},
+        Fault{"UnknownNumbers", [](Description& d) { d.law.numbers = 7; },
+              "law 'bond': numbers is 7, expected only the bits of 3"},
+        Fault{"UnknownCapability", [](Description& d) { d.law.capabilities = 4; },
+              "law 'bond': capabilities is 4, expected only the bits of 3"},
+        Fault{"UnknownPermission", [](Description& d) { d.law.permissions = 4; },
+              "law 'bond': permissions is 4, expected only the bits of 3"},
+        Fault{"ReservedOfALaw", [](Description& d) { d.law.reserved = 5; },
+              "law 'bond': reserved is 5, expected 0"},
+        Fault{"ReservedOfTheLibrary", [](Description& d) { d.plugin.reserved = 1; },
+              "reserved is 1, expected 0"},
+        Fault{"ReservedOfAParameter", [](Description& d) { d.number.reserved = 1; },
+              "law 'bond': parameter 'strength': reserved is 1, expected 0"},
+        Fault{"ReservedOfAVariable", [](Description& d) { d.variable.reserved = 1; },
+              "law 'bond': state variable 'damage': reserved is 1, expected 0"},
+        Fault{"ReservedOfAnAmount", [](Description& d) { d.amount.reserved = 1; },
+              "law 'bond': amount 'heat': reserved is 1, expected 0"},
+        Fault{"AmountTwice", [](Description& d) { d.law.amount_count = 2; },
+              "law 'bond': amount 'heat' is declared twice"},
+        Fault{"AmountsNull", [](Description& d) { d.law.amounts = nullptr; },
+              "law 'bond': amounts is null, expected 1 entries"},
+        Fault{"SmallAmount", [](Description& d) { d.amount.struct_size = 8; },
+              "law 'bond': amount 0: amount has struct_size 8, expected at least 32 and at most 4096"},
+        Fault{"AmountWithoutUnit", [](Description& d) { d.amount.unit = nullptr; },
+              "law 'bond': amount 'heat': unit is null, expected a text"},
+        Fault{"AxisTwice", [](Description& d) { d.axes[1] = "time"; },
+              "law 'bond': parameter 'strength': axis 'time' is declared twice"},
+        Fault{"AxesNull", [](Description& d) { d.number.axes = nullptr; },
+              "law 'bond': parameter 'strength': axes is null, expected 2 entries"},
+        Fault{
+            "AxisOfABadName", [](Description& d) { d.axes[0] = "Slip speed"; },
+            "law 'bond': parameter 'strength': an axis is 'Slip speed', expected lower-case letters, digits "
+            "and '_'"},
         Fault{"UnknownOutput", [](Description& d) { d.law.outputs = 1U << 20; },
               "law 'bond': outputs is 1048576, expected only the bits of 7"},
         Fault{"EmptyId", [](Description& d) { d.law.id = ""; },
@@ -185,15 +219,15 @@ INSTANTIATE_TEST_SUITE_P(
               "law 'bond': parameter 'strength' is declared twice"},
         Fault{"UnknownKind", [](Description& d) { d.number.kind = 9; },
               "law 'bond': parameter 'strength': kind is 9, expected at most 2"},
-        Fault{"UnknownMayBe", [](Description& d) { d.number.may_be = 8; },
-              "law 'bond': parameter 'strength': may_be is 8, expected only the bits of 3"},
+        Fault{"UnknownFlags", [](Description& d) { d.number.flags = 32; },
+              "law 'bond': parameter 'strength': flags is 32, expected only the bits of 31"},
         Fault{"RangeUpsideDown", [](Description& d) { d.number.minimum = 2.0; },
               "law 'bond': parameter 'strength': minimum 2.000000 is not below maximum 1.000000"},
         Fault{"RangeOfNoNumbers", [](Description& d) { d.number.maximum = NAN; },
               "law 'bond': parameter 'strength': minimum 0.000000 is not below maximum nan"},
         Fault{"DefaultAtAnExcludedMinimum",
               [](Description& d) {
-                d.number.minimum_excluded = 1;
+                d.number.flags |= ILAW_PARAMETER_EXCLUDES_MINIMUM;
                 d.number.default_value = 0.0;
               },
               "law 'bond': parameter 'strength': default 0.000000 lies outside its own range"},
@@ -204,13 +238,13 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"DefaultInfiniteWhereAllowed",
               [](Description& d) {
                 d.number.default_value = infinity;
-                d.number.infinity_allowed = 1;
+                d.number.flags |= ILAW_PARAMETER_ALLOWS_INFINITY;
               },
               ""},
         Fault{"NoDefaultWhereRequired",
               [](Description& d) {
                 d.number.default_value = d.choice.default_value = NAN;
-                d.number.required = d.choice.required = 1;
+                d.number.flags = d.choice.flags = ILAW_PARAMETER_IS_REQUIRED;
               },
               ""},
         Fault{"NoChoices", [](Description& d) { d.choice.choice_count = 0; },
@@ -231,18 +265,29 @@ INSTANTIATE_TEST_SUITE_P(
 
 // As create is asked for it: one parameter per node, one not.
 struct Instance {
-  ilaw_argument per_node{sizeof per_node, ILAW_VALUE_PER_NODE, "strength", 0.0, nullptr, nullptr, 0};
-  ilaw_argument plain{sizeof plain, ILAW_VALUE_NUMBER, "delay", 0.0, nullptr, nullptr, 0};
-  ilaw_argument nameless{sizeof nameless, ILAW_VALUE_PER_NODE, nullptr, 0.0, nullptr, nullptr, 0};
+  ilaw_argument per_node{
+      sizeof per_node, ILAW_VALUE_PER_NODE, "strength", 0.0, nullptr, nullptr, nullptr, 0, 0};
+  ilaw_argument plain{sizeof plain, ILAW_VALUE_NUMBER, "delay", 0.0, nullptr, nullptr, nullptr, 0, 0};
+  ilaw_argument nameless{sizeof nameless, ILAW_VALUE_PER_NODE, nullptr, 0.0, nullptr, nullptr, nullptr, 0, 0};
   std::array<const ilaw_argument*, 4> arguments{&per_node, nullptr, &nameless, &plain};
   std::array<const char*, 2> names{"strength", "strength"};
   ilaw_state_variable first{sizeof first, ILAW_STATE_VECTOR, "first", "m", "", 3, 0, 0};
   ilaw_state_variable second{sizeof second, ILAW_STATE_TANGENTIAL, "second", "m", "", 2, 0, 0};
   std::array<const ilaw_state_variable*, 2> variables{&first, &second};
+  ilaw_amount heat{sizeof heat, 0, "heat", "J", ""}, wear{sizeof wear, 0, "wear", "m", ""};
+  std::array<const ilaw_amount*, 2> amounts{&heat, &wear}, given{&wear, &wear};
+  ilaw_law law{};
   ilaw_setup setup{};
   ilaw_instance_info info{};
 
   Instance() {
+    law.id = "bond";
+    law.permissions = ILAW_MAY_SKIP_FRESH;
+    law.amounts = amounts.data();
+    law.amount_count = 2;
+    info.permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE;
+    info.amounts = given.data();
+    info.amount_count = 1;
     setup.struct_size = sizeof setup;
     setup.dimension = 3;
     setup.arguments = arguments.data();
@@ -260,8 +305,6 @@ struct Instance {
   std::string answer() const {
     storage kept;
     const std::string file = "bonds.so";
-    ilaw_law law{};
-    law.id = "bond";
     ilaw_instance_info checked = info;
     try {
       check_instance_info({file, law, ILAW_ABI_MINOR}, setup, checked, kept);
@@ -306,8 +349,15 @@ TEST(FaultyInstance, IsNamedWithWhatWasFoundAndExpected) {
               i.info.per_node_parameter_count = 0;
             }),
             "");
-  EXPECT_EQ(said_of([](Instance& i) { i.info.energy_inputs = 1U << 20; }),
+  EXPECT_EQ(said_of([](Instance& i) { i.info.balance_inputs = 1U << 20; }),
             "bonds.so: law 'bond': reads inputs 1048576, expected only the bits of 31");
+  EXPECT_EQ(said_of([](Instance& i) { i.info.permissions = ILAW_MAY_SKIP_FREE; }),
+            at + "permissions is 2, expected at least the law's, 1");
+  EXPECT_EQ(said_of([](Instance& i) { i.info.permissions = 9; }),
+            at + "permissions is 9, expected only the bits of 3");
+  EXPECT_EQ(said_of([](Instance& i) { i.info.reserved = 9; }), at + "reserved is 9, expected 0");
+  EXPECT_EQ(said_of([](Instance& i) { i.info.amount_count = 2; }), at + "amount 'wear' is declared twice");
+  EXPECT_EQ(said_of([](Instance& i) { i.law.amount_count = 1; }), at + "amount 'wear' is none of the law's");
 }
 
 // ---- memory ---------------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 // What the loader finds, refuses and keeps loaded.
 #include <ilaw/loader.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <dlfcn.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -42,6 +44,8 @@ ilaw_setup setup_1d() {
   setup.struct_size = sizeof setup;
   setup.dimension = 1;
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.frame = ILAW_FRAME_LOCAL;
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
   return setup;
 }
 
@@ -65,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
     Loader, RefusedLibrary,
     ::testing::Values(
         Refused{"null_function", "law 'zero': function 'evaluate' is null, expected a function"},
-        Refused{"small_law", "law 0: law has struct_size 96, expected at least 136 and at most 4096"},
+        Refused{"small_law", "law 0: law has struct_size 120, expected at least 160 and at most 4096"},
         Refused{"small_plugin", "the description has struct_size 8, expected at least 64 and at most 4096"},
         Refused{"other_major_symbol", "a library for ABI major version 2, expected major version 1"},
         Refused{"other_major_field", "ABI version 2.0, expected major version 1"},
@@ -79,6 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "law 'zero': parameter 'strength': default 2.000000 lies outside its own range"},
         Refused{"long_count", "law 'zero': parameters has 4000000000 entries, expected at most 10000"},
         Refused{"unknown_bits", "law 'zero': delassus_forms is 65, expected only the bits of 15"},
+        Refused{"unknown_frame", "law 'zero': frames is 7, expected only the bits of 3"},
         Refused{"control_text", "law 'zero': title has bytes that are no UTF-8 or control characters"},
         Refused{"no_utf8", "law 'zero': title has bytes that are no UTF-8 or control characters"},
         Refused{"overlong_utf8", "law 'zero': title has bytes that are no UTF-8 or control characters"}),
@@ -104,7 +109,7 @@ TEST(Loader, RefusesFilesThatAreNoLibraries) {
 
 // dlopen maps what the headers promise: a truncated file would die of SIGBUS.
 TEST(Loader, RefusesTruncatedLibraries) {
-  const std::string whole = std::string(ILAW_PLUGIN_FOLDER) + "/contact.so";
+  const std::string whole = variant("good");
   const fs::path cut = fresh_folder() / "cut.so";
   const auto size = static_cast<std::uintmax_t>(fs::file_size(whole));
   for (const double part : {0.0001, 0.001, 0.1, 0.5, 0.9, 0.9999}) {
@@ -128,7 +133,7 @@ TEST(Loader, LoadsALibraryOfANewerMinorVersion) {
   ilaw_batch batch{};
   batch.struct_size = sizeof batch;
   batch.node_count = 1;
-  batch.impulse = {&r, 1, 1};
+  batch.impulse = {&r, nullptr, 1, 1};
   EXPECT_EQ(law.evaluate(batch), ILAW_OK);
   EXPECT_EQ(r, 0.0);
 }
@@ -174,13 +179,25 @@ INSTANTIATE_TEST_SUITE_P(
                     "per-node parameter 'strength' was not given per node"},
         RefusedInfo{"unknown_input", ILAW_UNSUPPORTED, "reads inputs 1048576, expected only the bits of 31"},
         RefusedInfo{"unknown_capability", ILAW_BAD_LIBRARY,
-                    "capabilities is 1048576, expected only the bits of 15"},
+                    "capabilities is 1048576, expected only the bits of 3"},
+        RefusedInfo{"no_permissions", ILAW_BAD_LIBRARY, "permissions is 0, expected at least the law's, 1"},
+        RefusedInfo{"unknown_permission", ILAW_BAD_LIBRARY,
+                    "permissions is 1048577, expected only the bits of 3"},
+        RefusedInfo{"foreign_amount", ILAW_BAD_LIBRARY, "amount 'wear' is none of the law's"},
         RefusedInfo{"refused_info", ILAW_BAD_LIBRARY, "info refuses its own instance"},
+        RefusedInfo{"rounds_in_create", ILAW_BAD_LIBRARY, "create changed how the processor rounds"},
         RefusedInfo{"odd_code", ILAW_BAD_LIBRARY, "create gave no instance, code 57"},
         RefusedInfo{"throws_number", ILAW_BAD_LIBRARY, "an exception of a library"},
         RefusedInfo{"throws_error", ILAW_BAD_LIBRARY, "a table is missing"},
         RefusedInfo{"odd_message", ILAW_INVALID_PARAMETER, "wrong ?[2J?"}),
     [](const auto& drawn) { return drawn.param.name; });
+
+TEST(Loader, RefusesALibraryThatRoundsOtherwise) {
+  const auto [code, text] = refusal_of(variant("rounds_at_load"));
+  EXPECT_EQ(code, ILAW_BAD_LIBRARY);
+  EXPECT_THAT(text, ::testing::HasSubstr("loading it changed how the processor rounds"));
+  EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+}
 
 // A host of another minor version than the loader: its structs are longer, or as short as 1.0 had them.
 TEST(Loader, FillsStructsOfLongerHosts) {
@@ -212,7 +229,7 @@ TEST(Loader, RefusesStructsThatNoHostCanHaveFilled) {
   setup.struct_size = 12;
   EXPECT_EQ(ilaw_interface_create(library.get(), "zero", &setup, &law, message, sizeof message),
             ILAW_INVALID_ARGUMENT);
-  EXPECT_STREQ(message, "setup has struct_size 12, expected at least 40");
+  EXPECT_STREQ(message, "setup has struct_size 12, expected at least 48");
   setup = setup_1d();
   ASSERT_EQ(ilaw_interface_create(library.get(), "zero", &setup, &law, nullptr, 0), ILAW_OK);
   ilaw_batch batch{};
@@ -318,7 +335,7 @@ TEST(Search, GoesOnUntilTheVisitorHasSeenEnough) {
   std::ofstream(folder / "so") << "no library by its name";
   setenv("ILAW_PATH", (folder / ".." / "." / folder.filename()).c_str(), 1);
   std::vector<std::string> seen;
-  const auto visit = [](const char* path, void* context) -> std::int32_t {
+  const ilaw_visit_function visit = [](const char* path, void* context) -> std::int32_t {
     static_cast<std::vector<std::string>*>(context)->push_back(path);
     return 7;
   };

@@ -6,7 +6,9 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <filesystem>
 #include <new>
+#include <string>
 
 namespace {
 
@@ -44,6 +46,40 @@ namespace {
 
 constexpr const char* file = ILAW_TEST_PLUGINS "/good.so";
 
+// With the description beside it, as `ilaw-describe` wrote it.
+std::string described_library() {
+  std::string folder = testing::TempDir() + "ilaw_memory_XXXXXX";
+  if (!mkdtemp(folder.data())) std::abort();
+  const std::string copy = folder + "/good.so";
+  std::filesystem::copy_file(file, copy);
+  if (std::system((ILAW_HOSTS "/ilaw-describe " + copy).c_str()) != 0) std::abort();
+  return copy;
+}
+
+TEST(OutOfMemory, ReadingADescriptionSaysIt) {
+  const std::string library = described_library();
+  std::int32_t code = ILAW_OK;
+  char text[8192];
+  std::size_t length = 0, needed = 0;
+  EXPECT_GE(with_every_allocation_failing([&] {
+              code = ilaw_library_read_description(library.c_str(), text, sizeof text, &length, nullptr, 0);
+              if (code != ILAW_OK && code != ILAW_OUT_OF_MEMORY) std::abort();
+            }),
+            100);
+  EXPECT_EQ(code, ILAW_OK);
+  EXPECT_GT(length, 100U);
+  EXPECT_GE(with_every_allocation_failing([&] {
+              ilaw_library* opened = nullptr;
+              code = ilaw_library_open(library.c_str(), &opened, nullptr, 0);
+              if (code != ILAW_OK && (code != ILAW_OUT_OF_MEMORY || opened)) std::abort();
+              needed = ilaw_library_describe(opened, text, sizeof text);
+              ilaw_library_close(opened);
+            }),
+            100);
+  EXPECT_GT(needed, 100U);
+  std::filesystem::remove_all(std::filesystem::path(library).parent_path());
+}
+
 TEST(OutOfMemory, OpeningAndCreatingSayItAndLeaveNothingBehind) {
   std::int32_t code = ILAW_OK;
   char message[256];
@@ -54,6 +90,8 @@ TEST(OutOfMemory, OpeningAndCreatingSayItAndLeaveNothingBehind) {
     setup.struct_size = sizeof setup;
     setup.dimension = 1;
     setup.delassus_form = ILAW_DELASSUS_SCALAR;
+    setup.frame = ILAW_FRAME_LOCAL;
+    setup.numbers = ILAW_NUMBERS_DOUBLE;
     code = ilaw_library_open(file, &library, message, sizeof message);
     if (code == ILAW_OK)
       code = ilaw_interface_create(library, "zero", &setup, &interface, message, sizeof message);

@@ -2,6 +2,7 @@
 // frame.
 #pragma once
 
+#include <ilaw/arrays.hpp>
 #include <ilaw/loader.hpp>
 
 #include <gtest/gtest.h>
@@ -46,44 +47,36 @@ class SetupBuilder {
  public:
   explicit SetupBuilder(const Parameters& given, std::uint32_t dimension = 3,
                         std::uint32_t form = ILAW_DELASSUS_SCALAR, std::uint32_t frame = ILAW_FRAME_LOCAL,
-                        bool tangent = false)
-      : given_(given) {
-    for (const auto& [name, value] : given_.numbers) {
-      ilaw_argument& a = add(name, ILAW_VALUE_NUMBER);
-      a.number = value;
-    }
-    for (const auto& [name, text] : given_.texts) add(name, ILAW_VALUE_TEXT).text = text.c_str();
-    for (const auto& [name, pairs] : given_.tables) {
-      ilaw_argument& a = add(name, ILAW_VALUE_TABLE);
-      a.values = pairs.data();
-      a.count = pairs.size() / 2;
-    }
-    for (const std::string& name : given_.per_node) add(name, ILAW_VALUE_PER_NODE);
-    for (const ilaw_argument& a : arguments_) pointers_.push_back(&a);
+                        bool tangent = false) {
+    for (const auto& [name, value] : given.numbers) arguments_.number(name, value);
+    for (const auto& [name, text] : given.texts) arguments_.text(name, text);
+    for (const auto& [name, pairs] : given.tables) add_time_table(name, pairs);
+    for (const std::string& name : given.per_node) arguments_.per_node(name);
     setup.struct_size = sizeof setup;
     setup.dimension = dimension;
     setup.delassus_form = form;
     setup.frame = frame;
-    setup.tangent_given = tangent;
-    setup.arguments = pointers_.data();
-    setup.argument_count = static_cast<std::uint32_t>(pointers_.size());
+    setup.numbers = ILAW_NUMBERS_DOUBLE;
+    setup.has_tangent = tangent;
+    arguments_.give(setup);
   }
   SetupBuilder(const SetupBuilder&) = delete;
 
   ilaw_setup setup{};
 
  private:
-  ilaw_argument& add(const std::string& name, std::uint32_t kind) {
-    ilaw_argument& a = arguments_.emplace_back();
-    a = {};
-    a.struct_size = sizeof a;
-    a.kind = kind;
-    a.name = name.c_str();
-    return a;
+  // Pairs (time, value).
+  void add_time_table(const std::string& name, const std::vector<double>& pairs) {
+    ilaw::parameters::axis times{"time", {}};
+    std::vector<double> values;
+    for (std::size_t k = 0; k + 1 < pairs.size(); k += 2) {
+      times.points.push_back(pairs[k]);
+      values.push_back(pairs[k + 1]);
+    }
+    arguments_.table(name, {times}, values);
   }
-  Parameters given_;
-  std::deque<ilaw_argument> arguments_;
-  std::vector<const ilaw_argument*> pointers_;
+
+  ilaw::parameters arguments_;
 };
 
 inline ilaw::interface make_law(const std::string& law, const SetupBuilder& builder) {
@@ -117,7 +110,7 @@ struct NodeRun {
 
   void initialise() {
     ilaw_batch b = batch();
-    b.state_out = {state.data(), 0, 1};
+    b.state_out = ilaw::output(state.data(), 0, 1);
     ASSERT_EQ(interface.initialise(b), ILAW_OK);
   }
 
@@ -125,11 +118,11 @@ struct NodeRun {
   std::int32_t step(const Vector& free_velocity) {
     v_free = free_velocity;
     ilaw_batch b = batch();
-    b.state_in = {state.data(), 0, 1};
-    b.state_out = {state.data(), 0, 1};
-    b.impulse = {r.data(), 0, 1};
-    b.velocity = {v.data(), 0, 1};
-    b.energy = {energy.data(), 0, 1};
+    b.state_in = ilaw::input(state.data(), 0, 1);
+    b.state_out = ilaw::output(state.data(), 0, 1);
+    b.impulse = ilaw::output(r.data(), 0, 1);
+    b.velocity = ilaw::output(v.data(), 0, 1);
+    b.energy = ilaw::output(energy.data(), 0, 1);
     b.status = &status;
     b.status_stride = 1;
     report.struct_size = sizeof report;
@@ -157,11 +150,11 @@ struct NodeRun {
     b.time = time;
     b.velocity_step = dt;
     b.position_step = position_dt.value_or(dt);
-    b.v_free = {v_free.data(), 0, 1};
-    b.delassus = {h.data(), 0, 1};
-    b.gap = {&gap, 0, 1};
-    b.v_previous = {v_previous.data(), 0, 1};
-    b.area = {&area, 0, 1};
+    b.v_free = ilaw::input(v_free.data(), 0, 1);
+    b.delassus = ilaw::input(h.data(), 0, 1);
+    b.gap = ilaw::input(&gap, 0, 1);
+    b.v_previous = ilaw::input(v_previous.data(), 0, 1);
+    b.area = ilaw::input(&area, 0, 1);
     return b;
   }
 

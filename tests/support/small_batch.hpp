@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ilaw/ilaw.h>
+#include <ilaw/arrays.hpp>
 
 #include <array>
 #include <cstdint>
@@ -18,13 +19,13 @@ struct SmallBatch {
     b.struct_size = sizeof b;
     b.node_count = static_cast<std::int64_t>(count);
     b.velocity_step = b.position_step = 1e-3;
-    b.v_free = b.v_previous = {v.data(), 0, 1};
-    b.delassus = {h.data(), 0, 1};
-    b.gap = {&gap, 0, 1};
-    b.area = {&area, 0, 1};
-    b.state_in = {state.data(), static_cast<std::int64_t>(state_size), 1};
-    b.state_out = {state.data(), static_cast<std::int64_t>(state_size), 1};
-    b.impulse = {r[0].data(), 3, 1};
+    b.v_free = b.v_previous = ilaw::input(v.data(), 0, 1);
+    b.delassus = ilaw::input(h.data(), 0, 1);
+    b.gap = ilaw::input(&gap, 0, 1);
+    b.area = ilaw::input(&area, 0, 1);
+    b.state_in = ilaw::input(state.data(), static_cast<std::int64_t>(state_size), 1);
+    b.state_out = ilaw::output(state.data(), static_cast<std::int64_t>(state_size), 1);
+    b.impulse = ilaw::output(r[0].data(), 3, 1);
     b.status = status.data();
     b.status_stride = 1;
     report.struct_size = sizeof report;

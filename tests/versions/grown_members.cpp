@@ -24,9 +24,11 @@ void check_instance(const ilaw::library& library, const ilaw_law& law) {
   setup.struct_size = sizeof setup;
   setup.dimension = 3;
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.frame = ILAW_FRAME_LOCAL;
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
   std::vector<ilaw_argument> arguments;
   for (std::uint32_t p = 0; p < law.parameter_count; ++p)
-    if (law.parameters[p]->required) {
+    if (law.parameters[p]->flags & ILAW_PARAMETER_IS_REQUIRED) {
       ilaw_argument& a = arguments.emplace_back();
       a.struct_size = sizeof a;
       a.name = law.parameters[p]->name;
@@ -41,6 +43,8 @@ void check_instance(const ilaw::library& library, const ilaw_law& law) {
   expect_zero(info, "info", library.path());
   for (std::uint32_t v = 0; v < info.state_variable_count; ++v)
     expect_zero(*info.state_variables[v], "state variable of an instance", library.path());
+  for (std::uint32_t a = 0; a < info.amount_count; ++a)
+    expect_zero(*info.amounts[a], "amount of an instance", library.path());
   ilaw_batch batch{};
   batch.struct_size = sizeof batch;
   batch.velocity_step = batch.position_step = 1e-3;
@@ -61,6 +65,8 @@ void check(const ilaw::library& library) {
       expect_zero(*law.parameters[p], "parameter", library.path());
     for (std::uint32_t v = 0; v < law.state_variable_count; ++v)
       expect_zero(*law.state_variables[v], "state variable", library.path());
+    for (std::uint32_t a = 0; a < law.amount_count; ++a)
+      expect_zero(*law.amounts[a], "amount", library.path());
     check_instance(library, law);
   }
 }

@@ -16,11 +16,103 @@ namespace ilaw {
 // Thrown with the loader's or the law's one-line message; code is one of ILAW_* of ilaw.h.
 class error : public std::runtime_error {
  public:
-  error(std::int32_t code, const std::string& text) : std::runtime_error(text), code_(code) {}
-  std::int32_t code() const { return code_; }
+  error(ilaw_result code, const std::string& text) : std::runtime_error(text), code_(code) {}
+  ilaw_result code() const { return code_; }
 
  private:
-  std::int32_t code_;
+  ilaw_result code_;
+};
+
+// Arguments of create: names and values, kept here. Use: ilaw::parameters p; p.number("friction", 0.3);
+// p.give(setup).
+class parameters {
+ public:
+  struct axis {
+    std::string name;
+    std::vector<double> points;
+  };
+
+  parameters& number(const std::string& name, double value) {
+    entry& made = add(name, ILAW_VALUE_NUMBER);
+    made.number = value;
+    return *this;
+  }
+  parameters& text(const std::string& name, const std::string& choice) {
+    entry& made = add(name, ILAW_VALUE_TEXT);
+    made.text = choice;
+    return *this;
+  }
+  // The last axis varies fastest; throws error unless there is one value per point of the grid.
+  parameters& table(const std::string& name, const std::vector<axis>& axes,
+                    const std::vector<double>& values) {
+    std::size_t points = axes.empty() ? 0 : 1;
+    for (const axis& along : axes)
+      points = along.points.size() > values.size() ? 0 : points * along.points.size();
+    if (points == 0 || points != values.size())
+      throw error(ILAW_INVALID_PARAMETER, "parameter '" + name + "': a table of " +
+                                              std::to_string(values.size()) +
+                                              " values; expected one value per point of its axes");
+    entry& made = add(name, ILAW_VALUE_TABLE);
+    made.axes = axes;
+    made.values = values;
+    return *this;
+  }
+  parameters& per_node(const std::string& name) {
+    add(name, ILAW_VALUE_PER_NODE);
+    return *this;
+  }
+
+  // Sets the arguments of a setup; they are valid until these parameters are changed, copied over or
+  // destroyed.
+  void give(ilaw_setup& setup) {
+    pointers_.clear();
+    for (entry& one : entries_) pointers_.push_back(one.refer());
+    setup.arguments = pointers_.data();
+    setup.argument_count = static_cast<std::uint32_t>(pointers_.size());
+  }
+
+ private:
+  struct entry {
+    std::string name, text;
+    ilaw_kind kind = ILAW_VALUE_NUMBER;
+    double number = 0.0;
+    std::vector<double> values;
+    std::vector<axis> axes;
+    // What points into the members above.
+    ilaw_argument argument{};
+    std::vector<ilaw_axis> axis_structs;
+    std::vector<const ilaw_axis*> axis_pointers;
+
+    const ilaw_argument* refer() {
+      axis_structs.clear();
+      axis_pointers.clear();
+      for (const axis& along : axes)
+        axis_structs.push_back(
+            {sizeof(ilaw_axis), 0, along.name.c_str(), along.points.data(), along.points.size()});
+      for (const ilaw_axis& along : axis_structs) axis_pointers.push_back(&along);
+      const bool is_table = kind == ILAW_VALUE_TABLE;
+      argument = {};
+      argument.struct_size = sizeof argument;
+      argument.kind = kind;
+      argument.name = name.c_str();
+      argument.number = number;
+      argument.text = kind == ILAW_VALUE_TEXT ? text.c_str() : nullptr;
+      argument.values = is_table ? values.data() : nullptr;
+      argument.axes = is_table ? axis_pointers.data() : nullptr;
+      argument.axis_count = static_cast<std::uint32_t>(axes.size());
+      return &argument;
+    }
+  };
+
+  entry& add(const std::string& name, ilaw_kind kind) {
+    entry& made = entries_.emplace_back();
+    made.name = name;
+    made.kind = kind;
+    return made;
+  }
+
+  std::vector<entry> entries_;
+  std::vector<const ilaw_argument*> pointers_;
 };
 
 // An open library. Movable; closed at the end of its life (interfaces made from it keep it loaded).
@@ -36,15 +128,24 @@ class library {
   // Null when the library has no law of that id.
   const ilaw_law* law(const std::string& id) const { return ilaw_library_law(handle_.get(), id.c_str()); }
   ilaw_library* get() const { return handle_.get(); }
+  // The description as JSON, with the path as "file".
+  std::string describe() const {
+    std::string text(ilaw_library_describe(handle_.get(), nullptr, 0), '\0');
+    if (text.empty()) throw std::bad_alloc();
+    ilaw_library_describe(handle_.get(), text.data(), text.size());
+    text.pop_back();  // the zero at its end
+    return text;
+  }
 
  private:
   struct closer {
     void operator()(ilaw_library* library) const { ilaw_library_close(library); }
   };
-  library(std::int32_t (*open)(const char*, ilaw_library**, char*, std::size_t), const std::string& text) {
+  library(ilaw_result(ILAW_CALL* open)(const char*, ilaw_library**, char*, std::size_t),
+          const std::string& text) {
     char message[1024];
     ilaw_library* opened = nullptr;
-    const std::int32_t code = open(text.c_str(), &opened, message, sizeof message);
+    const ilaw_result code = open(text.c_str(), &opened, message, sizeof message);
     if (code != ILAW_OK) throw error(code, message);
     handle_.reset(opened);
   }
@@ -58,8 +159,8 @@ class interface {
   interface(const library& from, const std::string& id, const ilaw_setup& setup) {
     char message[1024];
     ilaw_interface* made = nullptr;
-    const std::int32_t code = ilaw_interface_create(from.get(), id.empty() ? nullptr : id.c_str(), &setup,
-                                                    &made, message, sizeof message);
+    const ilaw_result code = ilaw_interface_create(from.get(), id.empty() ? nullptr : id.c_str(), &setup,
+                                                   &made, message, sizeof message);
     if (code != ILAW_OK) throw error(code, message);
     handle_.reset(made);
   }
@@ -70,16 +171,16 @@ class interface {
   ilaw_instance_info info() const {
     ilaw_instance_info info{};
     info.struct_size = sizeof info;
-    const std::int32_t code = ilaw_interface_info(handle_.get(), &info);
+    const ilaw_result code = ilaw_interface_info(handle_.get(), &info);
     if (code != ILAW_OK) throw error(code, "info refuses its own instance");
     return info;
   }
 
   // As ilaw_law.initialise and ilaw_law.evaluate, codes and all: bad nodes are no exception.
-  std::int32_t initialise(const ilaw_batch& batch, ilaw_report* report = nullptr) const {
+  ilaw_result initialise(const ilaw_batch& batch, ilaw_report* report = nullptr) const {
     return ilaw_interface_initialise(handle_.get(), &batch, report);
   }
-  std::int32_t evaluate(const ilaw_batch& batch, ilaw_report* report = nullptr) const {
+  ilaw_result evaluate(const ilaw_batch& batch, ilaw_report* report = nullptr) const {
     return ilaw_interface_evaluate(handle_.get(), &batch, report);
   }
 
@@ -89,6 +190,20 @@ class interface {
   };
   std::unique_ptr<ilaw_interface, destroyer> handle_;
 };
+
+// The same JSON from the file beside a library, which is not opened; empty where there is no such file.
+inline std::string read_description(const std::string& name_or_path) {
+  std::string text;
+  for (std::size_t length = 0;; text.resize(length)) {
+    char message[1024];
+    const ilaw_result code = ilaw_library_read_description(name_or_path.c_str(), text.data(), text.size(),
+                                                           &length, message, sizeof message);
+    if (code != ILAW_OK) throw error(code, message);
+    if (length > text.size()) continue;
+    text.resize(length == 0 ? 0 : length - 1);  // without the zero at its end
+    return text;
+  }
+}
 
 // All *.so files of the search path; none is opened.
 inline std::vector<std::string> search() {

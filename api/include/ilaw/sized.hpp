@@ -20,6 +20,10 @@ inline constexpr std::uint32_t least<ilaw_parameter> = ILAW_PARAMETER_SIZE_1_0;
 template <>
 inline constexpr std::uint32_t least<ilaw_state_variable> = ILAW_STATE_VARIABLE_SIZE_1_0;
 template <>
+inline constexpr std::uint32_t least<ilaw_amount> = ILAW_AMOUNT_SIZE_1_0;
+template <>
+inline constexpr std::uint32_t least<ilaw_axis> = ILAW_AXIS_SIZE_1_0;
+template <>
 inline constexpr std::uint32_t least<ilaw_argument> = ILAW_ARGUMENT_SIZE_1_0;
 template <>
 inline constexpr std::uint32_t least<ilaw_setup> = ILAW_SETUP_SIZE_1_0;

@@ -12,14 +12,16 @@
 
 `list()` gives the libraries that are found, `describe(name)` a law's parameters and inputs.
 """
-from ._abi import ABI_MAJOR, ABI_MINOR, Capability, Energy, Input, Output, Status
-from .description import Law, Library, Parameter, Plugin, StateVariable, describe, list, search_path
+from ._abi import ABI_MAJOR, ABI_MINOR, Capability, Energy, Input, Output, ParameterFlag, ParameterKind, Permission
+from ._abi import StateKind, Status
+from .description import Amount, Law, Library, Parameter, Plugin, StateVariable, describe, list, search_path
 from .errors import BadLibrary, BadNodes, Error, InvalidArgument, InvalidParameter, NotFound, Unsupported
-from .interface import Batch, Interface, Report
+from .interface import PER_NODE, Batch, Interface, Report
 
 __version__ = "1.0.0"
 __all__ = [
-    "ABI_MAJOR", "ABI_MINOR", "BadLibrary", "BadNodes", "Batch", "Capability", "Energy", "Error", "Input",
-    "Interface", "InvalidArgument", "InvalidParameter", "Law", "Library", "NotFound", "Output", "Parameter", "Plugin",
-    "Report", "StateVariable", "Status", "Unsupported", "describe", "list", "search_path",
+    "ABI_MAJOR", "ABI_MINOR", "Amount", "BadLibrary", "BadNodes", "Batch", "Capability", "Energy", "Error", "Input",
+    "Interface", "InvalidArgument", "InvalidParameter", "Law", "Library", "NotFound", "Output", "PER_NODE", "Parameter",
+    "ParameterFlag", "ParameterKind", "Permission", "Plugin", "Report", "StateKind", "StateVariable", "Status",
+    "Unsupported", "describe", "list", "search_path",
 ]  # fmt: skip

@@ -1,16 +1,30 @@
-"""The structs and constants of <ilaw/ilaw.h>, ABI 1.0, for ctypes.
+"""Structs, constants and functions of the ABI and the loader, for ctypes.
 
-Member for member as the header has them, which says what each means, in which unit and who owns it.
-A test compares sizes, places and values with the C compiler's.
+Made by api/bindings/generate.py from <ilaw/ilaw.h>, <ilaw/loader.h>: do not edit, change the header and run
+the script. The header says what each member means, in which unit and who owns it. Names lose their `ilaw_` or `ILAW_`.
 """
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, c_char_p, c_double, c_int32, c_int64, c_size_t, c_uint8, c_uint16, c_uint32, c_uint64
-from ctypes import c_void_p
+from ctypes import CFUNCTYPE, POINTER
+from ctypes import c_char_p, c_double, c_int32, c_int64, c_size_t, c_uint16, c_uint32, c_uint64, c_void_p
 from enum import IntEnum, IntFlag
 
-ABI_MAJOR, ABI_MINOR = 1, 0
+ABI_MAJOR = 1
+ABI_MINOR = 0
+DIMENSION_1 = 2
+DIMENSION_2 = 4
+DIMENSION_3 = 8
+STATUS_COUNT = 8
+ENERGY_COUNT = 4
+TABLE_MAX_VALUES = 16777216
+
+
+class Flags(IntFlag):
+    """Printed by its names, as `ilaw describe` does."""
+
+    def __str__(self) -> str:
+        return ", ".join(str(flag.name).lower() for flag in type(self) if flag in self)
 
 
 class Code(IntEnum):
@@ -26,14 +40,8 @@ class Code(IntEnum):
     BAD_LIBRARY = -6
 
 
-class Dimension(IntFlag):
-    ONE = 2
-    TWO = 4
-    THREE = 8
-
-
-class Delassus(IntFlag):
-    """Form of the inverse mass H at a node; see ilaw.h for the order of its components."""
+class Delassus(Flags):
+    """Form of the inverse mass H at a node."""
 
     SCALAR = 1
     DIAGONAL = 2
@@ -41,20 +49,22 @@ class Delassus(IntFlag):
     TRANSVERSE = 8
 
 
-class Frame(IntEnum):
-    LOCAL = 0
-    GLOBAL = 1
+class Frame(Flags):
+    """Axes in which vectors and H are given."""
+
+    LOCAL = 1
+    GLOBAL = 2
 
 
-class Named(IntFlag):
-    """Printed by its names, as `ilaw describe` does."""
+class Numbers(Flags):
+    """Number type of the arrays of a batch."""
 
-    def __str__(self) -> str:
-        return ", ".join(str(flag.name).lower() for flag in type(self) if flag in self)
+    DOUBLE = 1
+    FLOAT = 2
 
 
-class Input(Named):
-    """Arrays of a batch that a law reads besides v_free and delassus."""
+class Input(Flags):
+    """Arrays that a law reads besides v_free and delassus."""
 
     GAP = 1
     V_PREVIOUS = 2
@@ -63,38 +73,58 @@ class Input(Named):
     TANGENT = 16
 
 
-class Output(Named):
+class Output(Flags):
+    """Optional arrays that a law can write."""
+
     VELOCITY = 1
     STATUS = 2
     ENERGY = 4
 
 
-class Capability(Named):
+class Capability(Flags):
+    """What more a law can do."""
+
     ADHERE = 1
     STORE_ENERGY = 2
-    ACT_AT_DISTANCE = 4
-    REST = 8
+
+
+class Permission(Flags):
+    """Nodes out of reach that the host may skip."""
+
+    SKIP_FRESH = 1
+    SKIP_FREE = 2
 
 
 class ParameterKind(IntEnum):
+    """Kind of a parameter."""
+
     NUMBER = 0
     COUNT = 1
     CHOICE = 2
 
 
+class ParameterFlag(Flags):
+    """Properties of a parameter."""
+
+    IS_REQUIRED = 1
+    EXCLUDES_MINIMUM = 2
+    ALLOWS_INFINITY = 4
+    ALLOWS_PER_NODE = 8
+    IS_FIELD = 16
+
+
 class ValueKind(IntEnum):
+    """How the value of a parameter is given."""
+
     NUMBER = 0
     TEXT = 1
     TABLE = 2
     PER_NODE = 3
 
 
-class MayBe(Named):
-    TABLE = 1
-    PER_NODE = 2
-
-
 class StateKind(IntEnum):
+    """Kind of a state variable."""
+
     SCALAR = 0
     VECTOR = 1
     HISTORY = 2
@@ -102,12 +132,14 @@ class StateKind(IntEnum):
     TANGENTIAL = 4
 
 
-class VariableFlag(IntFlag):
+class VariableFlag(Flags):
+    """Flags of a state variable."""
+
     INTERNAL = 1
 
 
 class Status(IntEnum):
-    """What happened at a node in the last step."""
+    """State of a node after a step."""
 
     FREE = 0
     CLOSED = 1
@@ -119,9 +151,6 @@ class Status(IntEnum):
     BAD_INPUT = 7
 
 
-STATUS_COUNT = 8
-
-
 class Energy(IntEnum):
     """Column of the energy output."""
 
@@ -129,9 +158,6 @@ class Energy(IntEnum):
     IMPACT = 1
     RUPTURE = 2
     STORED = 3
-
-
-ENERGY_COUNT = 4
 
 
 class parameter(ctypes.Structure):
@@ -145,12 +171,11 @@ class parameter(ctypes.Structure):
         ("minimum", c_double),
         ("maximum", c_double),
         ("default_value", c_double),
-        ("required", c_uint32),
-        ("minimum_excluded", c_uint32),
-        ("infinity_allowed", c_uint32),
-        ("may_be", c_uint32),
-        ("choices", POINTER(c_char_p)),
+        ("flags", c_uint32),
         ("choice_count", c_uint32),
+        ("choices", POINTER(c_char_p)),
+        ("axes", POINTER(c_char_p)),
+        ("axis_count", c_uint32),
         ("reserved", c_uint32),
     ]
 
@@ -168,6 +193,26 @@ class state_variable(ctypes.Structure):
     ]
 
 
+class amount(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("name", c_char_p),
+        ("unit", c_char_p),
+        ("doc", c_char_p),
+    ]
+
+
+class axis(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("name", c_char_p),
+        ("points", c_void_p),
+        ("count", c_uint64),
+    ]
+
+
 class argument(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -175,8 +220,10 @@ class argument(ctypes.Structure):
         ("name", c_char_p),
         ("number", c_double),
         ("text", c_char_p),
-        ("values", POINTER(c_double)),
-        ("count", c_uint64),
+        ("values", c_void_p),
+        ("axes", POINTER(POINTER(axis))),
+        ("axis_count", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -189,7 +236,9 @@ class setup(ctypes.Structure):
         ("flags", c_uint64),
         ("arguments", POINTER(POINTER(argument))),
         ("argument_count", c_uint32),
-        ("tangent_given", c_uint32),
+        ("has_tangent", c_uint32),
+        ("numbers", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -197,7 +246,7 @@ class instance_info(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint32),
         ("inputs", c_uint32),
-        ("energy_inputs", c_uint32),
+        ("balance_inputs", c_uint32),
         ("state_variable_count", c_uint32),
         ("state_size", c_uint64),
         ("state_variables", POINTER(POINTER(state_variable))),
@@ -205,16 +254,29 @@ class instance_info(ctypes.Structure):
         ("per_node_parameter_count", c_uint32),
         ("capabilities", c_uint32),
         ("state_version", c_uint32),
+        ("permissions", c_uint32),
+        ("amounts", POINTER(POINTER(amount))),
+        ("amount_count", c_uint32),
         ("reserved", c_uint32),
     ]
 
 
 class input(ctypes.Structure):
-    _fields_ = [("values", c_void_p), ("node_stride", c_int64), ("component_stride", c_int64)]
+    _fields_ = [
+        ("values", c_void_p),
+        ("floats", c_void_p),
+        ("node_stride", c_int64),
+        ("component_stride", c_int64),
+    ]
 
 
 class output(ctypes.Structure):
-    _fields_ = [("values", c_void_p), ("node_stride", c_int64), ("component_stride", c_int64)]
+    _fields_ = [
+        ("values", c_void_p),
+        ("floats", c_void_p),
+        ("node_stride", c_int64),
+        ("component_stride", c_int64),
+    ]
 
 
 class batch(ctypes.Structure):
@@ -244,6 +306,7 @@ class batch(ctypes.Structure):
         ("energy", output),
         ("status", c_void_p),
         ("status_stride", c_int64),
+        ("amounts", POINTER(output)),
     ]
 
 
@@ -258,15 +321,25 @@ class report(ctypes.Structure):
     ]
 
 
+create_function = CFUNCTYPE(c_int32, c_char_p, POINTER(setup), POINTER(c_void_p), c_char_p, c_size_t)
+destroy_function = CFUNCTYPE(None, c_void_p)
+info_function = CFUNCTYPE(c_int32, c_void_p, POINTER(instance_info))
+batch_function = CFUNCTYPE(c_int32, c_void_p, POINTER(batch), POINTER(report))
+extension_function = CFUNCTYPE(c_void_p, c_char_p)
+
+
 class law(ctypes.Structure):
-    # The functions are called through the loader, so their places are all that is told here.
     _fields_ = [
         ("struct_size", c_uint32),
         ("dimensions", c_uint32),
         ("delassus_forms", c_uint32),
+        ("frames", c_uint32),
+        ("numbers", c_uint32),
         ("inputs", c_uint32),
         ("outputs", c_uint32),
         ("capabilities", c_uint32),
+        ("permissions", c_uint32),
+        ("reserved", c_uint32),
         ("id", c_char_p),
         ("title", c_char_p),
         ("doc", c_char_p),
@@ -276,13 +349,14 @@ class law(ctypes.Structure):
         ("reference_count", c_uint32),
         ("parameter_count", c_uint32),
         ("state_variable_count", c_uint32),
-        ("reserved", c_uint32),
-        ("create", c_void_p),
-        ("destroy", c_void_p),
-        ("info", c_void_p),
-        ("initialise", c_void_p),
-        ("evaluate", c_void_p),
-        ("extension", c_void_p),
+        ("amount_count", c_uint32),
+        ("amounts", POINTER(POINTER(amount))),
+        ("create", create_function),
+        ("destroy", destroy_function),
+        ("info", info_function),
+        ("initialise", batch_function),
+        ("evaluate", batch_function),
+        ("extension", extension_function),
     ]
 
 
@@ -298,22 +372,23 @@ class plugin(ctypes.Structure):
         ("laws", POINTER(POINTER(law))),
         ("law_count", c_uint32),
         ("reserved", c_uint32),
-        ("extension", c_void_p),
+        ("extension", extension_function),
     ]
 
 
-def sized(struct: type[ctypes.Structure]) -> ctypes.Structure:
-    """A zeroed struct with its size set."""
-    made = struct()
-    made.struct_size = ctypes.sizeof(struct)
-    return made
+entry_function = CFUNCTYPE(POINTER(plugin))
+visit_function = CFUNCTYPE(c_int32, c_char_p, c_void_p)
 
 
 SIGNATURES = {
     "ilaw_library_open": (c_int32, [c_char_p, POINTER(c_void_p), c_char_p, c_size_t]),
+    "ilaw_library_open_named": (c_int32, [c_char_p, POINTER(c_void_p), c_char_p, c_size_t]),
+    "ilaw_library_read_description": (c_int32, [c_char_p, c_char_p, c_size_t, POINTER(c_size_t), c_char_p, c_size_t]),
     "ilaw_library_close": (None, [c_void_p]),
     "ilaw_library_plugin": (POINTER(plugin), [c_void_p]),
+    "ilaw_library_describe": (c_size_t, [c_void_p, c_char_p, c_size_t]),
     "ilaw_library_path": (c_char_p, [c_void_p]),
+    "ilaw_library_law": (POINTER(law), [c_void_p, c_char_p]),
     "ilaw_interface_create": (c_int32, [c_void_p, c_char_p, POINTER(setup), POINTER(c_void_p), c_char_p, c_size_t]),
     "ilaw_interface_destroy": (None, [c_void_p]),
     "ilaw_interface_law": (POINTER(law), [c_void_p]),
@@ -321,6 +396,6 @@ SIGNATURES = {
     "ilaw_interface_info": (c_int32, [c_void_p, POINTER(instance_info)]),
     "ilaw_interface_initialise": (c_int32, [c_void_p, POINTER(batch), POINTER(report)]),
     "ilaw_interface_evaluate": (c_int32, [c_void_p, POINTER(batch), POINTER(report)]),
-    "ilaw_search": (c_int32, [ctypes.CFUNCTYPE(c_int32, c_char_p, c_void_p), c_void_p]),
+    "ilaw_search": (c_int32, [visit_function, c_void_p]),
     "ilaw_search_path": (c_size_t, [c_char_p, c_size_t]),
 }

@@ -1,12 +1,26 @@
-"""The structs and functions of <ilaw/coupled.h>, for ctypes: member for member as the header has them."""
+"""Structs and functions of coupled contacts, for ctypes.
+
+Made by api/bindings/generate.py from <ilaw/coupled.h>: do not edit, change the header and run
+the script. The header says what each member means, in which unit and who owns it. Names lose their `ilaw_` or `ILAW_`.
+"""
 from __future__ import annotations
 
 import ctypes
-import functools
-from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
+from ctypes import CFUNCTYPE, POINTER
+from ctypes import c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
+from enum import IntEnum
 
 from . import _abi
-from ._loader import open_library
+
+
+class Method(IntEnum):
+    """Method of the last iteration of a solve."""
+
+    GAUSS_SEIDEL = 0
+    CONJUGATE = 1
+    ANDERSON = 2
+    DOUGLAS_RACHFORD = 3
+    NEWTON = 4
 
 
 class bodies(ctypes.Structure):
@@ -15,6 +29,7 @@ class bodies(ctypes.Structure):
         ("dimension", c_uint32),
         ("count", c_int64),
         ("owned_count", c_int64),
+        ("id", c_void_p),
         ("inverse_mass", _abi.input),
         ("inverse_inertia", _abi.input),
         ("v_free", _abi.input),
@@ -41,10 +56,17 @@ class contacts(ctypes.Structure):
         ("counterpart_arm", _abi.input),
         ("wall_velocity", _abi.input),
         ("wall_previous", _abi.input),
+        ("body_count", c_uint32),
+        ("counterpart_count", c_uint32),
+        ("body_weight", _abi.input),
+        ("counterpart_weight", _abi.input),
+        ("weight_size", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
-call_with_values = CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)
+sum_bodies_function = CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)
+reduce_function = CFUNCTYPE(None, c_void_p, POINTER(c_double), c_int64)
 
 
 class exchange(ctypes.Structure):
@@ -52,9 +74,9 @@ class exchange(ctypes.Structure):
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
         ("context", c_void_p),
-        ("sum_bodies", call_with_values),
-        ("largest", call_with_values),
-        ("sum", call_with_values),
+        ("sum_bodies", sum_bodies_function),
+        ("largest", reduce_function),
+        ("sum", reduce_function),
     ]
 
 
@@ -73,33 +95,26 @@ class coupled_report(ctypes.Structure):
         ("sweeps", c_uint32),
         ("residual", c_double),
         ("work", c_double),
-        ("energy", c_double * _abi.ENERGY_COUNT),
+        ("energy", c_double * 4),
         ("bad_count", c_int64),
         ("bad_group", c_int64),
         ("bad_contact", c_int64),
         ("reason", c_char_p),
         ("stable_velocity_step", c_double),
+        ("method", c_uint32),
+        ("stalled", c_uint32),
+        ("worst_group", c_int64),
+        ("worst_contact", c_int64),
+        ("law", c_char_p),
+        ("other_law", c_char_p),
     ]
 
 
 SIGNATURES = {
     "ilaw_coupled_create": (c_void_p, []),
     "ilaw_coupled_destroy": (None, [c_void_p]),
-    "ilaw_coupled_solve": (
-        c_int32,
-        [
-            c_void_p,
-            POINTER(bodies),
-            POINTER(POINTER(contacts)),
-            c_int64,
-            POINTER(coupled_options),
-            POINTER(coupled_report),
-        ],
-    ),
+    "ilaw_coupled_solve": (c_int32, [
+        c_void_p, POINTER(bodies), POINTER(POINTER(contacts)), c_int64, POINTER(coupled_options),
+        POINTER(coupled_report)
+    ]),
 }
-
-
-@functools.cache
-def library() -> ctypes.CDLL:
-    """The functions of coupled contacts, with their types. Calls release the interpreter's lock."""
-    return open_library("libilaw_coupled.so.1", "ILAW_COUPLED", SIGNATURES)

@@ -12,11 +12,12 @@
                             counterpart_arm=r_j * normal, impulse=impulse, state=state)
         solver.solve(bodies, [contacts], time=(n + 1) * h)
 
-What it does, and the method, is in ilaw/coupled.h and docs/hosts.md.
+What it does, and the method, is in ilaw/coupled.h and docs/hosts/coupled.md.
 """
 from __future__ import annotations
 
 import ctypes
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -25,22 +26,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _abi, _coupled_abi, arrays
-from ._coupled_abi import library
-from ._loader import loader
+from ._loader import loader, open_library
+from ._objects import Handle, NotCopied, sized, whole
 from .errors import BadNodes, InvalidArgument, raise_for
 from .interface import Interface
 
-__all__ = ["Bodies", "Contacts", "Exchange", "Report", "Solver"]
+Method = _coupled_abi.Method
+
+__all__ = ["Bodies", "Contacts", "Exchange", "Method", "Report", "Solver"]
+
+
+@functools.cache
+def library() -> ctypes.CDLL:
+    """The functions of coupled contacts, with their types. Calls release the interpreter's lock."""
+    return open_library("libilaw_coupled.so.1", "ILAW_COUPLED", _coupled_abi.SIGNATURES)
 
 
 @dataclass(frozen=True)
 class Report:
-    """What a solve has to say.
+    """Findings of a solve.
 
-    residual: largest difference between a contact's velocity and that for which its law gave the impulse,
+    sweeps: iterations. residual: largest change of a contact's velocity by its own impulse in the last iteration,
     relative to the largest velocity. work [J]: of all impulses, with the velocities that came out. energy (4,)
     [J]: sums of the columns `Energy`. bad_*: contacts with bad input, -1: none. stable_velocity_step [s]: as of
-    `ilaw.Report`, for masses split among contacts. All of this rank, but sweeps and residual.
+    `ilaw.Report`, with masses divided among contacts. method: of the last iteration. stalled: the residual is above
+    the tolerance and falls no more. worst_*: contact with the largest residual, -1: none. incompatible: ids of two
+    laws whose impulses grow without bound. All of this rank, but sweeps, residual, method and stalled.
     """
 
     sweeps: int
@@ -52,6 +63,11 @@ class Report:
     bad_contact: int
     reason: str
     stable_velocity_step: float
+    method: Method
+    stalled: bool
+    worst_group: int
+    worst_contact: int
+    incompatible: tuple[str, str] | None
 
 
 class Exchange(Protocol):
@@ -86,22 +102,23 @@ class _Arrays:
         if given is False:
             return None
         array = np.zeros((self.count, components)) if given is None or given is True else given
-        setattr(self.struct, member or name, arrays.written(name, array, self.count, components))
+        setattr(self.struct, member or name, arrays.written(name, array, (self.count, components)))
         self.outputs[name] = array
         return array
 
 
-class Bodies:
+class Bodies(NotCopied):
     """Bodies that contacts name: grains, or nodes of a mesh. n is their number, d the dimension (that of v_free).
 
     Inputs, float64, read where they are by every solve:
       v_free (n, d) [m/s]             velocity without contacts
-      inverse_mass (n,) [1/kg]        0: a body that does not give way
+      inverse_mass (n,) or (n, d) [1/kg]      0: immovable, along this axis
       v_previous (n, d) [m/s]         velocity before the step, for laws that read it
       spin_free, spin_previous (n, 3) [1/s]   angular velocities, where bodies rotate (d = 3)
       inverse_inertia (n, 6) [1/(kg m^2)]     xx yy zz xy xz yz in the axes of all arrays, or (n,): spheres
     inverse_mass and inverse_inertia may be one value for all bodies.
-      owned                           how many of the bodies, the first ones, this rank owns; all without ranks
+      owned                           number of bodies, the first ones, that this rank owns; all without ranks
+      id (n,)                         global numbers of the bodies, in whose order contacts are visited
     Outputs, made here or given: velocity (n, d) and spin (n, 3), which may be the arrays of v_free and spin_free;
     impulse (n, d) [N.s] and angular_impulse (n, 3) [N.m.s], sums over contacts: True or an array to have them.
     """
@@ -116,6 +133,7 @@ class Bodies:
         spin_previous: NDArray[np.float64] | None = None,
         inverse_inertia: Any = None,
         owned: int | None = None,
+        id: Any = None,
         velocity: NDArray[np.float64] | None = None,
         spin: NDArray[np.float64] | None = None,
         impulse: NDArray[np.float64] | bool = False,
@@ -124,13 +142,21 @@ class Bodies:
         if not isinstance(v_free, np.ndarray) or v_free.ndim != 2:
             raise InvalidArgument(f"v_free: {type(v_free).__name__}, expected an array of shape (bodies, dimension)")
         count, d = v_free.shape
-        self._struct = _abi.sized(_coupled_abi.bodies)
+        self._struct = sized(_coupled_abi.bodies)
         self._struct.dimension, self._struct.count = d, count
-        self._struct.owned_count = count if owned is None else owned
+        self._struct.owned_count = count if owned is None else whole("owned", owned, 0, count)
         self.count, self.dimension = count, d
         made = self._arrays = _Arrays(self._struct, count)
         made.read("v_free", v_free, d)
-        made.read("inverse_mass", inverse_mass, 1)
+        per_axis = isinstance(inverse_mass, np.ndarray) and inverse_mass.shape == (count, d) and d > 1
+        made.read("inverse_mass", inverse_mass, d if per_axis else 1)
+        if not per_axis:
+            self._struct.inverse_mass.component_stride = 0
+        if id is not None:
+            self._id = np.ascontiguousarray(id, np.int64)
+            if self._id.shape != (count,):
+                raise InvalidArgument(f"id: shape {self._id.shape}, expected ({count},)")
+            self._struct.id = self._id.ctypes.data
         made.read("v_previous", v_previous, d)
         self.rotate = inverse_inertia is not None
         if not self.rotate and (spin_free is not None or spin is not None):
@@ -161,15 +187,13 @@ class Bodies:
         arrays.check_apart(outputs, inputs)
 
 
-def _as_numbers(name: str, value: Any, count: int) -> NDArray[np.int32]:
-    """int32, contiguous: the array itself where it is that."""
-    array = np.ascontiguousarray(value)
-    if array.shape != (count,) or (count and not np.issubdtype(array.dtype, np.integer)):
-        raise InvalidArgument(f"{name}: {array.dtype} of shape {array.shape}, expected {count} numbers of bodies")
-    return array.astype(np.int32, copy=False)
+def _entries(bodies: Any) -> int:
+    """Bodies on a side of each contact."""
+    shape = np.shape(bodies)
+    return shape[1] if len(shape) == 2 else 1
 
 
-class Contacts:
+class Contacts(NotCopied):
     """The contacts that have one law. k is their number, d the dimension.
 
     law: an `Interface` for the global frame, with delassus "full" where bodies rotate, else "scalar".
@@ -177,7 +201,10 @@ class Contacts:
                                     counterpart -1 is a wall. int32 is taken where it is
     gap (k,) [m], normal (k, d), gap_offset, area, tangent: as of `ilaw.Batch`
     arm, counterpart_arm (k, 3) [m] from the centre of each of the two to the contact, where bodies rotate
-    wall_velocity, wall_previous (k, d) [m/s]   of walls, the mean over this step and the one before
+    wall_velocity, wall_previous (k, d) [m/s]   subtracted from the contact's velocity: of walls and belts, the mean
+                                    over this step and the one before
+    body (k, b), counterpart (k, c) with body_weight (k, b), counterpart_weight (k, c): weighted sets of bodies, such
+                                    as facets; -1: no body
     Outputs, made here or given: impulse (k, d) [N.s], which the sweeps also begin with: leave there what the last
     step left, and zero at new contacts; state (k, state_size); energy (k, 4) [J]: True or an array to have it;
     status (k,), uint8.
@@ -198,28 +225,39 @@ class Contacts:
         counterpart_arm: Any = None,
         wall_velocity: Any = None,
         wall_previous: Any = None,
+        body_weight: Any = None,
+        counterpart_weight: Any = None,
         impulse: NDArray[np.float64] | None = None,
         state: NDArray[np.float64] | None = None,
         energy: NDArray[np.float64] | bool = False,
     ) -> None:
         if law.frame != "global":
             raise InvalidArgument(f"frame: {law.frame!r}, coupled contacts expect an interface for the global frame")
+        if law.numbers != "double":
+            raise InvalidArgument(f"numbers: {law.numbers!r}, coupled contacts expect an interface of doubles")
         if law.per_node_parameters:
             raise InvalidArgument(f"{next(iter(law.per_node_parameters))}: one value per node, expected one for all")
         d, count = law.dimension, len(body)
         self.law, self.count = law, count
-        self.body, self.counterpart = _as_numbers("body", body, count), _as_numbers("counterpart", counterpart, count)
-        self._batch = _abi.sized(_abi.batch)
+        self._sides = [_entries(body), _entries(counterpart)]
+        self.body = arrays.as_bodies("body", np.ravel(body), count * self._sides[0]) if self._sides[0] > 1 else (
+            arrays.as_bodies("body", body, count))
+        self.counterpart = arrays.as_bodies("counterpart", np.ravel(counterpart), count * self._sides[1]) if (
+            self._sides[1] > 1) else arrays.as_bodies("counterpart", counterpart, count)
+        self._batch = sized(_abi.batch)
         self._batch.node_count = count
         made = self._arrays = _Arrays(self._batch, count)
         for name, value in {"normal": normal, "tangent": tangent}.items():
             made.read(name, value, d)
         for name, value in {"gap": gap, "gap_offset": gap_offset, "area": area}.items():
             made.read(name, value, 1)
-        self._check_complete(law.inputs | (law.energy_inputs if energy is not False else 0))
+        self._check_complete(law.inputs | (law.balance_inputs if energy is not False else 0))
         self._struct = self._describe()
         for name, value in {"arm": arm, "counterpart_arm": counterpart_arm}.items():
             made.read(name, value, 3, self._struct)
+        weights = {"body_weight": body_weight, "counterpart_weight": counterpart_weight}
+        for (name, value), entries in zip(weights.items(), self._sides):
+            made.read(name, value, entries, self._struct)
         for name, value in {"wall_velocity": wall_velocity, "wall_previous": wall_previous}.items():
             made.read(name, value, d, self._struct)
         self.impulse = made.write("impulse", impulse, d)
@@ -231,12 +269,13 @@ class Contacts:
         arrays.check_apart(made.outputs, made.inputs)
 
     def _describe(self) -> _coupled_abi.contacts:
-        made, law = _abi.sized(_coupled_abi.contacts), self.law
+        made, law = sized(_coupled_abi.contacts), self.law
         made.delassus_form = _abi.Delassus[law.delassus.upper()]
         made.law = loader().ilaw_interface_law(law.handle)
         made.instance = loader().ilaw_interface_instance(law.handle)
         made.batch = ctypes.pointer(self._batch)
         made.body, made.counterpart = self.body.ctypes.data, self.counterpart.ctypes.data
+        made.body_count, made.counterpart_count = self._sides
         return made
 
     def _check_complete(self, needed: int) -> None:
@@ -250,7 +289,7 @@ class Contacts:
         chosen = np.arange(self.count) if index is None else arrays.as_index(index, self.count)
         part = _abi.batch.from_buffer_copy(self._batch)
         part.time, part.node_count, part.index64 = time, len(chosen), chosen.ctypes.data
-        report = _abi.sized(_abi.report)
+        report = sized(_abi.report)
         code = loader().ilaw_interface_initialise(self.law.handle, ctypes.byref(part), ctypes.byref(report))
         raise_for(code, f"{self.law.law.id}: {(report.reason or b'').decode(errors='replace')}")
 
@@ -260,12 +299,13 @@ class _Calls:
 
     def __init__(self, exchange: Exchange, bodies: int) -> None:
         self.raised: BaseException | None = None
-        self.struct = _abi.sized(_coupled_abi.exchange)
-        self.struct.sum_bodies = self._call(exchange.sum_bodies, lambda components: (bodies, components))
-        self.struct.largest = self._call(exchange.largest, lambda count: (count,))
-        self.struct.sum = self._call(exchange.sum, lambda count: (count,))
+        self.struct = sized(_coupled_abi.exchange)
+        sum_bodies, reduce = _coupled_abi.sum_bodies_function, _coupled_abi.reduce_function
+        self.struct.sum_bodies = self._call(sum_bodies, exchange.sum_bodies, lambda components: (bodies, components))
+        self.struct.largest = self._call(reduce, exchange.largest, lambda count: (count,))
+        self.struct.sum = self._call(reduce, exchange.sum, lambda count: (count,))
 
-    def _call(self, function: Any, shape: Any) -> Any:
+    def _call(self, kind: Any, function: Any, shape: Any) -> Any:
         def call(_context: Any, values: Any, count: int) -> None:
             try:
                 if self.raised is None:
@@ -275,21 +315,17 @@ class _Calls:
             except BaseException as raised:  # C cannot pass it on
                 self.raised = raised
 
-        return _coupled_abi.call_with_values(call)
+        return kind(call)
 
 
-class Solver:
+class Solver(NotCopied):
     """Solves steps; keeps work arrays from one to the next. One solve at a time, different solvers are independent."""
 
     def __init__(self) -> None:
-        self._handle = library().ilaw_coupled_create()
-        if not self._handle:
+        handle = library().ilaw_coupled_create()
+        if not handle:
             raise MemoryError
-        self._destroy = library().ilaw_coupled_destroy  # at the interpreter's end modules are empty
-
-    def __del__(self) -> None:
-        if getattr(self, "_handle", None):
-            self._destroy(self._handle)
+        self._handle = Handle(ctypes.c_void_p(handle), library().ilaw_coupled_destroy)
 
     def solve(
         self,
@@ -323,13 +359,13 @@ class Solver:
             if group.law.dimension != bodies.dimension:
                 raise InvalidArgument(f"dimension: {group.law.dimension} of contacts, {bodies.dimension} of bodies")
         pointers = (ctypes.POINTER(_coupled_abi.contacts) * len(groups))(*(ctypes.pointer(g._struct) for g in groups))
-        options = _abi.sized(_coupled_abi.coupled_options)
-        options.most_sweeps, options.tolerance = most_sweeps, tolerance
+        options = sized(_coupled_abi.coupled_options)
+        options.most_sweeps, options.tolerance = whole("most_sweeps", most_sweeps, 0, 2**32 - 1), tolerance
         calls = None
         if exchange is not None:
             calls = _Calls(exchange, bodies.count)
             options.exchange = ctypes.pointer(calls.struct)
-        report = _abi.sized(_coupled_abi.coupled_report)
+        report = sized(_coupled_abi.coupled_report)
         code = library().ilaw_coupled_solve(
             self._handle,
             ctypes.byref(bodies._struct),
@@ -360,4 +396,9 @@ class Solver:
             report.bad_contact,
             reason,
             report.stable_velocity_step,
+            Method(report.method),
+            bool(report.stalled),
+            report.worst_group,
+            report.worst_contact,
+            (report.law.decode(), report.other_law.decode()) if report.law and report.other_law else None,
         )

@@ -1,4 +1,4 @@
-"""What a library and its laws say of themselves."""
+"""Descriptions of libraries and laws."""
 from __future__ import annotations
 
 import builtins
@@ -8,12 +8,17 @@ from dataclasses import dataclass, field
 
 from . import _abi
 from ._loader import loader
+from ._objects import Handle
 from .errors import NotFound, raise_for
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a law. `default` is None where the parameter must be given."""
+    """A parameter of a law. `default` is None where the parameter must be given.
+
+    axes: names over which it may be a table; none: never a table. A parameter with ParameterFlag.IS_FIELD is a
+    field of the host's model, such as a temperature: give it per node where there is one.
+    """
 
     name: str
     symbol: str
@@ -23,9 +28,8 @@ class Parameter:
     default: float | str | None
     minimum: float
     maximum: float
-    minimum_excluded: bool
-    infinity_allowed: bool
-    may_be: _abi.MayBe
+    flags: _abi.ParameterFlag
+    axes: tuple[str, ...] = ()
     choices: tuple[str, ...] = ()
 
 
@@ -43,6 +47,15 @@ class StateVariable:
 
 
 @dataclass(frozen=True)
+class Amount:
+    """A scalar that a law gives per node and step, such as the heat of friction [J]; 0 where nothing happened."""
+
+    name: str
+    unit: str
+    doc: str
+
+
+@dataclass(frozen=True)
 class Law:
     """A law as its library describes it. State variables are those of dimension 3 and default parameters."""
 
@@ -51,12 +64,16 @@ class Law:
     doc: str
     dimensions: tuple[int, ...]
     delassus: tuple[str, ...]
+    frames: tuple[str, ...]
+    numbers: tuple[str, ...]
     inputs: _abi.Input
     outputs: _abi.Output
     capabilities: _abi.Capability
+    permissions: _abi.Permission
     references: tuple[str, ...]
     parameters: dict[str, Parameter] = field(repr=False)
     state_variables: tuple[StateVariable, ...] = field(repr=False)
+    amounts: tuple[Amount, ...] = field(repr=False)
 
 
 @dataclass(frozen=True)
@@ -80,11 +97,7 @@ class Library:
         message = ctypes.create_string_buffer(1024)
         code = loader().ilaw_library_open(os.fsencode(name_or_path), ctypes.byref(handle), message, len(message))
         raise_for(code, message.value.decode(errors="replace"))
-        self.handle = handle
-
-    def __del__(self) -> None:
-        if getattr(self, "handle", None):
-            loader().ilaw_library_close(self.handle)
+        self.handle = Handle(handle, loader().ilaw_library_close)
 
     def plugin(self) -> Plugin:
         """The library's description."""
@@ -101,10 +114,19 @@ class Library:
         )
 
 
+def _names(mask: int, kinds: type[_abi.Flags]) -> tuple[str, ...]:
+    return tuple(str(one.name).lower() for one in kinds if mask & one)
+
+
+def texts(read: ctypes._Pointer, count: int) -> tuple[str, ...]:
+    """The texts of an array of pointers."""
+    return tuple(read[i].decode() for i in range(count))
+
+
 def _parameter(read: _abi.parameter) -> Parameter:
-    choices = tuple(read.choices[i].decode() for i in range(read.choice_count))
+    choices = texts(read.choices, read.choice_count)
     default: float | str | None = None
-    if not read.required:
+    if not read.flags & _abi.ParameterFlag.IS_REQUIRED:
         default = choices[int(read.default_value)] if choices else read.default_value
     return Parameter(
         name=read.name.decode(),
@@ -115,9 +137,8 @@ def _parameter(read: _abi.parameter) -> Parameter:
         default=default,
         minimum=read.minimum,
         maximum=read.maximum,
-        minimum_excluded=bool(read.minimum_excluded),
-        infinity_allowed=bool(read.infinity_allowed),
-        may_be=_abi.MayBe(read.may_be),
+        flags=_abi.ParameterFlag(read.flags),
+        axes=texts(read.axes, read.axis_count),
         choices=choices,
     )
 
@@ -142,6 +163,12 @@ def state_variables(read: ctypes._Pointer, count: int) -> tuple[StateVariable, .
     return tuple(made)
 
 
+def amounts(read: ctypes._Pointer, count: int) -> tuple[Amount, ...]:
+    """The amounts of a law or an instance, in its order."""
+    found = [read[i].contents for i in range(count)]
+    return tuple(Amount(one.name.decode(), one.unit.decode(), one.doc.decode()) for one in found)
+
+
 def law_of(read: _abi.law) -> Law:
     parameters = [_parameter(read.parameters[i].contents) for i in range(read.parameter_count)]
     return Law(
@@ -149,13 +176,17 @@ def law_of(read: _abi.law) -> Law:
         title=read.title.decode(),
         doc=read.doc.decode(),
         dimensions=tuple(d for d in (1, 2, 3) if read.dimensions & 1 << d),
-        delassus=tuple(form.name.lower() for form in _abi.Delassus if read.delassus_forms & form),
+        delassus=_names(read.delassus_forms, _abi.Delassus),
+        frames=_names(read.frames, _abi.Frame),
+        numbers=_names(read.numbers, _abi.Numbers),
         inputs=_abi.Input(read.inputs),
         outputs=_abi.Output(read.outputs),
         capabilities=_abi.Capability(read.capabilities),
-        references=tuple(read.references[i].decode() for i in range(read.reference_count)),
+        permissions=_abi.Permission(read.permissions),
+        references=texts(read.references, read.reference_count),
         parameters={parameter.name: parameter for parameter in parameters},
         state_variables=state_variables(read.state_variables, read.state_variable_count),
+        amounts=amounts(read.amounts, read.amount_count),
     )
 
 

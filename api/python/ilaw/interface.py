@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 import ctypes
+import enum
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Union
 
@@ -12,16 +13,24 @@ from numpy.typing import NDArray
 
 from . import _abi, arrays
 from ._loader import loader
-from .description import Law, Library, StateVariable, law_of, state_variables
+from ._objects import Handle, NotCopied, sized, whole
+from .description import Amount, Law, Library, StateVariable, amounts, law_of, state_variables, texts
 from .errors import BadNodes, InvalidArgument, raise_for
 
-# A number, a text (of a choice), pairs (time, value) for a table, an array of shape (nodes,) for one per node.
-Value = Union[float, str, Sequence[Sequence[float]], NDArray[np.float64]]
+
+class _Given(enum.Enum):
+    PER_NODE = "one value per node, given with every batch"
+
+
+PER_NODE = _Given.PER_NODE
+
+# The value of a parameter; see `Interface`.
+Value = Union[float, str, Sequence[Sequence[float]], Mapping[str, Any], NDArray[Any], _Given]
 
 
 @dataclass(frozen=True)
 class Report:
-    """What the law said besides its results.
+    """Findings of the law besides its results.
 
     `stable_velocity_step` [s] is the largest at which the law, as a spring between the masses, is stable at
     every good node: infinity where it needs none, None where the library does not say.
@@ -36,42 +45,70 @@ class Report:
 class _Arguments:
     """Parameters as the ABI takes them, with all that they point to."""
 
-    def __init__(self, parameters: Mapping[str, Value]) -> None:
-        self.per_node: dict[str, NDArray[np.float64]] = {}
+    def __init__(self, parameters: Mapping[str, Value], numbers: np.dtype[Any]) -> None:
+        self.per_node: dict[str, NDArray[Any]] = {}
+        self._numbers = numbers
         self._kept: list[Any] = []
         made = [self._argument(name, value) for name, value in parameters.items()]
         self.count = len(made)
         self.pointers = (ctypes.POINTER(_abi.argument) * self.count)(*(ctypes.pointer(one) for one in made))
 
     def _argument(self, name: str, value: Value) -> _abi.argument:
-        made = _abi.sized(_abi.argument)
+        made = sized(_abi.argument)
         made.name = name.encode()
         if isinstance(value, str):
             made.kind, made.text = _abi.ValueKind.TEXT, value.encode()
-            return made
-        array = arrays.as_array(name, value)
-        if array.ndim == 0:
-            made.kind, made.number = _abi.ValueKind.NUMBER, float(array)
-        elif array.ndim == 1 and isinstance(value, np.ndarray):
+        elif value is PER_NODE:
             made.kind = _abi.ValueKind.PER_NODE
-            self.per_node[name] = array
-        elif array.ndim == 2 and array.shape[1] == 2:
-            table = np.ascontiguousarray(array)
-            self._kept.append(table)
-            made.kind, made.count = _abi.ValueKind.TABLE, len(table)
-            made.values = table.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+        elif isinstance(value, Mapping):
+            if value.keys() != {"axes", "values"} or not isinstance(value["axes"], Mapping):
+                raise InvalidArgument(f'{name}: dict, expected {{"axes": {{name: points, ...}}, "values": [...]}}')
+            self._set_table(made, name, value["axes"], value["values"])
+        elif isinstance(value, np.ndarray) and value.ndim == 1:
+            made.kind = _abi.ValueKind.PER_NODE
+            self.per_node[name] = arrays.as_array(name, value, self._numbers)
         else:
-            raise InvalidArgument(
-                f"{name}: shape {array.shape}, expected a number, a text, pairs (time, value) or one value per node"
-            )
+            self._set_number_or_time_table(made, name, arrays.as_array(name, value))
         return made
 
+    def _set_number_or_time_table(self, made: _abi.argument, name: str, array: NDArray[np.float64]) -> None:
+        if array.ndim == 0:
+            made.kind, made.number = _abi.ValueKind.NUMBER, float(array)
+        elif array.ndim == 2 and array.shape[1] == 2:
+            self._set_table(made, name, {"time": array[:, 0]}, array[:, 1])
+        else:
+            raise InvalidArgument(
+                f"{name}: shape {array.shape}, expected a number, a text, pairs (time, value), a table over axes or "
+                "one value per node"
+            )
 
-def _choice(kind: type, name: str, text: str) -> int:
+    def _set_table(self, made: _abi.argument, name: str, axes: Mapping[str, Any], values: Any) -> None:
+        table = self._doubles(name, values)
+        points = {axis: self._doubles(f"{name}: axis {axis}", given) for axis, given in axes.items()}
+        shape = tuple(len(one) if one.ndim == 1 else -1 for one in points.values())
+        if table.shape != shape:
+            expected = ", ".join(f"{axis} {one.shape}" for axis, one in points.items()) or "an axis"
+            raise InvalidArgument(f"{name}: values of shape {table.shape}, expected one per point of {expected}")
+        pointers = (ctypes.POINTER(_abi.axis) * len(points))()
+        for k, (axis, one) in enumerate(points.items()):
+            read = sized(_abi.axis)
+            read.name, read.points, read.count = axis.encode(), one.ctypes.data, len(one)
+            pointers[k] = ctypes.pointer(read)
+        self._kept.append(pointers)
+        made.kind, made.values = _abi.ValueKind.TABLE, table.ctypes.data
+        made.axes, made.axis_count = pointers, len(points)
+
+    def _doubles(self, name: str, value: Any) -> NDArray[np.float64]:
+        array = np.ascontiguousarray(arrays.as_array(name, value))
+        self._kept.append(array)
+        return array
+
+
+def _choice(kind: type[_abi.Flags], name: str, text: str) -> int:
     try:
         return kind[text.upper()]
     except (KeyError, AttributeError):
-        allowed = ", ".join(member.name.lower() for member in kind)
+        allowed = ", ".join(str(member.name).lower() for member in kind)
         raise InvalidArgument(f"{name}: {text!r}, expected one of: {allowed}") from None
 
 
@@ -82,13 +119,22 @@ class Interface:
     law: which of the library's laws; not needed where it has one.
     dimension: 1, 2 or 3. frame: "local" (component 0 is normal) or "global" (batches give normals).
     delassus: form of the inverse mass H [1/kg]: "scalar", "diagonal", "full" or "transverse".
+    numbers: "double" or "float", the type of the arrays of its batches (states are float64 always).
     velocity_step [s]: what evaluate takes unless it is told otherwise; an impulse is a force times it.
     position_step [s]: what predicted gaps take; the velocity step unless given.
     tangent: batches will give a tangent beside the normal (global frame).
-    parameters: those whose names are taken by the arguments above; all others are given by name.
+    parameters: those whose names are taken by the arguments above; all others are given by name, as
+      0.3                          a number, for all nodes and times
+      "moreau"                     a text, for a choice
+      [(0.0, 0.5), (1.0, 0.1)]     a time table: pairs (time, value)
+      {"axes": {"slip_speed": [0, 1, 5], "temperature": [293, 593]}, "values": [[...], [...], [...]]}
+                                   a table over one to three axes: values[i][j] at point i of the first axis and
+                                   point j of the second; `Parameter.axes` names those allowed
+      ilaw.PER_NODE                one value per node, given to `batch` by name (fields, such as a temperature)
+      np.array([...])              the same, with the array for batches that give no other
 
     Raises InvalidParameter with the law's reason, Unsupported, NotFound or BadLibrary. May be used from any
-    number of threads.
+    number of threads. A copy shares the instance.
     """
 
     def __init__(
@@ -99,6 +145,7 @@ class Interface:
         dimension: int = 3,
         frame: str = "global",
         delassus: str = "scalar",
+        numbers: str = "double",
         velocity_step: float | None = None,
         position_step: float | None = None,
         tangent: bool = False,
@@ -107,19 +154,21 @@ class Interface:
     ) -> None:
         if not isinstance(library, Library):
             library = Library(library)
-        self.dimension = dimension
+        self.dimension = whole("dimension", dimension, 0, 2**32 - 1)
         self.frame = frame
         self.delassus = delassus
+        self.numbers = numbers
         self.velocity_step = velocity_step
         self.position_step = position_step
         self.tangent = tangent
-        self._arguments = _Arguments({**(parameters or {}), **named})
-        setup = _abi.sized(_abi.setup)
-        setup.dimension = dimension
+        setup = sized(_abi.setup)
+        setup.dimension = self.dimension
         setup.delassus_form = _choice(_abi.Delassus, "delassus", delassus)
         setup.frame = _choice(_abi.Frame, "frame", frame)
-        setup.tangent_given = tangent
-        setup.arguments, setup.argument_count = self._arguments.pointers, self._arguments.count
+        setup.numbers = _choice(_abi.Numbers, "numbers", numbers)
+        setup.has_tangent = bool(tangent)
+        arguments = _Arguments({**(parameters or {}), **named}, self.dtype)
+        setup.arguments, setup.argument_count = arguments.pointers, arguments.count
         handle = ctypes.c_void_p()
         message = ctypes.create_string_buffer(1024)
         law_id = law.encode() if law else None
@@ -127,42 +176,48 @@ class Interface:
             library.handle, law_id, ctypes.byref(setup), ctypes.byref(handle), message, len(message)
         )
         raise_for(code, message.value.decode(errors="replace"))
-        self.handle = handle
+        self.handle = Handle(handle, loader().ilaw_interface_destroy)
         self.law: Law = law_of(loader().ilaw_interface_law(handle).contents)
-        info = _abi.sized(_abi.instance_info)
+        info = sized(_abi.instance_info)
         raise_for(loader().ilaw_interface_info(handle, ctypes.byref(info)), f"{self.law.id}: refuses its own instance")
         self.inputs = _abi.Input(info.inputs)
-        self.energy_inputs = _abi.Input(info.energy_inputs)
+        self.balance_inputs = _abi.Input(info.balance_inputs)
         self.capabilities = _abi.Capability(info.capabilities)
+        self.permissions = _abi.Permission(info.permissions)
         self.state_size = int(info.state_size)
         self.state_version = int(info.state_version)
         variables = state_variables(info.state_variables, info.state_variable_count)
         self.state_variables: tuple[StateVariable, ...] = variables
-        names = [info.per_node_parameters[i].decode() for i in range(info.per_node_parameter_count)]
-        self.per_node_parameters = {name: self._arguments.per_node[name] for name in names}
-
-    def __del__(self) -> None:
-        if getattr(self, "handle", None):
-            loader().ilaw_interface_destroy(self.handle)
+        self.amounts: tuple[Amount, ...] = amounts(info.amounts, info.amount_count)
+        names = texts(info.per_node_parameters, info.per_node_parameter_count)
+        # The arrays for batches that give none; None: every batch has to.
+        defaults: dict[str, NDArray[Any] | None] = {name: arguments.per_node.get(name) for name in names}
+        self.per_node_parameters = defaults
 
     def __repr__(self) -> str:
         return f"<ilaw.Interface {self.law.id}, dimension {self.dimension}, {self.frame} frame, {self.delassus} H>"
 
     @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of the arrays of batches, but the state."""
+        return arrays.FLOAT if self.numbers.lower() == "float" else arrays.DOUBLE
+
+    @property
     def delassus_components(self) -> int:
         """Numbers per node of H, in the order of ilaw.h (full, 3D: 00, 11, 22, 01, 02, 12)."""
         d = self.dimension
-        return {"scalar": 1, "diagonal": d, "full": d * (d + 1) // 2, "transverse": 2}[self.delassus]
+        return {"scalar": 1, "diagonal": d, "full": d * (d + 1) // 2, "transverse": 2}[self.delassus.lower()]
 
     def batch(self, **given: Any) -> Batch:
         """Nodes that this law is applied to; see `Batch`."""
         return Batch(self, **given)
 
 
-class Batch:
+class Batch(NotCopied):
     """The arrays of a set of nodes. n is the number of nodes in them, d the dimension.
 
-    Inputs, float64, read where they are at every call (so change them in place: `v[:] = ...`, `v += ...`):
+    Inputs, of the type `Interface.dtype`, read where they are at every call (so change them in place:
+    `v[:] = ...`, `v += ...`):
       v_free (n, d) [m/s]      velocity without the interface, relative to the obstacle
       delassus (n, k) [1/kg]   H: k = 1 (scalar), d, d(d+1)/2 (full) or 2 (transverse)
       gap (n,) [m]             signed distance at the time of the step; positive is open
@@ -171,26 +226,31 @@ class Batch:
       area (n,) [m^2]          tributary area
       normal (n, d)            unit vector from the obstacle into the body; global frame
       tangent (n, d)           unit vector, orthogonal to the normal; global frame
+      fields (n,)              parameters that the interface has per node, by name: temperature=T; in the mapping
+                               per_node where the name is taken by another argument
     Each may be one value for all nodes instead: a number, or a vector (d,). `Interface.inputs` says which the
-    law needs. Numbers and lists are copied, arrays are not.
+    law needs, `Interface.balance_inputs` which besides for energy and amounts. Numbers and lists are copied,
+    arrays are not.
       index                    nodes to evaluate, a list of numbers or a mask (n,); all without. Copied; assign
                                `batch.index` to change it.
-    Outputs, float64 as (n, components), made here or given:
+    Outputs, of the same type as (n, components), made here or given:
       impulse (n, d) [N.s]
-      state (n, state_size)    the memory of the interface: all that a restart needs
+      state (n, state_size)    float64, the memory of the interface: all that a restart needs
       velocity (n, d) [m/s]    v_free + H impulse; True or an array to have it
       energy (n, 4) [J]        columns `Energy`; True or an array to have it
+      amounts                  names of those to have, {name: array} of shape (n,), or True for all in
+                               `Interface.amounts`; `batch.amounts["heat"]` is the array
     and status (n,), uint8, of `Status`.
 
     Raises InvalidArgument where an array is missing or does not fit. Calls on different batches may run in
-    different threads: they release the interpreter's lock.
+    different threads: they release the interpreter's lock. A batch cannot be copied.
     """
 
     def __init__(
         self,
         interface: Interface,
         *,
-        v_free: NDArray[np.float64],
+        v_free: NDArray[Any],
         delassus: Any,
         gap: Any = None,
         gap_offset: Any = None,
@@ -199,33 +259,38 @@ class Batch:
         normal: Any = None,
         tangent: Any = None,
         index: Any = None,
-        impulse: NDArray[np.float64] | None = None,
+        impulse: NDArray[Any] | None = None,
         state: NDArray[np.float64] | None = None,
-        velocity: NDArray[np.float64] | bool = False,
-        energy: NDArray[np.float64] | bool = False,
+        velocity: NDArray[Any] | bool = False,
+        energy: NDArray[Any] | bool = False,
+        amounts: Iterable[str] | Mapping[str, NDArray[Any]] | bool = False,
+        per_node: Mapping[str, Any] | None = None,
+        **fields: Any,
     ) -> None:
         d = interface.dimension
         self.interface = interface
-        self._batch = _abi.sized(_abi.batch)
+        self._batch = sized(_abi.batch)
         if not isinstance(v_free, np.ndarray) or v_free.ndim not in (1, 2):
             raise InvalidArgument(f"v_free: {type(v_free).__name__}, expected an array of shape (nodes, {d})")
         self.node_count = len(v_free)
-        self._inputs: dict[str, NDArray[np.float64]] = {}
+        self._inputs: dict[str, NDArray[Any]] = {}
         vectors = {"v_free": v_free, "v_previous": v_previous, "normal": normal, "tangent": tangent}
         for name, value in vectors.items():
             self._read(name, value, d)
         for name, value in {"gap": gap, "gap_offset": gap_offset, "area": area}.items():
             self._read(name, value, 1)
         self._read("delassus", delassus, interface.delassus_components)
-        self._read_per_node_parameters()
-        self._check_complete(interface.inputs | (interface.energy_inputs if energy is not False else 0))
+        self._read_per_node({**(per_node or {}), **fields})
+        balance = energy is not False or amounts is not False
+        self._check_complete(interface.inputs | (interface.balance_inputs if balance else 0))
 
-        self._outputs: dict[str, NDArray[np.float64]] = {}
+        self._outputs: dict[str, NDArray[Any]] = {}
         self.impulse = self._write("impulse", impulse, d)
         self.state = self._write("state", state, interface.state_size)
         self._batch.state_in = arrays.read("state", self.state, self.node_count, interface.state_size)
         self.velocity = None if velocity is False else self._write("velocity", velocity, d)
         self.energy = None if energy is False else self._write("energy", energy, _abi.ENERGY_COUNT)
+        self.amounts = self._write_amounts(amounts)
         self.status = np.zeros(self.node_count, np.uint8)
         self._batch.status, self._batch.status_stride = self.status.ctypes.data, 1
         arrays.check_apart(self._outputs, self._inputs)
@@ -234,23 +299,57 @@ class Batch:
     def _read(self, name: str, value: Any, components: int) -> None:
         if value is None:
             return
-        array = arrays.as_array(name, value)
+        array = arrays.as_array(name, value, self.interface.dtype)
         setattr(self._batch, name, arrays.read(name, array, self.node_count, components))
         self._inputs[name] = array
 
-    def _write(self, name: str, given: Any, components: int) -> NDArray[np.float64]:
-        array = np.zeros((self.node_count, components)) if given is None or given is True else given
+    def _write(self, name: str, given: Any, components: int) -> NDArray[Any]:
+        numbers, shape = arrays.DOUBLE if name == "state" else self.interface.dtype, (self.node_count, components)
+        array = np.zeros(shape, numbers) if given is None or given is True else given
         member = "state_out" if name == "state" else name
-        setattr(self._batch, member, arrays.written(name, array, self.node_count, components))
+        setattr(self._batch, member, arrays.written(name, array, shape, numbers))
         self._outputs[name] = array
         return array
 
-    def _read_per_node_parameters(self) -> None:
-        values = self.interface.per_node_parameters
-        made = [arrays.read(name, array, self.node_count, 1) for name, array in values.items()]
+    def _write_amounts(self, wanted: Any) -> dict[str, NDArray[Any]]:
+        names = [one.name for one in self.interface.amounts]
+        if wanted is True:
+            wanted = names
+        elif wanted is False:
+            wanted = ()
+        elif isinstance(wanted, str):
+            wanted = [wanted]
+        shape, numbers = (self.node_count,), self.interface.dtype
+        made: dict[str, NDArray[Any]] = {}
+        pointers = (_abi.output * len(names))()
+        for name in wanted:
+            if name not in names:
+                allowed = ", ".join(names) or "none"
+                raise InvalidArgument(f"amounts: {self.interface.law.id} gives no {name!r}, expected one of: {allowed}")
+            made[name] = wanted[name] if isinstance(wanted, Mapping) else np.zeros(shape, numbers)
+            pointers[names.index(name)] = arrays.written(name, made[name], shape, numbers)
+        if made:
+            self._batch.amounts = pointers
+            self._outputs.update(made)
+        return made
+
+    def _read_per_node(self, given: dict[str, Any]) -> None:
+        expected, law = self.interface.per_node_parameters, self.interface.law.id
+        for name in given.keys() - expected.keys():
+            reason = f"{name}: {law} reads no such array, expected one of: {', '.join(expected) or 'none'}"
+            if name in self.interface.law.parameters:
+                reason += f"; create the interface with {name}=ilaw.PER_NODE"
+            raise InvalidArgument(reason)
+        made = []
+        for name, default in expected.items():
+            value = given.get(name, default)
+            if value is None:
+                raise InvalidArgument(f"{law} reads {name} per node: give it to batch()")
+            array = arrays.as_array(name, value, self.interface.dtype)
+            made.append(arrays.read(name, array, self.node_count, 1))
+            self._inputs[name] = array
         if made:
             self._batch.per_node_parameters = (_abi.input * len(made))(*made)
-        self._inputs.update(values)
 
     def _check_complete(self, needed: int) -> None:
         for member in _abi.Input:
@@ -308,7 +407,7 @@ class Batch:
         return self._call(loader().ilaw_interface_evaluate, bad_nodes)
 
     def _call(self, function: Any, bad_nodes: str) -> Report:
-        report = _abi.sized(_abi.report)
+        report = sized(_abi.report)
         code = function(self.interface.handle, ctypes.byref(self._batch), ctypes.byref(report))
         reason = report.reason.decode(errors="replace") if report.reason else ""
         if code == _abi.Code.BAD_NODES:

@@ -17,10 +17,23 @@
 namespace ilaw::host {
 namespace {
 
+// A call of the system, again where a signal interrupted it.
+template <class Call>
+int retried(Call call) {
+  int result = 0;
+  do result = call();
+  while (result < 0 && errno == EINTR);
+  return result;
+}
+
+// A file may be no symbolic link, a folder may: links to scratch disks are usual.
 class Descriptor {
  public:
   Descriptor(const std::filesystem::path& file, int flags)
-      : number_(open(file.c_str(), flags | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK, 0666)) {}
+      : number_(retried([&] {
+          const int links = flags & O_DIRECTORY ? 0 : O_NOFOLLOW;
+          return open(file.c_str(), flags | links | O_CLOEXEC | O_NONBLOCK, 0666);
+        })) {}
   ~Descriptor() {
     if (number_ >= 0) close(number_);
   }
@@ -42,7 +55,8 @@ std::string reason_of(int error) {
 int keep_folder(const std::filesystem::path& file) {
   const Descriptor folder(file.parent_path().empty() ? "." : file.parent_path(), O_RDONLY | O_DIRECTORY);
   if (folder.number() < 0) return errno;
-  return fsync(folder.number()) == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
+  return retried([&] { return fsync(folder.number()); }) == 0 || errno == EINVAL || errno == ENOTSUP ? 0
+                                                                                                     : errno;
 }
 
 // Calls take with the file's bytes, at most count of them. Returns 0 or the error.
@@ -201,7 +215,7 @@ FileBuffer::int_type FileBuffer::overflow(int_type character) {
 
 int FileBuffer::keep() {
   sync();
-  if (error_ == 0 && fsync(descriptor_) != 0) error_ = errno;
+  if (error_ == 0 && retried([this] { return fsync(descriptor_); }) != 0) error_ = errno;
   return error_;
 }
 
@@ -224,8 +238,9 @@ AtomicFile::AtomicFile(std::filesystem::path file, const FileMark& written)
   check_begins_with(file_, written);
   const std::filesystem::path found = found_of(file_);
   Descriptor descriptor(found, O_WRONLY | O_APPEND);
-  if (descriptor.number() < 0 || ftruncate(descriptor.number(), static_cast<off_t>(written.size)) != 0 ||
-      (found != partial_ && std::rename(found.c_str(), partial_.c_str()) != 0))
+  if (descriptor.number() < 0 ||
+      retried([&] { return ftruncate(descriptor.number(), static_cast<off_t>(written.size)); }) != 0 ||
+      (found != partial_ && retried([&] { return std::rename(found.c_str(), partial_.c_str()); }) != 0))
     fail(errno);
   buffer_.open(descriptor.release(), written);
 }
@@ -251,7 +266,7 @@ FileMark AtomicFile::flush() {
 FileMark AtomicFile::commit() {
   const FileMark mark = flush();
   if (const int error = buffer_.close(); error != 0) fail(error);
-  if (std::rename(partial_.c_str(), file_.c_str()) != 0) fail(errno);
+  if (retried([this] { return std::rename(partial_.c_str(), file_.c_str()); }) != 0) fail(errno);
   is_kept_ = true;
   if (const int error = keep_folder(file_); error != 0) fail(error);
   return mark;

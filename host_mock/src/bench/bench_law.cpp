@@ -20,7 +20,7 @@ json plain_value(const ilaw_parameter& p) {
   if (p.kind == ILAW_PARAMETER_COUNT) return std::max(1.0, std::ceil(p.minimum));
   const double usual = std::string(p.unit) == "1" ? 0.3 : 1.0;
   if (usual > p.minimum && usual <= p.maximum) return usual;
-  return p.minimum_excluded != 0 ? 0.5 * (p.minimum + p.maximum) : p.minimum;
+  return (p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM) ? 0.5 * (p.minimum + p.maximum) : p.minimum;
 }
 
 // {"per_node": value} is one value here, of which the arrays of all nodes are made.
@@ -66,7 +66,7 @@ std::vector<std::string> laws_of(const ilaw::library& library) {
 BenchCase with_required_parameters(BenchCase bench_case, const ilaw_law& law) {
   for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
     const ilaw_parameter& p = *law.parameters[k];
-    if (p.required != 0 && !bench_case.parameters.contains(p.name))
+    if ((p.flags & ILAW_PARAMETER_IS_REQUIRED) && !bench_case.parameters.contains(p.name))
       bench_case.parameters[p.name] = plain_value(p);
   }
   return bench_case;
@@ -79,16 +79,15 @@ BenchLaw::BenchLaw(const ilaw::library& library, const BenchCase& bench_case)
     throw BenchRefusal("found no law '" + bench_case.law + "' in " + path_ + ", expected one of " +
                        joined(laws_of(library)));
   check_form(*law, bench_case);
-  if (bench_case.floats && law->extension)
-    floats_ = static_cast<const ilaw_float_functions*>(law->extension(ILAW_FLOAT));
-  if (bench_case.floats && !floats_)
-    throw BenchRefusal("law '" + name_ + "': --float: it takes no arrays of float, expected double");
+  if (bench_case.floats && !(law->numbers & ILAW_NUMBERS_FLOAT))
+    throw BenchRefusal("law '" + name_ + "': --float: it does not serve arrays of float; expected double");
   dimension_ = dimension_of(*law);
   const Arguments arguments = arguments_of(bench_case);
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
   setup.dimension = static_cast<std::uint32_t>(dimension_);
   setup.delassus_form = form_of(bench_case);
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
   setup.frame = bench_case.frame == "global" ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL;
   const RunningLaw running(name_.c_str(), path_.c_str(), nullptr);
   try {
@@ -96,9 +95,13 @@ BenchLaw::BenchLaw(const ilaw::library& library, const BenchCase& bench_case)
   } catch (const ilaw::error& refusal) {
     // A law that tells its tangents apart wants them from the host.
     if (refusal.code() != ILAW_UNSUPPORTED || setup.frame == ILAW_FRAME_LOCAL || dimension_ < 3) throw;
-    setup.tangent_given = 1;
+    setup.has_tangent = 1;
     takes_tangents_ = true;
     interface_.emplace(create_law(name_, arguments, setup, library));
+  }
+  if (bench_case.floats) {
+    setup.numbers = ILAW_NUMBERS_FLOAT;
+    floats_.emplace(create_law(name_, arguments, setup, library));
   }
   info_ = interface_->info();
   for (std::uint32_t k = 0; k < info_.per_node_parameter_count; ++k)
@@ -126,12 +129,8 @@ void BenchLaw::initialise(const ilaw_batch& batch) const {
 }
 
 void BenchLaw::evaluate(const ilaw_batch& batch) const {
-  checked("evaluate", [&](ilaw_report* report) { return interface_->evaluate(batch, report); });
-}
-
-void BenchLaw::evaluate(const ilaw_float_batch& batch) const {
-  checked("evaluate",
-          [&](ilaw_report* report) { return floats_->evaluate(interface_->instance(), &batch, report); });
+  const ilaw::interface& law = batch.v_free.floats ? *floats_ : *interface_;
+  checked("evaluate", [&](ilaw_report* report) { return law.evaluate(batch, report); });
 }
 
 std::optional<std::string> BenchLaw::instruction_set() const {

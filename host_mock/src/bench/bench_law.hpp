@@ -4,8 +4,7 @@
 
 #include "bench/bench_case.hpp"
 
-#include <ilaw/float.h>
-#include <ilaw/profile.h>
+#include <ilaw/ext/draft/profile.h>
 #include <ilaw/loader.hpp>
 
 #include <optional>
@@ -34,7 +33,6 @@ class BenchLaw {
   // Throw std::runtime_error with the law's reason where it refuses a node.
   void initialise(const ilaw_batch& batch) const;
   void evaluate(const ilaw_batch& batch) const;
-  void evaluate(const ilaw_float_batch& batch) const;  // of a case with arrays of float
 
   // Empty where the law cannot say.
   std::optional<std::string> instruction_set() const;
@@ -45,10 +43,9 @@ class BenchLaw {
   void checked(const char* call, Call make) const;
 
   std::string name_, path_;
-  std::optional<ilaw::interface> interface_;
+  std::optional<ilaw::interface> interface_, floats_;  // floats_: of a case with arrays of float
   ilaw_instance_info info_{};
   const ilaw_profile* profile_ = nullptr;
-  const ilaw_float_functions* floats_ = nullptr;
   int dimension_ = 3;
   bool takes_tangents_ = false;
   std::vector<double> per_node_values_;  // one for each parameter given per node, in their order

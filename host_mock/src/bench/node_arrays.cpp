@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/node_arrays.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +31,7 @@ bool gives_motion(const BenchCase& bench_case) { return bench_case.outputs != "n
 bool gives_energy(const BenchCase& bench_case) { return bench_case.outputs == "all"; }
 
 std::uint32_t inputs_of(const BenchLaw& law, const BenchCase& bench_case) {
-  return law.info().inputs | (gives_energy(bench_case) ? law.info().energy_inputs : 0U);
+  return law.info().inputs | (gives_energy(bench_case) ? law.info().balance_inputs : 0U);
 }
 
 // Numbers of a node that evaluate reads or writes, but its state.
@@ -141,11 +143,11 @@ void NodeArrays::draw_delassus(Draw& draw, std::int64_t i) {
 }
 
 ilaw_input NodeArrays::input(const std::vector<double>& values, std::int64_t components) const {
-  return {values.data(), is_soa_ ? 1 : components, is_soa_ ? drawn_ : 1};
+  return ilaw::input(values.data(), is_soa_ ? 1 : components, is_soa_ ? drawn_ : 1);
 }
 
 ilaw_output NodeArrays::output(std::vector<double>& values, std::int64_t components) const {
-  return {values.data(), is_soa_ ? 1 : components, is_soa_ ? drawn_ : 1};
+  return ilaw::output(values.data(), is_soa_ ? 1 : components, is_soa_ ? drawn_ : 1);
 }
 
 void NodeArrays::lay_out(const BenchCase& bench_case) {
@@ -171,8 +173,8 @@ void NodeArrays::lay_out(const BenchCase& bench_case) {
 
 void NodeArrays::reach_a_representative_state() {
   state_.resize(static_cast<std::size_t>(state_size_ * nodes_));
-  batch_.state_in = {state_.data(), state_size_, 1};
-  batch_.state_out = {state_.data(), state_size_, 1};
+  batch_.state_in = ilaw::input(state_.data(), state_size_, 1);
+  batch_.state_out = ilaw::output(state_.data(), state_size_, 1);
   law_.initialise(batch_);
   const ilaw_input v_free = batch_.v_free;
   for (std::int64_t k = steps_before; k > 0; --k) {
@@ -187,21 +189,17 @@ void NodeArrays::reach_a_representative_state() {
 
 // The state stays in doubles.
 void NodeArrays::round_to_floats() {
-  const auto copy = [this](const auto& given, const std::vector<double>& values) -> ilaw_float_output {
-    if (!given.values) return {};
-    return {floats_.emplace_back(values.begin(), values.end()).data(), given.node_stride,
-            given.component_stride};
+  const auto copy = [this](const std::vector<double>& values) {
+    return floats_.emplace_back(values.begin(), values.end()).data();
   };
-  const auto input = [&copy](const ilaw_input& given, const std::vector<double>& values) -> ilaw_float_input {
-    const ilaw_float_output made = copy(given, values);
-    return {made.values, made.node_stride, made.component_stride};
+  const auto input = [&copy](const ilaw_input& given, const std::vector<double>& values) {
+    return given.values ? ilaw::input(copy(values), given.node_stride, given.component_stride) : ilaw_input{};
   };
-  ilaw_float_batch& b = float_batch_;
-  b.struct_size = sizeof b;
-  b.node_count = batch_.node_count;
-  b.time = batch_.time;
-  b.velocity_step = batch_.velocity_step;
-  b.position_step = batch_.position_step;
+  const auto output = [&copy](const ilaw_output& given, const std::vector<double>& values) {
+    return given.values ? ilaw::output(copy(values), given.node_stride, given.component_stride)
+                        : ilaw_output{};
+  };
+  ilaw_batch& b = float_batch_ = batch_;
   b.v_free = input(batch_.v_free, v_free_);
   b.delassus = input(batch_.delassus, delassus_);
   b.gap = input(batch_.gap, gap_);
@@ -212,13 +210,9 @@ void NodeArrays::round_to_floats() {
   for (std::size_t k = 0; k < per_node_.size(); ++k)
     per_node_floats_.push_back(input(per_node_inputs_[k], per_node_[k]));
   b.per_node_parameters = per_node_floats_.data();
-  b.state_in = batch_.state_in;
-  b.state_out = batch_.state_out;
-  b.impulse = copy(batch_.impulse, impulse_);
-  b.velocity = copy(batch_.velocity, velocity_);
-  b.energy = copy(batch_.energy, energy_);
-  b.status = batch_.status;
-  b.status_stride = batch_.status_stride;
+  b.impulse = output(batch_.impulse, impulse_);
+  b.velocity = output(batch_.velocity, velocity_);
+  b.energy = output(batch_.energy, energy_);
   is_of_floats_ = true;
 }
 

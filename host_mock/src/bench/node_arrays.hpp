@@ -24,7 +24,7 @@ class NodeArrays {
   NodeArrays& operator=(const NodeArrays&) = delete;
 
   // One step, the same at every call that follows restore().
-  void evaluate() const { is_of_floats_ ? law_.evaluate(float_batch_) : law_.evaluate(batch_); }
+  void evaluate() const { law_.evaluate(is_of_floats_ ? float_batch_ : batch_); }
   // What evaluate has changed is as it was.
   void restore() { state_ = first_state_; }
   bool has_state() const { return !state_.empty(); }
@@ -54,8 +54,8 @@ class NodeArrays {
   std::vector<std::uint8_t> status_;
   ilaw_batch batch_{};
   std::vector<std::vector<float>> floats_;
-  std::vector<ilaw_float_input> per_node_floats_;
-  ilaw_float_batch float_batch_{};
+  std::vector<ilaw_input> per_node_floats_;
+  ilaw_batch float_batch_{};
 };
 
 }  // namespace ilaw::host

@@ -68,9 +68,9 @@ std::int32_t list_good[] = {0, 1};
 std::int64_t list_good_64[] = {0, 1};
 
 const Wrong wrong_calls[] = {
-    {"v_free null", [](ilaw_batch& b) { b.v_free.values = nullptr; }, false},
-    {"delassus null", [](ilaw_batch& b) { b.delassus.values = nullptr; }, false},
-    {"impulse null", [](ilaw_batch& b) { b.impulse.values = nullptr; }, false},
+    {"v_free null", [](ilaw_batch& b) { b.v_free = {}; }, false},
+    {"delassus null", [](ilaw_batch& b) { b.delassus = {}; }, false},
+    {"impulse null", [](ilaw_batch& b) { b.impulse = {}; }, false},
     {"node_count -1", [](ilaw_batch& b) { b.node_count = -1; }, true},
     {"velocity_step 0", [](ilaw_batch& b) { b.velocity_step = 0.0; }, false},
     {"velocity_step NaN", [](ilaw_batch& b) { b.velocity_step = std::nan(""); }, false},
@@ -100,7 +100,7 @@ void expect_refused(const Trial& trial, Arrays& arrays, const Inputs& in, const 
     if (initial && !wrong.for_initialise) continue;
     ilaw_batch batch = arrays.batch();
     wrong.spoil(batch);
-    const std::vector<double> state = arrays.state();
+    const std::vector<double> state = arrays.state(), amounts = arrays.amounts();
     ilaw_report report{};
     report.struct_size = sizeof report;
     set_setting(trial.text() + "; " + wrong.what);
@@ -110,7 +110,7 @@ void expect_refused(const Trial& trial, Arrays& arrays, const Inputs& in, const 
         std::string(initial ? "initialise" : "evaluate") + ", given " + wrong.what + ", ";
     if (found != code)
       fail(trial, in, 0, call + "returned " + std::to_string(found), "code " + std::to_string(code));
-    if (arrays.state() != state || arrays.impulses() != before.impulse)
+    if (arrays.state() != state || arrays.impulses() != before.impulse || arrays.amounts() != amounts)
       fail(trial, in, 0, call + "wrote results", "nothing written");
     if (!report.reason) fail(trial, in, 0, call + "gave no reason", "a reason in the report");
   }
@@ -138,19 +138,108 @@ void calls_refused(const Subject& subject) {
       Wrong wrong;
     };
     const Needed needed[] = {
-        {ILAW_INPUT_GAP, {"gap null", [](ilaw_batch& b) { b.gap.values = nullptr; }, false}},
-        {ILAW_INPUT_V_PREVIOUS,
-         {"v_previous null", [](ilaw_batch& b) { b.v_previous.values = nullptr; }, false}},
-        {ILAW_INPUT_AREA, {"area null", [](ilaw_batch& b) { b.area.values = nullptr; }, false}},
-        {ILAW_INPUT_NORMAL, {"normal null", [](ilaw_batch& b) { b.normal.values = nullptr; }, false}},
-        {ILAW_INPUT_TANGENT, {"tangent null", [](ilaw_batch& b) { b.tangent.values = nullptr; }, false}}};
+        {ILAW_INPUT_GAP, {"gap null", [](ilaw_batch& b) { b.gap = {}; }, false}},
+        {ILAW_INPUT_V_PREVIOUS, {"v_previous null", [](ilaw_batch& b) { b.v_previous = {}; }, false}},
+        {ILAW_INPUT_AREA, {"area null", [](ilaw_batch& b) { b.area = {}; }, false}},
+        {ILAW_INPUT_NORMAL, {"normal null", [](ilaw_batch& b) { b.normal = {}; }, false}},
+        {ILAW_INPUT_TANGENT, {"tangent null", [](ilaw_batch& b) { b.tangent = {}; }, false}}};
     for (const Needed& one : needed)
       if (trial.reads(one.input)) expect_refused(trial, arrays, in, before, one.wrong, ILAW_INVALID_ARGUMENT);
     if (trial.info.state_size > 0)
       expect_refused(trial, arrays, in, before,
-                     {"state_in null", [](ilaw_batch& b) { b.state_in.values = nullptr; }, false},
-                     ILAW_INVALID_ARGUMENT);
+                     {"state_in null", [](ilaw_batch& b) { b.state_in = {}; }, false}, ILAW_INVALID_ARGUMENT);
   });
+}
+
+double other_doubles[64];
+float other_floats[64];
+
+// Both pointers of an array, or the one of the other number type.
+template <class Array>
+void set_other(Array& array, bool both) {
+  const bool floats = array.floats != nullptr;
+  if (both || floats) array.values = other_doubles;
+  if (both || !floats) array.floats = other_floats;
+  if (!both && floats) array.floats = nullptr;
+  if (!both && !floats) array.values = nullptr;
+}
+template <bool both, auto member>
+Wrong other_numbers(const char* what) {
+  return {what, [](ilaw_batch& b) { set_other(b.*member, both); }, false};
+}
+
+void array_numbers(const Subject& subject) {
+  with_two_nodes(subject, [](const Trial& trial, Arrays& arrays, const Inputs& in, const Results& before) {
+    struct Array {
+      bool is_used;
+      Wrong both, other;
+    };
+#define ILAW_CHECK_ARRAY(used, member)                                                 \
+  Array {                                                                              \
+    used, other_numbers<true, &ilaw_batch::member>(#member " with both pointers"),     \
+        other_numbers<false, &ilaw_batch::member>(#member " of the other number type") \
+  }
+    const Array all[] = {ILAW_CHECK_ARRAY(true, v_free),
+                         ILAW_CHECK_ARRAY(true, delassus),
+                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_GAP), gap),
+                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_GAP), gap_offset),
+                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_V_PREVIOUS), v_previous),
+                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_AREA), area),
+                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_NORMAL), normal),
+                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_TANGENT), tangent),
+                         ILAW_CHECK_ARRAY(trial.info.state_size > 0, state_in),
+                         ILAW_CHECK_ARRAY(trial.info.state_size > 0, state_out),
+                         ILAW_CHECK_ARRAY(true, impulse),
+                         ILAW_CHECK_ARRAY(trial.writes(ILAW_OUTPUT_VELOCITY), velocity),
+                         ILAW_CHECK_ARRAY(trial.writes(ILAW_OUTPUT_ENERGY), energy)};
+#undef ILAW_CHECK_ARRAY
+    for (const Array& array : all)
+      for (const Wrong& wrong : {array.both, array.other})
+        if (array.is_used) expect_refused(trial, arrays, in, before, wrong, ILAW_INVALID_ARGUMENT);
+    if (trial.info.amount_count == 0) return;
+    static std::vector<ilaw_output> amounts;
+    for (const bool both : {true, false}) {
+      amounts.assign(arrays.batch().amounts, arrays.batch().amounts + trial.info.amount_count);
+      set_other(amounts.back(), both);
+      expect_refused(trial, arrays, in, before,
+                     {"an amount with both pointers or of the other number type",
+                      [](ilaw_batch& b) { b.amounts = amounts.data(); }, false},
+                     ILAW_INVALID_ARGUMENT);
+    }
+  });
+}
+
+// What only energies and amounts need may be missing where neither is asked for.
+void balance_inputs(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        const ilaw_inputs more = trial.info.balance_inputs & ~trial.info.inputs;
+        if (!(more & ILAW_INPUT_V_PREVIOUS)) return false;
+        const Script script = draw_script(trial, draw, {2, 1}, true);
+        const auto code_without = [&](std::uint32_t outputs) {
+          Heap heap;
+          Arrays arrays(trial, script[0], {.outputs = outputs}, heap);
+          arrays.initialise(script[0]);
+          arrays.evaluate(script[0]);
+          ilaw_batch batch = arrays.batch();
+          batch.v_previous = {};
+          set_setting(trial.text() + "; v_previous null");
+          return trial.instance.evaluate(batch, nullptr);
+        };
+        const auto expect = [&](std::uint32_t outputs, bool refused, const std::string& what) {
+          const std::int32_t code = code_without(outputs);
+          if (refused ? code != ILAW_INVALID_ARGUMENT : code < 0)
+            fail(trial, script[0], 0,
+                 "without v_previous, " + what + ", evaluate returned " + std::to_string(code),
+                 refused ? "ILAW_INVALID_ARGUMENT (-1)" : "as with it");
+        };
+        expect(ILAW_OUTPUT_STATUS, false, "and neither energy nor amounts");
+        if (trial.writes(ILAW_OUTPUT_ENERGY)) expect(ILAW_OUTPUT_ENERGY, true, "with energy");
+        if (trial.info.amount_count > 0) expect(amounts_output, true, "with amounts");
+        return true;
+      },
+      "the law needs no other inputs for energies and amounts");
 }
 
 void batch_flags(const Subject& subject) {
@@ -257,6 +346,13 @@ std::vector<Rule> call_rules() {
       {"call-refused",
        "A call that is wrong as a whole returns ILAW_INVALID_ARGUMENT, a reason, and writes nothing.",
        "ilaw.h, ILAW_INVALID_ARGUMENT", Needs::motion, calls_refused},
+      {"array-numbers",
+       "An array with both pointers, or of the number type that the setup does not have, is refused, and "
+       "nothing written.",
+       "ilaw.h, ilaw_input", Needs::motion, array_numbers},
+      {"balance-inputs",
+       "Inputs for balances are needed where energy or an amount is asked for, and only there.",
+       "ilaw.h, ilaw_instance_info.balance_inputs", Needs::motion, balance_inputs},
       {"batch-flags",
        "A bit of the batch's flags that the law does not know is refused, and nothing written.",
        "ilaw.h, ilaw_batch.flags", Needs::motion, batch_flags},

@@ -17,19 +17,21 @@ void opens(const Subject&) {}  // nobody would come here else
 
 std::string all_of(const ilaw_law& law) {
   std::string text = std::string(law.id) + "|" + law.title + "|" + law.doc;
-  for (const std::uint32_t number :
-       {law.dimensions, law.delassus_forms, law.inputs, law.outputs, law.capabilities, law.reference_count,
-        law.parameter_count, law.state_variable_count})
+  for (const std::uint32_t number : {law.dimensions, law.delassus_forms, law.frames, law.numbers, law.inputs,
+                                     law.outputs, law.capabilities, law.permissions, law.reference_count,
+                                     law.parameter_count, law.state_variable_count, law.amount_count})
     text += "|" + std::to_string(number);
   for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
     const ilaw_parameter& p = *law.parameters[k];
     text += std::string("|") + p.name + "|" + p.symbol + "|" + p.unit + "|" + p.doc;
     for (const double number : {p.minimum, p.maximum, p.default_value}) text += "|" + text_of(number);
-    for (const std::uint32_t number :
-         {p.kind, p.required, p.minimum_excluded, p.infinity_allowed, p.may_be, p.choice_count})
+    for (const std::uint32_t number : {p.kind, p.flags, p.choice_count, p.axis_count})
       text += "|" + std::to_string(number);
     for (std::uint32_t c = 0; c < p.choice_count; ++c) text += std::string("|") + p.choices[c];
+    for (std::uint32_t a = 0; a < p.axis_count; ++a) text += std::string("|") + p.axes[a];
   }
+  for (std::uint32_t k = 0; k < law.amount_count; ++k)
+    text += std::string("|") + law.amounts[k]->name + "|" + law.amounts[k]->unit;
   return text;
 }
 
@@ -66,19 +68,26 @@ void description_constant(const Subject& subject) {
     throw Finding{"the description was " + before + " and became " + after, "the same description", {}, {}};
 }
 
-void parameter_units(const Subject& subject) {
+[[noreturn]] void fail_unit(const std::string& what, const char* unit) {
+  throw Finding{what + " has the unit \"" + unit + "\"",
+                "factors kg, m, s, N, J, Pa, Hz, W, K, rad, 1, with . and /, powers m^2 or m^p of a "
+                "parameter's symbol",
+                {},
+                {}};
+}
+
+void units(const Subject& subject) {
   std::vector<std::string> symbols;
   for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k)
     symbols.emplace_back(subject.law.parameters[k]->symbol);
   for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k) {
     const ilaw_parameter& p = *subject.law.parameters[k];
     if (p.kind != ILAW_PARAMETER_CHOICE && !parse_unit(p.unit, symbols))
-      throw Finding{"parameter '" + std::string(p.name) + "' has the unit \"" + p.unit + "\"",
-                    "factors kg, m, s, N, J, Pa, Hz, W, K, rad, 1, with . and /, powers m^2 or m^p of a "
-                    "parameter's symbol",
-                    {},
-                    {}};
+      fail_unit("parameter '" + std::string(p.name) + "'", p.unit);
   }
+  for (std::uint32_t k = 0; k < subject.law.amount_count; ++k)
+    if (!parse_unit(subject.law.amounts[k]->unit, symbols))
+      fail_unit("amount '" + std::string(subject.law.amounts[k]->name) + "'", subject.law.amounts[k]->unit);
 }
 
 std::string bits(std::uint32_t mask) { return std::to_string(mask); }
@@ -88,7 +97,7 @@ void info_within_description(const Subject& subject) {
     const ilaw_instance_info& info = trial.info;
     const std::uint32_t frame = ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT;
     if (const std::uint32_t more =
-            (info.inputs | info.energy_inputs) & ~(trial.law.inputs | frame | ILAW_INPUT_V_PREVIOUS))
+            (info.inputs | info.balance_inputs) & ~(trial.law.inputs | frame | ILAW_INPUT_V_PREVIOUS))
       throw Finding{"the instance reads inputs " + bits(more),
                     "inputs of the law, " + bits(trial.law.inputs),
                     trial.text(),
@@ -98,11 +107,14 @@ void info_within_description(const Subject& subject) {
                     "inputs of the law, " + bits(trial.law.inputs),
                     trial.text(),
                     {}};
-    // A frame in the state follows the normal wherever the node is.
-    const std::uint32_t may = trial.law.capabilities | ILAW_CAN_ACT_AT_DISTANCE;
-    if (const std::uint32_t more = info.capabilities & ~may)
+    if (const std::uint32_t more = info.capabilities & ~trial.law.capabilities)
       throw Finding{"the instance has capabilities " + bits(more),
                     "capabilities of the law, " + bits(trial.law.capabilities),
+                    trial.text(),
+                    {}};
+    if (const std::uint32_t fewer = trial.law.permissions & ~info.permissions)
+      throw Finding{"the instance lacks permissions " + bits(fewer),
+                    "those of the law hold with any parameters",
                     trial.text(),
                     {}};
     return true;
@@ -118,7 +130,7 @@ void info_frame(const Subject& subject) {
           "ILAW_INPUT_NORMAL always, and only, in the global frame",
           trial.text(),
           {}};
-    if (tangent && !trial.setup.tangent_given)
+    if (tangent && !trial.setup.has_tangent)
       throw Finding{
           "ILAW_INPUT_TANGENT without tangents", "create refuses where it needs tangents", trial.text(), {}};
     return true;
@@ -128,14 +140,15 @@ void info_frame(const Subject& subject) {
 std::string all_of(const ilaw_instance_info& info) {
   std::string text;
   for (const std::uint64_t number :
-       {std::uint64_t{info.inputs}, std::uint64_t{info.energy_inputs}, info.state_size,
-        std::uint64_t{info.capabilities}, std::uint64_t{info.state_version}})
+       {std::uint64_t{info.inputs}, std::uint64_t{info.balance_inputs}, info.state_size,
+        std::uint64_t{info.capabilities}, std::uint64_t{info.permissions}, std::uint64_t{info.state_version}})
     text += std::to_string(number) + " ";
   for (std::uint32_t k = 0; k < info.state_variable_count; ++k)
     text += std::string(info.state_variables[k]->name) + ":" +
             std::to_string(info.state_variables[k]->count) + " ";
   for (std::uint32_t k = 0; k < info.per_node_parameter_count; ++k)
     text += std::string(info.per_node_parameters[k]) + " ";
+  for (std::uint32_t k = 0; k < info.amount_count; ++k) text += std::string(info.amounts[k]->name) + " ";
   return text;
 }
 
@@ -172,8 +185,30 @@ void state_described(const Subject& subject) {
   });
 }
 
+void amounts_described(const Subject& subject) {
+  for_trials(
+      subject,
+      [&](const Trial& trial, Draw&) {
+        for (std::uint32_t k = 0; k < trial.info.amount_count; ++k) {
+          const ilaw_amount& amount = *trial.info.amounts[k];
+          const auto* const end = trial.law.amounts + trial.law.amount_count;
+          if (std::none_of(trial.law.amounts, end, [&](const ilaw_amount* known) {
+                return std::strcmp(known->name, amount.name) == 0 &&
+                       std::strcmp(known->unit, amount.unit) == 0;
+              }))
+            throw Finding{
+                "the instance has an amount '" + std::string(amount.name) + "' [" + amount.unit + "]",
+                "those of the law's description",
+                trial.text(),
+                {}};
+        }
+        return trial.law.amount_count > 0;
+      },
+      "the law has no amounts");
+}
+
 void extension_unknown(const Subject& subject) {
-  const auto ask = [](const void* (*extension)(const char*), const char* of) {
+  const auto ask = [](ilaw_extension_function extension, const char* of) {
     if (!extension) return;
     calling("extension");
     if (extension("nobody.nothing/1"))
@@ -190,9 +225,9 @@ void setups_served(const Subject& subject) {
     Draw draw(subject.seed);
     if (draw_values(subject.law, setup, draw)) continue;
     // A law may need tangents.
-    if (setup.global() && !setup.tangent_given && setup.dimension == 3) continue;
+    if (setup.global() && !setup.has_tangent && setup.dimension == 3) continue;
     throw Finding{"create refused 200 sets of parameters within their described ranges",
-                  "parameters that are accepted in each dimension, form of H and frame",
+                  "parameters that are accepted in each dimension, form of H, frame and number type",
                   text_of(setup),
                   {}};
   }
@@ -225,16 +260,17 @@ std::vector<Rule> description_rules() {
       {opens_id, "The loader opens the library: it is a law library with a sound description.",
        "abi.md, The loader", Needs::nothing, opens},
       {creates_id,
-       "Some parameters within the described ranges are accepted in every dimension, form of H and frame "
-       "that the law serves.",
+       "Some parameters within the described ranges are accepted in every dimension, form of H, frame and "
+       "number type that the law serves.",
        "ilaw.h, ilaw_law, create", Needs::library, setups_served},
       {"description-constant", "The entry returns the same constant description at every call.",
        "ilaw.h, ilaw_entry_function", Needs::motion, description_constant},
-      {"parameter-units", "Units of parameters are SI units, or 1.", "ilaw.h, ilaw_parameter.unit",
-       Needs::library, parameter_units},
+      {"description-units", "Units of parameters and amounts are SI units, or 1.",
+       "ilaw.h, ilaw_parameter.unit", Needs::library, units},
       {"extension-unknown", "An extension that nobody knows is null.", "ilaw.h, ilaw_law.extension",
        Needs::library, extension_unknown},
-      {"info-within", "An instance reads and can do no more than its law's description says.",
+      {"info-within",
+       "An instance reads and can do no more than its law's description says, and permits no less.",
        "ilaw.h, ilaw_law.inputs", Needs::instance, info_within_description},
       {"info-frame", "Normals are read always, and only, in the global frame; tangents where they are given.",
        "ilaw.h, ILAW_INPUT_NORMAL", Needs::instance, info_frame},
@@ -242,6 +278,8 @@ std::vector<Rule> description_rules() {
        "abi.md, State", Needs::motion, info_same},
       {"state-described", "State variables of an instance are those of the law's description.",
        "ilaw.h, ilaw_law.state_variables", Needs::instance, state_described},
+      {"amounts-described", "Amounts of an instance are those of the law's description.",
+       "ilaw.h, ilaw_law.amounts", Needs::instance, amounts_described},
       {"instances-end", "destroy takes null, and leaves nothing of an instance behind.",
        "ilaw.h, ilaw_law.destroy", Needs::instance, instances_end}};
 }

@@ -7,7 +7,8 @@
 namespace ilaw::check {
 namespace {
 
-constexpr double least = 1e-300;  // energies below are rounded as subnormal numbers
+// Energies below are rounded as subnormal numbers.
+double least(const Trial& trial) { return trial.setup.floats() ? 1e-36 : 1e-300; }
 constexpr std::size_t point_count = 24, flights = 3, steps = 12;
 
 struct Step {
@@ -56,6 +57,7 @@ void fly(const Subject& subject, Look look) {
           in.velocity_step = in.position_step = dt;
           for (std::size_t i = 0; i < point_count; ++i)
             in.gap[i] = in.gap_offset[i] + draw.within(0.0, 3.0) * dt;
+          in.round_to(trial.setup);
           Heap heap;
           Arrays arrays(trial, in, {}, heap);
           arrays.initialise(in);
@@ -76,6 +78,7 @@ void fly(const Subject& subject, Look look) {
               in.set_vector(in.v_free, i, v);
               in.gap[i] += dt * dot(in.normal_at(i), v);
             }
+            in.round_to(trial.setup);
             in.time += dt;
           }
         }
@@ -86,11 +89,11 @@ void fly(const Subject& subject, Look look) {
 
 void not_made(const Subject& subject) {
   fly(subject, [](const Trial& trial, const Step& step) {
-    if (step.work + step.stored > 256.0 * ulp * step.size + least)
+    if (step.work + step.stored > 256.0 * trial.epsilon() * step.size + least(trial))
       fail(trial, step.in, step.node,
            "the impulse did the work " + text_of(step.work) + ", and " + text_of(step.stored) +
                " more is stored: energy was made",
-           "their sum at most " + text_of(256.0 * ulp * step.size));
+           "their sum at most " + text_of(256.0 * trial.epsilon() * step.size));
   });
 }
 
@@ -101,11 +104,11 @@ void balanced(const Subject& subject) {
     for (int c = 0; c < ILAW_ENERGY_STORED; ++c)
       dissipated += step.found.energy[step.node * ILAW_ENERGY_COUNT + static_cast<std::size_t>(c)];
     const double rest = step.work + step.stored + dissipated;
-    if (!(std::abs(rest) <= 256.0 * ulp * (step.size + dissipated) + least))
+    if (!(std::abs(rest) <= 256.0 * trial.epsilon() * (step.size + dissipated) + least(trial)))
       fail(trial, step.in, step.node,
            "work " + text_of(step.work) + ", dissipated " + text_of(dissipated) + ", stored " +
                text_of(step.stored) + ": a rest of " + text_of(rest),
-           "a rest of at most " + text_of(256.0 * ulp * (step.size + dissipated)));
+           "a rest of at most " + text_of(256.0 * trial.epsilon() * (step.size + dissipated)));
   });
 }
 

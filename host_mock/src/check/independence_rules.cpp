@@ -81,12 +81,29 @@ void outputs(const Subject& subject) {
   for_trials_per_node_too(subject, [](const Trial& trial, Draw& draw) {
     const Script script = draw_script(trial, draw);
     const std::vector<Results> all = run(trial, script);
-    for (const std::uint32_t asked : {0U, std::uint32_t{ILAW_OUTPUT_VELOCITY},
-                                      std::uint32_t{ILAW_OUTPUT_STATUS}, std::uint32_t{ILAW_OUTPUT_ENERGY}})
+    for (const std::uint32_t asked :
+         {0U, std::uint32_t{ILAW_OUTPUT_VELOCITY}, std::uint32_t{ILAW_OUTPUT_STATUS},
+          std::uint32_t{ILAW_OUTPUT_ENERGY}, all_outputs & ~amounts_output})
       expect_same(trial, script, all, run(trial, script, {.outputs = asked}),
                   asked == 0 ? "without optional outputs" : "with fewer optional outputs", asked);
     return true;
   });
+}
+
+void amounts(const Subject& subject) {
+  for_trials_per_node_too(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        const Script script = draw_script(trial, draw);
+        const std::vector<Results> all = run(trial, script);
+        for (std::size_t k = 0; k < trial.info.amount_count; ++k)
+          expect_same(trial, script, all, run(trial, script, {.no_amount = k}), "with one amount absent");
+        if (trial.info.amount_count > 0)
+          expect_same(trial, script, all, run(trial, script, {.outputs = amounts_output}),
+                      "with amounts alone", amounts_output);
+        return trial.info.amount_count > 0;
+      },
+      "the law has no amounts");
 }
 
 // One value for all nodes, by a stride of 0: nothing else is there to be read.
@@ -126,7 +143,11 @@ void gap_offset(const Subject& subject) {
         if (!trial.reads(ILAW_INPUT_GAP)) return false;
         Script script = draw_script(trial, draw), without = script;
         for (std::size_t k = 0; k < script.size(); ++k) {
-          for (std::size_t i = 0; i < script[k].count; ++i) without[k].gap[i] = script[k].slack(i);
+          for (std::size_t i = 0; i < script[k].count; ++i) {
+            // No float is the difference of some two.
+            if (trial.setup.rounded(script[k].slack(i)) != script[k].slack(i)) script[k].gap_offset[i] = 0.0;
+            without[k].gap[i] = script[k].slack(i);
+          }
           without[k].gap_offset.clear();
         }
         expect_same(trial, script, run(trial, without), run(trial, script),
@@ -136,30 +157,79 @@ void gap_offset(const Subject& subject) {
       "the law reads no gap");
 }
 
+// Each number of "found", of floats, is that of "exact" rounded once.
+void expect_rounded(const Trial& trial, const Inputs& in, const char* array, const std::vector<double>& exact,
+                    const std::vector<double>& found) {
+  for (std::size_t k = 0; k < exact.size(); ++k)
+    if (!same_bits(trial.setup.rounded(exact[k]), found[k]))
+      fail(trial, in, k / (exact.size() / in.count),
+           std::string("in floats ") + array + " " + text_of(found[k]) + ", in doubles " + text_of(exact[k]),
+           "the double rounded once, " + text_of(trial.setup.rounded(exact[k])));
+}
+
+void floats_rounded(const Subject& subject) {
+  for_trials_per_node_too(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        Setup doubles = trial.setup;
+        doubles.numbers = ILAW_NUMBERS_DOUBLE;
+        if (!trial.setup.floats() || !(trial.law.numbers & ILAW_NUMBERS_DOUBLE) ||
+            !create(trial.law, doubles, trial.values))
+          return false;
+        const Trial exact(trial.law, doubles, trial.values);
+        if (exact.info.state_size != trial.info.state_size ||
+            exact.info.state_version != trial.info.state_version)
+          throw Finding{"the number type changes the size or the version of the state",
+                        "the same state",
+                        trial.text(),
+                        {}};
+        const Script script = draw_script(trial, draw);
+        const std::vector<Results> all = run(exact, script), found = run(trial, script);
+        for (std::size_t k = 0; k < script.size(); ++k) {
+          Results expected = all[k], narrow = found[k];
+          expect_rounded(trial, script[k], "impulse", expected.impulse, narrow.impulse);
+          expect_rounded(trial, script[k], "velocity", expected.velocity, narrow.velocity);
+          expect_rounded(trial, script[k], "energy", expected.energy, narrow.energy);
+          for (std::size_t a = 0; a < expected.amounts.size(); ++a)
+            expect_rounded(trial, script[k], "amount", expected.amounts[a], narrow.amounts[a]);
+          narrow.impulse = expected.impulse;
+          if (const auto differs = difference(expected, narrow, ILAW_OUTPUT_STATUS))
+            fail(trial, script[k], differs->node, "in floats " + differs->text, "as in doubles");
+        }
+        return true;
+      },
+      "the law does not serve both number types");
+}
+
 }  // namespace
 
 std::vector<Rule> independence_rules() {
   constexpr const char* alone = "ilaw.h, ilaw_law.evaluate";
-  return {{"layout-components", "Arrays component by component give the same bits.", "ilaw.h, ilaw_input",
-           Needs::motion, by_component},
-          {"layout-strides", "Arrays with any strides give the same bits.", "ilaw.h, ilaw_input",
-           Needs::motion, spread},
-          {"layout-shared", "A node stride of 0 gives all nodes the same value.", "ilaw.h, ilaw_input",
-           Needs::motion, shared_value},
-          {"index-32", "A list of nodes in 32 bits gives the same bits, from base 0 and 1.",
-           "ilaw.h, ilaw_batch.index", Needs::motion, list_32},
-          {"index-64", "A list of nodes in 64 bits gives the same bits, from base 0 and 1.",
-           "ilaw.h, ilaw_batch.index64", Needs::motion, list_64},
-          {"state-in-place", "state_out may be the array of state_in.", "ilaw.h, ilaw_batch.state_out",
-           Needs::motion, in_place},
-          {"batch-order", "The order of the nodes changes no bit.", alone, Needs::motion, order},
-          {"batch-parts", "A node gets the same bits alone as among others.", alone, Needs::motion, parts},
-          {"batch-large", "A node gets the same bits among hundreds as alone.", alone, Needs::motion,
-           large_batch},
-          {"outputs-asked", "Which outputs are asked for changes no bit of the others.", alone, Needs::motion,
-           outputs},
-          {"gap-offset", "gap_offset is subtracted from the gap.", "ilaw.h, ilaw_batch.gap_offset",
-           Needs::motion, gap_offset}};
+  return {
+      {"layout-components", "Arrays component by component give the same bits.", "ilaw.h, ilaw_input",
+       Needs::motion, by_component},
+      {"layout-strides", "Arrays with any strides give the same bits.", "ilaw.h, ilaw_input", Needs::motion,
+       spread},
+      {"layout-shared", "A node stride of 0 gives all nodes the same value.", "ilaw.h, ilaw_input",
+       Needs::motion, shared_value},
+      {"index-32", "A list of nodes in 32 bits gives the same bits, from base 0 and 1.",
+       "ilaw.h, ilaw_batch.index", Needs::motion, list_32},
+      {"index-64", "A list of nodes in 64 bits gives the same bits, from base 0 and 1.",
+       "ilaw.h, ilaw_batch.index64", Needs::motion, list_64},
+      {"state-in-place", "state_out may be the array of state_in.", "ilaw.h, ilaw_batch.state_out",
+       Needs::motion, in_place},
+      {"batch-order", "The order of the nodes changes no bit.", alone, Needs::motion, order},
+      {"batch-parts", "A node gets the same bits alone as among others.", alone, Needs::motion, parts},
+      {"batch-large", "A node gets the same bits among hundreds as alone.", alone, Needs::motion,
+       large_batch},
+      {"outputs-asked", "Which outputs are asked for changes no bit of the others.", alone, Needs::motion,
+       outputs},
+      {"amounts-asked", "Which amounts are asked for changes no bit of the other results.",
+       "ilaw.h, ilaw_batch.amounts", Needs::motion, amounts},
+      {"floats-rounded", "A float result is the double result rounded once; status and state are the same.",
+       "ilaw.h, ILAW_NUMBERS_DOUBLE", Needs::motion, floats_rounded},
+      {"gap-offset", "gap_offset is subtracted from the gap.", "ilaw.h, ilaw_batch.gap_offset", Needs::motion,
+       gap_offset}};
 }
 
 }  // namespace ilaw::check

@@ -74,7 +74,7 @@ Inputs empty_inputs(const Trial& trial, std::size_t count) {
   in.delassus.resize(count * in.form_width);
   for (std::vector<double>* values : {&in.gap, &in.gap_offset, &in.area}) values->resize(count);
   if (trial.setup.global()) in.normal.resize(vectors);
-  if (trial.setup.tangent_given) in.tangent.resize(vectors);
+  if (trial.setup.has_tangent) in.tangent.resize(vectors);
   in.per_node.assign(trial.info.per_node_parameter_count, std::vector<double>(count));
   return in;
 }
@@ -93,8 +93,8 @@ void draw_parameters(Inputs& in, std::size_t node, const Trial& trial, Draw& dra
   const auto set = [&](const auto& value_of) {
     for (std::uint32_t k = 0; k < trial.info.per_node_parameter_count; ++k) {
       const char* name = trial.info.per_node_parameters[k];
-      in.per_node[k][node] =
-          value_of(*parameter_of(trial.law, name), number_of(trial.law, trial.values, name));
+      in.per_node[k][node] = trial.setup.rounded(
+          value_of(*parameter_of(trial.law, name), number_of(trial.law, trial.values, name)));
     }
   };
   for (int k = 0; k < attempts; ++k) {
@@ -188,6 +188,12 @@ bool Inputs::is_out_of_reach(std::size_t node) const {
   return g > 0.0 && g + position_step * along > 0.0;
 }
 
+void Inputs::round_to(const Setup& setup) {
+  for (std::vector<double>* values :
+       {&v_free, &delassus, &gap, &gap_offset, &v_previous, &area, &normal, &tangent})
+    for (double& value : *values) value = setup.rounded(value);
+}
+
 std::vector<NamedArray> Inputs::arrays_of(std::size_t node) const {
   std::vector<NamedArray> arrays{
       {"time, velocity_step, position_step", {time, velocity_step, position_step}}};
@@ -236,6 +242,7 @@ Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size, bool 
     in.position_step = 0x1p-10 * (same_steps ? 1.0 : draw.within(0.5, 1.5));
     in.time += in.velocity_step;
     draw_motion(in, alike, without_force, draw);
+    in.round_to(trial.setup);
     script.push_back(in);
   }
   return script;

@@ -35,6 +35,8 @@ struct Inputs {
   double slack(std::size_t node) const;
   bool is_out_of_reach(std::size_t node) const;
   std::vector<NamedArray> arrays_of(std::size_t node) const;
+  // To the numbers of the setup, so that a batch has what stands here.
+  void round_to(const Setup& setup);
 };
 
 using Script = std::vector<Inputs>;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/rule.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ilaw::check {
@@ -66,11 +67,12 @@ void all_written(const Subject& subject) {
           if (value == 123456.75) return true;
         return false;
       };
-      const char* array = unwritten(found.impulse)    ? "impulse"
-                          : unwritten(found.state)    ? "state_out"
-                          : unwritten(found.velocity) ? "velocity"
-                          : unwritten(found.energy)   ? "energy"
-                                                      : nullptr;
+      const char* array = unwritten(found.impulse)                                             ? "impulse"
+                          : unwritten(found.state)                                             ? "state_out"
+                          : unwritten(found.velocity)                                          ? "velocity"
+                          : unwritten(found.energy)                                            ? "energy"
+                          : std::any_of(found.amounts.begin(), found.amounts.end(), unwritten) ? "amounts"
+                                                                                               : nullptr;
       for (const std::uint8_t status : found.status)
         if (status == 99) array = "status";
       if (array)
@@ -98,6 +100,7 @@ void initialise_reads(const Subject& subject) {
           *one = {};
         for (ilaw_output* one : {&batch.impulse, &batch.velocity, &batch.energy}) *one = {};
         batch.status = nullptr;
+        batch.amounts = nullptr;
         batch.velocity_step = batch.position_step = 0.0;
         arrays.set_state(std::vector<double>(expected.size(), std::nan("")));
         const std::int32_t code = trial.instance.initialise(batch, nullptr);

@@ -27,6 +27,25 @@ void expect_refused(const Trial& trial, const Values& values) {
 
 Value number(const ilaw_parameter& p, double value) { return {p.name, ILAW_VALUE_NUMBER, value}; }
 Value text(const ilaw_parameter& p, const std::string& word) { return {p.name, ILAW_VALUE_TEXT, 0.0, word}; }
+// A table of one value.
+Value table(const ilaw_parameter& p, const std::vector<TableAxis>& axes, double value) {
+  std::size_t size = 1;
+  for (const TableAxis& axis : axes) size *= axis.points.size();
+  return {p.name, ILAW_VALUE_TABLE, 0.0, {}, axes, std::vector<double>(size, value)};
+}
+// A value that a table of the parameter may have: that of the trial, or one near the minimum.
+double value_in_table(const Trial& trial, const ilaw_parameter& p) {
+  const double value = number_of(trial.law, trial.values, p.name);
+  return in_range(p, value) && std::isfinite(value) ? value : std::nextafter(p.minimum, infinity);
+}
+// The fields of the law, which a table over them needs, given per node.
+Values with_fields(const Trial& trial) {
+  Values values = trial.values;
+  for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k)
+    if (has(*trial.law.parameters[k], ILAW_PARAMETER_IS_FIELD))
+      values = with(values, {trial.law.parameters[k]->name, ILAW_VALUE_PER_NODE});
+  return values;
+}
 bool is_choice(const ilaw_parameter& p) { return p.kind == ILAW_PARAMETER_CHOICE; }
 
 template <class Look>
@@ -51,7 +70,7 @@ void unknown(const Subject& subject) {
 
 void missing(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (!p.required) return false;
+    if (!has(p, ILAW_PARAMETER_IS_REQUIRED)) return false;
     Values values = trial.values;
     std::erase_if(values, [&](const Value& value) { return value.name == p.name; });
     expect_refused(trial, values);
@@ -67,7 +86,8 @@ void range(const Subject& subject) {
     const double below = whole ? std::min(p.minimum - 1.0, std::nextafter(p.minimum, -infinity))
                                : p.minimum - 1e-9 * std::max(1.0, std::abs(p.minimum));
     expect_refused(trial, with(trial.values, number(p, below)));
-    if (p.minimum_excluded) expect_refused(trial, with(trial.values, number(p, p.minimum)));
+    if (has(p, ILAW_PARAMETER_EXCLUDES_MINIMUM))
+      expect_refused(trial, with(trial.values, number(p, p.minimum)));
     const double next = std::nextafter(p.maximum, infinity);
     const double above = whole ? std::max(p.maximum + 1.0, next) : next;
     if (above < infinity) expect_refused(trial, with(trial.values, number(p, above)));
@@ -87,7 +107,8 @@ void infinite(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
     if (is_choice(p)) return false;
     expect_refused(trial, with(trial.values, number(p, -infinity)));
-    if (!p.infinity_allowed) expect_refused(trial, with(trial.values, number(p, infinity)));
+    if (!has(p, ILAW_PARAMETER_ALLOWS_INFINITY))
+      expect_refused(trial, with(trial.values, number(p, infinity)));
     return true;
   });
 }
@@ -126,11 +147,10 @@ void kind(const Subject& subject) {
 
 void varying(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (!(p.may_be & ILAW_MAY_BE_TABLE))
-      expect_refused(trial, with(trial.values, {p.name, ILAW_VALUE_TABLE, 0.0, {}, {0.0, 0.5, 1.0, 0.5}}));
-    if (!(p.may_be & ILAW_MAY_BE_PER_NODE))
-      expect_refused(trial, with(trial.values, {p.name, ILAW_VALUE_PER_NODE}));
-    return p.may_be != (ILAW_MAY_BE_TABLE | ILAW_MAY_BE_PER_NODE);
+    const bool is_table = p.axis_count > 0, per_node = has(p, ILAW_PARAMETER_ALLOWS_PER_NODE);
+    if (!is_table) expect_refused(trial, with(trial.values, table(p, {{"time", {0.0, 1.0}}}, 0.5)));
+    if (!per_node) expect_refused(trial, with(trial.values, {p.name, ILAW_VALUE_PER_NODE}));
+    return !is_table || !per_node;
   });
 }
 
@@ -142,7 +162,7 @@ bool accepted_somewhere(const Trial& trial, const Value& value, Draw& draw) {
     Values values = {value};
     for (std::uint32_t p = 0; p < trial.law.parameter_count; ++p) {
       const ilaw_parameter& other = *trial.law.parameters[p];
-      if (other.name != value.name && (other.required || (k > 9 && draw.one_in(3))))
+      if (other.name != value.name && (has(other, ILAW_PARAMETER_IS_REQUIRED) || (k > 9 && draw.one_in(3))))
         values.push_back(draw_value(other, draw));
     }
     if (create(trial.law, setups[static_cast<std::size_t>(k) % setups.size()], values)) return true;
@@ -157,9 +177,9 @@ void accepted(const Subject& subject) {
     if (is_choice(p)) {
       for (std::uint32_t k = 0; k < p.choice_count; ++k) ends.push_back(text(p, p.choices[k]));
     } else {
-      if (!p.minimum_excluded) ends.push_back(number(p, p.minimum));
+      if (!has(p, ILAW_PARAMETER_EXCLUDES_MINIMUM)) ends.push_back(number(p, p.minimum));
       if (p.maximum < 1e6) ends.push_back(number(p, p.maximum));
-      if (p.infinity_allowed) ends.push_back(number(p, infinity));
+      if (has(p, ILAW_PARAMETER_ALLOWS_INFINITY)) ends.push_back(number(p, infinity));
     }
     for (const Value& value : ends)
       if (!accepted_somewhere(trial, value, draw))
@@ -180,7 +200,7 @@ void defaults(const Subject& subject) {
           const ilaw_parameter& p = *trial.law.parameters[k];
           const bool given = std::any_of(values.begin(), values.end(),
                                          [&](const Value& value) { return value.name == p.name; });
-          if (given || p.required) continue;
+          if (given || has(p, ILAW_PARAMETER_IS_REQUIRED)) continue;
           values.push_back(is_choice(p) ? text(p, p.choices[static_cast<std::size_t>(p.default_value)])
                                         : number(p, p.default_value));
         }
@@ -210,7 +230,22 @@ bool expect_no_change(const Trial& trial, const Value& value, Draw& draw) {
   return true;
 }
 
-bool may_be(const ilaw_parameter& p, std::uint32_t way) { return !is_choice(p) && (p.may_be & way); }
+bool may_be_table(const ilaw_parameter& p) { return !is_choice(p) && p.axis_count > 0; }
+bool may_be_per_node(const ilaw_parameter& p) {
+  return !is_choice(p) && has(p, ILAW_PARAMETER_ALLOWS_PER_NODE);
+}
+
+// Over each axis, and over as many as there may be.
+std::vector<std::vector<TableAxis>> axes_for(const ilaw_parameter& p) {
+  std::vector<std::vector<TableAxis>> all(1);
+  for (std::uint32_t k = 0; k < p.axis_count; ++k) {
+    const TableAxis axis{p.axes[k], {0.0, 0.003, 1.0}};
+    all.push_back({axis});
+    if (all[0].size() < 3) all[0].push_back(axis);
+  }
+  if (all[0].size() == 1) all.erase(all.begin());
+  return all;
+}
 
 void table_constant(const Subject& subject) {
   for_trials(
@@ -220,15 +255,92 @@ void table_constant(const Subject& subject) {
         for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
           const ilaw_parameter& p = *trial.law.parameters[k];
           const double value = number_of(trial.law, trial.values, p.name);
-          if (may_be(p, ILAW_MAY_BE_TABLE) && in_range(p, value))
-            judged = expect_no_change(
-                         trial, {p.name, ILAW_VALUE_TABLE, 0.0, {}, {0.0, value, 0.003, value, 1.0, value}},
-                         draw) ||
-                     judged;
+          if (!may_be_table(p) || !in_range(p, value)) continue;
+          for (const std::vector<TableAxis>& axes : axes_for(p)) {
+            // Fields need a value: the one that they have anyway.
+            Values values = trial.values;
+            for (const TableAxis& axis : axes)
+              if (const ilaw_parameter* field = parameter_of(trial.law, axis.name))
+                values = with(values, number(*field, number_of(trial.law, trial.values, axis.name)));
+            if (!create(trial.law, trial.setup, values)) continue;
+            const Trial plain(trial.law, trial.setup, values);
+            judged = expect_no_change(plain, table(p, axes, value), draw) || judged;
+          }
         }
         return judged;
       },
       "no parameter may be a table");
+}
+
+// Axes whose value the checker sets: the time, and fields of the law.
+bool is_known_axis(const ilaw_law& law, const std::string& name) {
+  const ilaw_parameter* field = parameter_of(law, name);
+  return name == "time" || (field && field->kind == ILAW_PARAMETER_NUMBER);
+}
+
+// A table at a place on its axes gives the bits of the constant that it has there.
+bool expect_table_value(const Trial& trial, const Value& given, const std::vector<double>& place,
+                        double value, Draw& draw) {
+  Values values = trial.values;
+  double time = 0.5;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    const ilaw_parameter* field = parameter_of(trial.law, given.axes[k].name);
+    if (field && !in_range(*field, place[k])) return false;
+    if (field) values = with(values, number(*field, place[k]));
+    if (given.axes[k].name == "time") time = place[k];
+  }
+  const ilaw_parameter& p = *parameter_of(trial.law, given.name);
+  const Values constant = with(values, number(p, value));
+  if (!in_range(p, value) || !create(trial.law, trial.setup, constant) ||
+      !create(trial.law, trial.setup, with(values, given)))
+    return false;
+  const Trial plain(trial.law, trial.setup, constant), varied(trial.law, trial.setup, with(values, given));
+  Script script = draw_script(plain, draw, {13, 1});
+  script[0].time = time;
+  std::string where;
+  for (const double x : place) where += (where.empty() ? "" : ", ") + text_of(x);
+  expect_same(varied, script, run(plain, script), run(varied, script),
+              text_of(Values{given}) + " at (" + where + ") instead of " + text_of(value));
+  return true;
+}
+
+// Places and values are exact in binary, so that any way to interpolate gives the same bits.
+void table_linear(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        bool judged = false;
+        for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
+          const ilaw_parameter& p = *trial.law.parameters[k];
+          if (!may_be_table(p) || p.kind != ILAW_PARAMETER_NUMBER) continue;
+          const double a = static_cast<float>(value_in_table(trial, p)), b = 2.0 * a;
+          std::vector<std::string> known;
+          for (std::uint32_t n = 0; n < p.axis_count; ++n)
+            if (p.axes[n] != std::string(p.name) && is_known_axis(trial.law, p.axes[n]))
+              known.emplace_back(p.axes[n]);
+          for (const std::string& axis : known) {
+            const Value over_one{p.name, ILAW_VALUE_TABLE, 0.0, {}, {{axis, {0.25, 0.75, 1.0}}}, {a, b, b}};
+            const std::pair<double, double> places[] = {
+                {0.125, a}, {0.25, a}, {0.5, 0.5 * (a + b)}, {0.75, b}, {2.0, b}};
+            for (const auto& [place, value] : places)
+              judged = expect_table_value(trial, over_one, {place}, value, draw) || judged;
+          }
+          if (known.size() < 2) continue;
+          const Value over_two{p.name,
+                               ILAW_VALUE_TABLE,
+                               0.0,
+                               {},
+                               {{known[0], {0.25, 0.75, 1.0}}, {known[1], {0.25, 0.75}}},
+                               {a, b, a, a, b, a}};
+          const std::pair<std::vector<double>, double> corners[] = {
+              {{0.25, 0.25}, a}, {{0.25, 0.75}, b}, {{0.75, 0.75}, a},
+              {{1.0, 0.25}, b},  {{2.0, 0.75}, a},  {{0.25, 0.5}, 0.5 * (a + b)}};
+          for (const auto& [place, value] : corners)
+            judged = expect_table_value(trial, over_two, place, value, draw) || judged;
+        }
+        return judged;
+      },
+      "no parameter may be a table over time or a field");
 }
 
 // Some nodes, each with its own values as constants, as they are among nodes with others.
@@ -259,7 +371,7 @@ void node_constant(const Subject& subject) {
         bool judged = false;
         for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
           const ilaw_parameter& p = *trial.law.parameters[k];
-          if (may_be(p, ILAW_MAY_BE_PER_NODE) && in_range(p, number_of(trial.law, trial.values, p.name)))
+          if (may_be_per_node(p) && in_range(p, number_of(trial.law, trial.values, p.name)))
             judged = expect_no_change(trial, {p.name, ILAW_VALUE_PER_NODE}, draw) || judged;
         }
         return expect_own_constants(trial, draw) || judged;
@@ -269,21 +381,100 @@ void node_constant(const Subject& subject) {
 
 void table_shape(const Subject& subject) {
   for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
-    if (!may_be(p, ILAW_MAY_BE_TABLE)) return false;
-    const double good = number_of(trial.law, trial.values, p.name), below = p.minimum - 1.0;
-    const double value =
-        in_range(p, good) && std::isfinite(good) ? good : std::nextafter(p.minimum, infinity);
-    const double not_a_number = std::nan("");
-    for (const std::vector<double>& table : {std::vector<double>{},
-                                             {0.0, value, 0.0, value},
-                                             {1.0, value, 0.0, value},
-                                             {not_a_number, value},
-                                             {0.0, value, infinity, value},
-                                             {0.0, value, 1.0, below},
-                                             {0.0, not_a_number}})
-      expect_refused(trial, with(trial.values, {p.name, ILAW_VALUE_TABLE, 0.0, {}, table}));
+    if (!may_be_table(p)) return false;
+    const double value = value_in_table(trial, p), not_a_number = std::nan("");
+    const Values values = with_fields(trial);
+    const auto expect = [&](const std::vector<double>& points, const std::vector<double>& table) {
+      expect_refused(trial, with(values, {p.name, ILAW_VALUE_TABLE, 0.0, {}, {{p.axes[0], points}}, table}));
+    };
+    expect({}, {});
+    expect({0.0, 0.0}, {value, value});
+    expect({1.0, 0.0}, {value, value});
+    expect({not_a_number}, {value});
+    expect({0.0, infinity}, {value, value});
+    expect({0.0, 1.0}, {value, p.minimum - 1.0 - 1e-9 * std::abs(p.minimum)});
+    expect({0.0}, {not_a_number});
     return true;
   });
+}
+
+void table_axes(const Subject& subject) {
+  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
+    if (!may_be_table(p)) return false;
+    const Values values = with_fields(trial);
+    const auto expect = [&](const std::vector<TableAxis>& axes) {
+      expect_refused(trial, with(values, table(p, axes, value_in_table(trial, p))));
+    };
+    const TableAxis own{p.axes[0], {0.0, 1.0}}, unknown{"nobody_has_this", {0.0, 1.0}};
+    expect({});
+    expect({unknown});
+    expect({own, unknown});
+    expect({own, own});
+    expect({own, own, own, own});
+    return true;
+  });
+}
+
+void table_field(const Subject& subject) {
+  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
+    bool judged = false;
+    for (std::uint32_t k = 0; may_be_table(p) && k < p.axis_count; ++k) {
+      const ilaw_parameter* field = parameter_of(trial.law, p.axes[k]);
+      if (!field || !has(*field, ILAW_PARAMETER_IS_FIELD)) continue;
+      Values values = trial.values;
+      std::erase_if(values, [&](const Value& value) { return value.name == field->name; });
+      expect_refused(trial, with(values, table(p, {{field->name, {0.0, 1.0}}}, value_in_table(trial, p))));
+      judged = true;
+    }
+    return judged;
+  });
+}
+
+TableAxis long_axis(const char* name, std::size_t count) {
+  TableAxis axis{name, std::vector<double>(count)};
+  for (std::size_t k = 0; k < count; ++k) axis.points[k] = static_cast<double>(k);
+  return axis;
+}
+
+// Two axes whose product is too large, and three whose product is 2^64: 0 in 64 bits. Values for all of them
+// are not there, since nobody is to read them.
+void table_limit(const Subject& subject) {
+  for_parameters(subject, [](const Trial& trial, const ilaw_parameter& p) {
+    if (!may_be_table(p) || p.axis_count < 2) return false;
+    const auto expect = [&](const std::vector<TableAxis>& axes) {
+      Value too_large = table(p, {{p.axes[0], {0.0}}}, value_in_table(trial, p));
+      too_large.axes = axes;
+      expect_refused(trial, with(with_fields(trial), too_large));
+    };
+    expect({long_axis(p.axes[0], 4097), long_axis(p.axes[1], 4096)});
+    if (p.axis_count > 2)
+      expect(
+          {long_axis(p.axes[0], 1U << 22), long_axis(p.axes[1], 1U << 21), long_axis(p.axes[2], 1U << 21)});
+    return true;
+  });
+}
+
+void field_per_node(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw&) {
+        bool judged = false;
+        for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
+          const ilaw_parameter& p = *trial.law.parameters[k];
+          if (!has(p, ILAW_PARAMETER_IS_FIELD)) continue;
+          const SetupStruct given(trial.setup, with(trial.values, {p.name, ILAW_VALUE_PER_NODE}));
+          Refusal refusal{};
+          if (!create(trial.law, given.given, refusal))
+            throw Finding{
+                "create refused the field '" + std::string(p.name) + "' per node: " + refusal.message,
+                "an instance: hosts give a field that they have per node",
+                trial.text(),
+                {}};
+          judged = true;
+        }
+        return judged;
+      },
+      "the law has no fields");
 }
 
 // A value per node that is out of range is bad input at its node.
@@ -296,7 +487,7 @@ void node_range(const Subject& subject) {
           const ilaw_parameter& p = *trial.law.parameters[k];
           const Values values = with(trial.values, {p.name, ILAW_VALUE_PER_NODE});
           const double good = number_of(trial.law, trial.values, p.name);
-          if (!may_be(p, ILAW_MAY_BE_PER_NODE) || !std::isfinite(good)) continue;
+          if (!may_be_per_node(p) || !std::isfinite(good)) continue;
           if (!create(trial.law, trial.setup, values)) continue;
           const Trial varied(trial.law, trial.setup, values);
           Script script = draw_script(varied, draw, {7, 1}, true);
@@ -307,8 +498,8 @@ void node_range(const Subject& subject) {
           if (arrays.initialise(script[0]) != ILAW_OK) continue;
           const std::vector<double> state = arrays.state();
           if (arrays.evaluate(script[0]).code != ILAW_OK) continue;
-          for (const double bad :
-               {p.minimum - 1.0, std::nan(""), p.infinity_allowed ? -infinity : infinity}) {
+          for (const double bad : {p.minimum - 1.0, std::nan(""),
+                                   has(p, ILAW_PARAMETER_ALLOWS_INFINITY) ? -infinity : infinity}) {
             own[4] = bad;
             arrays.set_state(state);
             const Results found = arrays.evaluate(script[0]);
@@ -331,14 +522,14 @@ std::vector<Rule> parameter_rules() {
   return {{"parameter-unknown", "A parameter that the law does not have is refused.",
            "ilaw.h, ILAW_INVALID_PARAMETER", Needs::instance, unknown},
           {"parameter-missing", "A set without a required parameter is refused.",
-           "ilaw.h, ilaw_parameter.required", Needs::instance, missing},
+           "ilaw.h, ILAW_PARAMETER_IS_REQUIRED", Needs::instance, missing},
           {"parameter-range",
            "A finite value below the minimum, at an excluded one, or above the maximum is refused.",
            "ilaw.h, ilaw_parameter.minimum", Needs::instance, range},
           {"parameter-nan", "NaN is no value of a parameter.", "ilaw.h, ilaw_parameter.minimum",
            Needs::instance, no_number},
           {"parameter-infinity", "Infinity is refused where it is not allowed, -infinity always.",
-           "ilaw.h, ilaw_parameter.infinity_allowed", Needs::instance, infinite},
+           "ilaw.h, ILAW_PARAMETER_ALLOWS_INFINITY", Needs::instance, infinite},
           {"parameter-whole", "A count is a whole number.", "ilaw.h, ILAW_PARAMETER_COUNT", Needs::instance,
            whole_number},
           {"parameter-choice", "A text that is none of the choices is refused.",
@@ -346,7 +537,7 @@ std::vector<Rule> parameter_rules() {
           {"parameter-kind", "A value of a kind that the parameter does not have is refused.",
            "ilaw.h, ilaw_argument.kind", Needs::instance, kind},
           {"parameter-varying", "Tables, and values per node, are refused where they are not allowed.",
-           "ilaw.h, ilaw_parameter.may_be", Needs::instance, varying},
+           "ilaw.h, ilaw_parameter.axes", Needs::instance, varying},
           {"parameter-accepted",
            "The ends of its range, infinity where allowed, and every choice of a parameter are "
            "accepted beside some others.",
@@ -354,10 +545,21 @@ std::vector<Rule> parameter_rules() {
           {"parameter-default", "A parameter that is left out has its default value.",
            "ilaw.h, ilaw_parameter.default_value", Needs::motion, defaults},
           {"table-shape",
-           "A table without pairs, with times that do not increase or a value out of range is refused.",
-           "ilaw.h, ilaw_argument.values", Needs::instance, table_shape},
+           "A table without points, with points that do not increase or a value out of range is refused.",
+           "ilaw.h, ilaw_axis.points", Needs::instance, table_shape},
+          {"table-axes", "A table over no axis, an unknown one, one twice, or more than three is refused.",
+           "ilaw.h, ilaw_argument.axes", Needs::instance, table_axes},
+          {"table-field", "A table over a field that is not given is refused.", "ilaw.h, ilaw_argument.axes",
+           Needs::instance, table_field},
+          {"table-limit", "A table of more than ILAW_TABLE_MAX_VALUES values is refused.",
+           "ilaw.h, ILAW_TABLE_MAX_VALUES", Needs::instance, table_limit},
           {"table-constant", "A table of one value gives the bits of that value.", "ilaw.h, ILAW_VALUE_TABLE",
            Needs::motion, table_constant},
+          {"table-linear",
+           "A table is linear along each axis and constant beyond its ends; the last axis varies fastest.",
+           "ilaw.h, ILAW_VALUE_TABLE", Needs::motion, table_linear},
+          {"field-per-node", "A field is accepted per node.", "ilaw.h, ILAW_PARAMETER_IS_FIELD",
+           Needs::instance, field_per_node},
           {"per-node-constant",
            "A value per node gives the bits that it gives as a constant, whatever other nodes have.",
            "ilaw.h, ILAW_VALUE_PER_NODE", Needs::motion, node_constant},

@@ -47,34 +47,48 @@ Vector Results::vector(const std::vector<double>& of, std::size_t node, std::siz
   return a;
 }
 
-Field::Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use)
+Field::Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use,
+             ilaw_numbers numbers)
     : name_(name), components_(components) {
   node_stride_ = order == Order::interleaved    ? components
                  : order == Order::by_component ? 1
                                                 : 2 * components + 1;
   component_stride_ = order == Order::interleaved ? 1 : order == Order::by_component ? room + 3 : 2;
   size_ = components == 0 ? 0 : (room - 1) * node_stride_ + (components - 1) * component_stride_ + 1;
-  values_ = static_cast<double*>(memory.take(name, size_ * sizeof(double), use));
+  if (numbers == ILAW_NUMBERS_FLOAT)
+    floats_ = static_cast<float*>(memory.take(name, size_ * sizeof(float), use));
+  else
+    values_ = static_cast<double*>(memory.take(name, size_ * sizeof(double), use));
   clear();
 }
 
-double& Field::at(std::size_t node, std::size_t component) {
-  return values_[node * node_stride_ + component * component_stride_];
+void Field::put(std::size_t node, std::size_t component, double value) {
+  if (floats_)
+    floats_[place(node, component)] = static_cast<float>(value);
+  else
+    values_[place(node, component)] = value;
 }
 ilaw_input Field::input() const {
-  return {values_, static_cast<std::int64_t>(node_stride_), static_cast<std::int64_t>(component_stride_)};
+  return {values_, floats_, static_cast<std::int64_t>(node_stride_),
+          static_cast<std::int64_t>(component_stride_)};
 }
 ilaw_output Field::output() const {
-  return {values_, static_cast<std::int64_t>(node_stride_), static_cast<std::int64_t>(component_stride_)};
+  return {values_, floats_, static_cast<std::int64_t>(node_stride_),
+          static_cast<std::int64_t>(component_stride_)};
 }
-void Field::clear() { std::fill_n(values_, size_, sentinel); }
+void Field::clear() {
+  if (floats_)
+    std::fill_n(floats_, size_, static_cast<float>(sentinel));
+  else
+    std::fill_n(values_, size_, sentinel);
+}
 
 bool Field::is_untouched_beside(const std::vector<std::size_t>& nodes) {
   std::vector<bool> used(size_);
   for (const std::size_t node : nodes)
     for (std::size_t c = 0; c < components_; ++c) used[node * node_stride_ + c * component_stride_] = true;
   for (std::size_t k = 0; k < size_; ++k)
-    if (!used[k] && !same_bits(values_[k], sentinel)) return false;
+    if (!used[k] && !same_bits(number(k), sentinel)) return false;
   return true;
 }
 
@@ -112,10 +126,11 @@ void Arrays::make_list(Memory& memory) {
 void Arrays::make_inputs(const Inputs& first, Memory& memory) {
   const std::size_t d = first.dimension;
   const std::uint32_t wanted =
-      trial_.info.inputs | (layout_.outputs & ILAW_OUTPUT_ENERGY ? trial_.info.energy_inputs : 0U);
+      trial_.info.inputs |
+      (layout_.outputs & (ILAW_OUTPUT_ENERGY | amounts_output) ? trial_.info.balance_inputs : 0U);
   const auto make = [&](const char* name, std::size_t width, std::uint32_t bit) {
     const Use use = (wanted & bit) == bit ? Use::input : Use::unneeded;
-    return Field(memory, name, width, room_, layout_.order, use);
+    return Field(memory, name, width, room_, layout_.order, use, trial_.setup.numbers);
   };
   v_free_ = make("v_free", d, 0);
   delassus_ = make("delassus", first.form_width, 0);
@@ -136,15 +151,27 @@ void Arrays::make_inputs(const Inputs& first, Memory& memory) {
 
 void Arrays::make_outputs(Memory& memory) {
   const auto make = [&](const char* name, std::size_t width, Use use) {
-    return Field(memory, name, width, room_, layout_.order, use);
+    return Field(memory, name, width, room_, layout_.order, use, trial_.setup.numbers);
+  };
+  const auto make_state = [&](const char* name, Use use) {
+    return Field(memory, name, trial_.info.state_size, room_, layout_.order, use, ILAW_NUMBERS_DOUBLE);
   };
   const std::uint32_t outputs = layout_.outputs & trial_.law.outputs;
-  const std::size_t d = trial_.setup.dimension, s = trial_.info.state_size;
-  state_out_ = make("state_out", s, Use::output);
-  state_in_ = layout_.in_place ? state_out_ : make("state_in", s, Use::input);
+  const std::size_t d = trial_.setup.dimension;
+  state_out_ = make_state("state_out", Use::output);
+  state_in_ = layout_.in_place ? state_out_ : make_state("state_in", Use::input);
   impulse_ = make("impulse", d, Use::output);
   if (outputs & ILAW_OUTPUT_VELOCITY) velocity_ = make("velocity", d, Use::output);
   if (outputs & ILAW_OUTPUT_ENERGY) energy_ = make("energy", ILAW_ENERGY_COUNT, Use::output);
+  const std::size_t amount_count = trial_.info.amount_count;
+  if ((layout_.outputs & amounts_output) && amount_count > 0) {
+    amounts_.resize(amount_count);
+    for (std::size_t k = 0; k < amount_count; ++k)
+      if (layout_.no_amount != k) amounts_[k] = make("amounts", 1, Use::output);
+    void* room = memory.take("amounts", amount_count * sizeof(ilaw_output), Use::input);
+    amount_outputs_ = static_cast<ilaw_output*>(room);
+    for (std::size_t k = 0; k < amount_count; ++k) amount_outputs_[k] = amounts_[k].output();
+  }
   if (outputs & ILAW_OUTPUT_STATUS) {
     status_stride_ = layout_.order == Order::spread ? 3 : 1;
     status_ =
@@ -174,13 +201,14 @@ void Arrays::describe() {
   batch_.energy = energy_.output();
   batch_.status = status_;
   batch_.status_stride = static_cast<std::int64_t>(status_stride_);
+  batch_.amounts = amount_outputs_;
 }
 
 void Arrays::load_one(Field& field, const std::vector<double>& values) {
   if (!field.given()) return;
   for (std::size_t k = 0; k < layout_.nodes.size(); ++k)
     for (std::size_t c = 0; c < field.components(); ++c)
-      field.at(places_[k], c) = values[node(k) * field.components() + c];
+      field.put(places_[k], c, values[node(k) * field.components() + c]);
 }
 
 void Arrays::load(const Inputs& in) {
@@ -216,12 +244,14 @@ Results Arrays::evaluate_with(const Instance& instance, const Inputs& in) {
   if (!layout_.in_place) {
     for (const std::size_t place : places_)
       for (std::size_t c = 0; c < state_out_.components(); ++c)
-        state_in_.at(place, c) = state_out_.at(place, c);
+        state_in_.put(place, c, state_out_.get(place, c));
     state_out_.clear();
   }
   impulse_.clear();
   if (velocity_.given()) velocity_.clear();
   if (energy_.given()) energy_.clear();
+  for (Field& amount : amounts_)
+    if (amount.given()) amount.clear();
   if (status_) std::fill_n(status_, (room_ - 1) * status_stride_ + 1, status_sentinel);
   report_ = {};
   report_.struct_size = sizeof report_;
@@ -233,26 +263,35 @@ Results Arrays::evaluate_with(const Instance& instance, const Inputs& in) {
 
 void Arrays::set_state(const std::vector<double>& state) { load_one(state_out_, state); }
 
-std::vector<double> Arrays::take(Field& field) {
+std::vector<double> Arrays::take(const Field& field) const {
   std::vector<double> values;
   for (std::size_t k = 0; field.given() && k < places_.size(); ++k)
-    for (std::size_t c = 0; c < field.components(); ++c) values.push_back(field.at(places_[k], c));
+    for (std::size_t c = 0; c < field.components(); ++c) values.push_back(field.get(places_[k], c));
   return values;
 }
 
 std::vector<double> Arrays::state() { return take(state_out_); }
 std::vector<double> Arrays::impulses() { return take(impulse_); }
+std::vector<double> Arrays::amounts() {
+  std::vector<double> all;
+  for (const Field& amount : amounts_)
+    for (const double value : take(amount)) all.push_back(value);
+  return all;
+}
 
 Results Arrays::results(std::int32_t code) {
-  Results results{places_.size(),  code,          report_, take(impulse_), take(state_out_),
-                  take(velocity_), take(energy_), {}};
+  Results results{places_.size(), code, report_, take(impulse_), take(state_out_), take(velocity_),
+                  take(energy_),  {},   {}};
+  for (const Field& amount : amounts_) results.amounts.push_back(take(amount));
   for (std::size_t k = 0; status_ && k < places_.size(); ++k)
     results.status.push_back(status_[places_[k] * status_stride_]);
   return results;
 }
 
 const char* Arrays::written_beside() {
-  for (Field* field : {&state_out_, &impulse_, &velocity_, &energy_})
+  std::vector<Field*> outputs{&state_out_, &impulse_, &velocity_, &energy_};
+  for (Field& amount : amounts_) outputs.push_back(&amount);
+  for (Field* field : outputs)
     if (field->given() && field->components() > 0 && !field->is_untouched_beside(places_))
       return field->name();
   for (std::size_t k = 0; status_ && k < (room_ - 1) * status_stride_ + 1; ++k) {
@@ -284,6 +323,8 @@ std::optional<Difference> difference(const Results& a, const Results& b, std::ui
     if (auto found = difference("velocity", a.velocity, b.velocity, nodes)) return found;
   if (outputs & ILAW_OUTPUT_ENERGY)
     if (auto found = difference("energy", a.energy, b.energy, nodes)) return found;
+  for (std::size_t k = 0; (outputs & amounts_output) && k < std::min(a.amounts.size(), b.amounts.size()); ++k)
+    if (auto found = difference("amount", a.amounts[k], b.amounts[k], nodes)) return found;
   for (std::size_t i = 0; (outputs & ILAW_OUTPUT_STATUS) && i < a.status.size() && i < b.status.size(); ++i)
     if (a.status[i] != b.status[i])
       return Difference{i, "status of node " + std::to_string(i) + " is " + std::to_string(b.status[i]) +
@@ -322,6 +363,8 @@ void expect_part(const Trial& trial, const Script& script, const std::vector<Res
       const bool equal = same(all[k].impulse, part[k].impulse, d) && same(all[k].state, part[k].state, s) &&
                          same(all[k].velocity, part[k].velocity, d) &&
                          same(all[k].energy, part[k].energy, ILAW_ENERGY_COUNT) &&
+                         std::equal(all[k].amounts.begin(), all[k].amounts.end(), part[k].amounts.begin(),
+                                    [&](const auto& a, const auto& b) { return same(a, b, 1); }) &&
                          (all[k].status.empty() || all[k].status[nodes[j]] == part[k].status[j]);
       if (!equal)
         fail(trial, script[k], nodes[j],

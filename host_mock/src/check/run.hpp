@@ -14,7 +14,10 @@ namespace ilaw::check {
 
 enum class Order { interleaved, by_component, spread };
 enum class List { none, of_32_bits, of_64_bits };
-inline constexpr std::uint32_t all_outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY;
+// Amounts are an output as others here, by a bit that ilaw.h does not use; single ones by Layout::no_amount.
+inline constexpr std::uint32_t amounts_output = 1U << 31;
+inline constexpr std::uint32_t all_outputs =
+    ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY | amounts_output;
 
 struct Layout {
   Order order = Order::interleaved;
@@ -23,7 +26,8 @@ struct Layout {
   std::size_t spare = 0;  // nodes of the arrays that are on no list
   bool in_place = false;  // state_out is state_in
   std::uint32_t outputs = all_outputs;
-  std::vector<std::size_t> nodes{};  // of the script, in their order; empty: all
+  std::optional<std::size_t> no_amount{};  // this one is not asked for
+  std::vector<std::size_t> nodes{};        // of the script, in their order; empty: all
 };
 
 // Of each node in turn, whatever the layout was.
@@ -32,19 +36,22 @@ struct Results {
   std::int32_t code = ILAW_OK;
   ilaw_report report{};
   std::vector<double> impulse, state, velocity, energy;
+  std::vector<std::vector<double>> amounts;  // empty where one was not asked for
   std::vector<std::uint8_t> status;
 
   Vector vector(const std::vector<double>& of, std::size_t node, std::size_t dimension) const;
 };
 
-// An array of nodes with some components each, between sentinels.
+// An array of nodes with some components each, of doubles or floats, between sentinels.
 class Field {
  public:
   Field() = default;
-  Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use);
+  Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use,
+        ilaw_numbers numbers);
 
-  bool given() const { return values_ != nullptr; }
-  double& at(std::size_t node, std::size_t component);
+  bool given() const { return values_ || floats_; }
+  double get(std::size_t node, std::size_t component) const { return number(place(node, component)); }
+  void put(std::size_t node, std::size_t component, double value);
   ilaw_input input() const;
   ilaw_output output() const;
   void clear();
@@ -54,8 +61,14 @@ class Field {
   std::size_t components() const { return components_; }
 
  private:
+  std::size_t place(std::size_t node, std::size_t component) const {
+    return node * node_stride_ + component * component_stride_;
+  }
+  double number(std::size_t at) const { return floats_ ? double{floats_[at]} : values_[at]; }
+
   const char* name_ = "";
   double* values_ = nullptr;
+  float* floats_ = nullptr;
   std::size_t components_ = 0, node_stride_ = 0, component_stride_ = 0, size_ = 0;
 };
 
@@ -71,6 +84,7 @@ class Arrays {
   void set_state(const std::vector<double>& state);  // of each node in turn
   std::vector<double> state();
   std::vector<double> impulses();
+  std::vector<double> amounts();  // all of them, one after another
   // Of the last evaluate: an output that was written where no node of the batch is; null where none was.
   const char* written_beside();
   ilaw_batch& batch() { return batch_; }
@@ -82,7 +96,7 @@ class Arrays {
   void make_outputs(Memory& memory);
   void describe();
   void load_one(Field& field, const std::vector<double>& values);
-  std::vector<double> take(Field& field);
+  std::vector<double> take(const Field& field) const;
   Results results(std::int32_t code);
   std::size_t node(std::size_t k) const { return layout_.nodes[k]; }
 
@@ -95,8 +109,9 @@ class Arrays {
   ilaw_report report_{};
   Field v_free_, delassus_, gap_, gap_offset_, v_previous_, area_, normal_, tangent_;
   Field state_in_, state_out_, impulse_, velocity_, energy_;
-  std::vector<Field> per_node_;
+  std::vector<Field> per_node_, amounts_;
   ilaw_input* per_node_inputs_ = nullptr;
+  ilaw_output* amount_outputs_ = nullptr;
   std::uint8_t* status_ = nullptr;
   std::int32_t* index_ = nullptr;
   std::int64_t* index64_ = nullptr;

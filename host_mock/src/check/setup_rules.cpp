@@ -11,13 +11,12 @@
 namespace ilaw::check {
 namespace {
 
-void expect_unserved(const Trial& trial, const ilaw_setup& setup, const std::string& what,
-                     bool by_code = true) {
+void expect_unserved(const Trial& trial, const ilaw_setup& setup, const std::string& what) {
   set_setting(what + "; " + text_of(trial.values));
   Refusal refusal{};
   if (create(trial.law, setup, refusal))
     throw Finding{"create accepted " + what, "a refusal", trial.text(), {}};
-  if (by_code && refusal.code != ILAW_UNSUPPORTED)
+  if (refusal.code != ILAW_UNSUPPORTED)
     throw Finding{"create refused " + what + " with code " + std::to_string(refusal.code),
                   "ILAW_UNSUPPORTED (-3)",
                   trial.text(),
@@ -40,9 +39,43 @@ void setup_unserved(const Subject& subject) {
     setup.delassus_form = form;
     expect_unserved(trial, setup, "form " + std::to_string(form) + " of H");
   }
-  ilaw_setup setup = given.given;
-  setup.frame = 7;
-  expect_unserved(trial, setup, "frame 7", false);
+}
+
+// Each exactly one entry of the law's mask: none, several and unknown ones are refused.
+void setup_choice(const Subject& subject, std::uint32_t ilaw_setup::*member, std::uint32_t served,
+                  const char* what) {
+  const Trial trial = any_trial(subject);
+  const SetupStruct given(trial.setup, trial.values);
+  for (const std::uint32_t choice : {0U, 1U, 2U, 3U, 4U, 7U, 1U << 31}) {
+    if ((choice & (choice - 1)) == 0 && (choice & served & 3U)) continue;
+    ilaw_setup setup = given.given;
+    setup.*member = choice;
+    expect_unserved(trial, setup, std::string(what) + " " + std::to_string(choice));
+  }
+}
+void setup_frame(const Subject& subject) {
+  setup_choice(subject, &ilaw_setup::frame, subject.law.frames, "frame");
+}
+void setup_numbers(const Subject& subject) {
+  setup_choice(subject, &ilaw_setup::numbers, subject.law.numbers, "number type");
+}
+
+void create_id(const Subject& subject) {
+  const Trial trial = any_trial(subject);
+  const SetupStruct given(trial.setup, trial.values);
+  for (const std::string& id :
+       {std::string("nobody_has_this"), std::string(), std::string(subject.law.id) + "_"}) {
+    ilaw_instance* made = nullptr;
+    set_setting(trial.text() + "; id '" + id + "'");
+    calling("create");
+    const std::int32_t code = subject.law.create(id.c_str(), &given.given, &made, nullptr, 0);
+    if (code >= 0 || made)
+      throw Finding{"create returned " + std::to_string(code) + (made ? " and an instance" : "") +
+                        " for the id '" + id + "'",
+                    "a refusal: the library has no such law",
+                    trial.text(),
+                    {}};
+  }
 }
 
 void setup_flags(const Subject& subject) {
@@ -58,7 +91,7 @@ void setup_flags(const Subject& subject) {
 std::int32_t code_of(const Trial& trial, const ilaw_setup* setup) {
   ilaw_instance* made = nullptr;
   calling("create");
-  const std::int32_t code = trial.law.create(setup, &made, nullptr, 0);
+  const std::int32_t code = trial.law.create(trial.law.id, setup, &made, nullptr, 0);
   if (made) trial.law.destroy(made);
   return code;
 }
@@ -78,6 +111,11 @@ void sizes_short(const Subject& subject) {
     ilaw_setup setup = given.given;
     setup.struct_size = size;
     expect(code_of(trial, &setup), "create");
+  }
+  for (ilaw_argument& argument : given.arguments) {
+    argument.struct_size = static_cast<std::uint32_t>(ILAW_ARGUMENT_SIZE_1_0) - 1;
+    expect(code_of(trial, &given.given), "create, given a short argument,");
+    argument.struct_size = sizeof argument;
   }
   ilaw_instance_info info{};
   info.struct_size = static_cast<std::uint32_t>(ILAW_INSTANCE_INFO_SIZE_1_0) - 1;
@@ -109,7 +147,9 @@ struct Longer {
 };
 
 void sizes_long(const Subject& subject) {
-  for_trials(subject, [](const Trial& trial, Draw& draw) {
+  // A library of a later version knows members that this one does not.
+  const bool knows_more = subject.library.plugin().abi_minor > ILAW_ABI_MINOR;
+  for_trials(subject, [knows_more](const Trial& trial, Draw& draw) {
     const SetupStruct given(trial.setup, trial.values);
     Longer<ilaw_setup> setup(given.given);
     const Script script = draw_script(trial, draw, {3, 1});
@@ -118,7 +158,7 @@ void sizes_long(const Subject& subject) {
           "create returned " + std::to_string(code) + " for a longer setup", "ILAW_OK", trial.text(), {}};
     Longer<ilaw_instance_info> info(ilaw_instance_info{});
     calling("info");
-    if (trial.law.info(trial.instance.get(), &info.known) != ILAW_OK || !info.is_untouched())
+    if (trial.law.info(trial.instance.get(), &info.known) != ILAW_OK || !(knows_more || info.is_untouched()))
       throw Finding{"info wrote beyond the known struct, or refused a longer one",
                     "members that it knows",
                     trial.text(),
@@ -131,7 +171,7 @@ void sizes_long(const Subject& subject) {
     ilaw_report blank{};
     Longer<ilaw_report> report(blank);
     const std::int32_t code = trial.instance.evaluate(batch.known, &report.known);
-    if (code < 0 || !report.is_untouched())
+    if (code < 0 || !(knows_more || report.is_untouched()))
       throw Finding{"evaluate returned " + std::to_string(code) + ", or wrote beyond the known report",
                     "ILAW_OK for structs of a later version",
                     trial.text(),
@@ -179,7 +219,8 @@ void refusal_message(const Subject& subject) {
     text.fill('#');
     ilaw_instance* made = reinterpret_cast<ilaw_instance*>(text.data());
     calling("create");
-    const std::int32_t code = trial.law.create(&given.given, &made, size ? text.data() : nullptr, size);
+    const std::int32_t code =
+        trial.law.create(trial.law.id, &given.given, &made, size ? text.data() : nullptr, size);
     if (code == ILAW_OK) throw NotJudged{"the law accepts any parameter"};
     if (made) throw Finding{"a refusal left *instance set", "null", trial.text(), {}};
     const auto beyond = std::find_if(text.begin() + static_cast<std::ptrdiff_t>(size), text.end(),
@@ -206,10 +247,16 @@ void refusal_message(const Subject& subject) {
 
 std::vector<Rule> setup_rules() {
   return {
-      {"setup-unserved", "A dimension, form of H or frame that the law does not serve is refused.",
-       "ilaw.h, ILAW_UNSUPPORTED", Needs::instance, setup_unserved},
-      {"setup-flags", "A bit of the setup's flags that the law does not know is refused.",
-       "ilaw.h, How ABI 1 grows", Needs::instance, setup_flags},
+      {"setup-unserved", "A dimension or form of H that the law does not serve is refused.",
+       "ilaw.h, ilaw_setup", Needs::instance, setup_unserved},
+      {"setup-frame", "A frame that is not exactly one entry of the law's mask is refused.",
+       "ilaw.h, ilaw_setup", Needs::instance, setup_frame},
+      {"setup-numbers", "A number type that is not exactly one entry of the law's mask is refused.",
+       "ilaw.h, ilaw_setup", Needs::instance, setup_numbers},
+      {"create-id", "create makes no instance of a law that the library does not have.",
+       "ilaw.h, ilaw_law.create", Needs::instance, create_id},
+      {"setup-flags", "A bit of the setup's flags that the law does not know is refused.", "ilaw.h, Growth",
+       Needs::instance, setup_flags},
       {"sizes-short", "A struct that is smaller than that of version 1.0 is refused.",
        "abi.md, How ABI 1 grows", Needs::instance, sizes_short},
       {"sizes-long", "Structs of later minor versions are served; nothing is written beyond what is known.",

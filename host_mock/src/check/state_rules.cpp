@@ -40,20 +40,27 @@ void expect_left_alone(const Trial& trial, const Inputs& in, std::size_t i, cons
   if (r != Vector{}) fail(trial, in, i, "out of reach, impulse " + text_of(r, in.dimension), "r = 0");
   if (!same_bits(state, found.state, i, trial.info.state_size))
     fail(trial, in, i, "out of reach, its state changed", "the same bits of state");
+  for (std::size_t c = 0; !found.energy.empty() && c < ILAW_ENERGY_COUNT; ++c)
+    if (found.energy[i * ILAW_ENERGY_COUNT + c] != 0.0)
+      fail(trial, in, i, "out of reach, energy " + text_of(found.energy[i * ILAW_ENERGY_COUNT + c]), "0");
+  for (const std::vector<double>& amount : found.amounts)
+    if (!amount.empty() && amount[i] != 0.0)
+      fail(trial, in, i, "out of reach, an amount of " + text_of(amount[i]), "0");
   if (!found.status.empty() && found.status[i] != ILAW_FREE && found.status[i] != ILAW_BAD_INPUT)
     fail(trial, in, i, "out of reach, status " + std::to_string(found.status[i]), "ILAW_FREE (0)");
 }
 
-void skip_promise(const Subject& subject) {
+void skip_fresh(const Subject& subject) {
   for_trials(
       subject,
       [](const Trial& trial, Draw& draw) {
-        if (trial.can(ILAW_CAN_ACT_AT_DISTANCE) || !trial.reads(ILAW_INPUT_GAP)) return false;
+        if (!trial.permits(ILAW_MAY_SKIP_FRESH) || !trial.reads(ILAW_INPUT_GAP)) return false;
         Script script = draw_script(trial, draw, {40, 3}, true);
         Heap heap;
         Arrays arrays(trial, script[0], {}, heap);
         for (Inputs& in : script) {
           if (&in != &script[0]) draw_borderline(in, draw);
+          in.round_to(trial.setup);
           arrays.initialise(in);
           const std::vector<double> state = arrays.state();
           const Results found = arrays.evaluate(in);
@@ -62,14 +69,15 @@ void skip_promise(const Subject& subject) {
         }
         return true;
       },
-      "the law acts at a distance");
+      "the law does not permit it");
 }
 
-void rest_promise(const Subject& subject) {
+void skip_free(const Subject& subject) {
   for_trials(
       subject,
       [](const Trial& trial, Draw& draw) {
-        if (!trial.can(ILAW_CAN_REST) || !trial.writes(ILAW_OUTPUT_STATUS) || !trial.reads(ILAW_INPUT_GAP))
+        if (!trial.permits(ILAW_MAY_SKIP_FREE) || !trial.writes(ILAW_OUTPUT_STATUS) ||
+            !trial.reads(ILAW_INPUT_GAP))
           return false;
         Script script = draw_script(trial, draw, {30, 16}, true);
         Heap heap;
@@ -79,6 +87,7 @@ void rest_promise(const Subject& subject) {
           const Results before = arrays.evaluate(script[k]);
           Inputs& in = script[k + 1];
           draw_borderline(in, draw);
+          in.round_to(trial.setup);
           const Results found = arrays.evaluate(in);
           for (std::size_t i = 0; i < in.count; ++i)
             if (before.status[i] == ILAW_FREE && in.is_out_of_reach(i))
@@ -86,7 +95,7 @@ void rest_promise(const Subject& subject) {
         }
         return true;
       },
-      "the law promises no rest");
+      "the law does not permit it");
 }
 
 // Whether an entry of the state is one of a history: numbers that the law may not read again.
@@ -160,12 +169,14 @@ void foreign_state(const Subject& subject) {
 
 std::vector<Rule> state_rules() {
   return {
-      {"skip-promise",
-       "Without ILAW_CAN_ACT_AT_DISTANCE a fresh node that is out of reach gets r = 0 and keeps its "
+      {"skip-fresh",
+       "With ILAW_MAY_SKIP_FRESH a fresh node out of reach gets r = 0, no energy, no amounts, and keeps its "
        "state, bit for bit.",
-       "ilaw.h, ILAW_CAN_ACT_AT_DISTANCE", Needs::motion, skip_promise},
-      {"rest-promise", "With ILAW_CAN_REST a node that was free gets r = 0 and keeps its state out of reach.",
-       "ilaw.h, ILAW_CAN_REST", Needs::motion, rest_promise},
+       "ilaw.h, ILAW_MAY_SKIP_FRESH", Needs::motion, skip_fresh},
+      {"skip-free",
+       "With ILAW_MAY_SKIP_FREE a node that was free gets r = 0, no energy, no amounts, and keeps its state "
+       "out of reach.",
+       "ilaw.h, ILAW_MAY_SKIP_FREE", Needs::motion, skip_free},
       {"foreign-state",
        "A state that the law cannot have written is bad input, or does no harm; NaN and infinity "
        "are bad input, in a history in the step that reads them.",

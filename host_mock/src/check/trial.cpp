@@ -29,9 +29,16 @@ std::string text_of(const Value& value) {
     case ILAW_VALUE_TEXT:
       return value.name + " = \"" + value.text + "\"";
     case ILAW_VALUE_TABLE: {
-      std::string pairs;
-      for (const double number : value.table) pairs += (pairs.empty() ? "" : ", ") + text_of_number(number);
-      return value.name + " = table {" + pairs + "}";
+      const auto list = [](const std::vector<double>& numbers) {
+        std::string all;
+        for (std::size_t k = 0; k < numbers.size() && k < 20; ++k)
+          all += (all.empty() ? "" : ", ") + text_of_number(numbers[k]);
+        return "{" + all + (numbers.size() > 20 ? ", ..." : "") + "}";
+      };
+      std::string axes;
+      for (const TableAxis& axis : value.axes)
+        axes += (axes.empty() ? "" : ", ") + axis.name + " " + list(axis.points);
+      return value.name + " = table " + list(value.table) + " over " + axes;
     }
     case ILAW_VALUE_PER_NODE:
       return value.name + " per node";
@@ -67,10 +74,12 @@ std::string text_of(const Setup& setup) {
                      : setup.form == ILAW_DELASSUS_FULL     ? "full"
                                                             : "transverse";
   return "dimension " + std::to_string(setup.dimension) + ", " + form + " H, " +
-         (setup.global() ? "global" : "local") + " frame" + (setup.tangent_given ? " with tangents" : "");
+         (setup.global() ? "global" : "local") + " frame" + (setup.has_tangent ? " with tangents" : "") +
+         (setup.floats() ? ", floats" : "");
 }
 
-SetupStruct::SetupStruct(const Setup& setup, const Values& values) : values_(values) {
+SetupStruct::SetupStruct(const Setup& setup, const Values& values)
+    : axes(values.size()), values_(values), axis_pointers_(values.size()) {
   for (const Value& value : values_) {
     ilaw_argument argument{};
     argument.struct_size = sizeof argument;
@@ -79,8 +88,13 @@ SetupStruct::SetupStruct(const Setup& setup, const Values& values) : values_(val
     argument.number = value.number;
     if (value.kind == ILAW_VALUE_TEXT) argument.text = value.text.c_str();
     if (value.kind == ILAW_VALUE_TABLE) {
+      const std::size_t at = arguments.size();
+      for (const TableAxis& axis : value.axes)
+        axes[at].push_back({sizeof(ilaw_axis), 0, axis.name.c_str(), axis.points.data(), axis.points.size()});
+      for (const ilaw_axis& axis : axes[at]) axis_pointers_[at].push_back(&axis);
       argument.values = value.table.data();
-      argument.count = value.table.size() / 2;
+      argument.axes = axis_pointers_[at].data();
+      argument.axis_count = static_cast<std::uint32_t>(axes[at].size());
     }
     arguments.push_back(argument);
   }
@@ -89,13 +103,20 @@ SetupStruct::SetupStruct(const Setup& setup, const Values& values) : values_(val
   given.dimension = setup.dimension;
   given.delassus_form = setup.form;
   given.frame = setup.frame;
-  given.tangent_given = setup.tangent_given;
+  given.has_tangent = setup.has_tangent;
+  given.numbers = setup.numbers;
   given.arguments = pointers_.empty() ? nullptr : pointers_.data();
   given.argument_count = static_cast<std::uint32_t>(pointers_.size());
 }
 
 SetupStruct::~SetupStruct() {
+  for (std::vector<ilaw_axis>& of_argument : axes)
+    std::fill(of_argument.begin(), of_argument.end(), ilaw_axis{});
   for (Value& value : values_) {
+    for (TableAxis& axis : value.axes) {
+      std::fill(axis.points.begin(), axis.points.end(), std::numeric_limits<double>::quiet_NaN());
+      std::fill(axis.name.begin(), axis.name.end(), '#');
+    }
     std::fill(value.table.begin(), value.table.end(), std::numeric_limits<double>::quiet_NaN());
     std::fill(value.text.begin(), value.text.end(), '#');
     std::fill(value.name.begin(), value.name.end(), '#');
@@ -138,7 +159,7 @@ std::optional<Instance> create(const ilaw_law& law, const ilaw_setup& setup, Ref
   std::array<char, 1024> message{};
   ilaw_instance* made = nullptr;
   calling("create");
-  refusal.code = law.create(&setup, &made, message.data(), message.size());
+  refusal.code = law.create(law.id, &setup, &made, message.data(), message.size());
   message.back() = '\0';
   refusal.message = message.data();
   if (refusal.code != ILAW_OK) return std::nullopt;
@@ -175,6 +196,12 @@ Trial::Trial(const ilaw_law& of, const Setup& given, const Values& chosen)
 
 std::string Trial::text() const { return text_of(setup) + "; " + text_of(values); }
 
+std::optional<std::uint32_t> axis_of(const ilaw_parameter& p, const std::string& name) {
+  for (std::uint32_t k = 0; k < p.axis_count; ++k)
+    if (name == p.axes[k]) return k;
+  return std::nullopt;
+}
+
 const ilaw_parameter* parameter_of(const ilaw_law& law, const std::string& name) {
   for (std::uint32_t k = 0; k < law.parameter_count; ++k)
     if (name == law.parameters[k]->name) return law.parameters[k];
@@ -182,8 +209,9 @@ const ilaw_parameter* parameter_of(const ilaw_law& law, const std::string& name)
 }
 
 bool in_range(const ilaw_parameter& p, double value) {
-  if (value == infinity) return p.infinity_allowed != 0;
-  return value <= p.maximum && (p.minimum_excluded ? value > p.minimum : value >= p.minimum);
+  if (value == infinity) return has(p, ILAW_PARAMETER_ALLOWS_INFINITY);
+  return value <= p.maximum &&
+         (has(p, ILAW_PARAMETER_EXCLUDES_MINIMUM) ? value > p.minimum : value >= p.minimum);
 }
 
 double number_of(const ilaw_law& law, const Values& values, const std::string& name) {
@@ -195,14 +223,17 @@ double number_of(const ilaw_law& law, const Values& values, const std::string& n
 
 std::vector<Setup> setups_of(const ilaw_law& law) {
   std::vector<Setup> setups;
-  for (std::uint32_t d = 3; d >= 1; --d)
-    for (const std::uint32_t form :
-         {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE}) {
-      if (!(law.dimensions & (1U << d)) || !(law.delassus_forms & form)) continue;
-      setups.push_back({d, form, ILAW_FRAME_LOCAL, 0});
-      setups.push_back({d, form, ILAW_FRAME_GLOBAL, 0});
-      if (d == 3) setups.push_back({d, form, ILAW_FRAME_GLOBAL, 1});
-    }
+  for (const ilaw_numbers numbers : {ILAW_NUMBERS_DOUBLE, ILAW_NUMBERS_FLOAT})
+    for (std::uint32_t d = 3; d >= 1; --d)
+      for (const std::uint32_t form :
+           {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE}) {
+        if (!(law.numbers & numbers) || !(law.dimensions & (1U << d)) || !(law.delassus_forms & form))
+          continue;
+        if (law.frames & ILAW_FRAME_LOCAL) setups.push_back({d, form, ILAW_FRAME_LOCAL, 0, numbers});
+        if (!(law.frames & ILAW_FRAME_GLOBAL)) continue;
+        setups.push_back({d, form, ILAW_FRAME_GLOBAL, 0, numbers});
+        if (d == 3) setups.push_back({d, form, ILAW_FRAME_GLOBAL, 1, numbers});
+      }
   return setups;
 }
 
@@ -213,7 +244,7 @@ Value draw_value(const ilaw_parameter& p, Draw& draw) {
     value.text = p.choices[draw.below(p.choice_count)];
     return value;
   }
-  if (p.infinity_allowed && draw.one_in(8)) {
+  if (has(p, ILAW_PARAMETER_ALLOWS_INFINITY) && draw.one_in(8)) {
     value.number = infinity;
     return value;
   }
@@ -232,8 +263,12 @@ std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw&
   for (int k = 0; k < attempts; ++k) {
     Values values;
     for (std::uint32_t p = 0; p < law.parameter_count; ++p)
-      if (law.parameters[p]->required || draw.one_in(2))
+      if (has(*law.parameters[p], ILAW_PARAMETER_IS_REQUIRED) || draw.one_in(2)) {
         values.push_back(draw_value(*law.parameters[p], draw));
+        // So that the value may be given per node, too.
+        const double rounded = setup.rounded(values.back().number);
+        if (in_range(*law.parameters[p], rounded)) values.back().number = rounded;
+      }
     if (create(law, setup, values)) return values;
   }
   return std::nullopt;
@@ -244,7 +279,7 @@ std::optional<Values> given_per_node(const Trial& trial) {
   bool varies = false;
   for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
     const ilaw_parameter& p = *trial.law.parameters[k];
-    if (p.kind == ILAW_PARAMETER_CHOICE || !(p.may_be & ILAW_MAY_BE_PER_NODE)) continue;
+    if (p.kind == ILAW_PARAMETER_CHOICE || !has(p, ILAW_PARAMETER_ALLOWS_PER_NODE)) continue;
     const double constant = number_of(trial.law, trial.values, p.name);
     const Values more = with(values, {p.name, ILAW_VALUE_PER_NODE, constant});
     if (!create(trial.law, trial.setup, more)) continue;

@@ -24,13 +24,18 @@ inline bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
+struct TableAxis {
+  std::string name;
+  std::vector<double> points;
+};
 // A value of a parameter, with what its ilaw_argument points to.
 struct Value {
   std::string name;
   std::uint32_t kind = ILAW_VALUE_NUMBER;
   double number = 0.0;
   std::string text{};
-  std::vector<double> table{};  // time, value, time, value ...
+  std::vector<TableAxis> axes{};
+  std::vector<double> table{};  // one per point of the grid, the last axis varies fastest
 };
 using Values = std::vector<Value>;
 std::string text_of(const Values& values);
@@ -38,9 +43,13 @@ std::string text_of(const Values& values);
 Values with(Values values, const Value& value);
 
 struct Setup {
-  std::uint32_t dimension = 3, form = ILAW_DELASSUS_SCALAR, frame = ILAW_FRAME_LOCAL, tangent_given = 0;
+  std::uint32_t dimension = 3, form = ILAW_DELASSUS_SCALAR, frame = ILAW_FRAME_LOCAL, has_tangent = 0;
+  ilaw_numbers numbers = ILAW_NUMBERS_DOUBLE;
 
   bool global() const { return frame == ILAW_FRAME_GLOBAL; }
+  bool floats() const { return numbers == ILAW_NUMBERS_FLOAT; }
+  // As the arrays of a batch keep it.
+  double rounded(double value) const { return floats() ? double{static_cast<float>(value)} : value; }
   std::size_t form_width() const;
 };
 std::string text_of(const Setup& setup);
@@ -55,9 +64,11 @@ class SetupStruct {
 
   ilaw_setup given{};
   std::vector<ilaw_argument> arguments;
+  std::vector<std::vector<ilaw_axis>> axes;  // of each argument
 
  private:
   Values values_;
+  std::vector<std::vector<const ilaw_axis*>> axis_pointers_;
   std::vector<const ilaw_argument*> pointers_;
 };
 
@@ -95,8 +106,13 @@ struct Trial {
   std::string text() const;
   bool writes(std::uint32_t output) const { return (law.outputs & output) != 0; }
   bool can(std::uint32_t capability) const { return (info.capabilities & capability) != 0; }
+  bool permits(ilaw_permissions permission) const { return (info.permissions & permission) != 0; }
+  // Relative rounding of a result.
+  double epsilon() const {
+    return setup.floats() ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
+  }
   // Bonds whose traction falls with their opening have several solutions where the step is too large for the
-  // fall (cohesive.md, When it is the only one), and may refuse it.
+  // fall (docs/theory/cohesive_step.md), and may refuse it.
   bool may_soften() const { return can(ILAW_CAN_ADHERE) && can(ILAW_CAN_STORE_ENERGY); }
   bool reads(std::uint32_t input) const { return (info.inputs & input) != 0; }
 
@@ -107,12 +123,15 @@ struct Trial {
   ilaw_instance_info info;
 };
 
+inline bool has(const ilaw_parameter& p, ilaw_parameter_flags flag) { return (p.flags & flag) != 0; }
+// The place of an axis of a parameter; none where it cannot be a table over it.
+std::optional<std::uint32_t> axis_of(const ilaw_parameter& p, const std::string& name);
 const ilaw_parameter* parameter_of(const ilaw_law& law, const std::string& name);
 bool in_range(const ilaw_parameter& p, double value);
 // The value that a parameter has: of the list, or its default.
 double number_of(const ilaw_law& law, const Values& values, const std::string& name);
 
-// All setups that the law's description serves.
+// All setups that the law's description serves, with doubles first.
 std::vector<Setup> setups_of(const ilaw_law& law);
 // A value of a parameter within what its description allows.
 Value draw_value(const ilaw_parameter& p, Draw& draw);

@@ -197,10 +197,10 @@ void add_words(CLI::App& command, BenchOptions& options) {
 void add_bench(CLI::App& app, Action& chosen) {
   const auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand(
-      "bench", "Measure what a law costs per node, beside a triad of arrays in the same run");
+      "bench", "Measure the time of a law per node, beside a triad of arrays in the same run");
   command->add_option("laws", options->laws, "Names of laws, or paths of libraries");
-  command->add_option("--law", options->base.law, "This law of the libraries alone");
-  command->add_option("--nodes", options->nodes, "Nodes of a batch: each is measured")
+  command->add_option("--law", options->base.law, "Only this law of the libraries");
+  command->add_option("--nodes", options->nodes, "Numbers of nodes of a batch")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
       ->delimiter(',')
       ->capture_default_str();
@@ -218,7 +218,7 @@ void add_bench(CLI::App& app, Action& chosen) {
       "--cases", options->case_files,
       "Files of cases: what their section \"benchmarks\" lists, instead of the options above");
   command->add_flag("--float", options->base.floats, "Arrays of float");
-  command->add_option("--repetitions", options->repetitions, "Medians are over so many")
+  command->add_option("--repetitions", options->repetitions, "Repetitions, for medians")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_flag("--json", options->as_json, "Print an array of objects, one for each case");

@@ -24,7 +24,7 @@ struct CheckOptions {
 int write_report(const check::Checked& checked, const std::string& file) {
   const std::filesystem::file_status status = std::filesystem::symlink_status(file);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    complain(file + ": is no regular file, expected one, or none yet, for the report");
+    complain(file + ": not a regular file; expected a new or an existing file for the report");
     return exit_bad_input;
   }
   try {
@@ -67,18 +67,19 @@ void add_check(CLI::App& app, Action& chosen) {
   CLI::App* command =
       app.add_subcommand("check", "Check a library of laws against the contract, rule by rule");
   command->add_option("library", options->file, "Path of a library, or name of a law");
-  command->add_option("--law", options->check.law, "This law of the library alone");
-  command->add_option("--only", options->check.only, "This rule alone; to be repeated")
+  command->add_option("--law", options->check.law, "Only this law of the library");
+  command->add_option("--only", options->check.only, "Only this rule; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
   command
-      ->add_option("--seed", options->check.seed, "Of the random numbers: the same seed, the same findings")
+      ->add_option("--seed", options->check.seed,
+                   "Seed of the random numbers: the same seed, the same findings")
       ->capture_default_str();
   command->add_option("--limit", options->check.limits.seconds, "Seconds for each rule and law")
       ->check(number_from(0.1, 3600.0))
       ->capture_default_str();
   command->add_flag("--json", options->as_json, "Print an array of objects, one for each rule and law");
-  command->add_option("--junit", options->junit, "Write a report in JUnit's XML, too");
+  command->add_option("--junit", options->junit, "Also write a report in JUnit's XML");
   command->add_flag("--rules", options->rules, "Print the table of rules");
   command->footer(
       "Exit codes: 0 no rule is broken; 1 some are; 2 bad usage.\n"

@@ -74,10 +74,10 @@ int converge(const ConvergeOptions& options) {
 void add_converge(CLI::App& app, Action& chosen) {
   const auto options = std::make_shared<ConvergeOptions>();
   CLI::App* command = app.add_subcommand(
-      "converge", "Run a scene with ever smaller steps (and meshes) and measure its errors and their order");
+      "converge", "Run a scene at smaller and smaller steps (and meshes) and measure errors and their order");
   command->add_option("scene", options->scene, "Scene file (JSON)")->required();
   command->add_option("--out", options->folder, "Folder for converge.csv, .json, .png and .svg")->required();
-  add_sweep(*command, options->sweep, "Runs, the scene's own among them", CLI::Range(2, 12));
+  add_sweep(*command, options->sweep, "Number of runs, the scene's own included", CLI::Range(2, 12));
   add_threads(*command, options->threads);
   command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out results");
   command->callback([options, &chosen] { chosen = [options] { return converge(*options); }; });

@@ -1,10 +1,10 @@
-// `ilaw list`: the laws of all libraries on the search path; a broken library is listed with its
-// refusal.
+// `ilaw list`: the laws of all libraries on the search path, from the JSON file beside each library; a
+// library without one is opened in a process of its own. A broken library is listed with its refusal.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.hpp"
 
 #include "base/exit_code.hpp"
-#include "cli/child.hpp"
+#include "cli/description.hpp"
 #include "cli/terminal.hpp"
 
 #include <ilaw/loader.hpp>
@@ -21,26 +21,17 @@ namespace {
 
 using nlohmann::json;
 
-// A row per law.
-json laws_of(const std::string& file) {
-  const ilaw::library library(file);
-  const ilaw_plugin& plugin = library.plugin();
-  json rows = json::array();
-  for (std::uint32_t i = 0; i < plugin.law_count; ++i)
-    rows.push_back({plugin.laws[i]->id, plugin.laws[i]->title,
-                    std::string(plugin.name) + " " + plugin.version, printable(file)});
-  return rows;
-}
-
 int list_laws() {
   warn_of_search_path();
   std::printf("search path: %s\n", printable(ilaw::search_path()).c_str());
   std::vector<Row> rows;
   for (const std::string& file : ilaw::search()) {
     try {
-      const std::string laws =
-          in_child([&file] { return laws_of(file).dump(-1, ' ', false, json::error_handler_t::replace); });
-      for (const json& law : json::parse(laws)) rows.push_back(law.get<Row>());
+      const json description = description_of(file);
+      const auto text = [](const json& value) { return printable(value.get<std::string>()); };
+      for (const json& law : description["laws"])
+        rows.push_back({text(law["id"]), text(law["title"]),
+                        text(description["name"]) + " " + text(description["version"]), printable(file)});
     } catch (const ilaw::error& error) {
       rows.push_back({"-", "refused: " + printable(error.what())});
     } catch (const std::runtime_error& error) {

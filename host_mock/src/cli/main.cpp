@@ -38,8 +38,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
 
 int run_command(int argc, char** argv) {
   using namespace ilaw::host;
-  CLI::App app{
-      "ilaw - interface laws in explicit dynamics: runs scenes, draws them, tells what laws there are"};
+  CLI::App app{"ilaw - interface laws in explicit dynamics: runs and draws scenes, measures and checks laws"};
   app.set_version_flag("--version", "ilaw " ILAW_VERSION);
   app.name("ilaw");
   app.require_subcommand(1);
@@ -64,7 +63,7 @@ int run_command(int argc, char** argv) {
     complain(error.what());
     return exit_bad_input;
   } catch (const std::bad_alloc&) {
-    complain("the memory does not suffice");
+    complain("out of memory");
   } catch (const std::exception& error) {
     complain(error.what());
   }

@@ -99,12 +99,12 @@ int plot_history(const PlotOptions& options) {
   return exit_done;
 }
 
-// Of many names the last, where the resultants are.
-std::string some_of(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 20;
-  if (names.size() <= most) return joined(names);
-  return joined(std::vector<std::string>(names.end() - most, names.end())) + " and " +
-         std::to_string(names.size() - most) + " more";
+// The last names of a long list: resultants are there.
+std::string last_of(const std::vector<std::string>& names) {
+  constexpr std::size_t max_names = 20;
+  if (names.size() <= max_names) return joined(names);
+  return joined(std::vector<std::string>(names.end() - max_names, names.end())) + " and " +
+         std::to_string(names.size() - max_names) + " more";
 }
 
 void check_columns(const std::vector<RunFolder>& runs, const std::vector<std::string>& columns) {
@@ -113,7 +113,7 @@ void check_columns(const std::vector<RunFolder>& runs, const std::vector<std::st
     for (const std::string& column : columns)
       if (!history.index_of(column))
         throw std::runtime_error((run.folder / "history.csv").string() + ": found no column '" + column +
-                                 "', expected one of " + some_of(history.names()) +
+                                 "', expected one of " + last_of(history.names()) +
                                  suggestion(column, history.names()));
   }
 }
@@ -178,12 +178,12 @@ void add_plot(CLI::App& app, Action& chosen) {
   command->add_option("folders", options->folders, "Folders that `ilaw run` wrote")->required();
   command
       ->add_option("--panels", options->panels,
-                   "Panels to draw of one run, by the names on their left: gap,velocity,status")
+                   "Panels of one run, by the names on their left: gap,velocity,status")
       ->delimiter(',');
   command->add_option("--y", options->y, "Columns of history.csv, a panel each")->delimiter(',');
-  command->add_option("--x", options->x, "Column to draw them over")->capture_default_str();
+  command->add_option("--x", options->x, "Column of the abscissa")->capture_default_str();
   command->add_option("--out", options->out,
-                      "Folder of the picture, which exists (that of the run, or the one above several)");
+                      "Existing folder for the picture (default: that of the run, or the one above several)");
   command->footer("Example: ilaw plot results\n         ilaw plot results/* --y glue.F2,n50.u2");
   command->callback([options, &chosen] { chosen = [options] { return plot(*options); }; });
 }

@@ -128,7 +128,7 @@ class Run {
     std::string said;
     const Checkpoint checkpoint = read_checkpoint(scene_, integrator_, options_.folder, said);
     if (!said.empty())
-      complain(said + "; going on from the checkpoint before it, at step " +
+      complain(said + "; continues from the checkpoint before it, at step " +
                std::to_string(integrator_.steps()));
     fields_.resume(checkpoint.fields);
     record.resumed_at = checkpoint_step_ = integrator_.steps();
@@ -198,9 +198,9 @@ class Run {
   }
 
   void warn_of_penetration() {
-    constexpr double much = 0.05;
+    constexpr double max_penetration_fraction = 0.05;
     const double depth = integrator_.tally().penetration_max, part = depth / shortest_edge(*scene_.model);
-    if (!(part > much)) return;
+    if (!(part > max_penetration_fraction)) return;
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(),
                   "nodes penetrate by up to %.2g, %.3g %% of the shortest element edge: they start there, a "
@@ -339,10 +339,10 @@ void add_run(CLI::App& app, Action& chosen) {
   command->add_option("--out", options->folder, "Folder for the results, made if it does not exist")
       ->required();
   command
-      ->add_option("--checkpoint-every", options->checkpoint_every,
-                   "Steps between checkpoints, from which --resume goes on")
+      ->add_option("--checkpoint-every", options->checkpoint_every, "Steps between checkpoints for --resume")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000'000}));
-  command->add_flag("--resume", options->resume, "Go on from the checkpoint in the folder, to the same bits");
+  command->add_flag("--resume", options->resume,
+                    "Continue from the checkpoint in the folder, to the same bits");
   add_threads(*command, options->threads);
   command
       ->add_option("--set", *settings,

@@ -66,12 +66,12 @@ int run_stress(const StressSetup& setup) {
 
 void add_stress(CLI::App& app, Action& chosen) {
   const auto setup = std::make_shared<StressSetup>();
-  CLI::App* command =
-      app.add_subcommand("stress", "Run random scenes of all laws and check what every scene must fulfil");
+  CLI::App* command = app.add_subcommand(
+      "stress", "Run random scenes of all laws and hold them to rules on energy, penetration and bits");
   command->add_option("--law", setup->laws, "Only the laws of this library; may be repeated (all)");
-  command->add_option("--seed", setup->seed, "Of the first scene; the next has the next number")
+  command->add_option("--seed", setup->seed, "Seed of the first scene; the next scene has the next number")
       ->capture_default_str();
-  command->add_option("--scenes", setup->scenes, "Scenes; the laws take turns")
+  command->add_option("--scenes", setup->scenes, "Number of scenes; the laws take turns")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}))
       ->capture_default_str();
   command->add_option("--steps", setup->size.steps, "Most steps of a scene; the least are a tenth")
@@ -80,13 +80,12 @@ void add_stress(CLI::App& app, Action& chosen) {
   command->add_option("--nodes", setup->size.nodes, "Most points of a scene")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  command->add_flag("--plain", setup->size.is_plain,
-                    "One body, obstacles that do not turn, no paths: of a seed the same scene without");
+  command->add_flag("--plain", setup->size.is_plain, "One body, obstacles that do not turn, no paths");
   command->add_option("--keep", setup->keep,
-                      "Folder for scenes that failed, made as small as they still fail");
+                      "Folder for scenes that failed, each reduced while it still fails");
   command->add_option("--write", setup->write, "Folder for every scene, as it is run; not that of --keep");
   command->footer(
-      "Exit codes: 0 all scenes fulfil them, or were refused or stopped with a reason; 1 a scene does not;\n"
+      "Exit codes: 0 all scenes kept the rules, were refused, or stopped with a reason; 1 a scene broke one;\n"
       "2 bad usage, or a library that cannot be opened.\n"
       "Example: ilaw stress --law postit --scenes 200 --keep failures");
   command->callback([setup, &chosen] { chosen = [setup] { return run_stress(*setup); }; });

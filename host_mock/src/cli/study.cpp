@@ -123,24 +123,25 @@ int study(const StudyOptions& options) {
 
 void add_study(CLI::App& app, Action& chosen) {
   const auto options = std::make_shared<StudyOptions>();
-  CLI::App* command =
-      app.add_subcommand("study", "Compare laws in a scene: what error they reach with how many steps");
+  CLI::App* command = app.add_subcommand("study", "Compare laws in a scene: errors over steps and run time");
   command->add_option("scenes", options->scenes, "Scene files (JSON)")->required();
   command
       ->add_option(
           "--out", options->folder,
-          "Folder for study.csv, study_needed.csv, study.json, .png and .svg; of several scenes each "
-          "gets one in it")
+          "Folder for study.csv, study_needed.csv, study.json, .png and .svg; each of several scenes gets one "
+          "in it")
       ->required();
   command
       ->add_option(
           "--law", options->laws,
-          "Instead of the laws that the scene lists: NAME, NAME:{parameters}, or an entry of the list "
-          "in JSON; to be repeated")
+          "Law instead of the scene's list: NAME, NAME:{parameters}, or an entry of the list in JSON; may be "
+          "repeated")
       ->take_all()
       ->allow_extra_args(false);
   add_sweep(*command, options->sweep, "Runs per law", CLI::Range(1, 30));
-  command->add_option("--repetitions", options->repetitions, "Of every run, for the median of the times")
+  command
+      ->add_option("--repetitions", options->repetitions,
+                   "Repetitions of each run, for the median of its times")
       ->check(CLI::Range(1, 1000));
   add_threads(*command, options->threads);
   command->footer(

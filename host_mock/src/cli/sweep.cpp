@@ -85,7 +85,7 @@ void set(json& source, const json::json_pointer& pointer, const json& value) {
   json::json_pointer owner = pointer.parent_pointer();
   while (!source.contains(owner)) owner = owner.parent_pointer();
   if (!source.contains(pointer) && !source[owner].is_object())
-    throw SceneError(pointer.to_string(), "found nothing there to set");
+    throw SceneError(pointer.to_string(), "found no such key to set");
   source[pointer] = value;
 }
 

@@ -45,7 +45,7 @@ int table(const TableOptions& options) {
 
 void add_table(CLI::App& app, Action& chosen) {
   const auto options = std::make_shared<TableOptions>();
-  CLI::App* command = app.add_subcommand("table", "Runs side by side: a row each, with what differs");
+  CLI::App* command = app.add_subcommand("table", "Compare runs: a row each, with the keys that differ");
   command->add_option("folders", options->folders, "Folders that `ilaw run` wrote")->required();
   command
       ->add_option(

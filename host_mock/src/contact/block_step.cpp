@@ -4,6 +4,8 @@
 #include "contact/law_faults.hpp"
 #include "contact/next_block.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -140,14 +142,14 @@ class BlockWalk {
     return in_columns(room);
   }
   ilaw_input seen_at_rest(const Dofs& v, Vectors& room) const {
-    if (nodes_in_row_) return {&v[first_dof(0)], D, 1};
+    if (nodes_in_row_) return ilaw::input(&v[first_dof(0)], D, 1);
     const double* const all = v.data();
     for (std::ptrdiff_t i = 0; i < count_; ++i)
       for (int c = 0; c < D; ++c) room[c * block_size + i] = all[first_dof(i) + c];
     return in_columns(room);
   }
   // Component by component, as laws work on them.
-  static ilaw_input in_columns(const Vectors& vectors) { return {vectors.data(), 1, block_size}; }
+  static ilaw_input in_columns(const Vectors& vectors) { return ilaw::input(vectors.data(), 1, block_size); }
   bool meets_plane() const { return What == Meets::obstacle && step_.flat; }
 
   // An array of all contacts from the block's first on, or what was gathered of it; null where it
@@ -190,19 +192,20 @@ class BlockWalk {
     ilaw_batch batch = empty_batch(step_.tangent, step_.step.time, step_.step.velocity_step(), step_.step.dt);
     batch.node_count = count_;
     batch.v_free = relative(step_.v, obstacle_, moves_, turn_after_, v_free_);
-    if ((info.inputs | (step_.gets_energies ? info.energy_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)
+    if ((info.inputs | (step_.gets_energies ? info.balance_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)
       batch.v_previous = relative(step_.step.v_before, obstacle_before_, moved_, turn_before_, v_previous_);
-    batch.delassus = {delassus_, 1, 0};
-    batch.gap = {gap_.data(), 1, 0};
-    batch.normal = meets_plane() ? in_columns(normal_) : ilaw_input{normal_.data(), D, 1};
-    batch.area = {column(at_.area, area_room_.data()), 1, 0};
-    batch.state_in = {state, 1, state_stride};
-    batch.state_out = {state, 1, state_stride};
-    batch.impulse = {impulse_, D, 1};
-    if (step_.gets_energies) batch.energy = {energy_.data(), 1, block_size};
+    batch.delassus = ilaw::input(delassus_, 1, 0);
+    batch.gap = ilaw::input(gap_.data(), 1, 0);
+    batch.normal = meets_plane() ? in_columns(normal_) : ilaw::input(normal_.data(), D, 1);
+    batch.area = ilaw::input(column(at_.area, area_room_.data()), 1, 0);
+    batch.state_in = ilaw::input(state, 1, state_stride);
+    batch.state_out = ilaw::output(state, 1, state_stride);
+    batch.impulse = ilaw::output(impulse_, D, 1);
+    if (step_.gets_energies) batch.energy = ilaw::output(energy_.data(), 1, block_size);
     batch.status = status_;
     batch.status_stride = 1;
     add_parameters(batch);
+    add_amounts(batch);
     return batch;
   }
 
@@ -212,8 +215,22 @@ class BlockWalk {
     if (!contacts_in_row_) parameter_room_.resize(count * block_size);
     parameters_.resize(count);
     for (std::size_t p = 0; p < count; ++p)
-      parameters_[p] = {column(at_.parameters[p], parameter_room_.data() + p * block_size), 1, 0};
+      parameters_[p] = ilaw::input(column(at_.parameters[p], parameter_room_.data() + p * block_size), 1, 0);
     batch.per_node_parameters = parameters_.data();
+  }
+
+  void add_amounts(ilaw_batch& batch) {
+    const std::size_t count = step_.gets_energies ? step_.law.info().amount_count : 0;
+    if (count == 0) return;
+    amount_room_.resize(count * block_size);
+    amounts_.resize(count);
+    for (std::size_t k = 0; k < count; ++k)
+      amounts_[k] = ilaw::output(amount_room_.data() + k * block_size, 1, 0);
+    batch.amounts = amounts_.data();
+  }
+  void sum_amounts(ContactSums& sums) const {
+    for (std::size_t k = 0; k < amounts_.size(); ++k)
+      for (std::ptrdiff_t i = 0; i < count_; ++i) sums.add_amount(k, amounts_[k].values[i]);
   }
 
   // ---- the law, and what follows from it ----
@@ -253,7 +270,7 @@ class BlockWalk {
       }
       const Components n = vector_at(batch.normal, i), v = vector_at(batch.v_free, i);
       const bool in_reach = is_in_reach(gap_[i], n.data(), v.data(), D, step_.step.dt);
-      at_.mark_touched(contact(i), false, in_reach, step_.law.rests());
+      at_.mark_touched(contact(i), false, in_reach, step_.law.may_skip_free());
     }
   }
 
@@ -321,6 +338,7 @@ class BlockWalk {
   }
 
   void add_dissipation(ContactSums& sums) const {
+    sum_amounts(sums);
     for (std::size_t k = 0; step_.gets_energies && k < ILAW_ENERGY_STORED; ++k)
       sums.add_dissipation(k, &energy_[k * block_size], count_);
   }
@@ -364,6 +382,8 @@ class BlockWalk {
   std::unique_ptr<double[]> state_room_;
   std::vector<double> parameter_room_;
   std::vector<ilaw_input> parameters_;
+  std::vector<double> amount_room_;
+  std::vector<ilaw_output> amounts_;
 };
 
 template <int D, Meets What>

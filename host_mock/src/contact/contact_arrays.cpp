@@ -4,6 +4,8 @@
 #include "base/bytes.hpp"
 #include "base/large_pages.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <algorithm>
 
 namespace ilaw::host {
@@ -14,7 +16,7 @@ ilaw_batch empty_batch(const Vector& tangent, double time, double velocity_step,
   batch.time = time;
   batch.velocity_step = velocity_step;
   batch.position_step = position_step;
-  if (tangent.size() > 0) batch.tangent = {tangent.data(), 0, 1};
+  if (tangent.size() > 0) batch.tangent = ilaw::input(tangent.data(), 0, 1);
   return batch;
 }
 
@@ -22,6 +24,7 @@ ContactArrays::ContactArrays(int dimension, const ilaw_instance_info& info, std:
                              bool partnered)
     : state(info.state_size),
       parameters(info.per_node_parameter_count),
+      amounts(info.amount_count),
       dimension_(dimension),
       state_size_(info.state_size),
       reads_area_((info.inputs & ILAW_INPUT_AREA) != 0),
@@ -57,26 +60,31 @@ void ContactArrays::make_room() {
     vectors->resize(count() * static_cast<std::size_t>(dimension_));
   gap.resize(count());
   energy.resize(count() * ILAW_ENERGY_COUNT);
+  for (std::vector<double>& one : amounts) one.resize(count());
 }
 
 void ContactArrays::accept_state(int contact) { state.take(static_cast<std::size_t>(contact), next_state_); }
 
 ilaw_batch ContactArrays::repeated_batch(const Vector& tangent, const StepView& step) {
   ilaw_batch batch = empty_batch(tangent, step.time, step.velocity_step(), step.dt);
-  batch.area = {area.data(), 1, 1};
-  batch.normal = {normal.data(), dimension_, 1};
+  batch.area = ilaw::input(area.data(), 1, 1);
+  batch.normal = ilaw::input(normal.data(), dimension_, 1);
   parameter_inputs_.clear();
-  for (const std::vector<double>& values : parameters) parameter_inputs_.push_back({values.data(), 1, 1});
+  for (const std::vector<double>& values : parameters)
+    parameter_inputs_.push_back(ilaw::input(values.data(), 1, 1));
   batch.per_node_parameters = parameter_inputs_.data();
-  batch.v_free = {v_free.data(), dimension_, 1};
-  batch.v_previous = {v_previous.data(), dimension_, 1};
-  batch.delassus = {delassus.data(), 1, 1};
-  if (!law_delassus.empty()) batch.delassus = {law_delassus.data(), dimension_, 1};
-  batch.gap = {gap.data(), 1, 1};
-  batch.state_in = {state.first(0), 1, state.stride()};
-  batch.state_out = {next_state_.first(0), 1, next_state_.stride()};
-  batch.impulse = {impulse.data(), dimension_, 1};
-  batch.energy = {energy.data(), ILAW_ENERGY_COUNT, 1};
+  batch.v_free = ilaw::input(v_free.data(), dimension_, 1);
+  batch.v_previous = ilaw::input(v_previous.data(), dimension_, 1);
+  batch.delassus = ilaw::input(delassus.data(), 1, 1);
+  if (!law_delassus.empty()) batch.delassus = ilaw::input(law_delassus.data(), dimension_, 1);
+  batch.gap = ilaw::input(gap.data(), 1, 1);
+  batch.state_in = ilaw::input(state.first(0), 1, state.stride());
+  batch.state_out = ilaw::output(next_state_.first(0), 1, next_state_.stride());
+  batch.impulse = ilaw::output(impulse.data(), dimension_, 1);
+  batch.energy = ilaw::output(energy.data(), ILAW_ENERGY_COUNT, 1);
+  amount_outputs_.clear();
+  for (std::vector<double>& one : amounts) amount_outputs_.push_back(ilaw::output(one.data(), 1, 0));
+  batch.amounts = amount_outputs_.empty() ? nullptr : amount_outputs_.data();
   batch.status = status.data();
   batch.status_stride = 1;
   return batch;

@@ -105,6 +105,7 @@ class ContactArrays {
   std::vector<std::uint8_t> status;
   // repeated
   std::vector<double> v_free, v_previous, normal, previous_impulse, gap, energy;
+  std::vector<std::vector<double>> amounts;     // as the law lists them
   std::vector<double> turn_before, turn_after;  // where an obstacle turns: velocities of its surface
 
  private:
@@ -125,6 +126,7 @@ class ContactArrays {
   std::vector<std::uint8_t> marks_;
   StateColumns next_state_;
   std::vector<ilaw_input> parameter_inputs_;
+  std::vector<ilaw_output> amount_outputs_;
 };
 
 }  // namespace ilaw::host

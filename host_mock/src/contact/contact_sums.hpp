@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace ilaw::host {
 
@@ -21,6 +22,7 @@ struct ContactSums {
   double least_dissipation = 0.0;
   std::array<double, ILAW_ENERGY_COUNT> energy{};
   std::array<std::int64_t, ILAW_STATUS_COUNT> statuses{};
+  std::vector<double> amounts;  // in the order of the instance; empty where the law gives none
   double stable_step = std::numeric_limits<double>::infinity();
 
   void add(const ContactSums& other) {
@@ -31,7 +33,12 @@ struct ContactSums {
     least_dissipation = std::min(least_dissipation, other.least_dissipation);
     for (std::size_t k = 0; k < energy.size(); ++k) energy[k] += other.energy[k];
     for (std::size_t k = 0; k < statuses.size(); ++k) statuses[k] += other.statuses[k];
+    for (std::size_t k = 0; k < other.amounts.size(); ++k) add_amount(k, other.amounts[k]);
     add_stable_step(other.stable_step);
+  }
+  void add_amount(std::size_t k, double amount) {
+    if (amounts.size() <= k) amounts.resize(k + 1);
+    amounts[k] += amount;
   }
   // As a law reported it; 0: its library does not say.
   void add_stable_step(double step) {

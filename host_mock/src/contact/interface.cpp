@@ -47,7 +47,8 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       contacts_(dimension_, law_.info(), setup_.nodes.size(), !setup_.counterpart->partners().empty()),
       obstacle_velocity_(Vector::Zero(dimension_)),
       obstacle_velocity_before_(obstacle_velocity_),
-      tangent_(setup_.tangent) {}
+      tangent_(setup_.tangent),
+      amounts_(law_.info().amount_count) {}
 
 // With what of the node limits the step, where equations have more than one solution.
 void Interface::check(const Refusal& refusal, double dt) const {
@@ -82,7 +83,7 @@ int Interface::contact_index_of(int node_index, const Dofs& u) {
   if (const int found = contacts_.index_of(k); found >= 0) return found;
   contacts_.add({node_index, ContactPoint().delassus(inverse_mass_, dimension_, setup_.nodes[k]),
                  setup_.areas[k], parameters_of(node_index), first_state(node_index, u),
-                 law_.acts_at_distance(), axes_turn()});
+                 !law_.may_skip_fresh(), axes_turn()});
   if (setup_.has_driven_nodes) find_delassus(contacts_.count() - 1);
   if (const std::size_t chunk = k / contact_chunk; chunk < far_.size()) far_[chunk] = {};
   return contacts_.index_of(k);
@@ -142,7 +143,7 @@ void Interface::check_driven(const StepView& step) const {
 bool Interface::axes_turn() const { return !axes_.empty() && !setup_.counterpart->keeps_normal(); }
 
 bool Interface::may_skip() const {
-  if (setup_.keeps_all_active || (law_.acts_at_distance() && !law_.rests())) return false;
+  if (setup_.keeps_all_active || (!law_.may_skip_fresh() && !law_.may_skip_free())) return false;
   return !axes_turn();
 }
 
@@ -183,7 +184,7 @@ void Interface::refresh_near(const StepView& step) {
 void Interface::look_at(std::size_t chunk, const StepView& step) {
   const std::size_t first = chunk * contact_chunk,
                     count = std::min<std::size_t>(contact_chunk, is_near_.size() - first);
-  const bool skips = may_skip(), may_be_awake = info().state_size > 0 || law_.acts_at_distance();
+  const bool skips = may_skip(), may_be_awake = info().state_size > 0 || !law_.may_skip_fresh();
   std::array<double, contact_chunk> bounds;
   if (skips)
     setup_.counterpart->gap_bounds(static_cast<int>(first), static_cast<int>(count), step.u, step.time,
@@ -193,7 +194,7 @@ void Interface::look_at(std::size_t chunk, const StepView& step) {
   for (std::size_t i = 0; i < count; ++i) {
     const int contact_index = may_be_awake ? contacts_.index_of(first + i) : -1;
     const bool awake =
-        contact_index >= 0 ? contacts_.must_be_evaluated(at(contact_index)) : law_.acts_at_distance();
+        contact_index >= 0 ? contacts_.must_be_evaluated(at(contact_index)) : !law_.may_skip_fresh();
     const double gap = skips ? bounds[i] - setup_.gap_offset : 0.0;
     const bool is_near = awake || !skips || proximity_.may_touch(gap) ||
                          setup_.counterpart->is_held(static_cast<int>(first + i));
@@ -279,6 +280,11 @@ void Interface::solve(const StepView& step, Dofs& v) {
     sums_.add(outcomes_[c].sums);
   }
   if (refusal.code != ILAW_OK) check(refusal, step.dt);
+  total_amounts();
+}
+
+void Interface::total_amounts() {
+  for (std::size_t k = 0; k < sums_.amounts.size(); ++k) amounts_[k] += sums_.amounts[k];
 }
 
 // ---- a step where contacts share nodes ------------------------------------------------------------------
@@ -334,7 +340,7 @@ void Interface::gather(const ContactList& contacts, const Dofs& v, const StepVie
 
 void Interface::evaluate(const ContactList& contacts, const StepView& step) {
   ilaw_batch batch = contacts_.repeated_batch(tangent_, step);
-  if (!asks_energies_) batch.energy = {};
+  if (!asks_energies_) batch.energy = {}, batch.amounts = nullptr;
   const auto count = static_cast<std::ptrdiff_t>(contacts.size());
   outcomes_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), {});
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
@@ -396,12 +402,14 @@ void Interface::accept(const StepView& step, const Dofs& v) {
     setup_.counterpart->note_contact(contacts_.node_index[k], contacts_.status[k] != ILAW_FREE,
                                      point(contact_index));
     sums_.add_energy(&contacts_.energy[k * ILAW_ENERGY_COUNT]);
+    for (std::size_t a = 0; a < contacts_.amounts.size(); ++a) sums_.add_amount(a, contacts_.amounts[a][k]);
     if (info().state_size == 0) continue;
     const bool in_reach = is_in_reach(gap(contact_index), normal(contact_index).data(),
                                       v_free(contact_index).data(), dimension_, step.dt);
-    contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach, law_.rests());
+    contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach, law_.may_skip_free());
     contacts_.accept_state(contact_index);
   }
+  total_amounts();
   if (!show_fault(sums_)) return;
   for (const std::int32_t contact_index : active())
     if (const char* fault =

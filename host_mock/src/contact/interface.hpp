@@ -77,6 +77,8 @@ class Interface {
   // ---- the last step ----
   const ContactList& active() const { return acts_ ? near_ : none_; }
   const ContactSums& sums() const { return sums_; }
+  // Totals of the run, in the order of info().amounts.
+  const std::vector<double>& amounts() const { return amounts_; }
   // By contact_index.
   bool is_active(int contact_index) const;
   auto impulse(int contact_index) const { return contacts_.vector(contacts_.impulse, contact_index); }
@@ -123,10 +125,7 @@ class Interface {
   std::size_t contact_count() const { return contacts_.count(); }
 
   // Everything that the next step depends on.
-  void save(std::ostream& out) const {
-    contacts_.save(out);
-    setup_.counterpart->save(out);
-  }
+  void save(std::ostream& out) const;
   void load(std::istream& in, const Dofs& u);
 
  private:
@@ -138,6 +137,7 @@ class Interface {
   void find_delassus(std::size_t contact);
   void follow_obstacle(const StepView& step);
   void choose_active(const StepView& step);
+  void total_amounts();
   void refresh_near(const StepView& step);
   void look_at(std::size_t chunk, const StepView& step);
   std::vector<double> parameters_of(int node_index) const;
@@ -168,6 +168,7 @@ class Interface {
   bool obstacle_is_known_ = false;      // it stands still, and all of it is above
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
+  std::vector<double> amounts_;
   bool asks_energies_ = true;
   const double* inverse_mass_ = nullptr;
 };

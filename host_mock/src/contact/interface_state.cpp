@@ -4,6 +4,8 @@
 #include "base/running_law.hpp"
 #include "contact/interface.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <istream>
@@ -17,7 +19,7 @@ namespace {
 std::vector<ilaw_input> inputs_of(const std::vector<double>& parameters) {
   std::vector<ilaw_input> inputs;
   inputs.reserve(parameters.size());
-  for (const double& value : parameters) inputs.push_back({&value, 1, 1});
+  for (const double& value : parameters) inputs.push_back(ilaw::input(&value, 1, 1));
   return inputs;
 }
 
@@ -26,7 +28,7 @@ std::vector<ilaw_input> inputs_of(const std::vector<double>& parameters) {
 std::vector<double> Interface::parameters_of(int node_index) const {
   std::vector<double> parameters;
   for (std::size_t p = 0; p < info().per_node_parameter_count; ++p)
-    parameters.push_back(setup_.arguments.per_node.at(info().per_node_parameters[p])[at(node_index)]);
+    parameters.push_back(setup_.arguments.values_of(info().per_node_parameters[p])[at(node_index)]);
   return parameters;
 }
 
@@ -41,10 +43,10 @@ std::vector<double> Interface::first_state(int node_index, const Dofs& u) const 
   const Vector normal = setup_.counterpart->contact_point(node_index, u, 0.0).normal;
   ilaw_batch batch = empty_batch(setup_.tangent, 0.0, 1.0, 1.0);
   batch.node_count = 1;
-  batch.area = {&setup_.areas[at(node_index)], 1, 1};
-  batch.normal = {normal.data(), dimension_, 1};
+  batch.area = ilaw::input(&setup_.areas[at(node_index)], 1, 1);
+  batch.normal = ilaw::input(normal.data(), dimension_, 1);
   batch.per_node_parameters = inputs.data();
-  batch.state_out = {state.data(), static_cast<std::int64_t>(state.size()), 1};
+  batch.state_out = ilaw::output(state.data(), static_cast<std::int64_t>(state.size()), 1);
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   const Answer answer = law_.initialise(batch);
   check({answer.code, 1, -1, 0, answer.report.reason}, std::to_string(setup_.nodes[at(node_index)]));
@@ -57,11 +59,19 @@ std::vector<double> Interface::state_at(int node_index, const Dofs& u) const {
   return contacts_.state.of(at(contact_index));
 }
 
+void Interface::save(std::ostream& out) const {
+  contacts_.save(out);
+  write_sized(out, amounts_);
+  setup_.counterpart->save(out);
+}
+
 void Interface::load(std::istream& in, const Dofs& u) {
   const std::vector<int> nodes = ContactArrays::load_nodes(in, setup_.nodes.size());
   for (const int node_index : nodes) contact_index_of(node_index, u);
   if (contacts_.node_index != nodes) refuse_damaged();
   contacts_.load_state(in);
+  amounts_ = read_sized<double>(in, info().amount_count);
+  if (amounts_.size() != info().amount_count) refuse_damaged();
   setup_.counterpart->load(in);
   far_.clear();
   proximity_.invalidate();

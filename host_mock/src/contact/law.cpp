@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/law.hpp"
 
-#include "base/floating_control.hpp"
 #include "base/running_law.hpp"
+
+#include <ilaw/floating_control.hpp>
 
 #include <cxxabi.h>
 
@@ -43,7 +44,7 @@ template <class Call>
 Answer answer_of(const ilaw_batch& batch, Call call) {
   Answer answer{ILAW_OK, {}};
   answer.report.struct_size = sizeof(ilaw_report);
-  const FloatingControl before = FloatingControl::now();
+  const ilaw::floating_control before = ilaw::floating_control::now();
   try {
     answer.code = call(&answer.report);
   } catch (const abi::__forced_unwind&) {
@@ -53,7 +54,7 @@ Answer answer_of(const ilaw_batch& batch, Call call) {
   } catch (...) {
     return broken("it threw an exception");
   }
-  if (FloatingControl::now() != before) {
+  if (ilaw::floating_control::now() != before) {
     before.restore();
     return broken("it changed how the processor rounds, traps or flushes, expected all as it was");
   }

@@ -23,10 +23,8 @@ class Law {
   const ilaw_instance_info& info() const { return info_; }
   // ILAW_OUTPUT_*: what it gives.
   std::uint32_t outputs() const { return outputs_; }
-  bool acts_at_distance() const { return (info_.capabilities & ILAW_CAN_ACT_AT_DISTANCE) != 0; }
-  // Whether a contact whose last status was ILAW_FREE does nothing out of reach (ilaw.h,
-  // ILAW_CAN_REST).
-  bool rests() const { return (info_.capabilities & ILAW_CAN_REST) != 0; }
+  bool may_skip_fresh() const { return (info_.permissions & ILAW_MAY_SKIP_FRESH) != 0; }
+  bool may_skip_free() const { return (info_.permissions & ILAW_MAY_SKIP_FREE) != 0; }
   // Where in the state axes begin: they turn with the normal from step to step, and with an obstacle.
   std::vector<std::size_t> axes() const;
 

@@ -4,75 +4,64 @@
 #include "base/words.hpp"
 
 #include <algorithm>
-#include <deque>
 
 namespace ilaw::host {
 namespace {
 
-// The arguments of create, with the pointers that it wants; deque keeps addresses while growing.
-class ArgumentList {
- public:
-  explicit ArgumentList(const Arguments& given) {
-    for (const auto& [name, value] : given.numbers) add(ILAW_VALUE_NUMBER, name).number = value;
-    for (const auto& [name, text] : given.texts) add(ILAW_VALUE_TEXT, name).text = text.c_str();
-    for (const auto& [name, pairs] : given.tables) {
-      ilaw_argument& argument = add(ILAW_VALUE_TABLE, name);
-      argument.values = pairs.data();
-      argument.count = pairs.size() / 2;
-    }
-    for (const auto& [name, values] : given.per_node)
-      per_node_.emplace_back(&add(ILAW_VALUE_PER_NODE, name), &values);
-    for (const ilaw_argument& argument : arguments_) pointers_.push_back(&argument);
-  }
+bool has_field(const ilaw_law& law, const std::string& name) {
+  constexpr ilaw_parameter_flags field = ILAW_PARAMETER_IS_FIELD | ILAW_PARAMETER_ALLOWS_PER_NODE;
+  for (std::uint32_t k = 0; k < law.parameter_count; ++k)
+    if (name == law.parameters[k]->name) return (law.parameters[k]->flags & field) == field;
+  return false;
+}
 
-  const std::vector<const ilaw_argument*>& pointers() const { return pointers_; }
-  std::size_t node_count() const { return per_node_.empty() ? 0 : per_node_.front().second->size(); }
+// Fields that the law takes become values per node.
+Arguments with_fields(Arguments given, const ilaw_law* law) {
+  for (const auto& [name, values] : given.fields)
+    if (law && has_field(*law, name) && !given.gives(name)) given.per_node[name] = values;
+  return given;
+}
 
-  // From now on the values of one node stand for those per node. Returns whether this changed any.
-  bool take_node(std::size_t node_index) {
-    bool changed = false;
-    for (const auto& [argument, values] : per_node_) {
-      changed |= argument->kind != ILAW_VALUE_NUMBER || argument->number != (*values)[node_index];
-      argument->kind = ILAW_VALUE_NUMBER;
-      argument->number = (*values)[node_index];
-    }
-    return changed;
-  }
+// node_index: the values of this node stand for those per node.
+ilaw::parameters parameters_of(const Arguments& given, std::optional<std::size_t> node_index) {
+  ilaw::parameters made;
+  for (const auto& [name, value] : given.numbers) made.number(name, value);
+  for (const auto& [name, text] : given.texts) made.text(name, text);
+  for (const auto& [name, table] : given.tables) made.table(name, table.axes, table.values);
+  for (const auto& [name, values] : given.per_node)
+    node_index ? made.number(name, values[*node_index]) : made.per_node(name);
+  return made;
+}
 
-  // The parameter that a law's message names first, or null: laws put names in quotes.
-  const ilaw_argument* named_in(const std::string& message) const {
-    const ilaw_argument* named = nullptr;
-    std::size_t first = std::string::npos;
-    for (const ilaw_argument& argument : arguments_)
-      if (const std::size_t at = message.find("'" + std::string(argument.name) + "'"); at < first) {
-        first = at;
-        named = &argument;
-      }
-    return named;
-  }
+std::size_t node_count(const Arguments& given) {
+  return given.per_node.empty() ? 0 : given.per_node.begin()->second.size();
+}
 
-  std::string pointer_to(const ilaw_argument* named, std::optional<std::size_t> node_index) const {
-    if (!named) return "";
-    std::string pointer = "/" + std::string(named->name);
-    for (const auto& [argument, values] : per_node_)
-      if (argument == named) pointer += "/per_node" + (node_index ? "/" + std::to_string(*node_index) : "");
-    return named->kind == ILAW_VALUE_TABLE ? pointer + "/table" : pointer;
-  }
+bool is_like_the_node_before(const Arguments& given, std::size_t node_index) {
+  return node_index > 0 && std::ranges::all_of(given.per_node, [node_index](const auto& one) {
+           return one.second[node_index] == one.second[node_index - 1];
+         });
+}
 
- private:
-  ilaw_argument& add(std::uint32_t kind, const std::string& name) {
-    ilaw_argument& argument = arguments_.emplace_back();
-    argument = {};
-    argument.struct_size = sizeof argument;
-    argument.kind = kind;
-    argument.name = name.c_str();
-    return argument;
-  }
+// The parameter that a law's message names first, or empty: laws put names in quotes.
+std::string named_in(const std::string& message, const Arguments& given) {
+  std::string named;
+  std::size_t first = std::string::npos;
+  const auto look = [&](const auto& parameters) {
+    for (const auto& [name, value] : parameters)
+      if (const std::size_t at = message.find("'" + name + "'"); at < first) first = at, named = name;
+  };
+  look(given.numbers), look(given.texts), look(given.tables), look(given.per_node);
+  return named;
+}
 
-  std::deque<ilaw_argument> arguments_;
-  std::vector<std::pair<ilaw_argument*, const std::vector<double>*>> per_node_;
-  std::vector<const ilaw_argument*> pointers_;
-};
+std::string pointer_to(const std::string& named, const Arguments& given,
+                       std::optional<std::size_t> node_index) {
+  if (named.empty()) return "";
+  if (given.per_node.contains(named))
+    return "/" + named + "/per_node" + (node_index ? "/" + std::to_string(*node_index) : "");
+  return "/" + named + (given.tables.contains(named) ? "/table" : "");
+}
 
 // The parameter that was meant by a name that the law does not have.
 std::string meant_by(const std::string& given, const ilaw_law* law) {
@@ -86,31 +75,35 @@ std::string meant_by(const std::string& given, const ilaw_law* law) {
 void try_create(const ilaw_law& law, const ilaw_setup& setup) {
   char message[1024] = "";
   ilaw_instance* made = nullptr;
-  const std::int32_t code = law.create(&setup, &made, message, sizeof message);
+  const std::int32_t code = law.create(law.id, &setup, &made, message, sizeof message);
   if (code != ILAW_OK) throw ilaw::error(code, message);
   law.destroy(made);
 }
 
 }  // namespace
 
-ilaw::interface create_law(const std::string& law, const Arguments& given, ilaw_setup setup,
+ilaw::interface create_law(const std::string& law, const Arguments& from_scene, ilaw_setup setup,
                            const ilaw::library& library) {
-  ArgumentList arguments(given);
-  setup.arguments = arguments.pointers().data();
-  setup.argument_count = static_cast<std::uint32_t>(arguments.pointers().size());
+  const Arguments given = with_fields(from_scene, library.law(law));
+  ilaw::parameters parameters = parameters_of(given, {});
+  parameters.give(setup);
   std::optional<std::size_t> node_index;
   try {
     ilaw::interface created(library, law, setup);
     // Values per node reach the law with the first batch only. Whether it allows those of a node
-    // together is found now, by an instance for that node alone; neighbours are often alike.
-    for (node_index = 0; *node_index < arguments.node_count(); ++*node_index)
-      if (arguments.take_node(*node_index)) try_create(created.law(), setup);
+    // together is found now, by an instance for that node alone.
+    for (node_index = 0; *node_index < node_count(given); ++*node_index) {
+      if (is_like_the_node_before(given, *node_index)) continue;
+      ilaw::parameters of_node = parameters_of(given, node_index);
+      of_node.give(setup);
+      try_create(created.law(), setup);
+    }
     return created;
   } catch (const ilaw::error& refusal) {
     if (refusal.code() != ILAW_INVALID_PARAMETER) throw;
-    const ilaw_argument* named = arguments.named_in(refusal.what());
-    const std::string text = refusal.what() + (named ? meant_by(named->name, library.law(law)) : "");
-    throw ParameterError({refusal.code(), text}, arguments.pointer_to(named, node_index), node_index);
+    const std::string named = named_in(refusal.what(), given);
+    const std::string text = refusal.what() + (named.empty() ? "" : meant_by(named, library.law(law)));
+    throw ParameterError({refusal.code(), text}, pointer_to(named, given, node_index), node_index);
   }
 }
 
@@ -121,7 +114,8 @@ ilaw::interface create_law(const std::string& law, const Arguments& given, const
   setup.dimension = static_cast<std::uint32_t>(dimension);
   setup.delassus_form = delassus_form;
   setup.frame = ILAW_FRAME_GLOBAL;
-  setup.tangent_given = tangent.size() > 0 ? 1 : 0;
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
+  setup.has_tangent = tangent.size() > 0 ? 1 : 0;
   return create_law(law, given, setup, library);
 }
 

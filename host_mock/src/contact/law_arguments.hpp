@@ -15,12 +15,30 @@
 
 namespace ilaw::host {
 
+// A parameter over one to three axes; the last axis varies fastest in values.
+struct ArgumentTable {
+  std::vector<ilaw::parameters::axis> axes;
+  std::vector<double> values;
+};
+
 // Parameters of a law as a scene gives them.
 struct Arguments {
   std::map<std::string, double> numbers;
   std::map<std::string, std::string> texts;
-  std::map<std::string, std::vector<double>> tables;    // pairs (time, value)
+  std::map<std::string, ArgumentTable> tables;
   std::map<std::string, std::vector<double>> per_node;  // one value per node of the interface
+  // Fields of the model at the interface's nodes. A law that has a field parameter of such a name gets it per
+  // node, unless the scene gives the parameter.
+  std::map<std::string, std::vector<double>> fields;
+
+  bool gives(const std::string& name) const {
+    return numbers.contains(name) || texts.contains(name) || tables.contains(name) || per_node.contains(name);
+  }
+  // Values of a parameter that the law reads per node.
+  const std::vector<double>& values_of(const std::string& name) const {
+    const auto given = per_node.find(name);
+    return given == per_node.end() ? fields.at(name) : given->second;
+  }
 };
 
 // A parameter that a law refuses: where it stands below "parameters" (empty: no single one is at

@@ -16,6 +16,13 @@ using nlohmann::json;
 constexpr const char* status_names[ILAW_STATUS_COUNT] = {"free",   "closed", "stick",  "slip",
                                                          "bonded", "broken", "healed", "bad_input"};
 
+json describe_amounts(const Interface& interface) {
+  json amounts = json::object();
+  for (std::size_t k = 0; k < interface.amounts().size(); ++k)
+    amounts[interface.info().amounts[k]->name] = interface.amounts()[k];
+  return amounts;
+}
+
 // first_contact: null where there was none.
 json describe_interface(const Interface& interface, double first_contact) {
   return {{"name", interface.name()},
@@ -25,6 +32,7 @@ json describe_interface(const Interface& interface, double first_contact) {
           {"nodes", interface.nodes().size()},
           {"first_contact", std::isinf(first_contact) ? json() : json(first_contact)},
           {"state_size", interface.info().state_size},
+          {"amounts", describe_amounts(interface)},
           {"bytes_per_node", interface.bytes_per_contact()}};
 }
 

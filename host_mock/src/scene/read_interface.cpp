@@ -15,6 +15,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace ilaw::host {
 namespace {
@@ -77,6 +78,25 @@ Vector read_tangent(const json& interface, const InterfaceSetup& setup, const Mo
   return tangent;
 }
 
+// The fields of a scene at nodes: a number each, or one value per node of the model.
+std::map<std::string, std::vector<double>> read_fields(const json& scene, const std::vector<int>& nodes,
+                                                       const Model& model) {
+  std::map<std::string, std::vector<double>> fields;
+  if (!scene.contains("fields")) return fields;
+  for (const auto& [name, values] : scene["fields"].items()) {
+    std::vector<double>& own = fields[name];
+    if (values.is_number()) {
+      own.assign(nodes.size(), values.get<double>());
+      continue;
+    }
+    if (values.size() != static_cast<std::size_t>(model.node_count()))
+      throw mistake("/fields/" + name, std::to_string(values.size()) + " values",
+                    std::to_string(model.node_count()) + ", one per node of the model");
+    for (const int node : nodes) own.push_back(values[static_cast<std::size_t>(node)].get<double>());
+  }
+  return fields;
+}
+
 InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene& scene, const NodeSet& own,
                           const std::string& pointer) {
   InterfaceSetup setup;
@@ -88,6 +108,7 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
   setup.counterpart = read_counterpart(interface, own, *scene.model, pointer);
   setup.arguments = read_arguments(interface.value("parameters", json::object()), setup.nodes.size(),
                                    pointer + "/parameters");
+  setup.arguments.fields = read_fields(scene.source, setup.nodes, *scene.model);
   setup.birth = interface.value("birth", setup.birth);
   setup.death = interface.value("death", setup.death);
   if (setup.death <= setup.birth)

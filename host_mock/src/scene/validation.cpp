@@ -209,12 +209,33 @@ void validate_typed(const json& value, const std::string& kind, const std::strin
   if (definitions.contains(name)) validate(value, definitions[name], pointer, mistakes);
 }
 
+// Before any pattern of the schema: std::regex recurses once per character.
+constexpr std::size_t max_text_length = 4096;
+
+void check_lengths(const json& value, const std::string& pointer, Mistakes& mistakes) {
+  const auto check = [&](const std::string& text, const std::string& where) {
+    if (text.size() > max_text_length)
+      mistakes.push_back(where + ": found a text of " + std::to_string(text.size()) +
+                         " bytes, expected at most " + std::to_string(max_text_length));
+  };
+  if (value.is_string()) check(value.get_ref<const std::string&>(), pointer);
+  if (value.is_array())
+    for (std::size_t k = 0; k < value.size(); ++k) check_lengths(value[k], at(pointer, k), mistakes);
+  if (value.is_object())
+    for (const auto& [key, member] : value.items()) {
+      check(key, pointer + "/" + key.substr(0, 32));
+      check_lengths(member, pointer + "/" + key.substr(0, 32), mistakes);
+    }
+}
+
 }  // namespace
 
 void validate_scene(const json& source) {
   // Packed points were checked as they were read: one that is right stands in for them.
   const json scene = with_packed_points_as(source, {{{"mass", 1.0}, {"position", {0.0}}}});
   Mistakes mistakes;
+  check_lengths(scene, "", mistakes);
+  refuse(mistakes);
   validate(scene, schema(), "", mistakes);
   if (!scene.is_object()) refuse(mistakes);
   const auto list = [&](const char* key) -> json {

@@ -222,11 +222,12 @@ void warn_of_partners(Scene& scene) {
 // A bond is made where the bodies are: across a gap it pulls from afar.
 void warn_of_open_bonds(Scene& scene) {
   constexpr double much = 0.1;
-  constexpr std::uint32_t bond = ILAW_CAN_ADHERE | ILAW_CAN_ACT_AT_DISTANCE;
   const double edge = shortest_edge(*scene.model);
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
-    if ((interface.info().capabilities & bond) != bond || interface.setup().birth > 0.0) continue;
+    const ilaw_instance_info& info = interface.info();
+    const bool bonds = (info.capabilities & ILAW_CAN_ADHERE) && !(info.permissions & ILAW_MAY_SKIP_FRESH);
+    if (!bonds || interface.setup().birth > 0.0) continue;
     const double offset = std::abs(interface.setup().gap_offset);
     const double limit = much * (std::isfinite(edge) ? std::max(edge, offset) : offset);
     if (!(limit > 0.0)) continue;

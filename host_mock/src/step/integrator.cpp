@@ -1,4 +1,4 @@
-// The step from its top to its end, as docs/hosts.md tells it to owners of a solver.
+// The step from its top to its end, as docs/hosts tells it to owners of a solver.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/integrator.hpp"
 

@@ -1,5 +1,5 @@
 // exact.hpp - solutions in closed form of some scenes, to measure errors against. Derivations:
-// docs/scenes.md.
+// docs/theory/shipped_scenes.md.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -112,7 +112,7 @@ ExactNode glued_bar(const Scene& scene) {
 
 // A bar dropped on a plane, which it leaves as a whole after 2L/c: undeformed before the first impact,
 // compressed by twice its weight after it, and undeformed again after the second if the flight between
-// took a whole number of its vibrations, which then bring its end back (docs/scenes.md).
+// took a whole number of its vibrations, which then bring its end back (docs/theory/shipped_scenes.md).
 ExactNode bouncing_bar(const Scene& scene) {
   const json loads = scene.source.value("loads", json::array());
   const json& interface = scene.source["interfaces"][0];

@@ -1,4 +1,5 @@
-// exact_bars.hpp - elastic bars on walls, on planes, on each other, glued; derivations: docs/scenes.md.
+// exact_bars.hpp - elastic bars on walls, on planes, on each other, glued.
+// Derivations: docs/theory/shipped_scenes.md.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -29,7 +29,7 @@ case $way in
 esac
 
 echo "== files"
-for file in bin/ilaw lib/ilaw/contact.so include/ilaw/ilaw.h include/ilaw/kit/detail/evaluate.hpp lib/libilaw_loader.a \
+for file in bin/ilaw bin/ilaw-describe lib/ilaw/contact.so lib/ilaw/contact.json include/ilaw/ilaw.h include/ilaw/kit/detail/evaluate.hpp lib/libilaw_loader.a \
             lib/libilaw_loader.so lib/libilaw_loader.so.1 \
             lib/libilaw_coupled.a lib/libilaw_coupled.so lib/libilaw_coupled.so.1 include/ilaw/coupled.h lib/cmake/ilaw/ilawConfig.cmake lib/pkgconfig/ilaw.pc \
             lib/pkgconfig/ilaw_coupled.pc share/ilaw/fortran/ilaw.f90 share/ilaw/fortran/ilaw_coupled.f90 \

@@ -1,7 +1,7 @@
 // draw.hpp - random local problems of any scale, condition and friction; the same for every run.
 #pragma once
 
-#include <ilaw/kit/local_coulomb.hpp>
+#include <ilaw/kit/exact_coulomb.hpp>
 
 #include <array>
 #include <cmath>

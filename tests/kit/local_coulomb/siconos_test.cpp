@@ -134,10 +134,10 @@ class CoulombBatch {
     b.struct_size = sizeof b;
     b.node_count = static_cast<std::int64_t>(impulses_.size());
     b.velocity_step = b.position_step = 1.0;
-    b.v_free = b.v_previous = {velocities_[0].data(), 3, 1};
-    b.delassus = {delassus_[0].data(), 6, 1};
-    b.gap = {&touching, 0, 1};
-    b.impulse = {impulses_[0].data(), 3, 1};
+    b.v_free = b.v_previous = ilaw::input(velocities_[0].data(), 3, 1);
+    b.delassus = ilaw::input(delassus_[0].data(), 6, 1);
+    b.gap = ilaw::input(&touching, 0, 1);
+    b.impulse = ilaw::output(impulses_[0].data(), 3, 1);
     return law_.evaluate(b);
   }
   const std::vector<Vector>& impulses() const { return impulses_; }

@@ -9,47 +9,78 @@ using namespace ilaw::kit;
   static constexpr law_card card{                                                                    \
       .id = "wrong", .title = "A law", .doc = "A mistake.", .delassus_forms = ILAW_DELASSUS_SCALAR}; \
   static constexpr const char* references[] = {"none"}
-#define PARAMETER(law) \
-  static constexpr parameter<law> parameters[] = {{.member = &law::a, .name = "a", .whole = true}}
-#define STEP            \
-  template <class Node> \
-  void step(Node&) const {}
+#define PARAMETER(law) static constexpr parameter<law> parameters[] = {{.member = &law::a, .name = "a"}}
+#define STEP                           \
+  template <class Node>                \
+  status_of<V> step(Node& node) const { \
+    node.impulse.n = a;                \
+    return status::free;               \
+  }
+#define WRONG(law)      \
+  template <class V>    \
+  struct law {          \
+    V a;                \
+    CARD;               \
+    PARAMETER(law);
+// And what those with a solver have.
+#define PROBLEM    \
+  struct problem { \
+    V x;           \
+  };               \
+  struct answer {  \
+    V y;           \
+  };
+#define SOLVE                                                       \
+  static mask_of<V> solve(const problem&, answer&) { return V{} < 0.0; } \
+  static void solve_scalar(const problem&, answer&) {}
+#define ASK                                            \
+  template <class Node>                                \
+  asked<V> ask(Node&, problem&) const {                \
+    return {V{} < 0.0, status::free};                  \
+  }
+#define FINISH                                         \
+  template <class Node>                                \
+  status_of<V> finish(Node&, const answer&) const {    \
+    return status::free;                               \
+  }
 
-// every member of struct state needs an entry of state_variables[]; members are double, vector or
-// tangential_vector
-struct larger_state {
-  double a;
-  CARD;
-  PARAMETER(larger_state);
-  STEP;
+// ---- memory
+
+// every member of struct state needs an entry of state_variables[]
+WRONG(larger_state)
+  STEP
   struct state {
-    double damage, forgotten;
+    V damage, forgotten;
   };
   static constexpr state_variable<state> state_variables[] = {{.member = &state::damage, .name = "damage"}};
 };
 
-// every member of struct state needs an entry of state_variables[]; members are double, vector or
-// tangential_vector
-struct state_with_int {
-  double a;
-  CARD;
-  PARAMETER(state_with_int);
-  STEP;
+// the members of struct state must be V, vector<V> or tangential_vector<V>
+WRONG(state_with_int)
+  STEP
   struct state {
-    double damage;
+    V damage;
     int count;
   };
   static constexpr state_variable<state> state_variables[] = {{.member = &state::damage, .name = "damage"}};
 };
 
-// a member of struct state is a double, a vector or a tangential_vector
-struct described_int {
-  double a;
-  CARD;
-  PARAMETER(described_int);
-  STEP;
+// the members of struct state must be V, vector<V> or tangential_vector<V>
+WRONG(state_with_double)
+  STEP
   struct state {
-    double damage;
+    V damage;
+    double count;
+  };
+  static constexpr state_variable<state> state_variables[] = {{.member = &state::damage, .name = "damage"},
+                                                              {.member = &state::count, .name = "count"}};
+};
+
+// the members of struct state must be V, vector<V> or tangential_vector<V>
+WRONG(described_int)
+  STEP
+  struct state {
+    V damage;
     int count;
   };
   static constexpr state_variable<state> state_variables[] = {{.member = &state::damage, .name = "damage"},
@@ -57,291 +88,422 @@ struct described_int {
 };
 
 // two state variables have the same .member: each needs one of its own
-struct one_state_twice {
-  double a;
-  CARD;
-  PARAMETER(one_state_twice);
-  STEP;
+WRONG(one_state_twice)
+  STEP
   struct state {
-    double damage, slip;
+    V damage, slip;
   };
   static constexpr state_variable<state> state_variables[] = {{.member = &state::damage, .name = "damage"},
                                                               {.member = &state::damage, .name = "slip"}};
 };
 
 // a state variable needs .member = &state::name and .name = "name"
-struct state_without_member {
-  double a;
-  CARD;
-  PARAMETER(state_without_member);
-  STEP;
+WRONG(state_without_member)
+  STEP
   struct state {
-    double damage;
+    V damage;
   };
   static constexpr state_variable<state> state_variables[] = {{.name = "damage"}};
 };
 
 // a memory is struct state and static constexpr state_variable<state> state_variables[]
-struct state_without_description {
-  double a;
-  CARD;
-  PARAMETER(state_without_description);
-  STEP;
+WRONG(state_without_description)
+  STEP
   struct state {
-    double damage;
+    V damage;
   };
 };
 
+// a history is static constexpr history_card history and either std::int64_t history_size() const with record, or window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)
+WRONG(history_without_size)
+  STEP
+  static constexpr history_card history{.name = "past"};
+  template <class Node>
+  void record(const Node&, history_values) const {}
+};
+
+// record must be template <class Node> void record(const Node& node, history_values own) const
+WRONG(mutable_record)
+  STEP
+  static constexpr history_card history{.name = "past"};
+  std::int64_t history_size() const { return 1; }
+  template <class Node>
+  void record(const Node&, history_values) {}
+};
+
+// a history is static constexpr history_card history and either std::int64_t history_size() const with record, or window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)
+WRONG(window_that_is_never_emptied)
+  STEP
+  static constexpr history_card history{.name = "past"};
+  struct size {
+    double duration, buckets;
+  };
+  size window() const { return {1.0, 4.0}; }
+  static bool adds_to_window(ilaw_status) { return true; }
+};
+
+// ---- parameters
+
+template <class V>
 // two parameters have the same .member: each needs one of its own
 struct one_member_twice {
-  double a, b;
+  V a, b;
   CARD;
-  STEP;
+  STEP
   static constexpr parameter<one_member_twice> parameters[] = {{.member = &one_member_twice::a, .name = "a"},
                                                                {.member = &one_member_twice::a, .name = "b"}};
 };
 
+template <class V>
 // a parameter needs .member = &Law::name and .name = "name"
 struct parameter_without_member {
-  double a;
+  V a;
   CARD;
-  STEP;
+  STEP
   static constexpr parameter<parameter_without_member> parameters[] = {{.name = "a"}};
 };
 
-// a law's members are its parameters, all double: each needs an entry of parameters[]
+template <class V>
+// a law's members are its parameters, all V or double: each needs an entry of parameters[]
 struct member_without_parameter {
-  double a, b;
+  V a, b;
   CARD;
   PARAMETER(member_without_parameter);
-  STEP;
+  STEP
 };
 
-// the kit calls no 'initialize': write 'initialise'
-struct initialize_for_initialise {
+template <class V>
+// a choice or whole number is the same at all nodes: its member is a double, not a V
+struct choice_per_node {
+  V a;
+  CARD;
+  STEP
+  static constexpr const char* texts[] = {"yes", "no"};
+  static constexpr parameter<choice_per_node> parameters[] = {
+      {.member = &choice_per_node::a, .name = "a", .choices = texts}};
+};
+
+template <class V>
+// a field differs from node to node: its member is a V
+struct field_of_a_batch {
   double a;
   CARD;
-  PARAMETER(initialize_for_initialise);
-  STEP;
+  STEP
+  static constexpr parameter<field_of_a_batch> parameters[] = {
+      {.member = &field_of_a_batch::a, .name = "temperature", .is_field = true}};
+};
+
+// ---- names
+
+// the kit calls no 'initialize': write 'initialise'
+WRONG(initialize_for_initialise)
+  STEP
   template <class Node>
   void initialize(Node&) const {}
 };
 
 // the kit calls no 'capabilites': write 'capabilities'
-struct capabilites_for_capabilities {
-  double a;
-  CARD;
-  PARAMETER(capabilites_for_capabilities);
-  STEP;
+WRONG(capabilites_for_capabilities)
+  STEP
   std::uint32_t capabilites() const { return 0; }
 };
 
 // the kit calls no 'conflicts': write 'conflict'
-struct conflicts_for_conflict {
-  double a;
-  CARD;
-  PARAMETER(conflicts_for_conflict);
-  STEP;
+WRONG(conflicts_for_conflict)
+  STEP
   const char* conflicts() const { return nullptr; }
 };
 
+// the kit calls no 'prepared': write 'prepare'
+WRONG(prepared_for_prepare)
+  STEP
+  auto prepared(const step_sizes& s) const { return s.time; }
+};
+
+// the kit calls no 'answered': write 'finish'
+WRONG(answered_for_finish)
+  STEP
+  void answered() const {}
+};
+
+// the kit calls no 'solve_alone': write 'solve_scalar'
+WRONG(solve_alone_for_solve_scalar)
+  STEP
+  static void solve_alone() {}
+};
+
+// the kit calls no 'try_step': write 'step': it has branches that all nodes of a batch share, and any(mask)
+WRONG(tries_its_step)
+  STEP
+  template <class Node>
+  bool try_step(Node&) const {
+    return true;
+  }
+};
+
+// the kit calls no 'history_variable': write 'history'
+WRONG(history_variable_for_history)
+  STEP
+  static constexpr history_card history_variable{.name = "past"};
+};
+
+// the kit calls no 'is_isotropic': write .is_isotropic = true in the card
+WRONG(option_beside_the_card)
+  STEP
+  static constexpr bool is_isotropic = false;
+};
+
+template <class V>
+// 'const ilaw::kit::law_card' has no non-static data member named 'isotropic'
+struct misspelt_option {
+  V a;
+  static constexpr law_card card{.id = "wrong", .title = "A law", .doc = "A mistake.", .isotropic = true};
+  static constexpr const char* references[] = {"none"};
+  PARAMETER(misspelt_option);
+  STEP
+};
+
+// ---- functions
+
 // inputs must be std::uint32_t inputs() const
-struct mutable_inputs {
-  double a;
-  CARD;
-  PARAMETER(mutable_inputs);
-  STEP;
+WRONG(mutable_inputs)
+  STEP
   std::uint32_t inputs() { return reads_gap; }
 };
 
 // inputs must be std::uint32_t inputs() const
-struct inputs_of_bool {
-  double a;
-  CARD;
-  PARAMETER(inputs_of_bool);
-  STEP;
+WRONG(inputs_of_bool)
+  STEP
   bool inputs() const { return true; }
 };
 
+// permissions must be std::uint32_t permissions() const
+WRONG(permissions_beside_the_card)
+  STEP
+  static constexpr std::uint32_t permissions = may_skip_free;
+};
+
+// prepare must be auto prepare(const step_sizes& step) const
+WRONG(prepares_without_steps)
+  STEP
+  double prepare() const { return 1.0; }
+};
+
 // initialise must be template <class Node> void initialise(Node& node) const
-struct mutable_initialise {
-  double a;
-  CARD;
-  PARAMETER(mutable_initialise);
-  STEP;
+WRONG(mutable_initialise)
+  STEP
   template <class Node>
   void initialise(Node&) {}
 };
 
-// step must be const: template <class Node> void step(Node& node) const
-struct mutable_step {
-  double a;
-  CARD;
-  PARAMETER(mutable_step);
+// stable_velocity_step must be V stable_velocity_step(V h_n, V h_t) const, or template <class Node> V stable_velocity_step(const Node& node) const
+WRONG(stable_step_of_nothing)
+  STEP
+  V stable_velocity_step() const { return a; }
+};
+
+// step must be template <class Node> status_of<V> step(Node& node) const
+WRONG(mutable_step)
   template <class Node>
-  void step(Node&) {}
-};
-
-// a law needs template <class Node> void step(Node& node) const
-struct no_step {
-  double a;
-  CARD;
-  PARAMETER(no_step);
-};
-
-// a history is static constexpr history_card history_variable, std::int64_t history_size() const and record
-struct history_without_size {
-  double a;
-  CARD;
-  PARAMETER(history_without_size);
-  STEP;
-  static constexpr history_card history_variable{.name = "past"};
-  template <class Node>
-  void record(const Node&, history) const {}
-};
-
-// record must be template <class Node> void record(const Node& node, history own) const; a window has static
-// bool adds_to_window(double status) and clears_window(double status) in its place
-struct window_that_is_never_emptied {
-  double a;
-  CARD;
-  PARAMETER(window_that_is_never_emptied);
-  STEP;
-  static constexpr history_card history_variable{.name = "past"};
-  std::int64_t history_size() const { return window::doubles(a, 4.0); }
-  window_in_step window_in(step_interval step) const { return {a, 4.0, step}; }
-  static bool adds_to_window(double) { return true; }
-};
-
-// solve and solve_alone must be static, and their problem carry the parameters: they may come per node
-struct solve_with_a_parameter {
-  double a;
-  CARD;
-  PARAMETER(solve_with_a_parameter);
-  template <class V>
-  struct problem {
-    V x;
-  };
-  template <class V>
-  struct answer {
-    V y;
-  };
-  template <class Node>
-  bool asks(Node&, problem<double>&) const {
-    return true;
+  status_of<V> step(Node&) {
+    return status::free;
   }
-  template <class V>
-  mask_of<V> solve(const problem<V>& p, answer<V>& found) const {
-    found.y = a * p.x;
-    return mask_of<V>(false);
-  }
-  void solve_alone(const problem<double>&, answer<double>&) const {}
-  template <class Node>
-  void answered(Node&, const answer<double>&) const {}
 };
 
-// step must take its node by reference: template <class Node> void step(Node& node) const
-struct step_of_a_copy {
-  double a;
-  CARD;
-  PARAMETER(step_of_a_copy);
+// step must be template <class Node> status_of<V> step(Node& node) const
+WRONG(step_of_a_copy)
   template <class Node>
-  void step(Node node) const {
+  status_of<V> step(Node node) const {
+    node.impulse.n = a;
+    return status::free;
+  }
+};
+
+// step must be template <class Node> status_of<V> step(Node& node) const
+WRONG(step_without_status)
+  template <class Node>
+  void step(Node& node) const {
     node.impulse.n = a;
   }
 };
 
+// step must be template <class Node> status_of<V> step(Node& node) const
+WRONG(status_that_is_a_number)
+  template <class Node>
+  V step(Node&) const {
+    return 1.0;
+  }
+};
+
+// a law needs template <class Node> status_of<V> step(Node& node) const
+WRONG(no_step)
+};
+
+template <class V>
 // a card that serves a diagonal H serves a full one, too: in the host's axes it is full
 struct diagonal_alone {
-  double a;
+  V a;
   static constexpr law_card card{
       .id = "wrong", .title = "A law", .doc = "A mistake.", .delassus_forms = ILAW_DELASSUS_DIAGONAL};
   static constexpr const char* references[] = {"none"};
   PARAMETER(diagonal_alone);
-  STEP;
+  STEP
 };
 
-// What laws in pack form have, but for what asks and answers.
-#define SOLVE                                                      \
-  template <class V>                                               \
-  struct problem {                                                 \
-    V x;                                                           \
-  };                                                               \
-  template <class V>                                               \
-  struct answer {                                                  \
-    V y;                                                           \
-  };                                                               \
-  template <class V>                                               \
-  static mask_of<V> solve(const problem<V>& p, answer<V>& found) { \
-    found.y = p.x;                                                 \
-    return mask_of<V>(false);                                      \
-  }                                                                \
-  static void solve_alone(const problem<double>&, answer<double>&) {}
-
-// asks must be template <class Node> bool asks(Node& node, problem<double>& open) const
-struct mutable_asks {
-  double a;
-  CARD;
-  PARAMETER(mutable_asks);
-  SOLVE
+template <class V>
+// no step or ask takes the nodes of a form of H that .delassus_forms of the card names
+struct full_unserved {
+  V a;
+  static constexpr law_card card{.id = "wrong", .title = "A law", .doc = "A mistake."};
+  static constexpr const char* references[] = {"none"};
+  PARAMETER(full_unserved);
   template <class Node>
-  bool asks(Node&, problem<double>&) {
-    return true;
+  status_of<V> step(Node&) const
+    requires is_transverse<Node>
+  {
+    return status::free;
   }
-  template <class Node>
-  void answered(Node&, const answer<double>&) const {}
 };
 
-// answered must be template <class Node> void answered(Node& node, const answer<double>& a) const
-struct mutable_answered {
-  double a;
-  CARD;
-  PARAMETER(mutable_answered);
-  SOLVE
-  template <class Node>
-  bool asks(Node&, problem<double>&) const {
-    return true;
+// ---- solvers
+
+// solve must be mask_of<V> solve(const problem& p, answer& a) const, and solve_scalar the same without result; both may take what prepare gave as well
+WRONG(mutable_solve)
+  PROBLEM
+  ASK
+  FINISH
+  mask_of<V> solve(const problem& p, answer& found) {
+    found.y = a * p.x;
+    return V{} < 0.0;
   }
-  template <class Node>
-  void answered(Node&, const answer<double>&) {}
+  void solve_scalar(const problem&, answer&) const {}
 };
 
-// answered must be template <class Node> void answered(Node& node, const answer<double>& a) const
-struct never_answered {
-  double a;
-  CARD;
-  PARAMETER(never_answered);
+// ask must be template <class Node> asked<V> ask(Node& node, problem& open) const
+WRONG(mutable_ask)
+  PROBLEM
   SOLVE
+  FINISH
   template <class Node>
-  bool asks(Node&, problem<double>&) const {
-    return true;
+  asked<V> ask(Node&, problem&) {
+    return {V{} < 0.0, status::free};
   }
+};
+
+// ask must be template <class Node> asked<V> ask(Node& node, problem& open) const
+WRONG(ask_without_status)
+  PROBLEM
+  SOLVE
+  FINISH
+  template <class Node>
+  mask_of<V> ask(Node&, problem&) const {
+    return V{} < 0.0;
+  }
+};
+
+// finish must be template <class Node> status_of<V> finish(Node& node, const answer& a) const
+WRONG(mutable_finish)
+  PROBLEM
+  SOLVE
+  ASK
+  template <class Node>
+  status_of<V> finish(Node&, const answer&) {
+    return status::free;
+  }
+};
+
+// a solver is problem, answer, ask, solve, solve_scalar and finish: one of them is missing
+WRONG(never_finished)
+  PROBLEM
+  SOLVE
+  ASK
+};
+
+template <class V>
+// the members of problem and answer must all be of type V
+struct problem_with_a_number {
+  V a;
+  CARD;
+  PARAMETER(problem_with_a_number);
+  struct problem {
+    V x;
+    double number;
+  };
+  struct answer {
+    V y;
+  };
+  SOLVE
+  ASK
+  FINISH
+};
+
+// step and ask take the same nodes: bool asks() const says which parameters need ask
+WRONG(undecided)
+  STEP
+  PROBLEM
+  SOLVE
+  ASK
+  FINISH
+};
+
+// asks chooses between step and ask: the law has one of them alone
+WRONG(asks_nothing)
+  STEP
+  bool asks() const { return true; }
+};
+
+// remembers says which parameters need the state: the law has no struct state
+WRONG(remembers_nothing)
+  STEP
+  bool remembers() const { return true; }
 };
 
 // The compiler looks at each.
 #define SEEN(law) auto* const seen_##law = &detail::library_of<law>::describe
 SEEN(larger_state);
 SEEN(state_with_int);
+SEEN(state_with_double);
 SEEN(described_int);
 SEEN(one_state_twice);
 SEEN(state_without_member);
 SEEN(state_without_description);
+SEEN(history_without_size);
+SEEN(mutable_record);
+SEEN(window_that_is_never_emptied);
 SEEN(one_member_twice);
 SEEN(parameter_without_member);
 SEEN(member_without_parameter);
+SEEN(choice_per_node);
+SEEN(field_of_a_batch);
 SEEN(initialize_for_initialise);
 SEEN(capabilites_for_capabilities);
 SEEN(conflicts_for_conflict);
+SEEN(prepared_for_prepare);
+SEEN(answered_for_finish);
+SEEN(solve_alone_for_solve_scalar);
+SEEN(tries_its_step);
+SEEN(history_variable_for_history);
+SEEN(option_beside_the_card);
+SEEN(misspelt_option);
 SEEN(mutable_inputs);
 SEEN(inputs_of_bool);
+SEEN(permissions_beside_the_card);
+SEEN(prepares_without_steps);
 SEEN(mutable_initialise);
+SEEN(stable_step_of_nothing);
 SEEN(mutable_step);
-SEEN(no_step);
-SEEN(history_without_size);
-SEEN(window_that_is_never_emptied);
-SEEN(solve_with_a_parameter);
 SEEN(step_of_a_copy);
+SEEN(step_without_status);
+SEEN(status_that_is_a_number);
+SEEN(no_step);
 SEEN(diagonal_alone);
-SEEN(mutable_asks);
-SEEN(mutable_answered);
-SEEN(never_answered);
+SEEN(full_unserved);
+SEEN(mutable_solve);
+SEEN(mutable_ask);
+SEEN(ask_without_status);
+SEEN(mutable_finish);
+SEEN(never_finished);
+SEEN(problem_with_a_number);
+SEEN(undecided);
+SEEN(asks_nothing);
+SEEN(remembers_nothing);

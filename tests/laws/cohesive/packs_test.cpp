@@ -1,7 +1,8 @@
 // Cohesive zones that are solved side by side: the equations of the page, and the same bits in any company.
 #include "any_inertia.hpp"
 
-#include <ilaw/profile.h>
+#include <ilaw/ext/draft/profile.h>
+#include <ilaw/arrays.hpp>
 
 #include <algorithm>
 #include <cstring>
@@ -55,16 +56,16 @@ struct Nodes {
     b.node_count = static_cast<std::int64_t>(status.size());
     b.velocity_step = step;
     b.position_step = position_step;
-    b.v_free = {v_free.data(), 3, 1};
-    b.delassus = {h.data(), 6, 1};
-    b.gap = {gap.data(), 1, 1};
-    b.v_previous = {before.data(), 3, 1};
-    b.area = {area.data(), 1, 1};
-    b.state_in = {state.data(), states, 1};
-    b.state_out = {state.data(), states, 1};
-    b.impulse = {given.data(), outputs, 1};
-    b.velocity = {given.data() + 3, outputs, 1};
-    b.energy = {given.data() + 6, outputs, 1};
+    b.v_free = ilaw::input(v_free.data(), 3, 1);
+    b.delassus = ilaw::input(h.data(), 6, 1);
+    b.gap = ilaw::input(gap.data(), 1, 1);
+    b.v_previous = ilaw::input(before.data(), 3, 1);
+    b.area = ilaw::input(area.data(), 1, 1);
+    b.state_in = ilaw::input(state.data(), states, 1);
+    b.state_out = ilaw::output(state.data(), states, 1);
+    b.impulse = ilaw::output(given.data(), outputs, 1);
+    b.velocity = ilaw::output(given.data() + 3, outputs, 1);
+    b.energy = ilaw::output(given.data() + 6, outputs, 1);
     b.status = status.data();
     b.status_stride = 1;
     return b;
@@ -131,8 +132,8 @@ std::int64_t one_by_one(const ilaw::interface& law, Nodes& nodes) {
   return count;
 }
 
-// Where two axes are nearly one, adjugates would amplify rounding.
-TEST(CohesivePacks, LeaveAnIllConditionedInertia) {
+// Also where two axes are nearly one.
+TEST(CohesivePacks, TakeAnIllConditionedInertia) {
   Draw draw(44);
   const Parameters parameters{{{"strength", 1.0}, {"toughness", 1.0}, {"stiffness", 100.0}},
                               {{"shape", "bilinear"}}};
@@ -146,7 +147,7 @@ TEST(CohesivePacks, LeaveAnIllConditionedInertia) {
       p.inertia.h = {Vector{1.0, coupling, 0.0}, {coupling, 1.0, 0.0}, {0.0, 0.0, 1.0}};
       nodes.set(i, p, p.damage);
     }
-    EXPECT_EQ(one_by_one(law, nodes), is_fair ? 0 : 100);
+    EXPECT_EQ(one_by_one(law, nodes), 0);
   }
 }
 
@@ -188,7 +189,7 @@ double give_their_bits_in_any_company(double coupled) {
     all += static_cast<std::int64_t>(count);
     ilaw_batch c = apart.batch();
     const std::vector<double> strength(count, parameters.numbers.at("strength"));
-    const ilaw_input values{strength.data(), 1, 1};
+    const ilaw_input values = ilaw::input(strength.data(), 1, 1);
     c.per_node_parameters = &values;
     static_cast<void>(per_node.evaluate(c));
     for (std::size_t i = 0; i < count; ++i) {

@@ -1,6 +1,8 @@
 // Cohesive zones through the ABI: what holds for any motion, invariances, limits, refusals.
 #include "bond.hpp"
 
+#include <ilaw/arrays.hpp>
+
 namespace ilaw::testing {
 namespace {
 
@@ -211,13 +213,13 @@ TEST(CohesiveProperties, RememberedSlipTurnsWithTheNormal) {
   std::vector<double> state(global.info().state_size);
   Vector normal{1, 0, 0}, free{}, previous{}, impulse{};
   ilaw_batch b = local.batch();
-  b.normal = {normal.data(), 0, 1};
-  b.v_previous = {previous.data(), 0, 1};
-  b.v_free = {free.data(), 0, 1};
-  b.state_out = {state.data(), 0, 1};
+  b.normal = ilaw::input(normal.data(), 0, 1);
+  b.v_previous = ilaw::input(previous.data(), 0, 1);
+  b.v_free = ilaw::input(free.data(), 0, 1);
+  b.state_out = ilaw::output(state.data(), 0, 1);
   ASSERT_EQ(global.initialise(b), ILAW_OK);
-  b.state_in = {state.data(), 0, 1};
-  b.impulse = {impulse.data(), 0, 1};
+  b.state_in = ilaw::input(state.data(), 0, 1);
+  b.impulse = ilaw::output(impulse.data(), 0, 1);
   Draw draw(15);
   for (int k = 0; k < 200; ++k) {
     const double c = std::cos(0.1 * k), s = std::sin(0.1 * k);
@@ -262,11 +264,11 @@ TEST(CohesiveProperties, TwoTimeSteps) {
   b.velocity_step = 0.1;
   b.position_step = 0.3;
   const Vector free{2.0, 0, 0};
-  b.v_free = {free.data(), 0, 1};
-  b.state_in = {node.state.data(), 0, 1};
-  b.state_out = {node.state.data(), 0, 1};
-  b.impulse = {node.r.data(), 0, 1};
-  b.velocity = {node.v.data(), 0, 1};
+  b.v_free = ilaw::input(free.data(), 0, 1);
+  b.state_in = ilaw::input(node.state.data(), 0, 1);
+  b.state_out = ilaw::output(node.state.data(), 0, 1);
+  b.impulse = ilaw::output(node.r.data(), 0, 1);
+  b.velocity = ilaw::output(node.v.data(), 0, 1);
   ASSERT_EQ(node.interface.evaluate(b), ILAW_OK);
   EXPECT_NEAR(node.named("mean_opening"), 0.5 * 0.1 * node.v[0], 1e-15);
   EXPECT_NEAR(node.named("opening"), 0.5 * (0.1 + 0.3) * node.v[0], 1e-15);

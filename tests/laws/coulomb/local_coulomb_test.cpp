@@ -3,6 +3,8 @@
 #include "support/law_runner.hpp"
 #include "support/numbers.hpp"
 
+#include <ilaw/arrays.hpp>
+
 namespace ilaw::testing {
 namespace {
 
@@ -23,12 +25,12 @@ class Contacts {
     b.struct_size = sizeof b;
     b.node_count = static_cast<std::int64_t>(q.size());
     b.velocity_step = b.position_step = 1e-3;
-    b.v_free = {q[0].data(), 3, 1};
-    b.v_previous = {previous[0].data(), 3, 1};
-    b.delassus = {h[0].data(), 6, 1};
-    b.gap = {&closed_, 0, 1};
-    b.impulse = {r[0].data(), 3, 1};
-    b.velocity = {v[0].data(), 3, 1};
+    b.v_free = ilaw::input(q[0].data(), 3, 1);
+    b.v_previous = ilaw::input(previous[0].data(), 3, 1);
+    b.delassus = ilaw::input(h[0].data(), 6, 1);
+    b.gap = ilaw::input(&closed_, 0, 1);
+    b.impulse = ilaw::output(r[0].data(), 3, 1);
+    b.velocity = ilaw::output(v[0].data(), 3, 1);
     b.status = status.data();
     b.status_stride = 1;
     report.struct_size = sizeof report;

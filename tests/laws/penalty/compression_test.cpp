@@ -1,5 +1,5 @@
 // The normal equation of the implicit penalty, through the ABI, against its defining equation in long double.
-#include "compression.hpp"
+#include "spring.hpp"
 #include "support/law_runner.hpp"
 #include "support/numbers.hpp"
 #include "support/sizes.hpp"

@@ -3,6 +3,8 @@
 #include "support/numbers.hpp"
 #include "support/sizes.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <limits>
 #include <random>
 
@@ -265,7 +267,7 @@ TEST(Penalty, PerNodeStiffnessGivesTheSameBits) {
       setup.setup.arguments = pointers.data();
       const ilaw::interface varying = make_law("penalty", setup);
       const double stiffness = 3e3;
-      const ilaw_input per_node{&stiffness, 0, 0};
+      const ilaw_input per_node = ilaw::input(&stiffness, 0, 0);
       std::vector<double> state(node.state.size());
       Vector r{};
       for (int k = 0; k < 1000; ++k) {
@@ -274,10 +276,10 @@ TEST(Penalty, PerNodeStiffnessGivesTheSameBits) {
         const Vector previous = node.v_previous;
         ASSERT_EQ(node.step(v), ILAW_OK);
         ilaw_batch b = node.batch();
-        b.v_previous = {previous.data(), 0, 1};
-        b.state_in = {state.data(), 0, 1};
-        b.state_out = {state.data(), 0, 1};
-        b.impulse = {r.data(), 0, 1};
+        b.v_previous = ilaw::input(previous.data(), 0, 1);
+        b.state_in = ilaw::input(state.data(), 0, 1);
+        b.state_out = ilaw::output(state.data(), 0, 1);
+        b.impulse = ilaw::output(r.data(), 0, 1);
         b.per_node_parameters = &per_node;
         ASSERT_EQ(varying.evaluate(b), ILAW_OK);
         ASSERT_EQ(r, node.r);

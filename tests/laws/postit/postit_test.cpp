@@ -2,6 +2,8 @@
 #include "support/numbers.hpp"
 #include "support/rupture_instants.hpp"
 
+#include <ilaw/arrays.hpp>
+
 #include <cstring>
 #include <random>
 #include <vector>
@@ -198,9 +200,9 @@ TEST(Postit, ABondThatBreaksUnderPressureGivesContactTriedOrNot) {
     tried.time = node.time;
     tried.v_free = node.v_free;
     ilaw_batch b = tried.batch();
-    b.state_in = {tried.state.data(), 0, 1};
-    b.state_out = {tried.state.data(), 0, 1};
-    b.impulse = {tried.r.data(), 0, 1};
+    b.state_in = ilaw::input(tried.state.data(), 0, 1);
+    b.state_out = ilaw::output(tried.state.data(), 0, 1);
+    b.impulse = ilaw::output(tried.r.data(), 0, 1);
     ASSERT_EQ(tried.interface.evaluate(b), ILAW_OK);
     ASSERT_EQ(std::memcmp(tried.r.data(), node.r.data(), sizeof node.r), 0) << "k " << k;
     ASSERT_EQ(tried.state, node.state) << "k " << k;

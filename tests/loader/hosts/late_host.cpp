@@ -23,5 +23,7 @@ int main(int argc, char** argv) {
   setup.struct_size = sizeof setup;
   setup.dimension = 1;
   setup.delassus_form = ILAW_DELASSUS_SCALAR;
+  setup.frame = ILAW_FRAME_LOCAL;
+  setup.numbers = ILAW_NUMBERS_DOUBLE;
   kept.interface.emplace(ilaw::library(argv[1]), argv[2], setup);
 }

@@ -3,6 +3,8 @@
 #define ILAW_BUILDING_PLUGIN
 #include <ilaw/ilaw.h>
 
+#include <fenv.h>
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,13 +14,27 @@ struct ilaw_instance {
 
 static int instances; /* that live; laws are created by many threads at once */
 
+#ifdef VARIANT_ROUNDS_AT_LOAD
+__attribute__((constructor)) static void loaded(void) { fesetround(FE_UPWARD); }
+#endif
+
+#ifdef VARIANT_ABORTS
+/* Describing a law runs none of its code: this one's ends the process. */
+__attribute__((constructor)) static void loaded(void) { abort(); }
+#endif
+
 /* in throws.cpp */
 void throw_number(void);
 void throw_error(void);
 
-static int32_t create(const ilaw_setup* setup, ilaw_instance** instance, char* message, size_t message_size) {
+static ilaw_result ILAW_CALL create(const char* id, const ilaw_setup* setup, ilaw_instance** instance,
+                                    char* message, size_t message_size) {
   (void)setup;
+  if (strcmp(id, "zero") != 0) return ILAW_NOT_FOUND;
   if (message_size > 0) message[0] = '\0';
+#ifdef VARIANT_ROUNDS_IN_CREATE
+  fesetround(FE_UPWARD);
+#endif
 #ifdef VARIANT_ODD_CODE
   *instance = NULL;
   return 57;
@@ -42,12 +58,12 @@ static int32_t create(const ilaw_setup* setup, ilaw_instance** instance, char* m
 #endif
 }
 
-static void destroy(ilaw_instance* instance) {
+static void ILAW_CALL destroy(ilaw_instance* instance) {
   if (instance) __atomic_sub_fetch(&instances, 1, __ATOMIC_RELAXED);
   free(instance);
 }
 
-static const void* extension(const char* name) {
+static const void* ILAW_CALL extension(const char* name) {
   return strcmp(name, "tests.instances/1") == 0 ? &instances : NULL;
 }
 
@@ -78,7 +94,14 @@ static const ilaw_state_variable* const state_variables[] = {&first, &second};
 static const char* const per_node[] = {"strength"};
 #endif
 
-static int32_t info(const ilaw_instance* instance, ilaw_instance_info* out) {
+static const ilaw_amount heat = {sizeof heat, 0, "heat", "J", "Of friction."};
+static const ilaw_amount* const amounts[] = {&heat};
+#ifdef VARIANT_FOREIGN_AMOUNT
+static const ilaw_amount wear = {sizeof wear, 0, "wear", "m", "Depth."};
+static const ilaw_amount* const foreign_amounts[] = {&wear};
+#endif
+
+static ilaw_result ILAW_CALL info(const ilaw_instance* instance, ilaw_instance_info* out) {
   const uint32_t size = out->struct_size;
   (void)instance;
   memset(out, 0, size < sizeof *out ? size : sizeof *out);
@@ -101,6 +124,21 @@ static int32_t info(const ilaw_instance* instance, ilaw_instance_info* out) {
 #ifdef VARIANT_UNKNOWN_CAPABILITY
   out->capabilities = 1u << 20;
 #endif
+#ifdef VARIANT_NO_PERMISSIONS
+  out->permissions = 0;
+#else
+  out->permissions = ILAW_MAY_SKIP_FRESH;
+#endif
+#ifdef VARIANT_UNKNOWN_PERMISSION
+  out->permissions |= 1u << 20;
+#endif
+#ifdef VARIANT_FOREIGN_AMOUNT
+  out->amounts = foreign_amounts;
+  out->amount_count = 1;
+#else
+  out->amounts = amounts;
+  out->amount_count = 1;
+#endif
 #ifdef VARIANT_REFUSED_INFO
   return ILAW_INVALID_ARGUMENT;
 #else
@@ -116,7 +154,8 @@ static int32_t info(const ilaw_instance* instance, ilaw_instance_info* out) {
 #define REASON "wrong \033[2J"
 #endif
 
-static int32_t nothing(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report) {
+static ilaw_result ILAW_CALL nothing(const ilaw_instance* instance, const ilaw_batch* batch,
+                                     ilaw_report* report) {
   int64_t i;
   (void)instance;
   (void)report;
@@ -136,26 +175,27 @@ static int32_t nothing(const ilaw_instance* instance, const ilaw_batch* batch, i
   return ILAW_OK;
 }
 
-static const ilaw_parameter parameter = {sizeof(ilaw_parameter),
-                                         ILAW_PARAMETER_NUMBER,
-                                         "strength",
-                                         "s",
-                                         "1",
-                                         "Nothing.",
-                                         0.0,
-                                         1.0,
 #ifdef VARIANT_BAD_DEFAULT
-                                         2.0,
+#define DEFAULT 2.0
+#define MAXIMUM 1.0
 #else
-                                         0.5,
+#define DEFAULT 0.5
+#define MAXIMUM DBL_MAX
 #endif
-                                         0,
-                                         0,
-                                         0,
-                                         0,
-                                         NULL,
-                                         0,
-                                         0};
+static const char* const axes[] = {"time", "slip_speed"};
+static const ilaw_parameter parameter = {
+    .struct_size = sizeof(ilaw_parameter),
+    .kind = ILAW_PARAMETER_NUMBER,
+    .name = "strength",
+    .symbol = "s",
+    .unit = "1",
+    .doc = "Nothing.",
+    .minimum = 0.0,
+    .maximum = MAXIMUM,
+    .default_value = DEFAULT,
+    .flags = ILAW_PARAMETER_ALLOWS_PER_NODE | ILAW_PARAMETER_ALLOWS_INFINITY,
+    .axes = axes,
+    .axis_count = 2};
 static const ilaw_parameter* const parameters[] = {&parameter};
 
 /* What a newer minor version would append to the law. */
@@ -175,7 +215,7 @@ typedef struct newer_law {
 #endif
 #ifdef VARIANT_SMALL_LAW
 #undef LAW_SIZE
-#define LAW_SIZE 96
+#define LAW_SIZE 120
 #endif
 #ifdef VARIANT_BAD_NAME
 #define ID "Zero Law"
@@ -216,28 +256,33 @@ typedef struct newer_law {
 #define OUTPUTS 0
 #endif
 
-static const newer_law zero = {{LAW_SIZE,
-                                DIMENSIONS,
-                                FORMS,
-                                ILAW_INPUT_GAP,
-                                OUTPUTS,
-                                0,
-                                ID,
-                                TITLE,
-                                "Gives no impulse.",
-                                NULL,
-                                parameters,
-                                NULL,
-                                0,
-                                PARAMETER_COUNT,
-                                0,
-                                0,
-                                create,
-                                destroy,
-                                info,
-                                nothing,
-                                EVALUATE,
-                                extension},
+#ifdef VARIANT_UNKNOWN_FRAME
+#define FRAMES 7
+#else
+#define FRAMES ILAW_FRAME_LOCAL
+#endif
+
+static const newer_law zero = {{.struct_size = LAW_SIZE,
+                                .dimensions = DIMENSIONS,
+                                .delassus_forms = FORMS,
+                                .frames = FRAMES,
+                                .numbers = ILAW_NUMBERS_DOUBLE,
+                                .inputs = ILAW_INPUT_GAP,
+                                .outputs = OUTPUTS,
+                                .permissions = ILAW_MAY_SKIP_FRESH,
+                                .id = ID,
+                                .title = TITLE,
+                                .doc = "Gives no impulse.",
+                                .parameters = parameters,
+                                .parameter_count = PARAMETER_COUNT,
+                                .amounts = amounts,
+                                .amount_count = 1,
+                                .create = create,
+                                .destroy = destroy,
+                                .info = info,
+                                .initialise = nothing,
+                                .evaluate = EVALUATE,
+                                .extension = extension},
                                1.0};
 
 static const ilaw_law* const laws[] = {&zero.law, &zero.law};
@@ -264,11 +309,11 @@ static const ilaw_plugin plugin = {
     0,     NULL};
 
 #ifdef VARIANT_OTHER_MAJOR_SYMBOL
-ILAW_EXPORT const ilaw_plugin* ilaw_plugin_v2(void);
-ILAW_EXPORT const ilaw_plugin* ilaw_plugin_v2(void) { return &plugin; }
+ILAW_EXPORT const ilaw_plugin* ILAW_CALL ilaw_plugin_v2(void);
+ILAW_EXPORT const ilaw_plugin* ILAW_CALL ilaw_plugin_v2(void) { return &plugin; }
 #elif defined(VARIANT_NO_ENTRY)
-ILAW_EXPORT const ilaw_plugin* some_other_function(void);
-ILAW_EXPORT const ilaw_plugin* some_other_function(void) { return &plugin; }
+ILAW_EXPORT const ilaw_plugin* ILAW_CALL some_other_function(void);
+ILAW_EXPORT const ilaw_plugin* ILAW_CALL some_other_function(void) { return &plugin; }
 #else
-ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) { return &plugin; }
+ILAW_EXPORT const ilaw_plugin* ILAW_CALL ILAW_ENTRY(void) { return &plugin; }
 #endif

@@ -10,18 +10,20 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 inline constexpr const char* activation_choices[] = {"moreau", "predictive"};
 inline constexpr double moreau = 0.0, predictive = 1.0;
 
-// Contact asks 0 <= excess + H_NN r_N _|_ r_N >= 0 where slack <= 0, and r_N = 0 elsewhere.
+// Contact requires 0 <= excess + H_NN r_N _|_ r_N >= 0 where slack <= 0, and r_N = 0 elsewhere.
 // rest = v_free,N + v_N^- - excess <= 0: the work of r_N over the step is r_N rest/2 then, for any H.
+template <class V>
 struct contact_condition {
-  double slack, excess, rest;
+  V slack, excess, rest;
 };
 
 // A contact that must leave with v_N = target, were it not for its energy: in a central-difference host the
 // work of r over the step is r.(v^- + v)/2, whatever the steps. So v_N <= -v_N^- where it is pressed: a node
 // that was leaving is not stopped, but turns round at most at the speed with which it left. Near the critical
-// step such nodes are met, and stopping them makes the motion diverge. Restitution asks for less by itself.
-constexpr contact_condition contact_leaving_at(double target, double slack, double v_free,
-                                               double v_previous) {
+// step such nodes occur, and stopping them makes the motion diverge. Restitution asks for less by itself.
+template <class V>
+ILAW_KIT_INLINE contact_condition<V> contact_leaving_at(std::type_identity_t<V> target, V slack, V v_free,
+                                                        V v_previous) {
   return {slack, larger(v_free - target, v_free + v_previous), smaller(v_previous + target, 0.0)};
 }
 
@@ -29,31 +31,35 @@ constexpr contact_condition contact_leaving_at(double target, double slack, doub
 // predictive: where the next gap would not be positive, v_N >= -g/h, so that it is never negative. An impact
 // with restitution leaves with -e v_N^- at once, which is larger. A gap that is negative already must not
 // grow; pushing it out would create energy.
-struct activated_contact {
-  double slack, arrival;
-};
 template <class Node>
-activated_contact activated(const Node& node, double activation) {
-  // The same for all nodes, and zero for moreau: where v_N^- >= 0 no target from -e v_N^- to 0 changes excess
-  // or rest.
+ILAW_KIT_INLINE auto contact_at(const Node& node, number_of<Node> restitution, double activation) {
+  using V = number_of<Node>;
+  // Zero for moreau: where v_N^- >= 0 no target from -e v_N^- to 0 changes excess or rest.
   const bool predicts = activation == predictive;
-  const double step = predicts ? node.position_step : 0.0, rate = predicts ? -1.0 / node.position_step : 0.0;
-  const double open = positive_part(node.gap), arrival = open * rate;
-  // Where the gap is positive this is next_gap, to the last bit.
-  const double ahead = open + step * node.v_free.n;
-  return {ahead, arrival};
+  const double step = predicts ? node.position_step : 0.0, rate = predicts ? -node.per_position_step : 0.0;
+  const V open = positive_part(node.gap), arrival = open * rate;
+  const V slack = open + step * node.v_free.n;  // next_gap to the last bit where the gap is positive
+  const V rebound = -restitution * node.v_previous.n;
+  return contact_leaving_at<V>(select(rebound > 0.0, rebound, arrival), slack, node.v_free.n,
+                               node.v_previous.n);
 }
-template <class Node>
-contact_condition contact_at(const Node& node, double restitution, double activation) {
-  const double rebound = -restitution * node.v_previous.n;
-  const activated_contact a = activated(node, activation);
-  return contact_leaving_at(rebound > 0.0 ? rebound : a.arrival, a.slack, node.v_free.n, node.v_previous.n);
+
+template <class Law>
+constexpr parameter<Law> restitution_parameter(typename number_of_law<Law>::type Law::*member) {
+  return {.member = member,
+          .name = "restitution",
+          .symbol = "e",
+          .doc = "Newton's coefficient: normal velocity after an impact over the one before, reversed.",
+          .maximum = 1.0};
 }
-// The same without restitution, to the last bit.
-template <class Node>
-contact_condition inelastic_contact_at(const Node& node, double activation) {
-  const activated_contact a = activated(node, activation);
-  return contact_leaving_at(a.arrival, a.slack, node.v_free.n, node.v_previous.n);
+template <class Law>
+constexpr parameter<Law> activation_parameter(double Law::*member) {
+  return {
+      .member = member,
+      .name = "activation",
+      .doc = "moreau: acts where the gap is closed; predictive: acts where the next gap would be negative.",
+      .default_value = predictive,
+      .choices = activation_choices};
 }
 
 }  // namespace ilaw::kit

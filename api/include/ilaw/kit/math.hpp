@@ -1,75 +1,33 @@
-// math.hpp - functions that give the same bits on every processor and vectorise.
+// math.hpp - functions that give the same bits on every processor, for a double and for a pack.
 // libm may not be used for them: its exp differs in the last place between processors with and without FMA.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/level.hpp>
+#include <ilaw/kit/pack.hpp>
 
-#include <bit>
-#include <cstdint>
-#include <limits>
-
-#ifdef __FAST_MATH__
-#error "the kit needs IEEE arithmetic: compile without -ffast-math"
-#endif
+#include <type_traits>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
-
-// IEEE operations, spelled so that they inline into vector code; exact or correctly rounded everywhere.
 constexpr bool is_finite(double x) { return x - x == 0.0; }
-constexpr double larger(double a, double b) { return a > b ? a : b; }
-constexpr double smaller(double a, double b) { return a < b ? a : b; }
-constexpr double positive_part(double x) { return x > 0.0 ? x : 0.0; }
-// Adding and subtracting the number rounds to the nearest whole one, in vector code too.
-inline bool is_whole(double x) {
+// Adding and subtracting the number rounds to the nearest whole one.
+template <class V>
+ILAW_KIT_INLINE mask_of<V> is_whole(V x) {
   constexpr double to_integer = 0x1.8p52;
-  return ((x + to_integer) - to_integer == x) | (__builtin_fabs(x) >= 0x1p51);
+  return ((x + to_integer) - to_integer == x) | (absolute(x) >= 0x1p51);
 }
 // The largest whole number up to x, for |x| < 2^63.
 inline double floor_of(double x) {
   const auto cut = static_cast<double>(static_cast<std::int64_t>(x));
   return cut > x ? cut - 1.0 : cut;
 }
-inline double absolute(double x) { return __builtin_fabs(x); }
-// x or 0. By its bits, since GCC vectorises no choice by a condition that is the same at all nodes.
-inline double kept_if(bool condition, double x) {
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) &
-                               (std::uint64_t{0} - std::uint64_t{condition}));
-}
-// One of two, by their bits alike: of a choice that steers others, or is the same at all nodes, GCC makes no
-// branches then. Old processors, which have no masks, choose faster.
-inline double chosen(bool first, double a, double b) {
-  if constexpr (detail::is_for_old_processors) return first ? a : b;
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(kept_if(first, a)) |
-                               std::bit_cast<std::uint64_t>(kept_if(!first, b)));
-}
-inline double square_root(double x) { return __builtin_sqrt(x); }
 
-// Halfway between two positive numbers as the bits count: a bisection ends after 64 steps at neighbours.
-inline double halfway(double low, double high) {
-  const auto a = std::bit_cast<std::uint64_t>(low), b = std::bit_cast<std::uint64_t>(high);
-  return std::bit_cast<double>(a + (b - a) / 2);
-}
-
-// `m ? a : b`, the same word for a double and for a pack of them (pack.hpp).
-inline double select(bool m, double a, double b) { return m ? a : b; }
-
-namespace detail {
-
-// A number as its bits and back, for a double and for a pack; of: the same bits in every lane.
+// Halfway between two positive numbers as their bits count: a bisection ends after 64 steps at neighbours.
 template <class V>
-struct bits_of;
-template <>
-struct bits_of<double> {
-  using type = std::uint64_t;
-  static type in(double x) { return std::bit_cast<type>(x); }
-  static type of(std::uint64_t all) { return all; }
-  static double number(type bits) { return std::bit_cast<double>(bits); }
-};
-
-}  // namespace detail
+ILAW_KIT_INLINE V halfway(V low, V high) {
+  using bits = detail::bits_of<V>;
+  return bits::number(bits::in(low) + ((bits::in(high)-bits::in(low)) >> 1));
+}
 
 // Powers of two that bring a number to [2, 4) and back: number * down lies there, number = scaled * up / 2.
 // They are made from its exponent by integer arithmetic, which vectorises without a branch or a division.
@@ -78,7 +36,7 @@ struct power_scale {
   V down, up;
 };
 template <class V>
-power_scale<V> power_scale_of(V largest) {
+ILAW_KIT_INLINE power_scale<V> power_scale_of(V largest) {
   using bits = detail::bits_of<V>;
   constexpr std::uint64_t exponent_bits = 0x7FF0000000000000;
   // A sum, of which compilers make one instruction, and of the choice of the larger one four.
@@ -90,25 +48,32 @@ power_scale<V> power_scale_of(V largest) {
 template <class V>
 struct scaled_length {
   V square, down, up;
-  V root() const { return square_root(square); }  // of down * the vector
-  V length() const { return 0.5 * root() * up; }
+  ILAW_KIT_INLINE V root() const { return square_root(square); }  // of down * the vector
+  ILAW_KIT_INLINE V length() const { return 0.5 * root() * up; }
 };
 template <class V>
-scaled_length<V> scaled_length_of(V a, V b) {
+ILAW_KIT_INLINE scaled_length<V> scaled_length_of(V a, V b) {
   const power_scale<V> scale = power_scale_of(larger(absolute(a), absolute(b)));
   a = a * scale.down;
   b = b * scale.down;
   return {a * a + b * b, scale.down, scale.up};
 }
-inline scaled_length<double> scaled_length_of(double a, double b, double c) {
+template <class V>
+ILAW_KIT_INLINE scaled_length<V> scaled_length_of(V a, V b, V c) {
   const auto scale = power_scale_of(larger(larger(absolute(a), absolute(b)), absolute(c)));
-  a *= scale.down;
-  b *= scale.down;
-  c *= scale.down;
+  a = a * scale.down;
+  b = b * scale.down;
+  c = c * scale.down;
   return {a * a + b * b + c * c, scale.down, scale.up};
 }
-inline double length(double a, double b) { return scaled_length_of(a, b).length(); }
-inline double length(double a, double b, double c) { return scaled_length_of(a, b, c).length(); }
+template <class V>
+ILAW_KIT_INLINE V length(V a, V b) {
+  return scaled_length_of(a, b).length();
+}
+template <class V>
+ILAW_KIT_INLINE V length(V a, V b, V c) {
+  return scaled_length_of(a, b, c).length();
+}
 
 namespace detail {
 
@@ -121,7 +86,7 @@ struct exponential_parts {
 // To 1 ulp: x = k ln2 + s with |s| <= ln2/2 (Cody and Waite 1980), p the Taylor polynomial of degree 13,
 // whose remainder is below 5e-18.
 template <class V>
-exponential_parts<V> parts_of_exponential(V x) {
+ILAW_KIT_INLINE exponential_parts<V> parts_of_exponential(V x) {
   using bits = bits_of<V>;
   constexpr double log2e = 1.4426950408889634;
   constexpr double ln2_high = 6.93147180369123816490e-01;  // 32 bits: k * ln2_high is exact
@@ -138,12 +103,14 @@ exponential_parts<V> parts_of_exponential(V x) {
   const V p = (0.5 + s * (low + s4 * (middle + s4 * high))) * s2 + s;  // the small terms first
   // 2^j from the bits of j + 1023 behind a 1 that is shifted out: no conversion, which few processors have in
   // vectors.
-  const auto power_of_two = [](V j) { return bits::number(bits::in(j + (0x1p52 + 1023.0)) << 52); };
+  const auto power_of_two = [](V j) ILAW_KIT_LAMBDA {
+    return bits::number(bits::in(j + (0x1p52 + 1023.0)) << 52);
+  };
   const V half = (k * 0.5 + to_integer) - to_integer;
   return {p, power_of_two(half), power_of_two(k - half)};
 }
 template <class V>
-V exponential(V x) {
+ILAW_KIT_INLINE V exponential(V x) {
   const exponential_parts<V> e = parts_of_exponential(x);
   const V result = (1.0 + e.p) * e.first * e.second;  // 1 is added last
   return select(x == x, result, x);
@@ -153,12 +120,12 @@ V exponential(V x) {
 // f), whose series to s^23 leaves less than 1e-18. Summed so that f, which is exact, is added last (after
 // FreeBSD's).
 template <class V>
-V logarithm(V x) {
+ILAW_KIT_INLINE V logarithm(V x) {
   using bits = bits_of<V>;
   constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
-  constexpr std::uint64_t one = 0x3FF0000000000000, root_half = 0x3FE6A09E00000000;
+  constexpr std::uint64_t bits_of_one = 0x3FF0000000000000, root_half = 0x3FE6A09E00000000;
   const auto tiny = x < std::numeric_limits<double>::min();
-  const auto moved = bits::in(select(tiny, x * 0x1p54, x)) + bits::of(one - root_half);
+  const auto moved = bits::in(select(tiny, x * 0x1p54, x)) + bits::of(bits_of_one - root_half);
   const V k = bits::number((moved >> 52) | bits::of(0x4330000000000000)) -
               select(tiny, V(0x1p52 + 1077.0), V(0x1p52 + 1023.0));
   const V f = bits::number((moved & bits::of(0x000FFFFFFFFFFFFF)) + bits::of(root_half)) - 1.0;
@@ -185,6 +152,14 @@ V logarithm(V x) {
 
 inline double exp(double x) { return detail::exponential(x); }
 inline double log(double x) { return detail::logarithm(x); }
+template <int Registers>
+ILAW_KIT_INLINE pack_of<Registers> exp(pack_of<Registers> x) {
+  return detail::exponential(x);
+}
+template <int Registers>
+ILAW_KIT_INLINE pack_of<Registers> log(pack_of<Registers> x) {
+  return detail::logarithm(x);
+}
 
 // e^x and, for x <= 0 and to 2 ulp also where it is small, e^x - 1.
 template <class V>
@@ -210,9 +185,11 @@ V log_one_plus(V x) {
 }
 
 // x^y for x >= 0, y > 0, within 1 + |y ln x| ulp; exact or correctly rounded where laws need it most.
-inline double power(double x, double y) {
-  const double general = exp(y * log(x));
-  return y == 1.0 ? x : (y == 1.5 ? x * square_root(x) : (y == 2.0 ? x * x : general));
+template <class V>
+V power(V x, std::type_identity_t<V> y) {
+  const V general = exp(y * log(x));
+  const V squared = select(y == 2.0, x * x, general);
+  return select(y == 1.0, x, select(y == 1.5, x * square_root(x), squared));
 }
 
 }  // namespace ilaw::kit

@@ -1,286 +1,378 @@
-// pack.hpp - doubles side by side, some registers of this level's instruction set full, for solvers that are
-// written once for one problem (V = double) and for a pack of them (V = pack).
+// pack.hpp - the number type V of a law: a double, or a pack of doubles side by side, one per node (lane).
 //
-// Made of the vector extensions of GCC and clang: they compile to the same instructions as
-// std::experimental::simd and take 0.03 s to compile instead of 2 s per instruction set, and, unlike it or
-// Highway, bring no function that a linker could share between levels. Both compilers keep to one rounding
-// per operation with -ffp-contract=off, so that a lane gets the bits that a double gets.
+// A lane gets the bits that a double gets: one rounding per operation, with -ffp-contract=off. Comparisons of
+// packs give masks, of doubles bools; mask_of<V> is either. The same words serve both: select, zero_unless,
+// any, larger.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/math.hpp>
+#include <ilaw/kit/detail/level.hpp>
 
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#include <bit>
 #include <cstdint>
+#include <limits>
+#include <utility>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
-// What one register of this level holds, and how many of them make a pack: one waits for its division or
-// root while the other works.
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+// ---- doubles
+
+constexpr bool any(bool m) { return m; }
+constexpr double select(bool m, double a, double b) { return m ? a : b; }
+constexpr double zero_unless(bool m, double a) { return m ? a : 0.0; }
+constexpr double larger(double a, double b) { return a > b ? a : b; }
+constexpr double smaller(double a, double b) { return a < b ? a : b; }
+constexpr double positive_part(double x) { return x > 0.0 ? x : 0.0; }
+ILAW_KIT_INLINE double absolute(double x) { return __builtin_fabs(x); }
+ILAW_KIT_INLINE double square_root(double x) { return __builtin_sqrt(x); }
+
+namespace detail {
+
+// ---- one register
+
 #if defined(__AVX512F__)
-inline constexpr int register_size = 8;
+inline constexpr int register_lanes = 8;
 #elif defined(__AVX__)
-inline constexpr int register_size = 4;
+inline constexpr int register_lanes = 4;
 #else
-inline constexpr int register_size = 2;
+inline constexpr int register_lanes = 2;
 #endif
-inline constexpr int pack_registers = 2;
-inline constexpr int pack_size = pack_registers * register_size;
+inline constexpr auto each_lane = std::make_integer_sequence<int, register_lanes>{};
 
-namespace detail {
+using one = double __attribute__((vector_size(8 * register_lanes)));
+using one_bits = std::uint64_t __attribute__((vector_size(8 * register_lanes)));
+using one_ints = std::int64_t __attribute__((vector_size(8 * register_lanes)));
 
-template <class Number>
-struct register_of;
-template <>
-struct register_of<double> {
-  using type = double __attribute__((vector_size(8 * register_size)));
-};
-template <>
-struct register_of<std::int64_t> {
-  using type = std::int64_t __attribute__((vector_size(8 * register_size)));
-};
-template <>
-struct register_of<std::uint64_t> {
-  using type = std::uint64_t __attribute__((vector_size(8 * register_size)));
-};
-template <class Number>
-struct registers {
-  using one = typename register_of<Number>::type;
-  one part[pack_registers];
-};
-
-// Register by register.
-template <class Result, class Function>
-[[gnu::always_inline]] inline registers<Result> each(Function f) {
-  registers<Result> all;
-  for (int k = 0; k < pack_registers; ++k) all.part[k] = f(k);
-  return all;
+#if defined(__AVX512F__)
+using one_mask = __mmask8;
+ILAW_KIT_INLINE one_mask and_of(one_mask a, one_mask b) { return _kand_mask8(a, b); }
+ILAW_KIT_INLINE one_mask or_of(one_mask a, one_mask b) { return _kor_mask8(a, b); }
+ILAW_KIT_INLINE one_mask not_of(one_mask a) { return _knot_mask8(a); }
+ILAW_KIT_INLINE one blend(one_mask m, one a, one b) {
+  return (one)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a);
 }
-
-}  // namespace detail
-
-// The bits of a pack.
-class bit_pack {
- public:
-  using lanes = detail::registers<std::uint64_t>;
-
-  explicit bit_pack(lanes v) : v_(v) {}
-  explicit bit_pack(std::uint64_t all)
-      : v_(detail::each<std::uint64_t>([all](int) { return all - lanes::one{}; })) {}
-  const lanes& values() const { return v_; }
-
-#define ILAW_KIT_OF_BITS(operation)                                                               \
-  friend bit_pack operator operation(bit_pack a, bit_pack b) {                                    \
-    return bit_pack(                                                                              \
-        detail::each<std::uint64_t>([&](int k) { return a.v_.part[k] operation b.v_.part[k]; })); \
-  }
-  ILAW_KIT_OF_BITS(+)
-  ILAW_KIT_OF_BITS(-)
-  ILAW_KIT_OF_BITS(&)
-  ILAW_KIT_OF_BITS(|)
-#undef ILAW_KIT_OF_BITS
-  friend bit_pack operator<<(bit_pack a, int n) {
-    return bit_pack(detail::each<std::uint64_t>([&](int k) { return a.v_.part[k] << n; }));
-  }
-  friend bit_pack operator>>(bit_pack a, int n) {
-    return bit_pack(detail::each<std::uint64_t>([&](int k) { return a.v_.part[k] >> n; }));
-  }
-
- private:
-  lanes v_;
-};
-
-// What comparisons of packs give: per lane all bits or none.
-class mask {
- public:
-  using lanes = detail::registers<std::int64_t>;
-
-  explicit mask(lanes v) : v_(v) {}
-  explicit mask(bool all)
-      : v_(detail::each<std::int64_t>(
-            [all](int) { return (all ? std::int64_t{-1} : std::int64_t{0}) - lanes::one{}; })) {}
-  friend mask operator&(mask a, mask b) {
-    return mask(detail::each<std::int64_t>([&](int k) { return a.v_.part[k] & b.v_.part[k]; }));
-  }
-  friend mask operator|(mask a, mask b) {
-    return mask(detail::each<std::int64_t>([&](int k) { return a.v_.part[k] | b.v_.part[k]; }));
-  }
-  friend mask operator!(mask a) {
-    return mask(detail::each<std::int64_t>([&](int k) { return ~a.v_.part[k]; }));
-  }
-  bool operator[](int lane) const { return v_.part[lane / register_size][lane % register_size] != 0; }
-  const lanes& values() const { return v_; }
-
- private:
-  lanes v_;
-};
-
-class pack {
- public:
-  using lanes = detail::registers<double>;
-
-  pack() = default;
-  pack(double all) : v_(detail::each<double>([all](int) { return all - lanes::one{}; })) {}
-  explicit pack(lanes v) : v_(v) {}
-  explicit pack(bit_pack bits)
-      : v_(detail::each<double>([&](int k) { return reinterpret_cast<lanes::one>(bits.values().part[k]); })) {
-  }
-
-  static pack load(const double* values) {
-    pack p;
-    __builtin_memcpy(&p.v_, values, sizeof p.v_);
-    return p;
-  }
-  void store(double* values) const { __builtin_memcpy(values, &v_, sizeof v_); }
-  const lanes& values() const { return v_; }
-  double operator[](int lane) const { return v_.part[lane / register_size][lane % register_size]; }
-  bit_pack bits() const {
-    return bit_pack(detail::each<std::uint64_t>(
-        [&](int k) { return reinterpret_cast<bit_pack::lanes::one>(v_.part[k]); }));
-  }
-
-#define ILAW_KIT_OF_PACKS(operation)                                                               \
-  friend pack operator operation(pack a, pack b) {                                                 \
-    return pack(detail::each<double>([&](int k) { return a.v_.part[k] operation b.v_.part[k]; })); \
-  }
-  ILAW_KIT_OF_PACKS(+)
-  ILAW_KIT_OF_PACKS(-)
-  ILAW_KIT_OF_PACKS(*)
-  ILAW_KIT_OF_PACKS(/)
-#undef ILAW_KIT_OF_PACKS
-#define ILAW_KIT_OF_PACKS(operation)                                                                     \
-  friend mask operator operation(pack a, pack b) {                                                       \
-    return mask(detail::each<std::int64_t>([&](int k) { return a.v_.part[k] operation b.v_.part[k]; })); \
-  }
-  ILAW_KIT_OF_PACKS(<)
-  ILAW_KIT_OF_PACKS(<=)
-  ILAW_KIT_OF_PACKS(>)
-  ILAW_KIT_OF_PACKS(>=)
-  ILAW_KIT_OF_PACKS(==)
-  ILAW_KIT_OF_PACKS(!=)
-#undef ILAW_KIT_OF_PACKS
-  friend pack operator-(pack a) {
-    return pack(detail::each<double>([&](int k) { return -a.v_.part[k]; }));
-  }
-
- private:
-  lanes v_;
-};
-
-// The same words for a double (math.hpp) and for a pack.
-[[gnu::always_inline]] inline pack select(mask m, pack a, pack b) {
-  return pack(detail::each<double>(
-      [&](int k) { return m.values().part[k] ? a.values().part[k] : b.values().part[k]; }));
-}
-
-// The words of math.hpp for one register, which those for a pack are made of.
-namespace detail {
-
-using one_register = registers<double>::one;
-using register_mask = decltype(one_register{} < one_register{});
-
-[[gnu::always_inline]] inline bool any_lane(register_mask m) {
-  using bytes = signed char __attribute__((vector_size(register_size)));
-  std::uint64_t found = 0;
-  const bytes narrow = __builtin_convertvector(m, bytes);
-  __builtin_memcpy(&found, &narrow, sizeof narrow);
-  return found != 0;
-}
-
-// The bits of one register; see bits_of in math.hpp.
-template <>
-struct bits_of<one_register> {
-  using type = registers<std::uint64_t>::one;
-  static type in(one_register x) { return reinterpret_cast<type>(x); }
-  static type of(std::uint64_t all) { return all - type{}; }
-  static one_register number(type bits) { return reinterpret_cast<one_register>(bits); }
-};
-
-}  // namespace detail
-
-[[gnu::always_inline]] inline detail::one_register absolute(detail::one_register x) {
-  using bits = detail::bits_of<detail::one_register>;
-  constexpr std::uint64_t all_but_sign = 0x7FFFFFFFFFFFFFFF;
-  return bits::number(bits::in(x)&all_but_sign);
-}
-[[gnu::always_inline]] inline detail::one_register square_root(detail::one_register x) {
-#if defined(__AVX512F__) && defined(__clang__)
-  constexpr int current_rounding = 4;
-  return __builtin_ia32_sqrtpd512(x, current_rounding);
-#elif defined(__AVX512F__)
-  constexpr int current_rounding = 4;
-  constexpr char every_lane = -1;
-  return __builtin_ia32_sqrtpd512_mask(x, x, every_lane, current_rounding);
-#elif defined(__AVX__)
-  return __builtin_ia32_sqrtpd256(x);
-#elif defined(__SSE2__)
-  return __builtin_ia32_sqrtpd(x);
+ILAW_KIT_INLINE one zeroed(one_mask m, one a) { return (one)_mm512_maskz_mov_pd(m, (__m512d)a); }
+ILAW_KIT_INLINE unsigned bits_of_mask(one_mask m) { return m; }
+ILAW_KIT_INLINE one_mask mask_of_bits(unsigned bits) { return static_cast<one_mask>(bits); }
+#define ILAW_KIT_COMPARE(name, op, code) \
+  ILAW_KIT_INLINE one_mask name(one a, one b) { return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, code); }
 #else
-  for (int k = 0; k < register_size; ++k) x[k] = square_root(x[k]);
+using one_mask = one_ints;
+ILAW_KIT_INLINE one_mask and_of(one_mask a, one_mask b) { return a & b; }
+ILAW_KIT_INLINE one_mask or_of(one_mask a, one_mask b) { return a | b; }
+ILAW_KIT_INLINE one_mask not_of(one_mask a) { return ~a; }
+#if defined(__AVX__)
+ILAW_KIT_INLINE one blend(one_mask m, one a, one b) { return m ? a : b; }
+#else  // GCC 12 stops with an internal error at m ? a : b where it is not optimised
+ILAW_KIT_INLINE one blend(one_mask m, one a, one b) { return (one)((m & (one_ints)a) | (~m & (one_ints)b)); }
+#endif
+ILAW_KIT_INLINE one zeroed(one_mask m, one a) { return (one)(m & (one_ints)a); }
+ILAW_KIT_INLINE unsigned bits_of_mask(one_mask m) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(_mm256_movemask_pd((__m256d)m));
+#elif defined(__SSE2__)
+  return static_cast<unsigned>(_mm_movemask_pd((__m128d)m));
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < register_lanes; ++k) bits |= m[k] != 0 ? 1u << k : 0u;
+  return bits;
+#endif
+}
+ILAW_KIT_INLINE one_mask mask_of_bits(unsigned bits) {
+  one_ints lane{};
+  for (int k = 0; k < register_lanes; ++k) lane[k] = std::int64_t{1} << k;
+  return ((static_cast<std::int64_t>(bits) - one_ints{}) & lane) != 0;
+}
+#define ILAW_KIT_COMPARE(name, op, code) \
+  ILAW_KIT_INLINE one_mask name(one a, one b) { return a op b; }
+#endif
+ILAW_KIT_COMPARE(is_below, <, _CMP_LT_OQ)
+ILAW_KIT_COMPARE(is_at_most, <=, _CMP_LE_OQ)
+ILAW_KIT_COMPARE(is_above, >, _CMP_GT_OQ)
+ILAW_KIT_COMPARE(is_at_least, >=, _CMP_GE_OQ)
+ILAW_KIT_COMPARE(is_equal, ==, _CMP_EQ_OQ)
+ILAW_KIT_COMPARE(is_different, !=, _CMP_NEQ_UQ)
+#undef ILAW_KIT_COMPARE
+
+ILAW_KIT_INLINE one_mask are_different(one_bits a, one_bits b) {
+#if defined(__AVX512F__)
+  return _mm512_cmpneq_epi64_mask((__m512i)a, (__m512i)b);
+#else
+  return a != b;
+#endif
+}
+
+ILAW_KIT_INLINE one larger_of(one a, one b) {
+#if defined(__AVX512F__)
+  return (one)_mm512_max_pd((__m512d)a, (__m512d)b);
+#elif defined(__AVX__)
+  return (one)_mm256_max_pd((__m256d)a, (__m256d)b);
+#elif defined(__SSE2__)
+  return (one)_mm_max_pd((__m128d)a, (__m128d)b);
+#else
+  return a > b ? a : b;
+#endif
+}
+ILAW_KIT_INLINE one smaller_of(one a, one b) {
+#if defined(__AVX512F__)
+  return (one)_mm512_min_pd((__m512d)a, (__m512d)b);
+#elif defined(__AVX__)
+  return (one)_mm256_min_pd((__m256d)a, (__m256d)b);
+#elif defined(__SSE2__)
+  return (one)_mm_min_pd((__m128d)a, (__m128d)b);
+#else
+  return a < b ? a : b;
+#endif
+}
+ILAW_KIT_INLINE one root_of(one x) {
+#if defined(__AVX512F__)
+  return (one)_mm512_sqrt_pd((__m512d)x);
+#elif defined(__AVX__)
+  return (one)_mm256_sqrt_pd((__m256d)x);
+#elif defined(__SSE2__)
+  return (one)_mm_sqrt_pd((__m128d)x);
+#else
+  for (int k = 0; k < register_lanes; ++k) x[k] = __builtin_sqrt(x[k]);
   return x;
 #endif
 }
-inline detail::one_register larger(detail::one_register a, detail::one_register b) { return a > b ? a : b; }
-inline detail::one_register smaller(detail::one_register a, detail::one_register b) { return a < b ? a : b; }
-
-inline bool any(bool m) { return m; }
-[[gnu::always_inline]] inline bool any(mask m) {
-  auto all = m.values().part[0];
-  for (int k = 1; k < pack_registers; ++k) all = all | m.values().part[k];
-  return detail::any_lane(all);
-}
-
-[[gnu::always_inline]] inline pack absolute(pack x) {
-  return pack(detail::each<double>([&](int k) { return absolute(x.values().part[k]); }));
-}
-[[gnu::always_inline]] inline pack square_root(pack x) {
-  return pack(detail::each<double>([&](int k) { return square_root(x.values().part[k]); }));
-}
-[[gnu::always_inline]] inline pack larger(pack a, pack b) { return select(a > b, a, b); }
-[[gnu::always_inline]] inline pack smaller(pack a, pack b) { return select(a < b, a, b); }
-[[gnu::always_inline]] inline pack positive_part(pack x) { return select(x > 0.0, x, 0.0); }
-[[gnu::always_inline]] inline pack halfway(pack low, pack high) {
-  return pack(low.bits() + ((high.bits() - low.bits()) >> 1));
-}
-
-namespace detail {
-
-template <>
-struct bits_of<pack> {
-  using type = bit_pack;
-  static type in(pack x) { return x.bits(); }
-  static type of(std::uint64_t all) { return type(all); }
-  static pack number(type bits) { return pack(bits); }
-};
 
 }  // namespace detail
 
-inline pack exp(pack x) { return detail::exponential(x); }
-inline pack log(pack x) { return detail::logarithm(x); }
+// ---- packs
 
-// A number that is zero for sure: what it multiplies is not worked out, which changes no bit but the sign of
-// a zero.
-struct sure_zero {
-  friend sure_zero operator*(sure_zero, sure_zero) { return {}; }
-  template <class V>
-  friend sure_zero operator*(V /*x*/, sure_zero) {
-    return {};
+template <int Registers>
+struct pack_of;
+
+// One truth per lane. Masks are joined by & and |, and have no && or ||, which would be one truth for all
+// lanes.
+template <int Registers>
+struct pack_mask {
+  detail::one_mask m[Registers];
+
+  template <class F, int... K>
+  ILAW_KIT_INLINE static pack_mask each(F f, std::integer_sequence<int, K...>) {
+    return {{f(K)...}};
   }
-  template <class V>
-  friend sure_zero operator*(sure_zero, V /*x*/) {
-    return {};
+  template <class F>
+  ILAW_KIT_INLINE static pack_mask each(F f) {
+    return each(f, std::make_integer_sequence<int, Registers>{});
   }
-  template <class V>
-  friend V operator+(V x, sure_zero) {
-    return x;
+  ILAW_KIT_INLINE static pack_mask of(bool all) {
+    return each([all](int) ILAW_KIT_LAMBDA { return detail::mask_of_bits(all ? ~0U : 0U); });
   }
-  template <class V>
-  friend V operator-(V x, sure_zero) {
-    return x;
+
+  ILAW_KIT_INLINE friend pack_mask operator&(pack_mask a, pack_mask b) {
+    return each([&](int k) ILAW_KIT_LAMBDA { return detail::and_of(a.m[k], b.m[k]); });
+  }
+  ILAW_KIT_INLINE friend pack_mask operator|(pack_mask a, pack_mask b) {
+    return each([&](int k) ILAW_KIT_LAMBDA { return detail::or_of(a.m[k], b.m[k]); });
+  }
+  ILAW_KIT_INLINE friend pack_mask operator!(pack_mask a) {
+    return each([&](int k) ILAW_KIT_LAMBDA { return detail::not_of(a.m[k]); });
+  }
+  // With an option of the law, which is the same in all lanes.
+  ILAW_KIT_INLINE friend pack_mask operator&(pack_mask a, bool b) { return a & of(b); }
+  ILAW_KIT_INLINE friend pack_mask operator&(bool a, pack_mask b) { return of(a) & b; }
+  ILAW_KIT_INLINE friend pack_mask operator|(pack_mask a, bool b) { return a | of(b); }
+  ILAW_KIT_INLINE friend pack_mask operator|(bool a, pack_mask b) { return of(a) | b; }
+  explicit operator bool() const = delete;  // write any(mask): is it one for all lanes?
+  template <class Other>
+  friend void operator&&(pack_mask a, Other b) = delete;  // write & between masks
+  template <class Other>
+  friend void operator||(pack_mask a, Other b) = delete;  // write | between masks
+
+  ILAW_KIT_INLINE unsigned bits() const {  // one per lane
+    unsigned all = detail::bits_of_mask(m[0]);
+#pragma GCC unroll 4
+    for (int k = 1; k < Registers; ++k) all |= detail::bits_of_mask(m[k]) << (detail::register_lanes * k);
+    return all;
+  }
+  ILAW_KIT_INLINE friend bool any(pack_mask a) { return a.bits() != 0; }
+  ILAW_KIT_INLINE friend pack_of<Registers> select(pack_mask a, pack_of<Registers> x, pack_of<Registers> y) {
+    return pack_of<Registers>::each([&](int k)
+                                        ILAW_KIT_LAMBDA { return detail::blend(a.m[k], x.v[k], y.v[k]); });
+  }
+  ILAW_KIT_INLINE friend pack_of<Registers> zero_unless(pack_mask a, pack_of<Registers> x) {
+    return pack_of<Registers>::each([&](int k) ILAW_KIT_LAMBDA { return detail::zeroed(a.m[k], x.v[k]); });
   }
 };
 
-// What a comparison of V gives.
+template <int Registers>
+struct pack_of {
+  static constexpr int size = detail::register_lanes * Registers;
+  using mask = pack_mask<Registers>;
+
+  detail::one v[Registers];
+
+  pack_of() = default;
+  template <class F, int... K>
+  ILAW_KIT_INLINE pack_of(F f, std::integer_sequence<int, K...>) : v{f(K)...} {}
+  ILAW_KIT_INLINE pack_of(double x)
+      : pack_of([x](int) ILAW_KIT_LAMBDA { return x - detail::one{}; },
+                std::make_integer_sequence<int, Registers>{}) {}
+  template <class F>
+  ILAW_KIT_INLINE static pack_of each(F f) {
+    return pack_of(f, std::make_integer_sequence<int, Registers>{});
+  }
+
+#define ILAW_KIT_OPERATION(op)                                            \
+  ILAW_KIT_INLINE friend pack_of operator op(pack_of a, pack_of b) {      \
+    return each([&](int k) ILAW_KIT_LAMBDA { return a.v[k] op b.v[k]; }); \
+  }
+  ILAW_KIT_OPERATION(+)
+  ILAW_KIT_OPERATION(-)
+  ILAW_KIT_OPERATION(*)
+  ILAW_KIT_OPERATION(/)
+#undef ILAW_KIT_OPERATION
+#define ILAW_KIT_COMPARISON(op, name)                                                       \
+  ILAW_KIT_INLINE friend mask operator op(pack_of a, pack_of b) {                           \
+    return mask::each([&](int k) ILAW_KIT_LAMBDA { return detail::name(a.v[k], b.v[k]); }); \
+  }
+  ILAW_KIT_COMPARISON(<, is_below)
+  ILAW_KIT_COMPARISON(<=, is_at_most)
+  ILAW_KIT_COMPARISON(>, is_above)
+  ILAW_KIT_COMPARISON(>=, is_at_least)
+  ILAW_KIT_COMPARISON(==, is_equal)
+  ILAW_KIT_COMPARISON(!=, is_different)
+#undef ILAW_KIT_COMPARISON
+  ILAW_KIT_INLINE friend pack_of operator-(pack_of a) {
+    return each([&](int k) ILAW_KIT_LAMBDA { return -a.v[k]; });
+  }
+  ILAW_KIT_INLINE friend pack_of& operator+=(pack_of& a, pack_of b) { return a = a + b; }
+  ILAW_KIT_INLINE friend pack_of& operator-=(pack_of& a, pack_of b) { return a = a - b; }
+  ILAW_KIT_INLINE friend pack_of& operator*=(pack_of& a, pack_of b) { return a = a * b; }
+
+  ILAW_KIT_INLINE friend pack_of larger(pack_of a, pack_of b) {
+    return each([&](int k) ILAW_KIT_LAMBDA { return detail::larger_of(a.v[k], b.v[k]); });
+  }
+  ILAW_KIT_INLINE friend pack_of smaller(pack_of a, pack_of b) {
+    return each([&](int k) ILAW_KIT_LAMBDA { return detail::smaller_of(a.v[k], b.v[k]); });
+  }
+  ILAW_KIT_INLINE friend pack_of positive_part(pack_of x) { return larger(x, pack_of(0.0)); }
+  ILAW_KIT_INLINE friend pack_of square_root(pack_of x) {
+    return each([&](int k) ILAW_KIT_LAMBDA { return detail::root_of(x.v[k]); });
+  }
+  ILAW_KIT_INLINE friend pack_of absolute(pack_of x) {
+    constexpr std::uint64_t all_but_sign = 0x7FFFFFFFFFFFFFFF;
+    return each([&](int k) ILAW_KIT_LAMBDA {
+      return (detail::one)((detail::one_bits)x.v[k] & (all_but_sign - detail::one_bits{}));
+    });
+  }
+  ILAW_KIT_INLINE double operator[](int lane) const {
+    return v[lane / detail::register_lanes][lane % detail::register_lanes];
+  }
+};
+
+using pack = pack_of<1>;
+
 template <class V>
 using mask_of = decltype(V{} < V{});
+
+namespace detail {
+
+// ---- the bits of a number, for functions made from its exponent
+
+template <class V>
+struct bits_of {  // of a pack
+  using type = bits_of;
+  one_bits b[V::size / register_lanes];
+
+  template <class F>
+  ILAW_KIT_INLINE static bits_of each(F f) {
+    bits_of a;
+#pragma GCC unroll 4
+    for (int k = 0; k < V::size / register_lanes; ++k) a.b[k] = f(k);
+    return a;
+  }
+  ILAW_KIT_INLINE static bits_of in(V x) {
+    return each([&](int k) ILAW_KIT_LAMBDA { return (one_bits)x.v[k]; });
+  }
+  ILAW_KIT_INLINE static bits_of of(std::uint64_t all) {
+    return each([&](int) ILAW_KIT_LAMBDA { return all - one_bits{}; });
+  }
+  ILAW_KIT_INLINE static V number(bits_of a) {
+    return V::each([&](int k) ILAW_KIT_LAMBDA { return (one)a.b[k]; });
+  }
+#define ILAW_KIT_OPERATION(op)                                            \
+  ILAW_KIT_INLINE friend bits_of operator op(bits_of x, bits_of y) {      \
+    return each([&](int k) ILAW_KIT_LAMBDA { return x.b[k] op y.b[k]; }); \
+  }
+  ILAW_KIT_OPERATION(+)
+  ILAW_KIT_OPERATION(-)
+  ILAW_KIT_OPERATION(&)
+  ILAW_KIT_OPERATION(|)
+#undef ILAW_KIT_OPERATION
+  ILAW_KIT_INLINE friend bits_of operator<<(bits_of a, int n) {
+    return each([&](int k) ILAW_KIT_LAMBDA { return a.b[k] << n; });
+  }
+  ILAW_KIT_INLINE friend bits_of operator>>(bits_of a, int n) {
+    return each([&](int k) ILAW_KIT_LAMBDA { return a.b[k] >> n; });
+  }
+};
+template <>
+struct bits_of<double> {
+  using type = std::uint64_t;
+  ILAW_KIT_INLINE static type in(double x) { return std::bit_cast<type>(x); }
+  ILAW_KIT_INLINE static type of(std::uint64_t all) { return all; }
+  ILAW_KIT_INLINE static double number(type bits) { return std::bit_cast<double>(bits); }
+};
+
+// Whether numbers differ in any bit, as 0 and -0 do.
+ILAW_KIT_INLINE one_mask have_other_bits(one a, one b) {
+#if defined(__AVX512F__)
+  return _mm512_cmpneq_epi64_mask((__m512i)a, (__m512i)b);
+#else
+  return (one_bits)a != (one_bits)b;
+#endif
+}
+template <int Registers>
+ILAW_KIT_INLINE pack_mask<Registers> have_other_bits(pack_of<Registers> a, pack_of<Registers> b) {
+  return pack_mask<Registers>::each([&](int k) ILAW_KIT_LAMBDA { return have_other_bits(a.v[k], b.v[k]); });
+}
+ILAW_KIT_INLINE bool have_other_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) != std::bit_cast<std::uint64_t>(b);
+}
+
+// ---- the lanes of a V
+
+template <class V>
+inline constexpr int lanes_of = V::size;
+template <>
+inline constexpr int lanes_of<double> = 1;
+
+template <int Registers>
+ILAW_KIT_INLINE unsigned mask_bits(pack_mask<Registers> m) {
+  return m.bits();
+}
+ILAW_KIT_INLINE unsigned mask_bits(bool m) { return m ? 1U : 0U; }
+template <class V>
+ILAW_KIT_INLINE mask_of<V> mask_from(unsigned bits) {
+  return mask_of<V>::each([&](int k) ILAW_KIT_LAMBDA { return mask_of_bits(bits >> (register_lanes * k)); });
+}
+template <>
+ILAW_KIT_INLINE bool mask_from<double>(unsigned bits) {
+  return bits != 0;
+}
+ILAW_KIT_INLINE double lane_of(double x, int /*lane*/) { return x; }
+template <int Registers>
+ILAW_KIT_INLINE double lane_of(pack_of<Registers> x, int lane) {
+  return x[lane];
+}
+
+}  // namespace detail
+
+// Zero where a check passes, NaN where not: checks multiply such residuals instead of joining masks.
+template <class V>
+ILAW_KIT_INLINE V nan_unless(mask_of<V> good, V found) {
+  return select(good, found, V(not_a_number));
+}
 
 }  // namespace ilaw::kit

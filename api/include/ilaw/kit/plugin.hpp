@@ -5,91 +5,82 @@
 #ifndef ILAW_BUILDING_PLUGIN
 #define ILAW_BUILDING_PLUGIN
 #endif
-#include <ilaw/profile.h>
-#include <ilaw/kit/detail/checked.hpp>
+#include <ilaw/ext/draft/profile.h>
 #include <ilaw/kit/detail/evaluate.hpp>
-
-namespace ilaw::kit::inline ILAW_KIT_LEVEL {
-
-// One node by a form of the law, with the same bits as in a pack: for a step that chooses its form.
-using detail::step_alone;
-
-}  // namespace ilaw::kit
+#include <ilaw/kit/detail/law_checks.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // The walks of this level, in the order of the laws.
-template <class... Laws>
-inline constexpr ilaw_kit_walk walks[] = {walk_batch<Laws>...};
+template <template <class> class... Laws>
+inline constexpr ilaw_kit_walk walks[] = {walk_batch<Laws<double>>...};
 
-// The place of a law in its library is not known to the law, so create is made per place.
+// The functions of the law at a place of its library, which the law does not know.
 template <std::size_t Place, class Law>
-std::int32_t create_at(const ilaw_setup* setup, ilaw_instance** result, char* text, std::size_t text_size) {
-  const std::int32_t code = create<Law>(setup, result, text, text_size);
-  if (code == ILAW_OK)
-    if (const ilaw_kit_walk* best = best_walks())
-      reinterpret_cast<instance<Law>*>(*result)->walk = best[Place];
-  return code;
-}
+struct functions {
+  static ilaw_result ILAW_CALL create(const char* id, const ilaw_setup* setup, ilaw_instance** result,
+                                      char* text, std::size_t text_size) {
+    message said(text, text_size);
+    if (!result) return ILAW_INVALID_ARGUMENT;
+    const ilaw_kit_walk* best = best_walks();
+    return detail::create<Law>(id, setup, best ? best[Place] : nullptr, result, said);
+  }
 
-template <class Law>
-inline constexpr ilaw_float_functions float_functions{.struct_size = sizeof(ilaw_float_functions),
-                                                      .reserved = 0,
-                                                      .initialise = initialise<Law>,
-                                                      .evaluate = evaluate<Law>};
-
-// The level whose walks an instance uses.
-template <std::size_t Place, class Law>
-const char* instruction_set_at(const ilaw_instance* opaque) {
-  [[maybe_unused]] const ilaw_kit_walk walk = of<Law>(opaque).walk;
+  // The level whose walks an instance uses.
+  static const char* ILAW_CALL instruction_set(const ilaw_instance* opaque) {
+    [[maybe_unused]] const ilaw_kit_walk walk = of<Law>(opaque).walk;
 #if defined(ILAW_KIT_OTHER_LEVELS)
-  if (walk && walk == ilaw_kit_walks_v4()[Place]) return "v4";
-  if (walk && walk == ilaw_kit_walks_v3()[Place]) return "v3";
+    if (walk && walk == ilaw_kit_walks_v4()[Place]) return "v4";
+    if (walk && walk == ilaw_kit_walks_v3()[Place]) return "v3";
 #endif
-  return "baseline";
-}
+    return "baseline";
+  }
+  static constexpr ilaw_profile profile{.struct_size = sizeof(ilaw_profile),
+                                        .reserved = 0,
+                                        .instruction_set = instruction_set,
+                                        .evaluate_counting = evaluate_counting<Law>};
+
+  static const void* ILAW_CALL extension(const char* name) {
+    if (name && std::strcmp(name, ILAW_PROFILE) == 0) return &profile;
+    if constexpr (requires { Law::extension(name); })
+      return Law::extension(name);
+    else
+      return nullptr;
+  }
+};
 
 template <std::size_t Place, class Law>
-inline constexpr ilaw_profile profile{.struct_size = sizeof(ilaw_profile),
-                                      .reserved = 0,
-                                      .instruction_set = instruction_set_at<Place, Law>,
-                                      .evaluate_counting = evaluate_counting<Law>};
-
-// What the law has under names besides: what all laws of the kit have, and what its static member
-// extension(const char*) knows.
-template <std::size_t Place, class Law>
-const void* extension_at(const char* name) {
-  if (name && std::strcmp(name, ILAW_FLOAT) == 0) return &float_functions<Law>;
-  if (name && std::strcmp(name, ILAW_PROFILE) == 0) return &profile<Place, Law>;
-  if constexpr (requires { Law::extension(name); })
-    return Law::extension(name);
-  else
-    return nullptr;
-}
-
-template <std::size_t Place, class Law>
-inline constexpr ilaw_law abi_law{.struct_size = sizeof(ilaw_law),
-                                  .dimensions = Law::card.dimensions,
-                                  .delassus_forms = Law::card.delassus_forms,
-                                  .inputs = Law::card.inputs | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT,
-                                  .outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY,
-                                  .capabilities = Law::card.capabilities,
-                                  .id = Law::card.id,
-                                  .title = Law::card.title,
-                                  .doc = Law::card.doc,
-                                  .references = Law::references,
-                                  .parameters = description<Law>::parameter_pointers.data(),
-                                  .state_variables = description<Law>::state_variable_pointers.data(),
-                                  .reference_count = std::size(Law::references),
-                                  .parameter_count = parameter_count<Law>,
-                                  .state_variable_count = state_variable_count<Law>,
-                                  .reserved = 0,
-                                  .create = create_at<Place, Law>,
-                                  .destroy = destroy<Law>,
-                                  .info = info<Law>,
-                                  .initialise = initialise<Law>,
-                                  .evaluate = evaluate<Law>,
-                                  .extension = extension_at<Place, Law>};
+inline constexpr ilaw_law abi_law = [] {
+  using described = typename instance<Law>::description_type;
+  using own = functions<Place, Law>;
+  return ilaw_law{.struct_size = sizeof(ilaw_law),
+                  .dimensions = Law::card.dimensions,
+                  .delassus_forms = Law::card.delassus_forms,
+                  .frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL,
+                  .numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT,
+                  .inputs = Law::card.inputs | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT,
+                  .outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY,
+                  .capabilities = Law::card.capabilities,
+                  .permissions = Law::card.permissions,
+                  .reserved = 0,
+                  .id = Law::card.id,
+                  .title = Law::card.title,
+                  .doc = Law::card.doc,
+                  .references = Law::references,
+                  .parameters = described::parameter_pointers.data(),
+                  .state_variables = described::state_variable_pointers.data(),
+                  .reference_count = std::size(Law::references),
+                  .parameter_count = static_cast<std::uint32_t>(parameter_count<Law>),
+                  .state_variable_count = static_cast<std::uint32_t>(state_variable_count<Law>),
+                  .amount_count = static_cast<std::uint32_t>(amount_count<Law>),
+                  .amounts = described::amount_pointers.data(),
+                  .create = own::create,
+                  .destroy = destroy<Law>,
+                  .info = info<Law>,
+                  .initialise = initialise<Law>,
+                  .evaluate = evaluate<Law>,
+                  .extension = own::extension};
+}();
 
 // The description of a library with these laws; Checked: whether all of them are laws.
 template <bool Checked, class... Laws>
@@ -124,19 +115,19 @@ class library<false, Laws...> {
   static const ilaw_plugin* describe(const char*, const char*, const char*, const char*) { return nullptr; }
 };
 
-template <class... Laws>
-using library_of = library<(checked<Laws>() && ...), Laws...>;
+template <template <class> class... Laws>
+using library_of = library<(checked<Laws>() && ...), Laws<double>...>;
 
 }  // namespace ilaw::kit::detail
 
-// ILAW_PLUGIN(name, version, vendor, licence, Law...) makes the one exported symbol of a law library; at the
+// ILAW_PLUGIN(name, version, vendor, licence, law...) makes the one exported symbol of a law library; at the
 // other levels, the hidden one that gives their walks.
 #if defined(ILAW_KIT_WALKS)
 #define ILAW_PLUGIN(name, version, vendor, licence, ...) \
   extern "C" const ilaw_kit_walk* ILAW_KIT_WALKS() { return ilaw::kit::detail::walks<__VA_ARGS__>; }
 #else
 #define ILAW_PLUGIN(name, version, vendor, licence, ...)                                         \
-  extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void) {                                   \
+  extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_CALL ILAW_ENTRY(void) {                         \
     return ilaw::kit::detail::library_of<__VA_ARGS__>::describe(name, version, vendor, licence); \
   }
 #endif

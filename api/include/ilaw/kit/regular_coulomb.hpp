@@ -1,13 +1,11 @@
 // regular_coulomb.hpp - the local Coulomb problem where it is well behaved, for a double or a pack of them:
 // weak coupling (one solution), fair condition, no extreme coefficient. Its answer is checked in the rows of
-// the problem itself; what fails is left to the solver of local_coulomb.hpp, which is exact for any problem.
+// the problem itself; what fails is left to the solver of exact_coulomb.hpp, which is exact for any problem.
 // The equations are derived in docs/theory/local_coulomb.md.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/pack.hpp>
-
-#include <type_traits>
+#include <ilaw/kit/symmetric.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
@@ -19,21 +17,6 @@ struct local_problem {
 };
 
 namespace local {
-
-// A symmetric matrix with two rows, and the products with its adjugate, so that a solve is one division.
-template <class V, class Coupling>
-struct symmetric_2x2 {
-  V a11, a22;
-  Coupling a12;
-
-  symmetric_2x2 shifted(V alpha) const { return {a11 + alpha, a22 + alpha, a12}; }
-  V determinant() const { return a11 * a22 - a12 * a12; }
-  V trace() const { return a11 + a22; }
-  V adjugate_1(V x, V y) const { return a22 * x - a12 * y; }
-  V adjugate_2(V x, V y) const { return a11 * y - a12 * x; }
-  V row_1(V x, V y) const { return a11 * x + a12 * y; }
-  V row_2(V x, V y) const { return a22 * y + a12 * x; }
-};
 
 template <class V>
 struct regular_answer {
@@ -68,7 +51,7 @@ class regular_contact {
     const trial start = at(0.0);
     const Mask sticks = start.need <= n_ * det;
     // By Cauchy and Schwarz need falls with alpha: one root.
-    Mask is_single(true);
+    Mask is_single = sticks | !sticks;
     if constexpr (!std::is_same_v<Coupling, sure_zero>) {
       const V coupling = w1_ * s_.adjugate_1(w1_, w2_) + w2_ * s_.adjugate_2(w1_, w2_);
       is_single = sticks | (m_ * m_ * coupling * s_.trace() < det);

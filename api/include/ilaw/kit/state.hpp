@@ -1,29 +1,18 @@
-// state.hpp - how a law describes what a node remembers: one entry per member of its struct state, which
-// says where the number stands and, by the member's type, what it is. Order and size cannot differ.
-//   struct state { double damage; vector opening; tangential_vector slip; };
+// state.hpp - how a law describes what a node remembers: one entry per member of its struct state, which says
+// where the number stands and, by the member's type, what it is. Order and size cannot differ.
+//   struct state { V damage; vector<V> opening; tangential_vector<V> slip; };
 //   static constexpr state_variable<state> state_variables[] = {
 //       {.member = &state::damage, .name = "damage", .maximum = 1.0, ...}, ...};
 // A host finds the variables in the order of their entries, whatever that of the struct is.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/node.hpp>
+#include <ilaw/kit/law.hpp>
+#include <ilaw/kit/vector.hpp>
 
 #include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <type_traits>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
-
-// A vector without normal component, to be remembered: a host keeps d-1 doubles of it.
-struct tangential_vector {
-  double t1 = 0.0, t2 = 0.0;
-
-  constexpr operator vector() const { return {0.0, t1, t2}; }
-};
 
 // The member of a struct state that a variable describes: all of it, or one component of a vector, which then
 // has entries for all three.
@@ -32,22 +21,22 @@ class state_member {
  public:
   constexpr state_member() = default;
   constexpr state_member(double State::*member) : scalar_(member) {}
-  constexpr state_member(vector State::*member) : vector_(member), kind_(ILAW_STATE_VECTOR) {}
-  constexpr state_member(vector State::*member, double vector::*component)
+  constexpr state_member(vector<double> State::*member) : vector_(member), kind_(ILAW_STATE_VECTOR) {}
+  constexpr state_member(vector<double> State::*member, double vector<double>::*component)
       : vector_(member),
         component_(component),
-        kind_(component == &vector::n ? ILAW_STATE_SCALAR : ILAW_STATE_HISTORY) {}
-  constexpr state_member(tangential_vector State::*member)
+        kind_(component == &vector<double>::n ? ILAW_STATE_SCALAR : ILAW_STATE_HISTORY) {}
+  constexpr state_member(tangential_vector<double> State::*member)
       : tangential_(member), kind_(ILAW_STATE_TANGENTIAL) {}
   template <class Other>
   constexpr state_member(Other State::*) {
     static_assert(std::is_same_v<Other, double>,
-                  "a member of struct state is a double, a vector or a tangential_vector");
+                  "a member of struct state is a V, a vector<V> or a tangential_vector<V>");
   }
 
   constexpr bool is_given() const { return scalar_ || vector_ || tangential_; }
   constexpr std::uint32_t kind() const { return kind_; }
-  constexpr int doubles() const {  // in struct state
+  constexpr int numbers() const {  // in struct state
     return kind_ == ILAW_STATE_VECTOR ? 3 : (kind_ == ILAW_STATE_TANGENTIAL ? 2 : 1);
   }
   constexpr int components(int dimension) const {  // in the host's state
@@ -55,11 +44,11 @@ class state_member {
     return kind_ == ILAW_STATE_VECTOR ? dimension : 1;
   }
 
-  // Which double of struct state is its first one: the one that changes with it.
+  // Which number of struct state is its first one: the one that changes with it.
   constexpr int place() const {
     const auto before = marked(1.0), after = marked(2.0);
     int k = 0;
-    while (before[k] == after[k]) ++k;
+    while (before[static_cast<std::size_t>(k)] == after[static_cast<std::size_t>(k)]) ++k;
     return k;
   }
 
@@ -67,15 +56,15 @@ class state_member {
   constexpr auto marked(double value) const {
     State s{};
     if (scalar_) s.*scalar_ = value;
-    if (vector_) (s.*vector_).*(component_ ? component_ : &vector::n) = value;
+    if (vector_) (s.*vector_).*(component_ ? component_ : &vector<double>::n) = value;
     if (tangential_) (s.*tangential_).t1 = value;
     return std::bit_cast<std::array<double, sizeof(State) / sizeof(double)>>(s);
   }
 
   double State::*scalar_ = nullptr;
-  vector State::*vector_ = nullptr;
-  double vector::*component_ = nullptr;
-  tangential_vector State::*tangential_ = nullptr;
+  vector<double> State::*vector_ = nullptr;
+  double vector<double>::*component_ = nullptr;
+  tangential_vector<double> State::*tangential_ = nullptr;
   std::uint32_t kind_ = ILAW_STATE_SCALAR;
 };
 
@@ -95,21 +84,72 @@ struct state_variable {
     return whole || minimum > -std::numeric_limits<double>::max() ||
            maximum < std::numeric_limits<double>::max();
   }
-  // Of a value that is finite.
-  bool may_be(double value) const {
+  // Of values that are finite.
+  template <class V>
+  ILAW_KIT_INLINE mask_of<V> may_be(V value) const {
     if (whole && minimum == 0.0 && maximum == 1.0) return value * value == value;
     if (!whole && maximum == std::numeric_limits<double>::max()) return value >= minimum;
-    const bool inside = (value >= minimum) & (value <= maximum);
+    const auto inside = (value >= minimum) & (value <= maximum);
     return whole ? inside & is_whole(value) : inside;
   }
 };
 
-// The history of a law, any number of doubles; see window.hpp for one.
+// The history of a law: any number of doubles of a node, meaningful to the law alone.
 struct history_card {
   const char* name;
   const char* unit = "1";
   const char* doc = "";
   bool internal = false;
 };
+struct const_history {
+  const double* values;
+  std::int64_t stride;
+  double operator[](std::int64_t k) const { return values[k * stride]; }
+};
+struct history_values {
+  double* values;
+  std::int64_t stride;
+  double& operator[](std::int64_t k) const { return values[k * stride]; }
+  operator const_history() const { return {values, stride}; }
+};
 
+// Whether a law remembers directions, which turn with the frame.
+template <class Law>
+constexpr bool has_vector_state() {
+  if constexpr (has_state<Law>)
+    for (const auto& v : Law::state_variables)
+      if (v.member.kind() != ILAW_STATE_SCALAR) return true;
+  return false;
+}
+
+namespace detail {
+
+// Where the variables of L<double> stand in struct state.
+template <class Law>
+inline constexpr auto state_places = [] {
+  if constexpr (has_state<Law>) {
+    std::array<int, std::size(Law::state_variables)> places{};
+    for (std::size_t v = 0; v < places.size(); ++v) places[v] = Law::state_variables[v].member.place();
+    return places;
+  } else {
+    return std::array<int, 1>{};
+  }
+}();
+
+// Entry of the host's state that holds number k of struct state; -1: a component beyond the dimension.
+template <class Law>
+constexpr int state_entry(int k, int dimension) {
+  int entry = 0;
+  if constexpr (has_state<Law>)
+    for (std::size_t v = 0; v < std::size(Law::state_variables); ++v) {
+      const auto& member = Law::state_variables[v].member;
+      const int component = k - state_places<Law>[v];
+      if (component >= 0 && component < member.numbers())
+        return component < member.components(dimension) ? entry + component : -1;
+      entry += member.components(dimension);
+    }
+  return -1;
+}
+
+}  // namespace detail
 }  // namespace ilaw::kit

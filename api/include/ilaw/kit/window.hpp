@@ -6,28 +6,26 @@
 // width w = tau/B stand on a fixed grid in absolute time, b_j over [j w, (j + 1) w). With k = floor(e/w) and
 // theta = (k + 1) - e/w, the part of the oldest bucket that tau still covers, the sum is
 //   S = r + b_k + (b_{k-1} + ... + b_{k-B+1}) + theta b_{k-B} + theta (1 - theta)/2 sigma,
-// its last term by a force that is linear in the oldest bucket: sigma = b_{k-B+1} - b_{k-B}, limited to twice
-// b_{k-B} so that no force changes its sign within a bucket (van Leer 1979, in normal and tangential part).
-// The own impulse counts whole: where h >= tau, S = r.
+// its last term from a force that is linear in the oldest bucket: sigma = b_{k-B+1} - b_{k-B}, limited to
+// twice b_{k-B} so that no force changes its sign within a bucket (van Leer 1979, in normal and tangential
+// part). The step's own impulse counts in full: where h >= tau, S = r.
 //
-// Error, for a force F that is smooth over the two oldest buckets: for F = x^2/2 over buckets [0, 1] and
-// [1, 2], b = 1/6 and sigma = 1, and with u = 1 - theta the sum of the oldest is off by u (1 - u) (2 - u)/6,
-// at most 1/(9 sqrt 3). Hence |S - integral of F| <= w^3 |F''|/(9 sqrt 3), and constant and linear forces are
-// exact. Where the slope is limited, or not known since the step began less than a bucket after the oldest
-// (h > tau - 2 w), |S - integral| <= w^2 |F'|/8 (linear interpolation of the integral). A step that the edge
-// of a bucket cuts adds up to h^2 |F'|/8. Where F jumps by J within the oldest bucket: w J/4. A shock is
-// exact until tau - w after it, and fades over the width of its bucket.
+// Error, for a force F that is smooth over the two oldest buckets: for F = x^2/2 over buckets [0, 1] and [1,
+// 2], b = 1/6 and sigma = 1, and with u = 1 - theta the sum of the oldest is off by u (1 - u) (2 - u)/6, at
+// most 1/(9 sqrt 3). Hence |S - integral of F| <= w^3 |F''|/(9 sqrt 3), and constant and linear forces are
+// exact. Where the slope is limited, or unknown since the step began less than a bucket after the oldest (h >
+// tau - 2 w), |S - integral| <= w^2 |F'|/8 (linear interpolation of the integral). A step that the edge of a
+// bucket cuts adds up to h^2 |F'|/8. Where F jumps by J within the oldest bucket: w J/4. A shock is exact
+// until tau - w after it, and fades over the width of its bucket.
 //
-// No sum runs on: that of the middle buckets is formed anew whenever k turns, so nothing drifts. Of time the
-// state holds the number of the newest bucket alone. A step without impulse leaves it as it is, bit for bit.
+// No running sum is kept: that of the middle buckets is formed anew whenever k changes, so nothing drifts.
+// The only time in the state is the number of the newest bucket. A step without impulse leaves the state as
+// it is, bit for bit.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/window_grid.hpp>
+#include <ilaw/kit/detail/window_values.hpp>
 #include <ilaw/kit/node.hpp>
-
-#include <concepts>
-#include <cstdint>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
@@ -35,150 +33,314 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 // does a clock that adds up its steps.
 inline constexpr double window_slack = 1e-9;
 
-// A window in one step. What is the same at all nodes is worked out once.
-class window_in_step : protected detail::window_grid {
- public:
-  using window_grid::window_grid;
-
-  // The sum of the impulses before the step, within tau of its end; or why there is none.
-  struct reading {
-    vector sum;
-    double refused = not_refused;
-  };
-  template <class History>
-  reading before(const History& own) const {
-    if (duration_ == 0.0) return {};
-    if (duration_ == infinity) return checked(read(own, 0));
-    const double stamp = own[0];
-    if (!is_stamp(stamp)) return {{}, impossible_state};
-    if (stamp == empty || !has_grid_) return {};
-    const double newest = bucket_of(stamp), k = larger(now_, newest);
-    // A host whose position step is not the next one may fall back by a part of its last step.
-    if (now_ < newest - 1.0) return {{}, time_before_history};
-    if (!is_short_ || k - newest > buckets_) return {};
-    const edge e = edge_at(k);
-    if (k == newest)
-      return checked(e.sum(read(own, middle_sum), read(own, current), read(own, oldest_bucket),
-                           read(own, oldest_slope)));
-    const turned t = turn(own, k, k - newest);
-    const vector middle = t.middle, oldest = t.oldest;
-    return checked(e.sum(middle, {}, oldest, limited_difference(oldest, vector(t.next))));
-  }
-
-  // Takes the step's own impulse in. The history is one that before() did not refuse.
-  void add(const history& own, vector impulse) const {
-    if (duration_ == 0.0 || is_zero(impulse)) return;
-    if (duration_ == infinity) return write(own, 0, read(own, 0) + impulse);
-    if (!has_grid_) return;
-    if (own[0] == stamp_ && begin_ >= now_) return write(own, current, read(own, current) + impulse);
-    const double k = newest_with_step(own[0]), turns = turns_since(own[0]);
-    add_in(own, impulse, k, turns, turns > 0.0 ? turn(own, k, turns) : turned{});
-  }
-
-  // An empty window is one without a newest bucket; what else its history holds does not count.
-  void clear(const history& own) const {
-    if (duration_ == infinity) write(own, 0, {});
-    if (duration_ > 0.0 && duration_ < infinity) own[0] = empty;
-  }
-
-  bool forgets() const { return duration_ == 0.0; }
-
- protected:
-  friend class window;
-  static bool is_zero(vector a) { return a.n == 0.0 && a.t1 == 0.0 && a.t2 == 0.0; }
-  static reading checked(vector sum) { return {sum, defect(sum) == 0.0 ? not_refused : impossible_state}; }
-
-  // The newest bucket once a step is taken in, and by how many it then lies behind the one before; more than
-  // B where that was empty, or nothing of it counts.
-  double newest_with_step(double stamp) const {
-    return stamp == empty ? now_ : larger(now_, bucket_of(stamp));
-  }
-  double turns_since(double stamp) const {
-    return stamp == empty ? buckets_ + 1.0
-                          : smaller(newest_with_step(stamp) - bucket_of(stamp), buckets_ + 1.0);
-  }
-
-  // Bucket k becomes the newest, or is it still; t: what turn() makes of the others, without the impulse.
-  void add_in(const history& own, vector impulse, double k, double turns, const turned& t) const {
-    if (own.stride == 1)
-      add_where(neighbours<double>{own.values}, impulse, k, turns, t);
-    else
-      add_where(own, impulse, k, turns, t);
-  }
-  template <class History>
-  [[gnu::noinline]] void add_where(const History& own, vector impulse, double k, double turns,
-                                   const turned& t) const {
-    vector middle = turns > 0.0 ? t.middle : read(own, middle_sum);
-    if (turns > 0.0) open(own, k, turns, t.oldest);
-    spread(own, impulse, k, middle);
-    write(own, middle_sum, middle);
-    const double oldest = k - buckets_;
-    write(own, oldest_slope,
-          limited_difference(read(own, oldest_bucket), read(own, index_of(oldest + 1.0, k))));
-    own[0] = stamp_of(k);
-  }
-  // Closes the newest bucket and opens those up to k, of which it is so many away.
-  template <class History>
-  void open(const History& own, double k, double turns, vector oldest) const {
-    const vector last = read(own, current);
-    std::int64_t place = place_of(k - 1.0);
-    double j = 1.0;
-    for (; j < turns && j < buckets_; j += 1.0, place = previous(place)) write(own, at(place), {});
-    if (turns < buckets_) write(own, at(place), last);
-    write(own, oldest_bucket, oldest);
-    write(own, current, {});
-  }
-  // Over the buckets that the step covers, as far as tau reaches; the last takes what is left, so that the
-  // whole arrives. The step may end before bucket k.
-  template <class History>
-  void spread(const History& own, vector impulse, double k, vector& middle) const {
-    const shares s = k == now_ ? shares_ : shares_at(k);
-    vector left = impulse;
-    for (double j = s.first; j < now_; j += 1.0) {
-      const vector part = (j == s.first ? s.of_first : s.of_others) * impulse;
-      left = left - part;
-      put_in(own, part, j, k, middle);
-    }
-    put_in(own, s.is_whole ? left : s.of_last * impulse, now_, k, middle);
-  }
-  template <class History>
-  void put_in(const History& own, vector part, double j, double k, vector& middle) const {
-    const std::int64_t index = index_of(j, k);
-    write(own, index, read(own, index) + part);
-    if (index >= first_bucket) middle = middle + part;
-  }
+// What a law's window() gives: the duration tau and the number of buckets B.
+struct window_size {
+  double duration, buckets;
 };
 
+template <class Law>
+constexpr parameter<Law> memory_parameter(double Law::*member) {
+  return {.member = member,
+          .name = "memory",
+          .symbol = "tau_Y",
+          .unit = "s",
+          .doc = "Duration over which impulses are summed; 0: the step's own impulse alone.",
+          .infinity_allowed = true};
+}
+template <class Law>
+constexpr parameter<Law> buckets_parameter(double Law::*member) {
+  return {.member = member,
+          .name = "buckets",
+          .symbol = "B",
+          .doc = "Buckets of the window, which is of third order in their width memory/B.",
+          .default_value = 16.0,
+          .minimum = 1.0,
+          .maximum = 4096.0,
+          .whole = true};
+}
+inline constexpr history_card window_variable{
+    .name = "window", .unit = "N.s", .doc = "Impulses of the last memory.", .internal = true};
+
+// The windows of some nodes in one step, on V: lanes whose newest bucket is the same are worked on together.
+// Own: where the windows stand (window_values.hpp).
 class window {
  public:
-  using reading = window_in_step::reading;
-
-  // Doubles of history that a duration and a number of buckets B need, whatever the time step.
-  static std::int64_t doubles(double duration, double buckets) {
-    if (duration == 0.0) return 0;
-    if (duration == infinity) return 3;
-    return window_in_step::first_bucket + 3 * (static_cast<std::int64_t>(buckets) - 1);
+  // Doubles of history, whatever the time step.
+  static constexpr std::int64_t doubles(window_size size) {
+    if (size.duration == 0.0) return 0;
+    if (size.duration == infinity) return 3;
+    return first_bucket + 3 * (static_cast<std::int64_t>(size.buckets) - 1);
   }
 
-  window(double duration, double buckets) : duration_(duration), buckets_(buckets) {}
+  window(window_size size, step_interval step)
+      : duration_(size.duration),
+        buckets_(size.buckets),
+        end_(step.end * (size.buckets / size.duration)),
+        begin_(end_ - step.length * (size.buckets / size.duration)),
+        now_(on_grid(end_) ? floor_of(end_) : 0.0),
+        has_grid_(duration_ > 0.0 && duration_ < infinity && on_grid(end_)),
+        is_short_(step.length < duration_),
+        counts_(has_grid_ && is_short_),
+        stamp_(stamp_of(now_)),
+        ring_size_(static_cast<std::int64_t>(buckets_) - 1),
+        edge_(edge_at(now_)),
+        shares_(has_grid_ ? shares_at(now_) : shares{}) {}
 
-  window_in_step in(step_interval step) const { return {duration_, buckets_, step}; }
-
-  template <class History>
-  reading before(const History& own, step_interval step) const {
-    return in(step).before(own);
+  // The sums of the impulses before the step, within tau of its end. Returns the code of a refusal.
+  template <class Own>
+  ILAW_KIT_INLINE auto read(const Own& own, vector<typename Own::number>& sum) const {
+    using V = typename Own::number;
+    V refused = 0.0;
+    if (duration_ == infinity) {
+      sum = own.vector_at(0);
+    } else {
+      const V stamp = own.number_at(0);
+      const mask_of<V> open = (stamp == stamp_) & counts_;
+      sum = {};
+      if (any(open)) sum = zero_unless(open, open_sum(own, edge_));
+      const mask_of<V> others = !(open | (stamp == empty));
+      if (any(others)) [[unlikely]] {
+        vector<V> all = sum;
+        refused = read_others(own, others, stamp, all);
+        sum = all;
+      }
+    }
+    return select(residual(sum, V(0.0)) == 0.0, refused, code_of<V>(refusal::impossible_state));
   }
-  void add(const history& own, step_interval step, vector impulse) const { in(step).add(own, impulse); }
+
+  // Empties the windows of some nodes, and then takes in the impulse at some. The history is one that read()
+  // did not refuse.
+  template <class Own, class V = typename Own::number>
+  ILAW_KIT_INLINE void write(const Own& own, mask_of<V> clears, mask_of<V> adds, vector<V> impulse) const {
+    mask_of<V> left = adds & ((impulse.n != 0.0) | (impulse.t1 != 0.0) | (impulse.t2 != 0.0));
+    if (duration_ == infinity) {
+      if (any(clears | left))
+        own.put(clears | left, 0, zero_unless(!clears, own.vector_at(0)) + zero_unless(left, impulse));
+      return;
+    }
+    if (any(clears)) own.put_number(clears, 0, empty);  // of an empty window no other number counts
+    left = left & has_grid_;
+    if (begin_ >= now_) {  // the step lies in one bucket
+      const mask_of<V> open = left & (own.number_at(0) == stamp_);
+      if (any(open)) own.add(open, current, impulse);
+      left = left & !open;
+    }
+    if (any(left)) [[unlikely]]
+      write_others(own, left, impulse);
+  }
 
  private:
-  double duration_, buckets_;
-};
+  // What every step needs stands in front: the number of the newest bucket, which is open, its sum, that of
+  // the middle ones, the oldest bucket and the slope in it. Behind are the middle buckets, as a ring.
+  static constexpr std::int64_t current = 1, middle_sum = 4, oldest_bucket = 7, oldest_slope = 10,
+                                first_bucket = 13;
+  // Numbers of buckets that a double and a cast hold with room to spare. A grid finer than that is finer than
+  // the clock: no step lies within tau of another.
+  static constexpr double largest_number = 0x1p51;
 
-// Whether a law's history is a window: the kit reads it ahead of the steps of a block, as node.earlier, and
-// takes in what they gave. So the steps themselves run in vector code.
-template <class Law>
-concept has_window = requires(const Law& law, step_interval step) {
-  { law.window_in(step) } -> std::same_as<window_in_step>;
+  // The newest bucket is kept as a number other than zero, so that zeros are an empty window.
+  static constexpr double empty = 0.0;
+  static double stamp_of(double bucket) { return bucket >= 0.0 ? bucket + 1.0 : bucket; }
+  static double bucket_of(double stamp) { return stamp > 0.0 ? stamp - 1.0 : stamp; }
+  static bool on_grid(double x) { return absolute(x) < largest_number; }
+  template <class V>
+  static V code_of(refusal reason) {
+    return static_cast<double>(reason);
+  }
+  template <class V>
+  static double first_of(mask_of<V> lanes, V x) {
+    return detail::lane_of(x, __builtin_ctz(detail::mask_bits(lanes)));
+  }
+  static double first_of(bool, double x) { return x; }
+
+  // Places in the ring: bucket j stands at j modulo B - 1, so that the bucket that closes takes the place of
+  // the one that becomes the oldest.
+  std::int64_t place_of(double bucket) const {
+    const double size = buckets_ - 1.0;
+    if (size < 1.0) return 0;
+    const double place = bucket - floor_of(bucket * (1.0 / size)) * size;  // the quotient may be one off
+    return static_cast<std::int64_t>(place < 0.0 ? place + size : (place < size ? place : place - size));
+  }
+  static std::int64_t at(std::int64_t place) { return first_bucket + 3 * place; }
+
+  // What counts of the oldest bucket: the part that tau still covers, and its correction by the slope.
+  struct edge {
+    double part, slope;
+
+    // Of vectors in lanes, or of one that fills a register.
+    template <class Vector>
+    ILAW_KIT_INLINE Vector sum(Vector middle, Vector newest, Vector oldest, Vector difference) const {
+      return (middle + newest) + (part * oldest + slope * difference);
+    }
+  };
+  // A step may have begun within the oldest bucket or the next, which are then filled up to there.
+  edge edge_at(double k) const {
+    const double oldest = k - buckets_, filled = smaller(oldest + 1.0, begin_);
+    if (filled <= oldest) return {0.0, 0.0};
+    const double live = filled - (end_ - buckets_);
+    const double part = smaller(1.0, begin_ < oldest + 1.0 ? live / (filled - oldest) : live);
+    return {part, begin_ < oldest + 2.0 ? 0.0 : 0.5 * part * (1.0 - part)};
+  }
+
+  template <class V>
+  static vector<V> limited_difference(vector<V> bucket, vector<V> next) {
+    const vector<V> difference = next - bucket;
+    const V most = 2.0 * absolute(bucket.n);
+    const V scale = power_scale_of(larger(larger(absolute(bucket.t1), absolute(bucket.t2)),
+                                          larger(absolute(difference.t1), absolute(difference.t2))))
+                        .down;
+    const V a1 = scale * bucket.t1, a2 = scale * bucket.t2, b1 = scale * difference.t1,
+            b2 = scale * difference.t2;
+    const V allowed = 4.0 * (a1 * a1 + a2 * a2), found = b1 * b1 + b2 * b2;
+    const mask_of<V> is_steep = found > allowed;
+    const V factor = square_root(select(is_steep, allowed, V(1.0)) / select(is_steep, found, V(1.0)));
+    return {smaller(larger(difference.n, -most), most), factor * difference.t1, factor * difference.t2};
+  }
+
+  // Where the newest bucket stays open.
+  template <class Own>
+  ILAW_KIT_INLINE static auto open_sum(const Own& own, edge e) {
+    return own.linear([&](auto value) ILAW_KIT_LAMBDA {
+      return e.sum(value(middle_sum), value(current), value(oldest_bucket), value(oldest_slope));
+    });
+  }
+  // Where the newest bucket is another than that of the step.
+  template <class Own, class V>
+  [[gnu::noinline]] V read_others(const Own& own, mask_of<V> left, V stamp, vector<V>& sum) const {
+    const mask_of<V> is_stamp = (absolute(stamp) <= largest_number) & is_whole(stamp);
+    V refused = select(is_stamp, V(0.0), code_of<V>(refusal::impossible_state));
+    left = left & is_stamp & has_grid_;
+    while (any(left)) {
+      const double number = first_of(left, stamp), newest = bucket_of(number);
+      const mask_of<V> same = left & (stamp == number);
+      left = left & !same;
+      // A host whose position step is not the next one may fall back by a part of its last step.
+      if (now_ < newest - 1.0) refused = select(same, code_of<V>(refusal::time_before_history), refused);
+      const double k = larger(now_, newest);
+      if (now_ < newest - 1.0 || !is_short_ || k - newest > buckets_) continue;
+      const edge e = k == now_ ? edge_ : edge_at(k);
+      if (k == newest) {
+        sum = select(same, open_sum(own, e), sum);
+      } else {
+        const front<V> f = front_at(own, k, k - newest);
+        sum = select(same, e.sum(f.middle, f.newest, f.oldest, limited_difference(f.oldest, f.next)), sum);
+      }
+    }
+    return refused;
+  }
+  template <class Own, class V>
+  [[gnu::noinline]] void write_others(const Own& own, mask_of<V> left, vector<V> impulse) const {
+    const V stamp = own.number_at(0);
+    while (any(left)) {
+      const double newest = first_of(left, stamp);
+      const mask_of<V> same = left & (stamp == newest);
+      left = left & !same;
+      const double k = newest == empty ? now_ : larger(now_, bucket_of(newest));
+      const double turns = newest == empty ? buckets_ + 1.0 : smaller(k - bucket_of(newest), buckets_ + 1.0);
+      take_in(own, same, impulse, k, turns);
+    }
+  }
+
+  // The buckets that a step changes: the newest, k; the sum of the middle ones; the oldest, k - B, and the
+  // one after it; and the one that closes.
+  template <class V>
+  struct front {
+    vector<V> newest, middle, oldest, next, closing;
+  };
+  template <class Own>
+  auto front_at(const Own& own, double k, double turns) const {
+    using V = typename Own::number;
+    front<V> f;
+    if (turns > buckets_) return f;
+    const std::int64_t place = place_of(k - 1.0),
+                       next = place + 1 < ring_size_ ? place + 1 : 0;  // k - B, the next one
+    if (turns == 0.0) {
+      f.newest = own.vector_at(current);
+      f.middle = own.vector_at(middle_sum);
+      f.oldest = own.vector_at(oldest_bucket);
+      f.next = ring_size_ > 0 ? own.vector_at(at(next)) : f.newest;
+      return f;
+    }
+    f.closing = own.vector_at(current);
+    if (turns == buckets_) {
+      f.oldest = f.closing;
+      return f;
+    }
+    // In the order in which they stand, whichever is the first of them.
+    const std::int64_t count = ring_size_ - static_cast<std::int64_t>(turns);
+    const std::int64_t beyond = next + count - ring_size_, last = beyond > 0 ? ring_size_ : next + count;
+    f.middle = own.linear([&](auto value) ILAW_KIT_LAMBDA {
+      auto sum = value.zero();
+      for (std::int64_t q = 0; q < beyond; ++q) sum = sum + value(at(q));
+      for (std::int64_t q = next; q < last; ++q) sum = sum + value(at(q));
+      return sum + value(current);
+    });
+    f.oldest = own.vector_at(at(place));
+    f.next = count > 0 ? own.vector_at(at(next)) : f.closing;
+    return f;
+  }
+
+  // How a step is spread over the buckets that it covers, as far as tau reaches: from bucket first, which
+  // gets its share, over others that get one each to the newest, which gets what is left where the whole
+  // counts, else its share.
+  struct shares {
+    double first, of_first, of_others, of_last;
+    bool is_whole;
+  };
+  shares shares_at(double k) const {
+    const bool is_whole = begin_ >= k - buckets_;
+    const double length = end_ - begin_, first = is_whole ? floor_of(begin_) : k - buckets_;
+    return {first, (smaller(first + 1.0, end_) - larger(first, begin_)) / length, 1.0 / length,
+            (end_ - larger(now_, begin_)) / length, is_whole};
+  }
+
+  // Bucket k becomes the newest, or is it still, and the impulse is spread over the buckets that the step
+  // covers; the last takes what is left, so that the whole arrives. The step may end before bucket k.
+  template <class Own, class V>
+  void take_in(const Own& own, mask_of<V> where, vector<V> impulse, double k, double turns) const {
+    front<V> f = front_at(own, k, turns);
+    const double before = k - turns, closing = turns < buckets_ ? before : k;  // k: none
+    for (double j = larger(before, k - buckets_) + 1.0; j < k; j += 1.0)
+      own.put(where, at(place_of(j)), vector<V>{});
+    const shares s = k == now_ ? shares_ : shares_at(k);
+    vector<V> left = impulse;
+    for (double j = s.first; j <= now_; j += 1.0) {
+      const bool is_rest = j == now_ && s.is_whole;
+      const double share = j == now_ ? s.of_last : (j == s.first ? s.of_first : s.of_others);
+      const vector<V> part = is_rest ? left : share * impulse;
+      left = left - part;
+      put_in(own, where, f, part, j, k, closing);
+    }
+    if (closing < k) own.put(where, at(place_of(closing)), f.closing);
+    own.put(where, current, f.newest);
+    own.put(where, middle_sum, f.middle);
+    own.put(where, oldest_bucket, f.oldest);
+    own.put(where, oldest_slope, limited_difference(f.oldest, ring_size_ > 0 ? f.next : f.newest));
+    own.put_number(where, 0, stamp_of(k));
+  }
+  template <class Own, class V>
+  void put_in(const Own& own, mask_of<V> where, front<V>& f, vector<V> part, double j, double k,
+              double closing) const {
+    if (j == k) {
+      f.newest = f.newest + part;
+    } else if (j == k - buckets_) {
+      f.oldest = f.oldest + part;
+    } else {
+      f.middle = f.middle + part;
+      if (j == k - buckets_ + 1.0) f.next = f.next + part;
+      if (j == closing)
+        f.closing = f.closing + part;
+      else
+        own.put(where, at(place_of(j)), own.vector_at(at(place_of(j))) + part);
+    }
+  }
+
+  double duration_, buckets_, end_, begin_, now_;
+  bool has_grid_, is_short_, counts_;  // counts: what lies before the step
+  double stamp_;                       // of bucket now_
+  std::int64_t ring_size_;
+  edge edge_;
+  shares shares_;
 };
 
 }  // namespace ilaw::kit

@@ -1,22 +1,189 @@
-// evaluate.hpp - a batch from end to end: checks its arrays, walks it block by block, reports refused nodes.
+// evaluate.hpp - a batch from end to end: checks its arrays, chooses the loop, reports bad nodes.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/float.h>
-#include <ilaw/kit/detail/batch_walk.hpp>
-#include <ilaw/kit/detail/interleaving.hpp>
-#include <ilaw/kit/detail/node_parameters.hpp>
-#include <ilaw/kit/detail/refusal.hpp>
-#include <ilaw/kit/detail/stable_step.hpp>
-#include <ilaw/kit/detail/wrong_batch.hpp>
+#include <ilaw/kit/detail/batch_checks.hpp>
+#include <ilaw/kit/detail/instance.hpp>
+#include <ilaw/kit/detail/solver_kernel.hpp>
 
-template <>
-inline constexpr std::uint32_t ilaw::sized::least<ilaw_float_batch> = ILAW_FLOAT_BATCH_SIZE_1;
+#include <string>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-inline std::int32_t refuse(ilaw_report* report, const char* reason,
-                           std::int32_t code = ILAW_INVALID_ARGUMENT) {
+// ---- the loop of a batch
+
+// Free histories are read and written node by node.
+template <class Law>
+inline constexpr bool has_free_history = has_history<Law> && !has_window<Law>;
+template <class Law>
+using loop_number = std::conditional_t<has_free_history<Law>, double, pack>;
+
+template <class Law, class Node>
+concept can_ask = requires(const Law& law, Node& n, typename Law::problem& p) {
+  law.ask(n, p);
+};
+
+template <class Law, class Number, template <class> class Frame, template <class> class Delassus,
+          bool Remembers = has_state<Law>>
+auto loop_of(const instance<Law>& made) {
+  if constexpr (Remembers && requires { made.law.remembers(); })
+    if (made.states == 0) return loop_of<Law, Number, Frame, Delassus, false>(made);
+  using V = loop_number<Law>;
+  using plain = kernel<Law, V, Number, Frame, Delassus, Remembers>;
+  using Wide = law_on_t<Law, V>;
+  using node_type = typename plain::node_type;
+  constexpr bool can_step = requires(const Wide& law, node_type& n) { law.step(n); };
+  using run_function = typename batch_walk<Number>::run_function;
+  if constexpr (can_ask<Wide, node_type>) {
+    using solving = solver_kernel<Law, V, Number, Frame, Delassus, Remembers>;
+    if constexpr (can_step && (
+                                  requires { made.law.asks(); } || requires { made.law.asks(true); }))
+      return made.asks ? run_function(solving::run) : run_function(plain::run);
+    else
+      return run_function(solving::run);
+  } else {
+    static_assert(can_step, "the law has neither step nor ask for nodes of this form of H and frame");
+    return run_function(plain::run);
+  }
+}
+
+template <class Law>
+inline constexpr bool serves_transverse = (Law::card.delassus_forms &
+                                           (ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE)) != 0;
+template <class Law>
+inline constexpr bool serves_full = (Law::card.delassus_forms &
+                                     (ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL)) != 0;
+
+template <class Law, class Number>
+typename batch_walk<Number>::run_function choose_loop(const instance<Law>& made) {
+  const bool is_local = made.frame == ILAW_FRAME_LOCAL;
+  if constexpr (serves_transverse<Law>)
+    if (made.is_transverse()) {
+      if (is_local) return loop_of<Law, Number, local_frame, transverse>(made);
+      if constexpr (needs_no_tangents<Law>)
+        if (made.dimension == 3 && !made.has_tangent)
+          return loop_of<Law, Number, normal_frame, transverse>(made);
+      return loop_of<Law, Number, axes_frame, transverse>(made);
+    }
+  if constexpr (serves_full<Law>) {
+    if (is_local) return loop_of<Law, Number, local_frame, full>(made);
+    return loop_of<Law, Number, axes_frame, full>(made);
+  }
+  return nullptr;
+}
+
+template <class Law, class Number>
+tally walk_in(const instance<Law>& made, const ilaw_batch& batch) {
+  const Law law = made.at(batch.time);
+  constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || has_state<Law> ? 6 : 0));
+  alignas(64) double state_scratch[columns * block_nodes + 1];
+  batch_walk<Number, has_window<Law>> walk(made, batch, state_scratch);
+  return walk.run(choose_loop<Law, Number>(made), &law);
+}
+
+// An ilaw_kit_walk: a checked batch from end to end, compiled for this level.
+// Not inlined: nothing of it may be computed before the floating-point environment is set.
+template <class Law>
+[[gnu::noinline]] void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
+  const auto& made = *static_cast<const instance<Law>*>(opaque);
+  *static_cast<tally*>(found) = made.numbers == ILAW_NUMBERS_FLOAT ? walk_in<Law, float>(made, batch)
+                                                                   : walk_in<Law, double>(made, batch);
+}
+
+// ---- why a node is bad
+
+// "state variable '...' has a value that the law cannot have written", as static text.
+template <class Law, std::size_t V>
+struct range_reason {
+  static constexpr auto make() {
+    constexpr const char *head = "state variable '", *name = Law::state_variables[V].name,
+                         *tail = "' has a value that the law cannot have written";
+    constexpr auto size = [](const char* s) { return std::char_traits<char>::length(s); };
+    std::array<char, size(head) + size(name) + size(tail) + 1> made{};
+    std::size_t at = 0;
+    for (const char* part : {head, name, tail})
+      for (; *part; ++part) made[at++] = *part;
+    return made;
+  }
+  static constexpr auto text = make();
+};
+template <class Law, std::size_t... K>
+const char* text_of_variable(int variable, std::index_sequence<K...>) {
+  static constexpr const char* all[] = {range_reason<Law, K>::text.data()..., nullptr};
+  return all[variable];
+}
+
+// The parameters of one node; says what is wrong with them, null where nothing is.
+template <class Law>
+const char* wrong_parameters(const instance<Law>& made, const ilaw_batch& batch, std::int64_t node,
+                             Law& law) {
+  for (std::uint32_t k = 0; k < made.per_node_count; ++k) {
+    const ilaw_input& given = batch.per_node_parameters[k];
+    const std::int64_t at = node * given.node_stride;
+    const double value = made.numbers == ILAW_NUMBERS_FLOAT ? double{given.floats[at]} : given.values[at];
+    const int place = made.per_node_parameters[k];
+    if (!range_of(Law::parameters[place]).has(value)) return "a per-node parameter is out of range";
+    Law::parameters[place].member.set(law, value);
+  }
+  made.read_node_tables(law, batch.time);
+  if constexpr (requires { law.conflict(); })
+    if (made.per_node_count > 0) return law.conflict();
+  return nullptr;
+}
+
+template <class Law>
+const char* reason_text(const instance<Law>& made, const ilaw_batch& batch, const tally& found) {
+  if (found.reason == reason_parameter) {
+    Law law = made.at(batch.time);
+    return wrong_parameters(made, batch, found.first_bad_node, law);
+  }
+  if constexpr (has_state<Law>)
+    if (found.reason >= reason_of_first_variable)
+      return text_of_variable<Law>(found.reason - reason_of_first_variable,
+                                   std::make_index_sequence<std::size(Law::state_variables)>{});
+  switch (found.reason) {
+    case reason_normal:
+      return "the normal is not a unit vector";
+    case reason_tangent:
+      return "the tangent is not a unit vector orthogonal to the normal";
+    case reason_v_free:
+      return "v_free is not finite";
+    case reason_delassus:
+      return "H is not finite and positive definite";
+    case reason_gap:
+      return "the gap is not finite";
+    case reason_v_previous:
+      return "v_previous is not finite";
+    case reason_area:
+      return "the area is not a finite number >= 0";
+    case reason_frame:
+      return "the state holds no frame: it is not one that the law can have written";
+    case reason_state:
+      return "the state is not finite";
+    case reason_several_solutions:
+      return "the law's equations have several solutions for this H and step: a smaller step is needed";
+    case reason_no_solution:
+      return "the law's equations have no solution for this H";
+    case reason_impossible_state:
+      return "the state is not one that the law can have written";
+    case reason_time_before_history:
+      return "the time lies before what the state remembers";
+    case reason_not_a_number:
+      return "the law gave an impulse that is not a number";
+    case reason_overflow:
+      return "the impulse or the state overflows";
+    case reason_pull:
+      return "the law pulled, which needs can_adhere in its card";
+    case reason_reach:
+      return "the law acted out of reach, which may_skip_fresh of its card excludes";
+    default:
+      return nullptr;
+  }
+}
+
+// ---- evaluate and initialise
+
+inline ilaw_result refuse(ilaw_report* report, const char* reason, ilaw_result code = ILAW_INVALID_ARGUMENT) {
   if (report)
     sized::write(report, {.struct_size = 0,
                           .reserved = 0,
@@ -26,312 +193,129 @@ inline std::int32_t refuse(ilaw_report* report, const char* reason,
                           .stable_velocity_step = infinity});
   return code;
 }
-
-// What a walk found.
-struct tally {
-  std::int64_t bad_count = 0, first_bad_node = -1, one_by_one = 0;
-  const char* reason = nullptr;
-  double stable_velocity_step = infinity;
-
-  void add(std::int64_t node, const char* why) {
-    if (bad_count++ > 0) return;
-    first_bad_node = node;
-    reason = why;
-  }
-};
-
-// The whole of a batch; Varying: with parameters per node.
-template <class Law, class Delassus, class Frame, class Layout, scope Scope, bool Varying>
-struct evaluate_walk {
-  // In long blocks where nothing of what lies in memory is copied, and no more is asked than hosts most often
-  // do: each length is a walk more to compile.
-  static tally run(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
-    const arrays_ahead<Law, Layout> ahead(made, batch, is_asked_first<Delassus, Frame>(law));
-    if constexpr (!Varying && Scope < scope::outputs && !std::is_same_v<Frame, stored_frame>)
-      if (!ahead.get() && !are_rows_in_memory(batch)) return run_in<block_size>(made, law, batch, nullptr);
-    return run_in<short_block>(made, law, batch, ahead.get());
-  }
-
- private:
-  // Rows of doubles that no cache holds: measured, they take 0.75 to 1.0 of their time in short blocks, and
-  // columns 1.05.
-  static bool are_rows_in_memory(const ilaw_batch& batch) {
-    constexpr std::int64_t fewest_nodes = 131072;
-    return is_in_place<Layout> && !is_of_floats<Layout> && batch.node_count >= fewest_nodes;
-  }
-  template <int Length>
-  static tally run_in(const instance<Law>& made, const Law& law, const ilaw_batch& batch,
-                      const streams* ahead) {
-    block_room<Law, Length> room;
-    batch_walk<Law, Layout, Length> walk(made, batch, room, ahead);
-    using parameters_of_nodes = std::conditional_t<Varying, node_parameters<Law>, same_parameters>;
-    [[maybe_unused]] parameters_of_nodes parameters(made, law, batch);
-    tally found;
-    for (std::int64_t first = 0; first < batch.node_count; first += Length) {
-      walk.open(first);
-      if constexpr (Varying)
-        found.one_by_one += run_varying(parameters.of(walk.nodes()), walk.block());
-      else
-        found.one_by_one += run_form(law, walk.block());
-      limit_step(made, law, batch, walk, found);
-      const bool refused = walk.any_refused();
-      if (refused) explain(made, law, batch, walk, found);
-      walk.close();
-      walk.keep_frames();
-    }
-    return found;
-  }
-
-  // The smallest stable step of the block's good nodes, for laws that limit it.
-  template <class Walk>
-  static void limit_step(const instance<Law>& made, const Law& law, const ilaw_batch& batch, Walk& walk,
-                         tally& found) {
-    if constexpr (limits_step<Law> && !Varying) {
-      in_its_form(law, [&walk, &found]<class Form>(const Form& form) {
-        if constexpr (is_run<Law, Form, Layout, Scope>() && !always_stable<Form>)
-          found.stable_velocity_step =
-              smaller(found.stable_velocity_step,
-                      least_stable_step<Law, Delassus, Frame, Layout, Scope>(form, walk.block()));
-      });
-    } else if constexpr (limits_step<Law>) {
-      for (int i = 0; i < walk.nodes().count; ++i) {
-        if (walk.block().refused[i] != 0.0) continue;
-        Law own = law;
-        at_node(made, batch, walk.nodes().node(i), own);
-        const auto node = load_node<Law, Delassus, Frame, Layout, Scope>(walk.block(), i);
-        found.stable_velocity_step = smaller(found.stable_velocity_step, own.stable_velocity_step(node));
-      }
-    }
-  }
-
-  static int run_varying(const law_per_node<Law>& laws, const node_block<Law>& block) {
-    if constexpr (requires { typename Law::form_of_nodes; })
-      if (laws.have_form_of_nodes(block.count))
-        return run_block<Law, Delassus, Frame, Layout, Scope>(laws.in_form_of_nodes(), block);
-    return run_block<Law, Delassus, Frame, Layout, Scope>(laws, block);
-  }
-
-  static int run_form(const Law& law, const node_block<Law>& block) {
-    int one_by_one = 0;
-    in_its_form(law, [&block, &one_by_one]<class Form>(const Form& form) {
-      if constexpr (is_run<Law, Form, Layout, Scope>())
-        one_by_one = run_block<Law, Delassus, Frame, Layout, Scope>(one_law<Form>{form}, block);
-    });
-    return one_by_one;
-  }
-
-  template <class Walk>
-  [[gnu::noinline, gnu::cold]] static void explain(const instance<Law>& made, const Law& law,
-                                                   const ilaw_batch& batch, Walk& walk, tally& found) {
-    for (int i = 0; i < walk.nodes().count; ++i) {
-      if (walk.block().refused[i] == 0.0) continue;
-      Law own = law;
-      const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
-      found.add(walk.nodes().node(i), wrong ? wrong
-                                            : refusal_reason<Law, Delassus, Frame, Layout, reading<Scope>>(
-                                                  own, {own, walk.block(), i}, i, made.tangent_given));
-    }
-  }
-};
-
-// With or without the velocity before the step, as the parameters ask for it.
-template <class Law, class Delassus, class Frame, class Layout>
-tally walk_for_impulse(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
-  if constexpr (reads_previous<Law>)
-    if (always_reads_previous<Law> || (made.inputs() & ILAW_INPUT_V_PREVIOUS))
-      return evaluate_walk<Law, Delassus, Frame, Layout, scope::with_previous, false>::run(made, law, batch);
-  if constexpr (!always_reads_previous<Law>)
-    return evaluate_walk<Law, Delassus, Frame, Layout, scope::impulse, false>::run(made, law, batch);
-  return {};
-}
-
-template <class Law, class Delassus, class Frame>
-tally walk_in_columns(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
-  const bool asks_motion = batch.velocity.values || batch.status;
-  if (batch.energy.values || (asks_motion && !always_reads_previous<Law>))
-    return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, false>::run(made, law, batch);
-  if constexpr (always_reads_previous<Law>)
-    if (asks_motion)
-      return evaluate_walk<Law, Delassus, Frame, columns, scope::motion, false>::run(made, law, batch);
-  return walk_for_impulse<Law, Delassus, Frame, columns>(made, law, batch);
-}
-
-// What the card serves; create refuses the rest, and no loop is compiled for it.
 template <class Law>
-constexpr bool serves(std::uint32_t forms) {
-  return (Law::card.delassus_forms & forms) != 0;
-}
-template <class Law>
-inline constexpr bool has_varying_parameters = [] {
-  for (const ilaw_parameter& p : description<Law>::parameters)
-    if (p.may_be & ILAW_MAY_BE_PER_NODE) return true;
-  return false;
-}();
-
-// With parameters per node. Without what is not asked for where it would be much of the work.
-template <class Law, class Delassus, class Frame>
-tally walk_varying(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
-  if constexpr (std::is_same_v<Delassus, transverse_delassus> && !std::is_same_v<Frame, stored_frame> &&
-                always_reads_previous<Law>) {
-    if (!batch.energy.values && !batch.velocity.values && !batch.status)
-      return evaluate_walk<Law, Delassus, Frame, columns, scope::with_previous, true>::run(made, law, batch);
-    if (!batch.energy.values)
-      return evaluate_walk<Law, Delassus, Frame, columns, scope::motion, true>::run(made, law, batch);
-  }
-  return evaluate_walk<Law, Delassus, Frame, columns, scope::outputs, true>::run(made, law, batch);
-}
-
-template <class Law, class Delassus, class Frame, class Layout>
-tally walk_in_place(const instance<Law>& made, const Law& law, const ilaw_batch& batch) {
-  if constexpr (always_reads_previous<Law>)
-    if (batch.velocity.values)
-      return evaluate_walk<Law, Delassus, Frame, Layout, scope::motion, false>::run(made, law, batch);
-  return walk_for_impulse<Law, Delassus, Frame, Layout>(made, law, batch);
-}
-
-template <class Law, class Delassus, class Frame>
-tally walk_as(const instance<Law>& made, const ilaw_batch& batch) {
-  const Law law = made.at(batch.time);
-  if constexpr (has_varying_parameters<Law>)
-    if (made.per_node_count > 0) return walk_varying<Law, Delassus, Frame>(made, law, batch);
-  if constexpr (may_interleave<Law, Delassus, Frame>)
-    if (asks_little<Law>(batch) && stand_in<interleaved>(made, batch)) {
-      if constexpr (may_have_state_rows<Law, Delassus>)
-        if (state_stands_in_rows(made, batch))
-          return walk_in_place<Law, Delassus, Frame, interleaved_with_state>(made, law, batch);
-      return walk_in_place<Law, Delassus, Frame, interleaved>(made, law, batch);
-    }
-  if constexpr (may_stay_floats<Law, Delassus, Frame>)
-    if (asks_little<Law>(batch) && are_scalars_in_columns(batch) && has_form_of_floats(law)) {
-      if (stand_in<rows_of_float>(made, batch))
-        return walk_in_place<Law, Delassus, Frame, rows_of_float>(made, law, batch);
-      if (stand_in<columns_of_float>(made, batch))
-        return walk_in_place<Law, Delassus, Frame, columns_of_float>(made, law, batch);
-    }
-  return walk_in_columns<Law, Delassus, Frame>(made, law, batch);
-}
-
-// A diagonal H turned out of its axes is full.
-template <class Law>
-tally walk_turned(const instance<Law>& made, const ilaw_batch& batch) {
-  if constexpr (serves<Law>(ILAW_DELASSUS_FULL))
-    if (!made.is_transverse()) return walk_as<Law, full_delassus, stored_frame>(made, batch);
-  if constexpr (serves<Law>(ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE)) {
-    if constexpr (needs_no_tangents<Law>() && in_space<Law>)
-      if (!made.stores_frame()) return walk_as<Law, transverse_delassus, normal_frame>(made, batch);
-    return walk_as<Law, transverse_delassus, stored_frame>(made, batch);
-  }
-  return {};
-}
-
-template <class Law>
-tally walk_local(const instance<Law>& made, const ilaw_batch& batch) {
-  if constexpr (serves<Law>(ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE))
-    if (made.is_transverse()) return walk_as<Law, transverse_delassus, local_frame>(made, batch);
-  if constexpr (serves<Law>(ILAW_DELASSUS_DIAGONAL))
-    if (made.delassus_form == ILAW_DELASSUS_DIAGONAL)
-      return walk_as<Law, diagonal_delassus, local_frame>(made, batch);
-  if constexpr (serves<Law>(ILAW_DELASSUS_FULL)) return walk_as<Law, full_delassus, local_frame>(made, batch);
-  return {};
-}
-
-// An ilaw_kit_walk: a checked batch from end to end, compiled for this level.
-// Not inlined: nothing of it may be computed before the floating-point environment is set.
-template <class Law>
-[[gnu::noinline]] void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
-  const auto& made = *static_cast<const instance<Law>*>(opaque);
-  *static_cast<tally*>(found) =
-      made.frame == ILAW_FRAME_GLOBAL ? walk_turned(made, batch) : walk_local(made, batch);
-}
-
-inline std::int32_t give_report(ilaw_report* report, const tally& found) {
+ilaw_result give_report(ilaw_report* report, const instance<Law>& made, const ilaw_batch& batch,
+                        const tally& found, const char* reason = nullptr) {
   if (report)
     sized::write(report, {.struct_size = 0,
                           .reserved = 0,
                           .bad_count = found.bad_count,
                           .first_bad_node = found.first_bad_node,
-                          .reason = found.reason,
+                          .reason = found.bad_count == 0 || reason ? reason : reason_text(made, batch, found),
                           .stable_velocity_step = found.stable_velocity_step});
   return found.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
 
-// What is known of a batch. One of floats has the members of the other, and says in its flags that it is one.
-inline const ilaw_batch& known(const ilaw_batch& batch) { return batch; }
-inline ilaw_batch known(const ilaw_float_batch& batch) {
-  ilaw_batch same;
-  sized::copy(&same, sizeof same, &batch, sizeof batch);
-  same.flags = arrays_of_float;
-  return same;
-}
-
 // The beginning of evaluate and initialise: hands on the instance and what is known of the batch.
-template <class Law, class Batch, class Run>
-std::int32_t with_batch(const ilaw_instance* opaque, const Batch* given, ilaw_report* report, Run run) {
+template <class Law, class Run>
+ilaw_result with_batch(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report, Run run) {
   if (report && !sized::is_complete(report)) return ILAW_INVALID_ARGUMENT;
   if (!opaque || !given) return refuse(report, "instance or batch is null");
   if (!sized::is_complete(given)) return refuse(report, "struct_size of the batch is none of any version");
   // Copied only where the host knows less: a copy takes as long as what a law does at one node.
-  Batch copied;
+  ilaw_batch copied;
   const bool is_whole = sized::size_of(given) >= sizeof copied;
   if (!is_whole) copied = sized::read(given);
-  const Batch& batch = is_whole ? *given : copied;
+  const ilaw_batch& batch = is_whole ? *given : copied;
   if (batch.flags != 0) return refuse(report, "flags of the batch are not known", ILAW_UNSUPPORTED);
   const float_environment own;
-  return run(of<Law>(opaque), known(batch));
+  return run(of<Law>(opaque), batch);
 }
 
-// one_by_one: as ilaw/profile.h counts them; may be null.
-template <class Law, class Batch>
-std::int32_t evaluate_counting(const ilaw_instance* opaque, const Batch* given, ilaw_report* report,
-                               std::int64_t* one_by_one) {
+// by_scalar_fallback: as ilaw/ext/draft/profile.h counts them; may be null.
+template <class Law>
+ilaw_result ILAW_CALL evaluate_counting(const ilaw_instance* opaque, const ilaw_batch* given,
+                                        ilaw_report* report, std::int64_t* by_scalar_fallback) {
   return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
     if (const char* wrong = wrong_batch(made, batch)) return refuse(report, wrong);
     tally found;
-    (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
-    if (one_by_one) *one_by_one = found.one_by_one;
-    return give_report(report, found);
+    if (batch.node_count > 0) (made.walk ? made.walk : walk_batch<Law>)(&made, batch, &found);
+    if (by_scalar_fallback) *by_scalar_fallback = found.by_scalar_fallback;
+    return give_report(report, made, batch, found);
   });
 }
-
-template <class Law, class Batch>
-std::int32_t evaluate(const ilaw_instance* opaque, const Batch* given, ilaw_report* report) {
+template <class Law>
+ilaw_result ILAW_CALL evaluate(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
   return evaluate_counting<Law>(opaque, given, report, nullptr);
 }
 
-// First state of the nodes of a batch.
+// First states, node by node.
 template <class Law>
-[[gnu::noinline]] tally initialise_nodes(const instance<Law>& made, const ilaw_batch& batch) {
-  const Law law = made.at(batch.time);
-  block_room<Law, short_block> room;
-  batch_walk<Law, columns, short_block> walk(made, batch, room, nullptr);
-  tally found;
-  for (std::int64_t first = 0; first < batch.node_count; first += short_block) {
-    walk.open_initial(first);
-    for (int i = 0; i < walk.nodes().count; ++i) {
-      Law own = law;
-      const char* wrong = at_node(made, batch, walk.nodes().node(i), own);
-      if (!wrong) wrong = walk.initialise(own, i);
-      if (wrong) found.add(walk.nodes().node(i), wrong);
+class first_states {
+ public:
+  first_states(const instance<Law>& made, const ilaw_batch& batch)
+      : made_(made), b_(batch), law_(made.at(batch.time)) {}
+
+  // Says why the state of a node cannot be given: then it is zero.
+  const char* write(std::int64_t node) const {
+    for (std::int64_t c = 0; c < static_cast<std::int64_t>(made_.state_size); ++c) at(node, c) = 0.0;
+    Law law = law_;
+    if (const char* wrong = wrong_parameters(made_, b_, node, law)) return wrong;
+    const double area = made_.inputs & ILAW_INPUT_AREA ? number(b_.area, node, 0) : 0.0;
+    if (!is_finite(area) || area < 0.0) return "the area is not a finite number >= 0";
+    axes_frame<double> frame{};
+    if (made_.carries_frame) {
+      frame.n = {number(b_.normal, node, 0), number(b_.normal, node, 1), number(b_.normal, node, 2)};
+      if (!is_unit(frame.n)) return "the normal is not a unit vector";
+      frame.t1 = any_tangent(frame.n);
     }
+    if constexpr (requires(initial_node<Law> & n) { law.initialise(n); }) {
+      initial_node<Law> fresh{.time = b_.time, .area = {}, .state = {}};
+      if constexpr (reads<Law>(reads_area)) {
+        initial_node<Law> with_area{.time = b_.time, .area = area, .state = {}};
+        law.initialise(with_area);
+        fresh.state = with_area.state;
+      } else {
+        law.initialise(fresh);
+      }
+      for (int k = 0; k < made_.states; ++k)
+        if (!is_finite(number_in<double>(fresh.state, k))) return "the state overflows";
+      for (int k = 0; k < made_.states; ++k)
+        if (const int entry = state_entry<Law>(k, static_cast<int>(made_.dimension)); entry >= 0)
+          at(node, entry) = number_in<double>(fresh.state, k);
+    }
+    if (made_.carries_frame) {
+      const double entries[frame_size] = {frame.n.x,  frame.n.y,  frame.n.z,
+                                          frame.t1.x, frame.t1.y, frame.t1.z};
+      for (int k = 0; k < frame_size; ++k) at(node, made_.frame_offset + k) = entries[k];
+    }
+    return nullptr;
   }
-  return found;
-}
+
+ private:
+  double number(const ilaw_input& a, std::int64_t node, std::int64_t c) const {
+    const std::int64_t place = node * a.node_stride + c * a.component_stride;
+    return made_.numbers == ILAW_NUMBERS_FLOAT ? double{a.floats[place]} : a.values[place];
+  }
+  double& at(std::int64_t node, std::int64_t c) const {
+    return b_.state_out.values[node * b_.state_out.node_stride + c * b_.state_out.component_stride];
+  }
+
+  const instance<Law>& made_;
+  const ilaw_batch& b_;
+  const Law law_;
+};
 
 template <class Law>
-const char* wrong_initial(const instance<Law>& made, const ilaw_batch& b) {
-  if (const char* wrong = wrong_scalars(b)) return wrong;
-  if (b.node_count == 0) return nullptr;
-  if (const char* wrong =
-          missing_input(made, b, made.inputs() & (ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT)))
-    return wrong;
-  return colliding_state(made, b);
-}
-
-template <class Law, class Batch>
-std::int32_t initialise(const ilaw_instance* opaque, const Batch* given, ilaw_report* report) {
+ilaw_result ILAW_CALL initialise(const ilaw_instance* opaque, const ilaw_batch* given, ilaw_report* report) {
   return with_batch<Law>(opaque, given, report, [&](const instance<Law>& made, const ilaw_batch& batch) {
     if (const char* wrong = wrong_initial(made, batch)) return refuse(report, wrong);
-    return give_report(report, made.state_size > 0 ? initialise_nodes(made, batch) : tally{});
+    tally found;
+    const char* reason = nullptr;
+    if (made.state_size > 0) {
+      const first_states<Law> states(made, batch);
+      for (std::int64_t first = 0; first < batch.node_count; first += block_nodes) {
+        const std::int64_t left = batch.node_count - first;
+        const node_range nodes(batch, first, left < block_nodes ? left : block_nodes);
+        for (std::int64_t i = 0; i < nodes.count; ++i)
+          if (const char* wrong = states.write(nodes(i))) {
+            if (found.bad_count++ > 0) continue;
+            found.first_bad_node = nodes(i);
+            reason = wrong;
+          }
+      }
+    }
+    return give_report(report, made, batch, found, reason);
   });
 }
 

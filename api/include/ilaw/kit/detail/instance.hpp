@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/kit/detail/describe.hpp>
 #include <ilaw/kit/detail/dispatch.hpp>
 #include <ilaw/kit/detail/float_environment.hpp>
+#include <ilaw/kit/detail/kernel.hpp>
 #include <ilaw/kit/detail/parameters.hpp>
-#include <ilaw/sized.hpp>
+#include <ilaw/kit/detail/walk.hpp>
 
 #include <new>
 
@@ -16,85 +18,72 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 inline constexpr history_card frame_variables[] = {
     {.name = "frame_normal", .doc = "Normal of the last step.", .internal = true},
     {.name = "frame_tangent", .doc = "First tangent of the last step.", .internal = true}};
+inline constexpr std::int64_t frame_size = 6;
 
 // Whether kernels may work from the normal alone: no tangent named, and no vector remembered, which would
 // need tangents to be written in.
 template <class Law>
-constexpr bool needs_no_tangents() {
-  return !Law::card.names_tangents && !has_history<Law> && !has_vector_state<Law>();
-}
+inline constexpr bool needs_no_tangents =
+    Law::card.is_isotropic && !has_history<Law> && !has_vector_state<Law>();
 
+// The entries of the host's state in which the numbers of a state stand, of each dimension; see batch_walk.
+// In the order of the entries in space.
 template <class Law>
-struct instance {
-  static constexpr std::size_t parameter_count = detail::parameter_count<Law>;
-  static constexpr std::size_t variable_room = detail::state_variable_count<Law> + 2;
+inline constexpr auto state_entries = [] {
+  std::array<std::array<int, static_cast<std::size_t>(state_numbers<Law>) + 1>, 4> all{};
+  for (int d = 1; d <= 3; ++d)
+    for (int k = 0; k < state_numbers<Law>; ++k)
+      all[static_cast<std::size_t>(d)][static_cast<std::size_t>(state_entry<Law>(k, 3))] =
+          state_entry<Law>(k, d);
+  return all;
+}();
+
+// Law: L<double>.
+template <class Law>
+struct instance : instance_base {
+  using description_type = description<law_on_t<Law, pack>, Law>;
+  static constexpr std::size_t variable_capacity = state_variable_count<Law> + 2;
+  static_assert(parameter_count<Law> <= most_parameters && kit::amount_count<Law> <= most_amounts);
 
   Law law;
-  std::uint32_t dimension, delassus_form, frame, tangent_given;
   ilaw_kit_walk walk = nullptr;  // null: this level's own
-  std::int64_t history_size = 0;
-  bool carries_frame = false;
-  time_table tables[parameter_count + 1];
+  std::uint32_t capabilities, permissions;
+  table tables[parameter_count<Law> + 1];  // by parameter
   std::uint32_t table_count = 0;
-  const ilaw_parameter* per_node[parameter_count + 1];
-  double Law::*per_node_members[parameter_count + 1];
-  const char* per_node_names[parameter_count + 1];
-  double Law::*table_members[parameter_count + 1];
-  std::uint32_t per_node_count = 0;
-  ilaw_state_variable variables[variable_room];
-  const ilaw_state_variable* variable_pointers[variable_room];
+  const char* per_node_names[parameter_count<Law> + 1];
+  ilaw_state_variable variables[variable_capacity];
+  const ilaw_state_variable* variable_pointers[variable_capacity];
   std::uint32_t variable_count = 0;
-  std::uint64_t state_size = 0;
 
-  // Where the named state, the history and the frame start in the state of a node.
-  std::int64_t history_offset() const {
-    return static_cast<std::int64_t>(state_size) - history_size - frame_size();
-  }
-  std::int64_t frame_size() const { return carries_frame ? 6 : 0; }
-  std::int64_t frame_offset() const { return static_cast<std::int64_t>(state_size) - frame_size(); }
+  bool varies() const { return table_count > 0 || per_node_count > 0; }
 
-  // Whether H is transverse, which it is in any axes, or scalar, which is transverse with one value.
-  bool is_transverse() const {
-    return delassus_form == ILAW_DELASSUS_SCALAR || delassus_form == ILAW_DELASSUS_TRANSVERSE;
-  }
-
-  // Whether kernels read all axes from columns, rather than the normal alone.
-  bool stores_frame() const {
-    return !needs_no_tangents<Law>() || dimension < 3 || tangent_given || carries_frame || !is_transverse();
-  }
-
-  std::uint32_t inputs() const {
-    std::uint32_t mask = Law::card.inputs;
-    if constexpr (requires { law.inputs(); })
-      if (table_count == 0 && per_node_count == 0) mask = law.inputs();
-    mask &= ~std::uint32_t{ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT};
-    if (frame == ILAW_FRAME_GLOBAL) mask |= ILAW_INPUT_NORMAL;
-    if (frame == ILAW_FRAME_GLOBAL && tangent_given && dimension == 3) mask |= ILAW_INPUT_TANGENT;
-    return mask;
-  }
-  std::uint32_t energy_inputs() const { return ILAW_INPUT_V_PREVIOUS & ~inputs(); }
-
-  std::uint32_t capabilities() const {
-    const bool vary = table_count > 0 || per_node_count > 0;
-    std::uint32_t mask = Law::card.capabilities;
-    if constexpr (requires { law.capabilities(); })
-      if (!vary) mask = law.capabilities();
-    if constexpr (requires { Law::rests_by_parameters; })
-      if (vary) mask &= ~std::uint32_t{ILAW_CAN_REST};  // a promise, unlike the others
-    // A frame follows the normal wherever the node is, unless the law says when its memory rests.
-    const bool frame_moves = carries_frame && has_history<Law> && !(mask & ILAW_CAN_REST);
-    return frame_moves ? mask | ILAW_CAN_ACT_AT_DISTANCE : mask;
-  }
-
-  // The law as it is at a time: tables read.
+  // The law as it is at a time: tables read, but those over a field that comes per node. Fields first.
   Law at(double time) const {
     Law now = law;
-    for (std::uint32_t k = 0; k < table_count; ++k) now.*table_members[k] = tables[k].at(time);
+    if (table_count > 0)
+      for (const bool over_time_alone : {true, false})
+        for (int k = 0; k < parameter_count<Law>; ++k)
+          if (tables[k].axis_count > 0 && !tables[k].per_node &&
+              tables[k].is_over_time_alone() == over_time_alone)
+            read_table_of(now, k, time);
     return now;
+  }
+  // And with the fields of a node.
+  void read_node_tables(Law& now, double time) const {
+    for (int k = 0; k < parameter_count<Law>; ++k)
+      if (tables[k].per_node) read_table_of(now, k, time);
+  }
+  void read_table_of(Law& now, int k, double time) const {
+    double place[3] = {};
+    for (int a = 0; a < tables[k].axis_count; ++a) {
+      const int source = tables[k].source[a];
+      place[a] = source == table::time ? time : Law::parameters[source].member.get(now);
+    }
+    Law::parameters[k].member.set(now, tables[k].at(place));
   }
 
   ~instance() {
-    for (std::uint32_t k = 0; k < table_count; ++k) std::free(tables[k].pairs);
+    for (const table& t : tables) std::free(t.points[0]);
   }
 };
 
@@ -104,19 +93,21 @@ class instance_builder {
   instance_builder(instance<Law>& target, const ilaw_setup& setup, message& text)
       : made_(target), setup_(setup), text_(text) {}
 
-  std::int32_t build() {
+  ilaw_result build() {
     for (auto step : {&instance_builder::check_setup, &instance_builder::read_arguments,
-                      &instance_builder::require_arguments, &instance_builder::check_together,
-                      &instance_builder::lay_out_state})
-      if (const std::int32_t code = (this->*step)(); code != ILAW_OK) return code;
+                      &instance_builder::require_arguments, &instance_builder::check_fields,
+                      &instance_builder::check_together, &instance_builder::lay_out_state,
+                      &instance_builder::state_needs})
+      if (const ilaw_result code = (this->*step)(); code != ILAW_OK) return code;
     return ILAW_OK;
   }
 
  private:
   static constexpr const char* id = Law::card.id;
-  static constexpr std::size_t parameter_count = instance<Law>::parameter_count;
+  using description_type = typename instance<Law>::description_type;
+  static constexpr auto count = static_cast<std::size_t>(parameter_count<Law>);
 
-  std::int32_t check_setup() {
+  ilaw_result check_setup() {
     const law_card& card = Law::card;
     if (setup_.dimension < 1 || setup_.dimension > 3 || !(card.dimensions & (1U << setup_.dimension))) {
       text_.add("law '%s': dimension %u is not served: expected", id, setup_.dimension);
@@ -136,28 +127,32 @@ class instance_builder {
       return ILAW_UNSUPPORTED;
     }
     if (setup_.frame != ILAW_FRAME_LOCAL && setup_.frame != ILAW_FRAME_GLOBAL) {
-      text_.add("law '%s': frame %u is unknown: expected 0 (local) or 1 (global)", id, setup_.frame);
-      return ILAW_INVALID_ARGUMENT;
+      text_.add("law '%s': frame %u is unknown: expected 1 (local) or 2 (global)", id, setup_.frame);
+      return ILAW_UNSUPPORTED;
+    }
+    if (setup_.numbers != ILAW_NUMBERS_DOUBLE && setup_.numbers != ILAW_NUMBERS_FLOAT) {
+      text_.add("law '%s': numbers %u are unknown: expected 1 (double) or 2 (float)", id, setup_.numbers);
+      return ILAW_UNSUPPORTED;
     }
     if (setup_.flags != 0) {
       text_.add("law '%s': flags 0x%llx are not known: expected 0", id,
                 static_cast<unsigned long long>(setup_.flags));
       return ILAW_UNSUPPORTED;
     }
-    if (setup_.tangent_given > 1) {
-      text_.add("law '%s': tangent_given %u is unknown: expected 0 or 1", id, setup_.tangent_given);
+    if (setup_.has_tangent > 1) {
+      text_.add("law '%s': has_tangent %u is unknown: expected 0 or 1", id, setup_.has_tangent);
       return ILAW_INVALID_ARGUMENT;
     }
     made_.dimension = setup_.dimension;
     made_.delassus_form = setup_.delassus_form;
     made_.frame = setup_.frame;
-    made_.tangent_given = setup_.tangent_given;
+    made_.numbers = setup_.numbers;
+    made_.has_tangent = setup_.has_tangent;
     return ILAW_OK;
   }
 
-  std::int32_t read_arguments() {
-    for (std::size_t i = 0; i < parameter_count; ++i)
-      made_.law.*Law::parameters[i].member = Law::parameters[i].default_value;
+  ilaw_result read_arguments() {
+    for (const auto& p : Law::parameters) p.member.set(made_.law, p.default_value);
     if (setup_.argument_count > 0 && !setup_.arguments) {
       text_.add("law '%s': arguments is null, expected %u pointers", id, setup_.argument_count);
       return ILAW_INVALID_ARGUMENT;
@@ -170,18 +165,17 @@ class instance_builder {
                   sized::least<ilaw_argument>, sized::most);
         return ILAW_INVALID_ARGUMENT;
       }
-      if (const std::int32_t code = read_argument(a); code != ILAW_OK) return code;
+      if (const ilaw_result code = read_argument(a); code != ILAW_OK) return code;
     }
     return ILAW_OK;
   }
 
-  std::int32_t read_argument(const ilaw_argument& a) {
+  ilaw_result read_argument(const ilaw_argument& a) {
     std::size_t i = 0;
-    while (i < parameter_count && std::strcmp(Law::parameters[i].name, a.name) != 0) ++i;
-    if (i == parameter_count) {
+    while (i < count && std::strcmp(Law::parameters[i].name, a.name) != 0) ++i;
+    if (i == count) {
       text_.add("law '%s': unknown parameter '%s': expected one of ", id, a.name);
-      for (std::size_t k = 0; k < parameter_count; ++k)
-        text_.add("%s%s", k ? ", " : "", Law::parameters[k].name);
+      for (std::size_t k = 0; k < count; ++k) text_.add("%s%s", k ? ", " : "", Law::parameters[k].name);
       return ILAW_INVALID_PARAMETER;
     }
     if (given_[i]) {
@@ -189,39 +183,61 @@ class instance_builder {
       return ILAW_INVALID_PARAMETER;
     }
     given_[i] = true;
-    const ilaw_parameter& p = description<Law>::parameters[i];
-    double Law::*member = Law::parameters[i].member;
-    if (p.kind == ILAW_PARAMETER_CHOICE) return read_choice(id, p, a, made_.law.*member, text_);
-    if (a.kind == ILAW_VALUE_TABLE && (p.may_be & ILAW_MAY_BE_TABLE)) return keep_table(p, member, a);
-    if (a.kind == ILAW_VALUE_PER_NODE && (p.may_be & ILAW_MAY_BE_PER_NODE)) return keep_per_node(p, member);
-    return read_number(id, p, a, made_.law.*member, text_);
+    const ilaw_parameter& p = description_type::parameters[i];
+    if (a.kind == ILAW_VALUE_TABLE && p.axis_count > 0) return keep_table(p, i, a);
+    if (a.kind == ILAW_VALUE_PER_NODE && (p.flags & ILAW_PARAMETER_ALLOWS_PER_NODE))
+      return keep_per_node(p, i);
+    double value = 0.0;
+    const ilaw_result code = p.kind == ILAW_PARAMETER_CHOICE ? read_choice(id, p, a, value, text_)
+                                                             : read_number(id, p, a, value, text_);
+    Law::parameters[i].member.set(made_.law, value);
+    return code;
   }
 
-  std::int32_t keep_table(const ilaw_parameter& p, double Law::*member, const ilaw_argument& a) {
-    if (const std::int32_t code = check_table(id, p, a, text_); code != ILAW_OK) return code;
-    auto* pairs = static_cast<double*>(std::malloc(2 * a.count * sizeof(double)));
-    if (!pairs) {
-      text_.add("law '%s': no memory for the table of parameter '%s'", id, p.name);
-      return ILAW_OUT_OF_MEMORY;
+  ilaw_result keep_table(const ilaw_parameter& p, std::size_t place, const ilaw_argument& a) {
+    table& made = made_.tables[place];
+    if (const ilaw_result code = read_table(id, p, a, made, text_); code != ILAW_OK) return code;
+    for (int i = 0; i < made.axis_count; ++i) {
+      made.source[i] = table::time;
+      for (std::size_t k = 0; k < count; ++k)
+        if (std::strcmp(Law::parameters[k].name, sized::read(a.axes[i]).name) == 0)
+          made.source[i] = static_cast<int>(k);
     }
-    std::memcpy(pairs, a.values, 2 * a.count * sizeof(double));
-    made_.table_members[made_.table_count] = member;
-    made_.tables[made_.table_count++] = {&p, pairs, a.count};
-    made_.law.*member = pairs[1];
+    ++made_.table_count;
+    Law::parameters[place].member.set(made_.law, a.values[0]);
+    return ILAW_OK;
+  }
+  // Fields that are axes must be given, as numbers, per node, or as tables over the time.
+  ilaw_result check_fields() {
+    for (std::size_t k = 0; k < count; ++k)
+      for (int a = 0; a < made_.tables[k].axis_count; ++a) {
+        const int field = made_.tables[k].source[a];
+        if (field == table::time) continue;
+        const auto f = static_cast<std::size_t>(field);
+        if (!given_[f] || (made_.tables[f].axis_count > 0 && !made_.tables[f].is_over_time_alone())) {
+          text_.add(
+              "law '%s': parameter '%s' is a table over '%s': expected a value, a value per node or a table over "
+              "time for that",
+              id, Law::parameters[k].name, Law::parameters[f].name);
+          return ILAW_INVALID_PARAMETER;
+        }
+        for (std::uint32_t n = 0; n < made_.per_node_count; ++n)
+          if (made_.per_node_parameters[n] == field) made_.tables[k].per_node = true;
+        if (made_.tables[k].per_node) made_.node_tables = made_.tables;
+      }
     return ILAW_OK;
   }
 
-  std::int32_t keep_per_node(const ilaw_parameter& p, double Law::*member) {
-    made_.per_node[made_.per_node_count] = &p;
-    made_.per_node_members[made_.per_node_count] = member;
+  ilaw_result keep_per_node(const ilaw_parameter& p, std::size_t place) {
+    made_.per_node_parameters[made_.per_node_count] = static_cast<int>(place);
     made_.per_node_names[made_.per_node_count++] = p.name;
     return ILAW_OK;
   }
 
-  std::int32_t require_arguments() {
-    for (std::size_t i = 0; i < parameter_count; ++i)
+  ilaw_result require_arguments() {
+    for (std::size_t i = 0; i < count; ++i)
       if (Law::parameters[i].required && !given_[i]) {
-        const ilaw_parameter& p = description<Law>::parameters[i];
+        const ilaw_parameter& p = description_type::parameters[i];
         text_.add("law '%s': parameter '%s' is missing: expected ", id, p.name);
         if (p.kind == ILAW_PARAMETER_CHOICE) {
           text_.add("one of ");
@@ -235,16 +251,16 @@ class instance_builder {
     return ILAW_OK;
   }
 
-  std::int32_t check_together() {
+  ilaw_result check_together() {
     if constexpr (requires { made_.law.inputs(); })
       if (const std::uint32_t extra = made_.law.inputs() & ~Law::card.inputs) {
         text_.add("law '%s': reads inputs 0x%x that its card does not name", id, extra);
         return ILAW_UNSUPPORTED;
       }
-    if (const std::int32_t code = check_conflicts(); code != ILAW_OK) return code;
+    if (const ilaw_result code = check_conflicts(); code != ILAW_OK) return code;
     if constexpr (requires { made_.law.tells_tangents_apart(); })
       if (with_unknowns().tells_tangents_apart() && setup_.frame == ILAW_FRAME_GLOBAL &&
-          setup_.dimension == 3 && !setup_.tangent_given) {
+          setup_.dimension == 3 && !setup_.has_tangent) {
         text_.add(
             "law '%s': these parameters tell the two tangential axes apart: expected a tangent per node", id);
         return ILAW_UNSUPPORTED;
@@ -255,28 +271,30 @@ class instance_builder {
   // Values that come per node are checked together there. Tables are checked at all their times, which is
   // enough for what is linear or convex in the parameters, and halfway to the next time of any of them, where
   // a segment towards infinity is infinite already.
-  std::int32_t check_conflicts() {
+  ilaw_result check_conflicts() {
     if (made_.per_node_count > 0) return ILAW_OK;
     if (made_.table_count == 0) return check_conflict(made_.law, nullptr);
-    for (std::uint32_t k = 0; k < made_.table_count; ++k)
-      for (std::uint64_t j = 0; j < made_.tables[k].count; ++j) {
-        const double time = made_.tables[k].pairs[2 * j], between = time + 0.5 * (next_time(time) - time);
-        for (const double instant : {time, between})
-          if (const std::int32_t code = check_conflict(made_.at(instant), &instant); code != ILAW_OK)
-            return code;
-      }
-    return ILAW_OK;
+    bool has_times = false;
+    for (const table& t : made_.tables)
+      for (int a = 0; a < t.axis_count; ++a)
+        for (std::uint64_t j = 0; t.source[a] == table::time && j < t.count[a]; ++j) {
+          const double time = t.points[a][j], between = time + 0.5 * (next_time(time) - time);
+          has_times = true;
+          for (const double instant : {time, between})
+            if (const ilaw_result code = check_conflict(made_.at(instant), &instant); code != ILAW_OK)
+              return code;
+        }
+    return has_times ? ILAW_OK : check_conflict(made_.at(0.0), nullptr);
   }
 
   // Of any table; the same where none follows.
   double next_time(double time) const {
     double next = infinity;
-    for (std::uint32_t k = 0; k < made_.table_count; ++k)
-      next = smaller(next, made_.tables[k].next_time(time));
+    for (const table& t : made_.tables) next = smaller(next, t.next_time(time));
     return next < infinity ? next : time;
   }
 
-  std::int32_t check_conflict(const Law& law, const double* time) {
+  ilaw_result check_conflict(const Law& law, const double* time) {
     if constexpr (requires { law.conflict(); })
       if (const char* conflict = law.conflict()) {
         text_.add("law '%s': %s", id, conflict);
@@ -292,13 +310,13 @@ class instance_builder {
 
   void add_values_named_in(const char* text, const Law& law) {
     const char* separator = "; found ";
-    for (std::size_t i = 0; i < parameter_count; ++i) {
-      const ilaw_parameter& p = description<Law>::parameters[i];
+    for (std::size_t i = 0; i < count; ++i) {
+      const ilaw_parameter& p = description_type::parameters[i];
       char quoted[80];
       std::snprintf(quoted, sizeof quoted, "'%s'", p.name);
       if (!std::strstr(text, quoted)) continue;
       text_.add("%s%s = ", separator, p.name);
-      add_value(text_, p, law.*Law::parameters[i].member);
+      add_value(text_, p, Law::parameters[i].member.get(law));
       separator = ", ";
     }
   }
@@ -307,20 +325,57 @@ class instance_builder {
   Law with_unknowns() const {
     Law law = made_.law;
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
-      law.*made_.per_node_members[k] = std::numeric_limits<double>::quiet_NaN();
-    for (std::uint32_t k = 0; k < made_.table_count; ++k)
-      law.*made_.table_members[k] = std::numeric_limits<double>::quiet_NaN();
+      Law::parameters[made_.per_node_parameters[k]].member.set(law, not_a_number);
+    for (std::size_t k = 0; k < count; ++k)
+      if (made_.tables[k].axis_count > 0) Law::parameters[k].member.set(law, not_a_number);
     return law;
   }
 
-  std::int32_t lay_out_state() {
-    if constexpr (has_history<Law>) made_.history_size = made_.law.history_size();
-    const auto declared = abi_state_variables<Law>(static_cast<int>(made_.dimension), made_.history_size);
+  ilaw_result lay_out_state() {
+    if constexpr (has_window<Law>) {
+      made_.window = made_.law.window();
+      made_.history_size = window::doubles(made_.window);
+    } else if constexpr (has_history<Law>) {
+      made_.history_size = made_.law.history_size();
+    }
+    const bool remembers = kit::remembers(made_.law);
+    const auto declared = abi_state_variables<Law>(static_cast<int>(made_.dimension),
+                                                   static_cast<std::uint64_t>(made_.history_size), remembers);
     for (const ilaw_state_variable& v : declared) append(v);
-    made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.tangent_given &&
-                          (made_.history_size > 0 || has_vector_state<Law>());
+    made_.carries_frame = made_.frame == ILAW_FRAME_GLOBAL && made_.dimension == 3 && !made_.has_tangent &&
+                          (made_.history_size > 0 || (remembers && has_vector_state<Law>()));
     if (made_.carries_frame)
       for (const history_card& v : frame_variables) append(abi_state_variable(v, ILAW_STATE_AXIS, 3));
+    made_.states = remembers ? state_numbers<Law> : 0;
+    made_.state_entries = state_entries<Law>[made_.dimension].data();
+    made_.frame_offset = static_cast<std::int64_t>(made_.state_size) - (made_.carries_frame ? frame_size : 0);
+    made_.history_offset = made_.frame_offset - made_.history_size;
+    return ILAW_OK;
+  }
+
+  // What the instance needs and can do.
+  ilaw_result state_needs() {
+    std::uint32_t mask = Law::card.inputs;
+    if constexpr (requires { made_.law.inputs(); })
+      if (!made_.varies()) mask = made_.law.inputs();
+    if (made_.frame == ILAW_FRAME_GLOBAL) mask |= ILAW_INPUT_NORMAL;
+    if (made_.frame == ILAW_FRAME_GLOBAL && made_.has_tangent && made_.dimension == 3)
+      mask |= ILAW_INPUT_TANGENT;
+    made_.inputs = mask;
+    made_.balance_inputs = ILAW_INPUT_V_PREVIOUS & ~mask;
+    made_.capabilities = Law::card.capabilities;
+    if constexpr (requires { made_.law.capabilities(); })
+      if (!made_.varies()) made_.capabilities = made_.law.capabilities();
+    made_.permissions = Law::card.permissions;
+    if constexpr (requires { made_.law.permissions(); })
+      if (!made_.varies()) made_.permissions = made_.law.permissions();
+    // A frame follows the normal wherever the node is, unless the law says when its memory rests.
+    made_.frame_follows = has_history<Law> && !(made_.permissions & ILAW_MAY_SKIP_FREE);
+    if (made_.carries_frame && made_.frame_follows) made_.permissions &= ~std::uint32_t{ILAW_MAY_SKIP_FRESH};
+    if constexpr (requires { made_.law.asks(); }) made_.asks = with_unknowns().asks();
+    if constexpr (requires { made_.law.asks(true); })
+      made_.asks = with_unknowns().asks(made_.is_transverse());
+    made_.amount_count = static_cast<std::uint32_t>(amount_count<Law>);
     return ILAW_OK;
   }
 
@@ -335,36 +390,40 @@ class instance_builder {
   instance<Law>& made_;
   const ilaw_setup setup_;
   message& text_;
-  bool given_[parameter_count + 1] = {};
+  bool given_[count + 1] = {};
 };
 
 template <class Law>
-const instance<Law>& of(const ilaw_instance* opaque) {
-  return *reinterpret_cast<const instance<Law>*>(opaque);
-}
-
-template <class Law>
-std::int32_t create(const ilaw_setup* setup, ilaw_instance** result, char* text, std::size_t text_size) {
-  message said(text, text_size);
-  if (!result) return ILAW_INVALID_ARGUMENT;
+ilaw_result create(const char* name, const ilaw_setup* setup, ilaw_kit_walk walk, ilaw_instance** result,
+                   message& text) {
   *result = nullptr;
+  if (!name || std::strcmp(name, Law::card.id) != 0) {
+    text.add("law '%s': create was called for '%s'", Law::card.id, name ? name : "null");
+    return ILAW_INVALID_ARGUMENT;
+  }
   if (!sized::is_complete(setup)) {
-    said.add("law '%s': setup is null or its struct_size not from %u to %u", Law::card.id,
+    text.add("law '%s': setup is null or its struct_size not from %u to %u", Law::card.id,
              sized::least<ilaw_setup>, sized::most);
     return ILAW_INVALID_ARGUMENT;
   }
   const float_environment own;
-  void* room = std::malloc(sizeof(instance<Law>));
-  if (!room) return ILAW_OUT_OF_MEMORY;
-  auto* made = new (room) instance<Law>{};
-  const std::int32_t code = instance_builder<Law>(*made, sized::read(setup), said).build();
+  void* memory = std::malloc(sizeof(instance<Law>));
+  if (!memory) return ILAW_OUT_OF_MEMORY;
+  auto* made = new (memory) instance<Law>{};
+  made->walk = walk;
+  const ilaw_result code = instance_builder<Law>(*made, sized::read(setup), text).build();
   if (code == ILAW_OK) {
     *result = reinterpret_cast<ilaw_instance*>(made);
   } else {
     made->~instance<Law>();
-    std::free(room);
+    std::free(memory);
   }
   return code;
+}
+
+template <class Law>
+const instance<Law>& of(const ilaw_instance* opaque) {
+  return *reinterpret_cast<const instance<Law>*>(opaque);
 }
 
 template <class Law>
@@ -375,19 +434,22 @@ void destroy(ilaw_instance* opaque) {
 }
 
 template <class Law>
-std::int32_t info(const ilaw_instance* opaque, ilaw_instance_info* out) {
+ilaw_result info(const ilaw_instance* opaque, ilaw_instance_info* out) {
   if (!opaque || !sized::is_complete(out)) return ILAW_INVALID_ARGUMENT;
   const instance<Law>& made = of<Law>(opaque);
   sized::write(out, {.struct_size = 0,
-                     .inputs = made.inputs(),
-                     .energy_inputs = made.energy_inputs(),
+                     .inputs = made.inputs,
+                     .balance_inputs = made.balance_inputs,
                      .state_variable_count = made.variable_count,
                      .state_size = made.state_size,
                      .state_variables = made.variable_pointers,
                      .per_node_parameters = made.per_node_names,
                      .per_node_parameter_count = made.per_node_count,
-                     .capabilities = made.capabilities(),
+                     .capabilities = made.capabilities,
                      .state_version = Law::card.state_version,
+                     .permissions = made.permissions,
+                     .amounts = instance<Law>::description_type::amount_pointers.data(),
+                     .amount_count = static_cast<std::uint32_t>(amount_count<Law>),
                      .reserved = 0});
   return ILAW_OK;
 }

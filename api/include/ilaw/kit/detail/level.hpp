@@ -1,6 +1,6 @@
 // level.hpp - instruction-set levels. ilaw_add_plugin compiles a law's source once per level, with the
-// compiler's -march; each level lives in an inline namespace of its own, so that the linker never mixes their
-// code. All levels give the same bits, since they do the same IEEE operations in the same order.
+// compiler's -march. Each level lives in an inline namespace of its own, so that the linker never mixes their
+// code. All levels give the same bits: they do the same IEEE operations in the same order.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,13 +8,17 @@
 #define ILAW_KIT_LEVEL baseline
 #endif
 
-namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
-
-// The code for old processors beside that of others has fewer loops: less to compile, and the same bits.
-#if defined(ILAW_KIT_OTHER_LEVELS)
-inline constexpr bool is_for_old_processors = true;
-#else
-inline constexpr bool is_for_old_processors = false;
+#ifdef __FAST_MATH__
+#error "the kit needs IEEE arithmetic: compile without -ffast-math"
 #endif
 
-}  // namespace ilaw::kit::detail
+// Small functions of packs: a call would pass their registers through memory.
+#define ILAW_KIT_INLINE [[gnu::always_inline]] inline
+#define ILAW_KIT_LAMBDA __attribute__((always_inline))
+
+// A value that is kept in a vector register: compilers would else read parts of it from memory again.
+#if defined(__SSE2__)
+#define ILAW_KIT_IN_REGISTER(value) asm("" : "+v"(value))
+#else
+#define ILAW_KIT_IN_REGISTER(value) static_cast<void>(value)
+#endif

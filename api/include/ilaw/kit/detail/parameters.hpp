@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/declare.hpp>
+#include <ilaw/kit/law.hpp>
+#include <ilaw/kit/math.hpp>
+#include <ilaw/sized.hpp>
 
 #include <cstdarg>
 #include <cstdio>
@@ -32,60 +34,78 @@ class message {
   std::size_t size_, used_ = 0;
 };
 
-// A parameter given as a table in time.
-struct time_table {
-  const ilaw_parameter* parameter;
-  double* pairs;  // owned by the instance
-  std::uint64_t count;
+// A parameter given as a table over one to three axes: linear along each, constant beyond its ends. The last
+// axis varies fastest.
+struct table {
+  static constexpr int time = -1;
 
-  // The first of its times after one; infinity where there is none.
-  double next_time(double time) const {
-    std::uint64_t low = 0, high = count;
+  int axis_count = 0;  // 0: none
+  int source[3] = {};  // of an axis: time, or a field's place among the law's parameters
+  bool per_node = false;
+  std::uint64_t count[3] = {};
+  double* points[3] = {};  // owned, with the values behind them
+  double* values = nullptr;
+
+  bool is_over_time_alone() const { return axis_count == 1 && source[0] == time; }
+  double at(const double (&place)[3]) const { return between(0, 0, place); }
+
+  // Position of the first point after a place on an axis.
+  std::uint64_t after(int axis, double place) const {
+    std::uint64_t low = 0, high = count[axis];
     while (low < high) {
       const std::uint64_t middle = (low + high) / 2;
-      if (pairs[2 * middle] > time)
+      if (points[axis][middle] > place)
         high = middle;
       else
         low = middle + 1;
     }
-    return low < count ? pairs[2 * low] : infinity;
+    return low;
+  }
+  double next_time(double after_time) const {
+    for (int a = 0; a < axis_count; ++a)
+      if (source[a] == time)
+        if (const std::uint64_t k = after(a, after_time); k < count[a]) return points[a][k];
+    return infinity;
   }
 
-  // Piecewise linear, constant outside its ends.
-  double at(double time) const {
-    if (time <= pairs[0]) return pairs[1];
-    std::uint64_t low = 0, high = count - 1;
-    if (time >= pairs[2 * high]) return pairs[2 * high + 1];
-    while (high - low > 1) {
-      const std::uint64_t middle = (low + high) / 2;
-      (time < pairs[2 * middle] ? high : low) = middle;
-    }
-    const double t0 = pairs[2 * low], t1 = pairs[2 * high], y0 = pairs[2 * low + 1], y1 = pairs[2 * high + 1];
-    const double fraction = (time - t0) / (t1 - t0);
+ private:
+  double between(int axis, std::uint64_t row, const double (&place)[3]) const {
+    if (axis == axis_count) return values[row];
+    const auto value = [&](std::uint64_t k) { return between(axis + 1, row * count[axis] + k, place); };
+    const std::uint64_t k = after(axis, place[axis]);
+    if (k == 0) return value(0);
+    if (k == count[axis]) return value(k - 1);
+    const double x0 = points[axis][k - 1], x1 = points[axis][k], y0 = value(k - 1), y1 = value(k);
+    const double fraction = (place[axis] - x0) / (x1 - x0);
     // At its ends a segment has their values, also beside an infinite one.
     if (y0 == y1 || fraction == 0.0) return y0;
     return fraction == 1.0 ? y1 : y0 * (1.0 - fraction) + y1 * fraction;
   }
 };
 
-// What a parameter may be, without a branch: the loops over nodes ask it, too.
+// What a parameter may be.
 struct parameter_range {
   double minimum, excluded, maximum, beyond;
 
-  explicit parameter_range(const ilaw_parameter& p)
-      : minimum(p.minimum),
-        excluded(p.minimum_excluded ? p.minimum : std::numeric_limits<double>::quiet_NaN()),
-        maximum(smaller(p.maximum, std::numeric_limits<double>::max())),
-        beyond(p.infinity_allowed ? infinity : std::numeric_limits<double>::quiet_NaN()) {}
-  bool has(double value) const {
+  constexpr parameter_range(double least, bool excludes, double most, bool allows_infinity)
+      : minimum(least),
+        excluded(excludes ? least : not_a_number),
+        maximum(smaller(most, std::numeric_limits<double>::max())),
+        beyond(allows_infinity ? infinity : not_a_number) {}
+  template <class V>
+  ILAW_KIT_INLINE auto has(V value) const {
     return (value >= minimum) & (value != excluded) & ((value <= maximum) | (value == beyond));
   }
 };
-inline bool in_range(const ilaw_parameter& p, double value) { return parameter_range(p).has(value); }
+inline bool in_range(const ilaw_parameter& p, double value) {
+  return parameter_range(p.minimum, p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM, p.maximum,
+                         p.flags & ILAW_PARAMETER_ALLOWS_INFINITY)
+      .has(value);
+}
 
 inline void add_range(message& text, const ilaw_parameter& p) {
-  text.add("%s%g, ", p.minimum_excluded ? "(" : "[", p.minimum);
-  if (p.infinity_allowed)
+  text.add("%s%g, ", p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM ? "(" : "[", p.minimum);
+  if (p.flags & ILAW_PARAMETER_ALLOWS_INFINITY)
     text.add("inf]");
   else if (p.maximum == std::numeric_limits<double>::max())
     text.add("inf)");
@@ -114,7 +134,7 @@ inline void add_value(message& text, const ilaw_parameter& p, double value) {
 }
 
 // Checks one number against the range of its parameter.
-inline std::int32_t check_number(const char* law, const ilaw_parameter& p, double value, message& text) {
+inline ilaw_result check_number(const char* law, const ilaw_parameter& p, double value, message& text) {
   const bool whole = p.kind != ILAW_PARAMETER_COUNT || value == __builtin_floor(value);
   if (in_range(p, value) && whole) return ILAW_OK;
   text.add("law '%s': parameter '%s' = ", law, p.name);
@@ -124,8 +144,8 @@ inline std::int32_t check_number(const char* law, const ilaw_parameter& p, doubl
   return ILAW_INVALID_PARAMETER;
 }
 
-inline std::int32_t read_choice(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
-                                double& value, message& text) {
+inline ilaw_result read_choice(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
+                               double& value, message& text) {
   if (a.kind == ILAW_VALUE_TEXT && a.text)
     for (std::uint32_t i = 0; i < p.choice_count; ++i)
       if (std::strcmp(p.choices[i], a.text) == 0) {
@@ -144,14 +164,14 @@ inline std::int32_t read_choice(const char* law, const ilaw_parameter& p, const 
   return ILAW_INVALID_PARAMETER;
 }
 
-inline std::int32_t read_number(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
-                                double& value, message& text) {
+inline ilaw_result read_number(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
+                               double& value, message& text) {
   if (a.kind == ILAW_VALUE_NUMBER) {
     value = a.number;
     return check_number(law, p, value, text);
   }
   const char* given = a.kind == ILAW_VALUE_TEXT       ? "a text"
-                      : a.kind == ILAW_VALUE_TABLE    ? "a table in time"
+                      : a.kind == ILAW_VALUE_TABLE    ? "a table"
                       : a.kind == ILAW_VALUE_PER_NODE ? "a value per node"
                                                       : "a value of unknown kind";
   text.add("law '%s': parameter '%s' was given as %s", law, p.name, given);
@@ -161,26 +181,62 @@ inline std::int32_t read_number(const char* law, const ilaw_parameter& p, const 
   return ILAW_INVALID_PARAMETER;
 }
 
-// Checks a table: times finite and increasing, values in range.
-inline std::int32_t check_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a,
-                                message& text) {
-  if (!a.values || a.count == 0) {
-    text.add("law '%s': parameter '%s': the table has no (time, value) pair, expected at least 1", law,
-             p.name);
+// Checks a table, and keeps it: axes known, each once, points finite and increasing, values in range.
+inline ilaw_result read_table(const char* law, const ilaw_parameter& p, const ilaw_argument& a, table& made,
+                              message& text) {
+  const auto refuse = [&](const char* what, const char* axis = "") {
+    text.add("law '%s': parameter '%s': the table %s%s", law, p.name, what, axis);
     return ILAW_INVALID_PARAMETER;
-  }
-  for (std::uint64_t k = 0; k < a.count; ++k) {
-    const double time = a.values[2 * k];
-    if (!is_finite(time) || (k > 0 && time <= a.values[2 * k - 2])) {
-      text.add("law '%s': parameter '%s': time ", law, p.name);
-      add_number(text, time);
-      text.add(" of pair %llu of the table is not allowed: expected finite, increasing times",
-               static_cast<unsigned long long>(k));
+  };
+  if (a.axis_count < 1 || a.axis_count > 3 || !a.axes)
+    return refuse("has no axis or more than three, expected 1 to 3");
+  if (!a.values) return refuse("has no values");
+  ilaw_axis axes[3];
+  std::uint64_t size = 1, stored = 0;
+  for (std::uint32_t i = 0; i < a.axis_count; ++i) {
+    if (!sized::is_complete(a.axes[i]))
+      return refuse("has an axis that is null or whose struct_size is of no version");
+    axes[i] = sized::read(a.axes[i]);
+    if (!axes[i].name || !axes[i].points || axes[i].count == 0)
+      return refuse("has an axis without a name or point, expected at least 1 point");
+    std::uint32_t known = 0;
+    while (known < p.axis_count && std::strcmp(p.axes[known], axes[i].name) != 0) ++known;
+    if (known == p.axis_count) {
+      text.add("law '%s': parameter '%s': axis '%s' of the table is unknown: expected one of ", law, p.name,
+               axes[i].name);
+      for (std::uint32_t k = 0; k < p.axis_count; ++k) text.add("%s'%s'", k ? ", " : "", p.axes[k]);
       return ILAW_INVALID_PARAMETER;
     }
-    if (const std::int32_t code = check_number(law, p, a.values[2 * k + 1], text); code != ILAW_OK)
-      return code;
+    for (std::uint32_t k = 0; k < i; ++k)
+      if (std::strcmp(axes[k].name, axes[i].name) == 0) return refuse("has twice the axis ", axes[i].name);
+    if (axes[i].count > ILAW_TABLE_MAX_VALUES / size) return refuse("has more than 16777216 values");
+    size *= axes[i].count;
+    stored += axes[i].count;
+    for (std::uint64_t k = 0; k < axes[i].count; ++k)
+      if (const double x = axes[i].points[k]; !is_finite(x) || (k > 0 && x <= axes[i].points[k - 1])) {
+        text.add("law '%s': parameter '%s': point %llu of axis '%s' is ", law, p.name,
+                 static_cast<unsigned long long>(k), axes[i].name);
+        add_number(text, x);
+        text.add(": expected finite, increasing points");
+        return ILAW_INVALID_PARAMETER;
+      }
   }
+  for (std::uint64_t k = 0; k < size; ++k)
+    if (const ilaw_result code = check_number(law, p, a.values[k], text); code != ILAW_OK) return code;
+  auto* memory = static_cast<double*>(std::malloc((stored + size) * sizeof(double)));
+  if (!memory) {
+    text.add("law '%s': out of memory for the table of parameter '%s'", law, p.name);
+    return ILAW_OUT_OF_MEMORY;
+  }
+  made.axis_count = static_cast<int>(a.axis_count);
+  for (std::uint32_t i = 0; i < a.axis_count; ++i) {
+    made.count[i] = axes[i].count;
+    made.points[i] = memory;
+    std::memcpy(memory, axes[i].points, axes[i].count * sizeof(double));
+    memory += axes[i].count;
+  }
+  made.values = memory;
+  std::memcpy(memory, a.values, size * sizeof(double));
   return ILAW_OK;
 }
 

@@ -22,26 +22,18 @@
  *  - Threads: each function says from where it may be called. [any-thread]: from any thread, at the same time
  *    as any other call. [exclusive]: from any thread, while no other call works on the same instance.
  *
- * How ABI 1 grows
- *  - Every struct but ilaw_input and ilaw_output starts with struct_size, set by whoever fills the struct to
- *    the sizeof it was compiled with. Minor versions only append members, at the end. A reader copies at most
- *    struct_size bytes and takes what is absent as zero, so zero must mean what 1.0 did. What is smaller than
- *    its ILAW_..._SIZE_1_0 is refused; what is larger than the reader's own struct is read up to that.
- *  - Who writes into a struct of the other side (info, a report) writes no byte beyond its struct_size.
- *  - ilaw_input and ilaw_output have no struct_size and stand by value in others and in arrays: they never
- *    grow. Pointers to arrays of other structs are arrays of pointers, since an element may grow.
- *  - energy has four parts and status eight codes for ever; more of either comes in a new array of the batch.
- *  - Flags that a host sets ask for something: a library refuses a bit that it does not know, with
- *    ILAW_UNSUPPORTED. Bits that a library sets in ilaw_instance_info.inputs or energy_inputs ask too: a host
- *    refuses an instance that reads what it does not know. All other masks of a library only tell something:
- *    unknown bits are ignored. A host takes a kind of parameter or state variable that it does not know as
- *    text to show (a parameter) and as ILAW_STATE_HISTORY (a variable).
- *  - New functions come as extensions (ilaw_plugin.extension, ilaw_law.extension), asked for by name.
+ * Growth (all rules, with reasons: docs/abi.md)
+ *  - Every struct but ilaw_input and ilaw_output starts with struct_size: its writer's sizeof. Minor versions
+ *    append members at the end; an absent member is zero, and zero means what 1.0 did. A struct smaller than
+ *    its ILAW_..._SIZE_1_0 is refused. Nobody writes beyond the struct_size of the other side.
+ *  - A flag or kind set by the host is a request: a library that does not know it refuses. So do inputs and
+ *    balance_inputs of an instance, and the host refuses. All other bits of a library are information.
+ *  - Pointers to arrays of structs are arrays of pointers, since a struct may grow.
+ *  - New functions are extensions, asked for by name: ilaw/ext/, drafts in ilaw/ext/draft/.
  *
  * Pure C99, clean as C++17, needs nothing but <stdint.h> and <stddef.h>.
- * Source of the formulation: Moreau (1988), Unilateral contact and dry friction in finite freedom
- * dynamics; Fekak, Brun, Gravouil, Depale (2017), A new heterogeneous asynchronous explicit-implicit time
- * integrator for nonsmooth dynamics (CD-Lagrange).
+ * Formulation: Moreau (1988), Unilateral contact and dry friction in finite freedom dynamics; Fekak, Brun,
+ * Gravouil, Depale (2017), heterogeneous asynchronous time integrator for nonsmooth dynamics (CD-Lagrange).
  *
  * SPDX-License-Identifier: BSD-3-Clause
  */
@@ -55,8 +47,7 @@
 extern "C" {
 #endif
 
-#define ILAW_ABI_MAJOR 1
-#define ILAW_ABI_MINOR 0
+enum { ILAW_ABI_MAJOR = 1, ILAW_ABI_MINOR = 0 };
 /* The major version is part of the name: a library for ABI 2 is not found by a host of ABI 1. */
 #define ILAW_ENTRY ilaw_plugin_v1
 #define ILAW_ENTRY_NAME "ilaw_plugin_v1"
@@ -68,6 +59,28 @@ extern "C" {
 #else
 #define ILAW_EXPORT
 #endif
+
+/* Calling convention of every function, whatever flags its caller was compiled with. */
+#if defined(_WIN32) && !defined(_WIN64)
+#define ILAW_CALL __cdecl
+#else
+#define ILAW_CALL
+#endif
+
+/* Types of results, statuses, kinds (one of an enumeration) and masks (any of its bits). */
+typedef int32_t ilaw_result;           /* ILAW_OK ... */
+typedef uint8_t ilaw_status;           /* ILAW_FREE ... */
+typedef uint32_t ilaw_kind;            /* of a parameter, a value or a state variable */
+typedef uint32_t ilaw_dimensions;      /* mask of ILAW_DIMENSION_* */
+typedef uint32_t ilaw_delassus_forms;  /* mask of ILAW_DELASSUS_* */
+typedef uint32_t ilaw_frames;          /* mask of ILAW_FRAME_* */
+typedef uint32_t ilaw_numbers;         /* mask of ILAW_NUMBERS_* */
+typedef uint32_t ilaw_inputs;          /* mask of ILAW_INPUT_* */
+typedef uint32_t ilaw_outputs;         /* mask of ILAW_OUTPUT_* */
+typedef uint32_t ilaw_capabilities;    /* mask of ILAW_CAN_* */
+typedef uint32_t ilaw_permissions;     /* mask of ILAW_MAY_* */
+typedef uint32_t ilaw_parameter_flags; /* mask of ILAW_PARAMETER_IS_*, _ALLOWS_*, _EXCLUDES_* */
+typedef uint32_t ilaw_variable_flags;  /* mask of ILAW_VARIABLE_* */
 
 /* ---- enumerations ------------------------------------------------------------------------------- */
 
@@ -91,8 +104,7 @@ enum { ILAW_DIMENSION_1 = 1 << 1, ILAW_DIMENSION_2 = 1 << 2, ILAW_DIMENSION_3 = 
  *   DIAGONAL  d values:       H_00, H_11, H_22, in the axes of the vectors
  *   FULL      d(d+1)/2 values: 1D H_00; 2D H_00 H_11 H_01; 3D H_00 H_11 H_22 H_01 H_02 H_12
  *   TRANSVERSE 2 values:      normal h_N and tangential h_T, H = h_N n n^T + h_T (I - n n^T), in any axes
- * (the second is there, and not read, also in dimension 1) One bit each in masks of forms; a law serves those
- * in its mask. */
+ * (in dimension 1, too, where the second is not read). A law serves the forms in its mask. */
 enum {
   ILAW_DELASSUS_SCALAR = 1,
   ILAW_DELASSUS_DIAGONAL = 2,
@@ -100,11 +112,15 @@ enum {
   ILAW_DELASSUS_TRANSVERSE = 8,
 };
 
-/* Axes in which vectors and H are given. */
+/* Axes in which vectors and H are given; both frames are right-handed. */
 enum {
-  ILAW_FRAME_LOCAL = 0,  /* component 0 normal, 1 and 2 tangential */
-  ILAW_FRAME_GLOBAL = 1, /* the host's axes; each node has a unit normal, and a unit tangent if it likes */
+  ILAW_FRAME_LOCAL = 1,  /* component 0 normal, 1 and 2 tangential */
+  ILAW_FRAME_GLOBAL = 2, /* the host's axes; each node has a unit normal, and a unit tangent if it likes */
 };
+
+/* Number type of the arrays of a batch; state is always double. Laws compute in double: a float result is the
+ * double result rounded once, and an impulse of 2^126 or more is bad input of its node. */
+enum { ILAW_NUMBERS_DOUBLE = 1, ILAW_NUMBERS_FLOAT = 2 };
 
 /* Arrays of a batch that a law reads, a bit mask. v_free and delassus are always read. */
 enum {
@@ -122,16 +138,17 @@ enum { ILAW_OUTPUT_VELOCITY = 1 << 0, ILAW_OUTPUT_STATUS = 1 << 1, ILAW_OUTPUT_E
 enum {
   ILAW_CAN_ADHERE = 1 << 0,       /* r_N may be negative */
   ILAW_CAN_STORE_ENERGY = 1 << 1, /* the stored part of the energy may be other than zero */
-  /* Without it a node whose state is as initialise left it gets r = 0 and keeps that state, bit for bit, when
-   * it is out of reach: a host need not ask it. */
-  ILAW_CAN_ACT_AT_DISTANCE = 1 << 2,
-  /* A node whose last status was ILAW_FREE gets r = 0, the same status, and keeps its state, bit for bit,
-   * when it is out of reach, whatever came before: a host need not ask it until it comes near. */
-  ILAW_CAN_REST = 1 << 3,
 };
 
-/* Out of reach is what this says, in double precision and in this order of operations, each of them rounded
- * (no fused multiply-add). Laws use the same expression, so law, promise and host agree to the last bit.
+/* Permissions: the host may skip a node that is out of reach; none by default. The law promises that evaluate
+ * would have given r = 0, no energy, no amounts, the same status and the same state, bit for bit. */
+enum {
+  ILAW_MAY_SKIP_FRESH = 1 << 0, /* whose state is as initialise left it */
+  ILAW_MAY_SKIP_FREE = 1 << 1,  /* whose last status was ILAW_FREE */
+};
+
+/* Out of reach, in double precision, in this order of operations, each of them rounded (no fused
+ * multiply-add), so that law and host agree to the last bit:
  *
  *   g = gap - gap_offset          (the gap itself without an offset)
  *   v_N = v_free_0                in the local frame
@@ -146,16 +163,24 @@ enum {
   ILAW_PARAMETER_CHOICE = 2, /* one of the listed texts */
 };
 
+/* Properties of a parameter, a bit mask. */
+enum {
+  ILAW_PARAMETER_IS_REQUIRED = 1 << 0,      /* has no default */
+  ILAW_PARAMETER_EXCLUDES_MINIMUM = 1 << 1, /* the value must be larger than minimum */
+  ILAW_PARAMETER_ALLOWS_INFINITY = 1 << 2,  /* +infinity is an ordinary value */
+  ILAW_PARAMETER_ALLOWS_PER_NODE = 1 << 3,  /* may be given per node */
+  /* A field of the host's model (temperature, fluid_pressure: glossary in docs/abi.md), at the time of the
+   * batch. A host that has a field of this name passes it per node, unless its user gave a value. */
+  ILAW_PARAMETER_IS_FIELD = 1 << 4,
+};
+
 /* How the value of a parameter is given. */
 enum {
   ILAW_VALUE_NUMBER = 0,
   ILAW_VALUE_TEXT = 1,
-  ILAW_VALUE_TABLE = 2,    /* piecewise linear in time, constant outside its ends */
+  ILAW_VALUE_TABLE = 2,    /* over one to three axes; linear along each, constant beyond its ends */
   ILAW_VALUE_PER_NODE = 3, /* one value per node, given with every batch */
 };
-
-/* Ways in which a parameter may be given besides a constant, a bit mask. */
-enum { ILAW_MAY_BE_TABLE = 1 << 0, ILAW_MAY_BE_PER_NODE = 1 << 1 };
 
 /* Kind of a state variable. */
 enum {
@@ -170,9 +195,8 @@ enum {
 /* Flags of a state variable, a bit mask. */
 enum { ILAW_VARIABLE_INTERNAL = 1 << 0 }; /* the law's bookkeeping: not for pictures and tables */
 
-/* Status of a node after a step. ABI 1 has these eight for ever. A host that finds another number has a
- * broken library before it: it takes the node as ILAW_BAD_INPUT, and never uses a status as an index
- * unchecked. */
+/* Status of a node after a step; ABI 1 has these eight for ever. Another number means a broken library: a
+ * host takes it for ILAW_BAD_INPUT, and never uses a status as an index unchecked. */
 enum {
   ILAW_FREE = 0,   /* no impulse */
   ILAW_CLOSED = 1, /* pushed, no friction */
@@ -186,8 +210,8 @@ enum {
 };
 
 /* Components of the energy output, per node and step; ABI 1 has these four for ever. The work of the impulse
- * over the step is r.(v_previous + v)/2, exactly, in a central-difference host; the parts below are what
- * becomes of it. Dissipated parts are never negative; a part that overflows is +infinity, none is NaN. */
+ * over the step is r.(v_previous + v)/2, exactly, in a central-difference host; it divides into these parts.
+ * Dissipated parts are never negative; a part that overflows is +infinity, none is NaN. */
 enum {
   ILAW_ENERGY_FRICTION = 0, /* dissipated by friction */
   ILAW_ENERGY_IMPACT = 1,   /* dissipated by impact */
@@ -198,98 +222,128 @@ enum {
 
 /* ---- description -------------------------------------------------------------------------------- */
 
-/* A parameter of a law. Text members are never null, and empty where they have nothing to say. */
+/* A parameter of a law. Texts are never null; they may be empty. */
 typedef struct ilaw_parameter {
   uint32_t struct_size;
-  uint32_t kind;              /* ILAW_PARAMETER_* */
-  const char* name;           /* lower case, digits, underscore: what users type */
-  const char* symbol;         /* as in the law's page */
-  const char* unit;           /* SI, "1" when it has none */
-  const char* doc;            /* one sentence */
-  double minimum;             /* smallest value allowed */
-  double maximum;             /* largest finite value allowed */
-  double default_value;       /* for a choice, its index in choices */
-  uint32_t required;          /* 1: has no default */
-  uint32_t minimum_excluded;  /* 1: the value must be larger than minimum */
-  uint32_t infinity_allowed;  /* 1: +infinity is an ordinary value */
-  uint32_t may_be;            /* ILAW_MAY_BE_* mask */
-  const char* const* choices; /* choice_count texts, null unless kind is CHOICE */
+  ilaw_kind kind;       /* ILAW_PARAMETER_NUMBER ... */
+  const char* name;     /* lower case, digits, underscore: what users type */
+  const char* symbol;   /* as in the law's page */
+  const char* unit;     /* SI, "1" when it has none */
+  const char* doc;      /* one sentence */
+  double minimum;       /* smallest value allowed */
+  double maximum;       /* largest finite value allowed */
+  double default_value; /* for a choice, its index in choices */
+  ilaw_parameter_flags flags;
   uint32_t choice_count;
+  const char* const* choices; /* choice_count texts, null unless kind is CHOICE */
+  const char* const* axes; /* axis_count names over which it may be a table: "time", a field of this law, or
+                              a quantity that the law computes and doc explains ("slip_speed", "pressure");
+                              null: never a table */
+  uint32_t axis_count;
   uint32_t reserved; /* 0 */
 } ilaw_parameter;
 
 /* A state variable. The state of a node is the concatenation of its variables, in this order. */
 typedef struct ilaw_state_variable {
   uint32_t struct_size;
-  uint32_t kind;    /* ILAW_STATE_* */
+  ilaw_kind kind;   /* ILAW_STATE_* */
   const char* name; /* lower case, digits, underscore */
   const char* unit;
   const char* doc;
   uint64_t count; /* doubles: 1 for SCALAR, d for VECTOR and AXIS, d-1 for TANGENTIAL; known from the instance
                      for HISTORY */
-  uint32_t flags; /* ILAW_VARIABLE_* mask */
+  ilaw_variable_flags flags;
   uint32_t reserved; /* 0 */
 } ilaw_state_variable;
+
+/* A scalar that the law gives per node and step: the amount of this step, 0 where nothing happened, never a
+ * level. Glossary in docs/abi.md: heat, counterpart_heat [J], wear [m]. */
+typedef struct ilaw_amount {
+  uint32_t struct_size;
+  uint32_t reserved; /* 0 */
+  const char* name;
+  const char* unit;
+  const char* doc;
+} ilaw_amount;
+
+/* An axis of a table. The grid of a table has at most ILAW_TABLE_MAX_VALUES points. */
+enum { ILAW_TABLE_MAX_VALUES = 1 << 24 };
+typedef struct ilaw_axis {
+  uint32_t struct_size;
+  uint32_t reserved; /* 0 */
+  const char* name;
+  const double* points; /* count, finite, strictly increasing */
+  uint64_t count;       /* at least 1 */
+} ilaw_axis;
 
 /* A parameter with its value, for create. */
 typedef struct ilaw_argument {
   uint32_t struct_size;
-  uint32_t kind;        /* ILAW_VALUE_* */
+  ilaw_kind kind;       /* ILAW_VALUE_* */
   const char* name;     /* of the parameter */
   double number;        /* VALUE_NUMBER; infinity where the parameter allows it */
   const char* text;     /* VALUE_TEXT: the choice; else null */
-  const double* values; /* VALUE_TABLE: count pairs (time, value), times increasing; else null */
-  uint64_t count;       /* VALUE_TABLE: number of pairs, at least 1; else 0 */
+  const double* values; /* VALUE_TABLE: one per point of the grid, the last axis varies fastest; else null */
+  const ilaw_axis* const* axes; /* VALUE_TABLE: axis_count, each name once; else null. create refuses an axis
+                                   that is a field without a value or per-node array */
+  uint32_t axis_count;          /* VALUE_TABLE: 1 to 3; else 0 */
+  uint32_t reserved;            /* 0 */
 } ilaw_argument;
 
-/* What an instance will be used for. */
+/* The use of an instance. Dimension, form, frame and numbers: each exactly one entry of the law's mask. */
 typedef struct ilaw_setup {
   uint32_t struct_size;
   uint32_t dimension;                    /* 1, 2 or 3 */
-  uint32_t delassus_form;                /* one of ILAW_DELASSUS_*: the form every batch will have */
-  uint32_t frame;                        /* ILAW_FRAME_*: the frame every batch will have */
+  ilaw_delassus_forms delassus_form;     /* one of ILAW_DELASSUS_*: the form every batch will have */
+  ilaw_frames frame;                     /* one of ILAW_FRAME_*: the frame every batch will have */
   uint64_t flags;                        /* 0: none is defined in 1.0; an unknown bit is refused */
   const ilaw_argument* const* arguments; /* argument_count pointers; may be null when 0 */
   uint32_t argument_count;
-  uint32_t tangent_given; /* 1: batches in the global frame will carry a tangent */
+  uint32_t has_tangent; /* 1: batches in the global frame will carry a tangent */
+  ilaw_numbers numbers; /* one of ILAW_NUMBERS_*: of the arrays of every batch */
+  uint32_t reserved;    /* 0 */
 } ilaw_setup;
 
 /* An instance of a law: its checked parameters. Opaque, immutable, usable from any number of threads. */
 typedef struct ilaw_instance ilaw_instance;
 
-/* What an instance needs, for these parameters: often less than the law in general. */
+/* Needs of an instance with its parameters: often less than the law in general. */
 typedef struct ilaw_instance_info {
   uint32_t struct_size;
-  uint32_t inputs;        /* ILAW_INPUT_* mask: read by every evaluate */
-  uint32_t energy_inputs; /* ILAW_INPUT_* mask: read besides when the energy output is asked for */
+  ilaw_inputs inputs;         /* read by every evaluate */
+  ilaw_inputs balance_inputs; /* read besides when energy or an amount is asked for */
   uint32_t state_variable_count;
   uint64_t state_size;                               /* doubles per node; may be 0 */
   const ilaw_state_variable* const* state_variables; /* owned by the instance; counts sum to state_size */
   const char* const* per_node_parameters; /* names of parameters given per node, in the order of the batch */
   uint32_t per_node_parameter_count;
-  uint32_t capabilities; /* ILAW_CAN_* mask: what the law can do with these parameters */
-  /* Raised by the law whenever it would read a state of before in another way. A host keeps it beside every
-   * state that it stores, with library, law, parameters and state_size, and takes a state with another
-   * version for none. */
+  ilaw_capabilities capabilities; /* what the law can do with these parameters */
+  /* The law raises it whenever it interprets a stored state differently. A host stores it with every state,
+   * beside library, law, parameters and state_size, and discards a state of another version. */
   uint32_t state_version;
+  ilaw_permissions permissions;
+  const ilaw_amount* const* amounts; /* that it can give, in the order of the batch */
+  uint32_t amount_count;
   uint32_t reserved; /* 0 */
 } ilaw_instance_info;
 
 /* ---- batch -------------------------------------------------------------------------------------- */
 
-/* Component c of node i stands at values[i * node_stride + c * component_stride] (strides in doubles).
+/* Component c of node i stands at values[i * node_stride + c * component_stride] (strides in elements).
  * AoS (3,n): strides 3 and 1. SoA: strides 1 and n. A node stride of 0 gives all nodes the same value.
- * values = null: the array is absent. */
+ * The setup's numbers decide which pointer is set, values or floats; the other one is null. Both null: the
+ * array is absent. State has values alone. */
 typedef struct ilaw_input {
   const double* values;
+  const float* floats;
   int64_t node_stride;
   int64_t component_stride;
 } ilaw_input;
 
-/* As ilaw_input, written to. A node stride of 0 is allowed only for a batch of one node. Both have this size
- * for ever. */
+/* As ilaw_input, written to; a node stride of 0 only for a batch of one node. Neither ever grows. */
 typedef struct ilaw_output {
   double* values;
+  float* floats;
   int64_t node_stride;
   int64_t component_stride;
 } ilaw_output;
@@ -325,12 +379,13 @@ typedef struct ilaw_batch {
   ilaw_output impulse;                   /* d: r [N.s] */
   ilaw_output velocity;                  /* d, optional: v = v_free + H r [m/s] */
   ilaw_output energy;                    /* four: ILAW_ENERGY_*, optional [J] */
-  uint8_t* status;                       /* optional: ILAW_FREE ... per node, at status[i * status_stride] */
+  ilaw_status* status;                   /* optional: per node, at status[i * status_stride] */
   int64_t status_stride;
+  const ilaw_output* amounts; /* 1 each, in the order of the instance info; an absent one is not wanted; null:
+                                 none is */
 } ilaw_batch;
 
-/* What evaluate and initialise have to say besides the return code. The caller sets struct_size and zeroes
- * the rest. */
+/* Findings of evaluate and initialise. The caller sets struct_size and zeroes the rest. */
 typedef struct ilaw_report {
   uint32_t struct_size;
   uint32_t reserved;      /* 0 */
@@ -345,14 +400,28 @@ typedef struct ilaw_report {
 
 /* ---- laws and libraries ------------------------------------------------------------------------- */
 
+/* Functions of a law, described at the members of ilaw_law. */
+typedef ilaw_result(ILAW_CALL* ilaw_create_function)(const char* id, const ilaw_setup* setup,
+                                                     ilaw_instance** instance, char* message,
+                                                     size_t message_size);
+typedef void(ILAW_CALL* ilaw_destroy_function)(ilaw_instance* instance);
+typedef ilaw_result(ILAW_CALL* ilaw_info_function)(const ilaw_instance* instance, ilaw_instance_info* info);
+typedef ilaw_result(ILAW_CALL* ilaw_batch_function)(const ilaw_instance* instance, const ilaw_batch* batch,
+                                                    ilaw_report* report);
+typedef const void*(ILAW_CALL* ilaw_extension_function)(const char* name);
+
 /* One law. All function pointers are set, but extension: null says that there are none. */
 typedef struct ilaw_law {
   uint32_t struct_size;
-  uint32_t dimensions;           /* ILAW_DIMENSION_* mask */
-  uint32_t delassus_forms;       /* ILAW_DELASSUS_* mask */
-  uint32_t inputs;               /* ILAW_INPUT_* mask: all that it may read, for some parameters */
-  uint32_t outputs;              /* ILAW_OUTPUT_* mask */
-  uint32_t capabilities;         /* ILAW_CAN_* mask */
+  ilaw_dimensions dimensions;
+  ilaw_delassus_forms delassus_forms;
+  ilaw_frames frames;
+  ilaw_numbers numbers;
+  ilaw_inputs inputs; /* all that it may read, for some parameters */
+  ilaw_outputs outputs;
+  ilaw_capabilities capabilities;
+  ilaw_permissions permissions;  /* with any parameters; an instance may give more */
+  uint32_t reserved;             /* 0 */
   const char* id;                /* lower case, digits, underscore; unique in the library */
   const char* title;             /* a few words */
   const char* doc;               /* one paragraph */
@@ -362,37 +431,39 @@ typedef struct ilaw_law {
   uint32_t reference_count;
   uint32_t parameter_count;
   uint32_t state_variable_count;
-  uint32_t reserved; /* 0 */
+  uint32_t amount_count;
+  const ilaw_amount* const* amounts;
 
-  /* [any-thread] Checks the setup and makes an instance. On failure *instance is null and message
-   * (message_size bytes, may be null when 0) says which parameter, its value and what is allowed. Returns
-   * ILAW_OK, ILAW_INVALID_ARGUMENT, ILAW_INVALID_PARAMETER, ILAW_UNSUPPORTED, ILAW_OUT_OF_MEMORY. */
-  int32_t (*create)(const ilaw_setup* setup, ilaw_instance** instance, char* message, size_t message_size);
+  /* [any-thread] Checks the setup and makes an instance of the law `id`: this law's id, so that one function
+   * can serve all laws of a library. On failure *instance is null and message (message_size bytes, may be
+   * null when 0) says which parameter, its value and what is allowed. Returns ILAW_OK, ILAW_INVALID_ARGUMENT,
+   * ILAW_INVALID_PARAMETER, ILAW_UNSUPPORTED, ILAW_OUT_OF_MEMORY. */
+  ilaw_create_function create;
 
   /* [exclusive] Ends an instance; null is allowed. */
-  void (*destroy)(ilaw_instance* instance);
+  ilaw_destroy_function destroy;
 
   /* [any-thread] Fills info up to info->struct_size, which the caller sets. The pointers live as long as the
    * instance. Returns ILAW_OK or ILAW_INVALID_ARGUMENT. */
-  int32_t (*info)(const ilaw_instance* instance, ilaw_instance_info* info);
+  ilaw_info_function info;
 
   /* [any-thread] Writes the initial state of the nodes of a batch: reads flags, node_count, index or index64,
    * index_base, time, area and normal, tangent (as the instance needs them), per_node_parameters; writes
    * state_out. The rest of the batch may be zero. Returns as evaluate. */
-  int32_t (*initialise)(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report);
+  ilaw_batch_function initialise;
 
   /* [any-thread] One step of a batch; pure: no allocation, lock, I/O or global. The result at a node depends
    * on that node's inputs and the scalars of the batch alone, bit for bit: not on the other nodes, their
    * order, the layout, threads, the processor, or which outputs are asked for. A node with bad input, of
    * which a state that the law cannot have written is one, gets r = 0, state_out = state_in, status
-   * ILAW_BAD_INPUT, energy 0 and velocity = v_free; the others are evaluated as ever. report may be null.
-   * Returns ILAW_OK, ILAW_BAD_NODES, or ILAW_INVALID_ARGUMENT or ILAW_UNSUPPORTED with nothing written. */
-  int32_t (*evaluate)(const ilaw_instance* instance, const ilaw_batch* batch, ilaw_report* report);
+   * ILAW_BAD_INPUT, energy and amounts 0 and velocity = v_free; the others are evaluated as ever. report may
+   * be null. Returns ILAW_OK, ILAW_BAD_NODES, or ILAW_INVALID_ARGUMENT or ILAW_UNSUPPORTED with nothing
+   * written. */
+  ilaw_batch_function evaluate;
 
-  /* [any-thread] What this law has under a name besides: a table of functions whose type the name stands for,
-   * as the extension's own header says, null where it has none. Names begin with their owner and end with a
-   * version: "ilaw.something/1" is ours, "acme.something/1" somebody else's. */
-  const void* (*extension)(const char* name);
+  /* [any-thread] The extension of this name: a table of functions of the type that the extension's header
+   * defines; null where the law has none. Names are owner.topic/version: "ilaw.profile/1", "acme.thing/2". */
+  ilaw_extension_function extension;
 } ilaw_law;
 
 /* A library of laws. */
@@ -406,89 +477,31 @@ typedef struct ilaw_plugin {
   const char* licence; /* SPDX identifier where there is one */
   const ilaw_law* const* laws;
   uint32_t law_count;
-  uint32_t reserved;                          /* 0 */
-  const void* (*extension)(const char* name); /* [any-thread] as a law's, of the whole library; null: none */
+  uint32_t reserved;                 /* 0 */
+  ilaw_extension_function extension; /* [any-thread] as a law's, of the whole library; null: none */
 } ilaw_plugin;
 
 /* [any-thread] The exported function. Returns the same constant description at every call. */
-typedef const ilaw_plugin* (*ilaw_entry_function)(void);
+typedef const ilaw_plugin*(ILAW_CALL* ilaw_entry_function)(void);
 #ifdef ILAW_BUILDING_PLUGIN
-ILAW_EXPORT const ilaw_plugin* ILAW_ENTRY(void);
+ILAW_EXPORT const ilaw_plugin* ILAW_CALL ILAW_ENTRY(void);
 #endif
 
-/* ---- layout, pinned ------------------------------------------------------------------------------ */
+/* ---- sizes -------------------------------------------------------------------------------------- */
 
-/* Size of each struct in version 1.0, the least that a reader accepts, by its last member of that version. */
+/* Size of each struct in version 1.0, by its last member: the least that a reader accepts. */
 #define ILAW_SIZE_TO(type, member) (offsetof(type, member) + sizeof(((type*)0)->member))
 #define ILAW_PARAMETER_SIZE_1_0 ILAW_SIZE_TO(ilaw_parameter, reserved)
 #define ILAW_STATE_VARIABLE_SIZE_1_0 ILAW_SIZE_TO(ilaw_state_variable, reserved)
-#define ILAW_ARGUMENT_SIZE_1_0 ILAW_SIZE_TO(ilaw_argument, count)
-#define ILAW_SETUP_SIZE_1_0 ILAW_SIZE_TO(ilaw_setup, tangent_given)
+#define ILAW_AMOUNT_SIZE_1_0 ILAW_SIZE_TO(ilaw_amount, doc)
+#define ILAW_AXIS_SIZE_1_0 ILAW_SIZE_TO(ilaw_axis, count)
+#define ILAW_ARGUMENT_SIZE_1_0 ILAW_SIZE_TO(ilaw_argument, reserved)
+#define ILAW_SETUP_SIZE_1_0 ILAW_SIZE_TO(ilaw_setup, reserved)
 #define ILAW_INSTANCE_INFO_SIZE_1_0 ILAW_SIZE_TO(ilaw_instance_info, reserved)
-#define ILAW_BATCH_SIZE_1_0 ILAW_SIZE_TO(ilaw_batch, status_stride)
+#define ILAW_BATCH_SIZE_1_0 ILAW_SIZE_TO(ilaw_batch, amounts)
 #define ILAW_REPORT_SIZE_1_0 ILAW_SIZE_TO(ilaw_report, stable_velocity_step)
 #define ILAW_LAW_SIZE_1_0 ILAW_SIZE_TO(ilaw_law, extension)
 #define ILAW_PLUGIN_SIZE_1_0 ILAW_SIZE_TO(ilaw_plugin, extension)
-
-/* Sizes, and the place of every member that is shorter than 8 bytes: no other can slip into padding. */
-#if UINTPTR_MAX == UINT64_MAX
-#if defined(__cplusplus)
-#define ILAW_PIN(name, condition) static_assert(condition, #name)
-#else
-#define ILAW_PIN(name, condition) typedef char ilaw_pin_##name[(condition) ? 1 : -1]
-#endif
-#define ILAW_PIN_OFFSET(type, member, offset) ILAW_PIN(type##_##member, offsetof(type, member) == (offset))
-
-ILAW_PIN(parameter_size_1_0, ILAW_PARAMETER_SIZE_1_0 == 96);
-ILAW_PIN_OFFSET(ilaw_parameter, kind, 4);
-ILAW_PIN_OFFSET(ilaw_parameter, required, 64);
-ILAW_PIN_OFFSET(ilaw_parameter, minimum_excluded, 68);
-ILAW_PIN_OFFSET(ilaw_parameter, infinity_allowed, 72);
-ILAW_PIN_OFFSET(ilaw_parameter, may_be, 76);
-ILAW_PIN_OFFSET(ilaw_parameter, choice_count, 88);
-ILAW_PIN_OFFSET(ilaw_parameter, reserved, 92);
-ILAW_PIN(state_variable_size_1_0, ILAW_STATE_VARIABLE_SIZE_1_0 == 48);
-ILAW_PIN_OFFSET(ilaw_state_variable, kind, 4);
-ILAW_PIN_OFFSET(ilaw_state_variable, flags, 40);
-ILAW_PIN_OFFSET(ilaw_state_variable, reserved, 44);
-ILAW_PIN(argument_size_1_0, ILAW_ARGUMENT_SIZE_1_0 == 48);
-ILAW_PIN_OFFSET(ilaw_argument, kind, 4);
-ILAW_PIN(setup_size_1_0, ILAW_SETUP_SIZE_1_0 == 40);
-ILAW_PIN_OFFSET(ilaw_setup, dimension, 4);
-ILAW_PIN_OFFSET(ilaw_setup, delassus_form, 8);
-ILAW_PIN_OFFSET(ilaw_setup, frame, 12);
-ILAW_PIN_OFFSET(ilaw_setup, argument_count, 32);
-ILAW_PIN_OFFSET(ilaw_setup, tangent_given, 36);
-ILAW_PIN(instance_info_size_1_0, ILAW_INSTANCE_INFO_SIZE_1_0 == 56);
-ILAW_PIN_OFFSET(ilaw_instance_info, inputs, 4);
-ILAW_PIN_OFFSET(ilaw_instance_info, energy_inputs, 8);
-ILAW_PIN_OFFSET(ilaw_instance_info, state_variable_count, 12);
-ILAW_PIN_OFFSET(ilaw_instance_info, per_node_parameter_count, 40);
-ILAW_PIN_OFFSET(ilaw_instance_info, capabilities, 44);
-ILAW_PIN_OFFSET(ilaw_instance_info, state_version, 48);
-ILAW_PIN_OFFSET(ilaw_instance_info, reserved, 52);
-ILAW_PIN(batch_size_1_0, ILAW_BATCH_SIZE_1_0 == 400);
-ILAW_PIN_OFFSET(ilaw_batch, index_base, 4);
-ILAW_PIN(report_size_1_0, ILAW_REPORT_SIZE_1_0 == 40);
-ILAW_PIN_OFFSET(ilaw_report, reserved, 4);
-ILAW_PIN(law_size_1_0, ILAW_LAW_SIZE_1_0 == 136);
-ILAW_PIN_OFFSET(ilaw_law, dimensions, 4);
-ILAW_PIN_OFFSET(ilaw_law, delassus_forms, 8);
-ILAW_PIN_OFFSET(ilaw_law, inputs, 12);
-ILAW_PIN_OFFSET(ilaw_law, outputs, 16);
-ILAW_PIN_OFFSET(ilaw_law, capabilities, 20);
-ILAW_PIN_OFFSET(ilaw_law, reference_count, 72);
-ILAW_PIN_OFFSET(ilaw_law, parameter_count, 76);
-ILAW_PIN_OFFSET(ilaw_law, state_variable_count, 80);
-ILAW_PIN_OFFSET(ilaw_law, reserved, 84);
-ILAW_PIN(plugin_size_1_0, ILAW_PLUGIN_SIZE_1_0 == 64);
-ILAW_PIN_OFFSET(ilaw_plugin, abi_major, 4);
-ILAW_PIN_OFFSET(ilaw_plugin, abi_minor, 6);
-ILAW_PIN_OFFSET(ilaw_plugin, law_count, 48);
-ILAW_PIN_OFFSET(ilaw_plugin, reserved, 52);
-ILAW_PIN(input_size, sizeof(ilaw_input) == 24);
-ILAW_PIN(output_size, sizeof(ilaw_output) == 24);
-#endif
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "blocks.hpp"
+
+#include <algorithm>
+
+namespace ilaw::coupled {
+
+Block& Blocks::add(std::int32_t group, std::int32_t colour, std::size_t count) {
+  Block& block = blocks_.emplace_back();
+  block.group = group;
+  block.colour = colour;
+  block.count = count;
+  block.stride = (count + 7) / 8 * 8 + (count > max_lanes / 2 ? 8 : 0);
+  return block;
+}
+
+void Blocks::allocate(const std::vector<Layout>& layouts) {
+  std::size_t values = 8, integers = 0, bytes = 0;
+  for (const Block& block : blocks_) {
+    const Layout& layout = layouts[static_cast<std::size_t>(block.group)];
+    values += block.stride * static_cast<std::size_t>(layout.columns);
+    integers += block.stride * static_cast<std::size_t>(layout.ends + 1);
+    bytes += block.stride;
+  }
+  if (values_.size() < values) values_.resize(values + values / 4);
+  if (integers_.size() < integers) integers_.resize(integers + integers / 4);
+  if (bytes_.size() < bytes) bytes_.resize(bytes + bytes / 4);
+  const auto misaligned = reinterpret_cast<std::uintptr_t>(values_.data()) % 64;
+  double* next = values_.data() + (misaligned ? (64 - misaligned) / sizeof(double) : 0);
+  std::int32_t* next_integer = integers_.data();
+  std::uint8_t* next_byte = bytes_.data();
+  for (Block& block : blocks_) {
+    const Layout& layout = layouts[static_cast<std::size_t>(block.group)];
+    block.values = next;
+    block.ends = next_integer;
+    block.contact = next_integer + block.stride * static_cast<std::size_t>(layout.ends);
+    block.status = next_byte;
+    // Unused lanes take part in loops over columns.
+    for (int c = 0; c < layout.columns; ++c)
+      std::fill(block.column(c) + block.count, block.column(c) + block.stride, 0.0);
+    std::fill(block.status, block.status + block.count, std::uint8_t{0});
+    next += block.stride * static_cast<std::size_t>(layout.columns);
+    next_integer += block.stride * static_cast<std::size_t>(layout.ends + 1);
+    next_byte += block.stride;
+  }
+}
+
+std::size_t Blocks::contact_count() const {
+  std::size_t count = 0;
+  for (const Block& block : blocks_) count += block.count;
+  return count;
+}
+
+void Blocks::select(const Blocks& from, const std::vector<Layout>& layouts,
+                    const std::vector<std::int32_t>& labels, std::int32_t label) {
+  clear();
+  origins_.clear();
+  std::size_t k = 0;
+  for (std::size_t b = 0; b < from.blocks_.size(); ++b) {
+    const Block& source = from.blocks_[b];
+    for (std::size_t lane = 0; lane < source.count; ++lane, ++k) {
+      if (labels[k] != label) continue;
+      origins_.push_back({static_cast<std::int32_t>(b), static_cast<std::int32_t>(lane)});
+      const bool fits = !blocks_.empty() && blocks_.back().group == source.group &&
+                        blocks_.back().colour == source.colour && blocks_.back().count < max_lanes &&
+                        blocks_.back().asleep == source.asleep;
+      if (!fits) {
+        add(source.group, source.colour, 0).asleep = source.asleep;
+      }
+      ++blocks_.back().count;
+    }
+  }
+  for (Block& block : blocks_)
+    block.stride = (block.count + 7) / 8 * 8 + (block.count > max_lanes / 2 ? 8 : 0);
+  allocate(layouts);
+  auto origin = origins_.begin();
+  for (Block& block : blocks_) {
+    const Layout& layout = layouts[static_cast<std::size_t>(block.group)];
+    for (std::size_t lane = 0; lane < block.count; ++lane, ++origin) {
+      const Block& source = from.blocks_[static_cast<std::size_t>(origin->block)];
+      const auto at = static_cast<std::size_t>(origin->lane);
+      for (int c = 0; c < layout.columns; ++c) block.column(c)[lane] = source.column(c)[at];
+      for (std::size_t e = 0; e < static_cast<std::size_t>(layout.ends); ++e)
+        block.ends[e * block.stride + lane] = source.ends[e * source.stride + at];
+      block.contact[lane] = source.contact[at];
+      block.status[lane] = source.status[at];
+    }
+  }
+}
+
+void Blocks::give_back(Blocks& to, const std::vector<Layout>& layouts) const {
+  auto origin = origins_.begin();
+  for (const Block& block : blocks_) {
+    const Layout& layout = layouts[static_cast<std::size_t>(block.group)];
+    for (std::size_t lane = 0; lane < block.count; ++lane, ++origin) {
+      Block& target = to.blocks_[static_cast<std::size_t>(origin->block)];
+      const auto at = static_cast<std::size_t>(origin->lane);
+      target.put(layout.impulse, at, block.at(layout.impulse, lane));
+      target.put(layout.change, at, block.at(layout.change, lane));
+      for (int c = 0; c < layout.state_size; ++c)
+        target.column(layout.state_out + c)[at] = block.column(layout.state_out + c)[lane];
+      target.status[at] = block.status[lane];
+      target.asleep = target.asleep && block.asleep;
+    }
+  }
+}
+
+}  // namespace ilaw::coupled

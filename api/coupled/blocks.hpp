@@ -1,0 +1,98 @@
+// blocks.hpp - contacts in columns: up to 128 contacts of one law that share no movable body, which one call
+// of the law evaluates.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "vector.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ilaw::coupled {
+
+inline constexpr std::size_t max_lanes = 128;
+// The columns of a block are max_stride doubles apart at most. Not a multiple of the cache's sets: columns at
+// distances of 1024 bytes would evict each other.
+inline constexpr std::size_t max_stride = max_lanes + 8;
+
+// First column of each quantity of a contact; -1 where a group does not have it.
+struct Layout {
+  int normal = 0, impulse = 3, direction = 6, change = 9, delassus = 12;
+  int arm = -1, counterpart_arm = -1, weight = -1, wall = -1;
+  int gap = -1, gap_offset = -1, area = -1, v_previous = -1, tangent = -1, parameters = -1;
+  int state_in = -1, state_out = -1;
+  int columns = 0;
+  int delassus_size = 1, weight_size = 1, state_size = 0, ends = 2;
+};
+
+struct Block {
+  std::int32_t group = 0, colour = 0;
+  std::size_t count = 0, stride = 0;  // lanes, and distance of columns: a multiple of 8
+  double* values = nullptr;           // columns
+  std::int32_t* ends = nullptr;       // bodies: those of the first side, then those of the counterpart's
+  std::int32_t* contact = nullptr;    // index in the host's arrays
+  std::uint8_t* status = nullptr;
+  bool asleep = false;  // out of reach and without impulse: left out of iterations
+  std::int64_t bad_count = 0;
+  std::int64_t first_bad = -1;
+  const char* reason = nullptr;
+
+  double* column(int c) { return values + static_cast<std::size_t>(c) * stride; }
+  const double* column(int c) const { return values + static_cast<std::size_t>(c) * stride; }
+  Vector at(int c, std::size_t lane) const {
+    const double* first = column(c) + lane;
+    return {first[0], first[stride], first[2 * stride]};
+  }
+  void put(int c, std::size_t lane, const Vector& v) {
+    double* first = column(c) + lane;
+    first[0] = v[0], first[stride] = v[1], first[2 * stride] = v[2];
+  }
+};
+
+// Mean of the diagonal of H. Its root is the scale of a contact's impulse.
+inline double mean_delassus(const Block& block, const Layout& layout, std::size_t q) {
+  const double* h = block.column(layout.delassus) + q;
+  const std::size_t s = block.stride;
+  switch (layout.delassus_size) {
+    case 1:
+      return h[0];
+    case 2:
+      return (h[0] + 2.0 * h[s]) / 3.0;
+    case 3:
+      return 0.5 * (h[0] + h[s]);
+    default:
+      return (h[0] + h[s] + h[2 * s]) / 3.0;
+  }
+}
+
+// Blocks in the order of an iteration, with their memory.
+class Blocks {
+ public:
+  void clear() { blocks_.clear(); }
+  // Adds a block; allocate() gives all of them their columns.
+  Block& add(std::int32_t group, std::int32_t colour, std::size_t count);
+  void allocate(const std::vector<Layout>& layouts);
+  // Becomes the lanes of `from` with chosen[index of the contact over all blocks] == label. Neighbours of one
+  // color are joined.
+  void select(const Blocks& from, const std::vector<Layout>& layouts, const std::vector<std::int32_t>& labels,
+              std::int32_t label);
+  // Copies impulses, states and status back to the blocks they were selected from.
+  void give_back(Blocks& to, const std::vector<Layout>& layouts) const;
+
+  std::vector<Block>& list() { return blocks_; }
+  const std::vector<Block>& list() const { return blocks_; }
+  std::size_t contact_count() const;
+
+ private:
+  struct Lane {
+    std::int32_t block, lane;
+  };
+  std::vector<Block> blocks_;
+  std::vector<double> values_;
+  std::vector<std::int32_t> integers_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<Lane> origins_;
+};
+
+}  // namespace ilaw::coupled

@@ -1,0 +1,89 @@
+// iterations.hpp - iterations of Gauss-Seidel with acceleration, to the tolerance or to the largest number.
+//
+// Few iterations: nonlinear conjugate directions (Silcowitz, Niebe, Erleben 2010, A nonsmooth nonlinear
+// conjugate gradient method for interactive contact force problems). To a tolerance: some of these, then
+// island by island Anderson's acceleration; where that stalls, Newton steps in small islands, and
+// Douglas-Rachford splitting.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "anderson.hpp"
+#include "islands.hpp"
+#include "newton.hpp"
+#include "ranks.hpp"
+#include "splitting.hpp"
+#include "sweep.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace ilaw::coupled {
+
+class Iterations {
+ public:
+  Iterations(Problem& problem, Ranks& ranks, Sweep& sweep)
+      : problem_(problem), ranks_(ranks), sweep_(sweep) {}
+
+  void begin(std::uint32_t most, double tolerance);
+  // To the tolerance, or to the largest number of iterations since begin(). Velocities of the bodies belong
+  // to the impulses, but for rounding. Returns the code of a law that failed, or ILAW_OK.
+  std::int32_t run(Blocks& blocks);
+  bool is_over() const { return failed_ < 0 || count_ >= most_; }
+
+  std::uint32_t count() const { return most_counted_; }
+  double residual() const { return residual_; }
+  std::uint32_t method() const { return method_; }
+  bool has_stalled() const { return stalled_; }
+  // Largest velocity of the first iteration and of the last.
+  double first_size() const { return first_size_; }
+  double size() const { return size_; }
+
+ private:
+  // Iterations of the conjugate method before others; with at most `few` iterations in all there is no other.
+  static constexpr std::uint32_t few = 100, first_conjugate = 30;
+  // Iterations between looks for sleeping contacts that come within reach.
+  static constexpr std::uint32_t wake_interval = 4;
+  // Iterations of a method before another one gets its turn.
+  static constexpr std::uint32_t first_part = 100;
+
+  // One iteration, the same on all ranks. True where the residual is below the tolerance.
+  bool iterate(Blocks& blocks, const Sweep::Conjugate& conjugate);
+  bool accept(Change change);
+  void exchange_velocities();
+  void keep_start();
+  bool conjugate(Blocks& blocks, std::uint32_t most);
+  void extrapolate_bodies(double beta);
+  bool anderson(Blocks& blocks, std::uint32_t most);
+  bool take_turns(Blocks& blocks);
+  bool newton(Blocks& blocks);
+  bool splitting(Blocks& blocks, std::uint32_t most, std::size_t depth);
+  bool move(Blocks& blocks, const std::vector<double>& changes);
+  std::size_t scales_of(const Blocks& blocks);
+  void keep_best(Blocks& blocks);
+  bool return_to_best(Blocks& blocks);
+  void read_impulses(const Blocks& blocks, std::vector<double>& impulses) const;
+  void read_scaled(const Blocks& blocks);
+  // Anderson and other methods in turn, until one ends.
+  bool alternate(Blocks& blocks);
+  void solve_islands(Blocks& blocks);
+  void find_island_residuals(const Blocks& blocks, std::vector<double>& residuals);
+
+  Problem& problem_;
+  Ranks& ranks_;
+  Sweep& sweep_;
+  std::uint32_t most_ = 0, count_ = 0, most_counted_ = 0, method_ = ILAW_METHOD_GAUSS_SEIDEL;
+  double tolerance_ = 0.0, size_ = 0.0, first_size_ = 0.0, residual_ = 0.0, change_ = 0.0, square_ = 0.0;
+  double least_in_first_half_ = 0.0, least_ = 0.0;
+  bool stalled_ = false;
+  std::int32_t failed_ = ILAW_OK;
+  std::vector<Motion> start_, direction_;
+  double best_square_ = 0.0;
+  std::vector<double> scales_, image_, step_, correction_, best_;
+  Anderson anderson_;
+  Newton newton_;
+  Splitting splitting_;
+  Islands islands_;
+  Blocks island_;
+};
+
+}  // namespace ilaw::coupled

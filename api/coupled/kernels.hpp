@@ -1,0 +1,147 @@
+// kernels.hpp - the velocity of a contact from those of its bodies, and what its impulse changes of theirs:
+// one kernel for each kind of contact, chosen once per block.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "blocks.hpp"
+#include "bodies.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace ilaw::coupled {
+
+enum class Kind {
+  point,     // bodies with one mass each that do not rotate
+  sphere,    // arms along the normal, one mass and one moment of inertia
+  rigid,     // any arms, tensors, masses per axis
+  weighted,  // weighted sets of bodies on either side
+};
+
+// Velocity at the end of an arm.
+inline Vector velocity_at(const Body& body, const Vector& arm) {
+  return body.velocity + cross(body.spin, arm);
+}
+
+// Each kernel has relative(bodies, lane), and apply(lane, r, add), which calls add(body, impulse, moment).
+class PointKernel {
+ public:
+  PointKernel(const Block& block, const Layout&) : body_(block.ends), other_(block.ends + block.stride) {}
+  Vector relative(const Body* bodies, std::size_t q) const {
+    return bodies[body_[q]].velocity - bodies[other_[q]].velocity;
+  }
+  template <class Add>
+  void apply(std::size_t q, const Vector& r, Add&& add) const {
+    add(body_[q], r, Vector{});
+    add(other_[q], -1.0 * r, Vector{});
+  }
+
+ private:
+  const std::int32_t *body_, *other_;
+};
+
+class SphereKernel {
+ public:
+  SphereKernel(const Block& block, const Layout& layout)
+      : body_(block.ends),
+        other_(block.ends + block.stride),
+        normal_(block.column(layout.normal)),
+        arm_(block.column(layout.arm)),
+        other_arm_(block.column(layout.counterpart_arm)),
+        stride_(block.stride) {}
+  Vector relative(const Body* bodies, std::size_t q) const {
+    const Body &x = bodies[body_[q]], &y = bodies[other_[q]];
+    return x.velocity - y.velocity + cross(arm_[q] * x.spin - other_arm_[q] * y.spin, normal(q));
+  }
+  template <class Add>
+  void apply(std::size_t q, const Vector& r, Add&& add) const {
+    const Vector moment = cross(normal(q), r);
+    add(body_[q], r, arm_[q] * moment);
+    add(other_[q], -1.0 * r, -other_arm_[q] * moment);
+  }
+
+ private:
+  Vector normal(std::size_t q) const { return {normal_[q], normal_[stride_ + q], normal_[2 * stride_ + q]}; }
+  const std::int32_t *body_, *other_;
+  const double *normal_, *arm_, *other_arm_;
+  std::size_t stride_;
+};
+
+class RigidKernel {
+ public:
+  RigidKernel(const Block& block, const Layout& layout) : block_(block), layout_(layout) {}
+  Vector relative(const Body* bodies, std::size_t q) const {
+    return velocity_at(bodies[block_.ends[q]], block_.at(layout_.arm, q)) -
+           velocity_at(bodies[block_.ends[block_.stride + q]], block_.at(layout_.counterpart_arm, q));
+  }
+  template <class Add>
+  void apply(std::size_t q, const Vector& r, Add&& add) const {
+    add(block_.ends[q], r, cross(block_.at(layout_.arm, q), r));
+    add(block_.ends[block_.stride + q], -1.0 * r, cross(r, block_.at(layout_.counterpart_arm, q)));
+  }
+
+ private:
+  const Block& block_;
+  const Layout& layout_;
+};
+
+// Weights of the counterpart's bodies are stored with a minus sign.
+class WeightedKernel {
+ public:
+  WeightedKernel(const Block& block, const Layout& layout, std::uint32_t body_count)
+      : block_(block), layout_(layout), body_count_(static_cast<int>(body_count)) {}
+  Vector relative(const Body* bodies, std::size_t q) const {
+    Vector sum{};
+    for (int e = 0; e < layout_.ends; ++e)
+      sum = sum + times(e, q, velocity_at(bodies[end(e, q)], arm(e, q)), false);
+    return sum;
+  }
+  template <class Add>
+  void apply(std::size_t q, const Vector& r, Add&& add) const {
+    for (int e = 0; e < layout_.ends; ++e) {
+      const Vector impulse = times(e, q, r, true);
+      add(end(e, q), impulse, cross(arm(e, q), impulse));
+    }
+  }
+
+ private:
+  std::int32_t end(int e, std::size_t q) const {
+    return block_.ends[static_cast<std::size_t>(e) * block_.stride + q];
+  }
+  Vector arm(int e, std::size_t q) const {
+    const int column = e < body_count_ ? layout_.arm : layout_.counterpart_arm;
+    return column < 0 ? Vector{} : block_.at(column, q);
+  }
+  Vector times(int e, std::size_t q, const Vector& v, bool transposed) const {
+    const double* w = block_.column(layout_.weight + e * layout_.weight_size) + q;
+    if (layout_.weight_size == 1) return w[0] * v;
+    const std::size_t s = block_.stride;
+    if (transposed)
+      return {w[0] * v[0] + w[3 * s] * v[1] + w[6 * s] * v[2],
+              w[s] * v[0] + w[4 * s] * v[1] + w[7 * s] * v[2],
+              w[2 * s] * v[0] + w[5 * s] * v[1] + w[8 * s] * v[2]};
+    return {w[0] * v[0] + w[s] * v[1] + w[2 * s] * v[2], w[3 * s] * v[0] + w[4 * s] * v[1] + w[5 * s] * v[2],
+            w[6 * s] * v[0] + w[7 * s] * v[1] + w[8 * s] * v[2]};
+  }
+  const Block& block_;
+  const Layout& layout_;
+  int body_count_;
+};
+
+// Calls visit with the kernel of a block.
+template <class Visit>
+void with_kernel(Kind kind, const Block& block, const Layout& layout, std::uint32_t body_count,
+                 Visit&& visit) {
+  switch (kind) {
+    case Kind::point:
+      return visit(PointKernel(block, layout));
+    case Kind::sphere:
+      return visit(SphereKernel(block, layout));
+    case Kind::rigid:
+      return visit(RigidKernel(block, layout));
+    case Kind::weighted:
+      return visit(WeightedKernel(block, layout, body_count));
+  }
+}
+
+}  // namespace ilaw::coupled

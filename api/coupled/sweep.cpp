@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep.hpp"
+
+#include "lanes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// Compiled for AVX2 as well; the loader chooses. Without contraction the bits are the same.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__) && defined(__OPTIMIZE__)
+#define ILAW_COUPLED_VERSIONS [[gnu::flatten, gnu::target_clones("avx2", "default")]]
+#else
+#define ILAW_COUPLED_VERSIONS
+#endif
+
+namespace ilaw::coupled {
+namespace {
+
+std::size_t padded(std::size_t count) { return (count + 7) / 8 * 8; }
+
+// Calls visit with H of a block as a function.
+template <class Visit>
+void with_form(const Block& block, const Layout& layout, Visit&& visit) {
+  const double* h = block.column(layout.delassus);
+  switch (layout.delassus_size) {
+    case 1:
+      return visit(ScalarForm{h});
+    case 2:
+      return visit(TransverseForm{h, block.column(layout.normal), block.stride});
+    case 3:
+      return visit(PlaneForm{h, block.stride});
+    default:
+      return visit(FullForm{h, block.stride});
+  }
+}
+
+}  // namespace
+
+void Sweep::reset() {
+  report_ = {};
+  failed_group_ = -1;
+  stable_step_ = std::numeric_limits<double>::infinity();
+}
+
+void Sweep::respond(const Block& block, const double* x, std::size_t xs, double* y) const {
+  with_form(block, problem_.layouts[static_cast<std::size_t>(block.group)], [&](const auto& form) {
+    for (std::size_t q = 0; q < padded(block.count); q += lane_count)
+      put(form(q, lanes(x + q, xs)), y + q, max_stride);
+  });
+}
+
+void Sweep::gather(const Block& block, double* velocity) const {
+  const auto g = static_cast<std::size_t>(block.group);
+  const Contacts& group = problem_.groups[g];
+  const Layout& layout = problem_.layouts[g];
+  const Body* bodies = problem_.bodies.now();
+  const std::size_t n = padded(block.count);
+  with_kernel(group.kind(), block, layout, group.body_count(), [&](const auto& kernel) {
+    for (std::size_t q = 0; q < block.count; ++q) {
+      const Vector u = kernel.relative(bodies, q);
+      velocity[q] = u[0], velocity[max_stride + q] = u[1], velocity[2 * max_stride + q] = u[2];
+    }
+  });
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t q = block.count; q < n; ++q) velocity[c * max_stride + q] = 0.0;
+  if (layout.wall < 0) return;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double* wall = block.column(layout.wall + static_cast<int>(c));
+    for (std::size_t q = 0; q < n; ++q) velocity[c * max_stride + q] -= wall[q];
+  }
+}
+
+Change Sweep::run(Blocks& blocks, const Conjugate& conjugate) {
+  Change change;
+  for (Block& block : blocks.list()) {
+    if (block.asleep) continue;
+    if (conjugate.active) extrapolate(block, conjugate.beta);
+    if (!evaluate(block, change)) return change;
+    scatter(block, change);
+  }
+  return change;
+}
+
+Change Sweep::run_all(Blocks& blocks) {
+  Change change;
+  for (Block& block : blocks.list()) {
+    if (!evaluate(block, change)) return change;
+    scatter(block, change);
+    if (!block.asleep) continue;
+    const double* r = block.column(problem_.layouts[static_cast<std::size_t>(block.group)].impulse);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t q = 0; q < block.count; ++q)
+        if (r[c * block.stride + q] != 0.0) block.asleep = false;
+  }
+  return change;
+}
+
+ILAW_COUPLED_VERSIONS void Sweep::extrapolate(Block& block, double beta) const {
+  const Layout& layout = problem_.layouts[static_cast<std::size_t>(block.group)];
+  double *r = block.column(layout.impulse), *direction = block.column(layout.direction);
+  const double* last = block.column(layout.change);
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t q = c * block.stride; q < c * block.stride + padded(block.count); q += lane_count) {
+      const Lanes step = beta * lanes(direction + q);
+      lanes(r + q) += step;
+      lanes(direction + q) = step + lanes(last + q);
+    }
+}
+
+// v_free = u - H r. Returns the largest velocity in it.
+ILAW_COUPLED_VERSIONS double Sweep::prepare(const Block& block) {
+  const Layout& layout = problem_.layouts[static_cast<std::size_t>(block.group)];
+  gather(block, v_free_.data());
+  const double* r = block.column(layout.impulse);
+  Lanes most{};
+  with_form(block, layout, [&](const auto& form) {
+    for (std::size_t q = 0; q < padded(block.count); q += lane_count) {
+      const LanesVector made = form(q, lanes(r + q, block.stride));
+      const LanesVector v = lanes(v_free_.data() + q, max_stride) - made;
+      put(v, v_free_.data() + q, max_stride);
+      most = larger(larger(largest(v), largest(made)), most);
+    }
+  });
+  return largest(most);
+}
+
+bool Sweep::evaluate(Block& block, Change& change) {
+  const auto g = static_cast<std::size_t>(block.group);
+  const Layout& layout = problem_.layouts[g];
+  const double size = prepare(block);
+  change.size = size > change.size ? size : change.size;
+  const Contacts::Call call{v_free_.data(), block.column(layout.delassus),
+                            block.stride,   answer_.data(),
+                            nullptr,        block.status,
+                            nullptr,        nullptr};
+  const std::int32_t code = problem_.groups[g].evaluate(block, call, report_);
+  block.bad_count = code == ILAW_BAD_NODES ? report_.bad_count : 0;
+  block.first_bad = report_.first_bad_node;
+  block.reason = report_.reason;
+  // NaN, or below 0, would pass for no limit at all.
+  const bool has_step = report_.stable_velocity_step >= 0.0;
+  if (report_.stable_velocity_step > 0.0) stable_step_ = std::min(stable_step_, report_.stable_velocity_step);
+  if (code >= 0 && has_step) return true;
+  change.code = code < 0 ? code : ILAW_BAD_LIBRARY;
+  failed_group_ = block.group;
+  if (code >= 0) report_.reason = "a law reported a stable step that is below 0 or not a number";
+  return false;
+}
+
+ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
+  const auto g = static_cast<std::size_t>(block.group);
+  const Layout& layout = problem_.layouts[g];
+  const std::size_t n = padded(block.count), s = block.stride;
+  double *r = block.column(layout.impulse), *dr = block.column(layout.change);
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t q = block.count; q < n; ++q) answer_[c * max_stride + q] = 0.0;
+  Lanes most{}, square{};
+  with_form(block, layout, [&](const auto& form) {
+    for (std::size_t q = 0; q < n; q += lane_count) {
+      const LanesVector answer = lanes(answer_.data() + q, max_stride), by = answer - lanes(r + q, s);
+      put(answer, r + q, s);
+      put(by, dr + q, s);
+      const LanesVector made = form(q, by);
+      most = larger(largest(made), most);
+      square += dot(by, made);
+    }
+  });
+  change.largest = std::max(change.largest, largest(most));
+  change.square += sum(square);
+  const Contacts& group = problem_.groups[g];
+  with_kernel(group.kind(), block, layout, group.body_count(), [&](const auto& kernel) {
+    with_velocities(problem_.bodies, group.kind(), [&](const auto& add) {
+      for (std::size_t q = 0; q < block.count; ++q) kernel.apply(q, {dr[q], dr[s + q], dr[2 * s + q]}, add);
+    });
+  });
+}
+
+bool Sweep::wake(Blocks& blocks) {
+  bool woken = false;
+  for (Block& block : blocks.list()) {
+    if (!block.asleep) continue;
+    gather(block, v_free_.data());
+    const Contacts& group = problem_.groups[static_cast<std::size_t>(block.group)];
+    for (std::size_t q = 0; q < block.count && block.asleep; ++q) {
+      const Vector v{v_free_[q], v_free_[max_stride + q], v_free_[2 * max_stride + q]};
+      if (group.is_in_reach(block, q, v)) block.asleep = false;
+    }
+    woken = woken || !block.asleep;
+  }
+  return woken;
+}
+
+void Sweep::add_impulses(const Blocks& blocks, std::vector<Motion>& sums) const {
+  const auto add = [&](std::int32_t b, const Vector& p, const Vector& l) {
+    Motion& sum = sums[static_cast<std::size_t>(b)];
+    sum = {sum.velocity + p, sum.spin + l};
+  };
+  for (const Block& block : blocks.list()) {
+    if (block.asleep) continue;
+    const auto g = static_cast<std::size_t>(block.group);
+    const Contacts& group = problem_.groups[g];
+    with_kernel(group.kind(), block, problem_.layouts[g], group.body_count(), [&](const auto& kernel) {
+      for (std::size_t q = 0; q < block.count; ++q)
+        kernel.apply(q, block.at(problem_.layouts[g].impulse, q), add);
+    });
+  }
+}
+
+void Sweep::add_changes(Blocks& blocks, const double* changes) {
+  for (Block& block : blocks.list()) {
+    if (block.asleep) continue;
+    const auto g = static_cast<std::size_t>(block.group);
+    const Contacts& group = problem_.groups[g];
+    const Layout& layout = problem_.layouts[g];
+    with_kernel(group.kind(), block, layout, group.body_count(), [&](const auto& kernel) {
+      with_velocities(problem_.bodies, group.kind(), [&](const auto& add) {
+        for (std::size_t q = 0; q < block.count; ++q, changes += 3) {
+          const Vector by{changes[0], changes[1], changes[2]};
+          block.put(layout.impulse, q, block.at(layout.impulse, q) + by);
+          kernel.apply(q, by, add);
+        }
+      });
+    });
+  }
+}
+
+}  // namespace ilaw::coupled

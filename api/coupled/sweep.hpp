@@ -1,0 +1,101 @@
+// sweep.hpp - one iteration of nonlinear Gauss-Seidel over all contacts (Jourdan, Alart, Jean 1998, A
+// Gauss-Seidel like algorithm to solve frictional contact problems), block by block: velocities of the bodies
+// are gathered, the law is evaluated at v_free = u - H r, and changes of impulses are scattered to the bodies
+// at once.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "blocks.hpp"
+#include "bodies.hpp"
+#include "contacts.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ilaw::coupled {
+
+// The step that all parts of the solver work on.
+struct Problem {
+  Bodies bodies;
+  std::vector<Contacts> groups;
+  std::vector<Layout> layouts;
+  std::size_t group_count = 0;
+};
+
+// Findings of an iteration.
+struct Change {
+  double largest = 0.0;  // |H dr|, components
+  double size = 0.0;     // velocity of a contact, or made by an impulse
+  double square = 0.0;   // sum of dr.H dr: not a number if any impulse is none
+  std::int32_t code = ILAW_OK;
+};
+
+class Sweep {
+ public:
+  explicit Sweep(Problem& problem) : problem_(problem) {}
+
+  // Extrapolation of the impulses before the iteration: r += beta d, d = beta d + (last change of r).
+  struct Conjugate {
+    bool active = false;
+    double beta = 0.0;
+  };
+  Change run(Blocks& blocks, const Conjugate& conjugate);
+  // Iterates over all blocks, those asleep as well: those with an impulse wake.
+  Change run_all(Blocks& blocks);
+
+  // Wakes blocks with a contact within reach. True if there was one.
+  bool wake(Blocks& blocks);
+  // Velocity of each lane into `velocity`, columns at distances of max_stride.
+  void gather(const Block& block, double* velocity) const;
+  // H of the law times columns x, into y.
+  void respond(const Block& block, const double* x, std::size_t x_stride, double* y) const;
+  // Adds impulses of all contacts and their moments to the sums per body.
+  void add_impulses(const Blocks& blocks, std::vector<Motion>& sums) const;
+  // Adds changes of impulses, given by contact in the order of lanes, to impulses and velocities.
+  void add_changes(Blocks& blocks, const double* changes);
+
+  const ilaw_report& last_report() const { return report_; }
+  std::int32_t failed_group() const { return failed_group_; }
+  double stable_step() const { return stable_step_; }
+  void reset();
+
+ private:
+  using Columns = std::array<double, 3 * max_stride>;
+
+  void extrapolate(Block& block, double beta) const;
+  double prepare(const Block& block);
+  bool evaluate(Block& block, Change& change);
+  void scatter(Block& block, Change& change);
+
+  alignas(64) Columns v_free_{};
+  alignas(64) Columns answer_{};
+  ilaw_report report_{};
+  Problem& problem_;
+  double stable_step_ = 0.0;
+  std::int32_t failed_group_ = -1;
+};
+
+// Adds an impulse and its moment to a body's velocities.
+template <class Visit>
+void with_velocities(Bodies& bodies, Kind kind, Visit&& visit) {
+  Body* now = bodies.now();
+  const auto add_linear = [now](std::int32_t b, const Vector& p, const Vector&) {
+    now[b].velocity = now[b].velocity + now[b].inverse_mass * p;
+  };
+  const auto add_sphere = [now](std::int32_t b, const Vector& p, const Vector& l) {
+    now[b].velocity = now[b].velocity + now[b].inverse_mass * p;
+    now[b].spin = now[b].spin + now[b].inverse_inertia * l;
+  };
+  const Inertia* inertia = bodies.inertia();
+  const auto add_tensor = [now, inertia](std::int32_t b, const Vector& p, const Vector& l) {
+    now[b].velocity = now[b].velocity + scaled(inertia[b].inverse_mass, p);
+    now[b].spin = now[b].spin + inertia[b].inverse_inertia * l;
+  };
+  if (!bodies.are_isotropic()) return visit(add_tensor);
+  if (kind == Kind::point || !bodies.rotate()) return visit(add_linear);
+  visit(add_sphere);
+}
+
+}  // namespace ilaw::coupled

@@ -1,0 +1,130 @@
+// batch_checks.hpp - what is wrong with the arrays and numbers of a batch, before any node is looked at.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/walk.hpp>
+#include <ilaw/kit/math.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// An array of the setup's numbers is there; one of other numbers is as none.
+template <class Array>
+bool is_absent(const instance_base& made, const Array& a) {
+  return made.numbers == ILAW_NUMBERS_FLOAT ? !a.floats : !a.values;
+}
+
+// An array of numbers that are not the setup's, or with both pointers.
+template <class Array>
+bool is_of_other_numbers(const instance_base& made, const Array& a) {
+  return made.numbers == ILAW_NUMBERS_FLOAT ? static_cast<bool>(a.values) : static_cast<bool>(a.floats);
+}
+// Of the arrays that are read or written; those of a state are always doubles.
+inline const char* other_numbers(const instance_base& made, const ilaw_batch& b, std::uint32_t read) {
+  const auto other = [&](const auto& a) { return is_of_other_numbers(made, a); };
+  bool is_bad =
+      other(b.v_free) || other(b.delassus) || other(b.impulse) || other(b.velocity) || other(b.energy);
+  is_bad = is_bad || ((read & ILAW_INPUT_GAP) && (other(b.gap) || other(b.gap_offset)));
+  is_bad = is_bad || ((read & ILAW_INPUT_V_PREVIOUS) && other(b.v_previous));
+  is_bad = is_bad || ((read & ILAW_INPUT_AREA) && other(b.area));
+  is_bad = is_bad || ((read & ILAW_INPUT_NORMAL) && other(b.normal));
+  is_bad = is_bad || ((read & ILAW_INPUT_TANGENT) && other(b.tangent));
+  is_bad = is_bad || (made.state_size > 0 && (b.state_in.floats || b.state_out.floats));
+  for (std::uint32_t k = 0; b.per_node_parameters && k < made.per_node_count; ++k)
+    is_bad = is_bad || other(b.per_node_parameters[k]);
+  for (std::uint32_t k = 0; b.amounts && k < made.amount_count; ++k) is_bad = is_bad || other(b.amounts[k]);
+  return is_bad ? "an array is of other numbers than the setup's, or has both pointers" : nullptr;
+}
+
+// The first of the arrays that evaluate or initialise needs and that is absent; null when none is.
+inline const char* missing_input(const instance_base& made, const ilaw_batch& b, std::uint32_t needed) {
+  if ((needed & ILAW_INPUT_GAP) && is_absent(made, b.gap)) return "gap is null";
+  if ((needed & ILAW_INPUT_V_PREVIOUS) && is_absent(made, b.v_previous)) return "v_previous is null";
+  if ((needed & ILAW_INPUT_AREA) && is_absent(made, b.area)) return "area is null";
+  if ((needed & ILAW_INPUT_NORMAL) && is_absent(made, b.normal)) return "normal is null";
+  if ((needed & ILAW_INPUT_TANGENT) && is_absent(made, b.tangent)) return "tangent is null";
+  if (made.per_node_count > 0 && !b.per_node_parameters) return "per_node_parameters is null";
+  for (std::uint32_t k = 0; k < made.per_node_count; ++k)
+    if (is_absent(made, b.per_node_parameters[k])) return "values of a per-node parameter are null";
+  if (made.state_size > 0 && !b.state_out.values) return "state_out is null";
+  return nullptr;
+}
+
+// The smallest of a list of nodes: below index_base it would lead before the arrays.
+template <class Integer>
+Integer smallest(const Integer* index, std::int64_t count) {
+  Integer least = std::numeric_limits<Integer>::max();
+  for (std::int64_t k = 0; k < count; ++k) least = index[k] < least ? index[k] : least;
+  return least;
+}
+
+inline const char* wrong_index(const ilaw_batch& b) {
+  if (b.index_base != 0 && b.index_base != 1) return "index_base is neither 0 nor 1";
+  if (b.index && b.index64) return "index and index64 are both given";
+  if ((b.index && smallest(b.index, b.node_count) < b.index_base) ||
+      (b.index64 && smallest(b.index64, b.node_count) < b.index_base))
+    return "a node of the index list lies below index_base";
+  return nullptr;
+}
+
+inline const char* wrong_scalars(const ilaw_batch& b) {
+  if (b.node_count < 0) return "node_count is negative";
+  if (!is_finite(b.time)) return "time is not finite";
+  return wrong_index(b);
+}
+
+// Whether an output gives two numbers the same place.
+inline bool collides(const ilaw_output& a, std::int64_t nodes, std::int64_t components) {
+  return (a.values || a.floats) && components > 0 &&
+         ((nodes > 1 && a.node_stride == 0) || (components > 1 && a.component_stride == 0));
+}
+
+inline const char* colliding_state(const instance_base& made, const ilaw_batch& b) {
+  const bool is_bad = collides(b.state_out, b.node_count, static_cast<std::int64_t>(made.state_size));
+  return is_bad ? "state_out has a stride of 0" : nullptr;
+}
+
+inline const char* colliding_output(const instance_base& made, const ilaw_batch& b) {
+  const std::int64_t n = b.node_count, d = made.dimension;
+  if (collides(b.impulse, n, d)) return "impulse has a stride of 0";
+  if (collides(b.velocity, n, d)) return "velocity has a stride of 0";
+  if (collides(b.energy, n, ILAW_ENERGY_COUNT)) return "energy has a stride of 0";
+  if (b.status && n > 1 && b.status_stride == 0) return "status_stride is 0";
+  for (std::uint32_t k = 0; b.amounts && k < made.amount_count; ++k)
+    if (collides(b.amounts[k], n, 1)) return "an amount has a stride of 0";
+  return colliding_state(made, b);
+}
+
+// Whether energy or an amount is asked for.
+inline bool wants_balance(const instance_base& made, const ilaw_batch& b) {
+  if (!is_absent(made, b.energy)) return true;
+  for (std::uint32_t k = 0; b.amounts && k < made.amount_count; ++k)
+    if (!is_absent(made, b.amounts[k])) return true;
+  return false;
+}
+
+inline const char* wrong_batch(const instance_base& made, const ilaw_batch& b) {
+  if (const char* wrong = wrong_scalars(b)) return wrong;
+  if (!(b.velocity_step > 0.0) || !is_finite(b.velocity_step))
+    return "velocity_step is not a finite number > 0";
+  if (!(b.position_step > 0.0) || !is_finite(b.position_step))
+    return "position_step is not a finite number > 0";
+  if (b.node_count == 0) return nullptr;
+  if (is_absent(made, b.v_free)) return "v_free is null";
+  if (is_absent(made, b.delassus)) return "delassus is null";
+  if (is_absent(made, b.impulse)) return "impulse is null";
+  if (made.state_size > 0 && !b.state_in.values) return "state_in is null";
+  if (const char* wrong = colliding_output(made, b)) return wrong;
+  const std::uint32_t read = made.inputs | (wants_balance(made, b) ? made.balance_inputs : 0U);
+  if (const char* wrong = missing_input(made, b, read)) return wrong;
+  return other_numbers(made, b, read);
+}
+
+inline const char* wrong_initial(const instance_base& made, const ilaw_batch& b) {
+  if (const char* wrong = wrong_scalars(b)) return wrong;
+  if (b.node_count == 0) return nullptr;
+  const std::uint32_t needed = made.inputs & (ILAW_INPUT_AREA | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT);
+  if (const char* wrong = missing_input(made, b, needed)) return wrong;
+  return colliding_state(made, b);
+}
+
+}  // namespace ilaw::kit::detail

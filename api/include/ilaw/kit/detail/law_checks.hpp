@@ -1,0 +1,519 @@
+// law_checks.hpp - what a law must have to be one, each with the line that says what to write. A law that
+// fails here is compiled no further, so that nothing of the kit's insides stands in the compiler's message.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/evaluate.hpp>
+
+// A path through a law's step that returns no status: an error in whatever follows this header.
+#pragma GCC diagnostic error "-Wreturn-type"
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// ---- names
+
+// names_x<Law>: whether a law has a member x of any kind; two of a name are ambiguous.
+#define ILAW_KIT_NAME(name)                        \
+  struct other_##name {                            \
+    int name;                                      \
+  };                                               \
+  template <class Law>                             \
+  struct with_##name : Law, other_##name {};       \
+  template <class Law>                             \
+  inline constexpr bool names_##name = !requires { \
+    &with_##name<Law>::name;                       \
+  }
+// And a name that the kit does not know, written for one that it does.
+#define ILAW_KIT_SPELLING(wrong, right)                                     \
+  ILAW_KIT_NAME(wrong);                                                     \
+  template <class Law>                                                      \
+  constexpr bool spells_##wrong() {                                         \
+    constexpr bool is_right = !names_##wrong<Law>;                          \
+    static_assert(is_right, "the kit calls no '" #wrong "': write " right); \
+    return is_right;                                                        \
+  }
+
+// Every name that a law may define (law.hpp says what for), and how often it is missed.
+ILAW_KIT_NAME(card);
+ILAW_KIT_NAME(references);
+ILAW_KIT_NAME(parameters);
+ILAW_KIT_NAME(state);
+ILAW_KIT_NAME(state_variables);
+ILAW_KIT_NAME(history);
+ILAW_KIT_NAME(amounts);
+ILAW_KIT_NAME(step);
+ILAW_KIT_NAME(problem);
+ILAW_KIT_NAME(answer);
+ILAW_KIT_NAME(ask);
+ILAW_KIT_NAME(solve);
+ILAW_KIT_NAME(solve_scalar);
+ILAW_KIT_NAME(finish);
+ILAW_KIT_NAME(asks);
+ILAW_KIT_NAME(remembers);
+ILAW_KIT_NAME(prepare);
+ILAW_KIT_NAME(initialise);
+ILAW_KIT_NAME(conflict);
+ILAW_KIT_NAME(inputs);
+ILAW_KIT_NAME(capabilities);
+ILAW_KIT_NAME(permissions);
+ILAW_KIT_NAME(tells_tangents_apart);
+ILAW_KIT_NAME(stable_velocity_step);
+ILAW_KIT_NAME(history_size);
+ILAW_KIT_NAME(record);
+ILAW_KIT_NAME(window);
+ILAW_KIT_NAME(adds_to_window);
+ILAW_KIT_NAME(clears_window);
+ILAW_KIT_NAME(extension);
+
+#define ILAW_KIT_SPELLINGS(spelling)                                                                        \
+  spelling(reference, "'references'") spelling(params, "'parameters'") spelling(states, "'state'")          \
+      spelling(state_variable, "'state_variables'") spelling(variables, "'state_variables'") spelling(      \
+          history_variable, "'history'") spelling(histories, "'history'") spelling(amount, "'amounts'")     \
+          spelling(steps, "'step'") spelling(do_step, "'step'") spelling(                                   \
+              try_step, "'step': it has branches that all nodes of a batch share, and any(mask)")           \
+              spelling(in_form, "'step': it has branches that all nodes of a batch share") spelling(        \
+                  problems, "'problem'") spelling(answers, "'answer'") spelling(answered, "'finish'")       \
+                  spelling(solves, "'solve'") spelling(solve_alone, "'solve_scalar'") spelling(             \
+                      solve_one, "'solve_scalar'") spelling(finished, "'finish'")                           \
+                      spelling(finishes, "'finish'") spelling(needs_solver, "'asks'") spelling(             \
+                          prepared, "'prepare'") spelling(prepares, "'prepare'")                            \
+                          spelling(initialize, "'initialise'") spelling(init, "'initialise'") spelling(     \
+                              initialises, "'initialise'") spelling(conflicts, "'conflict'")                \
+                              spelling(input, "'inputs'") spelling(capabilites, "'capabilities'") spelling( \
+                                  capability, "'capabilities'") spelling(permission, "'permissions'")       \
+                                  spelling(permisions, "'permissions'") spelling(tell_tangents_apart,       \
+                                                                                 "'tells_tangents_apart'")  \
+                                      spelling(tells_tangents, "'tells_tangents_apart'") spelling(          \
+                                          stable_step, "'stable_velocity_step'")                            \
+                                          spelling(stable_time_step, "'stable_velocity_step'") spelling(    \
+                                              records, "'record'") spelling(windows, "'window'")            \
+                                              spelling(window_in, "'window'") spelling(                     \
+                                                  add_to_window,                                            \
+                                                  "'adds_to_window'") spelling(clear_window,                \
+                                                                               "'clears_window'")           \
+                                                  spelling(extensions, "'extension'") spelling(             \
+                                                      is_isotropic, ".is_isotropic = true in the card")     \
+                                                      spelling(names_tangents, ".is_isotropic in the card") \
+                                                          spelling(dimensions, ".dimensions in the card")   \
+                                                              spelling(delassus_forms,                      \
+                                                                       ".delassus_forms in the card")       \
+                                                                  spelling(state_version,                   \
+                                                                           ".state_version in the card")
+ILAW_KIT_SPELLINGS(ILAW_KIT_SPELLING)
+
+// All of them, whatever the first one says.
+template <class Law>
+constexpr bool spells_rightly() {
+#define ILAW_KIT_SPELLED(wrong, right) &spells_##wrong<Law>()
+  return true ILAW_KIT_SPELLINGS(ILAW_KIT_SPELLED);
+#undef ILAW_KIT_SPELLED
+}
+
+// ---- what the names stand for
+
+template <class Law>
+constexpr bool has_card() {
+  if constexpr (requires { Law::card; }) return std::is_same_v<decltype(Law::card), const law_card>;
+  return false;
+}
+
+// Parameters. Wide: L<pack>, whose members tell which of them may vary.
+template <class Law>
+constexpr bool all_parameters(auto is_right) {
+  for (const auto& p : Law::parameters)
+    if (!is_right(p)) return false;
+  return true;
+}
+template <class Law>
+constexpr bool members_differ() {
+  const auto& all = Law::parameters;
+  for (std::size_t i = 0; i < std::size(all); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (all[i].member == all[j].member) return false;
+  return true;
+}
+
+constexpr bool same_text(const char* a, const char* b) {
+  while (*a && *a == *b) ++a, ++b;
+  return *a == *b;
+}
+template <class Law>
+constexpr bool axes_are_known() {
+  for (const auto& p : Law::parameters)
+    for (std::uint32_t k = 0; k < p.axes.count; ++k) {
+      bool is_known = same_text(p.axes.values[k], "time");
+      for (const auto& field : Law::parameters)
+        is_known = is_known || (field.is_field && same_text(p.axes.values[k], field.name));
+      if (!is_known) return false;
+    }
+  return true;
+}
+
+// Structs whose members are V and nothing else grow as V does.
+template <class OfPack, class OfTwo>
+inline constexpr bool all_of_V = sizeof(OfTwo) == 2 * sizeof(OfPack) && std::is_trivially_copyable_v<OfPack>;
+
+template <class Law>
+constexpr bool state_is_given() {
+  if constexpr (has_state<Law>)
+    for (const auto& v : Law::state_variables)
+      if (!v.member.is_given() || !v.name) return false;
+  return true;
+}
+template <class Law>
+constexpr bool state_is_of_V() {
+  if constexpr (has_state<Law>)
+    return all_of_V<typename law_on_t<Law, pack>::state, typename law_on_t<Law, pack_of<2>>::state>;
+  return true;
+}
+// Every number of struct state once.
+template <class Law>
+constexpr bool state_is_covered() {
+  if constexpr (has_state<Law>) {
+    std::size_t numbers = 0;
+    for (const auto& v : Law::state_variables) numbers += static_cast<std::size_t>(v.member.numbers());
+    if (numbers * sizeof(double) != sizeof(state_t<Law>)) return false;
+  }
+  return true;
+}
+template <class Law>
+constexpr bool state_is_apart() {
+  if constexpr (has_state<Law>) {
+    const auto& all = Law::state_variables;
+    for (std::size_t i = 0; i < std::size(all); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (all[i].member.place() == all[j].member.place()) return false;
+  }
+  return true;
+}
+
+// The nodes that a law may be given: by form of H, and by what its vectors are.
+template <class Law, template <class> class Vector, template <class> class Delassus>
+using node_on = node<law_on_t<Law, loop_number<Law>>, Vector<loop_number<Law>>, Delassus<loop_number<Law>>>;
+
+// Calls that only name their types: no body is compiled for them. T&&: a function that takes a copy of its
+// node, or one that it may not write, changes nothing.
+template <class Law, class Node>
+struct calls {
+  using node_type = Node;
+  using Wide = law_on_t<Law, loop_number<Law>>;
+  using V = loop_number<Law>;
+
+  static constexpr bool steps_somehow = requires(Wide & law, Node& n) { law.step(n); };
+  static constexpr bool steps = requires(const Wide& law, Node& n) {
+    { law.step(n) } -> std::same_as<status_of<V>>;
+  }
+  &&!requires(const Wide& law, Node& n) { law.step(static_cast<Node&&>(n)); };
+  template <class W>
+  static constexpr bool asks_of() {
+    if constexpr (requires { typename W::problem; })
+      return requires(W & law, Node & n, typename W::problem & p) { law.ask(n, p); };
+    return false;
+  }
+  static constexpr bool asks_somehow = asks_of<Wide>();
+  template <class W>
+  static constexpr bool asks_rightly() {
+    if constexpr (asks_of<W>()) return requires(const W& law, Node& n, typename W::problem& p) {
+        { law.ask(n, p) } -> std::same_as<asked<V>>;
+      }
+    &&!requires(const W& law, Node& n, typename W::problem& p) { law.ask(static_cast<Node&&>(n), p); };
+    return true;
+  }
+  template <class W>
+  static constexpr bool finishes_rightly() {
+    if constexpr (asks_of<W>() && requires { typename W::answer; })
+      return requires(const W& law, Node& n, const typename W::answer& a) {
+        { law.finish(n, a) } -> std::same_as<status_of<V>>;
+      }
+    &&!requires(const W& law, Node& n, const typename W::answer& a) {
+      law.finish(static_cast<Node&&>(n), a);
+    };
+    return true;
+  }
+  static constexpr bool ask_fits = asks_rightly<Wide>(), finish_fits = finishes_rightly<Wide>();
+  static constexpr bool is_served = steps_somehow || asks_somehow;
+  // Where both serve a node, asks() chooses; else step were never called.
+  static constexpr bool is_decided = !(steps_somehow && asks_somehow) || names_asks<Law>;
+};
+template <class Law>
+constexpr bool all_nodes(auto is_right) {
+  bool right = true;
+  if constexpr (serves_transverse<Law>) {
+    right = right && is_right(calls<Law, node_on<Law, vector, transverse>>{});
+    if constexpr (needs_no_tangents<Law>)
+      right = right && is_right(calls<Law, node_on<Law, projected, transverse>>{});
+  }
+  if constexpr (serves_full<Law>) right = right && is_right(calls<Law, node_on<Law, vector, full>>{});
+  return right;
+}
+template <class Law>
+constexpr bool any_node(auto is_so) {
+  return !all_nodes<Law>([is_so](auto call) { return !is_so(call); });
+}
+
+template <class Law>
+constexpr bool has_whole_solver() {
+  constexpr int parts = names_problem<Law> + names_answer<Law> + names_ask<Law> + names_solve<Law> +
+                        names_solve_scalar<Law> + names_finish<Law>;
+  return parts == 0 || parts == 6;
+}
+template <class Law>
+constexpr bool problems_are_of_V() {
+  if constexpr (names_ask<Law>) {
+    using narrow = law_on_t<Law, pack>;
+    using two = law_on_t<Law, pack_of<2>>;
+    return all_of_V<typename narrow::problem, typename two::problem> &&
+           all_of_V<typename narrow::answer, typename two::answer>;
+  }
+  return true;
+}
+// Either may take what prepare gave as well.
+template <class Law>
+constexpr bool solves_rightly() {
+  if constexpr (names_ask<Law>) {
+    using two = law_on_t<Law, pack_of<2>>;
+    using lanes = mask_of<pack_of<2>>;
+    constexpr bool solves_packs =
+        requires(const two& law, const typename two::problem& p, typename two::answer& a) {
+      { law.solve(p, a) } -> std::same_as<lanes>;
+    }
+    || requires(const two& law, const typename two::problem& p, typename two::answer& a,
+                const prepared_t<two>& own) {
+      { law.solve(p, a, own) } -> std::same_as<lanes>;
+    };
+    constexpr bool solves_one =
+        requires(const Law& law, const typename Law::problem& p, typename Law::answer& a) {
+      law.solve_scalar(p, a);
+    }
+    || requires(const Law& law, const typename Law::problem& p, typename Law::answer& a,
+                const prepared_t<Law>& own) {
+      law.solve_scalar(p, a, own);
+    };
+    return solves_packs && solves_one;
+  }
+  return true;
+}
+
+template <class Law>
+inline constexpr bool limits_step_rightly =
+    !names_stable_velocity_step<Law> ||
+    kernel<Law, loop_number<Law>, double, local_frame, transverse>::by_delassus ||
+    any_node<Law>([](auto call) {
+      using W = typename decltype(call)::Wide;
+      return requires(const W& law, const typename decltype(call)::node_type& n) {
+        law.stable_velocity_step(n);
+      };
+    });
+template <class Law>
+concept has_window_rightly = requires(const Law& law) {
+  { law.window().duration } -> std::convertible_to<double>;
+  { Law::adds_to_window(ilaw_status{}) } -> std::same_as<bool>;
+  { Law::clears_window(ilaw_status{}) } -> std::same_as<bool>;
+};
+template <class Law>
+concept has_record_rightly = requires(const Law& law, history_values own) {
+  { law.history_size() } -> std::same_as<std::int64_t>;
+};
+template <class Law>
+constexpr bool has_history_rightly() {
+  if constexpr (!has_history<Law>)
+    return !(names_history_size<Law> || names_record<Law> || names_window<Law> || names_adds_to_window<Law> ||
+             names_clears_window<Law>);
+  else if constexpr (names_window<Law>)
+    return has_window_rightly<Law> && !names_record<Law> && !names_history_size<Law>;
+  else
+    return has_record_rightly<Law> && names_record<Law> && !names_adds_to_window<Law> &&
+           !names_clears_window<Law>;
+}
+template <class Law>
+constexpr bool records_rightly() {
+  if constexpr (names_record<Law>)
+    return any_node<Law>([](auto call) {
+      using W = typename decltype(call)::Wide;
+      return requires(const W& law, const typename decltype(call)::node_type& n, history_values own) {
+        law.record(n, own);
+      };
+    });
+  return true;
+}
+template <class Law>
+constexpr bool has_amounts_rightly() {
+  if constexpr (names_amounts<Law>)
+    return std::is_same_v<std::remove_cvref_t<decltype(Law::amounts[0])>, amount_card> &&
+           amount_count<Law> <= most_amounts;
+  return true;
+}
+
+// ---- the checks
+
+#define ILAW_KIT_CHECK(what, condition, text) \
+  static constexpr bool what = (condition);   \
+  static_assert(what, text)
+// A function that a law need not have, but that must be what it is called as.
+#define ILAW_KIT_FUNCTION(name, result, declaration) \
+  ILAW_KIT_CHECK(                                    \
+      has_right_##name,                              \
+      !names_##name<Law> ||                          \
+          requires(const Law& law) {                 \
+            { law.name() } -> std::same_as<result>;  \
+          },                                         \
+      #name " must be " declaration)
+
+template <class Law>
+struct checked_names {
+  ILAW_KIT_CHECK(has_own_card, has_card<Law>(),
+                 "a law needs static constexpr law_card card{.id = ..., .title = ..., .doc = ...}");
+  ILAW_KIT_CHECK(
+      has_references, names_references<Law>,
+      "a law needs static constexpr const char* references[] = {...}: where its equations are from");
+  ILAW_KIT_CHECK(has_parameters, names_parameters<Law>,
+                 "a law needs static constexpr parameter<Law> parameters[] = {{.member = &Law::name, ...}}");
+  ILAW_KIT_CHECK(has_step, names_step<Law> || names_ask<Law>,
+                 "a law needs template <class Node> status_of<V> step(Node& node) const");
+  ILAW_KIT_CHECK(has_both_of_state, names_state<Law> == names_state_variables<Law>,
+                 "a memory is struct state and static constexpr state_variable<state> state_variables[]");
+  ILAW_KIT_CHECK(remembers_something, !names_remembers<Law> || names_state<Law>,
+                 "remembers says which parameters need the state: the law has no struct state");
+  ILAW_KIT_CHECK(has_solver, has_whole_solver<Law>(),
+                 "a solver is problem, answer, ask, solve, solve_scalar and finish: one of them is missing");
+  ILAW_KIT_CHECK(needs_asks, !names_asks<Law> || (names_step<Law> && names_ask<Law>),
+                 "asks chooses between step and ask: the law has one of them alone");
+
+  static constexpr bool passes = has_own_card && has_references && has_parameters && has_step &&
+                                 has_both_of_state && remembers_something && has_solver && needs_asks;
+};
+
+// Law: L<double>.
+template <class Law>
+struct checked_members {
+  using Wide = law_on_t<Law, pack>;
+  static constexpr std::uint32_t inputs = reads_gap | reads_v_previous | reads_area;
+
+  ILAW_KIT_CHECK(has_texts, Law::card.id&& Law::card.title&& Law::card.doc,
+                 "the card of a law needs .id, .title and .doc");
+  ILAW_KIT_CHECK(reads_known_inputs, (Law::card.inputs & ~inputs) == 0,
+                 ".inputs of the card are reads_gap, reads_v_previous and reads_area, joined by |");
+  ILAW_KIT_CHECK(serves_something, Law::card.dimensions != 0 && Law::card.delassus_forms != 0,
+                 "the card of a law serves at least one dimension and one form of H");
+  ILAW_KIT_CHECK(serves_turned,
+                 !(Law::card.delassus_forms & ILAW_DELASSUS_DIAGONAL) ||
+                     (Law::card.delassus_forms & ILAW_DELASSUS_FULL),
+                 "a card that serves a diagonal H serves a full one, too: in the host's axes it is full");
+  ILAW_KIT_CHECK(gives_members,
+                 all_parameters<Law>([](const auto& p) { return p.member.is_given() && p.name; }),
+                 "a parameter needs .member = &Law::name and .name = \"name\"");
+  ILAW_KIT_CHECK(has_one_each, members_differ<Wide>(),
+                 "two parameters have the same .member: each needs one of its own");
+  ILAW_KIT_CHECK(describes_all, sizeof(Law) == sizeof(double) * std::size(Law::parameters),
+                 "a law's members are its parameters, all V or double: each needs an entry of parameters[]");
+  ILAW_KIT_CHECK(has_few, parameter_count<Law> <= most_parameters, "a law has at most 32 parameters");
+  ILAW_KIT_CHECK(chooses_once, all_parameters<Wide>([](const auto& p) {
+                   return !(p.choices.count > 0 || p.whole) || !p.member.may_vary();
+                 }),
+                 "a choice or whole number is the same at all nodes: its member is a double, not a V");
+  ILAW_KIT_CHECK(has_fields,
+                 all_parameters<Wide>([](const auto& p) { return !p.is_field || p.member.may_vary(); }),
+                 "a field differs from node to node: its member is a V");
+  ILAW_KIT_CHECK(has_axes, axes_are_known<Law>(),
+                 "a table is over \"time\" or a field, a parameter with .is_field = true");
+  ILAW_KIT_CHECK(has_state_of_V, state_is_of_V<Law>(),
+                 "the members of struct state must be V, vector<V> or tangential_vector<V>");
+  ILAW_KIT_CHECK(gives_state_members, state_is_given<Law>(),
+                 "a state variable needs .member = &state::name and .name = \"name\"");
+  ILAW_KIT_CHECK(describes_state, !has_state_of_V || state_is_covered<Law>(),
+                 "every member of struct state needs an entry of state_variables[]");
+  ILAW_KIT_CHECK(has_problems_of_V, problems_are_of_V<Law>(),
+                 "the members of problem and answer must all be of type V");
+  ILAW_KIT_CHECK(
+      has_solve, solves_rightly<Law>(),
+      "solve must be mask_of<V> solve(const problem& p, answer& a) const, and solve_scalar the same without "
+      "result; both may take what prepare gave as well");
+  ILAW_KIT_CHECK(
+      has_right_asks,
+      !names_asks<Law> ||
+          requires(const Law& law) {
+            { law.asks() } -> std::same_as<bool>;
+          } ||
+          requires(const Law& law) {
+            { law.asks(true) } -> std::same_as<bool>;
+          },
+      "asks must be bool asks() const or bool asks(bool is_transverse) const");
+  ILAW_KIT_FUNCTION(remembers, bool, "bool remembers() const");
+  ILAW_KIT_FUNCTION(conflict, const char*, "const char* conflict() const");
+  ILAW_KIT_FUNCTION(inputs, std::uint32_t, "std::uint32_t inputs() const");
+  ILAW_KIT_FUNCTION(capabilities, std::uint32_t, "std::uint32_t capabilities() const");
+  ILAW_KIT_FUNCTION(permissions, std::uint32_t, "std::uint32_t permissions() const");
+  ILAW_KIT_FUNCTION(tells_tangents_apart, bool, "bool tells_tangents_apart() const");
+  ILAW_KIT_CHECK(
+      has_prepare, !names_prepare<Law> || requires(const Law& law, const step_sizes& s) { law.prepare(s); },
+      "prepare must be auto prepare(const step_sizes& step) const");
+  ILAW_KIT_CHECK(
+      has_initialise,
+      !names_initialise<Law> || requires(const Law& law, initial_node<Law>& n) { law.initialise(n); },
+      "initialise must be template <class Node> void initialise(Node& node) const");
+  ILAW_KIT_CHECK(
+      has_extension,
+      !names_extension<Law> ||
+          requires(const char* s) {
+            { Law::extension(s) } -> std::same_as<const void*>;
+          },
+      "extension must be static const void* extension(const char* name)");
+  ILAW_KIT_CHECK(has_amounts, has_amounts_rightly<Law>(),
+                 "amounts must be static constexpr amount_card amounts[], at most eight");
+  ILAW_KIT_CHECK(
+      has_history, has_history_rightly<Law>(),
+      "a history is static constexpr history_card history and either std::int64_t history_size() const with "
+      "record, or window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)");
+
+  static constexpr bool passes =
+      has_texts && reads_known_inputs && serves_something && serves_turned && gives_members && has_one_each &&
+      describes_all && has_few && chooses_once && has_fields && has_axes && has_state_of_V &&
+      gives_state_members && describes_state && has_problems_of_V && has_solve && has_right_asks &&
+      has_right_remembers && has_right_conflict && has_right_inputs && has_right_capabilities &&
+      has_right_permissions && has_right_tells_tangents_apart && has_prepare && has_initialise &&
+      has_extension && has_amounts && has_history;
+};
+
+// What needs all of them: nodes.
+template <class Law>
+struct checked_nodes {
+  ILAW_KIT_CHECK(has_state_apart, state_is_apart<Law>(),
+                 "two state variables have the same .member: each needs one of its own");
+  ILAW_KIT_CHECK(serves_nodes, all_nodes<Law>([](auto call) { return call.is_served; }),
+                 "no step or ask takes the nodes of a form of H that .delassus_forms of the card names");
+  ILAW_KIT_CHECK(steps, all_nodes<Law>([](auto call) { return !call.steps_somehow || call.steps; }),
+                 "step must be template <class Node> status_of<V> step(Node& node) const");
+  ILAW_KIT_CHECK(fits_ask, all_nodes<Law>([](auto call) { return call.ask_fits; }),
+                 "ask must be template <class Node> asked<V> ask(Node& node, problem& open) const");
+  ILAW_KIT_CHECK(
+      fits_finish, all_nodes<Law>([](auto call) { return call.finish_fits; }),
+      "finish must be template <class Node> status_of<V> finish(Node& node, const answer& a) const");
+  ILAW_KIT_CHECK(decides, all_nodes<Law>([](auto call) { return call.is_decided; }),
+                 "step and ask take the same nodes: bool asks() const says which parameters need ask");
+  ILAW_KIT_CHECK(
+      limits_step, limits_step_rightly<Law>,
+      "stable_velocity_step must be V stable_velocity_step(V h_n, V h_t) const, or template <class Node> V "
+      "stable_velocity_step(const Node& node) const");
+  ILAW_KIT_CHECK(
+      records, records_rightly<Law>(),
+      "record must be template <class Node> void record(const Node& node, history_values own) const");
+
+  static constexpr bool passes = has_state_apart && serves_nodes && steps && fits_ask && fits_finish &&
+                                 decides && limits_step && records;
+#undef ILAW_KIT_CHECK
+#undef ILAW_KIT_FUNCTION
+#undef ILAW_KIT_NAME
+#undef ILAW_KIT_SPELLING
+#undef ILAW_KIT_SPELLINGS
+};
+
+// Whether a struct is a law; an error of one line where it is not.
+template <template <class> class L>
+constexpr bool checked() {
+  using Law = L<double>;
+  if constexpr (spells_rightly<Law>() && checked_names<Law>::passes)
+    if constexpr (checked_members<Law>::passes) return checked_nodes<Law>::passes;
+  return false;
+}
+
+}  // namespace ilaw::kit::detail

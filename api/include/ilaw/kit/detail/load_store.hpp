@@ -1,0 +1,342 @@
+// load_store.hpp - packs of numbers from a host's arrays, and back: rows (components side by side) and
+// columns, of doubles and floats.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/vector.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// ---- rows of two, three, four and six numbers to columns and back, in registers
+
+using one_floats = float __attribute__((vector_size(4 * register_lanes)));
+
+// Lanes of rows of so many numbers: which of three registers has the wanted numbers of a lane.
+template <int Numbers, int Group>
+constexpr int holder_of(int lane) {
+  int vector = 0;
+  while ((vector * register_lanes + lane) % Numbers / (Numbers / 3) != Group) ++vector;
+  return vector;
+}
+// AVX-512 takes any lanes of two registers in one instruction; the others move lanes and blend.
+template <int Column, class One, int... K>
+ILAW_KIT_INLINE One column_of_three(One a, One b, One c, std::integer_sequence<int, K...>) {
+  constexpr int lanes = register_lanes;
+#if defined(__AVX512F__)
+  constexpr auto from = [](int lane) { return 3 * lane + Column; };
+  const One two = __builtin_shufflevector(a, b, (from(K) < 2 * lanes ? from(K) : 0)...);
+  return __builtin_shufflevector(two, c, (from(K) < 2 * lanes ? K : from(K) - lanes)...);
+#else
+  const One two = __builtin_shufflevector(a, b, (holder_of<3, Column>(K) == 1 ? K + lanes : K)...);
+  const One all = __builtin_shufflevector(two, c, (holder_of<3, Column>(K) == 2 ? K + lanes : K)...);
+  return __builtin_shufflevector(all, all, (3 * K + Column) % lanes...);
+#endif
+}
+template <int Column>
+constexpr int row_in_lane(int lane) {
+  int row = 0;
+  while ((3 * row + Column) % register_lanes != lane) ++row;
+  return row;
+}
+template <int Vector, class One, int... K>
+ILAW_KIT_INLINE One row_of_three(One a, One b, One c, std::integer_sequence<int, K...>) {
+  constexpr int lanes = register_lanes, from = Vector * lanes;
+#if defined(__AVX512F__)
+  constexpr auto row = [](int lane) { return (from + lane) / 3; };
+  constexpr auto column = [](int lane) { return (from + lane) % 3; };
+  const One two = __builtin_shufflevector(a, b, (column(K) == 1 ? row(K) + lanes : row(K))...);
+  return __builtin_shufflevector(two, c, (column(K) == 2 ? row(K) + lanes : K)...);
+#else
+  const One u = __builtin_shufflevector(a, a, row_in_lane<0>(K)...);
+  const One v = __builtin_shufflevector(b, b, row_in_lane<1>(K)...);
+  const One w = __builtin_shufflevector(c, c, row_in_lane<2>(K)...);
+  const One two = __builtin_shufflevector(u, v, ((from + K) % 3 == 1 ? K + lanes : K)...);
+  return __builtin_shufflevector(two, w, ((from + K) % 3 == 2 ? K + lanes : K)...);
+#endif
+}
+
+// Of two registers side by side every second number, from the first or second on; and the reverse.
+template <int Column, int... K>
+ILAW_KIT_INLINE one every_second(one a, one b, std::integer_sequence<int, K...>) {
+  return __builtin_shufflevector(a, b, 2 * K + Column...);
+}
+template <int Half, int... K>
+ILAW_KIT_INLINE one zipped(one a, one b, std::integer_sequence<int, K...>) {
+  return __builtin_shufflevector(a, b, (Half * register_lanes / 2 + K / 2 + K % 2 * register_lanes)...);
+}
+
+// Rows of six: pairs as rows of three, then each register of pairs to its columns.
+template <int Group, int... K>
+ILAW_KIT_INLINE one pairs_of_three(one a, one b, one c, std::integer_sequence<int, K...>) {
+  const one two = __builtin_shufflevector(a, b, (holder_of<6, Group>(K) == 1 ? K + register_lanes : K)...);
+  return __builtin_shufflevector(two, c, (holder_of<6, Group>(K) == 2 ? K + register_lanes : K)...);
+}
+template <int Column, int... K>
+ILAW_KIT_INLINE one column_of_six(one low, one high, std::integer_sequence<int, K...>) {
+  constexpr int half = register_lanes / 2;
+  return __builtin_shufflevector(low, high,
+                                 (K / half * register_lanes + (6 * (K % half) + Column) % register_lanes)...);
+}
+
+// ---- registers in memory
+
+ILAW_KIT_INLINE one one_at(const double* p) {
+  one v;
+  __builtin_memcpy(&v, p, sizeof v);
+  ILAW_KIT_IN_REGISTER(v);
+  return v;
+}
+ILAW_KIT_INLINE void put_one(one v, double* p) { __builtin_memcpy(p, &v, sizeof v); }
+ILAW_KIT_INLINE one_floats floats_at(const float* p) {
+  one_floats v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+ILAW_KIT_INLINE one one_at(const float* p) { return __builtin_convertvector(floats_at(p), one); }
+ILAW_KIT_INLINE void put_one(one v, float* p) {
+  const one_floats f = __builtin_convertvector(v, one_floats);
+  __builtin_memcpy(p, &f, sizeof f);
+}
+
+// Whole numbers 0..255 as bytes.
+ILAW_KIT_INLINE void put_bytes(one v, std::uint8_t* p) {
+#if defined(__AVX512F__)
+  const __m128i bytes = _mm256_cvtepi32_epi8(_mm512_cvttpd_epi32((__m512d)v));
+  __builtin_memcpy(p, &bytes, register_lanes);
+#elif defined(__AVX__)
+  const __m128i ints = _mm256_cvttpd_epi32((__m256d)v), words = _mm_packs_epi32(ints, ints);
+  const __m128i bytes = _mm_packus_epi16(words, words);
+  __builtin_memcpy(p, &bytes, register_lanes);
+#else
+  for (int k = 0; k < register_lanes; ++k) p[k] = static_cast<std::uint8_t>(v[k]);
+#endif
+}
+
+// ---- arrays
+
+// Component c of node i stands at at[i * count + c] in rows, at[i + c * component] in columns. Null: absent.
+template <class Number>
+struct array {
+  Number* at = nullptr;
+  std::int64_t component = 0;
+  int count = 0;  // components
+  int rows = 0;   // components, 0 for columns
+
+  Number& of(std::int64_t node, int c) const { return at[rows ? node * count + c : node + c * component]; }
+};
+
+// Columns of copy_lanes numbers: a pack that was copied.
+inline constexpr int copy_lanes = 2 * register_lanes;
+template <class Number, int Count>
+struct columns {
+  Number* at = nullptr;
+  static constexpr std::int64_t component = copy_lanes;
+  static constexpr int count = Count;
+  static constexpr int rows = 0;
+};
+
+template <class V, class Number>
+ILAW_KIT_INLINE V load(const Number* p) {
+  if constexpr (lanes_of<V> == 1)
+    return static_cast<double>(*p);
+  else
+    return V::each([&](int r) ILAW_KIT_LAMBDA { return one_at(p + r * register_lanes); });
+}
+template <class V, class Number>
+ILAW_KIT_INLINE void store(V a, Number* p) {
+  if constexpr (lanes_of<V> == 1)
+    *p = static_cast<Number>(a);
+  else {
+#pragma GCC unroll 4
+    for (int r = 0; r < V::size / register_lanes; ++r) put_one(a.v[r], p + r * register_lanes);
+  }
+}
+template <class V>
+ILAW_KIT_INLINE void store_bytes(V a, std::uint8_t* p) {
+  if constexpr (lanes_of<V> == 1)
+    *p = static_cast<std::uint8_t>(a);
+  else {
+#pragma GCC unroll 4
+    for (int r = 0; r < V::size / register_lanes; ++r) put_bytes(a.v[r], p + r * register_lanes);
+  }
+}
+
+// Rows of N numbers, N of 2, 3, 4 and 6, from p on. found: times all numbers read, each in some lane; so
+// columns that nobody reads are never made.
+template <int N, class V, class Number>
+ILAW_KIT_INLINE void load_rows(V (&to)[N], const Number* p, V& found) {
+  if constexpr (lanes_of<V> == 1) {
+    for (int c = 0; c < N; ++c) {
+      to[c] = static_cast<double>(p[c]);
+      found = found * to[c];
+    }
+  } else {
+#pragma GCC unroll 4
+    for (int r = 0; r < V::size / register_lanes; ++r) {
+      const Number* const q = p + N * register_lanes * r;
+      one in[N];
+#pragma GCC unroll 8
+      for (int c = 0; c < N; ++c) {
+        in[c] = one_at(q + c * register_lanes);
+        found.v[r] = found.v[r] * in[c];
+      }
+      if constexpr (N == 2) {
+        to[0].v[r] = every_second<0>(in[0], in[1], each_lane);
+        to[1].v[r] = every_second<1>(in[0], in[1], each_lane);
+      } else if constexpr (N == 3) {
+        to[0].v[r] = column_of_three<0>(in[0], in[1], in[2], each_lane);
+        to[1].v[r] = column_of_three<1>(in[0], in[1], in[2], each_lane);
+        to[2].v[r] = column_of_three<2>(in[0], in[1], in[2], each_lane);
+      } else if constexpr (N == 4) {
+        const one a = every_second<0>(in[0], in[1], each_lane), b = every_second<1>(in[0], in[1], each_lane);
+        const one c = every_second<0>(in[2], in[3], each_lane), d = every_second<1>(in[2], in[3], each_lane);
+        to[0].v[r] = every_second<0>(a, c, each_lane);
+        to[1].v[r] = every_second<0>(b, d, each_lane);
+        to[2].v[r] = every_second<1>(a, c, each_lane);
+        to[3].v[r] = every_second<1>(b, d, each_lane);
+      } else {
+        const one p0 = pairs_of_three<0>(in[0], in[1], in[2], each_lane),
+                  q0 = pairs_of_three<0>(in[3], in[4], in[5], each_lane);
+        const one p1 = pairs_of_three<1>(in[0], in[1], in[2], each_lane),
+                  q1 = pairs_of_three<1>(in[3], in[4], in[5], each_lane);
+        const one p2 = pairs_of_three<2>(in[0], in[1], in[2], each_lane),
+                  q2 = pairs_of_three<2>(in[3], in[4], in[5], each_lane);
+        to[0].v[r] = column_of_six<0>(p0, q0, each_lane);
+        to[1].v[r] = column_of_six<1>(p0, q0, each_lane);
+        to[2].v[r] = column_of_six<2>(p1, q1, each_lane);
+        to[3].v[r] = column_of_six<3>(p1, q1, each_lane);
+        to[4].v[r] = column_of_six<4>(p2, q2, each_lane);
+        to[5].v[r] = column_of_six<5>(p2, q2, each_lane);
+      }
+    }
+  }
+}
+// Floats are turned while they are narrow.
+template <class V>
+ILAW_KIT_INLINE void load_rows(V (&to)[3], const float* p, V& found) requires(lanes_of<V> > 1) {
+#pragma GCC unroll 4
+  for (int r = 0; r < V::size / register_lanes; ++r) {
+    const float* const q = p + 3 * register_lanes * r;
+    const one_floats a = floats_at(q), b = floats_at(q + register_lanes),
+                     c = floats_at(q + 2 * register_lanes);
+    to[0].v[r] = __builtin_convertvector(column_of_three<0>(a, b, c, each_lane), one);
+    to[1].v[r] = __builtin_convertvector(column_of_three<1>(a, b, c, each_lane), one);
+    to[2].v[r] = __builtin_convertvector(column_of_three<2>(a, b, c, each_lane), one);
+    found.v[r] = found.v[r] * to[0].v[r] * to[1].v[r] * to[2].v[r];
+  }
+}
+template <int N, class V, class Number>
+ILAW_KIT_INLINE void store_rows(const V (&a)[N], Number* p) {
+  if constexpr (lanes_of<V> == 1) {
+    for (int c = 0; c < N; ++c) p[c] = static_cast<Number>(a[c]);
+  } else {
+#pragma GCC unroll 4
+    for (int r = 0; r < V::size / register_lanes; ++r) {
+      one out[N];
+      if constexpr (N == 2) {
+        out[0] = zipped<0>(a[0].v[r], a[1].v[r], each_lane);
+        out[1] = zipped<1>(a[0].v[r], a[1].v[r], each_lane);
+      } else if constexpr (N == 3) {
+        out[0] = row_of_three<0>(a[0].v[r], a[1].v[r], a[2].v[r], each_lane);
+        out[1] = row_of_three<1>(a[0].v[r], a[1].v[r], a[2].v[r], each_lane);
+        out[2] = row_of_three<2>(a[0].v[r], a[1].v[r], a[2].v[r], each_lane);
+      } else {
+        static_assert(N == 4);
+        const one e = zipped<0>(a[0].v[r], a[2].v[r], each_lane),
+                  f = zipped<0>(a[1].v[r], a[3].v[r], each_lane);
+        const one g = zipped<1>(a[0].v[r], a[2].v[r], each_lane),
+                  h = zipped<1>(a[1].v[r], a[3].v[r], each_lane);
+        out[0] = zipped<0>(e, f, each_lane);
+        out[1] = zipped<1>(e, f, each_lane);
+        out[2] = zipped<0>(g, h, each_lane);
+        out[3] = zipped<1>(g, h, each_lane);
+      }
+      Number* const q = p + N * register_lanes * r;
+#pragma GCC unroll 8
+      for (int c = 0; c < N; ++c) put_one(out[c], q + c * register_lanes);
+    }
+  }
+}
+template <class V>
+ILAW_KIT_INLINE void store_rows(const V (&a)[3], float* p) requires(lanes_of<V> > 1) {
+#pragma GCC unroll 4
+  for (int r = 0; r < V::size / register_lanes; ++r) {
+    const auto narrow = [&](int c) ILAW_KIT_LAMBDA { return __builtin_convertvector(a[c].v[r], one_floats); };
+    const one_floats u = narrow(0), v = narrow(1), w = narrow(2);
+    const one_floats x = row_of_three<0>(u, v, w, each_lane), y = row_of_three<1>(u, v, w, each_lane),
+                     z = row_of_three<2>(u, v, w, each_lane);
+    float* const q = p + 3 * register_lanes * r;
+    __builtin_memcpy(q, &x, sizeof x);
+    __builtin_memcpy(q + register_lanes, &y, sizeof y);
+    __builtin_memcpy(q + 2 * register_lanes, &z, sizeof z);
+  }
+}
+
+// A vector of one to three components; those beyond the dimension are zero. Filled by reference in both arms:
+// a struct that comes through a branch goes through memory.
+template <class V, class Array>
+ILAW_KIT_INLINE void load_vector(axis<V>& to, const Array& a, std::int64_t i, V& found) {
+  if (a.rows == 3) {
+    V c[3];
+    load_rows(c, a.at + 3 * i, found);
+    to.x = c[0];
+    to.y = c[1];
+    to.z = c[2];
+  } else if (a.count == 3) {
+    to.x = load<V>(a.at + i);
+    to.y = load<V>(a.at + a.component + i);
+    to.z = load<V>(a.at + 2 * a.component + i);
+    found = found * to.x * to.y * to.z;
+  } else {
+    to.z = 0.0;
+    if (a.rows) {
+      V c[2];
+      load_rows(c, a.at + 2 * i, found);
+      to.x = c[0];
+      to.y = c[1];
+    } else {
+      to.x = load<V>(a.at + i);
+      to.y = 0.0;
+      if (a.count > 1) to.y = load<V>(a.at + a.component + i);
+      found = found * to.x * to.y;
+    }
+  }
+}
+template <class V, class Array>
+ILAW_KIT_INLINE void store_vector(axis<V> a, const Array& to, std::int64_t i) {
+  if (to.rows == 3) {
+    const V c[3] = {a.x, a.y, a.z};
+    store_rows(c, to.at + 3 * i);
+  } else if (to.rows == 2) {
+    const V c[2] = {a.x, a.y};
+    store_rows(c, to.at + 2 * i);
+  } else {
+    store(a.x, to.at + i);
+    if (to.count > 1) store(a.y, to.at + to.component + i);
+    if (to.count > 2) store(a.z, to.at + 2 * to.component + i);
+  }
+}
+
+// N numbers that a law remembers: entry e of the host's state is numbers[e].
+template <int N, class V, class Array>
+ILAW_KIT_INLINE void load_numbers(V (&to)[N], const Array& a, std::int64_t i) {
+  if constexpr (N == 2 || N == 3 || N == 4) {
+    if (a.rows) {
+      V unused = 0.0;
+      load_rows(to, a.at + N * i, unused);
+      return;
+    }
+  }
+#pragma GCC unroll 16
+  for (int c = 0; c < N; ++c) to[c] = load<V>(a.at + c * a.component + i);
+}
+template <int N, class V, class Array>
+ILAW_KIT_INLINE void store_numbers(const V (&a)[N], const Array& to, std::int64_t i) {
+  if constexpr (N == 2 || N == 3 || N == 4) {
+    if (to.rows) return store_rows(a, to.at + N * i);
+  }
+#pragma GCC unroll 16
+  for (int c = 0; c < N; ++c) store(a[c], to.at + c * to.component + i);
+}
+
+}  // namespace ilaw::kit::detail

@@ -1,0 +1,366 @@
+// solver_kernel.hpp - the loop for laws whose equations need a solver at some nodes. By blocks: every node is
+// asked for its problem, and packs without one are stored at once; the problems are packed and solved side by
+// side; then packs with answers are loaded again and finished. So a node without a problem costs what it
+// costs in any other law, and no lane waits for a node that has nothing to solve.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/kernel.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// ---- some lanes of a register, packed, and back
+
+#if defined(__AVX512F__)
+ILAW_KIT_INLINE void put_packed(one v, unsigned lanes, double* to) {
+  _mm512_storeu_pd(to, _mm512_maskz_compress_pd(static_cast<__mmask8>(lanes), (__m512d)v));
+}
+ILAW_KIT_INLINE one get_packed(const double* from, unsigned lanes) {
+  return (one)_mm512_maskz_expand_pd(static_cast<__mmask8>(lanes), _mm512_loadu_pd(from));
+}
+#elif defined(__AVX2__)
+// For each set of lanes, where the lanes come from.
+struct lane_moves {
+  alignas(32) int packed[16][8], spread[16][8];
+  constexpr lane_moves() : packed{}, spread{} {
+    for (int bits = 0; bits < 16; ++bits)
+      for (int k = 0, at = 0; k < 4; ++k)
+        if (bits >> k & 1) {
+          for (int h = 0; h < 2; ++h) {
+            packed[bits][2 * at + h] = 2 * k + h;
+            spread[bits][2 * k + h] = 2 * at + h;
+          }
+          ++at;
+        }
+  }
+};
+inline constexpr lane_moves moves;
+ILAW_KIT_INLINE one moved(one v, const int* from) {
+  return (one)_mm256_permutevar8x32_ps((__m256)v, _mm256_load_si256((const __m256i*)from));
+}
+ILAW_KIT_INLINE void put_packed(one v, unsigned lanes, double* to) {
+  put_one(moved(v, moves.packed[lanes]), to);
+}
+ILAW_KIT_INLINE one get_packed(const double* from, unsigned lanes) {
+  one v;
+  __builtin_memcpy(&v, from, sizeof v);
+  return zeroed(mask_of_bits(lanes), moved(v, moves.spread[lanes]));
+}
+#else
+ILAW_KIT_INLINE void put_packed(one v, unsigned lanes, double* to) {
+  for (int k = 0; k < register_lanes; ++k)
+    if (lanes >> k & 1) *to++ = v[k];
+}
+ILAW_KIT_INLINE one get_packed(const double* from, unsigned lanes) {
+  one v{};
+  for (int k = 0; k < register_lanes; ++k)
+    if (lanes >> k & 1) v[k] = *from++;
+  return v;
+}
+#endif
+template <int Registers>
+ILAW_KIT_INLINE void put_packed(const pack_of<Registers>& v, unsigned lanes, double* to) {
+  constexpr unsigned all = (1U << register_lanes) - 1;
+  for (int r = 0; r < Registers; ++r) {
+    const unsigned own = lanes >> (register_lanes * r) & all;
+    put_packed(v.v[r], own, to);
+    to += __builtin_popcount(own);
+  }
+}
+template <int Registers>
+ILAW_KIT_INLINE void get_packed(pack_of<Registers>& v, unsigned lanes, const double* from) {
+  constexpr unsigned all = (1U << register_lanes) - 1;
+  for (int r = 0; r < Registers; ++r) {
+    const unsigned own = lanes >> (register_lanes * r) & all;
+    v.v[r] = get_packed(from, own);
+    from += __builtin_popcount(own);
+  }
+}
+ILAW_KIT_INLINE void put_packed(double v, unsigned /*lanes*/, double* to) { *to = v; }
+ILAW_KIT_INLINE void get_packed(double& v, unsigned lanes, const double* from) { v = lanes ? *from : 0.0; }
+
+// ---- the problems of a block
+
+inline constexpr int problem_block = 128;  // nodes
+
+using solver_pack = pack_of<2>;
+
+template <class Struct, class V>
+inline constexpr int numbers_in_struct = static_cast<int>(sizeof(Struct) / sizeof(V));
+
+// Number by number: of all at once compilers make a loop over bytes.
+template <class V, class Struct>
+ILAW_KIT_INLINE char* place_in(Struct& s, int k) {
+  return reinterpret_cast<char*>(&s) + static_cast<std::size_t>(k) * sizeof(V);
+}
+
+// What is left to do of a pack: the answers to its problems, all of it by the careful kernel, or nothing.
+enum class pack_state : char { open, careful, stored };
+
+// Where a loop is: in which of its two passes, at which pack of the block, and at which of the problems.
+struct pass {
+  bool finishing = false;
+  int k = 0, first = 0;
+};
+
+template <class Law>
+struct open_problems {
+  using solver = law_on_t<Law, solver_pack>;
+  static constexpr int room = problem_block + solver_pack::size,
+                       problems = numbers_in_struct<typename solver::problem, solver_pack>,
+                       answers = numbers_in_struct<typename solver::answer, solver_pack>;
+  static_assert(problems == numbers_in_struct<typename law_on_t<Law, double>::problem, double> &&
+                    answers == numbers_in_struct<typename law_on_t<Law, double>::answer, double>,
+                "the members of problem and answer must all be of type V");
+
+  alignas(64) double problem[problems][room], answer[answers][room];
+  alignas(64) double parameter[parameter_count<Law>][room];  // those that vary from node to node
+  std::uint64_t varying = 0;                                 // which: a bit each
+  unsigned open[problem_block];                              // by pack: lanes with a problem
+  pack_state state[problem_block];
+  int count = 0;
+
+  // In full packs; the last is filled up with its first problem. Returns how many the scalar fallback took.
+  [[gnu::noinline, gnu::flatten]] int solve(const Law& given, const step_sizes& step) {
+    int by_fallback = 0;
+    solver law = broadcast<solver_pack>(given);
+    auto prepared = kit::prepared(law, step);
+    for (int first = 0; first < count; first += solver_pack::size) {
+      const int filled = count - first < solver_pack::size ? count - first : solver_pack::size;
+      if (varying) {
+        take_parameters(law, first, filled);
+        const auto own = kit::prepared(law, step);
+        __builtin_memcpy(static_cast<void*>(&prepared), &own, sizeof own);
+      }
+      typename solver::problem p;
+      typename solver::answer a;
+      for (int c = 0; c < problems; ++c) {
+        for (int k = filled; k < solver_pack::size; ++k) problem[c][first + k] = problem[c][first];
+        __builtin_memcpy(place_in<solver_pack>(p, c), problem[c] + first, sizeof(solver_pack));
+      }
+      for (int c = 0; c < answers; ++c) __builtin_memset(place_in<solver_pack>(a, c), 0, sizeof(solver_pack));
+      const mask_of<solver_pack> left = solve_one(law, p, a, prepared);
+      for (int c = 0; c < answers; ++c)
+        __builtin_memcpy(answer[c] + first, place_in<solver_pack>(a, c), sizeof(solver_pack));
+      if (const unsigned lanes = mask_bits(left)) [[unlikely]]
+        for (int k = 0; k < filled; ++k)
+          if (lanes >> k & 1) {
+            solve_scalar(given, step, first + k);
+            ++by_fallback;
+          }
+    }
+    return by_fallback;
+  }
+
+ private:
+  template <class Prepared>
+  static mask_of<solver_pack> solve_one(const solver& law, const typename solver::problem& p,
+                                        typename solver::answer& a, const Prepared& prepared) {
+    if constexpr (requires { law.solve(p, a, prepared); })
+      return law.solve(p, a, prepared);
+    else
+      return law.solve(p, a);
+  }
+  void take_parameters(solver& law, int first, int filled) {
+    for (int c = 0; c < parameter_count<Law>; ++c)
+      if (varying >> c & 1) {
+        for (int k = filled; k < solver_pack::size; ++k) parameter[c][first + k] = parameter[c][first];
+        __builtin_memcpy(&solver::parameters[c].member.varying_in(law), parameter[c] + first,
+                         sizeof(solver_pack));
+      }
+  }
+  [[gnu::noinline]] void solve_scalar(const Law& given, const step_sizes& step, int k) {
+    using scalar = law_on_t<Law, double>;
+    scalar law = given;
+    for (int c = 0; c < parameter_count<Law>; ++c)
+      if (varying >> c & 1) scalar::parameters[c].member.set(law, parameter[c][k]);
+    typename scalar::problem p;
+    typename scalar::answer a{};
+    for (int c = 0; c < problems; ++c)
+      __builtin_memcpy(place_in<double>(p, c), problem[c] + k, sizeof(double));
+    const auto prepared = kit::prepared(law, step);
+    if constexpr (requires { law.solve_scalar(p, a, prepared); })
+      law.solve_scalar(p, a, prepared);
+    else
+      law.solve_scalar(p, a);
+    for (int c = 0; c < answers; ++c) __builtin_memcpy(answer[c] + k, place_in<double>(a, c), sizeof(double));
+  }
+};
+
+// Where it is asked rarely: once per form of H, whatever the host's numbers and frame.
+template <class Wide, class Node>
+[[gnu::noinline]] auto ask_apart(const Wide& law, Node& node, typename Wide::problem& open) {
+  return law.ask(node, open);
+}
+
+// ---- the loop
+
+template <class Law, class V, class Number, template <class> class Frame, template <class> class Delassus,
+          bool Remembers = has_state<Law>>
+struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
+  using base = kernel<Law, V, Number, Frame, Delassus, Remembers>;
+  using base::careful;
+  using base::width;
+  using typename base::checks_type;
+  using typename base::limit;
+  using typename base::loaded;
+  using typename base::mask;
+  using typename base::node_type;
+  using typename base::view_type;
+  using typename base::Wide;
+  using careful_kernel = solver_kernel<Law, V, copied, Frame, Delassus, Remembers>;
+  using problem = typename Wide::problem;
+  using answer = typename Wide::answer;
+  using problems_type = open_problems<Law>;
+  static constexpr unsigned all_of_pack = (1U << width) - 1;
+
+  ILAW_KIT_INLINE static void keep(const Wide& law, const problem& p, unsigned open, problems_type& all) {
+    if (!open) return;
+    if (all.varying) [[unlikely]]
+      for (int c = 0; c < parameter_count<Law>; ++c)
+        if (all.varying >> c & 1)
+          put_packed(Wide::parameters[c].member.varying_in(law), open, all.parameter[c] + all.count);
+#pragma GCC unroll 64
+    for (int c = 0; c < problems_type::problems; ++c)
+      put_packed(reinterpret_cast<const V*>(&p)[c], open, all.problem[c] + all.count);
+    all.count += __builtin_popcount(open);
+  }
+
+  // One pack, asked for its problems or, where finishing, with the answers to them. False: it has a bad node.
+  ILAW_KIT_INLINE static bool run_pack(const Wide& law, const prepared_t<Wide>& prepared, const view_type& b,
+                                       std::int64_t i, checks_type c, problems_type& all, const pass& at,
+                                       tally& found, limit& limits, std::int64_t node) {
+    loaded p = base::load_pack(prepared, b, i, c, at.finishing && !careful);
+    base::take_state(p.node, b, i, c);
+    const mask bad_input = c.bad(), nodes = base::nodes_of(b);
+    if constexpr (!careful)
+      if (any(bad_input)) [[unlikely]]
+        return false;
+    node_type closed = as_it_came(p.node);
+    problem own;
+    kit::asked<V> asked{mask_from<V>(0U), status::free};
+    if (!at.finishing || all.open[at.k] != all_of_pack) {
+      if constexpr (careful)
+        asked = ask_apart(law, closed, own);
+      else
+        asked = law.ask(closed, own);
+    }
+    status_of<V> status = asked.status;
+    if (at.finishing) {
+      const unsigned open = all.open[at.k];
+      answer a;
+#pragma GCC unroll 64
+      for (int k = 0; k < problems_type::answers; ++k)
+        get_packed(reinterpret_cast<V*>(&a)[k], open, all.answer[k] + at.first);
+      const status_of<V> finished = law.finish(p.node, a);
+      const mask is_open = mask_from<V>(open);
+      choose(p.node, closed, is_open);
+      status = select(is_open, finished, status);
+    } else {
+      const unsigned open = mask_bits(asked.open & nodes & !bad_input);
+      all.open[at.k] = open;
+      all.state[at.k] = careful ? pack_state::careful : pack_state::open;
+      if (careful || open) {
+        keep(law, own, open, all);
+        return true;
+      }
+      choose(p.node, closed, mask_from<V>(0));
+    }
+    base::check_result(p.node, b, c);
+    const mask bad = c.bad();
+    if constexpr (!careful) {
+      if (any(bad)) [[unlikely]] {
+        all.state[at.k] = pack_state::careful;
+        return !at.finishing;
+      }
+      all.state[at.k] = pack_state::stored;
+    }
+    base::store_pack(law, p, b, i, status, !bad);
+    base::add_limit(limits, law, p.node, b, nodes & !bad);
+    if constexpr (careful) base::add_bad(found, c, nodes, node);
+    return true;
+  }
+  // Member by member: for a copy of the whole compilers keep both in memory.
+  ILAW_KIT_INLINE static node_type as_it_came(const node_type& n) {
+    return {.time = n.time,
+            .velocity_step = n.velocity_step,
+            .position_step = n.position_step,
+            .per_position_step = n.per_position_step,
+            .wants_energy = n.wants_energy,
+            .prepared = n.prepared,
+            .v_free = n.v_free,
+            .v_previous = n.v_previous,
+            .delassus = n.delassus,
+            .gap = n.gap,
+            .area = n.area,
+            .earlier = n.earlier,
+            .history = n.history,
+            .state = n.state,
+            .refused = n.refused};
+  }
+  ILAW_KIT_INLINE static void choose(node_type& a, const node_type& b, mask first) {
+    a.impulse = select(first, a.impulse, b.impulse);
+#pragma GCC unroll 32
+    for (int k = 0; k < base::states; ++k) {
+      V& x = number_in<V>(a.state, k);
+      x = select(first, x, number_in<V>(b.state, k));
+    }
+    a.stored = select(first, a.stored, b.stored);
+    a.normal_gain = select(first, a.normal_gain, b.normal_gain);
+    a.tangential_gain = select(first, a.tangential_gain, b.tangential_gain);
+    a.rupture = select(first, a.rupture, b.rupture);
+    for (int k = 0; k < amount_count<Law>; ++k) a.amounts[k] = select(first, a.amounts[k], b.amounts[k]);
+    a.refused = select(first, a.refused, b.refused);
+  }
+
+  [[gnu::noinline, gnu::cold, gnu::flatten]] static void run_copy(const Law& given, const view_type& b,
+                                                                  std::int64_t node, problems_type& all,
+                                                                  const pass& at, tally& found,
+                                                                  limit& limits) {
+    Wide law = broadcast<V>(given);
+    checks_type c;
+    if (b.varying) c.require(take_parameters(law, given, b, 0), reason_parameter);
+    const auto prepared = kit::prepared(law, b.step);
+    run_pack(law, prepared, b, 0, c, all, at, found, limits, node);
+  }
+  [[gnu::noinline, gnu::cold]] static void run_carefully(const Law& given, const view_type& b, std::int64_t i,
+                                                         problems_type& all, const pass& at, tally& found,
+                                                         limit& limits) {
+    const pack_copy copy(b, i, width);
+    careful_kernel::run_copy(given, copy.pack, i, all, at, found, limits);
+    if (at.finishing) copy.give_back(b);
+  }
+
+  [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& whole, tally& found) {
+    const Law& given = *static_cast<const Law*>(opaque);
+    const view_type b = whole;
+    Wide law = broadcast<V>(given);
+    auto prepared = kit::prepared(law, b.step);
+    limit limits = base::limit_of(given, b);
+    problems_type all;
+    for (int c = 0; c < parameter_count<Law>; ++c)
+      if (b.varies(c)) all.varying |= std::uint64_t{1} << c;
+    const int is_special = b.varying + b.in_memory;
+    for (std::int64_t start = 0; start < b.count; start += problem_block) {
+      const std::int64_t end = b.count - start < problem_block ? b.count : start + problem_block;
+      all.count = 0;
+      for (pass at{};; at = {.finishing = true}) {
+        for (std::int64_t i = start; i < end; i += width, ++at.k) {
+          if (at.finishing && all.state[at.k] == pack_state::stored) continue;
+          bool is_usual = i + width <= end && !(at.finishing && all.state[at.k] == pack_state::careful);
+          if (is_special && is_usual) [[unlikely]]
+            is_usual = base::get_ready(law, prepared, given, b, i);
+          if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), all, at, found, limits, i))
+              [[unlikely]]
+            run_carefully(given, b, i, all, at, found, limits);
+          if (at.finishing) at.first += __builtin_popcount(all.open[at.k]);
+        }
+        if (at.finishing) break;
+        if (all.count > 0) found.by_scalar_fallback += all.solve(given, b.step);
+      }
+    }
+    base::give_limit(limits, given, found);
+  }
+};
+
+}  // namespace ilaw::kit::detail

@@ -1,0 +1,227 @@
+// view.hpp - what a loop over packs works on: the host's arrays where they are rows or columns, copies of
+// short blocks elsewhere (lists of nodes, other strides).
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/load_store.hpp>
+#include <ilaw/kit/detail/parameters.hpp>
+#include <ilaw/kit/law.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+inline constexpr int most_parameters = 32, most_amounts = 8, most_states = 24;
+
+// Where the tangents of nodes in the host's axes come from.
+enum class tangents { of_plane, given, carried, chosen };
+
+// What all nodes of a view share.
+struct view_options {
+  std::int64_t count;
+  step_sizes step;
+  double impulse_guard;  // an impulse times this must be finite: otherwise it overflows in the host's numbers
+  int dimension;
+  tangents tangents_from;
+  bool is_scalar;       // H
+  bool reads_previous;  // the law's motion does; else v_previous is there for energies alone, or absent
+  bool frame_follows;   // a carried frame follows the normal wherever the node is
+  bool varying;         // some parameter comes per node
+  bool in_memory;       // no cache holds the batch
+  bool moves;           // more than impulse and state is asked for
+  const table* tables;  // by the law's parameters, over fields that come per node; null: none
+};
+
+// In the place of a host's number type: a pack of nodes that was copied to columns of doubles.
+struct copied {};
+
+template <class Number>
+struct view : view_options {
+  static constexpr bool is_copy = std::is_same_v<Number, copied>;
+  using value = std::conditional_t<is_copy, double, Number>;
+  template <class T, int Count>
+  using array_of = std::conditional_t<is_copy, columns<T, Count>, array<T>>;
+
+  array_of<const value, 3> v_free, v_previous, normal, tangent;
+  array_of<const value, 6> delassus;
+  const value *gap, *gap_offset, *area;
+  const value* parameters[most_parameters];  // by the law's parameters; null: the same at all nodes
+  array_of<value, 3> impulse, velocity;
+  array_of<value, ILAW_ENERGY_COUNT> energy;
+  value* amounts[most_amounts];
+  std::uint8_t* status;
+  array_of<const double, most_states> state_in;
+  array_of<double, most_states> state_out;
+  array_of<const double, 6> frame_in;
+  array_of<double, 6> frame_out;
+  // Windows: what they sum up to, and codes of refusals; the impulse, and 1 or 0 for windows that take it in,
+  // and for those that are emptied before. Null: the law has none, or remembers nothing.
+  const double *earlier[3], *earlier_refused;
+  double *given[3], *adds, *clears;
+  // Free histories: of the node at position 0, and the nodes where they are listed.
+  double* history;
+  std::int64_t history_node_stride, history_component_stride;
+  const std::int64_t* nodes;
+
+  bool varies(int parameter) const { return parameters[parameter] || (tables && tables[parameter].per_node); }
+};
+
+// A pack of nodes as columns of doubles: for the last, unfilled pack and for packs with a bad node. Lanes
+// without a node are as the last one.
+class pack_copy {
+ public:
+  view<copied> pack;
+
+  template <class Number>
+  [[gnu::noinline, gnu::cold]] pack_copy(const view<Number>& b, std::int64_t i, int width)
+      : pack{}, first_(i), width_(width) {
+    static_cast<view_options&>(pack) = b;
+    pack.count = b.count - i < width ? b.count - i : width;
+    pack.is_scalar = false;
+    take(b.v_free, pack.v_free, v_free_);
+    take(b.v_previous, pack.v_previous, v_previous_);
+    take(b.normal, pack.normal, normal_);
+    take(b.tangent, pack.tangent, tangent_);
+    take(b.delassus, pack.delassus, delassus_);
+    if (b.is_scalar)
+      for (int k = 0; k < width; ++k) delassus_[1][k] = delassus_[0][k];
+    pack.gap = take(b.gap, gap_);
+    if (b.gap && b.gap_offset)
+      for (int k = 0; k < width; ++k) gap_[k] -= static_cast<double>(b.gap_offset[node(k)]);
+    pack.area = take(b.area, area_);
+    for (int p = 0; p < most_parameters; ++p) pack.parameters[p] = take(b.parameters[p], parameters_[p]);
+    if (b.impulse.at) pack.impulse.at = impulse_[0];
+    if (b.velocity.at) pack.velocity.at = velocity_[0];
+    if (b.energy.at) pack.energy.at = energy_[0];
+    for (int a = 0; a < most_amounts; ++a)
+      if (b.amounts[a]) pack.amounts[a] = amounts_[a];
+    if (b.status) pack.status = status_;
+    take(b.state_in, pack.state_in, state_in_);
+    pack.state_out.at = state_out_[0];
+    take(b.frame_in, pack.frame_in, frame_in_);
+    pack.frame_out.at = frame_out_[0];
+    for (int c = 0; c < 3; ++c) {
+      pack.earlier[c] = take(b.earlier[c], earlier_[c]);
+      pack.given[c] = given_[c];
+    }
+    pack.earlier_refused = take(b.earlier_refused, earlier_[3]);
+    pack.adds = given_[3];
+    pack.clears = given_[4];
+    pack.history = b.history + (b.nodes ? b.nodes[i] : i) * b.history_node_stride;
+    pack.history_component_stride = b.history_component_stride;
+  }
+  pack_copy(const pack_copy&) = delete;
+
+  // Outputs, to the view that it was copied from.
+  template <class Number>
+  [[gnu::noinline, gnu::cold]] void give_back(const view<Number>& b) const {
+    give(b.impulse, impulse_);
+    give(b.velocity, velocity_);
+    give(b.energy, energy_);
+    for (int a = 0; a < most_amounts; ++a) give(b.amounts[a], amounts_[a]);
+    give(b.status, status_);
+    give(b.state_out, state_out_);
+    give(b.frame_out, frame_out_);
+    for (int c = 0; c < 3; ++c) give(b.given[c], given_[c]);
+    give(b.adds, given_[3]);
+    give(b.clears, given_[4]);
+  }
+
+ private:
+  std::int64_t node(int lane) const { return first_ + (lane < pack.count ? lane : pack.count - 1); }
+  template <class Number>
+  const double* take(const Number* from, double* to) const {
+    if (!from) return nullptr;
+    for (int k = 0; k < width_; ++k) to[k] = static_cast<double>(from[node(k)]);
+    return to;
+  }
+  template <class Number, int Count>
+  void take(const array<Number>& from, columns<const double, Count>& to,
+            double (&copy)[Count][copy_lanes]) const {
+    if (!from.at) return;
+    to.at = copy[0];
+    for (int c = 0; c < Count; ++c)
+      for (int k = 0; k < width_; ++k)
+        copy[c][k] = c < from.count ? static_cast<double>(from.of(node(k), c)) : 0.0;
+  }
+  template <class Number, class From>
+  void give(Number* to, const From* from) const {
+    if (!to) return;
+    for (int k = 0; k < pack.count; ++k) to[first_ + k] = static_cast<Number>(from[k]);
+  }
+  template <class Number, int Count>
+  void give(const array<Number>& to, const double (&copy)[Count][copy_lanes]) const {
+    if (!to.at) return;
+    for (int c = 0; c < to.count; ++c)
+      for (int k = 0; k < pack.count; ++k) to.of(first_ + k, c) = static_cast<Number>(copy[c][k]);
+  }
+
+  const std::int64_t first_;
+  const int width_;
+  using column = double[copy_lanes];
+  alignas(64) column v_free_[3], v_previous_[3], normal_[3], tangent_[3], delassus_[6], gap_, area_;
+  alignas(64) column parameters_[most_parameters], earlier_[4], given_[5], state_in_[most_states];
+  alignas(64) column state_out_[most_states], frame_in_[6], frame_out_[6];
+  alignas(64) column impulse_[3], velocity_[3], energy_[ILAW_ENERGY_COUNT], amounts_[most_amounts];
+  std::uint8_t status_[copy_lanes];
+};
+
+// Reasons of bad nodes, in the order in which they are looked for; from first_of_state on, one per state
+// variable.
+enum reason : int {
+  no_reason,
+  reason_parameter,
+  reason_normal,
+  reason_tangent,
+  reason_v_free,
+  reason_delassus,
+  reason_gap,
+  reason_v_previous,
+  reason_area,
+  reason_frame,
+  reason_state,
+  reason_several_solutions,
+  reason_no_solution,
+  reason_impossible_state,
+  reason_time_before_history,
+  reason_not_a_number,
+  reason_overflow,
+  reason_pull,
+  reason_reach,
+  reason_of_first_variable = 32,
+};
+
+// What a walk found.
+struct tally {
+  std::int64_t bad_count = 0, first_bad_node = -1, by_scalar_fallback = 0;
+  int reason = no_reason;
+  double stable_velocity_step = infinity;
+};
+
+// Of doubles: floats lose by it. How many nodes ahead a loop asks for arrays that no cache holds, and from
+// how many nodes on; 32 to 128 are alike.
+inline constexpr int prefetch_distance = 64;
+inline constexpr std::int64_t prefetch_from = 16384;
+
+template <class Number>
+ILAW_KIT_INLINE void prefetch(const array<Number>& a, std::int64_t i, int nodes) {
+  constexpr int line = 64 / static_cast<int>(sizeof(Number));
+  if (!a.at) return;
+  if (a.rows) {
+    for (int k = 0; k < a.count * nodes; k += line) __builtin_prefetch(a.at + a.count * i + k);
+  } else {
+    for (int c = 0; c < a.count; ++c) __builtin_prefetch(a.at + c * a.component + i);
+  }
+}
+template <class Number>
+ILAW_KIT_INLINE void prefetch(const view<Number>& b, std::int64_t i, int nodes) {
+  prefetch(b.v_free, i, nodes);
+  prefetch(b.v_previous, i, nodes);
+  prefetch(b.normal, i, nodes);
+  prefetch(b.delassus, i, nodes);
+  if (b.gap) __builtin_prefetch(b.gap + i);
+  prefetch(b.impulse, i, nodes);
+  prefetch(b.velocity, i, nodes);
+  prefetch(b.state_in, i, nodes);
+  prefetch(b.state_out, i, nodes);
+}
+
+}  // namespace ilaw::kit::detail

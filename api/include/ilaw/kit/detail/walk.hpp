@@ -1,0 +1,550 @@
+// walk.hpp - a batch as views: all of it at once where its arrays are rows or columns, else blocks of nodes,
+// of which the other arrays are copied. Once per level and number type, not per law.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/view.hpp>
+#include <ilaw/kit/window.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// What the loops need to know of an instance, whatever its law.
+struct instance_base {
+  std::uint32_t dimension, delassus_form, frame, has_tangent, numbers;
+  std::uint32_t inputs, balance_inputs;
+  bool carries_frame, frame_follows;
+  bool asks = false;     // these parameters need the solver, where the law has a step beside it
+  window_size window{};  // duration 0: none
+  int states;            // numbers of struct state, and for each the entry of the host's state; -1: none
+  const int* state_entries;
+  std::int64_t history_offset, history_size, frame_offset;
+  std::uint64_t state_size;
+  std::uint32_t per_node_count;
+  int per_node_parameters[most_parameters];  // which of the law's
+  const table* node_tables = nullptr;        // by parameter: over fields that come per node; null: none
+  std::uint32_t amount_count;
+
+  bool is_transverse() const {
+    return delassus_form == ILAW_DELASSUS_SCALAR || delassus_form == ILAW_DELASSUS_TRANSVERSE;
+  }
+  int delassus_numbers() const {
+    const int d = static_cast<int>(dimension);
+    switch (delassus_form) {
+      case ILAW_DELASSUS_SCALAR:
+        return 1;
+      case ILAW_DELASSUS_TRANSVERSE:
+        return d == 1 ? 1 : 2;
+      case ILAW_DELASSUS_DIAGONAL:
+        return d;
+      default:
+        return d * (d + 1) / 2;
+    }
+  }
+};
+
+template <class Number, class Array>
+auto numbers_in(const Array& a) {
+  if constexpr (std::is_same_v<Number, float>)
+    return a.floats;
+  else
+    return a.values;
+}
+
+// The nodes of a part of a batch.
+inline constexpr int block_nodes = 128;  // at most
+struct node_range {
+  std::int64_t first, count;
+  bool listed;
+  std::int64_t where[block_nodes];
+
+  node_range(const ilaw_batch& b, std::int64_t start, std::int64_t n)
+      : first(start), count(n), listed(b.index || b.index64) {
+    if (b.index64)
+      for (std::int64_t i = 0; i < n; ++i) where[i] = b.index64[start + i] - b.index_base;
+    else if (b.index)
+      for (std::int64_t i = 0; i < n; ++i) where[i] = std::int64_t{b.index[start + i]} - b.index_base;
+  }
+  std::int64_t operator()(std::int64_t i) const { return listed ? where[i] : first + i; }
+};
+
+// Whether an array of so many components may stay where it is.
+template <class Array>
+bool stays(const Array& a, int components) {
+  return a.node_stride == 1 || (a.node_stride == components && a.component_stride == 1);
+}
+
+// ---- windows: read before the loop over a block, written after it
+
+struct window_block {
+  alignas(64) double earlier[3][block_nodes], refused[block_nodes];
+  alignas(64) double given[3][block_nodes], adds[block_nodes], clears[block_nodes];
+};
+// Of the node at position 0, and the nodes where they are listed.
+struct window_place {
+  double* first;
+  std::int64_t node_stride, component_stride, count;
+  const std::int64_t* nodes;
+
+  // Calls work with the windows of each pack of nodes; lanes without a node have that of the last one.
+  template <class Work>
+  ILAW_KIT_INLINE void for_packs(Work work) const {
+    constexpr int lanes = lanes_of<pack>;
+    for (std::int64_t i = 0; i < count; i += lanes) {
+      if (node_stride == 1 && !nodes && i + lanes <= count) {
+        work(i, window_columns<pack>{first + i, component_stride});
+      } else {
+        window_rows own;
+        own.stride = component_stride;
+        const std::int64_t last = count - 1 - i;
+#pragma GCC unroll 8
+        for (int lane = 0; lane < lanes; ++lane) {
+          const std::int64_t k = i + (lane < last ? lane : last);
+          own.first[lane] = first + (nodes ? nodes[k] : k) * node_stride;
+        }
+        work(i, own);
+      }
+    }
+  }
+};
+[[gnu::noinline, gnu::flatten]] inline void read_windows(const window& w, const window_place& place,
+                                                         window_block& block) {
+  place.for_packs([&](std::int64_t i, const auto& own) {
+    vector<pack> sum;
+    store(w.read(own, sum), block.refused + i);
+    store(sum.n, block.earlier[0] + i);
+    store(sum.t1, block.earlier[1] + i);
+    store(sum.t2, block.earlier[2] + i);
+  });
+}
+[[gnu::noinline, gnu::flatten]] inline void write_windows(const window& w, const window_place& place,
+                                                          window_block& block) {
+  for (std::int64_t i = place.count; i % lanes_of<pack> != 0; ++i) block.adds[i] = block.clears[i] = 0.0;
+  place.for_packs([&](std::int64_t i, const auto& own) {
+    const vector<pack> impulse{load<pack>(block.given[0] + i), load<pack>(block.given[1] + i),
+                               load<pack>(block.given[2] + i)};
+    w.write(own, load<pack>(block.clears + i) != 0.0, load<pack>(block.adds + i) != 0.0, impulse);
+  });
+}
+
+// ---- the walk
+
+template <class Number, bool HasWindow = false>
+class batch_walk {
+ public:
+  // Copies of 64 nodes stay in the first cache; windows cost more than them.
+  static constexpr std::int64_t block = HasWindow ? block_nodes : 64;
+  using run_function = void (*)(const void* law, const view<Number>&, tally&);
+
+  // state_scratch: block_nodes for each number of state_in, state_out and twice the frame.
+  batch_walk(const instance_base& made, const ilaw_batch& batch, double* state_scratch)
+      : made_(made), b_(batch), d_(static_cast<int>(made.dimension)), state_scratch_(state_scratch) {}
+
+  [[gnu::noinline]] tally run(run_function loop, const void* law) {
+    tally all;
+    if (made_.window.duration == 0.0 && all_stay()) {
+      run_part(node_range(b_, 0, b_.node_count), loop, law, all);
+    } else {
+      for (std::int64_t first = 0; first < b_.node_count; first += block) {
+        const std::int64_t left = b_.node_count - first;
+        run_part(node_range(b_, first, left < block ? left : block), loop, law, all);
+      }
+    }
+    return all;
+  }
+
+ private:
+  // ---- which arrays stay
+
+  template <class Array>
+  bool stays_or_absent(const Array& a, int components) const {
+    return !numbers_in<Number>(a) || stays(a, components);
+  }
+  bool delassus_stays() const {
+    if (!made_.is_transverse() && d_ < 3) return false;
+    return stays(b_.delassus, made_.delassus_numbers());
+  }
+  template <class Array>
+  bool state_stays(const Array& a) const {
+    if (made_.states == 0 && !made_.carries_frame) return true;
+    for (int k = 0; k < made_.states; ++k)
+      if (made_.state_entries[k] < 0) return false;
+    if (a.node_stride == 1) return true;
+    const bool is_short = made_.states == 2 || made_.states == 3 || made_.states == 4;
+    return is_short && made_.state_size == static_cast<std::uint64_t>(made_.states) &&
+           a.node_stride == made_.states && a.component_stride == 1;
+  }
+  bool all_stay() const {
+    bool stay = !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) &&
+                stays_or_absent(b_.v_free, d_) && stays_or_absent(b_.v_previous, d_) &&
+                stays_or_absent(b_.normal, d_) && stays_or_absent(b_.tangent, d_) && delassus_stays() &&
+                stays_or_absent(b_.gap, 1) && stays_or_absent(b_.gap_offset, 1) &&
+                stays_or_absent(b_.area, 1) && stays_or_absent(b_.impulse, d_) &&
+                stays_or_absent(b_.velocity, d_) && stays_or_absent(b_.energy, ILAW_ENERGY_COUNT) &&
+                state_stays(b_.state_in) && state_stays(b_.state_out);
+    for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
+      stay = stay && stays(b_.per_node_parameters[k], 1);
+    for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k)
+      stay = stay && stays_or_absent(b_.amounts[k], 1);
+    return stay;
+  }
+
+  // ---- copies of a block
+
+  template <class T, class From>
+  [[gnu::noinline]] static void gather_column(const From* values, std::int64_t stride, const node_range& n,
+                                              T* to) {
+    if (n.listed)
+      for (std::int64_t i = 0; i < n.count; ++i) to[i] = values[n.where[i] * stride];
+    else
+      for (std::int64_t i = 0; i < n.count; ++i) to[i] = values[(n.first + i) * stride];
+  }
+  template <class T>
+  [[gnu::noinline]] static void scatter_column(T* values, std::int64_t stride, const node_range& n,
+                                               const T* from) {
+    if (n.listed)
+      for (std::int64_t i = 0; i < n.count; ++i) values[n.where[i] * stride] = from[i];
+    else
+      for (std::int64_t i = 0; i < n.count; ++i) values[(n.first + i) * stride] = from[i];
+  }
+  // Rows of four numbers or more, four nodes by four numbers at a time; the last four may overlap the others.
+  using four = double __attribute__((vector_size(32)));
+  ILAW_KIT_INLINE static void transpose(four (&m)[4]) {
+    const four a = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6),
+               b = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7),
+               c = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6),
+               d = __builtin_shufflevector(m[2], m[3], 1, 5, 3, 7);
+    m[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    m[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    m[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    m[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+  }
+  [[gnu::noinline]] static void gather_rows(const double* values, std::int64_t stride, int count,
+                                            const node_range& n, double* to) {
+    std::int64_t i = 0;
+    for (; i + 4 <= n.count; i += 4) {
+      const double* const at[4] = {values + n(i) * stride, values + n(i + 1) * stride,
+                                   values + n(i + 2) * stride, values + n(i + 3) * stride};
+      for (int c = 0; c < count; c += 4) {
+        const int first = c + 4 <= count ? c : count - 4;
+        four m[4];
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(&m[k], at[k] + first, sizeof(four));
+        transpose(m);
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(to + (first + k) * block_nodes + i, &m[k], sizeof(four));
+      }
+    }
+    for (; i < n.count; ++i)
+      for (int c = 0; c < count; ++c) to[c * block_nodes + i] = values[n(i) * stride + c];
+  }
+  [[gnu::noinline]] static void scatter_rows(double* values, std::int64_t stride, int count,
+                                             const node_range& n, const double* from) {
+    std::int64_t i = 0;
+    for (; i + 4 <= n.count; i += 4) {
+      double* const at[4] = {values + n(i) * stride, values + n(i + 1) * stride, values + n(i + 2) * stride,
+                             values + n(i + 3) * stride};
+      for (int c = 0; c < count; c += 4) {
+        const int first = c + 4 <= count ? c : count - 4;
+        four m[4];
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k)
+          __builtin_memcpy(&m[k], from + (first + k) * block_nodes + i, sizeof(four));
+        transpose(m);
+#pragma GCC unroll 4
+        for (int k = 0; k < 4; ++k) __builtin_memcpy(at[k] + first, &m[k], sizeof(four));
+      }
+    }
+    for (; i < n.count; ++i)
+      for (int c = 0; c < count; ++c) values[n(i) * stride + c] = from[c * block_nodes + i];
+  }
+  // Whether the law's numbers are rows in the host's order.
+  template <class Array>
+  bool has_rows(const Array& a) const {
+    bool are_in_order = made_.states >= 4 && a.component_stride == 1;
+    for (int k = 0; k < made_.states; ++k) are_in_order = are_in_order && made_.state_entries[k] == k;
+    return are_in_order;
+  }
+  // Components that lie in other lines of memory: node by node.
+  template <class T>
+  [[gnu::noinline]] static void gather_three(const T* values, std::int64_t stride, std::int64_t component,
+                                             const node_range& n, T* to) {
+    for (std::int64_t i = 0; i < n.count; ++i) {
+      const T* const at = values + n(i) * stride;
+      to[i] = at[0];
+      to[block_nodes + i] = at[component];
+      to[2 * block_nodes + i] = at[2 * component];
+    }
+  }
+  template <class T>
+  [[gnu::noinline]] static void scatter_three(T* values, std::int64_t stride, std::int64_t component,
+                                              const node_range& n, const T* from) {
+    for (std::int64_t i = 0; i < n.count; ++i) {
+      T* const at = values + n(i) * stride;
+      at[0] = from[i];
+      at[component] = from[block_nodes + i];
+      at[2 * component] = from[2 * block_nodes + i];
+    }
+  }
+  template <class T>
+  static void prefetch_block(const T* values, std::int64_t stride, std::int64_t component,
+                             const node_range& n) {
+    if (n.listed || component != 1 || stride > 8) return;
+    for (std::int64_t k = 0; k < block * stride; k += 64 / static_cast<int>(sizeof(T)))
+      __builtin_prefetch(values + (n.first + block) * stride + k);
+  }
+
+  array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* copy) const {
+    const Number* const values = numbers_in<Number>(a);
+    if (!values) return {};
+    if (!n.listed && stays(a, components))
+      return {values + n.first * a.node_stride, a.component_stride, components,
+              a.node_stride != 1 ? components : 0};
+    prefetch_block(values, a.node_stride, a.component_stride, n);
+    if (components == 3)
+      gather_three(values, a.node_stride, a.component_stride, n, copy);
+    else
+      for (int c = 0; c < components; ++c)
+        gather_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
+    return {copy, block_nodes, components, 0};
+  }
+  const Number* gather_scalar(const ilaw_input& a, const node_range& n, Number* copy) const {
+    return gather(a, 1, n, copy).at;
+  }
+  // Full in the order of three dimensions, padded so that it stays positive definite.
+  array<const Number> gather_delassus(const node_range& n) {
+    const int numbers = made_.delassus_numbers();
+    if (made_.is_transverse() || d_ == 3) return gather(b_.delassus, numbers, n, s_.delassus);
+    const Number* const values = numbers_in<Number>(b_.delassus);
+    const auto take = [&](int from, int to) {
+      gather_column(values + from * b_.delassus.component_stride, b_.delassus.node_stride, n,
+                    s_.delassus + to * block_nodes);
+    };
+    take(0, 0);
+    take(d_ > 1 ? 1 : 0, 1);
+    take(d_ > 1 ? 1 : 0, 2);  // or it would pass for anisotropic
+    for (int k = 3 * block_nodes; k < 6 * block_nodes; ++k) s_.delassus[k] = 0;
+    if (numbers == 3) take(2, 3);
+    return {s_.delassus, block_nodes, 6, 0};
+  }
+  array<Number> aim(const ilaw_output& a, int components, const node_range& n, Number* copy) const {
+    Number* const values = numbers_in<Number>(a);
+    if (!values) return {};
+    if (!n.listed && stays(a, components))
+      return {values + n.first * a.node_stride, a.component_stride, components,
+              a.node_stride != 1 ? components : 0};
+    return {copy, block_nodes, components, 0};
+  }
+  void scatter(const ilaw_output& a, const array<Number>& aimed, const node_range& n,
+               const Number* copy) const {
+    if (aimed.at != copy) return;
+    Number* const values = numbers_in<Number>(a);
+    prefetch_block(values, a.node_stride, a.component_stride, n);
+    if (aimed.count == 3) return scatter_three(values, a.node_stride, a.component_stride, n, copy);
+    for (int c = 0; c < aimed.count; ++c)
+      scatter_column(values + c * a.component_stride, a.node_stride, n, copy + c * block_nodes);
+  }
+
+  // ---- state
+
+  void open_state(view<Number>& v, const node_range& n) {
+    if (made_.state_size == 0) return;
+    copy_unnamed(n);
+    double* const in = state_scratch_;
+    double* const out = in + made_.states * block_nodes;
+    const ilaw_input& from = b_.state_in;
+    if (!n.listed && state_stays(from)) {
+      v.state_in = {from.values + n.first * from.node_stride, from.component_stride, made_.states,
+                    from.node_stride != 1 ? made_.states : 0};
+    } else if (has_rows(from)) {
+      gather_rows(from.values, from.node_stride, made_.states, n, in);
+      v.state_in = {in, block_nodes, made_.states, 0};
+    } else {
+      for (int k = 0; k < made_.states; ++k) {
+        const int entry = made_.state_entries[k];
+        double* const to = in + k * block_nodes;
+        if (entry >= 0)
+          gather_column(from.values + entry * from.component_stride, from.node_stride, n, to);
+        else
+          for (std::int64_t i = 0; i < n.count; ++i) to[i] = 0.0;
+      }
+      v.state_in = {in, block_nodes, made_.states, 0};
+    }
+    const ilaw_output& to = b_.state_out;
+    if (!n.listed && state_stays(to))
+      v.state_out = {to.values + n.first * to.node_stride, to.component_stride, made_.states,
+                     to.node_stride != 1 ? made_.states : 0};
+    else
+      v.state_out = {out, block_nodes, made_.states, 0};
+    open_frame(v, n, out + made_.states * block_nodes);
+    v.history =
+        to.values + made_.history_offset * to.component_stride + (n.listed ? 0 : n.first * to.node_stride);
+    v.history_node_stride = to.node_stride;
+    v.history_component_stride = to.component_stride;
+    v.nodes = n.listed ? n.where : nullptr;
+  }
+  void open_frame(view<Number>& v, const node_range& n, double* copy) {
+    if (!made_.carries_frame) return;
+    const std::int64_t at = made_.frame_offset;
+    const ilaw_input& in = b_.state_in;
+    const ilaw_output& out = b_.state_out;
+    if (!n.listed && in.node_stride == 1) {
+      v.frame_in = {in.values + at * in.component_stride + n.first, in.component_stride, 6, 0};
+    } else {
+      for (int k = 0; k < 6; ++k)
+        gather_column(in.values + (at + k) * in.component_stride, in.node_stride, n, copy + k * block_nodes);
+      v.frame_in = {copy, block_nodes, 6, 0};
+    }
+    if (!n.listed && out.node_stride == 1)
+      v.frame_out = {out.values + at * out.component_stride + n.first, out.component_stride, 6, 0};
+    else
+      v.frame_out = {copy + 6 * block_nodes, block_nodes, 6, 0};
+  }
+  // A history is worked on in state_out, which therefore starts as state_in.
+  void copy_unnamed(const node_range& n) const {
+    const ilaw_input& in = b_.state_in;
+    const ilaw_output& out = b_.state_out;
+    if (in.values == out.values || made_.history_size == 0) return;
+    for (std::int64_t i = 0; i < n.count; ++i)
+      for (std::int64_t c = made_.history_offset; c < made_.history_offset + made_.history_size; ++c)
+        out.values[n(i) * out.node_stride + c * out.component_stride] =
+            in.values[n(i) * in.node_stride + c * in.component_stride];
+  }
+  void close_state(const view<Number>& v, const node_range& n) const {
+    if (made_.state_size == 0) return;
+    const ilaw_output& to = b_.state_out;
+    const double* const out = state_scratch_ + made_.states * block_nodes;
+    if (v.state_out.at == out && has_rows(to))
+      scatter_rows(to.values, to.node_stride, made_.states, n, out);
+    else if (v.state_out.at == out)
+      for (int k = 0; k < made_.states; ++k)
+        if (const int entry = made_.state_entries[k]; entry >= 0)
+          scatter_column(to.values + entry * to.component_stride, to.node_stride, n, out + k * block_nodes);
+    const double* const frame = out + made_.states * block_nodes + 6 * block_nodes;
+    if (made_.carries_frame && v.frame_out.at == frame)
+      for (int k = 0; k < 6; k += 3)
+        scatter_three(to.values + (made_.frame_offset + k) * to.component_stride, to.node_stride,
+                      to.component_stride, n, frame + k * block_nodes);
+  }
+
+  void run_with_windows(view<Number>& v, run_function loop, const void* law, tally& found) {
+    const window w(made_.window, {b_.time + 0.5 * b_.position_step, b_.velocity_step});
+    const window_place place{v.history, v.history_node_stride, v.history_component_stride, v.count, v.nodes};
+    window_block windows;
+    for (int c = 0; c < 3; ++c) {
+      v.earlier[c] = windows.earlier[c];
+      v.given[c] = windows.given[c];
+    }
+    v.earlier_refused = windows.refused;
+    v.adds = windows.adds;
+    v.clears = windows.clears;
+    read_windows(w, place, windows);
+    loop(law, v, found);
+    write_windows(w, place, windows);
+  }
+
+  // ---- a part of the batch
+
+  // Whether energy or an amount is asked for.
+  bool wants_balance() const {
+    if (numbers_in<Number>(b_.energy)) return true;
+    for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k)
+      if (numbers_in<Number>(b_.amounts[k])) return true;
+    return false;
+  }
+  void open_inputs(view<Number>& v, const node_range& n) {
+    v.v_free = gather(b_.v_free, d_, n, s_.v_free);
+    v.reads_previous = made_.inputs & ILAW_INPUT_V_PREVIOUS;
+    if (v.reads_previous || wants_balance()) v.v_previous = gather(b_.v_previous, d_, n, s_.v_previous);
+    if (made_.frame == ILAW_FRAME_GLOBAL) v.normal = gather(b_.normal, d_, n, s_.normal);
+    if (made_.inputs & ILAW_INPUT_TANGENT) v.tangent = gather(b_.tangent, d_, n, s_.tangent);
+    v.delassus = gather_delassus(n);
+    if (made_.inputs & ILAW_INPUT_GAP) {
+      v.gap = gather_scalar(b_.gap, n, s_.gap);
+      v.gap_offset = gather_scalar(b_.gap_offset, n, s_.gap_offset);
+    }
+    if (made_.inputs & ILAW_INPUT_AREA) v.area = gather_scalar(b_.area, n, s_.area);
+    for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
+      v.parameters[made_.per_node_parameters[k]] =
+          gather_scalar(b_.per_node_parameters[k], n, s_.parameters[k]);
+  }
+  void open_outputs(view<Number>& v, const node_range& n) {
+    v.impulse = aim(b_.impulse, d_, n, s_.impulse);
+    v.velocity = aim(b_.velocity, d_, n, s_.velocity);
+    v.energy = aim(b_.energy, ILAW_ENERGY_COUNT, n, s_.energy);
+    if (b_.status) v.status = status_stays(n) ? b_.status + n.first : s_.status;
+    v.moves = v.velocity.at || v.energy.at || v.status;
+    for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k) {
+      v.amounts[k] = aim(b_.amounts[k], 1, n, s_.amounts[k]).at;
+      v.moves = v.moves || v.amounts[k];
+    }
+  }
+  bool status_stays(const node_range& n) const { return !n.listed && b_.status_stride == 1; }
+  tangents tangents_from() const {
+    if (d_ < 3) return tangents::of_plane;
+    if (made_.has_tangent) return tangents::given;
+    return made_.carries_frame ? tangents::carried : tangents::chosen;
+  }
+
+  void run_part(const node_range& n, run_function loop, const void* law, tally& all) {
+    view<Number> v{};
+    v.count = n.count;
+    v.step = {b_.time, b_.velocity_step, b_.position_step, 1.0 / b_.position_step};
+    v.impulse_guard = std::is_same_v<Number, float> ? 0x1p898 : 4.0;
+    v.dimension = d_;
+    v.tangents_from = tangents_from();
+    v.is_scalar = made_.delassus_numbers() == 1;
+    v.frame_follows = made_.frame_follows;
+    v.varying = made_.per_node_count > 0;
+    v.tables = made_.node_tables;
+    v.in_memory = std::is_same_v<Number, double> && n.count >= prefetch_from;
+    open_inputs(v, n);
+    open_outputs(v, n);
+    open_state(v, n);
+    tally found;
+    if constexpr (HasWindow) {
+      if (made_.window.duration > 0.0)
+        run_with_windows(v, loop, law, found);
+      else
+        loop(law, v, found);
+    } else {
+      loop(law, v, found);
+    }
+    add(all, found, n);
+    scatter(b_.impulse, v.impulse, n, s_.impulse);
+    scatter(b_.velocity, v.velocity, n, s_.velocity);
+    scatter(b_.energy, v.energy, n, s_.energy);
+    if (v.status == s_.status)
+      for (std::int64_t i = 0; i < n.count; ++i) b_.status[n(i) * b_.status_stride] = s_.status[i];
+    for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k)
+      if (v.amounts[k] == s_.amounts[k]) scatter(b_.amounts[k], {v.amounts[k], 0, 1, 0}, n, s_.amounts[k]);
+    close_state(v, n);
+  }
+  static void add(tally& all, const tally& found, const node_range& n) {
+    all.by_scalar_fallback += found.by_scalar_fallback;
+    all.stable_velocity_step = smaller(found.stable_velocity_step, all.stable_velocity_step);
+    if (found.bad_count == 0) return;
+    if (all.bad_count == 0) {
+      all.first_bad_node = n(found.first_bad_node);
+      all.reason = found.reason;
+    }
+    all.bad_count += found.bad_count;
+  }
+
+  struct alignas(64) scratch {
+    Number v_free[3 * block_nodes], v_previous[3 * block_nodes], normal[3 * block_nodes],
+        tangent[3 * block_nodes];
+    Number delassus[6 * block_nodes], gap[block_nodes], gap_offset[block_nodes], area[block_nodes];
+    Number parameters[most_parameters][block_nodes];
+    Number impulse[3 * block_nodes], velocity[3 * block_nodes], energy[ILAW_ENERGY_COUNT * block_nodes];
+    Number amounts[most_amounts][block_nodes];
+    std::uint8_t status[block_nodes];
+  };
+
+  const instance_base& made_;
+  const ilaw_batch& b_;
+  const int d_;
+  double* const state_scratch_;
+  scratch s_;
+};
+
+}  // namespace ilaw::kit::detail

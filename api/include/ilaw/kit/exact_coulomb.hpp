@@ -1,0 +1,316 @@
+// exact_coulomb.hpp - contact with Coulomb friction at one node for any symmetric positive definite H,
+// exactly:
+//
+//   v = q + H r,  0 <= v_N _|_ r_N >= 0,  |(r_1/mu_1, r_2/mu_2)| <= r_N,  r_T dissipates at most.
+//
+// The derivation, and which solution is given where there are several, is in docs/theory/local_coulomb.md.
+// Only + - * / and square roots: the same bits on every processor. No allocation, no state; any thread.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/regular_coulomb.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+using local_coulomb = local_problem<double>;
+
+// none: the contact is pressed, an axis of infinite friction would have to hold it by a pull (r = 0 then).
+enum class contact_mode { free, stick, slip, none };
+
+namespace local {
+
+// Coefficients below this part of the larger one, or of 1, act as zero: their impulse is no ulp of anything.
+inline constexpr double negligible = 0x1p-400;
+
+// Sliding in the eigenvectors of the condensed tangential block, where the tangential impulse is -sign_i p_i
+// with
+//   p_i = c_i/(s_i + alpha),  v_T = -alpha r_T,  r_N = n - w_1 p_1 - w_2 p_2,  |p| = m r_N.
+// s_1 <= s_2, c_i >= 0, n > 0.
+struct sliding {
+  double s1, s2, c1, c2, w1, w2, n, m;
+
+  // The state at one multiplier: impulses p, their length and direction, and need = |p|/m + w.p, the normal
+  // impulse without tangential motion that would make this multiplier the right one: the root is need = n.
+  struct state {
+    double p1, p2, length, u1, u2, need, scale;
+  };
+  state at(double alpha) const {
+    const double p1 = c1 / (s1 + alpha), p2 = c2 / (s2 + alpha), l = length(p1, p2);
+    const double inverse = l > 0.0 ? 1.0 / l : 0.0, cone = l / m, a = w1 * p1, b = w2 * p2;
+    return {p1, p2, l, p1 * inverse, p2 * inverse, cone + a + b, cone + absolute(a) + absolute(b) + n};
+  }
+  bool fits(const state& x) const { return x.need <= n; }
+
+  // Newton's step for 1/need = 1/n, which is linear in alpha where s_1 = s_2.
+  double step(double alpha, const state& x) const {
+    const double ratio = (s1 + alpha) / (s2 + alpha);
+    const double slope = x.p1 * (x.u1 / m + w1) + ratio * x.p2 * (x.u2 / m + w2);
+    return (s1 + alpha) * (x.need / slope) * ((x.need - n) / n);
+  }
+
+  // need - n as a function G of y = p_2/p_1, up to positive factors, has G''' < 0: signs of G'' and G'.
+  bool convex(double alpha) const {
+    const state x = at(alpha);
+    return x.u1 * x.u1 * x.u1 * x.p2 * (s2 - s1) > 2.0 * c1 * (x.u2 + m * w2);
+  }
+  bool rising(double alpha) const {
+    const state x = at(alpha);
+    return (s2 - s1) * ((x.u2 / m + w2) * x.p2 - n) > x.need * (s1 + alpha);
+  }
+};
+
+// Where a property ends that holds at low and not at high.
+template <class Holds>
+double end_of(double low, double high, Holds holds) {
+  for (double x = halfway(low, high); x > low && x < high; x = halfway(low, high))
+    (holds(x) ? low : high) = x;
+  return low;
+}
+
+struct bracket {
+  double low, high;
+};
+
+// The smallest root alone: G is positive at low, negative at high, convex up to one inflection and concave
+// after.
+inline bracket first_root(const sliding& f, double high) {
+  // Cauchy-Schwarz on the slope: weak coupling leaves one root.
+  const double a = smaller(f.w1, 0.0), b = smaller(f.w2, 0.0);
+  if (f.m * f.m * (f.s2 * a * a + f.s1 * b * b) < f.s1) return {0.0, high};
+  if (!f.convex(0.0) || f.convex(high)) return {0.0, high};
+  const double inflection = end_of(0.0, high, [&f](double x) { return f.convex(x); });
+  if (f.fits(f.at(inflection))) return {0.0, inflection};
+  if (f.rising(0.0) || !f.rising(inflection)) return {inflection, high};
+  const double lowest = end_of(0.0, inflection, [&f](double x) { return !f.rising(x); });
+  return f.fits(f.at(lowest)) ? bracket{0.0, lowest} : bracket{inflection, high};
+}
+
+// The multiplier: Newton within the bracket, which shrinks at every step; bisection should that take long.
+inline double multiplier(const sliding& f) {
+  constexpr double rounding = 0x1p-52, largest = 0x1p1000;
+  constexpr int newton_steps = 16, all_steps = newton_steps + 64;
+  const double pull = length(f.c1, f.c2) / f.m + f.c1 * absolute(f.w1) + f.c2 * absolute(f.w2);
+  auto [low, high] = first_root(f, smaller(pull / f.n, largest));
+  double alpha = low;
+  for (int k = 0; k < all_steps; ++k) {
+    const sliding::state x = f.at(alpha);
+    if (absolute(x.need - f.n) <= rounding * x.scale) break;
+    (f.fits(x) ? high : low) = alpha;
+    const double newton = alpha + f.step(alpha, x), middle = halfway(low, high);
+    const bool good = k < newton_steps && newton > low && newton < high;
+    const double next = good ? newton : middle;
+    if (!(absolute(next - alpha) > 0.5 * rounding * alpha)) break;
+    alpha = next;
+  }
+  return alpha;
+}
+
+// A contact whose two coefficients are finite or whose axis is decoupled; q_N < 0. Symmetric matrix in parts.
+struct contact {
+  double nn, n1, n2, t11, t22, t12, qn, q1, q2;
+};
+
+// Takes the first tangential axis out: it moves no more (v_1 = 0). Elimination, stable as H is definite.
+inline contact hold_first(const contact& a) {
+  const double k = a.n1 / a.t11, l = a.t12 / a.t11;
+  return {.nn = a.nn - k * a.n1,
+          .n1 = 0.0,
+          .n2 = a.n2 - k * a.t12,
+          .t11 = a.t11,
+          .t22 = a.t22 - l * a.t12,
+          .t12 = 0.0,
+          .qn = a.qn - k * a.q1,
+          .q1 = 0.0,
+          .q2 = a.q2 - l * a.q1};
+}
+// Takes it out: it gives no impulse.
+inline contact drop_first(contact a) {
+  a.n1 = a.t12 = a.q1 = 0.0;
+  return a;
+}
+inline contact exchanged(const contact& a) {
+  return {a.nn, a.n2, a.n1, a.t22, a.t11, a.t12, a.qn, a.q2, a.q1};
+}
+
+struct pair {
+  double x, y;
+};
+
+// What rounding must leave of a positive number, so that nothing becomes singular.
+inline constexpr double definite = 0x1p-60;
+
+// Eigenvectors (cosine, -sine) and (sine, cosine) of a symmetric matrix, s1 <= s2: Jacobi's rotation, in the
+// form that keeps the digits of the small eigenvalue.
+struct eigenvectors {
+  double cosine, sine, s1, s2;
+
+  eigenvectors(double s11, double s22, double s12) {
+    const double zeta = (s22 - s11) / (2.0 * s12);
+    const double tangent = (zeta >= 0.0 ? 1.0 : -1.0) / (absolute(zeta) + square_root(1.0 + zeta * zeta));
+    const double t = s12 == 0.0 ? 0.0 : tangent, c = 1.0 / square_root(1.0 + t * t);
+    const double first = s11 - t * s12, second = s22 + t * s12;
+    const bool ordered = first <= second;
+    cosine = ordered ? c : t * c;
+    sine = ordered ? t * c : -c;
+    s2 = larger(first, second);
+    s1 = larger(smaller(first, second), definite * smaller(s11, s22));
+  }
+  pair to(pair a) const { return {cosine * a.x - sine * a.y, sine * a.x + cosine * a.y}; }
+  pair from(pair a) const { return {cosine * a.x + sine * a.y, cosine * a.y - sine * a.x}; }
+};
+
+// a x + b y + c z + d as in twice the precision (Ogita, Rump, Oishi 2005; products after Dekker 1971).
+struct accurate_sum {
+  double high = 0.0, low = 0.0;
+
+  void add(double a) {
+    const double sum = high + a, part = sum - high;
+    low += (high - (sum - part)) + (a - part);
+    high = sum;
+  }
+  void add_product(double a, double b) {
+    constexpr double splitter = 0x1p27 + 1.0;
+    const double as = splitter * a, bs = splitter * b, product = a * b;
+    const double ah = as - (as - a), bh = bs - (bs - b), al = a - ah, bl = b - bh;
+    add(product);
+    low += ((ah * bh - product) + ah * bl + al * bh) + al * bl;
+  }
+  double value() const { return high + low; }
+};
+inline double row(double q, double a, double x, double b, double y, double c, double z) {
+  accurate_sum sum;
+  sum.add(q);
+  sum.add_product(a, x);
+  sum.add_product(b, y);
+  sum.add_product(c, z);
+  return sum.value();
+}
+
+// A contact with finite coefficients on a circular cone |rho| <= m r_N, its normal row condensed: r_i = d_i
+// rho_i, and the slip that dissipates most has d_i v_i opposite to rho_i.
+class cone_contact {
+ public:
+  cone_contact(const contact& a, double mu1, double mu2)
+      : a_(a),
+        m_(larger(mu1, mu2)),
+        d_{mu1 / m_, mu2 / m_},
+        w_{d_.x * a.n1 / a.nn, d_.y * a.n2 / a.nn},
+        n_(-a.qn / a.nn),
+        axes_(condensed(d_.x * d_.x * a.t11, w_.x * (d_.x * a.n1)),
+              condensed(d_.y * d_.y * a.t22, w_.y * (d_.y * a.n2)),
+              d_.x * d_.y * a.t12 - w_.x * (d_.y * a.n2)) {}
+
+  contact_mode solve(double* r) const {
+    const pair c = axes_.to({d_.x * (a_.q1 + a_.n1 * n_), d_.y * (a_.q2 + a_.n2 * n_)}), w = axes_.to(w_);
+    const pair sign{c.x > 0.0 ? -1.0 : 1.0, c.y > 0.0 ? -1.0 : 1.0};
+    const sliding f{axes_.s1, axes_.s2, absolute(c.x), absolute(c.y), sign.x * w.x, sign.y * w.y, n_, m_};
+    sliding::state x = f.at(0.0);
+    const bool sticks = f.fits(x);
+    if (!sticks && !(n_ > 0.0)) return contact_mode::none;  // happens beside a held axis only
+    const double alpha = sticks ? 0.0 : multiplier(f);
+    if (!sticks) x = f.at(alpha);
+    give(r, {sign.x * x.p1, sign.y * x.p2}, sticks);
+    if (largest(r) > amplified) refine(r, w, alpha, sticks);
+    return sticks ? contact_mode::stick : contact_mode::slip;
+  }
+
+ private:
+  // Scaled H and q are below 4: an impulse above this cancels most of what it does, and rounding shows.
+  static constexpr double amplified = 4.0;
+  static double condensed(double full, double normal_part) {
+    return larger(full - normal_part, definite * full);
+  }
+  static double largest(const double* r) {
+    return larger(absolute(r[0]), larger(absolute(r[1]), absolute(r[2])));
+  }
+
+  // Impulse from its tangential part in the eigenvectors. It is in the cone also after rounding.
+  void give(double* r, pair p, bool sticks) const {
+    const pair rho = axes_.from(p);
+    const double held = n_ - (w_.x * rho.x + w_.y * rho.y), cone = length(rho.x, rho.y) / m_;
+    r[0] = sticks ? larger(held, cone) : cone;
+    r[1] = d_.x * rho.x;
+    r[2] = d_.y * rho.y;
+  }
+
+  // One Newton step on the three rows and the cone, from their residual in twice the precision.
+  void refine(double* r, pair w, double alpha, bool sticks) const {
+    const pair rho{r[1] / d_.x, r[2] / d_.y};
+    const double vn = row(a_.qn, a_.nn, r[0], a_.n1, r[1], a_.n2, r[2]);
+    const double v1 = row(a_.q1, a_.n1, r[0], a_.t11, r[1], a_.t12, r[2]);
+    const double v2 = row(a_.q2, a_.n2, r[0], a_.t12, r[1], a_.t22, r[2]);
+    const pair e = axes_.to({d_.x * v1 + alpha * rho.x - w_.x * vn, d_.y * v2 + alpha * rho.y - w_.y * vn});
+    const pair p = axes_.to(rho), g{1.0 / (axes_.s1 + alpha), 1.0 / (axes_.s2 + alpha)};
+    const pair fixed{-g.x * e.x, -g.y * e.y},
+        moving{-g.x * p.x, -g.y * p.y};  // change: fixed + moving d(alpha)
+    const double cone = m_ * length(rho.x, rho.y), excess = vn / a_.nn;
+    const pair k{p.x / cone + w.x, p.y / cone + w.y};
+    const double change = -(excess + k.x * fixed.x + k.y * fixed.y) / (k.x * moving.x + k.y * moving.y);
+    const double by = sticks || !is_finite(change) ? 0.0 : change;
+    const pair dp{fixed.x + moving.x * by, fixed.y + moving.y * by}, drho = axes_.from(dp);
+    const pair better{rho.x + drho.x, rho.y + drho.y};
+    const double limit = length(better.x, better.y) / m_, held = r[0] - (excess + w.x * dp.x + w.y * dp.y);
+    r[0] = sticks ? larger(held, limit) : limit;
+    r[1] = d_.x * better.x;
+    r[2] = d_.y * better.y;
+  }
+
+  contact a_;
+  double m_;
+  pair d_, w_;
+  double n_;
+  eigenvectors axes_;
+};
+
+// Any coefficients. A held axis is eliminated and its impulse recovered; an axis without friction gives none.
+inline contact_mode solve_axes(const contact& a, double mu1, double mu2, double* r) {
+  if (mu1 == infinity) {
+    const contact_mode mode = solve_axes(hold_first(a), 0.0, mu2, r);
+    if (!(r[0] > 0.0)) return contact_mode::none;
+    r[1] = -(a.q1 + a.n1 * r[0] + a.t12 * r[2]) / a.t11;
+    return mode;
+  }
+  if (mu2 == infinity || mu1 < mu2 * negligible) {  // its turn to be the first axis
+    const contact_mode mode = solve_axes(exchanged(a), mu2, mu1, r);
+    const double first = r[2];
+    r[2] = r[1];
+    r[1] = first;
+    return mode;
+  }
+  if (mu1 < negligible) {
+    r[0] = -a.qn / a.nn;
+    r[1] = r[2] = 0.0;
+    const bool moves = absolute(a.q1 + a.n1 * r[0]) + absolute(a.q2 + a.n2 * r[0]) > 0.0;
+    return moves ? contact_mode::slip : contact_mode::stick;
+  }
+  if (mu2 < mu1 * negligible) return cone_contact(exchanged(drop_first(exchanged(a))), mu1, mu1).solve(r);
+  return cone_contact(a, mu1, mu2).solve(r);
+}
+
+}  // namespace local
+
+// Any problem with q_N < 0. Not inlined: it is rarely needed.
+[[gnu::noinline]] inline contact_mode solve_pressed(const local_coulomb& problem, double* r) {
+  const double *h = problem.h, *q = problem.q;
+  const auto mass = power_scale_of(larger(h[0], larger(h[1], h[2])));
+  const auto speed = power_scale_of(larger(absolute(q[0]), larger(absolute(q[1]), absolute(q[2]))));
+  const double a = mass.down, b = speed.down;
+  const local::contact scaled{a * h[0], a * h[3], a * h[4], a * h[1], a * h[2],
+                              a * h[5], b * q[0], b * q[1], b * q[2]};
+  const contact_mode mode = local::solve_axes(scaled, problem.mu[0], problem.mu[1], r);
+  for (int k = 0; k < 3; ++k) r[k] = mode == contact_mode::none ? 0.0 : r[k] * (0.5 * mass.down * speed.up);
+  return mode;
+}
+
+// Solves the problem; r = 0 where the contact is free, or where no solution exists. Every problem with finite
+// coefficients has one.
+inline contact_mode solve(const local_coulomb& problem, double* r) {
+  r[0] = r[1] = r[2] = 0.0;
+  if (problem.q[0] >= 0.0) return contact_mode::free;
+  const local::regular_answer<double> answer = solve_regular(problem);
+  if (!answer.found) return solve_pressed(problem, r);
+  for (int k = 0; k < 3; ++k) r[k] = answer.r[k];
+  return answer.sticks ? contact_mode::stick : contact_mode::slip;
+}
+
+}  // namespace ilaw::kit

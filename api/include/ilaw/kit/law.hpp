@@ -1,0 +1,245 @@
+// law.hpp - how a law describes itself, and every name that it may define.
+//
+// A law is one struct template on its number type V (pack.hpp). Its members are its parameters, each with an
+// entry of parameters[]: V may vary from node to node and in time, double is the same at all nodes and fixed
+// at create.
+//
+// clang-format off
+//   is    card, references, parameters       what it is called, serves and reads
+//         state, state_variables             named memory (state.hpp)
+//         history                            a memory of any number of doubles
+//         amounts                            scalars that it gives per node and step: heat, wear
+//   does  step(node)                         its equations in closed form; returns the status
+//         problem, answer                    where a solver is needed, structs whose members are V, for the step
+//                                            in parts:
+//         ask(node, problem)                 what a node leaves to the solver, and its status as if nothing were
+//         solve(problem, answer, prepared)   in full packs; returns the lanes left to solve_scalar
+//         solve_scalar(problem, answer, prepared)   the same for a double
+//         finish(node, answer)               the status with the answer
+//         asks(), asks(bool is_transverse)   whether these parameters need the solver, where step and ask both
+//                                            serve a node
+//         remembers()                        whether these parameters need the state; step is then called with
+//                                            nodes of both kinds (has_memory)
+//         prepare(step_sizes)                numbers that all nodes of a batch share; node.prepared
+//         initialise(node)                   first state (default: zeros)
+//         conflict()                         why parameters do not go together, or null
+//         inputs(), capabilities(), permissions()   with these parameters (default: the card's)
+//         tells_tangents_apart()             whether these parameters need a tangent per node in the host's axes
+//         stable_velocity_step(node)         the largest stable step; or of (h_N, h_T), where it falls with both
+//                                            and depends on nothing else; or both, the second NaN where the
+//                                            first is meant
+//         history_size(), record(node, own)  the doubles of a free history, and how a step writes them; or
+//         window(), adds_to_window(status), clears_window(status)   those of a window (window.hpp)
+//         extension(name)                    see ilaw_law
+// clang-format on
+//
+// step, ask and finish are const templates on the node (node.hpp); solve and solve_scalar may be static and
+// go without prepared; all others are called with V = double. A law gives no other option: what can be
+// switched stands in its card.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/ilaw.h>
+#include <ilaw/kit/pack.hpp>
+
+#include <cstddef>
+#include <iterator>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+inline constexpr std::uint32_t reads_gap = ILAW_INPUT_GAP, reads_v_previous = ILAW_INPUT_V_PREVIOUS,
+                               reads_area = ILAW_INPUT_AREA;
+inline constexpr std::uint32_t can_adhere = ILAW_CAN_ADHERE, can_store_energy = ILAW_CAN_STORE_ENERGY;
+inline constexpr std::uint32_t may_skip_fresh = ILAW_MAY_SKIP_FRESH, may_skip_free = ILAW_MAY_SKIP_FREE;
+inline constexpr std::uint32_t all_dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3;
+inline constexpr std::uint32_t all_delassus_forms =
+    ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL | ILAW_DELASSUS_TRANSVERSE;
+
+struct law_card {
+  const char* id;
+  const char* title;
+  const char* doc;
+  std::uint32_t dimensions = all_dimensions;
+  std::uint32_t delassus_forms = all_delassus_forms;
+  std::uint32_t inputs = reads_gap;
+  std::uint32_t capabilities = 0;
+  std::uint32_t permissions = 0;    // promises to a host, see ilaw.h
+  std::uint32_t state_version = 1;  // raised with every change of what a state means
+  // No step or ask without tells_tangents_apart() names t1 or t2, and no vector is remembered: then nodes in
+  // the host's axes need no tangent.
+  bool is_isotropic = false;
+  // It gives all that rupture dissipates as node.rupture: what else a step that breaks dissipates is friction
+  // and impact.
+  bool gives_rupture = false;
+};
+
+// A list of texts of static storage.
+struct texts {
+  const char* const* values = nullptr;
+  std::uint32_t count = 0;
+
+  constexpr texts() = default;
+  template <std::size_t N>
+  constexpr texts(const char* const (&list)[N]) : values(list), count(N) {}
+};
+inline constexpr const char* over_time[] = {"time"};
+
+// The number type of a law that is a template on it.
+template <class Law>
+struct number_of_law;
+template <template <class> class Law, class V>
+struct number_of_law<Law<V>> {
+  using type = V;
+};
+
+// The member that holds a parameter.
+template <class Law>
+class parameter_member {
+  using number = typename number_of_law<Law>::type;
+  struct none {};
+
+ public:
+  constexpr parameter_member() = default;
+  constexpr parameter_member(number Law::*member) : varying_(member) {}
+  constexpr parameter_member(std::conditional_t<std::is_same_v<number, double>, none, double Law::*> member)
+      : fixed_(member) {}
+
+  constexpr bool is_given() const { return varying_ || fixed_; }
+  constexpr bool may_vary() const { return varying_; }  // not known where V is double
+  constexpr bool operator==(const parameter_member&) const = default;
+  template <class Either>  // Law, or const Law
+  ILAW_KIT_INLINE auto& varying_in(Either& law) const {
+    return law.*varying_;
+  }
+  ILAW_KIT_INLINE void set(Law& law, double value) const {
+    if (varying_)
+      law.*varying_ = value;
+    else
+      law.*fixed_ = value;
+  }
+  ILAW_KIT_INLINE double get(const Law& law) const requires std::is_same_v<number, double> {
+    return law.*varying_;
+  }
+
+ private:
+  number Law::*varying_ = nullptr;
+  double Law::*fixed_ = nullptr;
+};
+
+template <class Law>
+struct parameter {
+  parameter_member<Law> member;
+  const char* name;
+  const char* symbol = "";
+  const char* unit = "1";
+  const char* doc = "";
+  double default_value = 0.0;
+  double minimum = 0.0;
+  double maximum = std::numeric_limits<double>::max();
+  bool required = false;
+  bool minimum_excluded = false;
+  bool infinity_allowed = false;
+  bool whole = false;
+  bool is_field = false;   // of the host's model, such as a temperature
+  texts choices = {};      // a choice: the member is double and holds the index
+  texts axes = over_time;  // over which a V may be a table
+
+  // Copies that differ in one thing.
+  constexpr parameter with_doc(const char* text) const {
+    parameter copy = *this;
+    copy.doc = text;
+    return copy;
+  }
+  constexpr parameter with_default(double value) const {
+    parameter copy = *this;
+    copy.default_value = value;
+    return copy;
+  }
+  constexpr parameter as_required() const {
+    parameter copy = *this;
+    copy.required = true;
+    return copy;
+  }
+};
+
+// A scalar of a node and step; see ilaw_amount.
+struct amount_card {
+  const char* name;
+  const char* unit = "1";
+  const char* doc = "";
+};
+
+// The steps of a batch, the same at all its nodes.
+struct step_sizes {
+  double time, velocity_step, position_step, per_position_step;
+};
+
+// ---- questions about a law, L<V>
+
+template <class Law>
+concept has_state = requires {
+  typename Law::state;
+};
+template <class Law>
+concept has_history = requires {
+  Law::history;
+};
+template <class Law>
+concept has_window = requires(const Law& law) {
+  law.window();
+};
+template <class Law>
+concept has_amounts = requires {
+  Law::amounts;
+};
+
+struct stateless {};
+namespace detail {
+template <class Law>
+struct state_of {
+  using type = stateless;
+};
+template <has_state Law>
+struct state_of<Law> {
+  using type = typename Law::state;
+};
+}  // namespace detail
+template <class Law>
+using state_t = typename detail::state_of<Law>::type;
+
+// Numbers in struct state; a vector has three, a tangential one two.
+template <class Law>
+inline constexpr int state_numbers =
+    has_state<Law> ? static_cast<int>(sizeof(state_t<Law>) / sizeof(typename number_of_law<Law>::type)) : 0;
+template <class Law>
+ILAW_KIT_INLINE bool remembers(const Law& law) {
+  if constexpr (requires { law.remembers(); })
+    return law.remembers();
+  else
+    return has_state<Law>;
+}
+template <class Law>
+inline constexpr int amount_count = [] {
+  if constexpr (has_amounts<Law>) return static_cast<int>(std::size(Law::amounts));
+  return 0;
+}();
+template <class Law>
+inline constexpr int parameter_count = static_cast<int>(std::size(Law::parameters));
+
+struct unprepared {};
+template <class Law>
+ILAW_KIT_INLINE auto prepared(const Law& law, const step_sizes& step) {
+  if constexpr (requires { law.prepare(step); })
+    return law.prepare(step);
+  else
+    return unprepared{};
+}
+template <class Law>
+using prepared_t = decltype(prepared(std::declval<const Law&>(), std::declval<const step_sizes&>()));
+
+template <class Law>
+inline constexpr bool reads(std::uint32_t input) {
+  return (Law::card.inputs & input) != 0;
+}
+
+}  // namespace ilaw::kit

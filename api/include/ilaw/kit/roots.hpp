@@ -1,0 +1,115 @@
+// roots.hpp - roots of functions of one number, in all lanes side by side.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/math.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL {
+
+// A function at one place x. The equation x = g(x) has value = size (x - g(x)), with any size > 0; its slope
+// is rise/run, an estimate or, where it is exact, the derivative.
+template <class V>
+struct root_trial {
+  V value, size, rise, run;
+  mask_of<V> is_exact;
+};
+
+// Where f, not positive at low >= 0 and not negative at high, changes sign, in the lanes where active; others
+// keep x. Newton's steps where the slope is exact, else secants after the first (Dekker 1969); the fixed
+// point where these leave the bracket; bisection after most_steps of them. The last place that f is called at
+// is the result, in all lanes, so what f keeps of it may be used. A jump across zero is found as well.
+template <class V, class Function>
+ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f) {
+  constexpr int most_steps = 24, most_bisections = 80;
+  constexpr double rounding = 0x1p-50, close = 0x1p-64;  // close: of the product of the last two errors
+  V before = x, value_before = 0.0;
+  for (int k = 0;; ++k) {
+    const root_trial<V> t = f(x);
+    active = active & (absolute(t.value) > rounding * (absolute(x) * t.size));
+    if (!any(active) || k == most_steps + most_bisections) return x;
+    low = select(active & (t.value < 0.0), x, low);
+    high = select(active & (t.value >= 0.0), x, high);
+    V rise = t.rise, run = t.run;
+    if (k > 0) {
+      rise = select(t.is_exact, rise, t.value - value_before);
+      run = select(t.is_exact, run, x - before);
+    }
+    const V along = x - t.value * run / rise;
+    const mask_of<V> inside = (along > low) & (along < high);
+    V next = along;
+    if (any(!inside)) next = select(inside, along, smaller(larger(x - t.value / t.size, low), high));
+    if (k >= most_steps) [[unlikely]]
+      next = halfway(low, high);
+    const V step = absolute(next - x);
+    const V last = k == 0 ? step : select(t.is_exact, step, absolute(x - before));
+    mask_of<V> moves = step * last > close * (x * x);
+    if (k >= most_steps) [[unlikely]]
+      moves = (next > low) & (next < high);
+    before = select(active, x, before);
+    value_before = select(active, t.value, value_before);
+    x = select(active, next, x);
+    active = active & moves;
+  }
+}
+
+// The largest part of [0, 1] at which `holds` is true, as it is at 0 where active, and false at 1: bisection
+// to neighbouring numbers. 0 in other lanes.
+template <class V, class Predicate>
+ILAW_KIT_INLINE V last_part(mask_of<V> active, Predicate holds) {
+  V low = 0.0, high = 1.0, middle = 0.5;
+  for (; any(active); active = active & (middle > low) & (middle < high)) {
+    const mask_of<V> is_so = holds(middle);
+    low = select(active & is_so, middle, low);
+    high = select(active & !is_so, middle, high);
+    middle = 0.5 * (low + high);
+  }
+  return low;
+}
+
+// Whether f, positive at both ends of [low, high] and with one minimum between them, is anywhere not: golden
+// section (Kiefer 1953), to 1e-6 of the interval.
+template <class Function>
+bool dips(double low, double high, Function f) {
+  constexpr double golden = 0.6180339887498949;
+  double a = high - golden * (high - low), b = low + golden * (high - low), fa = f(a), fb = f(b);
+  for (int k = 0; k < 28 && fa > 0.0 && fb > 0.0; ++k)
+    if (fa < fb) {
+      high = b;
+      b = a;
+      fb = fa;
+      a = high - golden * (high - low);
+      fa = f(a);
+    } else {
+      low = a;
+      a = b;
+      fa = fb;
+      b = low + golden * (high - low);
+      fb = f(b);
+    }
+  return !(fa > 0.0 && fb > 0.0);
+}
+
+// Whether f, positive at 0 and negative at 1, changes sign more than once. Two changes between samples show
+// as an extremum towards zero. More samples near 0, the scale of stiff directions.
+template <class Function>
+bool changes_sign_again(Function f) {
+  constexpr int samples = 32;
+  double x[3] = {}, y[3] = {infinity, infinity, infinity};  // the last three samples
+  int changes = 0;
+  for (int k = 1; k <= samples; ++k) {
+    const double part = static_cast<double>(k) / samples;
+    x[0] = x[1];
+    x[1] = x[2];
+    x[2] = part * part * part;
+    y[0] = y[1];
+    y[1] = y[2];
+    y[2] = f(x[2]);
+    const double sign = y[1] > 0.0 ? 1.0 : -1.0;
+    if (!(sign * y[2] > 0.0) && ++changes > 1) return true;
+    const bool turns = sign * y[0] >= sign * y[1] && sign * y[1] <= sign * y[2];
+    if (turns && dips(x[0], x[2], [&](double p) { return sign * f(p); })) return true;
+  }
+  return false;
+}
+
+}  // namespace ilaw::kit

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Draws the gallery of the shipped scenes, docs/img/gallery.png, and the first scene of docs/scenes.md.
+
+    host_mock/demo.sh && docs/make_gallery.py build/release/demo [PROGRAM]
+
+The folder has the results of the demo. PROGRAM (build/release/bin/ilaw) runs the scene of the page. Needs matplotlib.
+"""
+# SPDX-License-Identifier: BSD-3-Clause
+
+import csv
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+DOCS = Path(__file__).resolve().parent
+COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7"]
+plt.rcParams.update({"font.size": 8, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
+                     "grid.color": "#e4e4e4", "grid.linewidth": 0.6, "axes.axisbelow": True, "lines.linewidth": 1.2})
+
+# Scene: abscissa, label of it, label of the ordinate, curves as column or (column, legend).
+SCENES = {
+    "bouncing_ball": ("time", "time", "height", [("n0.gap", "e = 0"), ("n1.gap", "e = 0.5"), ("n2.gap", "e = 1")]),
+    "oblique_impact": ("n0.u0", "distance", "height", ["n0.gap"]),
+    "sliding_block": ("time", "time", "speed", ["n0.v0"]),
+    "sliding_block_3d": ("n0.u0", "x", "y", ["n0.u1"]),
+    "impact_oscillator": ("time", "time", "gap to the stop", ["n0.gap"]),
+    "stick_slip": ("time", "time", "position", ["n0.u0"]),
+    "spinning_wheel": ("time", "time", "velocity", [("n0.v0", "along"), ("n0.v1", "up")]),
+    "rolling_wheel": ("time", "time", "force on the wheel", [("wheel.F0", "pull"), ("wheel.F1", "load")]),
+    "landing_gear": ("time", "time", "force of the floor", ["floor.F0"]),
+    "rotating_spring": ("n0.u0", "x", "y", ["n0.u1"]),
+    "penalty_bounce": ("time", "time", "height", [("n0.gap", "spring"), ("n1.gap", "with damper")]),
+    "template_law": ("time", "time", "speed", [("n0.v0", "c = 1"), ("n1.v0", "c = 10"), ("n2.v0", "c = 100")]),
+    "postit_test1": ("time", "time", "adhesion", ["n0.adhesion"]),
+    "postit_test2": ("time", "time", "adhesion", ["n0.adhesion"]),
+    "postit_test3": ("time", "time", "adhesion", ["n0.adhesion"]),
+    "tie_rupture": ("time", "time", "gap", ["n0.gap"]),
+    "cohesive_pull": ("n0.opening", "opening", "damage", ["n0.damage"]),
+    "bar_on_wall": ("time", "time", "gap of the end", ["n0.gap"]),
+    "bouncing_bar": ("time", "time", "gap of the end", ["n0.gap"]),
+    "held_rod": ("time", "time", "gap of the end", ["n0.gap"]),
+    "two_bars": ("time", "time", "velocity of the ends", [("n100.v0", "left"), ("n101.v0", "right")]),
+    "glued_bar": ("time", "time", "displacement of the end", ["n0.u0"]),
+    "mixed_mode_bar": ("time", "time", "damage", ["n0.damage"]),
+    "dcb_peel": ("time", "time", "damage along the bond", [("n80.damage", "first"), ("n60.damage", "later")]),
+    "postit_3d": ("time", "time", "gap of the strip", [("n82.gap", "free end"), ("n92.gap", "at the tab")]),
+    "block_impact": ("time", "time", "velocity of a corner", [("n0.v0", "x"), ("n0.v2", "z")]),
+    "two_blocks": ("time", "time", "gap of a node", [("n405.gap", "edge"), ("n440.gap", "middle")]),
+    "seal": ("time", "time", "displacement of the seal", [("n21.u0", "x"), ("n21.u2", "z")]),
+}
+
+
+def columns_of(file):
+    with open(file) as rows:
+        table = list(csv.reader(rows))
+    return {name: [float(row[k]) if row[k] else float("nan") for row in table[1:]]
+            for k, name in enumerate(table[0])}
+
+
+def thinned(values, most=1500):
+    return values[:: max(1, len(values) // most)]
+
+
+def gallery(folder):
+    missing = [name for name in SCENES if not (folder / name / "history.csv").exists()]
+    if missing:
+        sys.exit(f"{folder} has no results of {', '.join(missing)}: run host_mock/demo.sh")
+    across = 5
+    down = -(-len(SCENES) // across)
+    figure, grid = plt.subplots(down, across, figsize=(2.35 * across, 1.75 * down))
+    for axes in grid.flat[len(SCENES):]:
+        axes.axis("off")
+    for axes, (name, (x, x_label, y_label, curves)) in zip(grid.flat, SCENES.items()):
+        columns = columns_of(folder / name / "history.csv")
+        for color, curve in zip(COLORS, curves):
+            column, label = curve if isinstance(curve, tuple) else (curve, None)
+            axes.plot(thinned(columns[x]), thinned(columns[column]), color=color, label=label)
+        axes.set_title(name, fontsize=9, fontweight="bold")
+        axes.set_xlabel(x_label, labelpad=1)
+        axes.set_ylabel(y_label, labelpad=2)
+        axes.locator_params(nbins=4)
+        axes.ticklabel_format(style="sci", scilimits=(-3, 4))
+        if any(isinstance(curve, tuple) for curve in curves):
+            axes.legend(fontsize=6.5, frameon=False, handlelength=1.2, borderpad=0, labelspacing=0.2)
+    figure.tight_layout(h_pad=0.9, w_pad=0.6)
+    figure.savefig(DOCS / "img" / "gallery.png", dpi=95, metadata={"Software": None})
+
+
+def first_scene(program):
+    scene = re.search(r"```json\n(.*?)```", (DOCS / "scenes.md").read_text(), re.S)[1]
+    with tempfile.TemporaryDirectory() as folder:
+        file, results = Path(folder) / "scene.json", Path(folder) / "results"
+        file.write_text(scene)
+        subprocess.run([program, "run", file, "--out", results], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([program, "plot", results, "--panels", "displacement,velocity,force,status"], check=True,
+                       stdout=subprocess.DEVNULL)
+        (DOCS / "img" / "first_scene.png").write_bytes((results / "history.png").read_bytes())
+
+
+def main():
+    if len(sys.argv) not in (2, 3):
+        sys.exit(__doc__)
+    gallery(Path(sys.argv[1]))
+    first_scene(sys.argv[2] if len(sys.argv) > 2 else DOCS.parent / "build/release/bin/ilaw")
+
+
+if __name__ == "__main__":
+    main()

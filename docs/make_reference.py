@@ -1,0 +1,234 @@
+#!/usr/bin/env python3
+"""Writes the reference pages that repeat what the sources say.
+
+    docs/make_reference.py keys                    docs/reference/scene_keys.md, from the schema of scenes
+    docs/make_reference.py commands PROGRAM        docs/reference/commands.md, from the --help of ilaw
+    ... --check                                    writes nothing; exit code 1 where the page is out of date
+"""
+# SPDX-License-Identifier: BSD-3-Clause
+
+import difflib
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = ROOT / "docs" / "reference"
+SCHEMA = ROOT / "host_mock" / "schema" / "scene.schema.json"
+
+# Sections in the order of a scene: heading, then the objects of the schema that it lists.
+SECTIONS = [
+    ("The scene", [("", "")]),
+    ("Time", [("time", "`time`")]),
+    ("Models", [("model", "`model`, common to all types")]),
+    ("Points", [("model_points", "`model` of type `points`"), ("point", "entries of `points`")]),
+    ("Rotating spring", [("model_rotating_spring", "`model` of type `rotating_spring`")]),
+    ("Bars", [("model_bars", "`model` of type `bars`"), ("bar", "entries of `bars`")]),
+    ("Blocks", [("model_blocks", "`model` of type `blocks`"), ("block", "entries of `blocks`"),
+                ("material", "`material`")]),
+    ("Nodes", [("near", "nodes near places"), ("box", "nodes in a box")]),
+    ("Initial displacements", [("initial", "entries of `initial`")]),
+    ("Springs", [("spring", "entries of `springs`")]),
+    ("Loads", [("load", "entries of `loads`, common to all types")]),
+    ("Gravity", [("load_gravity", "load of type `gravity`")]),
+    ("Force", [("load_force", "load of type `force`")]),
+    ("Shock", [("load_shock", "load of type `shock`")]),
+    ("Pressure", [("load_pressure", "load of type `pressure`")]),
+    ("Motion", [("load_motion", "load of type `motion`")]),
+    ("Damping", [("load_damping", "load of type `damping`")]),
+    ("Curves over time", [("history_curve", "a curve in place of a list of [time, value]"),
+                          ("path_curve", "a curve in place of a list of [time, displacement...]"),
+                          ("sine", "`sine`")]),
+    ("Interfaces", [("interface", "entries of `interfaces`"), ("against", "`against`"),
+                    ("obstacle", "`obstacle`, common to all types")]),
+    ("Plane", [("obstacle_plane", "`obstacle` of type `plane`")]),
+    ("Sphere", [("obstacle_sphere", "`obstacle` of type `sphere`")]),
+    ("Cylinder", [("obstacle_cylinder", "`obstacle` of type `cylinder`")]),
+    ("Output", [("output", "`output`"), ("force_of", "an entry of `forces` with a moment")]),
+    ("Closed forms", [("exact", "`exact`")]),
+    ("Convergence", [("converge", "`converge`")]),
+    ("Laws side by side", [("study", "`study`"), ("study_law", "entries of `laws`")]),
+]
+# Definitions that are values and not objects of their own: as the tables name them.
+VALUES = {
+    "vector": "vector", "nodes": "[nodes](#nodes)", "history": "list of [time, value]",
+    "path": "list of [time, displacement...]", "places": "vector, or list of vectors",
+    "near": "[nodes](#nodes)", "box": "[nodes](#nodes)", "history_rows": "list of [time, value]",
+    "path_rows": "list of [time, displacement...]",
+}
+
+KEYS_HEAD = """# Reference: keys of a scene
+
+A scene is a JSON file with the keys below. Unknown keys, wrong types and values out of range are
+refused before anything runs, with the place (a JSON pointer), the value found and the values allowed.
+[Scenes](../scenes.md) shows how to write one; this page is made from
+[the schema](../../host_mock/schema/scene.schema.json) by `docs/make_reference.py keys`.
+
+- Vectors have as many components as the model has dimensions. Units are your own, if consistent.
+- JSON has no infinity: write the string `"inf"` where a parameter of a law may be infinite.
+- Values over time are linear between their times, which must increase, and constant outside.
+"""
+
+NODES = """Nodes are chosen in one of four ways:
+
+| value | nodes |
+| --- | --- |
+| `"all"`, or the name of a set | bar `b` has the sets `b`, `b.left`, `b.right`; block `b` has `b` and its faces `b.x_min`, `b.x_max`, ... `b.z_max`; `sets` adds more |
+| `[0, 3]` | numbers, from 0; nodes of blocks are numbered along x first |
+| `{"near": [x, y, z]}` | the node nearest to each place |
+| `{"box": [[low], [high]], "of": "b.z_min"}` | the nodes inside |
+"""
+
+COMMANDS_HEAD = """# Reference: commands of ilaw
+
+The program `ilaw` runs scenes, compares laws and checks libraries. Each command prints its options with
+`--help`; this page repeats them and is made by `docs/make_reference.py commands build/release/bin/ilaw`.
+The files that commands write are in [outputs](outputs.md).
+"""
+
+
+def number(value):
+    return "inf" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def limits(part):
+    words = [(sign, part[key]) for key, sign in (("minimum", ">="), ("exclusiveMinimum", ">"),
+                                                 ("maximum", "<="), ("exclusiveMaximum", "<"))
+             if key in part]
+    return " and ".join(f"{sign} {number(bound)}" for sign, bound in words)
+
+
+def count(part):
+    least, most = part.get("minItems"), part.get("maxItems")
+    return f"{least} " if least is not None and least == most else ""
+
+
+def section_of(name):
+    """The anchor of the section that lists the keys of an object."""
+    return next(heading for heading, objects in SECTIONS if name in dict(objects)).lower().replace(" ", "-")
+
+
+def kind(part, definitions):
+    """The type of a value, in words."""
+    if "$ref" in part:
+        name = part["$ref"].rsplit("/", 1)[1]
+        return VALUES.get(name) or f"[object](#{section_of(name)})"
+    if "anyOf" in part:
+        return ", or ".join(dict.fromkeys(kind(one, definitions) for one in part["anyOf"]))
+    if "enum" in part:
+        return ", ".join(f"`{choice}`" for choice in part["enum"])
+    if part.get("type") == "array":
+        items = part.get("items", {})
+        of = kind(items, definitions)
+        type_, _, bounds = of.partition(" ")
+        if type_ in ("number", "integer"):
+            return f"list of {count(part)}{type_}s" + (f", each {bounds}" if bounds else "")
+        return f"list of {count(part)}" + of.replace("[object]", "[objects]").replace("string", "strings") + ("s" if of == "vector" else "")
+    if part.get("type") == "string" and "pattern" in part:
+        return "name"
+    return " ".join(filter(None, (part.get("type", "value"), limits(part))))
+
+
+def cell(text):
+    return text.replace("|", "\\|")
+
+
+def table(part, definitions):
+    rows = ["| key | type | default | meaning |", "| --- | --- | --- | --- |"]
+    required = part.get("required", [])
+    for key, value in part["properties"].items():
+        if key == "type" and "enum" not in value:
+            continue  # it is in the heading
+        if "description" not in value:
+            sys.exit(f"{SCHEMA.name}: key '{key}' has no description")
+        meaning, _, default = value["description"].partition("; default: ")
+        if "default" in value:
+            default = f"`{json.dumps(value['default'])}`"
+        elif key in required:
+            default = "required"
+        rows.append("| " + " | ".join(cell(text) for text in
+                                      (f"`{key}`", kind(value, definitions), default, meaning)) + " |")
+    return "\n".join(rows)
+
+
+def keys_page():
+    schema = json.loads(SCHEMA.read_text())
+    definitions = schema["definitions"]
+    shown = {name for _, objects in SECTIONS for name, _ in objects}
+    left = {name for name, part in definitions.items() if part.get("properties") and name not in shown}
+    if left:
+        sys.exit(f"SECTIONS of {__file__} leaves out {', '.join(sorted(left))}")
+    text = [KEYS_HEAD]
+    for heading, objects in SECTIONS:
+        objects = [(name, words) for name, words in objects if not name or name in definitions]
+        if not objects:
+            continue
+        text.append(f"## {heading}\n")
+        if heading == "Nodes":
+            text.append(NODES)
+        for name, words in objects:
+            part = definitions[name] if name else schema
+            about = part.get("description", "") if name else ""
+            if words:
+                text.append((words[0].upper() + words[1:]) + (": " + about if about else ":") + "\n")
+            text.append(table(part, definitions) + "\n")
+    return wrapped("\n".join(text))
+
+
+def wrapped(text, width=100):
+    """Paragraphs in lines of the width; code and formulas stay whole."""
+    lines = []
+    for paragraph in text.split("\n\n"):
+        if paragraph.lstrip().startswith(("|", "#", "```", "- ")):
+            lines.append(paragraph.strip("\n"))
+            continue
+        line, block = "", []
+        for word in re.findall(r"(?:`[^`]*`|\$[^$]*\$|[^\s`$])+", paragraph):
+            if line and len(line) + 1 + len(word) > width:
+                block.append(line)
+                line = word
+            else:
+                line = f"{line} {word}" if line else word
+        lines.append("\n".join(block + [line]))
+    return "\n\n".join(lines).rstrip() + "\n"
+
+
+def help_of(program, *command):
+    environment = dict(os.environ, COLUMNS="100", LC_ALL="C")
+    done = subprocess.run([program, *command, "--help"], capture_output=True, text=True, env=environment)
+    if done.returncode:
+        sys.exit(f"{program} {' '.join(command)} --help: {done.stderr}")
+    return "\n".join(line.rstrip() for line in done.stdout.strip("\n").splitlines())
+
+
+def commands_page(program):
+    main = help_of(program)
+    commands = re.findall(r"^  (\w+) +\S", main[main.index("\nSubcommands:"):], re.M)
+    text = wrapped(COMMANDS_HEAD) + f"\n```text\n{main}\n```\n"
+    for command in commands:
+        text += f"\n## ilaw {command}\n\n```text\n{help_of(program, command)}\n```\n"
+    return text
+
+
+def main():
+    arguments = [argument for argument in sys.argv[1:] if argument != "--check"]
+    if arguments == ["keys"]:
+        page, text = PAGES / "scene_keys.md", keys_page()
+    elif arguments[:1] == ["commands"] and len(arguments) == 2:
+        page, text = PAGES / "commands.md", commands_page(arguments[1])
+    else:
+        sys.exit(__doc__)
+    if "--check" not in sys.argv:
+        page.write_text(text)
+        return
+    before = page.read_text()
+    if before != text:
+        print("".join(difflib.unified_diff(before.splitlines(True), text.splitlines(True), str(page), "source")))
+        sys.exit(f"{page.name} is out of date: run docs/make_reference.py {' '.join(arguments)}")
+
+
+if __name__ == "__main__":
+    main()

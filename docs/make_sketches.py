@@ -1,0 +1,323 @@
+#!/usr/bin/env python3
+"""Draws the sketches of pages, and plots of tables that stand on pages or in docs/results/tables.
+
+    docs/make_sketches.py            all pictures, into docs/img
+    docs/make_sketches.py NAME...    these alone
+
+Needs matplotlib (python3-matplotlib). The same tables give the same bytes.
+"""
+# SPDX-License-Identifier: BSD-3-Clause
+
+import csv
+import re
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch, Polygon  # noqa: E402
+
+DOCS = Path(__file__).resolve().parent
+TABLES = DOCS / "results" / "tables"
+BLUE, ORANGE, GREEN, PINK, GREY, DARK = "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#9a9a9a", "#333333"
+PALE_BLUE, PALE_ORANGE, PALE_GREY = "#d6e8f4", "#fbe3d3", "#ececec"
+
+plt.rcParams.update({
+    "svg.hashsalt": "ilaw", "svg.fonttype": "path", "font.family": "DejaVu Sans", "font.size": 10,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd",
+    "grid.linewidth": 0.6, "axes.axisbelow": True, "legend.frameon": False, "figure.facecolor": "white",
+})
+
+
+def save(figure, name):
+    figure.savefig(DOCS / "img" / f"{name}.svg", metadata={"Date": None}, bbox_inches="tight", pad_inches=0.08)
+    plt.close(figure)
+
+
+def canvas(width, height):
+    """A figure without axes, with one unit an inch."""
+    figure = plt.figure(figsize=(width, height))
+    axes = figure.add_axes([0, 0, 1, 1])
+    axes.set(xlim=(0, width), ylim=(0, height))
+    axes.axis("off")
+    return figure, axes
+
+
+def arrow(axes, start, end, color, width=2.2, style="-|>", **more):
+    axes.add_patch(FancyArrowPatch(start, end, arrowstyle=style, mutation_scale=16, color=color, linewidth=width,
+                                   shrinkA=0, shrinkB=0, **more))
+
+
+def box(axes, x, y, width, height, text, face=PALE_GREY, edge=GREY, size=10, **more):
+    axes.add_patch(FancyBboxPatch((x, y), width, height, boxstyle="round,pad=0,rounding_size=0.08", facecolor=face,
+                                  edgecolor=edge, linewidth=1.2))
+    axes.text(x + width / 2, y + height / 2, text, ha="center", va="center", fontsize=size, color=DARK, **more)
+
+
+# ---- sketches
+
+def contact_geometry():
+    figure, axes = canvas(9.4, 3.3)
+    # The obstacle, the body above it, and the node at its lowest point.
+    ground = [(0.2, 0.15), (0.2, 0.75), (1.2, 0.92), (2.3, 0.97), (3.4, 0.92), (4.4, 0.75), (4.4, 0.15)]
+    axes.add_patch(Polygon(ground, closed=True, facecolor=PALE_GREY, edgecolor=GREY, linewidth=1.4))
+    axes.text(0.55, 0.36, "obstacle", color=DARK)
+    body = [(0.9, 3.15), (0.85, 2.5), (1.25, 1.95), (2.3, 1.72), (3.35, 1.95), (3.75, 2.5), (3.7, 3.15)]
+    axes.add_patch(Polygon(body, closed=True, facecolor=PALE_BLUE, edgecolor=BLUE, linewidth=1.4))
+    axes.text(1.15, 2.75, "body", color=BLUE)
+    node, foot = (2.3, 1.72), (2.3, 0.97)
+    arrow(axes, (2.05, 0.97), (2.05, 1.72), DARK, 1.2, "<|-|>")
+    axes.text(1.98, 1.33, "gap $g$", ha="right", va="center", color=DARK)
+    arrow(axes, foot, (2.3, 1.5), DARK, 1.8)
+    axes.text(2.38, 1.3, "$n$", color=DARK, fontsize=12)
+    arrow(axes, node, (3.25, 1.2), ORANGE)
+    axes.text(3.3, 1.12, "$v_{free}$", color=ORANGE, fontsize=13, va="center")
+    arrow(axes, node, (2.1, 2.5), GREEN)
+    axes.text(1.88, 2.55, "$r$", color=GREEN, fontsize=13)
+    axes.add_patch(Circle(node, 0.07, facecolor=DARK, zorder=5))
+    axes.text(2.42, 2.0, "node, mass $m$", color=DARK, fontsize=9)
+    # The step in velocities.
+    tail, tip = (5.6, 2.35), (7.1, 1.35)
+    end = (6.75, 2.35)
+    axes.plot([5.2, 8.4], [2.35, 2.35], color=GREY, linewidth=1, linestyle=(0, (4, 3)))
+    axes.text(8.45, 2.35, "$v_N = 0$", va="center", color=GREY)
+    arrow(axes, tail, tip, ORANGE)
+    axes.text(6.0, 1.72, "$v_{free}$", color=ORANGE, fontsize=13)
+    arrow(axes, tip, end, GREEN)
+    axes.text(7.05, 1.9, "$H r$", color=GREEN, fontsize=13)
+    arrow(axes, tail, end, BLUE)
+    axes.text(6.1, 2.5, "$v$", color=BLUE, fontsize=13)
+    axes.text(5.2, 0.75, r"$v = v_{free} + H\,r$", fontsize=15, color=DARK)
+    axes.text(5.2, 0.32, "the law finds $r$ from $v_{free}$, $H = 1/m$, $g$ and its memory", fontsize=10, color=DARK)
+    axes.text(5.2, 2.98, "one step of a node in contact, with friction", fontsize=10, color=DARK)
+    save(figure, "contact_geometry")
+
+
+def one_step():
+    figure, axes = canvas(10.2, 2.75)
+    steps = [("drift", "$u \\leftarrow u + h\\,v$", PALE_GREY, GREY), ("forces", "$f(u)$, no contact", PALE_GREY, GREY),
+             ("kick", "$v_{free} = v + \\frac{h}{m} f$", PALE_GREY, GREY),
+             ("law", "$r = \\mathrm{law}(v_{free}, H, g, \\mathrm{state})$", PALE_ORANGE, ORANGE),
+             ("impulse", "$v = v_{free} + r/m$", PALE_BLUE, BLUE)]
+    widths = [1.35, 1.65, 1.75, 2.55, 1.65]
+    x = 0.15
+    for k, ((name, formula, face, edge), width) in enumerate(zip(steps, widths)):
+        box(axes, x, 1.55, width, 0.95, "", face, edge)
+        axes.text(x + width / 2, 2.24, name, ha="center", va="center", fontweight="bold", color=DARK)
+        axes.text(x + width / 2, 1.86, formula, ha="center", va="center", color=DARK, fontsize=10.5)
+        if k:
+            arrow(axes, (x - 0.2, 2.02), (x, 2.02), DARK, 1.4)
+        x += width + 0.2
+    # Instants: positions at whole steps, velocities at half ones.
+    axes.plot([0.4, 9.8], [0.75, 0.75], color=GREY, linewidth=1.2)
+    for place, label, color in ((0.9, "$u_n$", DARK), (2.9, "$v_{n+1/2}$", BLUE), (4.9, "$u_{n+1}$", DARK),
+                                (6.9, "$v_{n+3/2}$", BLUE), (8.9, "$u_{n+2}$", DARK)):
+        axes.plot([place, place], [0.66, 0.84], color=color, linewidth=1.6)
+        axes.text(place, 0.42, label, ha="center", va="center", color=color, fontsize=12)
+    axes.text(9.85, 0.75, "t", va="center", color=GREY)
+    arrow(axes, (4.9, 1.25), (4.9, 0.92), ORANGE, 1.6)
+    axes.text(5.02, 1.12, "gap and law at $t_{n+1}$", color=ORANGE, va="center")
+    save(figure, "one_step")
+
+
+def layers():
+    figure, axes = canvas(9.6, 4.6)
+    box(axes, 0.2, 2.55, 4.4, 1.85, "", PALE_BLUE, BLUE)
+    axes.text(2.4, 4.2, "host_mock: the program ilaw", ha="center", va="center", fontweight="bold", color=DARK)
+    for k, text in enumerate(("cli, bench, stress, study", "results, scene, step", "contact, model, check, base")):
+        box(axes, 0.4, 3.58 - 0.46 * k, 4.0, 0.4, text, "white", BLUE, 9.5)
+    box(axes, 5.0, 2.55, 4.4, 1.85, "", PALE_BLUE, BLUE)
+    axes.text(7.2, 4.2, "your solver", ha="center", va="center", fontweight="bold", color=DARK)
+    for k, text in enumerate(("C, C++, Fortran, Python", "LAMMPS, Yade, dolfinx", "its own forces and time step")):
+        box(axes, 5.2, 3.58 - 0.46 * k, 4.0, 0.4, text, "white", BLUE, 9.5)
+    box(axes, 0.2, 1.75, 9.2, 0.5, "api/loader: finds, checks and opens libraries      "
+        "api/coupled: solves contacts that share bodies", PALE_GREY, GREY, 9.5)
+    axes.plot([0.0, 9.6], [1.5, 1.5], color=ORANGE, linewidth=2.5)
+    axes.text(4.8, 1.5, " ilaw.h: the ABI, plain C structs and one symbol ", ha="center", va="center", fontsize=10,
+              color=ORANGE, fontweight="bold", bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
+    box(axes, 0.2, 0.75, 9.2, 0.5, "plugins: contact.so   coulomb.so   tie.so   postit.so   cohesive.so   penalty.so   "
+        "yours.so", PALE_ORANGE, ORANGE, 9.5)
+    box(axes, 0.2, 0.1, 9.2, 0.5, "ilaw/kit: the loops, layouts and checks that a law is compiled with", PALE_ORANGE,
+        ORANGE, 9.5)
+    for x in (2.4, 7.2):
+        arrow(axes, (x, 2.55), (x, 2.25), DARK, 1.3)
+    save(figure, "layers")
+
+
+# ---- plots of tables
+
+def page_rows(page, first):
+    """Rows of the table of a page whose head begins with the given cells, as dictionaries."""
+    lines = (DOCS / page).read_text().splitlines()
+    start = next(k for k, line in enumerate(lines) if line.startswith(first))
+    split = lambda line: [cell.strip().strip("`") for cell in line.strip("|").split("|")]  # noqa: E731
+    head, rows = split(lines[start]), []
+    for line in lines[start + 2:]:
+        if not line.startswith("|"):
+            break
+        rows.append(dict(zip(head, split(line))))
+    return rows
+
+
+def table(name):
+    with open(TABLES / f"{name}.csv") as file:
+        return list(csv.DictReader(file))
+
+
+def law_times():
+    wanted = [("contact", "scalar H local aos"), ("coulomb", "friction=0.3, scalar H local aos"),
+              ("coulomb", "friction=0.3, full H local aos"), ("penalty", "explicit, scalar H local aos"),
+              ("penalty", "implicit, scalar H local aos"), ("tie", "unbreakable, scalar H local aos"),
+              ("postit", "friction=0.3, scalar H local aos"), ("cohesive", "holding, scalar H local aos"),
+              ("cohesive", "softening, scalar H local aos")]
+    rows = {(row["law"], row["case"]): row for row in page_rows("benchmarks.md", "| law | case | bytes")}
+    figure, axes = plt.subplots(figsize=(8.2, 3.9))
+    for k, key in enumerate(wanted):
+        row = rows[key]
+        beyond, cached = float(row["beyond, ns"]), float(row["in cache, ns"])
+        memory = beyond / float(row["ratio"])
+        axes.barh(k - 0.18, beyond, 0.34, color=BLUE, label="beyond the cache, $10^7$ nodes" if not k else None)
+        axes.barh(k + 0.18, cached, 0.34, color="#9ecae1", label="in cache, 2000 nodes" if not k else None)
+        axes.plot([memory, memory], [k - 0.36, k + 0.02], color=ORANGE, linewidth=2.4,
+                  label="time of its bytes at memory bandwidth" if not k else None)
+    names = [f"{law}: {case.replace(', scalar H local aos', '').replace('scalar H local aos', 'scalar H')}"
+             .replace("friction=0.3, full H local aos", "friction 0.3, full H").replace("friction=0.3", "friction 0.3")
+             for law, case in wanted]
+    axes.set(yticks=range(len(wanted)), yticklabels=names, xlabel="ns per node and step, one thread, 3D")
+    axes.invert_yaxis()
+    axes.grid(axis="y", visible=False)
+    axes.legend(loc="lower left", bbox_to_anchor=(0.42, 0.42))
+    save(figure, "law_times")
+
+
+def stress():
+    rows = page_rows("stability.md", "| law | scenes | refused")
+    figure, axes = plt.subplots(figsize=(7.6, 3.0))
+    for k, row in enumerate(rows):
+        axes.plot(float(row["balance"]), k, "o", color=BLUE, markersize=8, label="error of the balance" if not k else None)
+        axes.plot(float(row["added"]), k, "D", color=ORANGE, markersize=7,
+                  label="added by interfaces" if not k else None)
+    axes.set(xscale="log", xlim=(1e-18, 1), yticks=range(len(rows)), yticklabels=[row["law"] for row in rows],
+             xlabel="largest error, relative to the largest energy of its scene")
+    axes.axvspan(1e-18, 2.2e-16, color=PALE_GREY)
+    axes.text(3e-18, -0.55, "rounding of one number", fontsize=8, color=DARK)
+    axes.axvline(0.1, color=GREY, linestyle=(0, (4, 3)))
+    axes.text(0.08, 5.9, "a run warns", fontsize=8, color=DARK, ha="right")
+    axes.invert_yaxis()
+    axes.legend(loc="center right", bbox_to_anchor=(0.93, 0.5))
+    save(figure, "stress")
+
+
+def tests():
+    page = (DOCS / "reliability.md").read_text()
+    mutants = page_rows("reliability.md", "| area | mutants | caught")
+    coverage = page_rows("reliability.md", "| | lines | branches")
+    assert mutants and coverage and page
+    figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 2.5), gridspec_kw={"wspace": 0.35})
+    for k, row in enumerate(mutants):
+        share = 100 * int(row["caught"]) / int(row["mutants"])
+        left.barh(k, share, color=GREEN)
+        left.text(share - 1, k, f"{row['caught']} of {row['mutants']}", ha="right", va="center", color="white",
+                  fontsize=9)
+    left.set(yticks=range(len(mutants)), yticklabels=[row["area"] for row in mutants], xlim=(0, 100),
+             title="faults that the tests notice [%]")
+    for k, row in enumerate(coverage):
+        for shift, column, color in ((-0.19, "lines", BLUE), (0.19, "branches", "#9ecae1")):
+            share = float(row[column].split("%")[0])
+            right.barh(k + shift, share, 0.36, color=color, label=column if not k else None)
+            right.text(share - 1, k + shift, f"{share:g}", ha="right", va="center", fontsize=8,
+                       color="white" if column == "lines" else DARK)
+    right.set(yticks=range(len(coverage)), yticklabels=[row[""] for row in coverage], xlim=(0, 100),
+              title="reached by the tests [%]")
+    right.legend(loc="lower center", bbox_to_anchor=(0.5, -0.42), ncol=2)
+    for axes in (left, right):
+        axes.invert_yaxis()
+        axes.grid(axis="y", visible=False)
+    save(figure, "tests")
+
+
+def dolfinx_curves(axes):
+    curves = {}
+    for row in page_rows("comparisons.md", "| model | nodes | step [1e-3]"):
+        if row["error"] == "-" or "%" not in row["error"] or row["nodes"] == "15 925":
+            continue
+        curves.setdefault(row["model"], {}).setdefault(row["nodes"], []).append(
+            (float(row["CPU [s]"]), float(row["error"].rstrip(" %"))))
+    colors = {"coulomb": BLUE, "penalty 0.1": "#f0b090", "penalty 1": "#e58a4e", "penalty 10": ORANGE,
+              "penalty 100": "#8c3b00"}
+    for model, meshes in curves.items():
+        points = [min(runs) for runs in meshes.values()]
+        is_law = model == "coulomb"
+        label = model if is_law else f"penalty, k = {model.split()[1]} K"
+        axes.plot(*zip(*points), marker="o" if is_law else "s", color=colors[model], label=label,
+                  linewidth=2.6 if is_law else 1.4, markersize=6, zorder=3 if is_law else 2)
+    axes.set(xscale="log", yscale="log", xlabel="processor time [s]", ylabel="error [%]",
+             title="elastic block in dolfinx, three meshes\n(K: bulk modulus over the height of a cell)")
+    axes.set_yticks([1, 3, 10, 30, 100], ["1", "3", "10", "30", "100"])
+
+
+def dolfinx_error_time():
+    figure, axes = plt.subplots(figsize=(6.4, 3.8))
+    dolfinx_curves(axes)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    save(figure, "dolfinx_error_time")
+
+
+def error_over_time():
+    """The bouncing ball of docs/results, and the block in dolfinx."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10.6, 3.9), gridspec_kw={"wspace": 0.28})
+    runs = {}
+    for row in table("study_runs_bouncing_ball"):
+        runs.setdefault(row["law"], []).append((float(row["time"]), 100 * float(row["u_L2"])))
+    reds = iter(["#f6c9b0", "#f0b090", "#e58a4e", ORANGE, "#8c3b00"])
+    for law, points in runs.items():
+        if law == "contact predictive":
+            left.plot(*zip(*points), "o-", color=BLUE, linewidth=2.6, markersize=5, label="contact", zorder=3)
+        elif law.startswith("explicit"):
+            left.plot(*zip(*points), "s-", color=next(reds), linewidth=1.3, markersize=4,
+                      label=law.replace("explicit k=", "penalty, k = ") + " N/m")
+    left.set(xscale="log", yscale="log", xlabel="run time, relative to contact's finest", ylabel="error [%]",
+             title="bouncing ball against its closed form")
+    left.legend(loc="lower left", fontsize=8.5)
+    dolfinx_curves(right)
+    right.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8.5)
+    save(figure, "error_over_time")
+
+
+def orders():
+    groups = [("points", ["postit_test1", "postit_test2", "postit_test3", "bouncing_ball_e08"]),
+              ("bars and the peeled strip", ["bar_on_wall", "two_bars", "glued_bar", "postit_3d"])]
+    colors = [BLUE, ORANGE, GREEN, PINK]
+    figure, both = plt.subplots(1, 2, figsize=(9.6, 3.6), sharey=True, gridspec_kw={"wspace": 0.08})
+    slopes = {row["case"]: row["order u_L2"] for row in table("orders")}
+    for axes, (title, cases) in zip(both, groups):
+        for case, color in zip(cases, colors):
+            rows = table(case)
+            h = [float(row["h" if "h" in row else "dt"]) for row in rows]
+            finest = min(h)
+            axes.plot([x / finest for x in h], [float(row["u_L2"]) for row in rows], "o-", color=color, markersize=4,
+                      label=f"{case}, order {slopes[case]}")
+        axes.plot([1, 30], [4e-4, 4e-4 * 30], color=GREY, linestyle=(0, (4, 3)), label="slope 1")
+        axes.set(xscale="log", yscale="log", xlabel="step over the smallest step", title=title)
+        axes.legend(fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, -0.18), ncol=2)
+    both[0].set_ylabel("error of positions (u_L2)")
+    save(figure, "orders")
+
+
+PICTURES = [contact_geometry, one_step, layers, law_times, stress, tests, dolfinx_error_time, error_over_time, orders]
+
+
+def main():
+    names = sys.argv[1:]
+    unknown = set(names) - {picture.__name__ for picture in PICTURES}
+    if unknown:
+        sys.exit(f"no picture is called {', '.join(sorted(unknown))}\n{__doc__}")
+    for picture in PICTURES:
+        if not names or picture.__name__ in names:
+            picture()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,283 @@
+// Problems of coupled contacts that plain iterations do not solve: long columns, masses that are far apart, a
+// heavy course on a wall, redundant contacts, facets.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <ilaw/arrays.hpp>
+#include <ilaw/coupled.hpp>
+#include <ilaw/loader.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coupled_scene.hpp"
+
+namespace {
+
+using coupled_scene::create;
+using Point = std::array<double, 3>;
+
+// Bodies of any mass, and contacts of one law between them.
+struct Assembly {
+  explicit Assembly(ilaw::interface law_of_all, bool turns) : law(std::move(law_of_all)), rotate(turns) {}
+
+  void add_body(double mass, double inertia, const Point& v_free) {
+    inverse_mass.push_back(1.0 / mass);
+    const double j = inertia > 0.0 ? 1.0 / inertia : 0.0;
+    inverse_inertia.insert(inverse_inertia.end(), {j, j, j, 0.0, 0.0, 0.0});
+    v.insert(v.end(), v_free.begin(), v_free.end());
+  }
+  void add(const std::vector<std::int32_t>& bodies, const std::vector<double>& weights,
+           const std::vector<std::int32_t>& others, const std::vector<double>& other_weights,
+           const Point& arm = {}, const Point& other_arm = {}) {
+    body.insert(body.end(), bodies.begin(), bodies.end());
+    weight.insert(weight.end(), weights.begin(), weights.end());
+    counterpart.insert(counterpart.end(), others.begin(), others.end());
+    other_weight.insert(other_weight.end(), other_weights.begin(), other_weights.end());
+    normal.insert(normal.end(), {0.0, 0.0, 1.0});
+    arms.insert(arms.end(), arm.begin(), arm.end());
+    other_arms.insert(other_arms.end(), other_arm.begin(), other_arm.end());
+    body_count = static_cast<std::uint32_t>(bodies.size());
+    counterpart_count = static_cast<std::uint32_t>(others.size());
+    ++count;
+  }
+  void add(std::int32_t a, std::int32_t b, const Point& arm = {}, const Point& other_arm = {}) {
+    add({a}, {1.0}, {b}, {1.0}, arm, other_arm);
+  }
+
+  ilaw_coupled_report solve(double tolerance, std::uint32_t most, bool weighted = false) {
+    const double gap = 0.0, area = 1.0;
+    impulse.resize(normal.size());
+    velocity = v;
+    std::vector<double> spin(v.size()), state(law.info().state_size * count + 1), still(v.size());
+    const auto size = static_cast<std::int64_t>(law.info().state_size);
+    ilaw_batch batch{};
+    batch.struct_size = sizeof batch;
+    batch.node_count = static_cast<std::int64_t>(count);
+    batch.time = batch.velocity_step = batch.position_step = 1e-3;
+    batch.gap = ilaw::input(&gap, 0, 0);
+    batch.area = ilaw::input(&area, 0, 0);
+    batch.normal = ilaw::input(normal.data(), 3, 1);
+    batch.state_in = ilaw::input(state.data(), size, 1);
+    batch.state_out = ilaw::output(state.data(), size, 1);
+    batch.impulse = ilaw::output(impulse.data(), 3, 1);
+    law.initialise(batch);
+    ilaw_bodies bodies{};
+    bodies.struct_size = sizeof bodies;
+    bodies.dimension = 3;
+    bodies.count = bodies.owned_count = static_cast<std::int64_t>(v.size() / 3);
+    bodies.inverse_mass = ilaw::input(inverse_mass.data(), 1, 0);
+    bodies.v_free = ilaw::input(v.data(), 3, 1);
+    bodies.v_previous = ilaw::input(still.data(), 3, 1);
+    bodies.velocity = ilaw::output(velocity.data(), 3, 1);
+    if (rotate) {
+      bodies.inverse_inertia = ilaw::input(inverse_inertia.data(), 6, 1);
+      bodies.spin_free = bodies.spin_previous = ilaw::input(still.data(), 3, 1);
+      bodies.spin = ilaw::output(spin.data(), 3, 1);
+    }
+    ilaw_contacts contacts{};
+    contacts.struct_size = sizeof contacts;
+    contacts.delassus_form = rotate ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR;
+    contacts.law = &law.law();
+    contacts.instance = law.instance();
+    contacts.batch = &batch;
+    contacts.body = body.data();
+    contacts.counterpart = counterpart.data();
+    contacts.arm = ilaw::input(arms.data(), 3, 1);
+    contacts.counterpart_arm = ilaw::input(other_arms.data(), 3, 1);
+    if (weighted) {
+      contacts.body_count = body_count;
+      contacts.counterpart_count = counterpart_count;
+      contacts.body_weight = ilaw::input(weight.data(), body_count, 1);
+      contacts.counterpart_weight = ilaw::input(other_weight.data(), counterpart_count, 1);
+    }
+    const ilaw_contacts* groups[] = {&contacts};
+    ilaw_coupled_options options{};
+    options.tolerance = tolerance;
+    options.most_sweeps = most;
+    return ilaw::coupled().solve(bodies, groups, options);
+  }
+  double largest_velocity() const {
+    double largest = 0.0;
+    for (const double x : velocity) largest = std::max(largest, std::fabs(x));
+    return largest;
+  }
+
+  ilaw::interface law;
+  bool rotate;
+  std::size_t count = 0;
+  std::uint32_t body_count = 1, counterpart_count = 1;
+  std::vector<std::int32_t> body, counterpart;
+  std::vector<double> weight, other_weight, normal, arms, other_arms, impulse, v, velocity, inverse_mass,
+      inverse_inertia;
+};
+
+ilaw::interface friction(bool rotate, double mu) {
+  return create("coulomb", rotate ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR, {{"friction", mu}});
+}
+
+TEST(CoupledConvergence, HoldsAColumnOf250) {
+  Assembly column(friction(false, 0.3), false);
+  for (int i = 0; i < 250; ++i) {
+    column.add_body(1.0, 0.0, {0.0, 0.0, -1e-2});
+    column.add(i, i - 1);
+  }
+  const ilaw_coupled_report report = column.solve(1e-12, 2000);
+  EXPECT_LE(report.residual, 1e-12);
+  EXPECT_LE(column.largest_velocity(), 1e-8);
+  EXPECT_NEAR(column.impulse[2], 2.5, 1e-8);
+}
+
+// Four legs: the weight on each is not unique, their sum is.
+TEST(CoupledConvergence, HoldsATableOnFourLegs) {
+  Assembly table(friction(true, 0.5), true);
+  table.add_body(2.0, 1.0, {0.0, 0.0, -1e-2});
+  for (const double x : {-1.0, 1.0})
+    for (const double y : {-1.0, 1.0}) table.add(0, -1, {x, y, -0.5});
+  const ilaw_coupled_report report = table.solve(1e-12, 1000);
+  EXPECT_LE(report.residual, 1e-12);
+  EXPECT_LE(table.largest_velocity(), 1e-12);
+  EXPECT_NEAR(table.impulse[2] + table.impulse[5] + table.impulse[8] + table.impulse[11], 2e-2, 1e-12);
+}
+
+// A chain of masses 1 and 1e7 in turn keeps its momentum and moves as one.
+TEST(CoupledConvergence, TiesMassesOfOneToTenMillion) {
+  Assembly chain(create("tie", ILAW_DELASSUS_SCALAR), false);
+  double momentum = 0.0, mass = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    const double m = i % 2 == 0 ? 1e7 : 1.0, speed = std::sin(1.0 + i);
+    chain.add_body(m, 0.0, {speed, 0.0, 0.0});
+    momentum += m * speed;
+    mass += m;
+    if (i > 0) chain.add(i, i - 1);
+  }
+  const ilaw_coupled_report report = chain.solve(1e-12, 1000);
+  EXPECT_LE(report.residual, 1e-12);
+  for (std::size_t i = 0; i < chain.velocity.size(); i += 3)
+    EXPECT_NEAR(chain.velocity[i], momentum / mass, 1e-6) << "body " << i / 3;
+}
+
+// Bricks in running bond, four corners at each bed joint; the top course weighs ten thousand times the
+// others.
+TEST(CoupledConvergence, HoldsAWallUnderAHeavyCourse) {
+  constexpr int courses = 6, length = 5;
+  Assembly wall(friction(true, 0.6), true);
+  std::vector<std::vector<std::pair<std::int32_t, double>>> bricks(courses);
+  for (int j = 0; j < courses; ++j)
+    for (int i = 0; i < length + j % 2; ++i) {
+      const double x = 2.0 * i - j % 2, m = j == courses - 1 ? 1e4 : 1.0;
+      const auto number = static_cast<std::int32_t>(wall.inverse_mass.size());
+      wall.add_body(m, 0.4 * m, {0.0, 0.0, -1e-2});
+      bricks[static_cast<std::size_t>(j)].emplace_back(number, x);
+      const auto corners = [&](std::int32_t below, double other_x, double from, double to) {
+        for (const double at : {from, to})
+          for (const double y : {-0.5, 0.5})
+            wall.add(number, below, {at - x, y, -0.3}, {at - other_x, y, 0.3});
+      };
+      if (j == 0) corners(-1, 0.0, x - 1.0, x + 1.0);
+      for (const auto& [below, other_x] : bricks[static_cast<std::size_t>(std::max(j, 1) - 1)])
+        if (j > 0 && std::fabs(x - other_x) < 1.5)
+          corners(below, other_x, std::max(x, other_x) - 1.0, std::min(x, other_x) + 1.0);
+    }
+  const ilaw_coupled_report report = wall.solve(1e-9, 20000);
+  EXPECT_LE(report.residual, 1e-9) << report.sweeps;
+}
+
+// Two meshes of 5 x 5 and 4 x 4 cells, the nodes of each on facets of the other: more contacts than needed.
+TEST(CoupledConvergence, SolvesBothSidesOfTwoMeshes) {
+  Assembly meshes(friction(false, 0.3), false);
+  const std::array<int, 2> cells{5, 4};
+  for (std::size_t mesh = 0; mesh < 2; ++mesh)
+    for (int i = 0; i < (cells[mesh] + 1) * (cells[mesh] + 1); ++i)
+      meshes.add_body(
+          1.0 / cells[mesh], 0.0,
+          {0.1 * std::sin(i), 0.05 * std::cos(3.0 * i), (mesh == 0 ? -1.0 : 1.0) + 0.3 * std::sin(7.0 * i)});
+  const std::array<int, 2> first{0, 36};
+  for (std::size_t mesh = 0; mesh < 2; ++mesh) {
+    const int n = cells[mesh], m = cells[1 - mesh];
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= n; ++j) {
+        const double x = static_cast<double>(i * m) / n, y = static_cast<double>(j * m) / n;
+        const int a = std::min(static_cast<int>(x), m - 1), b = std::min(static_cast<int>(y), m - 1);
+        const double u = x - a, w = y - b;
+        const int node = first[mesh] + i * (n + 1) + j;
+        const auto corner = [&](int p, int q) { return first[1 - mesh] + (a + p) * (m + 1) + b + q; };
+        const std::vector<std::int32_t> facet{corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)};
+        const std::vector<double> weights{(1 - u) * (1 - w), (1 - u) * w, u * (1 - w), u * w};
+        // The normal points from the second mesh into the first.
+        if (mesh == 0)
+          meshes.add({node, -1, -1, -1}, {1.0, 0.0, 0.0, 0.0}, facet, weights);
+        else
+          meshes.add(facet, weights, {node, -1, -1, -1}, {1.0, 0.0, 0.0, 0.0});
+      }
+  }
+  const ilaw_coupled_report report = meshes.solve(1e-10, 5000, true);
+  EXPECT_LE(report.residual, 1e-10) << report.sweeps;
+  for (std::size_t k = 0; k < meshes.count; ++k) EXPECT_GE(meshes.impulse[3 * k + 2], 0.0) << k;
+}
+
+// Facets of one node each, and one with the same node twice, are pairs of bodies.
+TEST(CoupledConvergence, FacetsOfOneNodeArePairs) {
+  Assembly pairs(friction(false, 0.3), false), facets(friction(false, 0.3), false);
+  for (int i = 0; i < 6; ++i) {
+    const Point v{0.01 * i, 0.0, -1e-2};
+    pairs.add_body(1.0 + i, 0.0, v);
+    facets.add_body(1.0 + i, 0.0, v);
+    pairs.add(i, i - 1);
+    facets.add({i, i}, {0.25, 0.75}, {i - 1, -1}, {1.0, 0.0});
+  }
+  EXPECT_LE(pairs.solve(1e-13, 1000).residual, 1e-13);
+  EXPECT_LE(facets.solve(1e-13, 1000, true).residual, 1e-13);
+  for (std::size_t i = 0; i < pairs.velocity.size(); ++i)
+    EXPECT_NEAR(pairs.velocity[i], facets.velocity[i], 1e-11) << i;
+  for (std::size_t i = 0; i < pairs.impulse.size(); ++i)
+    EXPECT_NEAR(pairs.impulse[i], facets.impulse[i], 1e-10) << i;
+}
+
+// By the lever: a node on the middle of a beam of two nodes feels half of their masses.
+TEST(CoupledConvergence, AFacetSharesTheImpulseByWeights) {
+  Assembly facet(create("contact", ILAW_DELASSUS_SCALAR), false);
+  facet.add_body(1.0, 0.0, {0.0, 0.0, -1.0});
+  facet.add_body(2.0, 0.0, {0.0, 0.0, 0.0});
+  facet.add_body(4.0, 0.0, {0.0, 0.0, 0.0});
+  facet.add({0, -1}, {1.0, 0.0}, {1, 2}, {0.25, 0.75});
+  facet.solve(1e-14, 100, true);
+  const double h = 1.0 + 0.0625 / 2.0 + 0.5625 / 4.0, r = 1.0 / h;
+  EXPECT_NEAR(facet.impulse[2], r, 1e-14);
+  EXPECT_NEAR(facet.velocity[5], -0.25 * r / 2.0, 1e-14);
+  EXPECT_NEAR(facet.velocity[8], -0.75 * r / 4.0, 1e-14);
+}
+
+TEST(CoupledConvergence, TheSameInputGivesTheSameBits) {
+  std::vector<double> first;
+  for (int run = 0; run < 2; ++run) {
+    Assembly column(friction(false, 0.3), false);
+    for (int i = 0; i < 60; ++i) {
+      column.add_body(1.0, 0.0, {1e-3 * std::sin(i), 0.0, -1e-2});
+      column.add(i, i - 1);
+    }
+    column.solve(1e-12, 700);
+    if (run == 0)
+      first = column.velocity;
+    else
+      EXPECT_EQ(column.velocity, first);
+  }
+}
+
+// Five iterations do not reach the top of the column.
+TEST(CoupledConvergence, NamesTheWorstContactWhereNoneIsSolved) {
+  Assembly column(friction(false, 0.3), false);
+  for (int i = 0; i < 40; ++i) {
+    column.add_body(1.0, 0.0, {0.0, 0.0, -1e-2});
+    column.add(i, i - 1);
+  }
+  const ilaw_coupled_report report = column.solve(1e-12, 5);
+  EXPECT_GT(report.residual, 1e-12);
+  EXPECT_EQ(report.worst_group, 0);
+  EXPECT_GE(report.worst_contact, 0);
+  EXPECT_EQ(report.method, static_cast<std::uint32_t>(ILAW_METHOD_CONJUGATE));
+}
+
+}  // namespace

@@ -1,0 +1,337 @@
+// activation: "resolved", through the ABI: its order, its energy, its state. The equations are those of
+// docs/theory/resolved_impact.md.
+#include "support/law_runner.hpp"
+#include "support/numbers.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <random>
+
+namespace ilaw::testing {
+namespace {
+
+Parameters resolved(double restitution) {
+  return {{{"restitution", restitution}}, {{"activation", "resolved"}}};
+}
+
+// ---- a mass under a force that depends on its position
+
+// Steps of three sequences without a common factor, from coarse to fine.
+const std::vector<double> step_sets[] = {
+    {1.03e-2, 2.9e-3, 1.03e-3, 2.9e-4}, {8.7e-3, 2.3e-3, 7.1e-4, 1.9e-4}, {1.3e-2, 3.7e-3, 1.3e-3, 3.7e-4}};
+
+// The step at a time: fixed, or changing smoothly by 40 %.
+using Steps = std::function<double(double time)>;
+Steps fixed(double h) {
+  return [h](double) { return h; };
+}
+Steps varying(double h) {
+  return [h](double time) { return h * (1.0 + 0.4 * std::sin(3.0 * time)); };
+}
+
+using Motion = std::function<double(double)>;
+
+// Mean error of positions over that of the exact ones.
+double error_of(double restitution, const Steps& steps, double end, const Motion& acceleration,
+                const Motion& exact) {
+  NodeRun node("contact", resolved(restitution));
+  double time = 0.0, step = steps(time), u = 1.0, v = 0.5 * step * acceleration(u), error = 0.0, size = 0.0;
+  while (time + step < end) {
+    u += step * v;
+    time += step;
+    error += step * std::abs(u - exact(time));
+    size += step * std::abs(exact(time));
+    const double next = steps(time);
+    node.time = time;
+    node.dt = 0.5 * (step + next);
+    node.position_dt = next;
+    node.gap = u;
+    node.v_previous = {v, 0.0, 0.0};
+    EXPECT_EQ(node.step({v + node.dt * acceleration(u), 0.0, 0.0}), ILAW_OK) << node.report.reason;
+    v = node.v[0];
+    step = next;
+  }
+  return error / size;
+}
+
+constexpr double gravity = 9.81;
+double falls(double) { return -gravity; }
+Motion ball(double restitution) {
+  return [restitution](double time) {
+    const double fall = std::sqrt(2.0 / gravity);
+    if (time < fall) return 1.0 - 0.5 * gravity * time * time;
+    double t = time - fall, w = restitution * gravity * fall;
+    for (; w > 1e-9; w *= restitution) {
+      if (t < 2.0 * w / gravity) return w * t - 0.5 * gravity * t * t;
+      t -= 2.0 * w / gravity;
+    }
+    return 0.0;
+  };
+}
+
+constexpr double frequency = 7.0, offset = 0.3;
+double swings(double u) { return -frequency * frequency * (u + offset); }
+// From rest at 1, about -offset, against the stop at 0.
+Motion oscillator(double restitution) {
+  return [restitution](double time) {
+    double u = 1.0, v = 0.0, t = time;
+    for (;;) {
+      const double size = std::hypot(u + offset, v / frequency),
+                   phase = std::atan2(v / frequency, u + offset),
+                   until = (phase + std::acos(offset / size)) / frequency;
+      if (t < until) return -offset + size * std::cos(frequency * t - phase);
+      t -= until;
+      u = 0.0;
+      v = restitution * frequency * size * std::sin(frequency * until - phase);
+      if (v < 1e-7) return 0.0;
+    }
+  };
+}
+
+TEST(Resolved, IsExactForAnElasticBall) {
+  for (const auto& set : step_sets)
+    for (const double h : set) EXPECT_LE(error_of(1.0, fixed(h), 5.0, falls, ball(1.0)), 5e-12) << "h " << h;
+}
+
+// Through the accumulation point: bounces that last less than a step are cut, h^2 high.
+TEST(Resolved, BringsABallToRestAtOrderTwo) {
+  for (const double restitution : {0.8, 0.5})
+    for (const auto& set : step_sets)
+      for (const double h : set)
+        EXPECT_LE(error_of(restitution, fixed(h), 5.0, falls, ball(restitution)), 0.05 * h * h + 1e-11)
+            << "e " << restitution << ", h " << h;
+}
+
+TEST(Resolved, HasOrderTwoAtChangingSteps) {
+  for (const double restitution : {1.0, 0.8, 0.5})
+    for (const auto& set : step_sets)
+      for (const double h : set) {
+        EXPECT_LE(error_of(restitution, varying(h), 5.0, falls, ball(restitution)), 8.0 * h * h)
+            << "ball, e " << restitution << ", h " << h;
+        EXPECT_LE(error_of(restitution, varying(h), 3.0, swings, oscillator(restitution)), 250.0 * h * h)
+            << "oscillator, e " << restitution << ", h " << h;
+      }
+}
+
+TEST(Resolved, HasOrderTwoAgainstAStop) {
+  for (const double restitution : {1.0, 0.8, 0.5})
+    for (const auto& set : step_sets)
+      for (const double h : set)
+        EXPECT_LE(error_of(restitution, fixed(h), 3.0, swings, oscillator(restitution)), 150.0 * h * h)
+            << "e " << restitution << ", h " << h;
+}
+
+// ---- energy
+
+struct Extremes {
+  double gained = 0.0, lost = 0.0, deepest = 0.0;  // of one step; over the run; energies over the first one
+};
+
+// A mass on a spring about -middle, with h omega of the step 1, against a stop at 0. The energy of a step is
+// that of the scheme, v^2/2 + w^2 (u_n + d)(u_{n+1} + d)/2, and what the law stores.
+Extremes swing(double restitution, double h_omega, double middle, int steps) {
+  NodeRun node("contact", resolved(restitution), h_omega);
+  double u = 1.0, v = 0.0, before = 0.0, first = 0.0, size = 0.0;
+  Extremes found;
+  for (int k = 0; k < steps; ++k) {
+    node.gap = u;
+    node.v_previous = {v, 0.0, 0.0};
+    if (node.step({v - h_omega * (u + middle), 0.0, 0.0}) != ILAW_OK) ADD_FAILURE() << node.report.reason;
+    v = node.v[0];
+    const double next = u + h_omega * v;
+    const double energy = 0.5 * (v * v + (u + middle) * (next + middle)) + node.energy[ILAW_ENERGY_STORED];
+    size = std::max(size, 0.5 * (v * v + (u + middle) * (u + middle)));
+    if (k == 0) first = before = energy;
+    found.gained = std::max(found.gained, energy - before);
+    found.lost = std::max(found.lost, std::abs(energy - first));
+    found.deepest = std::max(found.deepest, -next);
+    before = energy;
+    u = next;
+  }
+  found.gained /= size;
+  found.lost /= size;
+  return found;
+}
+
+TEST(Resolved, NeverGainsUpToTheCriticalStep) {
+  for (const double restitution : {1.0, 0.95, 0.8, 0.5, 0.1})
+    for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.95, 1.999})
+      for (const double middle : {0.3, 0.0, -0.2}) {
+        const Extremes found = swing(restitution, h_omega, middle, 100000);
+        EXPECT_LE(found.gained, 1e-14) << "e " << restitution << ", h w " << h_omega << ", " << middle;
+        EXPECT_LE(found.deepest, 1e-15) << "e " << restitution << ", h w " << h_omega << ", " << middle;
+      }
+}
+
+TEST(Resolved, KeepsTheEnergyOfAMillionSteps) {
+  for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.999}) {
+    const Extremes found = swing(1.0, h_omega, 0.3, 1000000);
+    EXPECT_LE(found.lost, 1e-12) << "h w " << h_omega;
+    EXPECT_LE(found.deepest, 1e-15) << "h w " << h_omega;
+  }
+}
+
+// Whatever the velocities, forces, steps and inverse masses: the parts are the work, and none is negative.
+TEST(Resolved, MakesNoEnergyWhateverMovesIt) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int waiting = 0, again = 0;
+  for (const double restitution : {0.05, 0.4, 0.9, 1.0}) {
+    NodeRun node("contact", resolved(restitution), 1e-3);
+    double stored = 0.0;
+    for (int k = 0; k < 100000; ++k) {
+      const double before = k % 3 == 0 ? node.v[0] : uniform(random), free = before + 0.5 * uniform(random),
+                   waited = node.state[0];
+      node.h[0] = std::pow(10.0, uniform(random));
+      node.position_dt = 1e-3 * (1.0 + 0.5 * uniform(random));
+      node.gap = k % 5 == 0 ? 0.0 : 1e-3 * uniform(random);
+      node.v_previous = {before, 0.0, 0.0};
+      ASSERT_EQ(node.step({free, 0.0, 0.0}), ILAW_OK) << node.report.reason;
+      const double work = 0.5 * node.r[0] * (before + node.v[0]), now = node.energy[ILAW_ENERGY_STORED];
+      const double rounding =
+          64 * ulp * (node.r[0] * (std::abs(before) + std::abs(free) + node.r[0] * node.h[0]) + now + stored);
+      ASSERT_EQ(now, std::max(node.state[0], 0.0)) << "k " << k;
+      ASSERT_LE(work + now - stored, rounding) << "e " << restitution << ", k " << k;
+      ASSERT_NEAR(work + now - stored + node.energy[ILAW_ENERGY_IMPACT], 0.0, rounding) << "k " << k;
+      ASSERT_GE(node.r[0], 0.0) << "k " << k;
+      waiting += node.state[0] != 0.0;
+      again += waited != 0.0 && node.state[0] != 0.0;
+      stored = now;
+    }
+  }
+  EXPECT_GT(waiting, 10000);
+  EXPECT_GT(again, 300);
+}
+
+// An impact under a constant force, anywhere in its step, loses (1 - e^2) w^2/(2 H) over both impulses, and
+// the node goes on along its parabola.
+TEST(Resolved, LosesTheEnergyOfItsRestitution) {
+  constexpr double h = 1e-2, w = -3.0, inverse_mass = 0.5;
+  for (const double restitution : {0.25, 1.0 / 3.0, 0.8, 1.0})
+    for (const double force : {0.0, -10.0, 10.0})
+      for (double part = 0.0; part < 1.0; part += 1.0 / 64.0) {
+        NodeRun node("contact", resolved(restitution), h);
+        node.h[0] = inverse_mass;
+        const double s = part * h, leaving = -restitution * w;
+        node.gap = -w * s + 0.5 * force * s * s;
+        node.v_previous = {w - force * (s + 0.5 * h), 0.0, 0.0};
+        double lost = 0.0;
+        for (int k = 0; k < 2; ++k) {
+          ASSERT_EQ(node.step({node.v_previous[0] + force * h, 0.0, 0.0}), ILAW_OK) << node.report.reason;
+          lost += node.energy[ILAW_ENERGY_IMPACT];
+          node.gap += h * node.v[0];
+        }
+        const double loss = 0.5 * (1.0 - restitution * restitution) * w * w / inverse_mass;
+        EXPECT_NEAR(lost, loss, 1e-13) << "e " << restitution << ", part " << part << ", " << force;
+        EXPECT_NEAR(node.v[0], leaving + force * (1.5 * h - s), 1e-13)
+            << "e " << restitution << ", part " << part << ", " << force;
+        EXPECT_NEAR(node.energy[ILAW_ENERGY_STORED], 0.0, 1e-300);
+      }
+}
+
+// ---- impacts close to one another, walls that move
+
+// Pressed so that a flight lasts little more than a step: the floor is never passed, and each step is within
+// what the one before left of the energy.
+TEST(Resolved, IsHitAgainInTheNextStep) {
+  constexpr double h = 1e-2, force = -100.0;
+  int again = 0;
+  for (const double restitution : {0.5, 0.9, 1.0})
+    for (double start = 0.01; start < 0.06; start += 0.00137) {
+      NodeRun node("contact", resolved(restitution), h);
+      node.gap = start;
+      double before = INFINITY;
+      for (int k = 0; k < 400; ++k) {
+        const double waited = node.state[0], gap = node.gap;
+        ASSERT_EQ(node.step({node.v[0] + force * h, 0.0, 0.0}), ILAW_OK) << node.report.reason;
+        again += waited != 0.0 && node.state[0] != 0.0;
+        node.gap += h * node.v[0];
+        const double energy =
+            0.5 * node.v[0] * node.v[0] - 0.5 * force * (gap + node.gap) + node.energy[ILAW_ENERGY_STORED];
+        ASSERT_GE(node.gap, -1e-17) << "start " << start << ", k " << k;
+        ASSERT_LE(energy, before + 1e-14) << "start " << start << ", k " << k;
+        before = energy;
+      }
+      EXPECT_LE(node.gap, restitution < 1.0 ? 1e-16 : 0.06) << "e " << restitution << ", start " << start;
+    }
+  EXPECT_GT(again, 100);
+}
+
+TEST(Resolved, ReboundsFromAMovingWall) {
+  constexpr double h = 1e-3, wall = 2.0, speed = -1.0, start = 0.1, end = 0.1;
+  for (const double restitution : {0.5, 1.0}) {
+    NodeRun node("contact", resolved(restitution), h);
+    double u = start, v = speed, time = 0.0;
+    for (; time < end; time += h) {
+      node.gap = u - wall * time;
+      node.v_previous = {v - wall, 0.0, 0.0};
+      ASSERT_EQ(node.step({v - wall, 0.0, 0.0}), ILAW_OK) << node.report.reason;
+      v = node.v[0] + wall;
+      u += h * v;
+    }
+    const double meets = start / (wall - speed), leaves = wall + restitution * (wall - speed);
+    EXPECT_NEAR(v, leaves, 1e-13) << "e " << restitution;
+    EXPECT_NEAR(u, start + speed * meets + leaves * (time - meets), 1e-14) << "e " << restitution;
+  }
+}
+
+TEST(Resolved, NeverPassesAtAnyPositionStep) {
+  for (const double l : {3e-4, 1e-3, 7e-3})
+    for (const double restitution : {0.3, 1.0}) {
+      NodeRun node("contact", resolved(restitution), 1e-3);
+      node.position_dt = l;
+      for (double gap = 0.0; gap < 3.0; gap += 0.0437) {
+        node.initialise();
+        node.gap = gap * l;
+        node.v_previous = {-2.0, 0.0, 0.0};
+        ASSERT_EQ(node.step({-2.1, 0.2, 0.0}), ILAW_OK);
+        EXPECT_GE(node.gap + l * node.v[0], -1e-17) << "l " << l << ", gap " << gap;
+      }
+    }
+}
+
+// ---- its limits, its state
+
+TEST(Resolved, IsPredictiveWithoutRestitution) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-300.0, 300.0);
+  NodeRun node("contact", resolved(0.0)), other("contact", {{}, {{"activation", "predictive"}}});
+  for (int k = 0; k < 100000; ++k) {
+    const double scale = std::pow(10.0, k % 2 ? exponent(random) : 0.0);
+    node.gap = k % 10 == 0 ? 0.0 : 1e-3 * scale * uniform(random);
+    node.h[0] = 1.0 + 0.9 * uniform(random);
+    node.v_previous = other.v_previous = {scale * uniform(random), 0.0, 0.0};
+    ASSERT_TRUE(step_alike(node, other, {scale * uniform(random), 0.0, 0.0})) << "k " << k;
+    ASSERT_EQ(node.state[0], 0.0) << "k " << k;
+  }
+}
+
+TEST(Resolved, AloneHasAState) {
+  for (const char* activation : {"moreau", "predictive", "resolved"}) {
+    const NodeRun node("contact", {{{"restitution", 0.5}}, {{"activation", activation}}});
+    const bool remembers = activation == std::string("resolved");
+    const ilaw_instance_info info = node.interface.info();
+    EXPECT_EQ(info.state_size, remembers ? 1U : 0U) << activation;
+    EXPECT_EQ(info.capabilities, remembers ? std::uint32_t{ILAW_CAN_STORE_ENERGY} : 0U) << activation;
+  }
+}
+
+// The rest of an impact is in the state: a run that begins between both impulses goes on bit for bit.
+TEST(Resolved, GoesOnFromItsState) {
+  constexpr double h = 1e-2;
+  NodeRun node("contact", resolved(0.8), h);
+  node.gap = 0.012;
+  node.v_previous = {-2.0, 0.0, 0.0};
+  ASSERT_EQ(node.step({-2.1, 0.0, 0.0}), ILAW_OK);
+  ASSERT_NE(node.state[0], 0.0);
+  NodeRun resumed("contact", resolved(0.8), h);
+  resumed.state = node.state;
+  resumed.v_previous = node.v_previous;
+  node.gap += h * node.v[0];
+  EXPECT_TRUE(step_alike(node, resumed, {node.v[0] - 0.1, 0.0, 0.0}));
+  EXPECT_GT(node.r[0], 0.0);
+  EXPECT_EQ(node.state, resumed.state);
+}
+
+}  // namespace
+}  // namespace ilaw::testing
