@@ -7,7 +7,7 @@
 namespace ilaw::coupled {
 namespace {
 
-// Of the scaled normal equations: columns that depend on each other get small parts.
+// Added to the scaled normal equations, so that columns that depend on each other get small parts.
 constexpr double regularisation = 1e-13;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b, std::size_t size) {

@@ -21,8 +21,8 @@ class Anderson {
   // slack: the history is dropped where the squared residual exceeds the least so far by this factor.
   void reset(std::size_t size, std::size_t depth, double slack);
   void forget();
-  // What to add to the image G(x), given the residual G(x) - x, for the next x. Returns false where nothing
-  // is.
+  // The next x is the image G(x) plus this correction, given the residual G(x) - x. Returns false where there
+  // is none.
   bool correct(const std::vector<double>& image, const std::vector<double>& residual, const Sum& sum,
                std::vector<double>& correction);
 

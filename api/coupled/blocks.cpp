@@ -5,19 +5,26 @@
 
 namespace ilaw::coupled {
 
-Block& Blocks::add(std::int32_t group, std::int32_t colour, std::size_t count) {
+namespace {
+
+std::size_t stride_of(std::size_t count) { return (count + 7) / 8 * 8 + (count > max_lanes / 2 ? 8 : 0); }
+
+}  // namespace
+
+Block& Blocks::add(const Layout& layout, std::int32_t group, std::int32_t colour, std::size_t count) {
   Block& block = blocks_.emplace_back();
+  block.layout = &layout;
   block.group = group;
   block.colour = colour;
   block.count = count;
-  block.stride = (count + 7) / 8 * 8 + (count > max_lanes / 2 ? 8 : 0);
+  block.stride = stride_of(count);
   return block;
 }
 
-void Blocks::allocate(const std::vector<Layout>& layouts) {
+void Blocks::allocate() {
   std::size_t values = 8, integers = 0, bytes = 0;
   for (const Block& block : blocks_) {
-    const Layout& layout = layouts[static_cast<std::size_t>(block.group)];
+    const Layout& layout = *block.layout;
     values += block.stride * static_cast<std::size_t>(layout.columns);
     integers += block.stride * static_cast<std::size_t>(layout.ends + 1);
     bytes += block.stride;
@@ -30,7 +37,7 @@ void Blocks::allocate(const std::vector<Layout>& layouts) {
   std::int32_t* next_integer = integers_.data();
   std::uint8_t* next_byte = bytes_.data();
   for (Block& block : blocks_) {
-    const Layout& layout = layouts[static_cast<std::size_t>(block.group)];
+    const Layout& layout = *block.layout;
     block.values = next;
     block.ends = next_integer;
     block.contact = next_integer + block.stride * static_cast<std::size_t>(layout.ends);
@@ -45,37 +52,22 @@ void Blocks::allocate(const std::vector<Layout>& layouts) {
   }
 }
 
-std::size_t Blocks::contact_count() const {
-  std::size_t count = 0;
-  for (const Block& block : blocks_) count += block.count;
-  return count;
-}
-
-void Blocks::select(const Blocks& from, const std::vector<Layout>& layouts,
-                    const std::vector<std::int32_t>& labels, std::int32_t label) {
+void Blocks::select(const Blocks& from, std::span<const Lane> lanes) {
   clear();
-  origins_.clear();
-  std::size_t k = 0;
-  for (std::size_t b = 0; b < from.blocks_.size(); ++b) {
-    const Block& source = from.blocks_[b];
-    for (std::size_t lane = 0; lane < source.count; ++lane, ++k) {
-      if (labels[k] != label) continue;
-      origins_.push_back({static_cast<std::int32_t>(b), static_cast<std::int32_t>(lane)});
-      const bool fits = !blocks_.empty() && blocks_.back().group == source.group &&
-                        blocks_.back().colour == source.colour && blocks_.back().count < max_lanes &&
-                        blocks_.back().asleep == source.asleep;
-      if (!fits) {
-        add(source.group, source.colour, 0).asleep = source.asleep;
-      }
-      ++blocks_.back().count;
-    }
+  origins_ = lanes;
+  for (const Lane& lane : lanes) {
+    const Block& source = from.blocks_[static_cast<std::size_t>(lane.block)];
+    const bool fits = !blocks_.empty() && blocks_.back().group == source.group &&
+                      blocks_.back().colour == source.colour && blocks_.back().count < max_lanes &&
+                      blocks_.back().asleep == source.asleep;
+    if (!fits) add(*source.layout, source.group, source.colour, 0).asleep = source.asleep;
+    ++blocks_.back().count;
   }
-  for (Block& block : blocks_)
-    block.stride = (block.count + 7) / 8 * 8 + (block.count > max_lanes / 2 ? 8 : 0);
-  allocate(layouts);
+  for (Block& block : blocks_) block.stride = stride_of(block.count);
+  allocate();
   auto origin = origins_.begin();
   for (Block& block : blocks_) {
-    const Layout& layout = layouts[static_cast<std::size_t>(block.group)];
+    const Layout& layout = *block.layout;
     for (std::size_t lane = 0; lane < block.count; ++lane, ++origin) {
       const Block& source = from.blocks_[static_cast<std::size_t>(origin->block)];
       const auto at = static_cast<std::size_t>(origin->lane);
@@ -88,10 +80,10 @@ void Blocks::select(const Blocks& from, const std::vector<Layout>& layouts,
   }
 }
 
-void Blocks::give_back(Blocks& to, const std::vector<Layout>& layouts) const {
+void Blocks::give_back(Blocks& to) const {
   auto origin = origins_.begin();
   for (const Block& block : blocks_) {
-    const Layout& layout = layouts[static_cast<std::size_t>(block.group)];
+    const Layout& layout = *block.layout;
     for (std::size_t lane = 0; lane < block.count; ++lane, ++origin) {
       Block& target = to.blocks_[static_cast<std::size_t>(origin->block)];
       const auto at = static_cast<std::size_t>(origin->lane);

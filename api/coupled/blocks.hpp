@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace ilaw::coupled {
@@ -27,6 +28,7 @@ struct Layout {
 };
 
 struct Block {
+  const Layout* layout = nullptr;  // that of its group
   std::int32_t group = 0, colour = 0;
   std::size_t count = 0, stride = 0;  // lanes, and distance of columns: a multiple of 8
   double* values = nullptr;           // columns
@@ -40,6 +42,10 @@ struct Block {
 
   double* column(int c) { return values + static_cast<std::size_t>(c) * stride; }
   const double* column(int c) const { return values + static_cast<std::size_t>(c) * stride; }
+  // Body at end e of a contact.
+  std::int32_t end(int e, std::size_t lane) const {
+    return ends[static_cast<std::size_t>(e) * stride + lane];
+  }
   Vector at(int c, std::size_t lane) const {
     const double* first = column(c) + lane;
     return {first[0], first[stride], first[2 * stride]};
@@ -51,10 +57,10 @@ struct Block {
 };
 
 // Mean of the diagonal of H. Its root is the scale of a contact's impulse.
-inline double mean_delassus(const Block& block, const Layout& layout, std::size_t q) {
-  const double* h = block.column(layout.delassus) + q;
+inline double mean_delassus(const Block& block, std::size_t q) {
+  const double* h = block.column(block.layout->delassus) + q;
   const std::size_t s = block.stride;
-  switch (layout.delassus_size) {
+  switch (block.layout->delassus_size) {
     case 1:
       return h[0];
     case 2:
@@ -66,33 +72,32 @@ inline double mean_delassus(const Block& block, const Layout& layout, std::size_
   }
 }
 
+// Place of a contact.
+struct Lane {
+  std::int32_t block, lane;
+};
+
 // Blocks in the order of an iteration, with their memory.
 class Blocks {
  public:
   void clear() { blocks_.clear(); }
   // Adds a block; allocate() gives all of them their columns.
-  Block& add(std::int32_t group, std::int32_t colour, std::size_t count);
-  void allocate(const std::vector<Layout>& layouts);
-  // Becomes the lanes of `from` with chosen[index of the contact over all blocks] == label. Neighbours of one
-  // color are joined.
-  void select(const Blocks& from, const std::vector<Layout>& layouts, const std::vector<std::int32_t>& labels,
-              std::int32_t label);
-  // Copies impulses, states and status back to the blocks they were selected from.
-  void give_back(Blocks& to, const std::vector<Layout>& layouts) const;
+  Block& add(const Layout& layout, std::int32_t group, std::int32_t colour, std::size_t count);
+  void allocate();
+  // Becomes these lanes of `from`, in their order. Neighbours of one color are joined.
+  void select(const Blocks& from, std::span<const Lane> lanes);
+  // Copies impulses, states and status back to the lanes they were selected from.
+  void give_back(Blocks& to) const;
 
   std::vector<Block>& list() { return blocks_; }
   const std::vector<Block>& list() const { return blocks_; }
-  std::size_t contact_count() const;
 
  private:
-  struct Lane {
-    std::int32_t block, lane;
-  };
   std::vector<Block> blocks_;
   std::vector<double> values_;
   std::vector<std::int32_t> integers_;
   std::vector<std::uint8_t> bytes_;
-  std::vector<Lane> origins_;
+  std::span<const Lane> origins_;
 };
 
 }  // namespace ilaw::coupled

@@ -25,7 +25,7 @@ struct alignas(64) Body {
   double inverse_inertia = 0.0;
 };
 
-// Of bodies with a tensor, or with a mass per axis.
+// The inertia of bodies with a tensor, or with a mass per axis.
 struct Inertia {
   Vector inverse_mass{};
   Symmetric inverse_inertia{};

@@ -88,7 +88,7 @@ void Colours::add_chunk(const std::int32_t* list, std::size_t count, const Conta
     ++next_colour_;
     for (std::size_t at = first[c]; at < first[c + 1]; at += most) {
       if (c == serial) ++next_colour_;
-      blocks.add(group, next_colour_, std::min(most, first[c + 1] - at));
+      blocks.add(contacts.layout(), group, next_colour_, std::min(most, first[c + 1] - at));
     }
   }
 }

@@ -305,7 +305,7 @@ void Contacts::fill_delassus(Block& block, std::size_t lane, const Bodies& bodie
     return;
   }
   std::array<Vector, 3> rows{};
-  with_kernel(kind_, block, layout_, body_count_, [&](const auto& kernel) {
+  with_kernel(kind_, block, body_count_, [&](const auto& kernel) {
     for (std::size_t c = 0; c < 3; ++c) {
       Vector unit{};
       unit[c] = 1.0;
@@ -338,12 +338,11 @@ Vector Contacts::previous(const Block& block, std::size_t lane, std::int64_t k, 
     velocity = velocity + sign * (motion.velocity + cross(motion.spin, arm));
   };
   if (kind_ != Kind::weighted) {
-    add(block.ends[lane], bodies.rotate() ? vector(given_.arm, k, 3) : Vector{}, 1.0);
-    add(block.ends[block.stride + lane], bodies.rotate() ? vector(given_.counterpart_arm, k, 3) : Vector{},
-        -1.0);
+    add(block.end(0, lane), bodies.rotate() ? vector(given_.arm, k, 3) : Vector{}, 1.0);
+    add(block.end(1, lane), bodies.rotate() ? vector(given_.counterpart_arm, k, 3) : Vector{}, -1.0);
     return velocity;
   }
-  const WeightedKernel kernel(block, layout_, body_count_);
+  const WeightedKernel kernel(block, body_count_);
   for (std::size_t c = 0; c < 3; ++c) {
     Vector axis{};
     axis[c] = 1.0;

@@ -46,11 +46,10 @@ void Equations::read(const Blocks& blocks, const Problem& problem) {
   };
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
-    const auto g = static_cast<std::size_t>(block.group);
-    const Contacts& group = problem.groups[g];
-    with_kernel(group.kind(), block, problem.layouts[g], group.body_count(), [&](const auto& kernel) {
+    const Contacts& group = problem.group(block);
+    with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
       for (std::size_t q = 0; q < block.count; ++q) {
-        scales_.push_back(std::sqrt(mean_delassus(block, problem.layouts[g], q)));
+        scales_.push_back(std::sqrt(mean_delassus(block, q)));
         for (std::size_t c = 0; c < 3; ++c, ++rows_) {
           Vector unit{};
           unit[c] = 1.0;

@@ -4,27 +4,31 @@
 
 #include "sweep.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace ilaw::coupled {
 
 class Islands {
  public:
-  // Of the contacts of all blocks; those asleep belong to none (-1).
   void find(const Blocks& blocks, const Problem& problem);
-  std::int32_t count() const { return count_; }
-  // Island of each contact, in the order of lanes.
+  std::int32_t count() const { return static_cast<std::int32_t>(first_.size()) - 1; }
+  // Contacts of an island that are not asleep, in the order of blocks.
+  std::span<const Lane> lanes(std::int32_t island) const;
+  // Island of each contact, in the order of blocks; -1 where asleep.
   const std::vector<std::int32_t>& labels() const { return labels_; }
-  // Largest |H dr| of each island in the last iteration.
-  const std::vector<double>& residuals() const { return residuals_; }
 
  private:
   std::int32_t root(std::int32_t body);
+  void join(const Blocks& blocks, const Problem& problem);
+  void label(const Blocks& blocks, const Problem& problem);
+  void sort(const Blocks& blocks);
 
-  std::int32_t count_ = 0;
   std::vector<std::int32_t> labels_, joined_to_, label_of_root_;
-  std::vector<double> residuals_;
+  std::vector<std::size_t> first_{0}, next_;  // of each island in lanes_
+  std::vector<Lane> lanes_;
 };
 
 }  // namespace ilaw::coupled

@@ -112,7 +112,7 @@ void Iterations::read_scaled(const Blocks& blocks) {
   std::size_t i = 0;
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
-    const Layout& layout = problem_.layouts[static_cast<std::size_t>(block.group)];
+    const Layout& layout = *block.layout;
     for (std::size_t q = 0; q < block.count; ++q)
       for (int c = 0; c < 3; ++c, ++i) {
         image_[i] = scales_[i / 3] * block.column(layout.impulse + c)[q];
@@ -205,12 +205,12 @@ bool Iterations::splitting(Blocks& blocks, std::uint32_t most, std::size_t depth
     ++count_;
     // Both parts agree: an iteration of Gauss-Seidel measures the residual that is asked for.
     if (splitting_.difference() > close) continue;
-    splitting_.changes(blocks, problem_, correction_);
+    splitting_.changes(blocks, correction_);
     if (move(blocks, correction_)) return true;
     if (is_over() || !splitting_.open(blocks, problem_, sweep_, depth)) return false;
     close *= 0.1;
   }
-  splitting_.changes(blocks, problem_, correction_);
+  splitting_.changes(blocks, correction_);
   return !is_over() && move(blocks, correction_);
 }
 
@@ -218,8 +218,7 @@ std::size_t Iterations::scales_of(const Blocks& blocks) {
   scales_.clear();
   for (const Block& block : blocks.list())
     for (std::size_t q = 0; q < block.count && !block.asleep; ++q)
-      scales_.push_back(
-          std::sqrt(mean_delassus(block, problem_.layouts[static_cast<std::size_t>(block.group)], q)));
+      scales_.push_back(std::sqrt(mean_delassus(block, q)));
   return scales_.size();
 }
 
@@ -243,7 +242,7 @@ void Iterations::read_impulses(const Blocks& blocks, std::vector<double>& impuls
   impulses.clear();
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
-    const int impulse = problem_.layouts[static_cast<std::size_t>(block.group)].impulse;
+    const int impulse = block.layout->impulse;
     for (std::size_t q = 0; q < block.count; ++q)
       for (int c = 0; c < 3; ++c) impulses.push_back(block.column(impulse + c)[q]);
   }
@@ -267,9 +266,9 @@ void Iterations::solve_islands(Blocks& blocks) {
       continue;
     }
     count_ = first;
-    island_.select(blocks, problem_.layouts, islands_.labels(), island);
+    island_.select(blocks, islands_.lanes(island));
     alternate(island_);
-    island_.give_back(blocks, problem_.layouts);
+    island_.give_back(blocks);
     largest = std::max(largest, residual_);
     size = std::max(size, size_);
     if (count_ > most_counted_) method = method_;
@@ -289,7 +288,7 @@ void Iterations::find_island_residuals(const Blocks& blocks, std::vector<double>
       k += block.count;
       continue;
     }
-    const Layout& layout = problem_.layouts[static_cast<std::size_t>(block.group)];
+    const Layout& layout = *block.layout;
     sweep_.respond(block, block.column(layout.change), block.stride, response.data());
     for (std::size_t q = 0; q < block.count; ++q, ++k)
       for (std::size_t c = 0; c < 3; ++c) {

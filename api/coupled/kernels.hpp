@@ -26,7 +26,7 @@ inline Vector velocity_at(const Body& body, const Vector& arm) {
 // Each kernel has relative(bodies, lane), and apply(lane, r, add), which calls add(body, impulse, moment).
 class PointKernel {
  public:
-  PointKernel(const Block& block, const Layout&) : body_(block.ends), other_(block.ends + block.stride) {}
+  explicit PointKernel(const Block& block) : body_(block.ends), other_(block.ends + block.stride) {}
   Vector relative(const Body* bodies, std::size_t q) const {
     return bodies[body_[q]].velocity - bodies[other_[q]].velocity;
   }
@@ -42,12 +42,12 @@ class PointKernel {
 
 class SphereKernel {
  public:
-  SphereKernel(const Block& block, const Layout& layout)
+  explicit SphereKernel(const Block& block)
       : body_(block.ends),
         other_(block.ends + block.stride),
-        normal_(block.column(layout.normal)),
-        arm_(block.column(layout.arm)),
-        other_arm_(block.column(layout.counterpart_arm)),
+        normal_(block.column(block.layout->normal)),
+        arm_(block.column(block.layout->arm)),
+        other_arm_(block.column(block.layout->counterpart_arm)),
         stride_(block.stride) {}
   Vector relative(const Body* bodies, std::size_t q) const {
     const Body &x = bodies[body_[q]], &y = bodies[other_[q]];
@@ -69,15 +69,15 @@ class SphereKernel {
 
 class RigidKernel {
  public:
-  RigidKernel(const Block& block, const Layout& layout) : block_(block), layout_(layout) {}
+  explicit RigidKernel(const Block& block) : block_(block), layout_(*block.layout) {}
   Vector relative(const Body* bodies, std::size_t q) const {
-    return velocity_at(bodies[block_.ends[q]], block_.at(layout_.arm, q)) -
-           velocity_at(bodies[block_.ends[block_.stride + q]], block_.at(layout_.counterpart_arm, q));
+    return velocity_at(bodies[block_.end(0, q)], block_.at(layout_.arm, q)) -
+           velocity_at(bodies[block_.end(1, q)], block_.at(layout_.counterpart_arm, q));
   }
   template <class Add>
   void apply(std::size_t q, const Vector& r, Add&& add) const {
-    add(block_.ends[q], r, cross(block_.at(layout_.arm, q), r));
-    add(block_.ends[block_.stride + q], -1.0 * r, cross(r, block_.at(layout_.counterpart_arm, q)));
+    add(block_.end(0, q), r, cross(block_.at(layout_.arm, q), r));
+    add(block_.end(1, q), -1.0 * r, cross(r, block_.at(layout_.counterpart_arm, q)));
   }
 
  private:
@@ -88,26 +88,23 @@ class RigidKernel {
 // Weights of the counterpart's bodies are stored with a minus sign.
 class WeightedKernel {
  public:
-  WeightedKernel(const Block& block, const Layout& layout, std::uint32_t body_count)
-      : block_(block), layout_(layout), body_count_(static_cast<int>(body_count)) {}
+  WeightedKernel(const Block& block, std::uint32_t body_count)
+      : block_(block), layout_(*block.layout), body_count_(static_cast<int>(body_count)) {}
   Vector relative(const Body* bodies, std::size_t q) const {
     Vector sum{};
     for (int e = 0; e < layout_.ends; ++e)
-      sum = sum + times(e, q, velocity_at(bodies[end(e, q)], arm(e, q)), false);
+      sum = sum + times(e, q, velocity_at(bodies[block_.end(e, q)], arm(e, q)), false);
     return sum;
   }
   template <class Add>
   void apply(std::size_t q, const Vector& r, Add&& add) const {
     for (int e = 0; e < layout_.ends; ++e) {
       const Vector impulse = times(e, q, r, true);
-      add(end(e, q), impulse, cross(arm(e, q), impulse));
+      add(block_.end(e, q), impulse, cross(arm(e, q), impulse));
     }
   }
 
  private:
-  std::int32_t end(int e, std::size_t q) const {
-    return block_.ends[static_cast<std::size_t>(e) * block_.stride + q];
-  }
   Vector arm(int e, std::size_t q) const {
     const int column = e < body_count_ ? layout_.arm : layout_.counterpart_arm;
     return column < 0 ? Vector{} : block_.at(column, q);
@@ -130,17 +127,16 @@ class WeightedKernel {
 
 // Calls visit with the kernel of a block.
 template <class Visit>
-void with_kernel(Kind kind, const Block& block, const Layout& layout, std::uint32_t body_count,
-                 Visit&& visit) {
+void with_kernel(Kind kind, const Block& block, std::uint32_t body_count, Visit&& visit) {
   switch (kind) {
     case Kind::point:
-      return visit(PointKernel(block, layout));
+      return visit(PointKernel(block));
     case Kind::sphere:
-      return visit(SphereKernel(block, layout));
+      return visit(SphereKernel(block));
     case Kind::rigid:
-      return visit(RigidKernel(block, layout));
+      return visit(RigidKernel(block));
     case Kind::weighted:
-      return visit(WeightedKernel(block, layout, body_count));
+      return visit(WeightedKernel(block, body_count));
   }
 }
 

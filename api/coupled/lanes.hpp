@@ -30,7 +30,7 @@ inline LanesVector operator-(const LanesVector& a, const LanesVector& b) {
 }
 inline Lanes dot(const LanesVector& a, const LanesVector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// Of two numbers of which one is none, the second.
+// The second where one of them is not a number.
 inline Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 inline Lanes magnitude(const Lanes& a) { return larger(a, -a); }
 inline Lanes largest(const LanesVector& a) {

@@ -9,8 +9,8 @@
 
 namespace ilaw::coupled {
 
-// Of each contact its law's impulse f at v_free = u - H r, and the derivative of f: all contacts of a block
-// at once, since a law sees its own contact alone.
+// Each contact's impulse f(v_free) by its law at v_free = u - H r, and the derivative of f: all contacts of a
+// block at once, since a law sees its own contact alone.
 bool Newton::linearize(const Blocks& blocks, const Problem& problem, const Sweep& sweep) {
   constexpr double small = 0x1p-20;
   std::array<double, 3 * max_stride> v_free{}, made{}, moved{}, answer{}, other{};
@@ -19,9 +19,8 @@ bool Newton::linearize(const Blocks& blocks, const Problem& problem, const Sweep
   tangents_.clear();
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
-    const auto g = static_cast<std::size_t>(block.group);
-    const Contacts& group = problem.groups[g];
-    const Layout& layout = problem.layouts[g];
+    const Contacts& group = problem.group(block);
+    const Layout& layout = *block.layout;
     state_.resize(block.stride * static_cast<std::size_t>(layout.state_size) + 1);
     sweep.gather(block, v_free.data());
     sweep.respond(block, block.column(layout.impulse), block.stride, made.data());

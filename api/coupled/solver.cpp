@@ -39,9 +39,9 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
   report.bad_group = -1;
   sweep_.reset();
   set_velocities();
-  iterations_.begin(options.most_sweeps > 0 ? options.most_sweeps : default_sweeps,
-                    options.tolerance > 0.0 ? options.tolerance : default_tolerance);
-  const std::int32_t code = iterate(options.tolerance > 0.0 ? options.tolerance : default_tolerance);
+  const double tolerance = options.tolerance > 0.0 ? options.tolerance : default_tolerance;
+  iterations_.begin(options.most_sweeps > 0 ? options.most_sweeps : default_sweeps, tolerance);
+  const std::int32_t code = iterate(tolerance);
   if (code < 0) {
     report.bad_group = sweep_.failed_group();
     report.reason = sweep_.last_report().reason;
@@ -67,12 +67,10 @@ const char* Solver::open(const ilaw_bodies* bodies, const ilaw_contacts* const* 
   problem_.bodies.read(sized::read(bodies));
   problem_.group_count = static_cast<std::size_t>(group_count);
   if (problem_.groups.size() < problem_.group_count) problem_.groups.resize(problem_.group_count);
-  problem_.layouts.resize(problem_.group_count);
   for (std::size_t g = 0; g < problem_.group_count; ++g) {
     report.bad_group = static_cast<std::int64_t>(g);
     if (!groups[g]) return "a group is null";
     if (const char* reason = problem_.groups[g].open(*groups[g], problem_.bodies)) return reason;
-    problem_.layouts[g] = problem_.groups[g].layout();
   }
   return nullptr;
 }
@@ -95,12 +93,11 @@ const char* Solver::make_blocks(ilaw_coupled_report& report) {
   order_.clear();
   for (std::size_t g = 0; g < problem_.group_count; ++g)
     colours_.assign(problem_.groups[g], static_cast<std::int32_t>(g), problem_.bodies, blocks_, order_);
-  blocks_.allocate(problem_.layouts);
+  blocks_.allocate();
   auto next = order_.begin();
   for (Block& block : blocks_.list())
     for (std::size_t lane = 0; lane < block.count; ++lane)
-      if (!problem_.groups[static_cast<std::size_t>(block.group)].fill(block, lane, *next++,
-                                                                       problem_.bodies)) {
+      if (!problem_.group(block).fill(block, lane, *next++, problem_.bodies)) {
         report.bad_group = block.group;
         return "delassus_form is transverse, and an arm is not along the normal";
       }
@@ -159,11 +156,10 @@ void Solver::find_stable_step(ilaw_coupled_report& report) {
   counts_.assign(static_cast<std::size_t>(problem_.bodies.count()) + 1, 0.0);
   const auto for_each_end = [&](const auto& visit) {
     for (Block& block : blocks_.list()) {
-      const Layout& layout = problem_.layouts[static_cast<std::size_t>(block.group)];
+      const Layout& layout = *block.layout;
       for (std::size_t q = 0; q < block.count; ++q)
         for (int e = 0; e < layout.ends; ++e)
-          visit(block, layout, q,
-                static_cast<std::size_t>(block.ends[static_cast<std::size_t>(e) * block.stride + q]));
+          visit(block, layout, q, static_cast<std::size_t>(block.end(e, q)));
     }
   };
   for_each_end([&](const Block& block, const Layout& layout, std::size_t q, std::size_t body) {
@@ -179,21 +175,18 @@ void Solver::find_stable_step(ilaw_coupled_report& report) {
   sweep_.reset();
   double least = std::numeric_limits<double>::infinity();
   for (Block& block : blocks_.list()) {
-    const auto g = static_cast<std::size_t>(block.group);
-    const Layout& layout = problem_.layouts[g];
+    const Layout& layout = *block.layout;
     sweep_.gather(block, v_free.data());
     for (std::size_t q = 0; q < block.count; ++q) {
       double share = 1.0;
       for (int e = 0; e < layout.ends; ++e)
-        share = std::max(
-            share,
-            counts_[static_cast<std::size_t>(block.ends[static_cast<std::size_t>(e) * block.stride + q])]);
+        share = std::max(share, counts_[static_cast<std::size_t>(block.end(e, q))]);
       for (int c = 0; c < layout.delassus_size; ++c)
         delassus[static_cast<std::size_t>(c) * max_stride + q] = share * block.column(layout.delassus + c)[q];
     }
     state.resize(block.stride * static_cast<std::size_t>(layout.state_size) + 1);
     ilaw_report found{};
-    const std::int32_t code = problem_.groups[g].evaluate(
+    const std::int32_t code = problem_.group(block).evaluate(
         block, {v_free.data(), delassus.data(), max_stride, answer.data(), state.data(), status.data()},
         found);
     if (code >= 0 && found.stable_velocity_step > 0.0) least = std::min(least, found.stable_velocity_step);
@@ -209,7 +202,7 @@ void Solver::find_worst_contact(ilaw_coupled_report& report) {
   std::size_t worst_lane = 0;
   for (const Block& block : blocks_.list()) {
     if (block.asleep) continue;
-    const Layout& layout = problem_.layouts[static_cast<std::size_t>(block.group)];
+    const Layout& layout = *block.layout;
     sweep_.respond(block, block.column(layout.change), block.stride, response.data());
     for (std::size_t q = 0; q < block.count; ++q) {
       const double change = largest({response[q], response[max_stride + q], response[2 * max_stride + q]});
@@ -228,28 +221,21 @@ void Solver::find_worst_contact(ilaw_coupled_report& report) {
 
 // The other law: of the contact at the same bodies with the largest impulse.
 void Solver::find_incompatible_laws(const Block& worst, std::size_t lane, ilaw_coupled_report& report) const {
-  const auto ends_of = [&](const Block& block) {
-    return problem_.layouts[static_cast<std::size_t>(block.group)].ends;
-  };
-  const auto end = [](const Block& block, int e, std::size_t q) {
-    return block.ends[static_cast<std::size_t>(e) * block.stride + q];
-  };
   double most = 0.0;
   for (const Block& block : blocks_.list())
     for (std::size_t q = 0; q < block.count; ++q) {
       bool shares = false;
-      for (int e = 0; e < ends_of(block); ++e)
-        for (int f = 0; f < ends_of(worst); ++f)
+      for (int e = 0; e < block.layout->ends; ++e)
+        for (int f = 0; f < worst.layout->ends; ++f)
           shares = shares ||
-                   (end(block, e, q) == end(worst, f, lane) && problem_.bodies.is_movable(end(block, e, q)));
+                   (block.end(e, q) == worst.end(f, lane) && problem_.bodies.is_movable(block.end(e, q)));
       if (!shares || (&block == &worst && q == lane)) continue;
-      const double size =
-          largest(block.at(problem_.layouts[static_cast<std::size_t>(block.group)].impulse, q));
+      const double size = largest(block.at(block.layout->impulse, q));
       if (!(size > most)) continue;
       most = size;
-      report.other_law = problem_.groups[static_cast<std::size_t>(block.group)].law_id();
+      report.other_law = problem_.group(block).law_id();
     }
-  if (report.other_law) report.law = problem_.groups[static_cast<std::size_t>(worst.group)].law_id();
+  if (report.other_law) report.law = problem_.group(worst).law_id();
 }
 
 // Energies and amounts at the final velocities, kept until no call can be refused any more.
@@ -259,10 +245,9 @@ std::int32_t Solver::evaluate_balance(ilaw_coupled_report& report) {
   std::array<std::uint8_t, max_stride> status{};
   std::vector<double> state;
   for (Block& block : blocks_.list()) {
-    const auto g = static_cast<std::size_t>(block.group);
-    const Contacts& group = problem_.groups[g];
+    const Contacts& group = problem_.group(block);
     if (!group.asks_balance()) continue;
-    const Layout& layout = problem_.layouts[g];
+    const Layout& layout = *block.layout;
     sweep_.gather(block, v_free.data());
     sweep_.respond(block, block.column(layout.impulse), block.stride, response.data());
     for (std::size_t i = 0; i < v_free.size(); ++i) v_free[i] -= response[i];
@@ -292,12 +277,11 @@ void Solver::write(ilaw_coupled_report& report) {
   const double* balance = balance_.data();
   double twice_wall_work = 0.0;
   for (const Block& block : blocks_.list()) {
-    const auto g = static_cast<std::size_t>(block.group);
-    const Contacts& group = problem_.groups[g];
+    const Contacts& group = problem_.group(block);
     for (std::size_t lane = 0; lane < block.count; ++lane) {
       group.write(block, lane);
       if (group.has_wall())
-        twice_wall_work += group.wall_work(block.contact[lane], block.at(problem_.layouts[g].impulse, lane));
+        twice_wall_work += group.wall_work(block.contact[lane], block.at(block.layout->impulse, lane));
       if (group.asks_balance())
         group.write_balance(block, lane, balance, balance + ILAW_ENERGY_COUNT * max_stride, report.energy);
     }

@@ -110,8 +110,7 @@ bool Splitting::answer(const Blocks& blocks, const Problem& problem) {
   std::size_t first = 0;
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
-    const auto g = static_cast<std::size_t>(block.group);
-    const Layout& layout = problem.layouts[g];
+    const Layout& layout = *block.layout;
     law_state_.resize(block.stride * static_cast<std::size_t>(layout.state_size) + 1);
     const std::size_t diagonal = layout.delassus_size == 6 ? 3 : std::min(2, layout.delassus_size);
     delassus.fill(0.0);
@@ -122,7 +121,7 @@ bool Splitting::answer(const Blocks& blocks, const Problem& problem) {
         v_free[c * max_stride + q] = -rho_ * scale * state_[3 * (first + q) + c];
     }
     ilaw_report report{};
-    if (problem.groups[g].evaluate(
+    if (problem.group(block).evaluate(
             block,
             {v_free.data(), delassus.data(), max_stride, impulse.data(), law_state_.data(), status.data()},
             report) < 0)
@@ -193,12 +192,12 @@ void Splitting::accelerate() {
   for (std::size_t i = 0; i < state_.size(); ++i) state_[i] = next_[i] + (corrected ? correction_[i] : 0.0);
 }
 
-void Splitting::changes(const Blocks& blocks, const Problem& problem, std::vector<double>& changes) const {
+void Splitting::changes(const Blocks& blocks, std::vector<double>& changes) const {
   changes.resize(law_.size());
   std::size_t i = 0;
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
-    const int impulse = problem.layouts[static_cast<std::size_t>(block.group)].impulse;
+    const int impulse = block.layout->impulse;
     for (std::size_t q = 0; q < block.count; ++q)
       for (int c = 0; c < 3; ++c, ++i)
         changes[i] = law_[i] / equations_.scales()[i / 3] - block.column(impulse + c)[q];

@@ -33,7 +33,7 @@ class Splitting {
   // Largest velocity by which the two parts of the last iteration differ.
   double difference() const { return difference_; }
   // From the present impulses to those of the last iteration, by contact.
-  void changes(const Blocks& blocks, const Problem& problem, std::vector<double>& changes) const;
+  void changes(const Blocks& blocks, std::vector<double>& changes) const;
 
  private:
   struct Factor;

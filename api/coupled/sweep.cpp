@@ -22,7 +22,8 @@ std::size_t padded(std::size_t count) { return (count + 7) / 8 * 8; }
 
 // Calls visit with H of a block as a function.
 template <class Visit>
-void with_form(const Block& block, const Layout& layout, Visit&& visit) {
+void with_form(const Block& block, Visit&& visit) {
+  const Layout& layout = *block.layout;
   const double* h = block.column(layout.delassus);
   switch (layout.delassus_size) {
     case 1:
@@ -45,19 +46,18 @@ void Sweep::reset() {
 }
 
 void Sweep::respond(const Block& block, const double* x, std::size_t xs, double* y) const {
-  with_form(block, problem_.layouts[static_cast<std::size_t>(block.group)], [&](const auto& form) {
+  with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < padded(block.count); q += lane_count)
       put(form(q, lanes(x + q, xs)), y + q, max_stride);
   });
 }
 
 void Sweep::gather(const Block& block, double* velocity) const {
-  const auto g = static_cast<std::size_t>(block.group);
-  const Contacts& group = problem_.groups[g];
-  const Layout& layout = problem_.layouts[g];
+  const Contacts& group = problem_.group(block);
+  const Layout& layout = *block.layout;
   const Body* bodies = problem_.bodies.now();
   const std::size_t n = padded(block.count);
-  with_kernel(group.kind(), block, layout, group.body_count(), [&](const auto& kernel) {
+  with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
     for (std::size_t q = 0; q < block.count; ++q) {
       const Vector u = kernel.relative(bodies, q);
       velocity[q] = u[0], velocity[max_stride + q] = u[1], velocity[2 * max_stride + q] = u[2];
@@ -89,7 +89,7 @@ Change Sweep::run_all(Blocks& blocks) {
     if (!evaluate(block, change)) return change;
     scatter(block, change);
     if (!block.asleep) continue;
-    const double* r = block.column(problem_.layouts[static_cast<std::size_t>(block.group)].impulse);
+    const double* r = block.column(block.layout->impulse);
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t q = 0; q < block.count; ++q)
         if (r[c * block.stride + q] != 0.0) block.asleep = false;
@@ -98,7 +98,7 @@ Change Sweep::run_all(Blocks& blocks) {
 }
 
 ILAW_COUPLED_VERSIONS void Sweep::extrapolate(Block& block, double beta) const {
-  const Layout& layout = problem_.layouts[static_cast<std::size_t>(block.group)];
+  const Layout& layout = *block.layout;
   double *r = block.column(layout.impulse), *direction = block.column(layout.direction);
   const double* last = block.column(layout.change);
   for (std::size_t c = 0; c < 3; ++c)
@@ -111,11 +111,11 @@ ILAW_COUPLED_VERSIONS void Sweep::extrapolate(Block& block, double beta) const {
 
 // v_free = u - H r. Returns the largest velocity in it.
 ILAW_COUPLED_VERSIONS double Sweep::prepare(const Block& block) {
-  const Layout& layout = problem_.layouts[static_cast<std::size_t>(block.group)];
+  const Layout& layout = *block.layout;
   gather(block, v_free_.data());
   const double* r = block.column(layout.impulse);
   Lanes most{};
-  with_form(block, layout, [&](const auto& form) {
+  with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < padded(block.count); q += lane_count) {
       const LanesVector made = form(q, lanes(r + q, block.stride));
       const LanesVector v = lanes(v_free_.data() + q, max_stride) - made;
@@ -127,15 +127,14 @@ ILAW_COUPLED_VERSIONS double Sweep::prepare(const Block& block) {
 }
 
 bool Sweep::evaluate(Block& block, Change& change) {
-  const auto g = static_cast<std::size_t>(block.group);
-  const Layout& layout = problem_.layouts[g];
+  const Layout& layout = *block.layout;
   const double size = prepare(block);
   change.size = size > change.size ? size : change.size;
   const Contacts::Call call{v_free_.data(), block.column(layout.delassus),
                             block.stride,   answer_.data(),
                             nullptr,        block.status,
                             nullptr,        nullptr};
-  const std::int32_t code = problem_.groups[g].evaluate(block, call, report_);
+  const std::int32_t code = problem_.group(block).evaluate(block, call, report_);
   block.bad_count = code == ILAW_BAD_NODES ? report_.bad_count : 0;
   block.first_bad = report_.first_bad_node;
   block.reason = report_.reason;
@@ -150,14 +149,13 @@ bool Sweep::evaluate(Block& block, Change& change) {
 }
 
 ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
-  const auto g = static_cast<std::size_t>(block.group);
-  const Layout& layout = problem_.layouts[g];
+  const Layout& layout = *block.layout;
   const std::size_t n = padded(block.count), s = block.stride;
   double *r = block.column(layout.impulse), *dr = block.column(layout.change);
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t q = block.count; q < n; ++q) answer_[c * max_stride + q] = 0.0;
   Lanes most{}, square{};
-  with_form(block, layout, [&](const auto& form) {
+  with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < n; q += lane_count) {
       const LanesVector answer = lanes(answer_.data() + q, max_stride), by = answer - lanes(r + q, s);
       put(answer, r + q, s);
@@ -169,8 +167,8 @@ ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
   });
   change.largest = std::max(change.largest, largest(most));
   change.square += sum(square);
-  const Contacts& group = problem_.groups[g];
-  with_kernel(group.kind(), block, layout, group.body_count(), [&](const auto& kernel) {
+  const Contacts& group = problem_.group(block);
+  with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
     with_velocities(problem_.bodies, group.kind(), [&](const auto& add) {
       for (std::size_t q = 0; q < block.count; ++q) kernel.apply(q, {dr[q], dr[s + q], dr[2 * s + q]}, add);
     });
@@ -182,7 +180,7 @@ bool Sweep::wake(Blocks& blocks) {
   for (Block& block : blocks.list()) {
     if (!block.asleep) continue;
     gather(block, v_free_.data());
-    const Contacts& group = problem_.groups[static_cast<std::size_t>(block.group)];
+    const Contacts& group = problem_.group(block);
     for (std::size_t q = 0; q < block.count && block.asleep; ++q) {
       const Vector v{v_free_[q], v_free_[max_stride + q], v_free_[2 * max_stride + q]};
       if (group.is_in_reach(block, q, v)) block.asleep = false;
@@ -199,11 +197,9 @@ void Sweep::add_impulses(const Blocks& blocks, std::vector<Motion>& sums) const 
   };
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
-    const auto g = static_cast<std::size_t>(block.group);
-    const Contacts& group = problem_.groups[g];
-    with_kernel(group.kind(), block, problem_.layouts[g], group.body_count(), [&](const auto& kernel) {
-      for (std::size_t q = 0; q < block.count; ++q)
-        kernel.apply(q, block.at(problem_.layouts[g].impulse, q), add);
+    const Contacts& group = problem_.group(block);
+    with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
+      for (std::size_t q = 0; q < block.count; ++q) kernel.apply(q, block.at(block.layout->impulse, q), add);
     });
   }
 }
@@ -211,10 +207,9 @@ void Sweep::add_impulses(const Blocks& blocks, std::vector<Motion>& sums) const 
 void Sweep::add_changes(Blocks& blocks, const double* changes) {
   for (Block& block : blocks.list()) {
     if (block.asleep) continue;
-    const auto g = static_cast<std::size_t>(block.group);
-    const Contacts& group = problem_.groups[g];
-    const Layout& layout = problem_.layouts[g];
-    with_kernel(group.kind(), block, layout, group.body_count(), [&](const auto& kernel) {
+    const Contacts& group = problem_.group(block);
+    const Layout& layout = *block.layout;
+    with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
       with_velocities(problem_.bodies, group.kind(), [&](const auto& add) {
         for (std::size_t q = 0; q < block.count; ++q, changes += 3) {
           const Vector by{changes[0], changes[1], changes[2]};

@@ -20,8 +20,9 @@ namespace ilaw::coupled {
 struct Problem {
   Bodies bodies;
   std::vector<Contacts> groups;
-  std::vector<Layout> layouts;
   std::size_t group_count = 0;
+
+  const Contacts& group(const Block& block) const { return groups[static_cast<std::size_t>(block.group)]; }
 };
 
 // Findings of an iteration.
