@@ -265,25 +265,17 @@ Benchmark::Solved Benchmark::solve(double tolerance, std::uint32_t iterations) {
   bodies.inverse_mass = ilaw::input(&one, 0, 0);
   bodies.v_free = bodies.v_previous = ilaw::input(still_.data(), 3, 1);
   bodies.velocity = ilaw::output(velocity_.data(), 3, 1);
-  ilaw_contacts contacts{};
-  contacts.struct_size = sizeof contacts;
-  contacts.delassus_form = ILAW_DELASSUS_FULL;
-  contacts.law = &law_.law();
-  contacts.instance = law_.instance();
-  contacts.batch = &batch;
-  contacts.body = body_.data();
-  contacts.counterpart = wall_.data();
+  ilaw_contacts contacts = ilaw::contacts_of(law_, ILAW_DELASSUS_FULL, batch, body_.data(), wall_.data());
   contacts.wall_velocity = ilaw::input(against_.data(), 3, 1);
   contacts.wall_previous = ilaw::input(still_.data(), 3, 1);  // no velocity before: nothing bounces
   contacts.body_count = width_;
   contacts.body_weight = ilaw::input(weight_.data(), 9 * std::int64_t{width_}, 1);
   contacts.weight_size = 9;
-  const ilaw_contacts* groups[] = {&contacts};
   ilaw_coupled_options options{};
   options.tolerance = tolerance;
   options.most_sweeps = iterations;
   const double start = cpu_seconds();
-  const ilaw_coupled_report report = solver_.solve(bodies, groups, options);
+  const ilaw_coupled_report report = solver_.solve(bodies, contacts, options);
   return {cpu_seconds() - start, natural_map(problem_, impulse_), report};
 }
 

@@ -1,4 +1,4 @@
-// What an iteration of coupled contacts costs, and what a solve costs besides: grains on a lattice, each a
+// The cost of an iteration of coupled contacts, and of a solve besides: grains on a lattice, each a
 // little off its place, with friction and transverse H.
 //
 // Usage: ilaw_bench_coupled_cost GRAINS... Prints nanoseconds per contact: medians of the given number of
@@ -97,22 +97,15 @@ double Pile::solve(const ilaw::interface& law, std::uint32_t iterations) {
   bodies.spin_free = bodies.spin_previous = ilaw::input(w.data(), 3, 1);
   bodies.velocity = ilaw::output(velocity.data(), 3, 1);
   bodies.spin = ilaw::output(spin.data(), 3, 1);
-  ilaw_contacts contacts{};
-  contacts.struct_size = sizeof contacts;
-  contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
-  contacts.law = &law.law();
-  contacts.instance = law.instance();
-  contacts.batch = &batch;
-  contacts.body = body.data();
-  contacts.counterpart = counterpart.data();
+  ilaw_contacts contacts =
+      ilaw::contacts_of(law, ILAW_DELASSUS_TRANSVERSE, batch, body.data(), counterpart.data());
   contacts.arm = ilaw::input(arm.data(), 3, 1);
   contacts.counterpart_arm = ilaw::input(other_arm.data(), 3, 1);
-  const ilaw_contacts* groups[] = {&contacts};
   ilaw_coupled_options options{};
   options.most_sweeps = iterations;
   options.tolerance = 1e-300;
   const double start = cpu_seconds();
-  solver.solve(bodies, groups, options);
+  solver.solve(bodies, contacts, options);
   return cpu_seconds() - start;
 }
 

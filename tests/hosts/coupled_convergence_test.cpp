@@ -77,14 +77,8 @@ struct Assembly {
       bodies.spin_free = bodies.spin_previous = ilaw::input(still.data(), 3, 1);
       bodies.spin = ilaw::output(spin.data(), 3, 1);
     }
-    ilaw_contacts contacts{};
-    contacts.struct_size = sizeof contacts;
-    contacts.delassus_form = rotate ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR;
-    contacts.law = &law.law();
-    contacts.instance = law.instance();
-    contacts.batch = &batch;
-    contacts.body = body.data();
-    contacts.counterpart = counterpart.data();
+    ilaw_contacts contacts = ilaw::contacts_of(law, rotate ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR, batch,
+                                               body.data(), counterpart.data());
     contacts.arm = ilaw::input(arms.data(), 3, 1);
     contacts.counterpart_arm = ilaw::input(other_arms.data(), 3, 1);
     if (weighted) {
@@ -93,11 +87,10 @@ struct Assembly {
       contacts.body_weight = ilaw::input(weight.data(), body_count, 1);
       contacts.counterpart_weight = ilaw::input(other_weight.data(), counterpart_count, 1);
     }
-    const ilaw_contacts* groups[] = {&contacts};
     ilaw_coupled_options options{};
     options.tolerance = tolerance;
     options.most_sweeps = most;
-    return ilaw::coupled().solve(bodies, groups, options);
+    return ilaw::coupled().solve(bodies, contacts, options);
   }
   double largest_velocity() const {
     double largest = 0.0;

@@ -96,14 +96,7 @@ struct Scene {
   }
 
   ilaw_contacts contacts(const ilaw_batch& of) {
-    ilaw_contacts c{};
-    c.struct_size = sizeof c;
-    c.delassus_form = form;
-    c.law = &law.law();
-    c.instance = law.instance();
-    c.batch = &of;
-    c.body = body.data();
-    c.counterpart = counterpart.data();
+    ilaw_contacts c = ilaw::contacts_of(law, form, of, body.data(), counterpart.data());
     c.arm = ilaw::input(arm.data(), 3, 1);
     c.counterpart_arm = ilaw::input(other_arm.data(), 3, 1);
     return c;
@@ -117,11 +110,10 @@ struct Scene {
     for (std::size_t i = 2; i < v.size(); i += 3) v[i] -= h * gravity;
     const ilaw_batch b = batch();
     const ilaw_contacts c = contacts(b);
-    const ilaw_contacts* groups[] = {&c};
     ilaw_coupled_options options{};
     options.tolerance = tolerance;
     options.most_sweeps = most_sweeps;
-    return solver.solve(bodies(), groups, options);
+    return solver.solve(bodies(), c, options);
   }
 
   double kinetic() const {

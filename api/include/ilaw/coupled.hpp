@@ -12,6 +12,20 @@
 
 namespace ilaw {
 
+// The contacts of one law, whose interface was made for the global frame and this form of H.
+inline ilaw_contacts contacts_of(const interface& law, ilaw_delassus_forms form, const ilaw_batch& batch,
+                                 const std::int32_t* body, const std::int32_t* counterpart) {
+  ilaw_contacts made{};
+  made.struct_size = sizeof made;
+  made.delassus_form = form;
+  made.law = &law.law();
+  made.instance = law.instance();
+  made.batch = &batch;
+  made.body = body;
+  made.counterpart = counterpart;
+  return made;
+}
+
 // Movable; one solve at a time.
 class coupled {
  public:
@@ -29,6 +43,11 @@ class coupled {
                                                  static_cast<std::int64_t>(groups.size()), &options, &report);
     if (code < 0) throw error(code, report.reason ? report.reason : "coupled contacts were refused");
     return report;
+  }
+  ilaw_coupled_report solve(const ilaw_bodies& bodies, const ilaw_contacts& group,
+                            ilaw_coupled_options options = {}) {
+    const ilaw_contacts* groups[] = {&group};
+    return solve(bodies, groups, options);
   }
 
  private:
