@@ -546,24 +546,27 @@ static inline ilaw_result ilaw_plain_first_states(const ilaw_instance* own, cons
   return ilaw_plain_report(report, ILAW_OK, 0, -1, NULL, INFINITY);
 }
 
-static inline ilaw_result ILAW_CALL ilaw_plain_evaluate(const ilaw_instance* own, const ilaw_batch* given,
-                                                        ilaw_report* report) {
+typedef ilaw_result (*ilaw_plain_batch_function)(const ilaw_instance* own, const ilaw_batch* b,
+                                                 ilaw_report* report);
+/* A batch of any size, in the environment of laws. */
+static inline ilaw_result ilaw_plain_call(ilaw_plain_batch_function function, const ilaw_instance* own,
+                                          const ilaw_batch* given, ilaw_report* report) {
   ilaw_batch copy;
   fenv_t host;
   ilaw_plain_enter(&host);
-  const ilaw_result code = ilaw_plain_walk(own, ilaw_plain_sized(given, &copy), report);
+  const ilaw_result code = function(own, ilaw_plain_sized(given, &copy), report);
   fesetenv(&host);
   return code;
 }
 
+static inline ilaw_result ILAW_CALL ilaw_plain_evaluate(const ilaw_instance* own, const ilaw_batch* given,
+                                                        ilaw_report* report) {
+  return ilaw_plain_call(ilaw_plain_walk, own, given, report);
+}
+
 static inline ilaw_result ILAW_CALL ilaw_plain_initialise(const ilaw_instance* own, const ilaw_batch* given,
                                                           ilaw_report* report) {
-  ilaw_batch copy;
-  fenv_t host;
-  ilaw_plain_enter(&host);
-  const ilaw_result code = ilaw_plain_first_states(own, ilaw_plain_sized(given, &copy), report);
-  fesetenv(&host);
-  return code;
+  return ilaw_plain_call(ilaw_plain_first_states, own, given, report);
 }
 
 /* ---- descriptions ------------------------------------------------------------------------------- */
