@@ -73,7 +73,7 @@ def place_of(mutant, text):
 def switched(mutant):
     """Both forms of an expression, or of a statement."""
     number, before, after = mutant["number"], mutant["from"], mutant["to"]
-    if not before.endswith(";") and re.match(r"\s*(if\b|return\b|&&|\|\|)", before):
+    if not before.endswith(";") and re.match(r"\s*(if\b|return\b|&&|\|\|)|.*[^=<>!]=[^=]", before):
         raise ValueError(f"{mutant['name']}: neither an expression nor a statement: {before}")
     if before.endswith(";"):
         return f"{{ if (ilaw_mutant == {number}) {{ {after} }} else {{ {before} }} }}"
