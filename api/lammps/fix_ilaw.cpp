@@ -233,7 +233,7 @@ void FixIlaw::solve() {
   ilaw_exchange exchange{};
   exchange.struct_size = sizeof exchange;
   exchange.context = this;
-  // What ghosts got is added at their owners, and the sums go back to the ghosts.
+  // Impulses of ghosts are added at their owners, and the sums go back to the ghosts.
   exchange.sum_bodies = [](void* context, double* values, std::int64_t components) {
     auto* self = static_cast<FixIlaw*>(context);
     self->reverse(values, static_cast<int>(components));

@@ -95,7 +95,7 @@ struct penalty {
     return nullptr;
   }
 
-  // Of explicit springs, the normal one taken as closed and as stiff as it is now, with a damper that lags:
+  // The limit of explicit springs, the normal one closed and as stiff as it is now, with a damper that lags:
   // omega h = 2 (sqrt(1 + zeta^2) - zeta), zeta = c H/(2 omega) (Belytschko, Liu, Moran 2000, eq. 6.2.31).
   V limit_with(V h_n, V h_t, V slope) const {
     if (integration == implicitly) return infinity;
@@ -293,8 +293,8 @@ struct penalty {
     node.state = {indentation, slip};
     return status_of_pressed(node, slides);
   }
-  // What the step leaves in the tangential spring. One that sticks moves along; one that slides keeps no more
-  // than its force holds, in the direction of its end.
+  // The tangential spring after the step. A node that sticks strains it along; one that slides leaves no more
+  // than the force holds, in the direction of its end.
   template <class Node>
   vector<V> strained(const Node& node, mask_of<V> slides) const {
     const V h = node.velocity_step, per_impulse = node.prepared.per_rate;

@@ -188,7 +188,7 @@ TEST(Driven, PointSlidesUpASlope) {
   }
 }
 
-// What a law cannot give way to ends the run with a reason: a rigid one that is driven along its normal.
+// A law that is rigid and driven along its normal ends the run with a reason.
 TEST(Driven, AgainstARigidLawEndsTheRun) {
   json scene = json::parse(R"({
     "model": {"type": "points", "dimension": 2, "points": [{"mass": 2, "position": [0, 0.05]}]},
@@ -323,7 +323,7 @@ TEST(Start, MovingFloorCarriesItsBody) {
     }
 }
 
-// What ends a run ends it at time 0 as in any step.
+// A fault that ends a run does so at time 0, too.
 TEST(Start, FailsAsAnyStepDoes) {
   json scene = resting_point("contact", json::object(), 1e-2);
   scene["loads"] = json::parse(R"([{"type": "motion", "nodes": [0], "axes": [1], "velocity": [0, -1]}])");
@@ -390,7 +390,8 @@ TEST(Border, DoesNotCatchWhatFallsPast) {
   EXPECT_EQ(run.summary["forces"]["joint"]["impulse"][2].get<double>(), 0.0);
 }
 
-// What touched in the last step is part of a checkpoint: a stack on the border goes on to the same bits.
+// The facets touched in the last step are part of a checkpoint: a stack on the border goes on to the same
+// bits.
 TEST(Border, IsTheSameAfterACheckpoint) {
   json source = moved_stack(1e-2);
   source["time"]["end"] = 0.35;

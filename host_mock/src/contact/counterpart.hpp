@@ -131,7 +131,7 @@ class Counterpart {
   virtual void note_contact(int /*node_index*/, bool /*touches*/, const ContactPoint& /*point*/) {}
   // Whether it touched and has not left since. Such nodes must be evaluated in every step.
   virtual bool is_held(int /*node_index*/) const { return false; }
-  // What of that a checkpoint takes along.
+  // The part of that memory which a checkpoint takes along.
   virtual void save(std::ostream& /*out*/) const {}
   virtual void load(std::istream& /*in*/) {}
   // Whether two contacts may have a partner in common.

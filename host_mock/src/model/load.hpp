@@ -35,7 +35,7 @@ class Load {
   // Changes the velocity that a step would leave with, without interfaces, and adds the impulse that
   // this takes. before: what the step started with.
   virtual void correct(StepTimes /*step*/, Motions /*before*/, Dofs& /*v*/, Dofs& /*impulse*/) const {}
-  // What a load that corrects velocities leaves of an impulse that interfaces add after it: a damper's own
+  // Reduces an impulse that interfaces add after a load that corrects velocities: a damper's own
   // velocity changes with it, and the holder of a driven node takes it all.
   virtual void transmit(StepTimes /*step*/, Dofs& /*impulse*/) const {}
   // Whether that is the same in all steps.

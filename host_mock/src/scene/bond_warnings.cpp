@@ -38,8 +38,7 @@ double sum_of_sizes(const Dofs& values, Eigen::Index d) {
   return sum;
 }
 
-// What moves as it is told to, what follows a smooth table, and what is strained at the start, may act with
-// any force.
+// Prescribed motions, smooth tables and strains at the start may act with any force.
 bool is_bounded(const Scene& scene) {
   const std::set<std::string> known{"gravity", "force", "shock", "damping", "motion"};
   for (const json& load : scene.source.value("loads", json::array()))

@@ -44,7 +44,7 @@ class Accounts {
   explicit Accounts(std::size_t interface_count = 0)
       : first_contact_(interface_count, std::numeric_limits<double>::infinity()) {}
   void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v);
-  // What interfaces did on the way to that state: its energy has their work already. speed: the largest then.
+  // The work of interfaces at the start is part of that state already. speed: the largest then.
   void add_start(const Interfaces& interfaces, double speed);
   void add_solution(const CoupledContacts::Outcome& outcome);
   // Whether contacts that do not agree change the energy by more than a small part of it.

@@ -183,8 +183,7 @@ void Integrator::correct(StepTimes step) {
   }
 }
 
-// What a load leaves of an impulse. Damping by mass leaves all of it along driven axes, where a motion takes
-// it.
+// An impulse after a load. Damping by mass leaves all of it along driven axes, where a motion takes it.
 Dofs Integrator::transmitted(std::size_t load, StepTimes step, const Dofs& impulse) const {
   Dofs left = impulse;
   loads_[load]->transmit(step, left);

@@ -52,8 +52,8 @@ class Integrator {
   // Impulse of the interfaces in the last step, per degree of freedom; before any, in the half step of the
   // start.
   Dofs interface_impulse() const;
-  // The same of one load, added to those per degree of freedom. Of a load that
-  // corrects velocities (a motion, damping) it is kept from when it is first asked for.
+  // The same of one load, added to those per degree of freedom. For a load that corrects velocities (a
+  // motion, damping) it is kept from when it is first asked for.
   void keep_load_impulse(std::size_t load);
   void add_load_impulse(std::size_t load, Dofs& impulse) const;
   EnergyReport energy() const { return accounts_.energy().report(model_, u_, u_ + dt_ * v_, v_); }

@@ -1,4 +1,4 @@
-// What rupture takes where friction acts beside it.
+// The energy of rupture where friction acts beside it.
 #include "laws/cohesive/bond.hpp"
 
 namespace ilaw::testing {

@@ -82,7 +82,7 @@ struct Random {
   }
 };
 
-// What the normal spring gives for an impulse less the impulse itself, which falls as the impulse grows.
+// The normal spring's answer to an impulse less the impulse itself, which falls as the impulse grows.
 long double excess_of(const Spring& spring, const problem<double>& p, const answer<double>& a,
                       long double r) {
   const long double h = spring.step, k = spring.stiffness, x = p.indentation;

@@ -81,7 +81,7 @@ struct friction_factor {
   status_of<V> status;
 };
 
-// Of -q_T/h_T, which stops the slip, the part that may act, scaled back to the cone. With the part s the work
+// The part of -q_T/h_T, which stops the slip, that may act, scaled back to the cone. With the part s the work
 // of the whole impulse, times 2 h_T, is s^2 q_T^2 - s q_T.(q_T + rest_T) + h_T r_N rest_N, and must not be
 // positive: the part is less than 1 only where the motion turned round within the step, as it does on a stiff
 // spring, and the impact takes less than it costs to stop that from behind. speed: that of q_T; along:
@@ -184,7 +184,7 @@ ILAW_KIT_INLINE V dissipative_part(V r_a, V r_Hr) {
 }
 
 // Takes the positive work off a solution for any H, whose work is r.(rest + u)/2 with u_N = 0, r_T.u_T <= 0.
-// Of r_T the part s may act, with the r_N(s) for which u_N stays 0: the work is that of c2 s^2 + c1 s + c0,
+// The part s of r_T may act, with the r_N(s) for which u_N stays 0: the work is that of c2 s^2 + c1 s + c0,
 // c0 = r_N(0) rest_N, and the part the largest without positive work. Between s = 0 and 1 r_N(s) and the cone
 // go along a line, so r stays in it. Where c0 > 0, as it may where a bond pulls, the whole impulse is scaled.
 template <class V>

@@ -102,7 +102,7 @@ struct node {
   Vector impulse = {};
   State state = {};  // comes in as it was, leaves as it is
   V stored = 0.0;    // energy stored by the interface at the end of the step
-  // What the step added to it, by the normal and by the tangential motion; the rest of the work is
+  // Energy that the step added to it, by the normal and by the tangential motion; the rest of the work is
   // dissipated.
   V normal_gain = 0.0, tangential_gain = 0.0;
   V rupture = 0.0;  // part of these gains that is not stored: dissipated by rupture

@@ -46,7 +46,7 @@ ILAW_KIT_INLINE V joining_part(const Delassus& h, vector<V> motion, vector<V> he
   const fraction<V> root = root_of_work(c2, c1, smaller(product(held, moved), V(0.0)));
   return select(root.numerator < root.denominator, root.numerator / root.denominator, 1.0);
 }
-// What is held and then contact and friction do no positive work each, and yet may together: friction is
+// Neither the bond nor contact with friction does positive work, and yet both together may: friction is
 // scaled first, as where there is no bond, and then contact with it, if that was not enough.
 template <class Node, class V>
 ILAW_KIT_INLINE vector<V> joined(const Node& node, vector<V> held, vector<V> r) {

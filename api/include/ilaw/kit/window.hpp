@@ -33,7 +33,7 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 // does a clock that adds up its steps.
 inline constexpr double window_slack = 1e-9;
 
-// What a law's window() gives: the duration tau and the number of buckets B.
+// A law's window() gives it: the duration tau and the number of buckets B.
 struct window_size {
   double duration, buckets;
 };
@@ -130,8 +130,9 @@ class window {
   }
 
  private:
-  // What every step needs stands in front: the number of the newest bucket, which is open, its sum, that of
-  // the middle ones, the oldest bucket and the slope in it. Behind are the middle buckets, as a ring.
+  // The numbers that every step needs stand in front: the number of the newest bucket, which is open, its
+  // sum, that of the middle ones, the oldest bucket and the slope in it. Behind are the middle buckets, as a
+  // ring.
   static constexpr std::int64_t current = 1, middle_sum = 4, oldest_bucket = 7, oldest_slope = 10,
                                 first_bucket = 13;
   // Numbers of buckets that a double and a cast hold with room to spare. A grid finer than that is finer than
@@ -163,11 +164,11 @@ class window {
   }
   static std::int64_t at(std::int64_t place) { return first_bucket + 3 * place; }
 
-  // What counts of the oldest bucket: the part that tau still covers, and its correction by the slope.
+  // The part of the oldest bucket that tau still covers, and its correction by the slope.
   struct edge {
     double part, slope;
 
-    // Of vectors in lanes, or of one that fills a register.
+    // The sum of vectors in lanes, or of one that fills a register.
     template <class Vector>
     ILAW_KIT_INLINE Vector sum(Vector middle, Vector newest, Vector oldest, Vector difference) const {
       return (middle + newest) + (part * oldest + slope * difference);

@@ -79,7 +79,8 @@ struct window_block {
   alignas(64) double earlier[3][block_nodes], refused[block_nodes];
   alignas(64) double given[3][block_nodes], adds[block_nodes], clears[block_nodes];
 };
-// Of the node at position 0, and the nodes where they are listed.
+// Where the windows of a block stand: that of the first node, the strides, and the nodes where they are
+// listed.
 struct window_place {
   double* first;
   std::int64_t node_stride, component_stride, count;
