@@ -224,14 +224,7 @@ TEST(Coupled, PointsThatAreTiedMoveAsOne) {
       batch.state_out = ilaw::output(state.data(), size, 1);
       batch.impulse = ilaw::output(impulse.data(), d, 1);
       ASSERT_EQ(law.initialise(batch), ILAW_OK) << "form " << form;
-      ilaw_contacts contacts{};
-      contacts.struct_size = sizeof contacts;
-      contacts.delassus_form = form;
-      contacts.law = &law.law();
-      contacts.instance = law.instance();
-      contacts.batch = &batch;
-      contacts.body = &first;
-      contacts.counterpart = &second;
+      const ilaw_contacts contacts = ilaw::contacts_of(law, form, batch, &first, &second);
       ilaw_bodies bodies{};
       bodies.struct_size = sizeof bodies;
       bodies.dimension = dimension;
