@@ -198,8 +198,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
   }
 
   // Else the mean traction on the way from w^- to w^+, with the friction of the damage after it: the unknown
-  // is the damage, d = D(w(d)), which falls with more friction. An infinite coefficient would jump with the
-  // first damage, and is that of the damage before.
+  // is the damage, d = D(w(d)), which falls with more friction.
   template <class Step>
   void change(const Step& step, mask_of<V> where, const common& all, bond_result<Step>& found) const {
     const mask_of<V> is_unique = step.compliance * step.trace() * all.steepest <= 1.0;
@@ -213,7 +212,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
     V coefficient = friction_of(before.damage);
     bool is_tried = true;
     root_between(before.damage, V(1.0), before.damage, where, [&](V damage) ILAW_KIT_LAMBDA {
-      coefficient = select(where & (friction < infinity), friction_of(damage), coefficient);
+      coefficient = select(where, this->friction_after(before.damage, damage), coefficient);
       soften(step, where, all, before, coefficient, is_tried, found);
       is_tried = false;
       const mask_of<V> grows = (found.memory > before.damage) | (damage > before.damage);

@@ -88,15 +88,13 @@ struct rccm : adhesive_bond<rccm, V> {
   }
 
   // (beta^- + beta) q/2 - w - b (beta^- - beta)/h = 0, or beta = 0 where that is positive still. One root
-  // where the bond is not stiff for the step (rccm.md); else they are counted. An infinite coefficient of
-  // friction would jump where beta leaves 1, and is that before the step.
+  // where the bond is not stiff for the step (rccm.md); else they are counted.
   template <class Step>
   void change(const Step& step, mask_of<V> where, const common& all, bond_result<Step>& found) const {
     const V before = found.memory, rate = viscosity / all.step.velocity_step,
             most = mean_kappa(step, before, before);
     const auto trial = [&](V beta) ILAW_KIT_LAMBDA {
-      step.move(found.motion, mean_kappa(step, before, beta),
-                friction_of(select(friction < infinity, beta, before)));
+      step.move(found.motion, mean_kappa(step, before, beta), this->friction_after(before, beta));
       found.left = found.left | (where & found.motion.unsolved);
       const V q = mean_square(step, found.motion), size = 0.5 * q + rate, sum = before + beta;
       const V softer = 0.5 * sum * normal_stiffness * step.compliance * normal_stiffness * beta;

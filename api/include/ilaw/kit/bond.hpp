@@ -445,6 +445,12 @@ struct adhesive_bond {
     return status_of<V>::from(a.status);
   }
 
+  // The coefficient of friction with the memory after the step. An infinite one would jump as the memory
+  // first changes, and is that before the step.
+  ILAW_KIT_INLINE V friction_after(V before, V after) const {
+    return law().friction_of(select(law().friction < infinity, after, before));
+  }
+
  private:
   using mask = mask_of<V>;
   static constexpr bool is_scalar = std::is_same_v<V, double>;
