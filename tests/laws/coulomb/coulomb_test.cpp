@@ -1,6 +1,7 @@
 // Contact with friction through the ABI: closed forms, cone, complementarity, dissipation, limits.
 #include "support/law_runner.hpp"
 #include "support/numbers.hpp"
+#include "support/small_batch.hpp"
 
 #include <random>
 
@@ -187,6 +188,19 @@ TEST(Coulomb, RoundingOfAContactThatStuckIsNoSlip) {
     EXPECT_EQ(node.status, status) << speed;
     EXPECT_NEAR(node.r[1], status == ILAW_STICK ? -0.4 : -0.3, 1e-15) << speed;
   }
+}
+
+// Friction never rises with the speed, also beside a node in the same pack where it falls.
+TEST(Coulomb, KineticCoefficientIsNeverTheLarger) {
+  const Parameters varying{{{"friction", 0.4}, {"decay", 1e6}}, {}, {}, {"kinetic_friction"}};
+  const ilaw::interface law = make_law("coulomb", SetupBuilder(varying));
+  SmallBatch nodes(2, {-1.0, 3.0, 0.0});
+  const double kinetic[] = {0.2, 0.6};
+  const ilaw_input per_node = ilaw::input(kinetic, 1, 1);
+  nodes.b.per_node_parameters = &per_node;
+  ASSERT_EQ(law.evaluate(nodes.b, &nodes.report), ILAW_OK);
+  EXPECT_NEAR(nodes.r[0][1], -0.2, 1e-15);
+  EXPECT_NEAR(nodes.r[1][1], -0.4, 1e-15);
 }
 
 }  // namespace
