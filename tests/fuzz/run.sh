@@ -15,13 +15,13 @@ fuzz() {
     tar -xzf "tests/fuzz/corpus/$subject.tar.gz" -C "build/fuzz/corpus/$subject"
   fi
   if [[ -f tests/fuzz/$subject.dict ]]; then words=(-dict="tests/fuzz/$subject.dict"); fi
-  "build/fuzz/bin/${subject}_fuzz" -max_total_time="$seconds" -max_len=65536 -timeout=10 -rss_limit_mb=2048 \
+  "build/asan/bin/${subject}_fuzz" -max_total_time="$seconds" -max_len=65536 -timeout=10 -rss_limit_mb=2048 \
     "${words[@]}" -artifact_prefix=build/fuzz/found/ "build/fuzz/corpus/$subject" "tests/fuzz/corpus/$subject" \
     >"build/fuzz/$subject.log" 2>&1
 }
 
-cmake --preset fuzz >/dev/null
-cmake --build --preset fuzz --target "${subjects[@]/%/_fuzz}" -- --quiet
+cmake --preset asan >/dev/null
+cmake --build --preset asan --target "${subjects[@]/%/_fuzz}" -- --quiet
 mkdir -p build/fuzz/found
 echo "fuzz: ${subjects[*]}, $seconds s"
 declare -A runs
