@@ -95,7 +95,7 @@ void on_signal(int number, siginfo_t* info, void* context) {
 
 // On a stack of their own: one that is full has no room for a handler.
 void catch_signals() {
-  static std::array<char, 1U << 16> stack;
+  alignas(16) static std::array<char, 1U << 16> stack;
   stack_t given{};
   given.ss_sp = stack.data();
   given.ss_size = stack.size();

@@ -97,7 +97,7 @@ void handle(int signal, void (*handler)(int), int flags) {
 
 // A stack that has overflown has no room for a handler.
 void give_stack() {
-  static thread_local std::array<char, 1 << 15> room;
+  alignas(16) static thread_local std::array<char, 1 << 15> room;
   stack_t stack{};
   stack.ss_sp = room.data();
   stack.ss_size = room.size();
