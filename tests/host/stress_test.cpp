@@ -493,6 +493,16 @@ TEST(StressCommand, SaysWhatItFoundByItsExitCode) {
   EXPECT_EQ(run_program("stress --scenes 0").code, 2);
 }
 
+TEST(StressCommand, TakesALibraryByItsPath) {
+  const std::filesystem::path folder = fresh_folder(), plugins = ILAW_PLUGIN_FOLDER;
+  std::filesystem::copy(plugins / "contact.so", folder / "mine.so");
+  const Outcome done = run_program("stress --scenes 2 --steps 50 --law " + (folder / "mine.so").string());
+  EXPECT_EQ(done.code, 0) << done.output;
+  EXPECT_NE(done.output.find("\ncontact       2"), std::string::npos) << done.output;
+  EXPECT_EQ(run_program("stress --law " + (folder / "none.so").string()).code, 2);
+  std::filesystem::remove_all(folder);
+}
+
 // A scene that stopped, or came close to a bound, can be looked at: its file gives the same run.
 TEST(StressCommand, WritesEveryScene) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);

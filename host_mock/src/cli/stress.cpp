@@ -68,7 +68,8 @@ void add_stress(CLI::App& app, Action& chosen) {
   const auto setup = std::make_shared<StressSetup>();
   CLI::App* command = app.add_subcommand(
       "stress", "Run random scenes of all laws and hold them to rules on energy, penetration and bits");
-  command->add_option("--law", setup->laws, "Only the laws of this library; may be repeated (all)");
+  command->add_option("--law", setup->laws,
+                      "Only the laws of this library, a name or a path; may be repeated (all)");
   command->add_option("--seed", setup->seed, "Seed of the first scene; the next scene has the next number")
       ->capture_default_str();
   command->add_option("--scenes", setup->scenes, "Number of scenes; the laws take turns")
@@ -87,7 +88,7 @@ void add_stress(CLI::App& app, Action& chosen) {
   command->footer(
       "Exit codes: 0 all scenes kept the rules, were refused, or stopped with a reason; 1 a scene broke one;\n"
       "2 bad usage, or a library that cannot be opened.\n"
-      "Example: ilaw stress --law postit --scenes 200 --keep failures");
+      "Example: ilaw stress --law build/my_law.so --scenes 200 --keep failures");
   command->callback([setup, &chosen] { chosen = [setup] { return run_stress(*setup); }; });
 }
 

@@ -251,7 +251,7 @@ class Scenery {
 LawBook::LawBook(const std::vector<std::string>& names) {
   if (names.empty())
     for (const std::string& file : ilaw::search()) libraries_.emplace_back(file);
-  for (const std::string& name : names) libraries_.push_back(ilaw::library::named(name));
+  for (const std::string& name_or_path : names) libraries_.emplace_back(name_or_path);
   for (const ilaw::library& library : libraries_)
     for (std::uint32_t i = 0; i < library.plugin().law_count; ++i)
       if ((library.plugin().laws[i]->delassus_forms & ILAW_DELASSUS_SCALAR) != 0)
