@@ -56,7 +56,7 @@ SECTIONS = [
 VALUES = {
     "vector": "vector", "nodes": "[nodes](#nodes)", "history": "list of [time, value]",
     "path": "list of [time, displacement...]", "places": "vector, or list of vectors",
-    "near": "[nodes](#nodes)", "box": "[nodes](#nodes)", "history_rows": "list of [time, value]",
+    "near": "[`near`](#nodes)", "box": "[`box`](#nodes)", "history_rows": "list of [time, value]",
     "path_rows": "list of [time, displacement...]",
 }
 
@@ -123,6 +123,8 @@ def kind(part, definitions):
     if part.get("type") == "array":
         items = part.get("items", {})
         of = kind(items, definitions)
+        if "anyOf" in items:
+            return f"list; each entry: {of}"
         type_, _, bounds = of.partition(" ")
         if type_ in ("number", "integer"):
             return f"list of {count(part)}{type_}s" + (f", each {bounds}" if bounds else "")
