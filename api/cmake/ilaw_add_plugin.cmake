@@ -3,6 +3,10 @@
 # compiled once per instruction-set level; the library takes the best one that it finds when an instance is created.
 # A source in C (ilaw/plain_c.h) is compiled once.
 function(ilaw_add_plugin name source)
+  get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
+  if(source MATCHES "[.]c$" AND NOT "C" IN_LIST languages)
+    message(FATAL_ERROR "${source} is in C, which this project lacks: project(${PROJECT_NAME} LANGUAGES C)")
+  endif()
   add_library(${name} MODULE ${source})
   if(source MATCHES "[.]c$")
     target_link_libraries(${name} PRIVATE ilaw::abi m)

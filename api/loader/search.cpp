@@ -44,7 +44,10 @@ void add_environment(search_path& path) {
   for (std::size_t at = 0; at <= entries.size();) {
     const std::size_t end = std::min(entries.find(':', at), entries.size());
     // An empty or relative entry would mean the current folder, which is never searched.
-    if (end > at && entries[at] == '/') add_once(path, entries.substr(at, end - at));
+    if (end > at) {
+      const std::string entry = entries.substr(at, end - at);
+      entry.front() == '/' ? add_once(path, entry) : path.relative.push_back(entry);
+    }
     at = end + 1;
   }
 }
@@ -104,6 +107,8 @@ std::string find_named(const std::string& name) {
   std::string where = joined(path.folders);
   if (!path.left_out.empty())
     where += "; not searched, since every user may write there: " + joined(path.left_out);
+  if (!path.relative.empty())
+    where += "; not searched, since it is no absolute path: " + joined(path.relative);
   if (ends_in_so(name)) where += "; the path of a file has a '/', as ./" + name;
   throw refusal(ILAW_NOT_FOUND, "'" + name + "': no " + file + " found, expected it in one of: " + where);
 }

@@ -10,6 +10,7 @@ namespace ilaw::loading {
 struct search_path {
   std::vector<std::string> folders;   // in the order in which they are searched; always absolute
   std::vector<std::string> left_out;  // those that every user may write to
+  std::vector<std::string> relative;  // entries of ILAW_PATH that are no absolute paths
 };
 
 search_path folders_searched();

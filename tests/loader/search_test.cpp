@@ -61,6 +61,10 @@ TEST_F(Searched, RelativeEntriesOfThePathAreLeftOut) {
   const std::string path = ilaw::search_path();
   EXPECT_EQ(path.find((folder / "in").string()), 0U) << path;
   EXPECT_EQ(path.find("entry"), std::string::npos) << path;
+  EXPECT_NE(
+      refusal_of("none").find("not searched, since it is no absolute path: relative_entry:./dotted_entry"),
+      std::string::npos)
+      << refusal_of("none");
 }
 
 TEST_F(Searched, NamesWithOddLettersAreRefusedInEveryWay) {
