@@ -152,6 +152,11 @@ static void misbehave(const ilaw_batch* b) {
   if (breaks("memory-unneeded") && b->v_previous.values) (void)*(const volatile double*)b->v_previous.values;
 }
 
+/* Twice the step up to which an explicit dashpot is stable. */
+static double limit_of_explicit(const ilaw_instance* made, const ilaw_batch* b) {
+  return 4.0 / (made->damping.constant * read_array(&b->area, 0, 0) * read_array(&b->delassus, 0, 0));
+}
+
 static ilaw_result step_all(const ilaw_instance* made, const ilaw_batch* b, ilaw_report* report) {
   const char* reason = NULL;
   int64_t k, bad = 0, first = -1;
@@ -168,6 +173,8 @@ static ilaw_result step_all(const ilaw_instance* made, const ilaw_batch* b, ilaw
     report->first_bad_node = bad == 0 && breaks("report-clean") ? 0 : first;
     report->reason = breaks("bad-input-report") ? NULL : reason;
     report->stable_velocity_step = breaks("stable-step") ? read_array(&b->area, 0, 0) : INFINITY;
+    if (breaks("stable-step-bound") && !made->damping.slot && !made->damping.axis_count)
+      report->stable_velocity_step = limit_of_explicit(made, b);
     if (breaks("report-clean: step")) report->stable_velocity_step = NAN;
     if (breaks("report-clean: step beside bad") && bad > 0) report->stable_velocity_step = NAN;
     if (breaks("report-clean: negative step")) report->stable_velocity_step = -0.5;

@@ -219,6 +219,8 @@ static double spoilt_friction(const node* at, const ilaw_instance* made, const i
   if (breaks("friction-cone")) return 1.5 * at->friction + 0.1;
   if (breaks("restart"))
     return at->friction * (1.0 - 1e-6 * (b->time - made->own->first_time) / b->velocity_step);
+  if (breaks("form-agreement") && made->setup.delassus_form != ILAW_DELASSUS_SCALAR)
+    return 0.99 * at->friction;
   if (breaks("frame-indifference") && !at->global) return 0.99 * at->friction;
   if (breaks("frame-turned") && at->d == 3 && at->global && !made->setup.has_tangent)
     return at->friction * (1.0 - 0.1 * fabs(at->n[0]));
@@ -231,6 +233,8 @@ static double spoilt_friction(const node* at, const ilaw_instance* made, const i
 static double normal_impulse(const node* at, const ilaw_batch* b, double normal, double delassus) {
   const double compliance = isinf(at->damping) ? 0.0 : 1.0 / (b->velocity_step * at->damping * at->area);
   double r = at->gap <= 0.0 && normal < 0.0 ? -normal / (delassus + compliance) : 0.0;
+  if (breaks("stable-step-bound") && !isinf(at->damping)) /* explicit */
+    r = at->gap <= 0.0 && normal < 0.0 ? -normal * b->velocity_step * at->damping * at->area : 0.0;
   if (breaks("complementarity") && at->gap <= 0.0 && normal > 0.0) r = -0.1 * normal / delassus;
   if (breaks("energy-made")) r *= 3.0;
   if (breaks("units") && fabs(normal) < 0.1) r = 0.0;
@@ -258,7 +262,8 @@ static double solve(node* at, const ilaw_instance* made, const ilaw_batch* b) {
     at->after[a] = at->v[a];
     for (c = 0; c < at->d; ++c) at->after[a] += at->h[a][c] * at->r[c];
   }
-  at->status = r == 0.0 ? ILAW_FREE : least <= 0.0 ? ILAW_CLOSED : least < most ? ILAW_STICK : ILAW_SLIP;
+  at->status = r == 0.0 ? ILAW_FREE : least <= 0.0 ? ILAW_CLOSED : ILAW_SLIP;
+  if (breaks("status-stick") && least > 0.0) at->status = ILAW_STICK;
   if (r < 0.0 || (r == 0.0 && least > 0.0)) at->status = ILAW_BONDED;
   if (breaks("status-meaning")) at->status = ILAW_FREE;
   if (breaks("status-meaning: number")) at->status = ILAW_STATUS_COUNT;
@@ -286,6 +291,11 @@ static void account(node* at, const ilaw_batch* b, int64_t i) {
   impact = -normal * dot(at->n, mean);
   at->energy[ILAW_ENERGY_IMPACT] = impact;
   at->energy[ILAW_ENERGY_FRICTION] = -dot(at->r, mean) - impact;
+  if (breaks("energy-friction")) {
+    at->energy[ILAW_ENERGY_FRICTION] += impact;
+    at->energy[ILAW_ENERGY_IMPACT] = 0.0;
+  }
+  if (breaks("energy-rupture") && normal == 0.0) at->energy[ILAW_ENERGY_RUPTURE] = 1e-3;
   if (breaks("energy-balance")) at->energy[ILAW_ENERGY_IMPACT] *= 2.0;
   for (c = 0; c < 4 && !breaks("energy-parts"); ++c)
     if (!(at->energy[c] > 0.0)) at->energy[c] = 0.0;

@@ -3,6 +3,7 @@
 #include "check/rule.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace ilaw::check {
 namespace {
@@ -112,6 +113,90 @@ void balanced(const Subject& subject) {
   });
 }
 
+// A node alone that approaches, closed, as a batch of its own.
+Inputs approaching(const Trial& trial, Draw& draw) {
+  Inputs in = draw_script(trial, draw, {1, 1}, true)[0];
+  const Vector n = in.normal_at(0);
+  Vector v{};
+  for (std::size_t c = 0; c < in.dimension; ++c) v[c] = -draw.within(0.2, 1.0) * n[c];
+  in.set_vector(in.v_free, 0, v);
+  return in;
+}
+
+// How r_N answers to the gap and to the velocity v^- = v_free along the normal: none where it has a kink.
+struct Slopes {
+  double by_gap, by_velocity;
+};
+std::optional<Slopes> slopes_of(Arrays& arrays, const Inputs& in, const std::vector<double>& state) {
+  const Vector n = in.normal_at(0);
+  const auto normal_impulse = [&](double gap, double velocity) {
+    Inputs moved = in;
+    moved.gap[0] += gap;
+    Vector v = in.vector(in.v_free, 0);
+    for (std::size_t c = 0; c < in.dimension; ++c) v[c] += velocity * n[c];
+    moved.set_vector(moved.v_free, 0, v);
+    moved.v_previous = moved.v_free;
+    arrays.set_state(state);
+    const Results found = arrays.evaluate(moved);
+    return dot(n, found.vector(found.impulse, 0, in.dimension));
+  };
+  const double gap = 1e-4 * std::abs(in.slack(0)), speed = 1e-4 * length(in.vector(in.v_free, 0));
+  const double middle = normal_impulse(0.0, 0.0);
+  const auto slope = [&](double above, double below, double by) -> std::optional<double> {
+    const double bend = std::abs(above - 2.0 * middle + below);
+    if (bend > 1e-2 * std::abs(above - below) + 1e-12 * std::abs(middle)) return std::nullopt;
+    return (above - below) / (2.0 * by);
+  };
+  const auto by_gap = slope(normal_impulse(gap, 0.0), normal_impulse(-gap, 0.0), gap),
+             by_velocity = slope(normal_impulse(0.0, speed), normal_impulse(0.0, -speed), speed);
+  if (!by_gap || !by_velocity) return std::nullopt;
+  return Slopes{*by_gap, *by_velocity};
+}
+
+// v' = v + H (a g + b v), g' = g + h v': its two eigenvalues, of sum 2 + H b + h H a and product 1 + H b,
+// pass -1 where the step is too large (Jury).
+void stable_step_bound(const Subject& subject) {
+  constexpr double below = 0.95, slack = 1e-3;
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (trial.setup.floats()) return false;
+        bool judged = false;
+        for (std::size_t k = 0; k < point_count; ++k) {
+          Inputs in = approaching(trial, draw);
+          Heap heap;
+          Arrays arrays(trial, in, {}, heap);
+          double limit = infinity;
+          for (int pass = 0; pass < 4; ++pass) {  // it may depend on the step and on the gap
+            const double depth = in.position_step * length(in.vector(in.v_free, 0));
+            in.gap[0] = in.gap_offset[0] - depth;
+            in.v_previous = in.v_free;
+            arrays.initialise(in);
+            const Results found = arrays.evaluate(in);
+            limit = found.code == ILAW_OK ? found.report.stable_velocity_step : infinity;
+            if (!std::isfinite(limit) || !(limit > 0.0)) break;
+            in.velocity_step = in.position_step = below * limit;
+          }
+          if (!std::isfinite(limit) || in.velocity_step > limit) continue;
+          arrays.initialise(in);
+          const std::optional<Slopes> found = slopes_of(arrays, in, arrays.state());
+          if (!found) continue;
+          const Vector n = in.normal_at(0);
+          const double h = dot(n, times(in.h(0), n)), product = 1.0 + h * found->by_velocity,
+                       sum = 1.0 + product + in.position_step * h * found->by_gap;
+          judged = true;
+          if (product < -1.0 - slack || sum < -1.0 - product - slack)
+            fail(trial, in, 0,
+                 "at 0.95 of the stable step " + text_of(limit) +
+                     " a node on the law swings ever wider: eigenvalues of sum " + text_of(sum) +
+                     " and product " + text_of(product),
+                 "eigenvalues of size 1 at most");
+        }
+        return judged;
+      },
+      "the law limits no step");
+}
+
 }  // namespace
 
 std::vector<Rule> energy_rules() {
@@ -120,7 +205,10 @@ std::vector<Rule> energy_rules() {
            "not positive.",
            "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, not_made},
           {"energy-balance", "The parts of the energy are what becomes of the work of the impulse.",
-           "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, balanced}};
+           "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, balanced},
+          {"stable-step-bound",
+           "A node on the law does not swing ever wider below the stable step that is reported.",
+           "ilaw.h, ilaw_report.stable_velocity_step", Needs::motion, stable_step_bound}};
 }
 
 }  // namespace ilaw::check

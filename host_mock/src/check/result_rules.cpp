@@ -85,6 +85,37 @@ void status(const Subject& subject) {
       "the law writes no status");
 }
 
+Vector tangential(const Vector& a, const Vector& n) {
+  const double normal = dot(n, a);
+  return {a[0] - normal * n[0], a[1] - normal * n[1], a[2] - normal * n[2]};
+}
+
+// A spring along the interface may still move where it sticks; without one v_T = -e v_T^- with e from 0 to 1.
+void status_stick(const Subject& subject) {
+  for_nodes(
+      subject,
+      [](const Trial& trial) {
+        return trial.writes(ILAW_OUTPUT_STATUS) && !trial.can(ILAW_CAN_STORE_ENERGY) &&
+               trial.setup.dimension > 1;
+      },
+      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
+        if (found.status[i] != ILAW_STICK) return;
+        const Vector r = impulse(in, found, i), gained = times(in.h(i), r), free = in.vector(in.v_free, i),
+                     n = in.normal_at(i),
+                     v = tangential({free[0] + gained[0], free[1] + gained[1], free[2] + gained[2]}, n),
+                     before = tangential(in.vector(in.v_previous, i), n);
+        const double square = dot(before, before), e = square > 0.0 ? -dot(v, before) / square : 0.0;
+        const double part = std::min(std::max(e, 0.0), 1.0);
+        const Vector rest{v[0] + part * before[0], v[1] + part * before[1], v[2] + part * before[2]};
+        const double tolerance = (trial.setup.floats() ? 1e-4 : 1e-9) * natural_velocity(in, i, r);
+        if (length(rest) > tolerance)
+          fail(trial, in, i,
+               "ILAW_STICK with the velocity " + text_of(v, in.dimension) + " along the interface",
+               "none, or a part of the opposite of that before");
+      },
+      "the law writes no status, or stores energy");
+}
+
 void velocity(const Subject& subject) {
   for_nodes(
       subject, [](const Trial& trial) { return trial.writes(ILAW_OUTPUT_VELOCITY); },
@@ -113,6 +144,46 @@ void energy_parts(const Subject& subject) {
         if (!(stored >= 0.0 || stored < 0.0) || (stored != 0.0 && !trial.can(ILAW_CAN_STORE_ENERGY)))
           fail(trial, in, i, "stored energy " + text_of(stored),
                "0 without ILAW_CAN_STORE_ENERGY, never NaN");
+      },
+      "the law writes no energy");
+}
+
+// In the local frame, where r_T = 0 is a number without rounding. A spring along the interface may go slack.
+void energy_friction(const Subject& subject) {
+  for_nodes(
+      subject,
+      [](const Trial& trial) {
+        return trial.writes(ILAW_OUTPUT_ENERGY) && !trial.can(ILAW_CAN_STORE_ENERGY) && !trial.setup.global();
+      },
+      [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
+        const Vector r = impulse(in, found, i);
+        const double part = found.energy[i * ILAW_ENERGY_COUNT + ILAW_ENERGY_FRICTION];
+        if (r[1] == 0.0 && r[2] == 0.0 && part != 0.0)
+          fail(trial, in, i, "friction dissipated " + text_of(part) + " without a tangential impulse", "0");
+      },
+      "the law writes no energy, or stores some");
+}
+
+// What breaks is remembered.
+void energy_rupture(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (!trial.writes(ILAW_OUTPUT_ENERGY)) return false;
+        const Script script = draw_script(trial, draw, {17, 8});
+        const std::vector<Results> results = run(trial, script);
+        const std::size_t size = trial.info.state_size;
+        for (std::size_t k = 1; k < script.size(); ++k)
+          for (std::size_t i = 0; i < script[k].count; ++i) {
+            const double* before = &results[k - 1].state[0] + i * size;
+            const bool same = std::equal(before, before + size, &results[k].state[0] + i * size, same_bits);
+            const double part = results[k].energy[i * ILAW_ENERGY_COUNT + ILAW_ENERGY_RUPTURE];
+            if (same && part != 0.0)
+              fail(trial, script[k], i,
+                   "rupture dissipated " + text_of(part) + " and left the state as it was",
+                   "0 where the state does not change");
+          }
+        return true;
       },
       "the law writes no energy");
 }
@@ -191,8 +262,7 @@ void cone(const Subject& subject) {
         if (found.status[i] != ILAW_STICK && found.status[i] != ILAW_SLIP) return;
         const Vector r = impulse(in, found, i), n = in.normal_at(i);
         const double normal = dot(n, r);
-        Vector along = r;
-        for (std::size_t c = 0; c < in.dimension; ++c) along[c] -= normal * n[c];
+        const Vector along = tangential(r, n);
         // r_N = n.r rounds as a part of |r|, however small it is.
         const double friction = cone_of(trial), most = friction * normal;
         if (length(along) > most + (trial.setup.floats() ? 16.0 * trial.epsilon() * (1.0 + friction)
@@ -244,12 +314,21 @@ std::vector<Rule> result_rules() {
        "check.md, Names with a meaning", Needs::motion, cone},
       {"status-meaning", "A status is one of the eight; free is r = 0, closed is pushed without friction.",
        "ilaw.h, ILAW_FREE", Needs::motion, status},
+      {"status-stick",
+       "A node that sticks, of a law that stores no energy, has no velocity along the interface, or a part "
+       "of the opposite of that before.",
+       "ilaw.h, ILAW_STICK", Needs::motion, status_stick},
       {"velocity-output", "The velocity is v_free + H r.", "ilaw.h, ilaw_batch.velocity", Needs::motion,
        velocity},
       {"energy-parts",
        "No dissipated part is negative and none NaN; nothing is stored without "
        "ILAW_CAN_STORE_ENERGY.",
        "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, energy_parts},
+      {"energy-friction",
+       "Friction of a law that stores no energy dissipates nothing without a tangential impulse.",
+       "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, energy_friction},
+      {"energy-rupture", "Rupture dissipates nothing where the state does not change.",
+       "ilaw.h, ILAW_ENERGY_RUPTURE", Needs::motion, energy_rupture},
       {"amounts-zero", "An amount is 0 where the status is free, and never NaN.", "ilaw.h, ilaw_amount",
        Needs::motion, amounts_zero},
       {"heat-dissipated",

@@ -34,6 +34,69 @@ void expect_image(const Trial& trial, const Script& script, const std::vector<Re
     }
 }
 
+// The same H as entries of a form that holds it.
+Inputs in_form(Inputs in, const Setup& setup) {
+  std::vector<Matrix> h;
+  for (std::size_t i = 0; i < in.count; ++i) h.push_back(in.h(i));
+  in.form = setup.form;
+  in.form_width = setup.form_width();
+  in.delassus.assign(in.count * in.form_width, 0.0);
+  constexpr std::size_t rows[] = {0, 0, 1}, columns[] = {1, 2, 2};
+  for (std::size_t i = 0; i < in.count; ++i) {
+    double* values = &in.delassus[i * in.form_width];
+    const bool is_transverse = setup.form == ILAW_DELASSUS_TRANSVERSE;
+    for (std::size_t c = 0; c < (is_transverse ? 2 : in.dimension); ++c)
+      values[c] = h[i][is_transverse ? 0 : c][is_transverse ? 0 : c];
+    if (setup.form == ILAW_DELASSUS_FULL)
+      for (std::size_t k = in.dimension; k < in.form_width; ++k)
+        values[k] = h[i][rows[k - in.dimension]][columns[k - in.dimension]];
+  }
+  in.round_to(setup);
+  return in;
+}
+
+// Each step of the other trial from the state of the first: what rounding makes of a memory is not the
+// question.
+void expect_alike(const Trial& trial, const Script& script, const Trial& other, const Script& other_script,
+                  const std::string& how) {
+  Heap heap;
+  Arrays arrays(trial, script[0], {}, heap), others(other, other_script[0], {}, heap);
+  arrays.initialise(script[0]);
+  std::vector<Results> plain, image;
+  for (std::size_t k = 0; k < script.size(); ++k) {
+    others.set_state(arrays.state());
+    plain.push_back(arrays.evaluate(script[k]));
+    image.push_back(others.evaluate(other_script[k]));
+  }
+  expect_image(other, script, plain, image, how.c_str(), [](std::size_t, const Vector& r) { return r; });
+}
+
+// A scalar H is diagonal, transverse and full, a diagonal and a transverse one are full.
+void form_agreement(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        if (trial.setup.form == ILAW_DELASSUS_FULL) return false;
+        bool judged = false;
+        const Script script = draw_script(trial, draw);
+        for (const std::uint32_t form :
+             {ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE}) {
+          if (form != ILAW_DELASSUS_FULL && trial.setup.form != ILAW_DELASSUS_SCALAR) continue;
+          Setup setup = trial.setup;
+          setup.form = form;
+          if (!(trial.law.delassus_forms & form) || !create(trial.law, setup, trial.values)) continue;
+          const Trial other(trial.law, setup, trial.values);
+          if (other.info.state_size != trial.info.state_size) continue;
+          Script other_script;
+          for (const Inputs& in : script) other_script.push_back(in_form(in, setup));
+          expect_alike(trial, script, other, other_script, "with the same H in form " + std::to_string(form));
+          judged = true;
+        }
+        return judged;
+      },
+      "the law serves one form of H alone");
+}
+
 // With tangents a state is in local components, so it is the same in any axes.
 bool keeps_axes(const Trial& trial) {
   for (std::uint32_t k = 0; k < trial.info.state_variable_count; ++k)
@@ -231,7 +294,9 @@ void other_units(const Subject& subject) {
 }  // namespace
 
 std::vector<Rule> symmetry_rules() {
-  return {{"frame-indifference", "An impulse is the same in local axes and in those of the host.",
+  return {{"form-agreement", "The same H gives the same impulse in whichever form it is given.",
+           "ilaw.h, ILAW_DELASSUS_SCALAR", Needs::motion, form_agreement},
+          {"frame-indifference", "An impulse is the same in local axes and in those of the host.",
            "ilaw.h, ILAW_FRAME_GLOBAL", Needs::motion, frame_indifference},
           {"frame-turned", "Where the whole model is turned, impulses turn with it.",
            "ilaw.h, ILAW_STATE_AXIS", Needs::motion, turned_whole},
