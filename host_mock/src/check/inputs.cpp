@@ -115,7 +115,10 @@ void draw_fixed(Inputs& in, const Trial& trial, Draw& draw) {
     if (!in.tangent.empty()) in.set_vector(in.tangent, i, axes[1]);
   }
   if (trial.info.per_node_parameter_count == 0) return;
-  for (std::size_t i = 0; i < in.count; ++i) draw_parameters(in, i, trial, draw);
+  constexpr std::size_t most_drawn = 32;  // each is an instance made; further nodes have them again
+  for (std::size_t i = 0; i < std::min(in.count, most_drawn); ++i) draw_parameters(in, i, trial, draw);
+  for (std::vector<double>& values : in.per_node)
+    for (std::size_t i = most_drawn; i < in.count; ++i) values[i] = values[i - most_drawn];
   set_setting(trial.text());  // which create has changed
 }
 
