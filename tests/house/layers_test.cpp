@@ -99,8 +99,8 @@ TEST(Layers, EveryFolderOfTheHostIsAFloor) {
 const std::vector<std::vector<std::string>> kit_rooms = {
     {"pack", "math", "vector", "symmetric", "roots"},
     {"law", "state", "node"},
-    {"contact", "resolved_impact", "regular_coulomb", "exact_coulomb", "friction", "bond", "rigid_bond",
-     "window"},
+    {"contact", "resolved_impact", "regular_coulomb", "exact_coulomb", "friction", "changing_friction",
+     "bond", "rigid_bond", "window"},
     {"plugin"}};
 
 std::size_t room_of(const std::string& header) {
