@@ -130,6 +130,18 @@ TEST(RateAndState, ConvergesToItsEquationAtFirstOrder) {
   EXPECT_GT(last, 1e-3);
 }
 
+// The age stands still while the node is free. Without initial_state it is that of steady slip at v_0.
+TEST(RateAndState, AgesUnderPressureAlone) {
+  const Surface law{.v0 = 0.1, .d = 0.3};
+  NodeRun node("rate_and_state", law.parameters(), 0.01);
+  EXPECT_EQ(node.state[0], 0.3 / 0.1);
+  ASSERT_EQ(node.step({1.0, 0.0, 0.0}), ILAW_OK);
+  EXPECT_EQ(node.state[0], 0.3 / 0.1);
+  node.v_previous = {};
+  ASSERT_EQ(node.step({-1.0, 0.0, 0.0}), ILAW_OK);
+  EXPECT_NEAR(node.state[0], 0.3 / 0.1 + 0.01, 1e-15);
+}
+
 // a, b to 0: Coulomb's law with f_0, where the node slips.
 TEST(RateAndState, ComesToCoulombWithoutItsEffects) {
   for (const double a : {1e-3, 1e-5, 1e-7}) {

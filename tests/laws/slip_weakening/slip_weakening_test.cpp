@@ -76,6 +76,41 @@ TEST(SlipWeakening, SticksUntilTheLoadBreaksItAway) {
   EXPECT_NEAR(node.v[1], 0.501, 1e-15);
 }
 
+// The amount: h h_T r_N (mu_s - mu_d)/(4 D_c) while the node weakens.
+double steepness_of(NodeRun& node, const Vector& v_free) {
+  double found = -1.0;
+  const ilaw_output amount = ilaw::output(&found, 0, 1);
+  node.v_free = v_free;
+  ilaw_batch b = node.batch();
+  b.state_in = ilaw::input(node.state.data(), 0, 1);
+  b.state_out = ilaw::output(node.state.data(), 0, 1);
+  b.impulse = ilaw::output(node.r.data(), 0, 1);
+  b.amounts = &amount;
+  EXPECT_EQ(node.interface.evaluate(b), ILAW_OK);
+  return found;
+}
+TEST(SlipWeakening, GivesItsSteepness) {
+  const Weakening law{0.6, 0.1, 0.01};
+  NodeRun node("slip_weakening", law.parameters(), 0.02, ILAW_DELASSUS_TRANSVERSE);
+  node.h = {0.5, 0.8};
+  EXPECT_NEAR(steepness_of(node, {-1.0, 0.5, 0.0}), 0.02 * 0.8 * 2.0 * 0.5 / 0.04, 1e-15);
+  EXPECT_EQ(steepness_of(node, {1.0, 3.0, 0.0}), 0.0);  // free
+  node.state = {0.02};
+  EXPECT_EQ(steepness_of(node, {-1.0, 3.0, 0.0}), 0.0);  // weakened
+}
+
+// Only what slips under pressure weakens, and a coefficient does not rise with the slip.
+TEST(SlipWeakening, DoesNotSlipInTheAirOrRise) {
+  NodeRun node("slip_weakening", Weakening{0.3, 0.7, 0.01}.parameters(), 0.01);
+  node.v_previous = {0.0, 2.0, 0.0};
+  ASSERT_EQ(node.step({1.0, 2.0, 0.0}), ILAW_OK);
+  EXPECT_EQ(node.state[0], 0.0);
+  node.v_previous = {0.0, 2.0, 0.0};
+  ASSERT_EQ(node.step({-1.0, 2.0, 0.0}), ILAW_OK);
+  EXPECT_NEAR(node.r[1], -0.3, 1e-15);
+  EXPECT_GT(node.state[0], 0.01);
+}
+
 // The whole work of friction of a block that stops is mu_d N s and the fracture energy, for any step that
 // does not pass the critical slip within it.
 TEST(SlipWeakening, DissipatesItsFractureEnergy) {
