@@ -1,13 +1,16 @@
 // changing_friction.hpp - contact whose coefficient of friction depends on the slip speed of the step, for
 // any H.
 //
-// A law gives the coefficient of a node and step as a struct of V, Mu, with
+// A law gives the coefficient of a node and step, Mu, with
 //   coefficient<V> operator()(V v) const   mu and dmu/dv at the slip speed v >= 0 after the step
 //   V start(V most, V drag) const          optional: where to begin; most is the speed without friction and
 //                                          drag = h_T r_N
-// and the speed follows from v = |u_T|, u = q + H r, with the contact of friction.hpp for mu(v). The node
+//   V speed(V most, V drag) const          optional: the solution of v + drag mu(v) = most to take, where
+//                                          there are several; the derivative may be an estimate then
+// as a struct of V, or as such a struct and a curve_of(struct) of the law that makes Mu from it. The speed
+// follows from v = |u_T|, u = q + H r, with the contact of friction.hpp for mu(v). Without speed() the node
 // sticks where it can stick with mu(0). Else a solution exists, since |u_T| is bounded; it is the only one
-// where mu is convex or nowhere falls faster than 1/drag.
+// for H = diag(h_N, h_T, h_T) where mu is convex or nowhere falls faster than 1/drag.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -34,9 +37,15 @@ coefficient<V> regularized_logarithm(V a, V x) {
 
 // ---- H = diag(h_N, h_T, h_T)
 
+template <class Mu, class V>
+concept chooses_speed = requires(const Mu& mu, V v) {
+  mu.speed(v, v);
+};
+
 // v + drag mu(v) = most, 0 where the node sticks.
 template <class V, class Mu>
 ILAW_KIT_INLINE V slip_speed(V most, V drag, const Mu& mu) {
+  if constexpr (chooses_speed<Mu, V>) return mu.speed(most, drag);
   const mask_of<V> slips = most > drag * mu(V(0.0)).value;
   if (!any(slips)) return 0.0;
   const V low = 0x1p-900 * most;  // slower is sticking
@@ -89,28 +98,30 @@ V slip_speed_of(const friction_problem<V>& p, const friction_answer<V>& a) {
 
 // By the solver of Coulomb's law for a given coefficient, solve(problem, answer).
 template <class V, class Mu, class Solve>
-void solve_changing_friction_by(const changing_problem<V, Mu>& p, changing_answer<V>& a, Solve solve) {
-  friction_problem<V> tried = p.friction;
+void solve_changing_friction_by(const friction_problem<V>& p, const Mu& mu_at, changing_answer<V>& a,
+                                Solve solve) {
+  friction_problem<V> tried = p;
   for (V& rest : tried.rest) rest = 0.0;  // positive work is taken off the solution alone
   const auto speed_with = [&](V mu) {
     tried.contact.mu[0] = tried.contact.mu[1] = mu;
     solve(tried, a.friction);
     return slip_speed_of(tried, a.friction);
   };
-  const V *h = p.friction.contact.h, *q = p.friction.contact.q;
+  const V *h = p.contact.h, *q = p.contact.q;
   const V normal = positive_part(-q[0] / h[0]), most = length(q[1], q[2]);
   const V rounding = 0x1p-50 * (most + normal * length(h[3], h[4]));
   tried.contact.mu[0] = tried.contact.mu[1] = 0.0;
   const mask_of<V> closed = has_closed_form(tried.contact);
-  const mask_of<V> slips = (!closed) & (speed_with(p.mu(V(0.0)).value) > 0.0);
+  mask_of<V> slips = !closed;
+  if constexpr (!chooses_speed<Mu, V>) slips = slips & (speed_with(mu_at(V(0.0)).value) > 0.0);
   // The speed falls almost linearly with the coefficient: secants of that line, on which mu is exact.
   V drag = select(closed, h[1], 0.5 * (h[1] + h[2])) * normal;
-  const V uncoupled = slip_speed(most, drag, p.mu);
+  const V uncoupled = slip_speed(most, drag, mu_at);
   V v = uncoupled;
-  V mu = p.mu(v).value, speed = speed_with(mu);
+  V mu = mu_at(v).value, speed = speed_with(mu);
   for (int k = 0; k < 12 && any(slips & (absolute(v - speed) > rounding)); ++k) {
     const mask_of<V> goes_on = slips & (absolute(v - speed) > rounding);
-    const V next = slip_speed(speed + drag * mu, drag, p.mu), next_mu = p.mu(next).value;
+    const V next = slip_speed(speed + drag * mu, drag, mu_at), next_mu = mu_at(next).value;
     const V next_speed = speed_with(next_mu), slope = (speed - next_speed) / (next_mu - mu);
     drag = select(goes_on & (slope > 0.0) & (slope < infinity), slope, drag);
     v = select(goes_on, next, v);
@@ -118,7 +129,7 @@ void solve_changing_friction_by(const changing_problem<V, Mu>& p, changing_answe
     speed = select(goes_on, next_speed, speed);
   }
   const auto trial = [&](V at) {
-    const coefficient<V> c = p.mu(at);
+    const coefficient<V> c = mu_at(at);
     const V residual = at - speed_with(c.value);
     return root_trial<V>{zero_unless(absolute(residual) > rounding, residual), 1.0, 1.0 + drag * c.slope, 1.0,
                          !slips};
@@ -129,25 +140,28 @@ void solve_changing_friction_by(const changing_problem<V, Mu>& p, changing_answe
   const vector<V> solved = inertia.solve(whole);
   const V energy = normal_product(whole, solved) + tangential_product(whole, solved);
   const V high = 2.0 * square_root((h[0] + (h[1] + h[2])) * energy);
-  const V coupled = root_between(0x1p-200 * high, high, select(v > 0.0, v, most), slips, trial);
-  a.speed = select(closed, uncoupled, zero_unless(slips, coupled));
-  tried = p.friction;
-  tried.contact.mu[0] = tried.contact.mu[1] = p.mu(a.speed).value;
+  const mask_of<V> unsolved = slips & (absolute(v - speed) > rounding);
+  const V coupled = root_between(0x1p-200 * high, high, select(v > 0.0, v, most), unsolved, trial);
+  a.speed = select(closed, uncoupled, zero_unless(slips, select(unsolved, coupled, v)));
+  tried = p;
+  tried.contact.mu[0] = tried.contact.mu[1] = mu_at(a.speed).value;
   solve(tried, a.friction);
 }
 template <class V, class Mu>
-mask_of<V> solve_changing_friction(const changing_problem<V, Mu>& p, changing_answer<V>& a) {
-  mask_of<V> left = p.friction.contact.h[0] < 0.0;
-  solve_changing_friction_by(p, a, [&](const friction_problem<V>& tried, friction_answer<V>& found) {
+mask_of<V> solve_changing_friction(const friction_problem<V>& p, const Mu& mu, changing_answer<V>& a) {
+  mask_of<V> left = p.contact.h[0] < 0.0;
+  solve_changing_friction_by(p, mu, a, [&](const friction_problem<V>& tried, friction_answer<V>& found) {
     left = left | solve_friction(tried, found);
   });
   return left;
 }
 template <class Mu>
-void solve_changing_friction_exactly(const changing_problem<double, Mu>& p, changing_answer<double>& a) {
-  solve_changing_friction_by(p, a, [](const friction_problem<double>& tried, friction_answer<double>& found) {
-    if (solve_friction(tried, found)) solve_friction_exactly(tried, found);
-  });
+void solve_changing_friction_exactly(const friction_problem<double>& p, const Mu& mu,
+                                     changing_answer<double>& a) {
+  solve_changing_friction_by(p, mu, a,
+                             [](const friction_problem<double>& tried, friction_answer<double>& found) {
+                               if (solve_friction(tried, found)) solve_friction_exactly(tried, found);
+                             });
 }
 
 // ---- the law
@@ -160,7 +174,8 @@ struct changing_friction {
   bool asks() const { return false; }
   template <class Node>
   status_of<V> step(Node& node) const requires is_transverse<Node> {
-    const changing_slip<V> found = apply_changing_friction(node, contact(node), law().coefficient_in(node));
+    const changing_slip<V> found =
+        apply_changing_friction(node, contact(node), curve(law().coefficient_in(node)));
     law().slide(node, found.speed);
     return found.status;
   }
@@ -169,8 +184,12 @@ struct changing_friction {
     open.mu = law().coefficient_in(node);
     return ask_friction(node, contact(node), 0.0, 0.0, open.friction);
   }
-  static mask_of<V> solve(const problem& p, answer& a) { return solve_changing_friction(p, a); }
-  static void solve_scalar(const problem& p, answer& a) { solve_changing_friction_exactly(p, a); }
+  mask_of<V> solve(const problem& p, answer& a) const {
+    return solve_changing_friction(p.friction, curve(p.mu), a);
+  }
+  void solve_scalar(const problem& p, answer& a) const {
+    solve_changing_friction_exactly(p.friction, curve(p.mu), a);
+  }
   template <class Node>
   status_of<V> finish(Node& node, const answer& a) const {
     const status_of<V> found = finish_friction(node, a.friction);
@@ -180,6 +199,12 @@ struct changing_friction {
 
  private:
   ILAW_KIT_INLINE const Law<V>& law() const { return static_cast<const Law<V>&>(*this); }
+  ILAW_KIT_INLINE auto curve(const Mu<V>& mu) const {
+    if constexpr (requires { law().curve_of(mu); })
+      return law().curve_of(mu);
+    else
+      return mu;
+  }
   template <class Node>
   ILAW_KIT_INLINE auto contact(const Node& node) const {
     return contact_problem_of(contact_at(node, law().restitution, law().activation), node.v_free,
