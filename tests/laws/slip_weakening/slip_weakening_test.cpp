@@ -76,6 +76,27 @@ TEST(SlipWeakening, SticksUntilTheLoadBreaksItAway) {
   EXPECT_NEAR(node.v[1], 0.501, 1e-15);
 }
 
+// A weak coupling changes little, also where the motion turns round within the step.
+TEST(SlipWeakening, IsContinuousInTheCoupling) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const Weakening law{0.7, 0.2, 0.05};
+  NodeRun node("slip_weakening", law.parameters(), 0.01, ILAW_DELASSUS_FULL),
+      plain("slip_weakening", law.parameters(), 0.01, ILAW_DELASSUS_TRANSVERSE);
+  node.h = {1.0, 1.3, 1.3, 1e-9, 0.0, 0.0};
+  plain.h = {1.0, 1.3};
+  for (int k = 0; k < 1000; ++k) {
+    const Vector before{0.0, uniform(random), uniform(random)};
+    const Vector free{-1.0, 2.0 * uniform(random), 2.0 * uniform(random)};
+    node.v_previous = plain.v_previous = before;
+    node.state = plain.state = {0.02};
+    ASSERT_EQ(node.step(free), ILAW_OK);
+    ASSERT_EQ(plain.step(free), ILAW_OK);
+    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(node.r[c], plain.r[c], 1e-7) << k;
+    ASSERT_NEAR(node.state[0], plain.state[0], 1e-9) << k;
+  }
+}
+
 // The amount: h h_T r_N (mu_s - mu_d)/(4 D_c) while the node weakens.
 double steepness_of(NodeRun& node, const Vector& v_free) {
   double found = -1.0;
