@@ -27,7 +27,8 @@ struct Units {
   double of(const std::string& unit, const std::map<std::string, double>& exponents) const {
     const double force = mass * length / (time * time);
     const std::map<std::string, double> known = {{"1", 1.0},  {"kg", mass}, {"m", length},
-                                                 {"s", time}, {"N", force}, {"J", force * length}};
+                                                 {"s", time}, {"N", force}, {"J", force * length},
+                                                 {"K", 1.0}};
     double product = 1.0;
     bool divides = false;
     std::istringstream factors(std::regex_replace(unit, std::regex("[./]"), " $& "));

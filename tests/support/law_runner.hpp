@@ -40,6 +40,11 @@ struct Parameters {
   std::map<std::string, std::string> texts;
   std::map<std::string, std::vector<double>> tables = {};  // time, value, time, value ...
   std::vector<std::string> per_node = {};
+  struct Grid {
+    std::vector<ilaw::parameters::axis> axes;
+    std::vector<double> values;
+  };
+  std::map<std::string, Grid> grids = {};
 };
 
 // Setup with the storage that its pointers need.
@@ -52,6 +57,7 @@ class SetupBuilder {
     for (const auto& [name, text] : given.texts) arguments_.text(name, text);
     for (const auto& [name, pairs] : given.tables) add_time_table(name, pairs);
     for (const std::string& name : given.per_node) arguments_.per_node(name);
+    for (const auto& [name, grid] : given.grids) arguments_.table(name, grid.axes, grid.values);
     setup.struct_size = sizeof setup;
     setup.dimension = dimension;
     setup.delassus_form = form;

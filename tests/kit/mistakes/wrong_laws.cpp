@@ -164,7 +164,7 @@ struct parameter_without_member {
 };
 
 template <class V>
-// a law's members are its parameters, all V or double: each needs an entry of parameters[]
+// a law's members are its parameters, V, double or grid: each needs an entry of parameters[]
 struct member_without_parameter {
   V a, b;
   CARD;

@@ -2,7 +2,7 @@
 //
 // A law is one struct template on its number type V (pack.hpp). Its members are its parameters, each with an
 // entry of parameters[]: V may vary from node to node and in time, double is the same at all nodes and fixed
-// at create.
+// at create, grid is a table that the step reads itself (table.hpp).
 //
 // clang-format off
 //   is    card, references, parameters       what it is called, serves and reads
@@ -41,6 +41,7 @@
 
 #include <ilaw/ilaw.h>
 #include <ilaw/kit/pack.hpp>
+#include <ilaw/kit/table.hpp>
 
 #include <cstddef>
 #include <iterator>
@@ -103,8 +104,10 @@ class parameter_member {
   constexpr parameter_member(number Law::*member) : varying_(member) {}
   constexpr parameter_member(std::conditional_t<std::is_same_v<number, double>, none, double Law::*> member)
       : fixed_(member) {}
+  constexpr parameter_member(grid Law::*member) : grid_(member) {}
 
-  constexpr bool is_given() const { return varying_ || fixed_; }
+  constexpr bool is_given() const { return varying_ || fixed_ || grid_; }
+  constexpr bool is_grid() const { return grid_; }
   constexpr bool may_vary() const { return varying_; }  // not known where V is double
   constexpr bool operator==(const parameter_member&) const = default;
   template <class Either>  // Law, or const Law
@@ -114,16 +117,31 @@ class parameter_member {
   ILAW_KIT_INLINE void set(Law& law, double value) const {
     if (varying_)
       law.*varying_ = value;
-    else
+    else if (fixed_)
       law.*fixed_ = value;
   }
+  void set(Law& law, double value, table& own) const {
+    set(law, value);
+    own.constant = value;
+    if (grid_) law.*grid_ = grid(own);
+  }
+  template <class From>
+  ILAW_KIT_INLINE void copy(Law& law, const parameter_member<From>& member, const From& from) const {
+    if (grid_)
+      law.*grid_ = from.*member.grid_;
+    else
+      set(law, member.get(from));
+  }
   ILAW_KIT_INLINE double get(const Law& law) const requires std::is_same_v<number, double> {
-    return law.*varying_;
+    return grid_ ? not_a_number : law.*varying_;
   }
 
  private:
+  template <class>
+  friend class parameter_member;
   number Law::*varying_ = nullptr;
   double Law::*fixed_ = nullptr;
+  grid Law::*grid_ = nullptr;
 };
 
 template <class Law>
@@ -142,7 +160,7 @@ struct parameter {
   bool whole = false;
   bool is_field = false;   // of the host's model, such as a temperature
   texts choices = {};      // a choice: the member is double and holds the index
-  texts axes = over_time;  // over which a V may be a table
+  texts axes = over_time;  // over which a V or a grid may be a table
 
   // Copies that differ in one thing.
   constexpr parameter with_doc(const char* text) const {

@@ -369,6 +369,17 @@ ILAW_KIT_INLINE double lane_of(pack_of<Registers> x, int lane) {
 
 }  // namespace detail
 
+// f of numbers, in each lane.
+template <class V, class Function, class... More>
+V lane_by_lane(Function f, V first, More... more) {
+  double found[detail::lanes_of<V>];
+  for (int lane = 0; lane < detail::lanes_of<V>; ++lane)
+    found[lane] = f(detail::lane_of(first, lane), detail::lane_of(more, lane)...);
+  V result;
+  __builtin_memcpy(static_cast<void*>(&result), found, sizeof found);
+  return result;
+}
+
 // Zero where a check passes, NaN where not: checks multiply such residuals instead of joining masks.
 template <class V>
 ILAW_KIT_INLINE V nan_unless(mask_of<V> good, V found) {

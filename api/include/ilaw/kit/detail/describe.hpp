@@ -18,7 +18,8 @@ constexpr std::uint32_t flag_if(bool condition, std::uint32_t flag) { return con
 // Of L<pack>, whose members tell what may vary.
 template <class Law>
 constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
-  const bool is_choice = p.choices.count > 0, varies = p.member.may_vary();
+  const bool is_choice = p.choices.count > 0, varies = p.member.may_vary(),
+             has_tables = varies || p.member.is_grid();
   return {
       .struct_size = sizeof(ilaw_parameter),
       .kind = static_cast<ilaw_kind>(is_choice ? ILAW_PARAMETER_CHOICE
@@ -36,8 +37,8 @@ constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
                flag_if(varies, ILAW_PARAMETER_ALLOWS_PER_NODE) | flag_if(p.is_field, ILAW_PARAMETER_IS_FIELD),
       .choice_count = p.choices.count,
       .choices = p.choices.values,
-      .axes = varies ? p.axes.values : nullptr,
-      .axis_count = varies ? p.axes.count : 0U,
+      .axes = has_tables ? p.axes.values : nullptr,
+      .axis_count = has_tables ? p.axes.count : 0U,
       .reserved = 0};
 }
 template <class Wide>

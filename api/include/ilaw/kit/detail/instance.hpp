@@ -74,6 +74,7 @@ struct instance : instance_base {
       if (tables[k].per_node) read_table_of(now, k, time);
   }
   void read_table_of(Law& now, int k, double time) const {
+    if (Law::parameters[k].member.is_grid()) return;
     double place[3] = {};
     for (int a = 0; a < tables[k].axis_count; ++a) {
       const int source = tables[k].source[a];
@@ -152,7 +153,8 @@ class instance_builder {
   }
 
   ilaw_result read_arguments() {
-    for (const auto& p : Law::parameters) p.member.set(made_.law, p.default_value);
+    for (std::size_t k = 0; k < count; ++k)
+      Law::parameters[k].member.set(made_.law, Law::parameters[k].default_value, made_.tables[k]);
     if (setup_.argument_count > 0 && !setup_.arguments) {
       text_.add("law '%s': arguments is null, expected %u pointers", id, setup_.argument_count);
       return ILAW_INVALID_ARGUMENT;
@@ -190,7 +192,7 @@ class instance_builder {
     double value = 0.0;
     const ilaw_result code = p.kind == ILAW_PARAMETER_CHOICE ? read_choice(id, p, a, value, text_)
                                                              : read_number(id, p, a, value, text_);
-    Law::parameters[i].member.set(made_.law, value);
+    Law::parameters[i].member.set(made_.law, value, made_.tables[i]);
     return code;
   }
 
@@ -198,11 +200,12 @@ class instance_builder {
     table& made = made_.tables[place];
     if (const ilaw_result code = read_table(id, p, a, made, text_); code != ILAW_OK) return code;
     for (int i = 0; i < made.axis_count; ++i) {
-      made.source[i] = table::time;
+      const char* axis = p.axes[made.named_axis[i]];
+      made.source[i] = std::strcmp(axis, "time") == 0 ? table::time : table::computed;
       for (std::size_t k = 0; k < count; ++k)
-        if (std::strcmp(Law::parameters[k].name, sized::read(a.axes[i]).name) == 0)
-          made.source[i] = static_cast<int>(k);
+        if (std::strcmp(Law::parameters[k].name, axis) == 0) made.source[i] = static_cast<int>(k);
     }
+    if (Law::parameters[place].member.is_grid()) return ILAW_OK;
     ++made_.table_count;
     Law::parameters[place].member.set(made_.law, a.values[0]);
     return ILAW_OK;
@@ -212,7 +215,7 @@ class instance_builder {
     for (std::size_t k = 0; k < count; ++k)
       for (int a = 0; a < made_.tables[k].axis_count; ++a) {
         const int field = made_.tables[k].source[a];
-        if (field == table::time) continue;
+        if (field < 0) continue;
         const auto f = static_cast<std::size_t>(field);
         if (!given_[f] || (made_.tables[f].axis_count > 0 && !made_.tables[f].is_over_time_alone())) {
           text_.add(
@@ -222,7 +225,8 @@ class instance_builder {
           return ILAW_INVALID_PARAMETER;
         }
         for (std::uint32_t n = 0; n < made_.per_node_count; ++n)
-          if (made_.per_node_parameters[n] == field) made_.tables[k].per_node = true;
+          if (made_.per_node_parameters[n] == field && !Law::parameters[k].member.is_grid())
+            made_.tables[k].per_node = true;
         if (made_.tables[k].per_node) made_.node_tables = made_.tables;
       }
     return ILAW_OK;

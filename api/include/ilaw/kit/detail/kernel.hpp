@@ -65,7 +65,7 @@ template <class V, class Law, std::size_t... K>
 ILAW_KIT_INLINE law_on_t<Law, V> broadcast(const Law& law, std::index_sequence<K...>) {
   using Wide = law_on_t<Law, V>;
   Wide wide;
-  (Wide::parameters[K].member.set(wide, Law::parameters[K].member.get(law)), ...);
+  (Wide::parameters[K].member.copy(wide, Law::parameters[K].member, law), ...);
   return wide;
 }
 template <class V, class Law>

@@ -140,7 +140,7 @@ constexpr bool same_text(const char* a, const char* b) {
 template <class Law>
 constexpr bool axes_are_known() {
   for (const auto& p : Law::parameters)
-    for (std::uint32_t k = 0; k < p.axes.count; ++k) {
+    for (std::uint32_t k = 0; k < p.axes.count && !p.member.is_grid(); ++k) {
       bool is_known = same_text(p.axes.values[k], "time");
       for (const auto& field : Law::parameters)
         is_known = is_known || (field.is_field && same_text(p.axes.values[k], field.name));
@@ -404,8 +404,9 @@ struct checked_members {
                  "a parameter needs .member = &Law::name and .name = \"name\"");
   ILAW_KIT_CHECK(has_one_each, members_differ<Wide>(),
                  "two parameters have the same .member: each needs one of its own");
-  ILAW_KIT_CHECK(describes_all, sizeof(Law) == sizeof(double) * std::size(Law::parameters),
-                 "a law's members are its parameters, all V or double: each needs an entry of parameters[]");
+  ILAW_KIT_CHECK(
+      describes_all, sizeof(Law) == sizeof(double) * std::size(Law::parameters),
+      "a law's members are its parameters, V, double or grid: each needs an entry of parameters[]");
   ILAW_KIT_CHECK(has_few, parameter_count<Law> <= most_parameters, "a law has at most 32 parameters");
   ILAW_KIT_CHECK(chooses_once, all_parameters<Wide>([](const auto& p) {
                    return !(p.choices.count > 0 || p.whole) || !p.member.may_vary();

@@ -34,55 +34,6 @@ class message {
   std::size_t size_, used_ = 0;
 };
 
-// A parameter given as a table over one to three axes: linear along each, constant beyond its ends. The last
-// axis varies fastest.
-struct table {
-  static constexpr int time = -1;
-
-  int axis_count = 0;  // 0: none
-  int source[3] = {};  // of an axis: time, or a field's place among the law's parameters
-  bool per_node = false;
-  std::uint64_t count[3] = {};
-  double* points[3] = {};  // owned, with the values behind them
-  double* values = nullptr;
-
-  bool is_over_time_alone() const { return axis_count == 1 && source[0] == time; }
-  double at(const double (&place)[3]) const { return between(0, 0, place); }
-
-  // Position of the first point after a place on an axis.
-  std::uint64_t after(int axis, double place) const {
-    std::uint64_t low = 0, high = count[axis];
-    while (low < high) {
-      const std::uint64_t middle = (low + high) / 2;
-      if (points[axis][middle] > place)
-        high = middle;
-      else
-        low = middle + 1;
-    }
-    return low;
-  }
-  double next_time(double after_time) const {
-    for (int a = 0; a < axis_count; ++a)
-      if (source[a] == time)
-        if (const std::uint64_t k = after(a, after_time); k < count[a]) return points[a][k];
-    return infinity;
-  }
-
- private:
-  double between(int axis, std::uint64_t row, const double (&place)[3]) const {
-    if (axis == axis_count) return values[row];
-    const auto value = [&](std::uint64_t k) { return between(axis + 1, row * count[axis] + k, place); };
-    const std::uint64_t k = after(axis, place[axis]);
-    if (k == 0) return value(0);
-    if (k == count[axis]) return value(k - 1);
-    const double x0 = points[axis][k - 1], x1 = points[axis][k], y0 = value(k - 1), y1 = value(k);
-    const double fraction = (place[axis] - x0) / (x1 - x0);
-    // At its ends a segment has their values, also beside an infinite one.
-    if (y0 == y1 || fraction == 0.0) return y0;
-    return fraction == 1.0 ? y1 : y0 * (1.0 - fraction) + y1 * fraction;
-  }
-};
-
 // What a parameter may be.
 struct parameter_range {
   double minimum, excluded, maximum, beyond;
@@ -207,6 +158,7 @@ inline ilaw_result read_table(const char* law, const ilaw_parameter& p, const il
       for (std::uint32_t k = 0; k < p.axis_count; ++k) text.add("%s'%s'", k ? ", " : "", p.axes[k]);
       return ILAW_INVALID_PARAMETER;
     }
+    made.named_axis[i] = static_cast<int>(known);
     for (std::uint32_t k = 0; k < i; ++k)
       if (std::strcmp(axes[k].name, axes[i].name) == 0) return refuse("has twice the axis ", axes[i].name);
     if (axes[i].count > ILAW_TABLE_MAX_VALUES / size) return refuse("has more than 16777216 values");
