@@ -99,7 +99,6 @@ class ContactArrays {
   std::vector<std::uint8_t> status;
   // coupled
   std::vector<double> normal, gap;
-  std::vector<double> turn_before, turn_after;  // where an obstacle turns: velocities of its surface
 
  private:
   enum Mark : std::uint8_t {

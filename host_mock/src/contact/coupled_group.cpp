@@ -20,7 +20,8 @@ void CoupledGroup::open(bool watches_inputs) {
   contacts_.clear();
   body_.clear();
   counterpart_.clear();
-  for (std::vector<double>* values : {&weights_, &wall_, &wall_before_, &gap_, &normal_, &area_, &state_})
+  for (std::vector<double>* values :
+       {&weights_, &surface_, &surface_before_, &gap_, &normal_, &area_, &state_})
     values->clear();
   for (std::vector<double>& values : parameters_) values.clear();
 }
@@ -36,12 +37,10 @@ void CoupledGroup::add(const CoupledContact& contact, const ContactArrays& array
     counterpart_.push_back(contact.point.partners[i]);
     weights_.push_back(contact.point.weights[i]);
   }
-  if (partner_count_ == 0) {
-    counterpart_.push_back(-1);
-    append(wall_, contact.surface);
-    append(wall_before_, contact.surface_before);
-  }
-  gap_.push_back(contact.gap);
+  if (partner_count_ == 0) counterpart_.push_back(-1);
+  append(surface_, contact.surface);
+  append(surface_before_, contact.surface_before);
+  gap_.push_back(contact.point.gap);
   append(normal_, contact.point.normal);
   if (!arrays.area.empty()) area_.push_back(arrays.area[k]);
   for (std::size_t p = 0; p < parameters_.size(); ++p) parameters_[p].push_back(arrays.parameters[p][k]);
@@ -88,8 +87,8 @@ const ilaw_contacts& CoupledGroup::close(const Vector& tangent, const StepView& 
   given_.body = body_.data();
   given_.counterpart = counterpart_.data();
   if (partner_count_ == 0) {
-    given_.wall_velocity = ilaw::input(wall_.data(), dimension_, 1);
-    given_.wall_previous = ilaw::input(wall_before_.data(), dimension_, 1);
+    given_.wall_velocity = ilaw::input(surface_.data(), dimension_, 1);
+    given_.wall_previous = ilaw::input(surface_before_.data(), dimension_, 1);
   } else {
     given_.counterpart_count = static_cast<std::uint32_t>(partner_count_);
     if (partner_count_ > 1) given_.counterpart_weight = ilaw::input(weights_.data(), partner_count_, 1);

@@ -18,8 +18,7 @@ namespace ilaw::host {
 struct CoupledContact {
   std::int32_t contact;
   int node;
-  const ContactPoint& point;
-  double gap;
+  const ContactPoint& point;       // its gap less the gap offset
   Vector surface, surface_before;  // velocities of the obstacle
 };
 
@@ -48,6 +47,13 @@ class CoupledGroup {
   auto impulse(std::size_t i) const {
     return Eigen::Map<const Vector>(&impulse_[i * static_cast<std::size_t>(dimension_)], dimension_);
   }
+  // Velocities of the obstacle's surface there.
+  auto surface(std::size_t i) const {
+    return Eigen::Map<const Vector>(&surface_[i * static_cast<std::size_t>(dimension_)], dimension_);
+  }
+  auto surface_before(std::size_t i) const {
+    return Eigen::Map<const Vector>(&surface_before_[i * static_cast<std::size_t>(dimension_)], dimension_);
+  }
   std::uint8_t status(std::size_t i) const { return status_[i]; }
   const double* energy(std::size_t i) const { return &energy_[i * ILAW_ENERGY_COUNT]; }
   std::size_t amount_count() const { return amounts_.size(); }
@@ -63,7 +69,7 @@ class CoupledGroup {
   WatchedLaw law_;
   ContactList contacts_;
   std::vector<std::int32_t> body_, counterpart_;
-  std::vector<double> weights_, wall_, wall_before_, gap_, normal_, area_, impulse_, energy_, state_,
+  std::vector<double> weights_, surface_, surface_before_, gap_, normal_, area_, impulse_, energy_, state_,
       next_state_;
   std::vector<std::vector<double>> parameters_, amounts_;
   std::vector<std::uint8_t> status_;

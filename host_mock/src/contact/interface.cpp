@@ -4,7 +4,9 @@
 #include "base/large_pages.hpp"
 #include "base/parallel.hpp"
 #include "base/running_law.hpp"
+#include "contact/contact_geometry.hpp"
 #include "contact/law_faults.hpp"
+#include "contact/plain_step.hpp"
 
 #include <algorithm>
 #include <array>
@@ -120,17 +122,18 @@ Vector Interface::velocity_of(int contact_index, const Vector& impulse) const {
 // A rigid law that is driven along its normal answers with an impulse that takes the whole approach, over the
 // small H that it was given. The size of the answer tells it: the node would give way by H r, and laws that
 // need no such thing give way by a vanishing part of the speed, or of the indentation in a step.
-void Interface::check_driven(const StepView& step, const Dofs& v) const {
+void Interface::check_driven(const StepView& step, const Dofs& v, const CoupledGroup& group) const {
   constexpr double noticeable = 1e-9;
   if (contacts_.axis_delassus.empty()) return;
   const double speed = std::max(step.speed_before, step.speed_after);
-  for (const std::int32_t k : active()) {
+  for (std::size_t place = 0; place < group.count(); ++place) {
+    const std::int32_t k = group.contact(place);
     const Vector given_way =
         contacts_.vector(contacts_.law_delassus, k).cwiseProduct(impulse(k)) - velocity_of(k, impulse(k));
     Eigen::Index axis = 0;
     const double largest = given_way.cwiseAbs().maxCoeff(&axis);
     if (!(largest > noticeable * std::max(speed, std::abs(gap(k)) / step.dt))) continue;
-    if (largest < 0.5 * std::abs(v_free_of(k, v)[axis])) continue;
+    if (largest < 0.5 * std::abs(v_free_of(group, place, v)[axis])) continue;
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(),
                   "node %d is driven along axis %td against '%s' (law '%s'), which cannot give way",
@@ -263,6 +266,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
                          v,
                          energies,
                          watched};
+  const auto step_chunk = steps_plainly_ ? plain_step : solve_chunk;
   outcomes_.resize(chunk_starts_.size() - 1);
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   for_each_chunk(static_cast<std::ptrdiff_t>(outcomes_.size()), 1, [&](std::ptrdiff_t c, auto, auto) {
@@ -270,7 +274,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
     ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
     outcome = {};
     const std::ptrdiff_t first = range[0], count = range[1] - first;
-    if (count > 0) solve_chunk(blocks, {near_.data() + first, near_nodes_.data() + first, count}, outcome);
+    if (count > 0) step_chunk(blocks, {near_.data() + first, near_nodes_.data() + first, count}, outcome);
   });
   Refusal refusal = outcomes_.front().refusal;
   sums_ = outcomes_.front().sums;
@@ -301,36 +305,24 @@ const ilaw_contacts& Interface::open_step(const StepView& step, CoupledGroup& gr
   choose_active(step);
   sums_ = {};
   group.open(InputCopy::is_due(step.number));
-  const bool turns = setup_.counterpart->turns();
-  if (turns)
-    for (std::vector<double>* turn : {&contacts_.turn_before, &contacts_.turn_after})
-      turn->resize(contacts_.normal.size());
   for (const std::int32_t contact_index : active()) {
     const std::size_t k = at(contact_index);
-    const ContactPoint point = setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);
-    contacts_.gap[k] = point.gap - setup_.gap_offset;
-    if (point.is_beyond_border && setup_.counterpart->is_held(contacts_.node_index[k])) ++sums_.left;
+    const auto [point, surface] = locate_contact(setup_, contacts_.node_index[k], step, rates_);
+    turn_axes(setup_, axes_, dimension_, step,
+              [&](std::size_t number) -> double& { return contacts_.state.at(k, number); });
+    contacts_.gap[k] = point.gap;
     contacts_.vector(contacts_.normal, contact_index) = point.normal;
     contacts_.vector(contacts_.impulse, contact_index).setZero();
     contacts_.status[k] = ILAW_FREE;
-    if (turns) {
-      const SurfaceVelocities turn = surface_velocities(*setup_.counterpart, contacts_.node_index[k], step.u,
-                                                        step.time, {point.gap, point.normal}, rates_);
-      contacts_.vector(contacts_.turn_before, contact_index) = turn.before;
-      contacts_.vector(contacts_.turn_after, contact_index) = turn.after;
-      for (const std::size_t first : axes_)
-        turn_axis(*setup_.counterpart, dimension_, step.time_before(), step.time,
-                  [&](std::size_t c) -> double& { return contacts_.state.at(k, first + c); });
-    }
+    if (point.is_beyond_border && setup_.counterpart->is_held(contacts_.node_index[k])) ++sums_.left;
     if (point.partner_count > 0) {
       contacts_.point[k] = point;
       find_delassus(k);
     }
     if (is_idle(contact_index)) continue;
-    group.add(
-        {contact_index, node_of(contact_index), point, contacts_.gap[k], surface_velocity(contact_index),
-         surface_velocity(contact_index, obstacle_velocity_before_, contacts_.turn_before)},
-        contacts_);
+    const Vector after = obstacle_velocity_ + surface.after,
+                 before = obstacle_velocity_before_ + surface.before;
+    group.add({contact_index, node_of(contact_index), point, after, before}, contacts_);
   }
   return group.close(tangent_, step);
 }
@@ -358,8 +350,9 @@ void Interface::check_solve(const CoupledGroup& group, const ilaw_coupled_report
 }
 
 // Velocity that the law sees, without the contact's own impulse.
-Vector Interface::v_free_of(int contact_index, const Dofs& v) const {
-  return relative(contact_index, v) - surface_velocity(contact_index) -
+Vector Interface::v_free_of(const CoupledGroup& group, std::size_t place, const Dofs& v) const {
+  const std::int32_t contact_index = group.contact(place);
+  return relative(contact_index, v) - group.surface(place) -
          velocity_of(contact_index, impulse(contact_index));
 }
 
@@ -387,8 +380,7 @@ void Interface::accept_contact(const StepView& step, const Dofs& v, const Couple
   const std::size_t k = at(contact_index);
   const Vector sum = relative(contact_index, step.v_before) + relative(contact_index, v);
   sums_.work += 0.5 * impulse(contact_index).dot(sum);
-  const Vector drift = surface_velocity(contact_index, obstacle_velocity_, contacts_.turn_after) +
-                       surface_velocity(contact_index, obstacle_velocity_before_, contacts_.turn_before);
+  const Vector drift = group.surface(place) + group.surface_before(place);
   sums_.relative_work += 0.5 * impulse(contact_index).dot(sum - drift);
   sums_.add_energy(group.energy(place));
   for (std::size_t a = 0; a < group.amount_count(); ++a) sums_.add_amount(a, group.amount(a, place));
@@ -400,7 +392,7 @@ void Interface::accept_contact(const StepView& step, const Dofs& v, const Couple
   }
   if (info().state_size == 0) return;
   const bool in_reach = is_in_reach(gap(contact_index), normal(contact_index).data(),
-                                    v_free_of(contact_index, v).data(), dimension_, step.dt);
+                                    v_free_of(group, place, v).data(), dimension_, step.dt);
   contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach || changed, law_.may_skip_free());
 }
 
@@ -408,12 +400,6 @@ void Interface::find_fault(const CoupledGroup& group, double dt) const {
   for (std::size_t i = 0; i < group.count(); ++i)
     if (const char* fault = fault_of(group.impulse(i).data(), dimension_, group.energy(i), group.status(i)))
       check({ILAW_BAD_LIBRARY, 0, group.contact(i), 0, fault}, dt);
-}
-
-Vector Interface::surface_velocity(int contact_index, const Vector& velocity,
-                                   const std::vector<double>& turn) const {
-  if (turn.empty()) return velocity;
-  return velocity + contacts_.vector(turn, contact_index);
 }
 
 // ---- the last step --------------------------------------------------------------------------------------

@@ -45,6 +45,8 @@ class Interface {
   const double* inverse_mass() const { return inverse_mass_; }
 
   // ---- a step where no two contacts share a node ----
+  // Contact by contact (plain_step.hpp) instead of in blocks.
+  void step_plainly() { steps_plainly_ = true; }
   // Chooses the active contacts, finds gaps, normals and delassus, asks the law for impulse, state,
   // energies and status, and takes v from v_free to v_free + H r. Throws ilaw::error on bad nodes.
   void solve(const StepView& step, Dofs& v);
@@ -61,7 +63,7 @@ class Interface {
   void check_solve(const CoupledGroup& group, const ilaw_coupled_report& report, std::int64_t bad_contact,
                    double dt) const;
   // Throws std::runtime_error where a motion drives a node against a law that cannot give way.
-  void check_driven(const StepView& step, const Dofs& v) const;
+  void check_driven(const StepView& step, const Dofs& v, const CoupledGroup& group) const;
   // The step is done: its state becomes the state before the next.
   void accept(const StepView& step, const Dofs& v, const CoupledGroup& group);
 
@@ -91,10 +93,6 @@ class Interface {
   Vector relative(int contact_index, const Dofs& v) const;
   const Vector& obstacle_velocity() const { return obstacle_velocity_; }
   const Vector& obstacle_velocity_before() const { return obstacle_velocity_before_; }
-  // Only where contacts share nodes: of the obstacle's surface where a contact is.
-  Vector surface_velocity(int contact_index) const {
-    return surface_velocity(contact_index, obstacle_velocity_, contacts_.turn_after);
-  }
   // Only where contacts share nodes.
   auto normal(int contact_index) const { return contacts_.vector(contacts_.normal, contact_index); }
   double gap(int contact_index) const { return contacts_.gap[at(contact_index)]; }
@@ -120,9 +118,8 @@ class Interface {
 
  private:
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
-  Vector surface_velocity(int contact_index, const Vector& velocity, const std::vector<double>& turn) const;
   bool is_idle(int contact_index) const;
-  Vector v_free_of(int contact_index, const Dofs& v) const;
+  Vector v_free_of(const CoupledGroup& group, std::size_t place, const Dofs& v) const;
   void accept_contact(const StepView& step, const Dofs& v, const CoupledGroup& group, std::size_t place);
   void find_fault(const CoupledGroup& group, double dt) const;
   // Whether the state of a contact that is out of reach changes: axes follow the normal.
@@ -163,7 +160,7 @@ class Interface {
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
   std::vector<double> amounts_;
-  bool asks_energies_ = true;
+  bool asks_energies_ = true, steps_plainly_ = false;
   const double* inverse_mass_ = nullptr;
 };
 

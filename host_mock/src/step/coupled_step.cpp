@@ -138,6 +138,10 @@ std::string CoupledStep::explain() const {
   return text.data();
 }
 
+void CoupledStep::check_driven(const StepView& step, const Dofs& v) const {
+  for (std::size_t i = 0; i < interfaces_.size(); ++i) interfaces_[i]->check_driven(step, v, groups_[i]);
+}
+
 void CoupledStep::accept(const StepView& step, const Dofs& v) {
   for (std::size_t i = 0; i < interfaces_.size(); ++i) interfaces_[i]->accept(step, v, groups_[i]);
 }

@@ -29,6 +29,8 @@ class CoupledStep {
   // Of the last solve: the reason where its contacts cannot or could not be solved; empty where they are
   // many, and merely not solved yet.
   std::string explain() const;
+  // Throws where a motion drives a node against a law that cannot give way.
+  void check_driven(const StepView& step, const Dofs& v) const;
   // The step is done: states are accepted.
   void accept(const StepView& step, const Dofs& v);
 
