@@ -89,6 +89,7 @@ void Blocks::give_back(Blocks& to) const {
       const auto at = static_cast<std::size_t>(origin->lane);
       target.put(layout.impulse, at, block.at(layout.impulse, lane));
       target.put(layout.change, at, block.at(layout.change, lane));
+      target.put(layout.asked, at, block.at(layout.asked, lane));
       for (int c = 0; c < layout.state_size; ++c)
         target.column(layout.state_out + c)[at] = block.column(layout.state_out + c)[lane];
       target.status[at] = block.status[lane];

@@ -19,7 +19,9 @@ inline constexpr std::size_t max_stride = max_lanes + 8;
 
 // First column of each quantity of a contact; -1 where a group does not have it.
 struct Layout {
-  int normal = 0, impulse = 3, direction = 6, change = 9, delassus = 12;
+  int normal = 0, impulse = 3, direction = 6, change = 9;
+  int asked = 12;  // v_free of the last evaluation
+  int delassus = 15;
   int arm = -1, counterpart_arm = -1, weight = -1, wall = -1;
   int gap = -1, gap_offset = -1, area = -1, v_previous = -1, tangent = -1, parameters = -1;
   int state_in = -1, state_out = -1;

@@ -202,10 +202,10 @@ Vector Contacts::relative(std::int64_t k, const Bodies& bodies) const {
   return u;
 }
 
-// The order of operations of ilaw.h, "out of reach".
+// The order of operations of ilaw.h, "out of reach". Whether a state is fresh the solver does not know.
 bool Contacts::is_out_of_reach(std::int64_t k, const Bodies& bodies) const {
-  constexpr std::uint32_t permitted = ILAW_MAY_SKIP_FREE | ILAW_MAY_SKIP_FRESH;
-  if (!(info_.permissions & permitted) || kind_ == Kind::weighted || !theirs_.gap.values) return false;
+  if (!(info_.permissions & ILAW_MAY_SKIP_FREE) || kind_ == Kind::weighted || !theirs_.gap.values)
+    return false;
   const double gap = value(theirs_.gap, k) - value(theirs_.gap_offset, k);
   if (!(gap > 0.0) || !is_zero(start_impulse(k))) return false;
   return gap + theirs_.position_step * dot(vector(theirs_.normal, k, dimension_), relative(k, bodies)) > 0.0;

@@ -13,8 +13,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-void Iterations::begin(std::uint32_t most, double tolerance) {
+void Iterations::begin(std::uint32_t most, double tolerance, double speed) {
   most_ = most;
+  speed_ = speed;
   tolerance_ = tolerance;
   count_ = most_counted_ = 0;
   failed_ = ILAW_OK;
@@ -53,7 +54,7 @@ bool Iterations::accept(Change change) {
   change_ = most[0];
   if (most[3] > 0.0) change_ = infinity;
   square_ = change.square;
-  size_ = most[1];
+  size_ = std::max(most[1], speed_);
   if (count_ == 1) first_size_ = size_;
   residual_ = change_ > 0.0 ? change_ / size_ : 0.0;
   least_ = std::min(least_, residual_);
@@ -76,14 +77,15 @@ void Iterations::exchange_velocities() {
 }
 
 bool Iterations::conjugate(Blocks& blocks, std::uint32_t most) {
+  constexpr double fast = 0.1;
   Sweep::Conjugate step;
   double square_before = -1.0;
   method_ = most > 1 ? ILAW_METHOD_CONJUGATE : ILAW_METHOD_GAUSS_SEIDEL;
   for (std::uint32_t k = 0; k < most && !is_over(); ++k) {
     if (k > 0) {
-      // Fletcher-Reeves in the norm of H; restart where it grows.
+      // Fletcher-Reeves in the norm of H; restart where it grows. Fast iterations need no direction.
       const double beta = square_before > 0.0 ? square_ / square_before : 2.0;
-      step = {true, beta <= 1.0 ? beta : 0.0};
+      step = {true, beta > fast && beta <= 1.0 ? beta : 0.0};
       square_before = square_;
       extrapolate_bodies(step.beta);
       if (k % wake_interval == 0) sweep_.wake(blocks);
@@ -153,7 +155,7 @@ bool Iterations::alternate(Blocks& blocks) {
 }
 
 bool Iterations::take_turns(Blocks& blocks) {
-  const bool is_small = 3 * scales_of(blocks) <= Newton::max_unknowns;
+  const bool is_small = problem_.bodies.dimension() * scales_of(blocks) <= Newton::max_unknowns;
   std::uint32_t gauss_seidel_part = first_part, splitting_part = first_part;
   best_square_ = infinity;
   splitting_.reset();
@@ -258,14 +260,16 @@ void Iterations::solve_islands(Blocks& blocks) {
   find_island_residuals(blocks, residuals);
   const std::uint32_t first = count_;
   std::uint32_t method = method_;
+  const double first_size = size_;
   double largest = 0.0, size = size_;
   for (std::int32_t island = 0; island < islands_.count() && failed_ >= 0; ++island) {
-    const double residual = residuals[static_cast<std::size_t>(island)] / size_;
+    const double residual = residuals[static_cast<std::size_t>(island)] / first_size;
     if (!(residual > tolerance_)) {
       largest = std::max(largest, residual);
       continue;
     }
     count_ = first;
+    size_ = first_size;
     island_.select(blocks, islands_.lanes(island));
     alternate(island_);
     island_.give_back(blocks);

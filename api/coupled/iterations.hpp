@@ -24,11 +24,12 @@ class Iterations {
   Iterations(Problem& problem, Ranks& ranks, Sweep& sweep)
       : problem_(problem), ranks_(ranks), sweep_(sweep) {}
 
-  void begin(std::uint32_t most, double tolerance);
+  // speed: the residual is relative to no smaller velocity.
+  void begin(std::uint32_t most, double tolerance, double speed);
   // To the tolerance, or to the largest number of iterations since begin(). Velocities of the bodies belong
   // to the impulses, but for rounding. Returns the code of a law that failed, or ILAW_OK.
   std::int32_t run(Blocks& blocks);
-  bool is_over() const { return failed_ < 0 || count_ >= most_; }
+  bool is_over() const { return failed_ < 0 || count_ >= most_ || size_ > max_growth * first_size_; }
 
   std::uint32_t count() const { return most_counted_; }
   double residual() const { return residual_; }
@@ -37,8 +38,11 @@ class Iterations {
   // Largest velocity of the first iteration and of the last.
   double first_size() const { return first_size_; }
   double size() const { return size_; }
+  double tolerance() const { return tolerance_; }
 
  private:
+  // Beyond this growth of the largest velocity impulses are rounding alone: iterations end.
+  static constexpr double max_growth = 0x1p50;
   // Iterations of the conjugate method before others; with at most `few` iterations in all there is no other.
   static constexpr std::uint32_t few = 100, first_conjugate = 30;
   // Iterations between looks for sleeping contacts that come within reach.
@@ -72,7 +76,8 @@ class Iterations {
   Ranks& ranks_;
   Sweep& sweep_;
   std::uint32_t most_ = 0, count_ = 0, most_counted_ = 0, method_ = ILAW_METHOD_GAUSS_SEIDEL;
-  double tolerance_ = 0.0, size_ = 0.0, first_size_ = 0.0, residual_ = 0.0, change_ = 0.0, square_ = 0.0;
+  double tolerance_ = 0.0, speed_ = 0.0, size_ = 0.0, first_size_ = 0.0, residual_ = 0.0, change_ = 0.0,
+         square_ = 0.0;
   double least_in_first_half_ = 0.0, least_ = 0.0;
   bool stalled_ = false;
   std::int32_t failed_ = ILAW_OK;

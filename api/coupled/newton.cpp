@@ -96,8 +96,13 @@ bool Newton::step(const Blocks& blocks, const Problem& problem, const Sweep& swe
   for (Eigen::Index i = 0; i < rows; ++i) scale[i] = equations_.scales()[static_cast<std::size_t>(i / 3)];
   matrix = scale.asDiagonal() * matrix * scale.cwiseInverse().asDiagonal();
   const Eigen::Map<const Eigen::VectorXd> right(difference_.data(), rows);
-  const Eigen::VectorXd solution =
-      matrix.colPivHouseholderQr().solve(scale.cwiseProduct(right)).cwiseQuotient(scale);
+  std::vector<Eigen::Index> used;  // the others are 0 in dimensions 1 and 2
+  for (Eigen::Index i = 0; i < rows; ++i)
+    if (i % 3 < static_cast<Eigen::Index>(problem.bodies.dimension())) used.push_back(i);
+  const Eigen::MatrixXd reduced = matrix(used, used);
+  Eigen::VectorXd solution = Eigen::VectorXd::Zero(rows);
+  solution(used) = reduced.colPivHouseholderQr().solve(scale.cwiseProduct(right)(used));
+  solution = solution.cwiseQuotient(scale);
   if (!solution.allFinite()) return false;
   changes.assign(solution.begin(), solution.end());
   return true;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace ilaw::coupled {
@@ -13,8 +14,14 @@ namespace {
 
 constexpr std::uint32_t default_sweeps = 1000;
 constexpr double default_tolerance = 1e-10;
-// Laws whose impulses make velocities this many times the first are incompatible.
-constexpr double runaway_growth = 1e9;
+// Laws are incompatible where velocities grew by this factor, times the mass ratio of coupled contacts.
+constexpr double runaway_growth = 1e6;
+// The same where the residual is within the tolerance: it is rounding of such impulses.
+constexpr double rounded_growth = 1e9;
+
+Vector at(const std::array<double, 3 * max_stride>& columns, std::size_t lane) {
+  return {columns[lane], columns[max_stride + lane], columns[2 * max_stride + lane]};
+}
 
 }  // namespace
 
@@ -40,7 +47,7 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
   sweep_.reset();
   set_velocities();
   const double tolerance = options.tolerance > 0.0 ? options.tolerance : default_tolerance;
-  iterations_.begin(options.most_sweeps > 0 ? options.most_sweeps : default_sweeps, tolerance);
+  iterations_.begin(options.most_sweeps > 0 ? options.most_sweeps : default_sweeps, tolerance, options.speed);
   const std::int32_t code = iterate(tolerance);
   if (code < 0) {
     report.bad_group = sweep_.failed_group();
@@ -49,6 +56,8 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
   }
   report.sweeps = iterations_.count();
   report.residual = iterations_.residual();
+  report.speed = iterations_.size();
+  report.first_speed = iterations_.first_size();
   report.method = iterations_.method();
   report.stalled = iterations_.has_stalled();
   find_bad_contacts(report);
@@ -194,18 +203,27 @@ void Solver::find_stable_step(ilaw_coupled_report& report) {
   report.stable_velocity_step = least;
 }
 
+// Contacts have moved on from the velocities of their last evaluation by the impulses of later ones. The
+// energies of a law belong to that evaluation: an impulse r at a contact that is off by s works r.s/2 more.
 void Solver::find_worst_contact(ilaw_coupled_report& report) {
-  if (!(report.residual > 0.0)) return;
-  std::array<double, 3 * max_stride> response{};
+  const bool has_grown = report.speed > rounded_growth * report.first_speed;
+  if (!(report.residual > 0.0) && !has_grown) return;
+  std::array<double, 3 * max_stride> response{}, velocity{};
   double most = -1.0;
   const Block* worst = nullptr;
   std::size_t worst_lane = 0;
   for (const Block& block : blocks_.list()) {
     if (block.asleep) continue;
     const Layout& layout = *block.layout;
+    sweep_.gather(block, velocity.data());
+    sweep_.respond(block, block.column(layout.impulse), block.stride, response.data());
+    for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] -= response[i];
     sweep_.respond(block, block.column(layout.change), block.stride, response.data());
     for (std::size_t q = 0; q < block.count; ++q) {
-      const double change = largest({response[q], response[max_stride + q], response[2 * max_stride + q]});
+      const Vector r = block.at(layout.impulse, q);
+      if (!is_zero(r))
+        report.energy_error += 0.5 * std::fabs(dot(r, at(velocity, q) - block.at(layout.asked, q)));
+      const double change = largest(at(response, q));
       if (!(change > most)) continue;
       most = change;
       worst = &block;
@@ -215,8 +233,51 @@ void Solver::find_worst_contact(ilaw_coupled_report& report) {
   if (!worst) return;
   report.worst_group = worst->group;
   report.worst_contact = worst->contact[worst_lane];
-  if (iterations_.size() > runaway_growth * iterations_.first_size())
-    find_incompatible_laws(*worst, worst_lane, report);
+  if (report.residual > iterations_.tolerance() || has_grown) explain(*worst, worst_lane, report);
+}
+
+void Solver::explain(const Block& worst, std::size_t lane, ilaw_coupled_report& report) {
+  islands_.find(blocks_, problem_);
+  const auto block = static_cast<std::int32_t>(&worst - blocks_.list().data());
+  std::span<const Lane> island;
+  for (std::int32_t i = 0; i < islands_.count() && island.empty(); ++i)
+    for (const Lane& of : islands_.lanes(i))
+      if (of.block == block && of.lane == static_cast<std::int32_t>(lane)) island = islands_.lanes(i);
+  report.island_contacts = static_cast<std::int64_t>(island.size());
+  report.mass_ratio = mass_ratio_of(island);
+  const bool is_solved = !(report.residual > iterations_.tolerance());
+  const double growth = is_solved ? rounded_growth : runaway_growth;
+  if (report.speed > growth * report.mass_ratio * report.first_speed)
+    find_incompatible_laws(worst, lane, report);
+  if (is_solved && !report.other_law) return;
+  const char *law = problem_.group(worst).law_id(), *other = report.other_law;
+  std::snprintf(message_.data(), message_.size(),
+                "%s%s%s%s%s after %u iterations: contact %lld of group %lld (law '%s') is off by %.3g; "
+                "%lld contacts are coupled, with masses of 1:%.2g",
+                other ? "laws '" : "contacts are not solved", other ? law : "", other ? "' and '" : "",
+                other ? other : "", other ? "' are incompatible" : "", report.sweeps,
+                static_cast<long long>(report.worst_contact), static_cast<long long>(report.worst_group), law,
+                report.residual * report.speed, static_cast<long long>(report.island_contacts),
+                report.mass_ratio);
+  report.message = message_.data();
+}
+
+// Heaviest to lightest of the bodies that can move.
+double Solver::mass_ratio_of(std::span<const Lane> contacts) const {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const Lane& contact : contacts) {
+    const Block& block = blocks_.list()[static_cast<std::size_t>(contact.block)];
+    for (int e = 0; e < block.layout->ends; ++e) {
+      const std::int32_t body = block.end(e, static_cast<std::size_t>(contact.lane));
+      if (!problem_.bodies.is_movable(body)) continue;
+      const Vector inverse = problem_.bodies.inertia_of(body).inverse_mass;
+      const double largest_inverse = std::max({inverse[0], inverse[1], inverse[2]});
+      if (!(largest_inverse > 0.0)) continue;
+      least = std::min(least, largest_inverse);
+      most = std::max(most, largest_inverse);
+    }
+  }
+  return most > 0.0 ? most / least : 1.0;
 }
 
 // The other law: of the contact at the same bodies with the largest impulse.
@@ -238,19 +299,19 @@ void Solver::find_incompatible_laws(const Block& worst, std::size_t lane, ilaw_c
   if (report.other_law) report.law = problem_.group(worst).law_id();
 }
 
-// Energies and amounts at the final velocities, kept until no call can be refused any more.
+// Energies and amounts of the last evaluation of each contact, kept until no call can be refused any more.
 std::int32_t Solver::evaluate_balance(ilaw_coupled_report& report) {
   balance_.clear();
-  std::array<double, 3 * max_stride> v_free{}, response{}, answer{};
+  std::array<double, 3 * max_stride> v_free{}, answer{};
   std::array<std::uint8_t, max_stride> status{};
   std::vector<double> state;
   for (Block& block : blocks_.list()) {
     const Contacts& group = problem_.group(block);
     if (!group.asks_balance()) continue;
     const Layout& layout = *block.layout;
-    sweep_.gather(block, v_free.data());
-    sweep_.respond(block, block.column(layout.impulse), block.stride, response.data());
-    for (std::size_t i = 0; i < v_free.size(); ++i) v_free[i] -= response[i];
+    for (std::size_t c = 0; c < 3; ++c)
+      std::copy_n(block.column(layout.asked + static_cast<int>(c)), block.stride,
+                  v_free.data() + c * max_stride);
     const std::size_t columns = ILAW_ENERGY_COUNT + group.amount_count(), at = balance_.size();
     balance_.resize(at + columns * max_stride);
     state.resize(block.stride * static_cast<std::size_t>(layout.state_size) + 1);

@@ -3,11 +3,14 @@
 #pragma once
 
 #include "colours.hpp"
+#include "islands.hpp"
 #include "iterations.hpp"
 #include "ranks.hpp"
 #include "sweep.hpp"
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace ilaw::coupled {
@@ -29,7 +32,10 @@ class Solver {
   void find_bad_contacts(ilaw_coupled_report& report) const;
   void find_stable_step(ilaw_coupled_report& report);
   void find_worst_contact(ilaw_coupled_report& report);
+  // Describes the contacts that are coupled with the worst one.
+  void explain(const Block& worst, std::size_t lane, ilaw_coupled_report& report);
   void find_incompatible_laws(const Block& worst, std::size_t lane, ilaw_coupled_report& report) const;
+  double mass_ratio_of(std::span<const Lane> contacts) const;
   std::int32_t evaluate_balance(ilaw_coupled_report& report);
   void write(ilaw_coupled_report& report);
 
@@ -42,6 +48,8 @@ class Solver {
   std::vector<std::int32_t> order_;
   std::vector<Motion> here_, everywhere_;  // sums of impulses per body, of this rank and of all
   std::vector<double> balance_, counts_;
+  Islands islands_;
+  std::array<char, 512> message_{};
 };
 
 }  // namespace ilaw::coupled

@@ -37,6 +37,15 @@ void with_form(const Block& block, Visit&& visit) {
   }
 }
 
+// Whether the last evaluation of a contact left no trace.
+bool has_not_acted(const Block& block, std::size_t lane) {
+  const Layout& layout = *block.layout;
+  if (!is_zero(block.at(layout.impulse, lane)) || block.status[lane] != ILAW_FREE) return false;
+  for (int c = 0; c < layout.state_size; ++c)
+    if (block.column(layout.state_out + c)[lane] != block.column(layout.state_in + c)[lane]) return false;
+  return true;
+}
+
 }  // namespace
 
 void Sweep::reset() {
@@ -88,11 +97,7 @@ Change Sweep::run_all(Blocks& blocks) {
   for (Block& block : blocks.list()) {
     if (!evaluate(block, change)) return change;
     scatter(block, change);
-    if (!block.asleep) continue;
-    const double* r = block.column(block.layout->impulse);
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t q = 0; q < block.count; ++q)
-        if (r[c * block.stride + q] != 0.0) block.asleep = false;
+    for (std::size_t q = 0; q < block.count && block.asleep; ++q) block.asleep = has_not_acted(block, q);
   }
   return change;
 }
@@ -110,16 +115,18 @@ ILAW_COUPLED_VERSIONS void Sweep::extrapolate(Block& block, double beta) const {
 }
 
 // v_free = u - H r. Returns the largest velocity in it.
-ILAW_COUPLED_VERSIONS double Sweep::prepare(const Block& block) {
+ILAW_COUPLED_VERSIONS double Sweep::prepare(Block& block) {
   const Layout& layout = *block.layout;
   gather(block, v_free_.data());
   const double* r = block.column(layout.impulse);
+  double* asked = block.column(layout.asked);
   Lanes most{};
   with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < padded(block.count); q += lane_count) {
       const LanesVector made = form(q, lanes(r + q, block.stride));
       const LanesVector v = lanes(v_free_.data() + q, max_stride) - made;
       put(v, v_free_.data() + q, max_stride);
+      put(v, asked + q, block.stride);
       most = larger(larger(largest(v), largest(made)), most);
     }
   });

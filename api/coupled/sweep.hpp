@@ -43,7 +43,7 @@ class Sweep {
     double beta = 0.0;
   };
   Change run(Blocks& blocks, const Conjugate& conjugate);
-  // Iterates over all blocks, those asleep as well: those with an impulse wake.
+  // Iterates over all blocks, those asleep as well: those with an impulse, status or change of state wake.
   Change run_all(Blocks& blocks);
 
   // Wakes blocks with a contact within reach. True if there was one.
@@ -66,7 +66,7 @@ class Sweep {
   using Columns = std::array<double, 3 * max_stride>;
 
   void extrapolate(Block& block, double beta) const;
-  double prepare(const Block& block);
+  double prepare(Block& block);
   bool evaluate(Block& block, Change& change);
   void scatter(Block& block, Change& change);
 

@@ -64,14 +64,15 @@ module ilaw_coupled_abi
   end type
 
   type, bind(c) :: ilaw_coupled_options
-    integer(c_int32_t) :: struct_size = 24
+    integer(c_int32_t) :: struct_size = 32
     integer(c_int32_t) :: most_sweeps = 0
     real(c_double) :: tolerance = 0
     type(c_ptr) :: exchange = c_null_ptr
+    real(c_double) :: speed = 0
   end type
 
   type, bind(c) :: ilaw_coupled_report
-    integer(c_int32_t) :: struct_size = 136
+    integer(c_int32_t) :: struct_size = 184
     integer(c_int32_t) :: sweeps = 0
     real(c_double) :: residual = 0
     real(c_double) :: work = 0
@@ -87,6 +88,12 @@ module ilaw_coupled_abi
     integer(c_int64_t) :: worst_contact = -1
     type(c_ptr) :: law = c_null_ptr
     type(c_ptr) :: other_law = c_null_ptr
+    real(c_double) :: speed = 0
+    real(c_double) :: first_speed = 0
+    real(c_double) :: energy_error = 0
+    integer(c_int64_t) :: island_contacts = 0
+    real(c_double) :: mass_ratio = 0
+    type(c_ptr) :: message = c_null_ptr
   end type
 
   abstract interface

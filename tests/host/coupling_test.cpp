@@ -2,7 +2,6 @@
 #include "host_runner.hpp"
 
 #include "program_runner.hpp"
-#include "step/anderson.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -217,13 +216,14 @@ TEST(Column, EachContactCarriesWhatLiesAboveIt) {
   }
 }
 
-// Too long for a thousand sweeps, but not for Newton's method after them: to what 250 roundings leave.
-TEST(Column, IsSolvedByTangentsWhereSweepsDoNot) {
+// Too long for accelerated iterations, but not for Newton's method between them: to what 250 roundings leave.
+TEST(Column, IsSolvedByNewtonStepsWhenLong) {
   constexpr int balls = 250;
   Scene scene = column(balls);
   Integrator integrator = integrator_of(scene);
   for (int step = 0; step < 2; ++step) integrator.step();
-  EXPECT_GT(integrator.tally().sweeps_max, 1000);
+  EXPECT_GT(integrator.tally().sweeps_max, 100);
+  EXPECT_LT(integrator.tally().sweeps_max, 1000);
   EXPECT_EQ(integrator.tally().unconverged, 0);
   for (int k = 0; k < balls; ++k) {
     const Interface& contact = *scene.interfaces[static_cast<std::size_t>(k)];
@@ -231,12 +231,13 @@ TEST(Column, IsSolvedByTangentsWhereSweepsDoNot) {
   }
 }
 
-// The residual is that of the laws: by so much the impulses are not what the laws answer.
-TEST(Column, ThatIsTooLongIsSaidToBe) {
+// The residual is the last change of an impulse: it bounds by how much impulses differ from those of the
+// laws.
+TEST(Column, WarnsWhenTooLong) {
   Scene scene = column(350);
   Integrator integrator = integrator_of(scene);
   integrator.start();
-  EXPECT_EQ(integrator.tally().sweeps_max, 1000);
+  EXPECT_GE(integrator.tally().sweeps_max, 999);
   EXPECT_EQ(integrator.tally().unconverged, 1);
   double largest = 0.0, size = 0.0, energy = 0.0;
   for (const auto& contact : scene.interfaces) {
@@ -249,22 +250,25 @@ TEST(Column, ThatIsTooLongIsSaidToBe) {
   }
   EXPECT_NEAR(integrator.tally().coupling_energy, energy, 1e-3 * energy);
   EXPECT_GT(largest, 0.0);
-  EXPECT_NEAR(integrator.tally().coupling_residual_max, largest / size, 1e-3 * largest / size);
+  EXPECT_GE(integrator.tally().coupling_residual_max, (1.0 - 1e-3) * largest / size);
+  EXPECT_LE(integrator.tally().coupling_residual_max, 3.0 * largest / size);
   ASSERT_EQ(integrator.warnings().size(), 1U);
   EXPECT_NE(integrator.warnings()[0].find("not solved in 1 of 1 steps, the start included: residual up to"),
             std::string::npos);
 }
 
-// A short column beside it is solved, which says nothing of the long one.
-TEST(Column, ThatIsTooLongIsSaidToBeBesideOneThatIsNot) {
+// A short column beside it is solved. The first 30 iterations have one common direction, so that the residual
+// of the long one is of the same size, but not the same.
+TEST(Column, WarnsWhenOneOfTwoIsTooLong) {
   Scene alone = column(350), both = column(350, 30);
   Integrator of_one = integrator_of(alone), of_both = integrator_of(both);
   of_one.start();
   of_both.start();
   EXPECT_EQ(of_both.tally().unconverged, 1);
-  EXPECT_EQ(of_both.tally().sweeps_max, 1000);
+  EXPECT_GE(of_both.tally().sweeps_max, 999);
   const double residual = of_one.tally().coupling_residual_max;
-  EXPECT_NEAR(of_both.tally().coupling_residual_max, residual, 1e-3 * residual);
+  EXPECT_GT(of_both.tally().coupling_residual_max, 0.1 * residual);
+  EXPECT_LT(of_both.tally().coupling_residual_max, 10.0 * residual);
 }
 
 // A spring so stiff that it throws the mass back farther at every step.
@@ -322,18 +326,6 @@ TEST(RunWarnings, AreSaidByTheProgram) {
   EXPECT_NE(outcome.output.find(", with warnings; results in"), std::string::npos) << outcome.output;
   const auto summary = nlohmann::json::parse(text_of(folder / "out" / "summary.json"));
   EXPECT_NE(summary.at("warnings").dump().find("are not solved in"), std::string::npos);
-}
-
-// Where the last correction made the residual larger nothing of before counts: the next one is zero, and the
-// one after that knows a single difference.
-TEST(Acceleration, BeginsAnewWhereItMadeThingsWorse) {
-  const auto two = [](double a, double b) { return Dofs(Eigen::Vector2d(a, b)); };
-  Anderson acceleration;
-  EXPECT_EQ(acceleration.correction(two(1, 0), two(1, 0)).norm(), 0.0);
-  EXPECT_GT(acceleration.correction(two(1, 1), two(0.5, 0.1)).norm(), 0.0);
-  EXPECT_EQ(acceleration.correction(two(3, 2), two(2, 1)).norm(), 0.0);
-  // Images moved by (1, 0) while residuals moved by (-1, 0): of (1, 1) the first component can be taken off.
-  EXPECT_NEAR((acceleration.correction(two(4, 2), two(1, 1)) - two(1, 0)).norm(), 0.0, 1e-14);
 }
 
 }  // namespace

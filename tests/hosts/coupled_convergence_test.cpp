@@ -90,6 +90,7 @@ struct Assembly {
     ilaw_coupled_options options{};
     options.tolerance = tolerance;
     options.most_sweeps = most;
+    options.speed = speed;
     return ilaw::coupled().solve(bodies, contacts, options);
   }
   double largest_velocity() const {
@@ -100,6 +101,7 @@ struct Assembly {
 
   ilaw::interface law;
   bool rotate;
+  double speed = 0.0;
   std::size_t count = 0;
   std::uint32_t body_count = 1, counterpart_count = 1;
   std::vector<std::int32_t> body, counterpart;
@@ -133,6 +135,40 @@ TEST(CoupledConvergence, HoldsATableOnFourLegs) {
   EXPECT_LE(report.residual, 1e-12);
   EXPECT_LE(table.largest_velocity(), 1e-12);
   EXPECT_NEAR(table.impulse[2] + table.impulse[5] + table.impulse[8] + table.impulse[11], 2e-2, 1e-12);
+}
+
+// 400 balls, too many for 200 iterations: the report counts them and says so in a sentence.
+TEST(CoupledConvergence, NamesWhatIsNotSolved) {
+  Assembly column(friction(false, 0.3), false);
+  for (int i = 0; i < 400; ++i) {
+    column.add_body(i == 7 ? 4.0 : 1.0, 0.0, {0.0, 0.0, -1e-2});
+    column.add(i, i - 1);
+  }
+  const ilaw_coupled_report report = column.solve(1e-12, 200);
+  EXPECT_GT(report.residual, 1e-12);
+  EXPECT_EQ(report.island_contacts, 400);
+  EXPECT_DOUBLE_EQ(report.mass_ratio, 4.0);
+  EXPECT_GT(report.energy_error, 0.0);
+  ASSERT_NE(report.message, nullptr);
+  const std::string message = report.message;
+  EXPECT_NE(message.find("contacts are not solved after"), std::string::npos) << message;
+  EXPECT_NE(message.find("(law 'coulomb') is off by"), std::string::npos) << message;
+  EXPECT_NE(message.find("400 contacts are coupled, with masses of 1:4"), std::string::npos) << message;
+  EXPECT_EQ(report.other_law, nullptr);
+}
+
+// Bodies that fly together have relative velocities of rounding alone: beside their speed these are none.
+TEST(CoupledConvergence, IgnoresRoundingBelowTheSpeed) {
+  for (const double speed : {0.0, 1.0}) {
+    Assembly chain(create("tie", ILAW_DELASSUS_SCALAR), false);
+    for (int i = 0; i < 30; ++i) {
+      chain.add_body(1.0 + i, 0.0, {std::nextafter(1.0, 1.0 + (i % 3 - 1)), 0.0, 0.0});
+      if (i > 0) chain.add(i, i - 1);
+    }
+    chain.speed = speed;
+    const ilaw_coupled_report report = chain.solve(1e-14, 1000);
+    EXPECT_EQ(report.residual <= 1e-14 && report.sweeps <= 2, speed > 0.0) << report.sweeps;
+  }
 }
 
 // A chain of masses 1 and 1e7 in turn keeps its momentum and moves as one.

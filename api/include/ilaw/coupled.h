@@ -106,6 +106,9 @@ typedef struct ilaw_coupled_options {
   uint32_t most_sweeps;          /* largest number of iterations; 0: 1000 */
   double tolerance;              /* of the residual; 0: 1e-10 */
   const ilaw_exchange* exchange; /* null: one process */
+  double speed;                  /* the residual is relative to no smaller velocity; 0: no limit. The largest
+                                    speed of the bodies, where they move together: differences of velocities
+                                    have its rounding */
 } ilaw_coupled_options;
 
 /* Method that made the last iteration of the island that took most of them. */
@@ -140,6 +143,17 @@ typedef struct ilaw_coupled_report {
    * incompatible: impulses grow without bound. Null: not found. */
   const char* law;
   const char* other_law;
+  double speed; /* largest velocity of a contact, before or by an impulse, in the last iteration, or that
+                   of the options: residual * speed is a velocity */
+  double first_speed;  /* the same of the first iteration */
+  double energy_error; /* sum over contacts of |r.s|/2, where velocities are off by s from those of the last
+                          evaluation: the largest difference of `work` and energies [J] */
+  int64_t island_contacts; /* where the residual is above the tolerance: contacts that are coupled with the
+                              worst one, and the ratio of the largest to the smallest mass of their bodies */
+  double mass_ratio;
+  const char* message; /* what is not solved, as a sentence that names contact and laws, until the solver's
+                          next call; null: the residual is within the tolerance, and no laws are
+                          incompatible */
 } ilaw_coupled_report;
 
 /* The work arrays of solves, which grow as needed and are kept. */
@@ -150,11 +164,11 @@ ilaw_coupled* ILAW_CALL ilaw_coupled_create(void);
 void ILAW_CALL ilaw_coupled_destroy(ilaw_coupled* solver); /* null is allowed */
 
 /* Solves a step: impulses, states, status and energies of all contacts, velocities and impulses of the
- * bodies. State, impulse and status belong to the last iteration; energies are evaluated once more with the
- * final velocities, so that they and `work` close a balance except for the residual. options and report may
- * be null. work, energy and counts of the report are those of this rank's contacts.
- * Returns ILAW_OK; ILAW_BAD_NODES, when some contacts had bad input and no impulse; or a negative code with
- * nothing written, on all ranks if on one. Reaching most_sweeps is no error: look at the residual. */
+ * bodies. State, impulse, status, energies and amounts belong to the last evaluation of a contact. Energies
+ * and `work` close a balance except for energy_error. options and report may be null. work, energy and counts
+ * of the report are those of this rank's contacts. Returns ILAW_OK; ILAW_BAD_NODES, when some contacts had
+ * bad input and no impulse; or a negative code with nothing written, on all ranks if on one. Reaching
+ * most_sweeps is no error: look at the residual. */
 ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies* bodies,
                                          const ilaw_contacts* const* groups, int64_t group_count,
                                          const ilaw_coupled_options* options, ilaw_coupled_report* report);
@@ -163,8 +177,8 @@ ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies
 #define ILAW_BODIES_SIZE_1_0 ILAW_SIZE_TO(ilaw_bodies, angular_impulse)
 #define ILAW_CONTACTS_SIZE_1_0 ILAW_SIZE_TO(ilaw_contacts, reserved)
 #define ILAW_EXCHANGE_SIZE_1_0 ILAW_SIZE_TO(ilaw_exchange, sum)
-#define ILAW_COUPLED_OPTIONS_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_options, exchange)
-#define ILAW_COUPLED_REPORT_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_report, other_law)
+#define ILAW_COUPLED_OPTIONS_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_options, speed)
+#define ILAW_COUPLED_REPORT_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_report, message)
 
 #if defined(ILAW_BUILDING_SHARED_COUPLED)
 #pragma GCC visibility pop

@@ -86,6 +86,7 @@ class coupled_options(ctypes.Structure):
         ("most_sweeps", c_uint32),
         ("tolerance", c_double),
         ("exchange", POINTER(exchange)),
+        ("speed", c_double),
     ]
 
 
@@ -107,6 +108,12 @@ class coupled_report(ctypes.Structure):
         ("worst_contact", c_int64),
         ("law", c_char_p),
         ("other_law", c_char_p),
+        ("speed", c_double),
+        ("first_speed", c_double),
+        ("energy_error", c_double),
+        ("island_contacts", c_int64),
+        ("mass_ratio", c_double),
+        ("message", c_char_p),
     ]
 
 

@@ -51,7 +51,8 @@ class Report:
     [J]: sums of the columns `Energy`. bad_*: contacts with bad input, -1: none. stable_velocity_step [s]: as of
     `ilaw.Report`, with masses divided among contacts. method: of the last iteration. stalled: the residual is above
     the tolerance and falls no more. worst_*: contact with the largest residual, -1: none. incompatible: ids of two
-    laws whose impulses grow without bound. All of this rank, but sweeps, residual, method and stalled.
+    laws whose impulses grow without bound. energy_error [J]: largest difference of work and energies. message: what
+    is not solved, as a sentence; empty: nothing. All of this rank, but sweeps, residual, method and stalled.
     """
 
     sweeps: int
@@ -68,6 +69,8 @@ class Report:
     worst_group: int
     worst_contact: int
     incompatible: tuple[str, str] | None
+    energy_error: float
+    message: str
 
 
 class Exchange(Protocol):
@@ -337,6 +340,7 @@ class Solver(NotCopied):
         *,
         most_sweeps: int = 1000,
         tolerance: float = 1e-10,
+        speed: float = 0.0,
         exchange: Exchange | None = None,
         bad_nodes: str = "raise",
     ) -> Report:
@@ -344,7 +348,7 @@ class Solver(NotCopied):
 
         groups: contacts of one law each, all at the same bodies. time [s]: of the configuration that gaps belong
         to. Steps [s]: those of each interface unless given. tolerance: of the residual; reaching most_sweeps is
-        no error, look at the residual. bad_nodes: "raise" raises BadNodes (after all others were solved), "report"
+        no error, look at the residual. speed [m/s]: the residual is relative to no smaller velocity. bad_nodes: "raise" raises BadNodes (after all others were solved), "report"
         says so in the report and the status alone.
         """
         if bad_nodes not in ("raise", "report"):
@@ -361,6 +365,7 @@ class Solver(NotCopied):
         pointers = (ctypes.POINTER(_coupled_abi.contacts) * len(groups))(*(ctypes.pointer(g._struct) for g in groups))
         options = sized(_coupled_abi.coupled_options)
         options.most_sweeps, options.tolerance = whole("most_sweeps", most_sweeps, 0, 2**32 - 1), tolerance
+        options.speed = speed
         calls = None
         if exchange is not None:
             calls = _Calls(exchange, bodies.count)
@@ -401,4 +406,6 @@ class Solver(NotCopied):
             report.worst_group,
             report.worst_contact,
             (report.law.decode(), report.other_law.decode()) if report.law and report.other_law else None,
+            report.energy_error,
+            report.message.decode(errors="replace") if report.message else "",
         )

@@ -1,7 +1,7 @@
-// block_step.hpp - the step of contacts of which no two share a node, from gaps to new velocities,
-// in blocks that stay in the cache. Where the contacts of a block and their nodes follow each
-// other, the law reads and writes the host's own arrays; else the block gathers what the law asks
-// for.
+// block_step.hpp - plain_step.hpp, fused for the cache, with the same bits: the step of contacts of which no
+// two share a node, from gaps to new velocities, in blocks that stay in the cache. Where the contacts of a
+// block and their nodes follow each other, the law reads and writes the host's own arrays; else the block
+// gathers what the law asks for.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

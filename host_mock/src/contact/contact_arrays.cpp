@@ -24,13 +24,11 @@ ContactArrays::ContactArrays(int dimension, const ilaw_instance_info& info, std:
                              bool partnered)
     : state(info.state_size),
       parameters(info.per_node_parameter_count),
-      amounts(info.amount_count),
       dimension_(dimension),
       state_size_(info.state_size),
       reads_area_((info.inputs & ILAW_INPUT_AREA) != 0),
       partnered_(partnered),
-      contact_index_(node_count, -1),
-      next_state_(info.state_size) {}
+      contact_index_(node_count, -1) {}
 
 void ContactArrays::add(const Entry& entry) {
   contact_index_[static_cast<std::size_t>(entry.node_index)] = static_cast<int>(count());
@@ -44,50 +42,17 @@ void ContactArrays::add(const Entry& entry) {
   const int touched = entry.turns ? changed : 0;
   marks_.push_back(static_cast<std::uint8_t>(entry.must_be_evaluated ? awake | changed : touched));
   if (partnered_) point.emplace_back();
-  if (!is_repeated_) return;
-  next_state_.add(entry.state);
-  make_room();
+  if (keeps_geometry_) make_room();
 }
 
-void ContactArrays::evaluate_repeatedly() {
-  is_repeated_ = true;
-  next_state_ = state;
+void ContactArrays::keep_geometry() {
+  keeps_geometry_ = true;
   make_room();
 }
 
 void ContactArrays::make_room() {
-  for (std::vector<double>* vectors : {&v_free, &v_previous, &normal, &previous_impulse})
-    vectors->resize(count() * static_cast<std::size_t>(dimension_));
+  normal.resize(count() * static_cast<std::size_t>(dimension_));
   gap.resize(count());
-  energy.resize(count() * ILAW_ENERGY_COUNT);
-  for (std::vector<double>& one : amounts) one.resize(count());
-}
-
-void ContactArrays::accept_state(int contact) { state.take(static_cast<std::size_t>(contact), next_state_); }
-
-ilaw_batch ContactArrays::repeated_batch(const Vector& tangent, const StepView& step) {
-  ilaw_batch batch = empty_batch(tangent, step.time, step.velocity_step(), step.dt);
-  batch.area = ilaw::input(area.data(), 1, 1);
-  batch.normal = ilaw::input(normal.data(), dimension_, 1);
-  parameter_inputs_.clear();
-  for (const std::vector<double>& values : parameters)
-    parameter_inputs_.push_back(ilaw::input(values.data(), 1, 1));
-  batch.per_node_parameters = parameter_inputs_.data();
-  batch.v_free = ilaw::input(v_free.data(), dimension_, 1);
-  batch.v_previous = ilaw::input(v_previous.data(), dimension_, 1);
-  batch.delassus = ilaw::input(delassus.data(), 1, 1);
-  if (!law_delassus.empty()) batch.delassus = ilaw::input(law_delassus.data(), dimension_, 1);
-  batch.gap = ilaw::input(gap.data(), 1, 1);
-  batch.state_in = ilaw::input(state.first(0), 1, state.stride());
-  batch.state_out = ilaw::output(next_state_.first(0), 1, next_state_.stride());
-  batch.impulse = ilaw::output(impulse.data(), dimension_, 1);
-  batch.energy = ilaw::output(energy.data(), ILAW_ENERGY_COUNT, 1);
-  amount_outputs_.clear();
-  for (std::vector<double>& one : amounts) amount_outputs_.push_back(ilaw::output(one.data(), 1, 0));
-  batch.amounts = amount_outputs_.empty() ? nullptr : amount_outputs_.data();
-  batch.status = status.data();
-  batch.status_stride = 1;
-  return batch;
 }
 
 void ContactArrays::keep_in_large_pages() const {
@@ -98,9 +63,8 @@ void ContactArrays::keep_in_large_pages() const {
 std::size_t ContactArrays::bytes_per_contact() const {
   const auto d = static_cast<std::size_t>(dimension_);
   const std::size_t stored = d + 1 + state_size_ + (reads_area_ ? 1 : 0) + parameters.size();
-  const std::size_t repeated = 4 * d + 1 + ILAW_ENERGY_COUNT + state_size_;
   return sizeof(int) + 2 + (partnered_ ? sizeof(ContactPoint) : 0) +
-         sizeof(double) * (stored + (is_repeated_ ? repeated : 0));
+         sizeof(double) * (stored + (keeps_geometry_ ? d + 1 : 0));
 }
 
 void ContactArrays::save(std::ostream& out) const {

@@ -1,5 +1,4 @@
-// contact_arrays.hpp - what is stored of each contact, and the arrays that a law reads and writes
-// where contacts share nodes.
+// contact_arrays.hpp - what is stored of each contact.
 //
 // A node of the interface has its index in the interface's list of nodes (node_index) and, from
 // when it is first needed, its index in these arrays (contact_index). Nodes that were never near
@@ -75,13 +74,8 @@ class ContactArrays {
       mark &= static_cast<std::uint8_t>(~awake);
   }
 
-  // Where contacts share nodes a step evaluates each more than once: the arrays below "repeated"
-  // are there, and states in and out are arrays of their own.
-  void evaluate_repeatedly();
-  // The state after the step becomes that before the next.
-  void accept_state(int contact);
-  // The arrays that evaluate takes, where contacts share nodes.
-  ilaw_batch repeated_batch(const Vector& tangent, const StepView& step);
+  // Where contacts share nodes the arrays below "coupled" are there.
+  void keep_geometry();
 
   // Once more contacts are there, what a step reads and writes of them.
   void keep_in_large_pages() const;
@@ -103,10 +97,8 @@ class ContactArrays {
   std::vector<double> area;                     // where the law reads it
   std::vector<std::vector<double>> parameters;  // that are given per node, as the law lists them
   std::vector<std::uint8_t> status;
-  // repeated
-  std::vector<double> v_free, v_previous, normal, previous_impulse, gap, energy;
-  std::vector<std::vector<double>> amounts;     // as the law lists them
-  std::vector<double> turn_before, turn_after;  // where an obstacle turns: velocities of its surface
+  // coupled
+  std::vector<double> normal, gap;
 
  private:
   enum Mark : std::uint8_t {
@@ -121,12 +113,9 @@ class ContactArrays {
 
   int dimension_;
   std::size_t state_size_;
-  bool reads_area_, partnered_, is_repeated_ = false;
+  bool reads_area_, partnered_, keeps_geometry_ = false;
   std::vector<int> contact_index_;  // by node_index
   std::vector<std::uint8_t> marks_;
-  StateColumns next_state_;
-  std::vector<ilaw_input> parameter_inputs_;
-  std::vector<ilaw_output> amount_outputs_;
 };
 
 }  // namespace ilaw::host

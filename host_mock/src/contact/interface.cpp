@@ -4,14 +4,15 @@
 #include "base/large_pages.hpp"
 #include "base/parallel.hpp"
 #include "base/running_law.hpp"
+#include "contact/contact_geometry.hpp"
 #include "contact/law_faults.hpp"
+#include "contact/plain_step.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -42,7 +43,7 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       model_(model),
       dimension_(model.dimension()),
       law_(setup_.library, setup_.law, setup_.arguments, setup_.tangent, dimension_,
-           setup_.has_driven_nodes ? ILAW_DELASSUS_DIAGONAL : ILAW_DELASSUS_SCALAR),
+           setup_.has_driven_nodes ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR),
       axes_(law_.axes()),
       contacts_(dimension_, law_.info(), setup_.nodes.size(), !setup_.counterpart->partners().empty()),
       obstacle_velocity_(Vector::Zero(dimension_)),
@@ -121,17 +122,18 @@ Vector Interface::velocity_of(int contact_index, const Vector& impulse) const {
 // A rigid law that is driven along its normal answers with an impulse that takes the whole approach, over the
 // small H that it was given. The size of the answer tells it: the node would give way by H r, and laws that
 // need no such thing give way by a vanishing part of the speed, or of the indentation in a step.
-void Interface::check_driven(const StepView& step) const {
+void Interface::check_driven(const StepView& step, const Dofs& v, const CoupledGroup& group) const {
   constexpr double noticeable = 1e-9;
   if (contacts_.axis_delassus.empty()) return;
   const double speed = std::max(step.speed_before, step.speed_after);
-  for (const std::int32_t k : active()) {
+  for (std::size_t place = 0; place < group.count(); ++place) {
+    const std::int32_t k = group.contact(place);
     const Vector given_way =
         contacts_.vector(contacts_.law_delassus, k).cwiseProduct(impulse(k)) - velocity_of(k, impulse(k));
     Eigen::Index axis = 0;
     const double largest = given_way.cwiseAbs().maxCoeff(&axis);
     if (!(largest > noticeable * std::max(speed, std::abs(gap(k)) / step.dt))) continue;
-    if (largest < 0.5 * std::abs(v_free(k)[axis])) continue;
+    if (largest < 0.5 * std::abs(v_free_of(group, place, v)[axis])) continue;
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(),
                   "node %d is driven along axis %td against '%s' (law '%s'), which cannot give way",
@@ -264,6 +266,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
                          v,
                          energies,
                          watched};
+  const auto step_chunk = steps_plainly_ ? plain_step : solve_chunk;
   outcomes_.resize(chunk_starts_.size() - 1);
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
   for_each_chunk(static_cast<std::ptrdiff_t>(outcomes_.size()), 1, [&](std::ptrdiff_t c, auto, auto) {
@@ -271,7 +274,7 @@ void Interface::solve(const StepView& step, Dofs& v) {
     ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
     outcome = {};
     const std::ptrdiff_t first = range[0], count = range[1] - first;
-    if (count > 0) solve_chunk(blocks, {near_.data() + first, near_nodes_.data() + first, count}, outcome);
+    if (count > 0) step_chunk(blocks, {near_.data() + first, near_nodes_.data() + first, count}, outcome);
   });
   Refusal refusal = outcomes_.front().refusal;
   sums_ = outcomes_.front().sums;
@@ -289,139 +292,114 @@ void Interface::total_amounts() {
 
 // ---- a step where contacts share nodes ------------------------------------------------------------------
 
-void Interface::open_step(const StepView& step) {
+CoupledGroup Interface::make_group() const {
+  const Counterpart& counterpart = *setup_.counterpart;
+  int partners = 0;
+  if (!counterpart.partners().empty())
+    partners = counterpart.shares_partners() ? ContactPoint::most_partners : 1;
+  return {law_, setup_.name, dimension_, setup_.has_driven_nodes ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR,
+          partners};
+}
+
+const ilaw_contacts& Interface::open_step(const StepView& step, CoupledGroup& group) {
   choose_active(step);
   sums_ = {};
-  const bool turns = setup_.counterpart->turns();
-  if (turns)
-    for (std::vector<double>* turn : {&contacts_.turn_before, &contacts_.turn_after})
-      turn->resize(contacts_.normal.size());
+  group.open(InputCopy::is_due(step.number));
   for (const std::int32_t contact_index : active()) {
     const std::size_t k = at(contact_index);
-    const ContactPoint point = setup_.counterpart->contact_point(contacts_.node_index[k], step.u, step.time);
-    contacts_.gap[k] = point.gap - setup_.gap_offset;
-    if (point.is_beyond_border && setup_.counterpart->is_held(contacts_.node_index[k])) ++sums_.left;
+    const auto [point, surface] = locate_contact(setup_, contacts_.node_index[k], step, rates_);
+    turn_axes(setup_, axes_, dimension_, step,
+              [&](std::size_t number) -> double& { return contacts_.state.at(k, number); });
+    contacts_.gap[k] = point.gap;
     contacts_.vector(contacts_.normal, contact_index) = point.normal;
     contacts_.vector(contacts_.impulse, contact_index).setZero();
-    if (turns) {
-      const SurfaceVelocities turn = surface_velocities(*setup_.counterpart, contacts_.node_index[k], step.u,
-                                                        step.time, {point.gap, point.normal}, rates_);
-      contacts_.vector(contacts_.turn_before, contact_index) = turn.before;
-      contacts_.vector(contacts_.turn_after, contact_index) = turn.after;
-      for (const std::size_t first : axes_)
-        turn_axis(*setup_.counterpart, dimension_, step.time_before(), step.time,
-                  [&](std::size_t c) -> double& { return contacts_.state.at(k, first + c); });
+    contacts_.status[k] = ILAW_FREE;
+    if (point.is_beyond_border && setup_.counterpart->is_held(contacts_.node_index[k])) ++sums_.left;
+    if (point.partner_count > 0) {
+      contacts_.point[k] = point;
+      find_delassus(k);
     }
-    if (point.partner_count == 0) continue;
-    contacts_.point[k] = point;
-    find_delassus(k);
+    if (is_idle(contact_index)) continue;
+    const Vector after = obstacle_velocity_ + surface.after,
+                 before = obstacle_velocity_before_ + surface.before;
+    group.add({contact_index, node_of(contact_index), point, after, before}, contacts_);
   }
+  return group.close(tangent_, step);
 }
 
+// Out of reach, and its state does not change there.
 bool Interface::is_idle(int contact_index) const {
   const std::size_t k = at(contact_index);
-  return !contacts_.must_be_evaluated(k) && contacts_.gap[k] > closing_;
+  return !axes_turn() && !contacts_.must_be_evaluated(k) && contacts_.gap[k] > closing_;
 }
 
-void Interface::gather(const ContactList& contacts, const Dofs& v, const StepView& step) {
-  for_each_chunk(static_cast<std::ptrdiff_t>(contacts.size()), contact_chunk,
-                 [&](std::ptrdiff_t, std::ptrdiff_t first, std::ptrdiff_t end) {
-                   for (std::ptrdiff_t i = first; i < end; ++i) {
-                     const std::int32_t k = contacts[static_cast<std::size_t>(i)];
-                     contacts_.vector(contacts_.v_free, k) =
-                         relative(k, v) - surface_velocity(k) - velocity_of(k, impulse(k));
-                     contacts_.vector(contacts_.v_previous, k) =
-                         relative(k, step.v_before) -
-                         surface_velocity(k, obstacle_velocity_before_, contacts_.turn_before);
-                     contacts_.vector(contacts_.previous_impulse, k) = impulse(k);
-                   }
-                 });
-}
-
-void Interface::evaluate(const ContactList& contacts, const StepView& step) {
-  ilaw_batch batch = contacts_.repeated_batch(tangent_, step);
-  if (!asks_energies_) batch.energy = {}, batch.amounts = nullptr;
-  const auto count = static_cast<std::ptrdiff_t>(contacts.size());
-  outcomes_.assign(static_cast<std::size_t>(chunks_of(count, contact_chunk)), {});
-  const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());
-  const bool is_watched = InputCopy::is_due(step.number);
-  for_each_chunk(count, contact_chunk, [&](std::ptrdiff_t c, std::ptrdiff_t first, std::ptrdiff_t end) {
-    ilaw_batch part = batch;
-    part.index = contacts.data() + first;
-    part.node_count = end - first;
-    ChunkOutcome& outcome = outcomes_[static_cast<std::size_t>(c)];
-    std::optional<InputCopy> inputs;
-    if (is_watched) inputs.emplace(part, static_cast<std::size_t>(dimension_), info());
-    const Answer answer = law_.evaluate(part);
-    outcome.refusal.add(answer, contacts_.count());
-    if (const char* changed = inputs ? inputs->changed() : nullptr) outcome.refusal.add(overwriting(changed));
-    outcome.sums.add_stable_step(answer.report.stable_velocity_step);
-  });
-  Refusal refusal;
-  for (const ChunkOutcome& outcome : outcomes_) {
-    refusal.add(outcome.refusal);
-    sums_.add_stable_step(outcome.sums.stable_step);
+void Interface::take(const CoupledGroup& group) {
+  for (std::size_t i = 0; i < group.count(); ++i) {
+    contacts_.vector(contacts_.impulse, group.contact(i)) = group.impulse(i);
+    contacts_.status[at(group.contact(i))] = group.status(i);
   }
-  check(refusal, step.dt);
 }
 
-void Interface::apply(const ContactList& contacts, Dofs& v) {
-  const Eigen::Index d = dimension_;
-  const auto count = static_cast<std::ptrdiff_t>(contacts.size());
-  for_each_chunk(count, contact_chunk, [&](std::ptrdiff_t, std::ptrdiff_t first, std::ptrdiff_t end) {
-    for (std::ptrdiff_t i = first; i < end; ++i) {
-      const std::int32_t k = contacts[static_cast<std::size_t>(i)];
-      const Vector added = impulse(k) - contacts_.vector(contacts_.previous_impulse, k);
-      if (added.isZero(0.0)) continue;  // idle contacts must not even write nodes they share
-      point(k).for_each_node(node_of(k), [&](int node, double weight) {
-        for (Eigen::Index c = 0; c < d; ++c)
-          v[node * d + c] += weight * inverse_mass_[node * d + c] * added[c];
-      });
-    }
-  });
+void Interface::check_solve(const CoupledGroup& group, const ilaw_coupled_report& report,
+                            std::int64_t bad_contact, double dt) const {
+  check(group.refusal(), dt);
+  if (bad_contact < 0) return;
+  check({ILAW_BAD_NODES, report.bad_count, group.contact(static_cast<std::size_t>(bad_contact)), 0,
+         report.reason},
+        dt);
 }
 
-void Interface::start_from(int contact_index, const Vector& impulse) {
-  contacts_.vector(contacts_.previous_impulse, contact_index).setZero();
-  contacts_.vector(contacts_.impulse, contact_index) = impulse;
+// Velocity that the law sees, without the contact's own impulse.
+Vector Interface::v_free_of(const CoupledGroup& group, std::size_t place, const Dofs& v) const {
+  const std::int32_t contact_index = group.contact(place);
+  return relative(contact_index, v) - group.surface(place) -
+         velocity_of(contact_index, impulse(contact_index));
 }
 
-void Interface::accept(const StepView& step, const Dofs& v) {
-  Refusal unknown;
+void Interface::accept(const StepView& step, const Dofs& v, const CoupledGroup& group) {
+  std::size_t place = 0;
   for (const std::int32_t contact_index : active()) {
+    const bool acts = place < group.count() && group.contact(place) == contact_index;
     const std::size_t k = at(contact_index);
+    Refusal unknown;
     unknown.add_unknown(&contacts_.status[k], &contact_index, 1);
     check(unknown, step.dt);
-    const Vector sum = relative(contact_index, step.v_before) + relative(contact_index, v);
-    sums_.work += 0.5 * impulse(contact_index).dot(sum);
-    const Vector drift = surface_velocity(contact_index, obstacle_velocity_, contacts_.turn_after) +
-                         surface_velocity(contact_index, obstacle_velocity_before_, contacts_.turn_before);
-    sums_.relative_work += 0.5 * impulse(contact_index).dot(sum - drift);
-    sums_.penetration = std::max(sums_.penetration, -gap(contact_index));
     ++sums_.statuses[contacts_.status[k]];
+    sums_.penetration = std::max(sums_.penetration, -gap(contact_index));
     setup_.counterpart->note_contact(contacts_.node_index[k], contacts_.status[k] != ILAW_FREE,
                                      point(contact_index));
-    sums_.add_energy(&contacts_.energy[k * ILAW_ENERGY_COUNT]);
-    for (std::size_t a = 0; a < contacts_.amounts.size(); ++a) sums_.add_amount(a, contacts_.amounts[a][k]);
-    if (info().state_size == 0) continue;
-    const bool in_reach = is_in_reach(gap(contact_index), normal(contact_index).data(),
-                                      v_free(contact_index).data(), dimension_, step.dt);
-    contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach, law_.may_skip_free());
-    contacts_.accept_state(contact_index);
+    if (acts) accept_contact(step, v, group, place++);
   }
   total_amounts();
-  if (!show_fault(sums_)) return;
-  for (const std::int32_t contact_index : active())
-    if (const char* fault =
-            fault_of(impulse(contact_index).data(), dimension_,
-                     &contacts_.energy[at(contact_index) * ILAW_ENERGY_COUNT], status(contact_index)))
-      check({ILAW_BAD_LIBRARY, 0, contact_index, 0, fault}, step.dt);
+  if (show_fault(sums_)) find_fault(group, step.dt);
 }
 
-Vector Interface::surface_velocity(int contact_index, const Vector& velocity,
-                                   const std::vector<double>& turn) const {
-  if (turn.empty()) return velocity;
-  return velocity + contacts_.vector(turn, contact_index);
+void Interface::accept_contact(const StepView& step, const Dofs& v, const CoupledGroup& group,
+                               std::size_t place) {
+  const std::int32_t contact_index = group.contact(place);
+  const std::size_t k = at(contact_index);
+  const Vector sum = relative(contact_index, step.v_before) + relative(contact_index, v);
+  sums_.work += 0.5 * impulse(contact_index).dot(sum);
+  const Vector drift = group.surface(place) + group.surface_before(place);
+  sums_.relative_work += 0.5 * impulse(contact_index).dot(sum - drift);
+  sums_.add_energy(group.energy(place));
+  for (std::size_t a = 0; a < group.amount_count(); ++a) sums_.add_amount(a, group.amount(a, place));
+  bool changed = false;
+  for (std::size_t number = 0; number < info().state_size; ++number) {
+    double& state = contacts_.state.at(k, number);
+    changed = changed || state != group.state(place, number);
+    state = group.state(place, number);
+  }
+  if (info().state_size == 0) return;
+  const bool in_reach = is_in_reach(gap(contact_index), normal(contact_index).data(),
+                                    v_free_of(group, place, v).data(), dimension_, step.dt);
+  contacts_.mark_touched(k, status(contact_index) != ILAW_FREE, in_reach || changed, law_.may_skip_free());
+}
+
+void Interface::find_fault(const CoupledGroup& group, double dt) const {
+  for (std::size_t i = 0; i < group.count(); ++i)
+    if (const char* fault = fault_of(group.impulse(i).data(), dimension_, group.energy(i), group.status(i)))
+      check({ILAW_BAD_LIBRARY, 0, group.contact(i), 0, fault}, dt);
 }
 
 // ---- the last step --------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@
 #include "contact/contact_arrays.hpp"
 #include "contact/contact_sums.hpp"
 #include "contact/counterpart.hpp"
+#include "contact/coupled_group.hpp"
 #include "contact/interface_setup.hpp"
 #include "contact/law.hpp"
 #include "contact/proximity_filter.hpp"
@@ -44,35 +45,27 @@ class Interface {
   const double* inverse_mass() const { return inverse_mass_; }
 
   // ---- a step where no two contacts share a node ----
+  // Contact by contact (plain_step.hpp) instead of in blocks.
+  void step_plainly() { steps_plainly_ = true; }
   // Chooses the active contacts, finds gaps, normals and delassus, asks the law for impulse, state,
   // energies and status, and takes v from v_free to v_free + H r. Throws ilaw::error on bad nodes.
   void solve(const StepView& step, Dofs& v);
 
   // ---- a step where contacts share nodes, in the order of the calls ----
-  // Each contact is evaluated more than once.
-  void evaluate_repeatedly() { contacts_.evaluate_repeatedly(); }
-  // Chooses the active contacts, by contact_index, and finds their gaps, normals, partners and
-  // delassus.
-  void open_step(const StepView& step);
-  // Whether a contact cannot act in this step, like those that are not active
-  // (proximity_filter.hpp).
-  bool is_idle(int contact_index) const;
-  // What the listed contacts see of the velocities v, without their own impulses: v_free.
-  void gather(const ContactList& contacts, const Dofs& v, const StepView& step);
-  // Gives a contact such a velocity in place of what gather found.
-  void ask_at(int contact_index, const Vector& v_free) {
-    contacts_.vector(contacts_.v_free, contact_index) = v_free;
-  }
-  // The law: impulse, state, energies and status. Throws ilaw::error on bad nodes.
-  void evaluate(const ContactList& contacts, const StepView& step);
-  // Adds to v what the impulses have changed by since gather.
-  void apply(const ContactList& contacts, Dofs& v);
-  // Gives a contact an impulse, for apply to add to v_free as a whole.
-  void start_from(int contact_index, const Vector& impulse);
+  void keep_geometry() { contacts_.keep_geometry(); }
+  CoupledGroup make_group() const;
+  // Chooses the active contacts, by contact_index, finds their gaps, normals and partners, and gives the
+  // solver those that may act: the others are out of reach of the speeds of the step.
+  const ilaw_contacts& open_step(const StepView& step, CoupledGroup& group);
+  // Takes the impulses that were found.
+  void take(const CoupledGroup& group);
+  // Throws as solve(), given the first contact with bad input (place in the group; -1: none).
+  void check_solve(const CoupledGroup& group, const ilaw_coupled_report& report, std::int64_t bad_contact,
+                   double dt) const;
   // Throws std::runtime_error where a motion drives a node against a law that cannot give way.
-  void check_driven(const StepView& step) const;
+  void check_driven(const StepView& step, const Dofs& v, const CoupledGroup& group) const;
   // The step is done: its state becomes the state before the next.
-  void accept(const StepView& step, const Dofs& v);
+  void accept(const StepView& step, const Dofs& v, const CoupledGroup& group);
 
   // ---- the last step ----
   const ContactList& active() const { return acts_ ? near_ : none_; }
@@ -100,13 +93,8 @@ class Interface {
   Vector relative(int contact_index, const Dofs& v) const;
   const Vector& obstacle_velocity() const { return obstacle_velocity_; }
   const Vector& obstacle_velocity_before() const { return obstacle_velocity_before_; }
-  // Only where contacts share nodes: of the obstacle's surface where a contact is.
-  Vector surface_velocity(int contact_index) const {
-    return surface_velocity(contact_index, obstacle_velocity_, contacts_.turn_after);
-  }
   // Only where contacts share nodes.
   auto normal(int contact_index) const { return contacts_.vector(contacts_.normal, contact_index); }
-  auto v_free(int contact_index) const { return contacts_.vector(contacts_.v_free, contact_index); }
   double gap(int contact_index) const { return contacts_.gap[at(contact_index)]; }
 
   // ---- for outputs, by node_index, whether active or not ----
@@ -130,7 +118,10 @@ class Interface {
 
  private:
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
-  Vector surface_velocity(int contact_index, const Vector& velocity, const std::vector<double>& turn) const;
+  bool is_idle(int contact_index) const;
+  Vector v_free_of(const CoupledGroup& group, std::size_t place, const Dofs& v) const;
+  void accept_contact(const StepView& step, const Dofs& v, const CoupledGroup& group, std::size_t place);
+  void find_fault(const CoupledGroup& group, double dt) const;
   // Whether the state of a contact that is out of reach changes: axes follow the normal.
   bool axes_turn() const;
   bool may_skip() const;
@@ -169,7 +160,7 @@ class Interface {
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
   std::vector<double> amounts_;
-  bool asks_energies_ = true;
+  bool asks_energies_ = true, steps_plainly_ = false;
   const double* inverse_mass_ = nullptr;
 };
 

@@ -78,7 +78,8 @@ Law::Law(const std::string& library, const std::string& law, const Arguments& ar
     : library_(open_library(library, law)),
       interface_(create_named(law, arguments, tangent, library_, dimension, delassus_form)),
       info_(interface_.info()),
-      outputs_(library_.law(law)->outputs) {}
+      outputs_(library_.law(law)->outputs),
+      id_(library_.law(law)->id) {}
 
 std::vector<std::size_t> Law::axes() const {
   std::vector<std::size_t> axes;

@@ -21,6 +21,7 @@ class Law {
 
   const ilaw::library& library() const { return library_; }
   const ilaw_instance_info& info() const { return info_; }
+  const char* id() const { return id_; }
   // ILAW_OUTPUT_*: what it gives.
   std::uint32_t outputs() const { return outputs_; }
   bool may_skip_fresh() const { return (info_.permissions & ILAW_MAY_SKIP_FRESH) != 0; }
@@ -36,6 +37,7 @@ class Law {
   ilaw::interface interface_;
   ilaw_instance_info info_;
   std::uint32_t outputs_;
+  const char* id_;
 };
 
 }  // namespace ilaw::host

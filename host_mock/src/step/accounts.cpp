@@ -2,6 +2,7 @@
 #include "step/accounts.hpp"
 
 #include "base/bytes.hpp"
+#include "step/coupled_step.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -38,18 +39,18 @@ void for_each_member(Any& tally, Work work) {
 
 }  // namespace
 
-void Accounts::add_solution(const CoupledContacts::Outcome& outcome) {
-  tally_.sweeps += outcome.sweeps;
-  tally_.sweeps_max = std::max(tally_.sweeps_max, outcome.sweeps);
-  tally_.coupling_residual_max = std::max(tally_.coupling_residual_max, outcome.residual);
-  tally_.coupling_energy += outcome.energy;
-  if (outcome.residual > CoupledContacts::tolerance) ++tally_.unconverged;
+void Accounts::add_solution(const ilaw_coupled_report& solution) {
+  tally_.sweeps += solution.sweeps;
+  tally_.sweeps_max = std::max(tally_.sweeps_max, static_cast<int>(solution.sweeps));
+  tally_.coupling_residual_max = std::max(tally_.coupling_residual_max, solution.residual);
+  tally_.coupling_energy += solution.energy_error;
+  tally_.stable_step = std::min(tally_.stable_step, solution.stable_velocity_step);
+  if (solution.message) ++tally_.unconverged;
 }
 
-bool Accounts::is_wrong(const Model& model, const CoupledContacts::Outcome& outcome,
-                        const Dofs& v_before) const {
-  if (outcome.energy <= wrong_energy * energy_.largest()) return false;
-  return !(outcome.energy <= wrong_energy * kinetic_energy(model, v_before));
+bool Accounts::is_wrong(const Model& model, const ilaw_coupled_report& solution, const Dofs& v_before) const {
+  if (solution.energy_error <= wrong_energy * energy_.largest()) return false;
+  return !(solution.energy_error <= wrong_energy * kinetic_energy(model, v_before));
 }
 
 void Accounts::add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step) {
@@ -150,7 +151,7 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
     say("contacts that share nodes are not solved in %lld of %lld steps, the start included: residual up to %.1e after %d sweeps, "
         "expected %g; the energy is wrong by up to %.2g, where %.2g is the largest in the run",
         static_cast<long long>(tally_.unconverged), static_cast<long long>(steps) + 1,
-        tally_.coupling_residual_max, CoupledContacts::most_sweeps, CoupledContacts::tolerance,
+        tally_.coupling_residual_max, static_cast<int>(CoupledStep::most_sweeps), CoupledStep::tolerance,
         tally_.coupling_energy, energy.scale);
   if (tally_.left_surface > 0)
     say("%lld node(s) went over the border of a surface while they touched it: beyond it nothing holds them; a node "

@@ -3,8 +3,9 @@
 #pragma once
 
 #include "contact/interface.hpp"
-#include "step/coupled_contacts.hpp"
 #include "step/energy.hpp"
+
+#include <ilaw/coupled.h>
 
 #include <array>
 #include <cstdint>
@@ -46,9 +47,9 @@ class Accounts {
   void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v);
   // The work of interfaces at the start is part of that state already. speed: the largest then.
   void add_start(const Interfaces& interfaces, double speed);
-  void add_solution(const CoupledContacts::Outcome& outcome);
+  void add_solution(const ilaw_coupled_report& solution);
   // Whether contacts that do not agree change the energy by more than a small part of it.
-  bool is_wrong(const Model& model, const CoupledContacts::Outcome& outcome, const Dofs& v_before) const;
+  bool is_wrong(const Model& model, const ilaw_coupled_report& solution, const Dofs& v_before) const;
   void add_step(const Model& model, const Interfaces& interfaces, const StepRecord& step);
 
   // Whether the kinetic energy is far above all that was put in; speed: the largest.

@@ -231,14 +231,14 @@ void Integrator::add_reactions(const StepView& step) try {
   throw;
 }
 
-// Laws that contradict each other end the run before their states are accepted.
+// Incompatible laws end the run before their states are accepted.
 void Integrator::add_coupled_reactions(const StepView& step) {
-  const CoupledContacts::Outcome outcome = coupled_->solve(step, v_);
-  if (accounts_.is_wrong(model_, outcome, v_before_))
-    if (const std::string why = coupled_->explain(v_, outcome); !why.empty()) throw std::runtime_error(why);
-  for (const auto& interface : interfaces_) interface->check_driven(step);
-  accounts_.add_solution(outcome);
-  for (const auto& interface : interfaces_) interface->accept(step, v_);
+  const ilaw_coupled_report& solution = coupled_->solve(step, contact_inverse_mass(), v_);
+  coupled_->check_driven(step, v_);
+  if (accounts_.is_wrong(model_, solution, v_before_))
+    if (const std::string why = coupled_->explain(); !why.empty()) throw std::runtime_error(why);
+  accounts_.add_solution(solution);
+  coupled_->accept(step, v_);
 }
 
 // An unstable step closes its energy balance, too: what the bodies gain in motion they lose in stored energy.

@@ -9,7 +9,7 @@
 #include "contact/interface.hpp"
 #include "model/load.hpp"
 #include "step/accounts.hpp"
-#include "step/coupled_contacts.hpp"
+#include "step/coupled_step.hpp"
 
 #include <iosfwd>
 #include <optional>
@@ -93,13 +93,16 @@ class Integrator {
   void hold_driven_before();
   void add_reactions(const StepView& step);
   void add_coupled_reactions(const StepView& step);
+  const double* contact_inverse_mass() const {
+    return contact_inverse_mass_.size() > 0 ? contact_inverse_mass_.data() : inverse_mass_.data();
+  }
   void check_motion(double speed, double time) const;
   void check_energy() const;
 
   const Model& model_;
   const Loads& loads_;
   Interfaces& interfaces_;
-  std::optional<CoupledContacts> coupled_;  // where contacts share nodes
+  std::optional<CoupledStep> coupled_;  // where contacts share nodes
   double dt_;
   bool loads_are_steady_;
   bool transmits_steadily_;               // H is the same in all steps

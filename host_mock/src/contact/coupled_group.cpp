@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "contact/coupled_group.hpp"
+
+#include <ilaw/arrays.hpp>
+
+namespace ilaw::host {
+
+CoupledGroup::CoupledGroup(const Law& law, const std::string& interface, int dimension,
+                           ilaw_delassus_forms form, int partner_count)
+    : dimension_(dimension),
+      form_(form),
+      partner_count_(partner_count),
+      state_size_(law.info().state_size),
+      law_(law, interface, dimension),
+      parameters_(law.info().per_node_parameter_count),
+      amounts_(law.info().amount_count) {}
+
+void CoupledGroup::open(bool watches_inputs) {
+  law_.open(watches_inputs);
+  contacts_.clear();
+  body_.clear();
+  counterpart_.clear();
+  for (std::vector<double>* values :
+       {&weights_, &surface_, &surface_before_, &gap_, &normal_, &area_, &state_})
+    values->clear();
+  for (std::vector<double>& values : parameters_) values.clear();
+}
+
+void CoupledGroup::add(const CoupledContact& contact, const ContactArrays& arrays) {
+  const auto k = static_cast<std::size_t>(contact.contact);
+  const auto append = [](std::vector<double>& values, const auto& vector) {
+    values.insert(values.end(), vector.data(), vector.data() + vector.size());
+  };
+  contacts_.push_back(contact.contact);
+  body_.push_back(contact.node);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(partner_count_); ++i) {
+    counterpart_.push_back(contact.point.partners[i]);
+    weights_.push_back(contact.point.weights[i]);
+  }
+  if (partner_count_ == 0) counterpart_.push_back(-1);
+  append(surface_, contact.surface);
+  append(surface_before_, contact.surface_before);
+  gap_.push_back(contact.point.gap);
+  append(normal_, contact.point.normal);
+  if (!arrays.area.empty()) area_.push_back(arrays.area[k]);
+  for (std::size_t p = 0; p < parameters_.size(); ++p) parameters_[p].push_back(arrays.parameters[p][k]);
+  for (std::size_t number = 0; number < state_size_; ++number) state_.push_back(arrays.state.at(k, number));
+}
+
+// The iterations begin without impulses: a resumed run has none of the step before.
+const ilaw_contacts& CoupledGroup::close(const Vector& tangent, const StepView& step) {
+  const auto d = static_cast<std::size_t>(dimension_);
+  const auto size = static_cast<std::int64_t>(state_size_);
+  impulse_.assign(d * count(), 0.0);
+  energy_.assign(ILAW_ENERGY_COUNT * count(), 0.0);
+  status_.assign(count(), ILAW_FREE);
+  next_state_.resize(state_.size());
+  batch_ = empty_batch(tangent, step.time, step.velocity_step(), step.dt);
+  batch_.node_count = static_cast<std::int64_t>(count());
+  batch_.gap = ilaw::input(gap_.data(), 1, 1);
+  batch_.normal = ilaw::input(normal_.data(), dimension_, 1);
+  batch_.area = ilaw::input(area_.data(), 1, 1);
+  parameter_inputs_.clear();
+  for (const std::vector<double>& values : parameters_)
+    parameter_inputs_.push_back(ilaw::input(values.data(), 1, 1));
+  batch_.per_node_parameters = parameter_inputs_.data();
+  batch_.state_in = ilaw::input(state_.data(), size, 1);
+  batch_.state_out = ilaw::output(next_state_.data(), size, 1);
+  batch_.impulse = ilaw::output(impulse_.data(), dimension_, 1);
+  if (law_.law()->outputs & ILAW_OUTPUT_ENERGY)
+    batch_.energy = ilaw::output(energy_.data(), ILAW_ENERGY_COUNT, 1);
+  amount_outputs_.clear();
+  for (std::vector<double>& values : amounts_) {
+    values.assign(count(), 0.0);
+    amount_outputs_.push_back(ilaw::output(values.data(), 1, 0));
+  }
+  batch_.amounts = amount_outputs_.empty() ? nullptr : amount_outputs_.data();
+  batch_.status = status_.data();
+  batch_.status_stride = 1;
+
+  given_ = {};
+  given_.struct_size = sizeof given_;
+  given_.delassus_form = form_;
+  given_.law = law_.law();
+  given_.instance = law_.instance();
+  given_.batch = &batch_;
+  given_.body = body_.data();
+  given_.counterpart = counterpart_.data();
+  if (partner_count_ == 0) {
+    given_.wall_velocity = ilaw::input(surface_.data(), dimension_, 1);
+    given_.wall_previous = ilaw::input(surface_before_.data(), dimension_, 1);
+  } else {
+    given_.counterpart_count = static_cast<std::uint32_t>(partner_count_);
+    if (partner_count_ > 1) given_.counterpart_weight = ilaw::input(weights_.data(), partner_count_, 1);
+  }
+  return given_;
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,82 @@
+// coupled_group.hpp - the contacts of an interface that may act in a step, in the arrays that ilaw/coupled.h
+// takes: one after the other.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/contact_arrays.hpp"
+#include "contact/watched_law.hpp"
+
+#include <ilaw/coupled.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ilaw::host {
+
+// Inputs of one contact beside what ContactArrays stores.
+struct CoupledContact {
+  std::int32_t contact;
+  int node;
+  const ContactPoint& point;       // its gap less the gap offset
+  Vector surface, surface_before;  // velocities of the obstacle
+};
+
+class CoupledGroup {
+ public:
+  // partner_count: bodies on the other side of a contact; 0: an obstacle.
+  CoupledGroup(const Law& law, const std::string& interface, int dimension, ilaw_delassus_forms form,
+               int partner_count);
+
+  // ---- before a solve ----
+  void open(bool watches_inputs);
+  void add(const CoupledContact& contact, const ContactArrays& arrays);
+  // Calls visit with each entry of the bodies: a node, which visit may replace by its place among the bodies
+  // of the solve.
+  template <class Visit>
+  void for_each_body(Visit visit) {
+    for (std::int32_t& node : body_) visit(node);
+    for (std::int32_t& node : counterpart_)
+      if (node >= 0) visit(node);
+  }
+  const ilaw_contacts& close(const Vector& tangent, const StepView& step);
+
+  // ---- after it, by place in the group ----
+  std::size_t count() const { return contacts_.size(); }
+  std::int32_t contact(std::size_t i) const { return contacts_[i]; }
+  auto impulse(std::size_t i) const {
+    return Eigen::Map<const Vector>(&impulse_[i * static_cast<std::size_t>(dimension_)], dimension_);
+  }
+  // Velocities of the obstacle's surface there.
+  auto surface(std::size_t i) const {
+    return Eigen::Map<const Vector>(&surface_[i * static_cast<std::size_t>(dimension_)], dimension_);
+  }
+  auto surface_before(std::size_t i) const {
+    return Eigen::Map<const Vector>(&surface_before_[i * static_cast<std::size_t>(dimension_)], dimension_);
+  }
+  std::uint8_t status(std::size_t i) const { return status_[i]; }
+  const double* energy(std::size_t i) const { return &energy_[i * ILAW_ENERGY_COUNT]; }
+  std::size_t amount_count() const { return amounts_.size(); }
+  double amount(std::size_t k, std::size_t i) const { return amounts_[k][i]; }
+  double state(std::size_t i, std::size_t number) const { return next_state_[state_size_ * i + number]; }
+  const Refusal& refusal() const { return law_.refusal(); }
+
+ private:
+  int dimension_;
+  ilaw_delassus_forms form_;
+  int partner_count_;
+  std::size_t state_size_;
+  WatchedLaw law_;
+  ContactList contacts_;
+  std::vector<std::int32_t> body_, counterpart_;
+  std::vector<double> weights_, surface_, surface_before_, gap_, normal_, area_, impulse_, energy_, state_,
+      next_state_;
+  std::vector<std::vector<double>> parameters_, amounts_;
+  std::vector<std::uint8_t> status_;
+  std::vector<ilaw_input> parameter_inputs_;
+  std::vector<ilaw_output> amount_outputs_;
+  ilaw_batch batch_{};
+  ilaw_contacts given_{};
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "step/coupled_step.hpp"
+
+#include "step/dof_loops.hpp"
+
+#include <ilaw/arrays.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace ilaw::host {
+
+bool share_nodes(const Model& model, const Interfaces& interfaces) {
+  std::vector<bool> seen(static_cast<std::size_t>(model.node_count()));
+  for (const auto& interface : interfaces) {
+    if (interface->setup().counterpart->shares_partners()) return true;
+    if (interface->setup().has_driven_nodes) return true;  // blocks of contacts have one H per node
+    for (const std::vector<int>* nodes : {&interface->nodes(), &interface->setup().counterpart->partners()})
+      for (const int node : *nodes)
+        if (std::vector<bool>::reference mark = seen[static_cast<std::size_t>(node)]; mark)
+          return true;
+        else
+          mark = true;
+  }
+  return false;
+}
+
+CoupledStep::CoupledStep(const Model& model, Interfaces& interfaces)
+    : model_(model), interfaces_(interfaces), body_(static_cast<std::size_t>(model.node_count()), -1) {
+  groups_.reserve(interfaces.size());
+  for (const auto& interface : interfaces_) {
+    interface->keep_geometry();
+    groups_.push_back(interface->make_group());
+    has_driven_nodes_ = has_driven_nodes_ || interface->setup().has_driven_nodes;
+  }
+}
+
+// Which contacts may act follows from a bound on speeds. Where impulses leave a node faster, the step is
+// solved again with a larger one: whether that happens does not depend on which contacts are active.
+const ilaw_coupled_report& CoupledStep::solve(StepView step, const double* inverse_mass, Dofs& v) {
+  const double speed = std::max(step.speed_before, step.speed_after);
+  const Dofs v_free = v;
+  step.speed_after = 2.0 * speed;
+  for (;;) {
+    v = v_free;
+    open(step);
+    solve_groups(step, speed, inverse_mass, v);
+    const double fastest = largest_speed(v, model_.dimension());
+    if (!(fastest > step.speed_after)) return report_;
+    step.speed_after = 2.0 * fastest;
+  }
+}
+
+void CoupledStep::open(const StepView& step) {
+  given_.clear();
+  for (std::size_t i = 0; i < interfaces_.size(); ++i)
+    given_.push_back(&interfaces_[i]->open_step(step, groups_[i]));
+  number_bodies();
+}
+
+void CoupledStep::number_bodies() {
+  for (const std::int32_t node : nodes_) body_[static_cast<std::size_t>(node)] = -1;
+  nodes_.clear();
+  for (CoupledGroup& group : groups_)
+    group.for_each_body([&](std::int32_t node) {
+      std::int32_t& body = body_[static_cast<std::size_t>(node)];
+      if (body < 0) nodes_.push_back(node);
+      body = 0;
+    });
+  std::sort(nodes_.begin(), nodes_.end());
+  for (std::size_t b = 0; b < nodes_.size(); ++b)
+    body_[static_cast<std::size_t>(nodes_[b])] = static_cast<std::int32_t>(b);
+  for (CoupledGroup& group : groups_)
+    group.for_each_body([&](std::int32_t& node) { node = body_[static_cast<std::size_t>(node)]; });
+}
+
+void CoupledStep::solve_groups(const StepView& step, double speed, const double* inverse_mass, Dofs& v) {
+  const auto d = static_cast<std::size_t>(model_.dimension());
+  for (std::vector<double>* values : {&inverse_mass_, &velocity_, &previous_})
+    values->resize(d * nodes_.size());
+  for (std::size_t b = 0; b < nodes_.size(); ++b)
+    for (std::size_t c = 0; c < d; ++c) {
+      const std::size_t dof = d * static_cast<std::size_t>(nodes_[b]) + c;
+      inverse_mass_[d * b + c] = inverse_mass[dof];
+      velocity_[d * b + c] = v[static_cast<Eigen::Index>(dof)];
+      previous_[d * b + c] = step.v_before[static_cast<Eigen::Index>(dof)];
+    }
+  const int dimension = model_.dimension();
+  ilaw_bodies bodies{};
+  bodies.struct_size = sizeof bodies;
+  bodies.dimension = static_cast<std::uint32_t>(dimension);
+  bodies.count = bodies.owned_count = static_cast<std::int64_t>(nodes_.size());
+  bodies.inverse_mass = ilaw::input(inverse_mass_.data(), dimension, has_driven_nodes_ ? 1 : 0);
+  bodies.v_free = ilaw::input(velocity_.data(), dimension, 1);
+  bodies.v_previous = ilaw::input(previous_.data(), dimension, 1);
+  bodies.velocity = ilaw::output(velocity_.data(), dimension, 1);
+  ilaw_coupled_options options{};
+  options.most_sweeps = most_sweeps;
+  options.tolerance = tolerance;
+  options.speed = speed;
+  try {
+    report_ = solver_.solve(bodies, given_, options);
+  } catch (const ilaw::error&) {
+    for (std::size_t i = 0; i < groups_.size(); ++i)
+      interfaces_[i]->check_solve(groups_[i], report_, -1, step.dt);
+    throw;
+  }
+  for (std::size_t i = 0; i < groups_.size(); ++i)
+    interfaces_[i]->check_solve(groups_[i], report_,
+                                report_.bad_group == static_cast<std::int64_t>(i) ? report_.bad_contact : -1,
+                                step.dt);
+  for (std::size_t i = 0; i < groups_.size(); ++i) interfaces_[i]->take(groups_[i]);
+  for (std::size_t b = 0; b < nodes_.size(); ++b)
+    for (std::size_t c = 0; c < d; ++c)
+      v[static_cast<Eigen::Index>(d * static_cast<std::size_t>(nodes_[b]) + c)] = velocity_[d * b + c];
+}
+
+// Incompatible laws push each other up; or they go on until one of them breaks, and begin anew. A long
+// column, which more iterations would solve, does neither: it is told by its length.
+std::string CoupledStep::explain() const {
+  constexpr double beyond_rounding = 1e-6;
+  constexpr std::int64_t few = 50;
+  if (!report_.message || report_.worst_group < 0) return "";
+  const bool is_stuck = report_.residual * report_.speed > beyond_rounding * report_.first_speed &&
+                        report_.island_contacts <= few;
+  if (!report_.other_law && !is_stuck) return "";
+  const auto group = static_cast<std::size_t>(report_.worst_group);
+  const Interface& interface = *interfaces_[group];
+  std::array<char, 768> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "contacts that share node %d of interface '%s' have no common solution%s; the energy is wrong by "
+      "%.3g: %s",
+      interface.node_of(groups_[group].contact(static_cast<std::size_t>(report_.worst_contact))),
+      interface.name().c_str(), report_.other_law ? "" : ", or it is not found", report_.energy_error,
+      report_.message);
+  return text.data();
+}
+
+void CoupledStep::check_driven(const StepView& step, const Dofs& v) const {
+  for (std::size_t i = 0; i < interfaces_.size(); ++i) interfaces_[i]->check_driven(step, v, groups_[i]);
+}
+
+void CoupledStep::accept(const StepView& step, const Dofs& v) {
+  for (std::size_t i = 0; i < interfaces_.size(); ++i) interfaces_[i]->accept(step, v, groups_[i]);
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,54 @@
+// coupled_step.hpp - the impulses of a step where contacts share nodes, by the solver of ilaw/coupled.h: the
+// nodes that contacts have are its bodies, each interface is a group.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/interface.hpp"
+
+#include <ilaw/coupled.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+// Whether contacts must be solved together: an impulse of one may change the velocity of another, or nodes
+// are driven along some axes.
+bool share_nodes(const Model& model, const Interfaces& interfaces);
+
+class CoupledStep {
+ public:
+  static constexpr double tolerance = 1e-14;
+  static constexpr std::uint32_t most_sweeps = 1000;
+
+  CoupledStep(const Model& model, Interfaces& interfaces);
+
+  // Takes v from v_free to the velocities that fulfil all laws. Throws ilaw::error where a law refuses.
+  const ilaw_coupled_report& solve(StepView step, const double* inverse_mass, Dofs& v);
+  // Of the last solve: the reason where its contacts cannot or could not be solved; empty where they are
+  // many, and merely not solved yet.
+  std::string explain() const;
+  // Throws where a motion drives a node against a law that cannot give way.
+  void check_driven(const StepView& step, const Dofs& v) const;
+  // The step is done: states are accepted.
+  void accept(const StepView& step, const Dofs& v);
+
+ private:
+  void open(const StepView& step);
+  void number_bodies();
+  void solve_groups(const StepView& step, double speed, const double* inverse_mass, Dofs& v);
+
+  const Model& model_;
+  Interfaces& interfaces_;
+  bool has_driven_nodes_ = false;
+  std::vector<CoupledGroup> groups_;
+  std::vector<const ilaw_contacts*> given_;
+  std::vector<std::int32_t> nodes_;  // of the bodies, in ascending order
+  std::vector<std::int32_t> body_;   // of each node of the model; -1: no contact has it
+  std::vector<double> inverse_mass_, velocity_, previous_;  // of the bodies
+  ilaw::coupled solver_;
+  ilaw_coupled_report report_{};
+};
+
+}  // namespace ilaw::host
