@@ -304,6 +304,27 @@ void Contacts::fill_delassus(Block& block, std::size_t lane, const Bodies& bodie
                block.at(layout_.normal, lane));
     return;
   }
+  Symmetric h = bodies.rotate() || layout_.weight_size > 1 ? coupled_delassus(block, lane, bodies)
+                                                           : diagonal_delassus(block, lane, bodies);
+  const double most = std::max({h[0], h[1], h[2]});
+  for (std::uint32_t c = 0; c < dimension_; ++c) h[c] = h[c] == 0.0 ? driven_delassus * most : h[c];
+  write_form(block, lane, layout_, h, given_.delassus_form, dimension_, block.at(layout_.normal, lane));
+}
+
+// Of bodies without rotation, and weights that are numbers.
+Symmetric Contacts::diagonal_delassus(const Block& block, std::size_t lane, const Bodies& bodies) const {
+  Symmetric h{};
+  for (int e = 0; e < layout_.ends; ++e) {
+    const std::int32_t body = block.end(e, lane);
+    if (body == bodies.wall()) continue;
+    const double weight = layout_.weight < 0 ? 1.0 : block.column(layout_.weight + e)[lane];
+    const Vector inverse = bodies.inertia_of(body).inverse_mass;
+    for (std::size_t c = 0; c < 3; ++c) h[c] += weight * (inverse[c] * weight);
+  }
+  return h;
+}
+
+Symmetric Contacts::coupled_delassus(const Block& block, std::size_t lane, const Bodies& bodies) const {
   std::array<Vector, 3> rows{};
   with_kernel(kind_, block, body_count_, [&](const auto& kernel) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -323,10 +344,7 @@ void Contacts::fill_delassus(Block& block, std::size_t lane, const Bodies& bodie
       });
     }
   });
-  Symmetric h{rows[0][0], rows[1][1], rows[2][2], rows[1][0], rows[2][0], rows[2][1]};
-  const double most = std::max({h[0], h[1], h[2]});
-  for (std::uint32_t c = 0; c < dimension_; ++c) h[c] = h[c] == 0.0 ? driven_delassus * most : h[c];
-  write_form(block, lane, layout_, h, given_.delassus_form, dimension_, block.at(layout_.normal, lane));
+  return {rows[0][0], rows[1][1], rows[2][2], rows[1][0], rows[2][0], rows[2][1]};
 }
 
 Vector Contacts::previous(const Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const {

@@ -67,6 +67,8 @@ class Contacts {
   void lay_out(const Bodies& bodies);
   void fill_weights(Block& block, std::size_t lane, std::int64_t k) const;
   void fill_delassus(Block& block, std::size_t lane, const Bodies& bodies) const;
+  Symmetric diagonal_delassus(const Block& block, std::size_t lane, const Bodies& bodies) const;
+  Symmetric coupled_delassus(const Block& block, std::size_t lane, const Bodies& bodies) const;
   Vector previous(const Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const;
   Vector relative(std::int64_t k, const Bodies& bodies) const;
   Vector start_impulse(std::int64_t k) const;

@@ -230,6 +230,85 @@ TEST(Driven, AlongAllAxesOnBothSidesIsRefused) {
       "one axis, or that meets one that is");
 }
 
+// ---- meshes that do not match ---------------------------------------------------------------------------
+
+// Two equal blocks without lateral strain, 5x5 on 3x3 elements, that meet at full speed: a plane wave runs
+// into each. Impulses of the interface over area and step at the nodes of a face, over rho c v.
+struct Pressures {
+  double least, largest;
+};
+Pressures pressures_of_a_plane_wave(bool both_sides) {
+  json scene = json::parse(R"({"model": {"type": "blocks", "blocks": [
+      {"name": "a", "size": [1, 1, 0.5], "elements": [3, 3, 10], "velocity": [0, 0, 1],
+       "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}},
+      {"name": "b", "corner": [0, 0, 0.5], "size": [1, 1, 0.5], "elements": [5, 5, 10], "velocity": [0, 0, -1],
+       "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}}]},
+    "time": {"dt": 0.04, "end": 0.2},
+    "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "a.z_max"}}]})");
+  if (both_sides) scene["interfaces"][0]["against"]["both_sides"] = true;
+  Scene read = read_scene(scene, "waves.json");
+  Integrator integrator = integrator_of(read);
+  double time = 0.5 * read.dt;
+  integrator.start();
+  Dofs impulse = integrator.interface_impulse();
+  for (; integrator.steps() < read.steps; time += read.dt) {
+    integrator.step();
+    impulse += integrator.interface_impulse();
+  }
+  EXPECT_EQ(integrator.tally().unconverged, 0);
+  EXPECT_LE(integrator.energy().balance_error, 1e-12);
+  const NodeSet& face = read.model->sets().at("b.z_min");
+  Pressures pressures{1e300, 0.0};
+  for (std::size_t k = 0; k < face.nodes.size(); ++k) {
+    const double pressure = impulse[3 * face.nodes[k] + 2] / face.areas[k];
+    pressures.least = std::min(pressures.least, pressure);
+    pressures.largest = std::max(pressures.largest, pressure);
+  }
+  return pressures;
+}
+
+// The patch test: nodes that share their facets' impulses by weights alone do not bear a uniform pressure.
+TEST(NonMatchingMeshes, BearAUniformPressureFromBothSides) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const Pressures both = pressures_of_a_plane_wave(true), one = pressures_of_a_plane_wave(false);
+  EXPECT_NEAR(both.least / both.largest, 1.0, 1e-12) << both.largest;
+  EXPECT_NEAR(one.least / one.largest, 0.812, 0.001) << "one side alone fails it";
+  EXPECT_GT(both.least, 0.0);
+}
+
+// Each side has half of the areas: a bond keeps its strength. The scene may be read again.
+TEST(NonMatchingMeshes, ShareAreasBetweenBothSides) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  json scene = json::parse(R"({"model": {"type": "blocks", "blocks": [
+      {"name": "a", "size": [1, 1, 1], "elements": [2, 2, 1], "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}},
+      {"name": "b", "corner": [0, 0, 1], "size": [1, 1, 1], "elements": [3, 3, 1], "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}}]},
+    "time": {"cfl": 0.5, "end": 0.1},
+    "interfaces": [{"name": "glue", "law": "contact", "nodes": "b.z_min", "against": {"surface": "a.z_max", "both_sides": true}}]})");
+  for (int time = 0; time < 2; ++time) {
+    const Scene one = read_scene(scene, "glue.json");
+    scene = one.source;
+    ASSERT_EQ(one.interfaces.size(), 2U);
+    EXPECT_EQ(one.interfaces[1]->name(), "glue, other side");
+    for (const auto& interface : one.interfaces) {
+      double area = 0.0;
+      for (const double part : interface->setup().areas) area += part;
+      EXPECT_NEAR(area, 0.5, 1e-15) << interface->name();
+    }
+  }
+}
+
+TEST(NonMatchingMeshes, AskForTwoFaces) {
+  json scene = json::parse(R"({"model": {"type": "blocks", "blocks": [
+      {"name": "a", "size": [1, 1, 1], "elements": [1, 1, 1], "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}},
+      {"name": "b", "corner": [0, 0, 1], "size": [1, 1, 1], "elements": [1, 1, 1], "material": {"type": "linear", "young": 1, "poisson": 0, "density": 1}}]},
+    "time": {"cfl": 0.5, "end": 0.1},
+    "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "a.z_max", "both_sides": true}}]})");
+  EXPECT_EQ(refusal_of_scene(scene), "not refused");
+  scene["interfaces"][0]["nodes"] = {8, 9};
+  EXPECT_EQ(refusal_of_scene(scene),
+            "/interfaces/0/nodes: found a list, expected a surface, which its other side meets");
+}
+
 // ---- the start ------------------------------------------------------------------------------------------
 
 json resting_point(const std::string& law, const json& parameters, double h) {

@@ -105,6 +105,7 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
   setup.library = library_of(interface, scene.file);
   setup.nodes = own.nodes;
   setup.areas = own.areas;
+  for (double& area : setup.areas) area *= interface.value("area_factor", 1.0);
   setup.counterpart = read_counterpart(interface, own, *scene.model, pointer);
   setup.arguments = read_arguments(interface.value("parameters", json::object()), setup.nodes.size(),
                                    pointer + "/parameters");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/scene.hpp"
 
+#include "scene/both_sides.hpp"
 #include "scene/json_text.hpp"
 #include "scene/read_forces.hpp"
 #include "scene/read_initial.hpp"
@@ -87,6 +88,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   Scene scene;
   scene.file = file;
   scene.source = std::move(source);
+  expand_both_sides(scene.source);
   scene.title = scene.source.value("title", file.stem().string());
   scene.model = read_model(scene.source["model"]);
   read_sets(scene.source.value("sets", json::object()), *scene.model);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/both_sides.hpp"
+
+#include "base/scene_error.hpp"
+#include "scene/json_text.hpp"
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace ilaw::host {
+
+void expand_both_sides(nlohmann::json& scene) {
+  nlohmann::json& interfaces = scene["interfaces"];
+  const std::size_t count = interfaces.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!interfaces[i].contains("against")) continue;
+    nlohmann::json& against = interfaces[i]["against"];
+    const bool both = against.value("both_sides", false);
+    against.erase("both_sides");
+    if (!both) continue;
+    const std::string pointer = at("/interfaces", i);
+    if (!against.contains("surface"))
+      throw SceneError(pointer + "/against/both_sides", "found pairs of nodes, expected a 'surface'");
+    if (!interfaces[i]["nodes"].is_string())
+      throw SceneError(pointer + "/nodes", "found a list, expected a surface, which its other side meets");
+    interfaces[i]["area_factor"] = 0.5 * interfaces[i].value("area_factor", 1.0);
+    nlohmann::json other = interfaces[i];
+    other["name"] = interfaces[i].value("name", "interface" + std::to_string(i)) + ", other side";
+    other["nodes"] = against["surface"];
+    other["against"]["surface"] = interfaces[i]["nodes"];
+    interfaces.push_back(std::move(other));
+  }
+}
+
+}  // namespace ilaw::host
