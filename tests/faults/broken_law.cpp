@@ -49,7 +49,6 @@ std::int32_t info(const ilaw_instance*, ilaw_instance_info* out) {
   std::memset(out, 0, size);
   out->struct_size = size;
   out->inputs = ILAW_INPUT_GAP;
-  out->permissions = ILAW_MAY_SKIP_FRESH;
   return ILAW_OK;
 }
 
@@ -61,8 +60,10 @@ std::int32_t answer(const ilaw_batch& batch, ilaw_report& report) {
   double* const energy = batch.energy.values + last * batch.energy.node_stride;
   if (breaks("status")) batch.status[last * batch.status_stride] = 200;
   if (breaks("bad_input")) batch.status[last * batch.status_stride] = ILAW_BAD_INPUT;
-  if (breaks("negative_energy")) energy[ILAW_ENERGY_IMPACT * batch.energy.component_stride] = -0.5;
-  if (breaks("nan_energy")) energy[ILAW_ENERGY_STORED * batch.energy.component_stride] = std::nan("");
+  if (batch.energy.values && breaks("negative_energy"))
+    energy[ILAW_ENERGY_IMPACT * batch.energy.component_stride] = -0.5;
+  if (batch.energy.values && breaks("nan_energy"))
+    energy[ILAW_ENERGY_STORED * batch.energy.component_stride] = std::nan("");
   if (breaks("nan_impulse")) batch.impulse.values[last * batch.impulse.node_stride] = std::nan("");
   if (breaks("rounding")) std::fesetround(FE_UPWARD);
   if (breaks("traps")) feenableexcept(FE_DIVBYZERO);
@@ -120,7 +121,6 @@ ilaw_law law() {
   made.numbers = ILAW_NUMBERS_DOUBLE;
   made.inputs = ILAW_INPUT_GAP;
   made.outputs = ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY;
-  made.permissions = ILAW_MAY_SKIP_FRESH;
   made.id = "broken";
   made.title = "Breaks a promise";
   made.doc = "";

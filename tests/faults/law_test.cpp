@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"bad_input", "node 1: found the status of bad input, but no code that says so"},
         Broken{"negative_energy", "node 1: found a dissipated energy of -0.5, expected none below 0"},
         Broken{"nan_energy", "node 1: found the energy nan, expected a number"},
-        Broken{"nan_impulse", "node 1: found the impulse nan, expected a finite one"},
+        Broken{"nan_impulse", "found the impulse nan, expected a finite one"},
         Broken{"nan_step", "it reported the stable step nan s, expected none below 0"},
         Broken{"negative_step", "it reported the stable step -0.500000 s, expected none below 0"},
         Broken{"v_free", "it wrote to its input v_free"}, Broken{"gap", "it wrote to its input gap"},

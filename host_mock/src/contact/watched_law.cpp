@@ -4,6 +4,8 @@
 #include "base/running_law.hpp"
 #include "contact/law_faults.hpp"
 
+#include <array>
+#include <cmath>
 #include <optional>
 
 namespace ilaw::host {
@@ -17,8 +19,26 @@ WatchedLaw::WatchedLaw(const Law& law, const std::string& interface, int dimensi
   entry_.evaluate = evaluate_of;
 }
 
+// Before other laws see its velocity, and are blamed. Which node a place of the batch is, the solver knows.
+void WatchedLaw::find_wild_impulse(const ilaw_batch& batch, Refusal& refusal) const {
+  constexpr std::array<double, ILAW_ENERGY_COUNT> no_energy{};
+  std::array<double, 3> impulse{};
+  for (std::int64_t i = 0; i < batch.node_count; ++i) {
+    const double* const first = batch.impulse.values + i * batch.impulse.node_stride;
+    bool is_finite = true;
+    for (std::size_t c = 0; c < dimension_; ++c) {
+      impulse[c] = first[static_cast<std::int64_t>(c) * batch.impulse.component_stride];
+      is_finite = is_finite && std::isfinite(impulse[c]);
+    }
+    if (is_finite) continue;
+    const char* fault = fault_of(impulse.data(), static_cast<int>(dimension_), no_energy.data(), ILAW_FREE);
+    return refusal.add({ILAW_BAD_LIBRARY, 0, -1, 0, fault});
+  }
+}
+
 std::int32_t ILAW_CALL WatchedLaw::info_of(const ilaw_instance* instance, ilaw_instance_info* info) {
   *info = reinterpret_cast<const WatchedLaw*>(instance)->law_.info();
+  info->inputs |= ILAW_INPUT_NORMAL;  // the solver knows the global frame by it
   return ILAW_OK;
 }
 
@@ -36,6 +56,7 @@ std::int32_t WatchedLaw::evaluate(const ilaw_batch& batch, ilaw_report* report) 
   *report = answer.report;
   Refusal refusal;
   if (const char* changed = inputs ? inputs->changed() : nullptr) refusal.add(overwriting(changed));
+  if (answer.code == ILAW_OK) find_wild_impulse(batch, refusal);
   if (answer.code < 0) refusal.add({answer.code, 0, -1, 0, answer.report.reason});
   if (refusal.code == ILAW_OK) return answer.code;
   if (refusal_.code == ILAW_OK) {

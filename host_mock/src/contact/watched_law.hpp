@@ -34,6 +34,7 @@ class WatchedLaw {
   static std::int32_t ILAW_CALL evaluate_of(const ilaw_instance* instance, const ilaw_batch* batch,
                                             ilaw_report* report);
   std::int32_t evaluate(const ilaw_batch& batch, ilaw_report* report);
+  void find_wild_impulse(const ilaw_batch& batch, Refusal& refusal) const;
 
   const Law& law_;
   const std::string& interface_;
