@@ -30,7 +30,7 @@ static const char* step(const ilaw_node* node, ilaw_node_result* result) {
   const double lost_N = -0.5 * s * (normal + s * gained_N), lost_T = -0.5 * s * (along + s * gained_T);
   result->energy[ILAW_ENERGY_IMPACT] = fmax(0.0, lost_N + fmin(lost_T, 0.0));
   result->energy[ILAW_ENERGY_FRICTION] = fmax(0.0, lost_T + fmin(lost_N, 0.0));
-  result->status = ILAW_STICK;
+  result->status = ILAW_BONDED;
   return NULL;
 }
 
