@@ -142,14 +142,14 @@ int main(int argc, char** argv) {
   const ilaw::interface law = friction();
   for (int i = 1; i < argc; ++i) {
     Pile pile(std::atoi(argv[i]));
-    constexpr std::uint32_t few = 5, many = 55;
+    constexpr std::uint32_t least_sweeps = 5, most_sweeps = 55;
     std::vector<double> each, once;
     for (int run = 0; run < runs; ++run) {
-      const double first = pile.solve(law, few), second = pile.solve(law, many);
-      const double iteration = (second - first) / (many - few);
+      const double first = pile.solve(law, least_sweeps), second = pile.solve(law, most_sweeps);
+      const double iteration = (second - first) / (most_sweeps - least_sweeps);
       const double unit = 1e9 / static_cast<double>(pile.body.size());
       each.push_back(iteration * unit);
-      once.push_back((first - few * iteration) * unit);
+      once.push_back((first - least_sweeps * iteration) * unit);
     }
     std::printf("%zu grains, %zu contacts: an iteration %.1f ns a contact, once a solve %.0f ns\n",
                 pile.v.size() / 3, pile.body.size(), median(each), median(once));

@@ -53,14 +53,14 @@ struct ContactSums {
   // Of one part that is dissipated, for some contacts. Most often all are zero, and none has a sign:
   // neither then changes a sum or the least, and seeing it takes no chain of additions.
   void add_dissipation(std::size_t part, const double* values, std::ptrdiff_t count) {
-    constexpr std::ptrdiff_t some = 16;
+    constexpr std::ptrdiff_t block = 16;
     double sum = energy[part];
     std::uint64_t bits = 0;
-    for (std::ptrdiff_t first = 0; first < count; first += some) {
-      const std::ptrdiff_t end = std::min(count, first + some);
+    for (std::ptrdiff_t first = 0; first < count; first += block) {
+      const std::ptrdiff_t end = std::min(count, first + block);
       // Of so many that the compiler knows the number: no loop.
       const std::uint64_t these =
-          end - first == some ? bits_of(values + first, some) : bits_of(values + first, end - first);
+          end - first == block ? bits_of(values + first, block) : bits_of(values + first, end - first);
       bits |= these;
       if (these << 1 == 0) continue;
       for (std::ptrdiff_t i = first; i < end; ++i) sum += values[i];

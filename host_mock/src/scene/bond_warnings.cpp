@@ -93,7 +93,7 @@ double weakest(const Interface& interface, double strength) {
 }  // namespace
 
 void warn_of_strength(Scene& scene) {
-  constexpr double much = 10.0;
+  constexpr double least_ratio = 10.0;
   std::optional<Drive> drive;
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
@@ -111,7 +111,7 @@ void warn_of_strength(Scene& scene) {
     if (!of_impulse && unit != "N/m^2") continue;
     const double reached =
         of_impulse ? drive->force * window + drive->impulse : drive->force + drive->impulse / scene.dt;
-    if (!std::isfinite(limit) || !(limit > much * reached)) continue;
+    if (!std::isfinite(limit) || !(limit > least_ratio * reached)) continue;
     scene.warnings.push_back(at("/interfaces", i) + "/parameters/strength: found " +
                              json(strength->second).dump() + ", at which the weakest node holds " +
                              (of_impulse ? "an impulse" : "a force") + " of " + json(limit).dump() +
@@ -122,14 +122,14 @@ void warn_of_strength(Scene& scene) {
 
 // A window that holds hardly more than the impulse of one step.
 void warn_of_memory(Scene& scene) {
-  constexpr double few = 2.0;
+  constexpr double least_steps = 2.0;
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
     const auto& numbers = interface.setup().arguments.numbers;
     const auto memory = numbers.find("memory");
     const ilaw_law* law = interface.library().law(interface.setup().law);
     if (!law || memory == numbers.end() || unit_of(*law, "memory") != "s") continue;
-    if (!(memory->second > 0.0) || memory->second >= few * scene.dt) continue;
+    if (!(memory->second > 0.0) || memory->second >= least_steps * scene.dt) continue;
     scene.warnings.push_back(at("/interfaces", i) + "/parameters/memory: found " +
                              json(memory->second).dump() + ", less than two steps of " +
                              json(scene.dt).dump() + ": whether a load that is not smooth breaks the bond " +

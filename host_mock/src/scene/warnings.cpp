@@ -184,7 +184,7 @@ void warn_of_places(Scene& scene) {
 
 // The n-th node meets the n-th partner: lists in different orders pair what is far from each other.
 void warn_of_partners(Scene& scene) {
-  constexpr double much = 0.5;
+  constexpr double most_edges = 0.5;
   const Model& model = *scene.model;
   const Eigen::Index d = model.dimension();
   const double edge = shortest_edge(model);
@@ -209,7 +209,7 @@ void warn_of_partners(Scene& scene) {
               .counterpart->contact_point(static_cast<int>(k), model.initial_displacement(), 0.0)
               .normal;
       const double aside = (x - x.dot(normal) * normal).norm();
-      if (!(aside > much * edge)) continue;
+      if (!(aside > most_edges * edge)) continue;
       scene.warnings.push_back(pointer + "node " + std::to_string(interface.nodes()[k]) +
                                " and its partner " + std::to_string(partners[k]) + " are " +
                                json(aside).dump() +
@@ -221,7 +221,7 @@ void warn_of_partners(Scene& scene) {
 
 // A bond is made where the bodies are: across a gap it pulls from afar.
 void warn_of_open_bonds(Scene& scene) {
-  constexpr double much = 0.1;
+  constexpr double most_of_edge = 0.1;
   const double edge = shortest_edge(*scene.model);
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
@@ -229,7 +229,7 @@ void warn_of_open_bonds(Scene& scene) {
     const bool bonds = (info.capabilities & ILAW_CAN_ADHERE) && !(info.permissions & ILAW_MAY_SKIP_FRESH);
     if (!bonds || interface.setup().birth > 0.0) continue;
     const double offset = std::abs(interface.setup().gap_offset);
-    const double limit = much * (std::isfinite(edge) ? std::max(edge, offset) : offset);
+    const double limit = most_of_edge * (std::isfinite(edge) ? std::max(edge, offset) : offset);
     if (!(limit > 0.0)) continue;
     const StartGaps gaps = gaps_at_start(scene, interface, 0.0, limit);
     if (gaps.above > 0 && std::isfinite(gaps.largest))
@@ -240,11 +240,11 @@ void warn_of_open_bonds(Scene& scene) {
 }
 
 void warn_of_locking(Scene& scene) {
-  constexpr double much = 0.49;
+  constexpr double least_poisson = 0.49;
   const json blocks = scene.source["model"].value("blocks", json::array());
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     const json& poisson = blocks[k]["material"]["poisson"];
-    if (poisson.get<double>() > much && blocks[k].value("element", "full") == "full")
+    if (poisson.get<double>() > least_poisson && blocks[k].value("element", "full") == "full")
       scene.warnings.push_back(at("/model/blocks", k) + "/material/poisson: found " + poisson.dump() +
                                ", at which full elements can hardly bend; \"element\": "
                                "\"mean_dilatation\" can");

@@ -120,10 +120,10 @@ void CoupledStep::solve_groups(const StepView& step, double speed, const double*
 // column, which more iterations would solve, does neither: it is told by its length.
 std::string CoupledStep::explain() const {
   constexpr double beyond_rounding = 1e-6;
-  constexpr std::int64_t few = 50;
+  constexpr std::int64_t most_named = 50;
   if (!report_.message || report_.worst_group < 0) return "";
   const bool is_stuck = report_.residual * report_.speed > beyond_rounding * report_.first_speed &&
-                        report_.island_contacts <= few;
+                        report_.island_contacts <= most_named;
   if (!report_.other_law && !is_stuck) return "";
   const auto group = static_cast<std::size_t>(report_.worst_group);
   const Interface& interface = *interfaces_[group];

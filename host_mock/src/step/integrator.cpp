@@ -92,13 +92,13 @@ void Integrator::take_back_step() {
   has_begun_step_ = false;
 }
 
-// Reading the clock takes a good part of a step with few nodes: after the first steps, one in some is
+// Reading the clock takes a good part of a step with few nodes: after the first steps, one in a period is
 // timed for all of them.
 int Integrator::timed_steps() const {
-  constexpr int some = 16;
-  constexpr Eigen::Index few = 100;
-  if (u_.size() > few || steps_ < some) return 1;
-  return steps_ % some == 0 ? some : 0;
+  constexpr int period = 16;
+  constexpr Eigen::Index most_timed_always = 100;
+  if (u_.size() > most_timed_always || steps_ < period) return 1;
+  return steps_ % period == 0 ? period : 0;
 }
 
 void Integrator::move() {
