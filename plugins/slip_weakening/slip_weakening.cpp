@@ -39,8 +39,8 @@ struct slip_weakening : changing_friction<slip_weakening, weakening, V> {
       .is_isotropic = true};
 
   static constexpr const char* references[] = {
-      "Y. Ida, 1972, Cohesive force across the tip of a longitudinal-shear crack and Griffith's specific surface "
-      "energy",
+      ("Y. Ida, 1972, Cohesive force across the tip of a longitudinal-shear crack and Griffith's specific surface "
+       "energy"),
       "D. J. Andrews, 1976, Rupture velocity of plane strain shear cracks",
       "L. A. Dalguer, S. M. Day, 2007, Staggered-grid split-node method for spontaneous rupture simulation"};
 
