@@ -173,7 +173,8 @@ void stable_step_bound(const Subject& subject) {
             in.v_previous = in.v_free;
             arrays.initialise(in);
             const Results found = arrays.evaluate(in);
-            limit = found.code == ILAW_OK ? found.report.stable_velocity_step : infinity;
+            limit = infinity;
+            if (found.code == ILAW_OK) limit = found.report.stable_velocity_step;
             if (!std::isfinite(limit) || !(limit > 0.0)) break;
             in.velocity_step = in.position_step = below * limit;
           }

@@ -71,6 +71,7 @@ class PlainContact {
     std::vector<double> amounts(step_.gets_energies ? info.amount_count : 0);
     for (const std::vector<double>& values : at_.parameters)
       parameters.push_back(ilaw::input(&values[k_], 1, 0));
+    outputs.reserve(amounts.size());
     for (double& amount : amounts) outputs.push_back(ilaw::output(&amount, 1, 0));
     ilaw_batch batch = empty_batch(step_.tangent, step_.step.time, step_.step.velocity_step(), step_.step.dt);
     batch.node_count = 1;
