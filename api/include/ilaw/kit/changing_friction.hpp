@@ -197,6 +197,13 @@ struct changing_friction {
     return found;
   }
 
+  // The pressure in the step; for an H that is not transverse that of the contact without friction.
+  template <class Node>
+  V pressure_in(const Node& node) const {
+    const V normal = pressing_impulse(node.delassus, contact(node));
+    return zero_unless(normal > 0.0, normal / node.velocity_step / node.area);
+  }
+
  private:
   ILAW_KIT_INLINE const Law<V>& law() const { return static_cast<const Law<V>&>(*this); }
   ILAW_KIT_INLINE auto curve(const Mu<V>& mu) const {
