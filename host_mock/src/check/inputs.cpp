@@ -272,6 +272,23 @@ Inputs turned(Inputs in, const std::vector<Matrix>& axes) {
   return in;
 }
 
+Inputs in_form(Inputs in, const Setup& setup) {
+  std::vector<Matrix> h;
+  for (std::size_t i = 0; i < in.count; ++i) h.push_back(in.h(i));
+  in.form = setup.form;
+  in.form_width = setup.form_width();
+  in.delassus.assign(in.count * in.form_width, 0.0);
+  for (std::size_t i = 0; i < in.count; ++i) {
+    double* values = &in.delassus[i * in.form_width];
+    if (in.form == ILAW_DELASSUS_FULL)
+      set_full(in, i, h[i]);
+    else  // of a scalar H: all entries are alike
+      std::fill_n(values, in.form_width, h[i][0][0]);
+  }
+  in.round_to(setup);
+  return in;
+}
+
 Inputs turned_as_a_whole(Inputs in, const Matrix& rotation) {
   const Matrix back = transposed(rotation);
   for (std::size_t i = 0; i < in.count; ++i) {

@@ -57,6 +57,8 @@ Matrix draw_axes(std::size_t dimension, Draw& draw);
 // From local axes to axes of which each node has its own, with normals and tangents; the form of H becomes
 // full where it was diagonal.
 Inputs turned(Inputs local, const std::vector<Matrix>& axes);
+// The same H in a form that holds it.
+Inputs in_form(Inputs given, const Setup& setup);
 // All vectors and H turned by one matrix whose rows are orthonormal.
 Inputs turned_as_a_whole(Inputs given, const Matrix& rotation);
 

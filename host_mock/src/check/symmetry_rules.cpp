@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace ilaw::check {
 namespace {
@@ -34,42 +35,23 @@ void expect_image(const Trial& trial, const Script& script, const std::vector<Re
     }
 }
 
-// The same H as entries of a form that holds it.
-Inputs in_form(Inputs in, const Setup& setup) {
-  std::vector<Matrix> h;
-  for (std::size_t i = 0; i < in.count; ++i) h.push_back(in.h(i));
-  in.form = setup.form;
-  in.form_width = setup.form_width();
-  in.delassus.assign(in.count * in.form_width, 0.0);
-  constexpr std::size_t rows[] = {0, 0, 1}, columns[] = {1, 2, 2};
-  for (std::size_t i = 0; i < in.count; ++i) {
-    double* values = &in.delassus[i * in.form_width];
-    const bool is_transverse = setup.form == ILAW_DELASSUS_TRANSVERSE;
-    for (std::size_t c = 0; c < (is_transverse ? 2 : in.dimension); ++c)
-      values[c] = h[i][is_transverse ? 0 : c][is_transverse ? 0 : c];
-    if (setup.form == ILAW_DELASSUS_FULL)
-      for (std::size_t k = in.dimension; k < in.form_width; ++k)
-        values[k] = h[i][rows[k - in.dimension]][columns[k - in.dimension]];
-  }
-  in.round_to(setup);
-  return in;
-}
-
 // Each step of the other trial from the state of the first: what rounding makes of a memory is not the
-// question.
-void expect_alike(const Trial& trial, const Script& script, const Trial& other, const Script& other_script,
-                  const std::string& how) {
+// question. state: that of the first as the other has it.
+template <class State, class Back>
+void expect_steps_alike(const Trial& trial, const Script& script, const Trial& other,
+                        const Script& other_script, const std::string& how, State state, Back back) {
   Heap heap;
   Arrays arrays(trial, script[0], {}, heap), others(other, other_script[0], {}, heap);
   arrays.initialise(script[0]);
   std::vector<Results> plain, image;
   for (std::size_t k = 0; k < script.size(); ++k) {
-    others.set_state(arrays.state());
+    others.set_state(state(arrays.state()));
     plain.push_back(arrays.evaluate(script[k]));
     image.push_back(others.evaluate(other_script[k]));
   }
-  expect_image(other, script, plain, image, how.c_str(), [](std::size_t, const Vector& r) { return r; });
+  expect_image(other, script, plain, image, how.c_str(), back);
 }
+std::vector<double> the_same(std::vector<double> state) { return state; }
 
 // A scalar H is diagonal, transverse and full, a diagonal and a transverse one are full.
 void form_agreement(const Subject& subject) {
@@ -89,7 +71,9 @@ void form_agreement(const Subject& subject) {
           if (other.info.state_size != trial.info.state_size) continue;
           Script other_script;
           for (const Inputs& in : script) other_script.push_back(in_form(in, setup));
-          expect_alike(trial, script, other, other_script, "with the same H in form " + std::to_string(form));
+          expect_steps_alike(trial, script, other, other_script,
+                             "with the same H in form " + std::to_string(form), the_same,
+                             [](std::size_t, const Vector& r) { return r; });
           judged = true;
         }
         return judged;
@@ -126,18 +110,8 @@ void frame_indifference(const Subject& subject) {
           host_script.push_back(turned(in, axes));
           if (!host.has_tangent) host_script.back().tangent.clear();
         }
-        // Each step from the state of the local one: what rounding makes of a memory is not the question.
-        Heap heap;
-        Arrays local(trial, script[0], {}, heap), global(in_host, host_script[0], {}, heap);
-        local.initialise(script[0]);
-        std::vector<Results> plain, image;
-        for (std::size_t k = 0; k < script.size(); ++k) {
-          global.set_state(local.state());
-          plain.push_back(local.evaluate(script[k]));
-          image.push_back(global.evaluate(host_script[k]));
-        }
-        expect_image(in_host, script, plain, image, "in axes of the host",
-                     [&](std::size_t i, const Vector& r) { return times(axes[i], r); });
+        expect_steps_alike(trial, script, in_host, host_script, "in axes of the host", the_same,
+                           [&](std::size_t i, const Vector& r) { return times(axes[i], r); });
         return true;
       },
       "the law serves one frame alone");
@@ -169,18 +143,10 @@ void turned_whole(const Subject& subject) {
         const Matrix rotation = draw_axes(trial.setup.dimension, draw);
         Script other;
         for (const Inputs& in : script) other.push_back(turned_as_a_whole(in, rotation));
-        // Each step from the state of the other model, as in frame_indifference.
-        Heap heap;
-        Arrays arrays(trial, script[0], {}, heap), turned_arrays(trial, other[0], {}, heap);
-        arrays.initialise(script[0]);
-        std::vector<Results> plain, image;
-        for (std::size_t k = 0; k < script.size(); ++k) {
-          turned_arrays.set_state(turned_state(trial, arrays.state(), rotation));
-          plain.push_back(arrays.evaluate(script[k]));
-          image.push_back(turned_arrays.evaluate(other[k]));
-        }
-        expect_image(trial, script, plain, image, "with the whole model turned",
-                     [&](std::size_t, const Vector& r) { return times(transposed(rotation), r); });
+        expect_steps_alike(
+            trial, script, trial, other, "with the whole model turned",
+            [&](std::vector<double> state) { return turned_state(trial, std::move(state), rotation); },
+            [&](std::size_t, const Vector& r) { return times(transposed(rotation), r); });
         return true;
       },
       "the law serves no global frame in 2D or 3D");
