@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact/block_step.hpp"
 
+#include "contact/contact_geometry.hpp"
 #include "contact/law_faults.hpp"
 #include "contact/next_block.hpp"
 
@@ -169,13 +170,11 @@ class BlockWalk {
       for (std::ptrdiff_t i = 0; i < count_; ++i) state_in_room(i, c) = at_.state.at(contact(i), c);
     return state_room_.get();
   }
-  // The memory of a law is that of the surface, which has turned since the last step.
-  void turn_axes(double* state, std::int64_t stride) const {
+  void turn_states(double* state, std::int64_t stride) const {
     const auto column = static_cast<std::size_t>(stride);
-    for (const std::size_t first : step_.axes)
-      for (std::ptrdiff_t i = 0; i < count_; ++i)
-        turn_axis(*step_.setup.counterpart, D, step_.step.time_before(), step_.step.time,
-                  [&](std::size_t c) -> double& { return state[(first + c) * column + i]; });
+    for (std::ptrdiff_t i = 0; i < count_; ++i)
+      turn_axes(step_.setup, step_.axes, D, step_.step,
+                [&](std::size_t number) -> double& { return state[number * column + i]; });
   }
   double& state_in_room(std::ptrdiff_t i, std::size_t c) {
     return state_room_[c * block_size + static_cast<std::size_t>(i)];
@@ -185,7 +184,7 @@ class BlockWalk {
     const ilaw_instance_info& info = step_.law.info();
     double* const state = states();
     const std::int64_t state_stride = contacts_in_row_ ? at_.state.stride() : block_size;
-    if constexpr (Turns) turn_axes(state, state_stride);
+    if constexpr (Turns) turn_states(state, state_stride);
     delassus_ = column(at_.delassus, delassus_room_.data());
     impulse_ = contacts_in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
     status_ = contacts_in_row_ ? &at_.status[contact(0)] : status_room_.data();
