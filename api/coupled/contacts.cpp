@@ -311,7 +311,7 @@ void Contacts::fill_delassus(Block& block, std::size_t lane, const Bodies& bodie
   write_form(block, lane, layout_, h, given_.delassus_form, dimension_, block.at(layout_.normal, lane));
 }
 
-// Of bodies without rotation, and weights that are numbers.
+// For bodies without rotation, and weights that are numbers.
 Symmetric Contacts::diagonal_delassus(const Block& block, std::size_t lane, const Bodies& bodies) const {
   Symmetric h{};
   for (int e = 0; e < layout_.ends; ++e) {

@@ -39,7 +39,7 @@ struct curve {
   }
 };
 
-// What a node and step have beside the slip speed; and with the table.
+// The quantities of a node and step beside the slip speed; then with the table.
 template <class V>
 struct conditions {
   V pressure, temperature, time, speed_before;

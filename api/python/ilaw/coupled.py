@@ -348,8 +348,8 @@ class Solver(NotCopied):
 
         groups: contacts of one law each, all at the same bodies. time [s]: of the configuration that gaps belong
         to. Steps [s]: those of each interface unless given. tolerance: of the residual; reaching most_sweeps is
-        no error, look at the residual. speed [m/s]: the residual is relative to no smaller velocity. bad_nodes: "raise" raises BadNodes (after all others were solved), "report"
-        says so in the report and the status alone.
+        no error, look at the residual. speed [m/s]: the residual is relative to no smaller velocity. bad_nodes:
+        "raise" raises BadNodes (after all others were solved), "report" says so in the report and the status alone.
         """
         if bad_nodes not in ("raise", "report"):
             raise InvalidArgument(f"bad_nodes: {bad_nodes!r}, expected 'raise' or 'report'")

@@ -164,7 +164,7 @@ void energy_friction(const Subject& subject) {
       "the law writes no energy, or stores some");
 }
 
-// What breaks is remembered.
+// A law remembers what it breaks.
 void energy_rupture(const Subject& subject) {
   for_trials(
       subject,

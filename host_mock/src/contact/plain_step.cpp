@@ -49,7 +49,7 @@ class PlainContact {
     at_.delassus[k_] = point_.delassus(step_.inverse_mass, dimension, node_);
   }
 
-  // Of the node, to its partners.
+  // The node's, to its partners.
   Vector relative(const Dofs& v) const {
     const Eigen::Index d = step_.model.dimension();
     Vector value = v.segment(node_ * d, d);

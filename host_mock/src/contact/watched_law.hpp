@@ -17,7 +17,7 @@ class WatchedLaw {
   WatchedLaw(const Law& law, const std::string& interface, int dimension);
   WatchedLaw(WatchedLaw&&) = default;  // before the first call: instance() is its address
 
-  // What ilaw_contacts takes.
+  // Members of ilaw_contacts.
   const ilaw_law* law() const { return &entry_; }
   const ilaw_instance* instance() const { return reinterpret_cast<const ilaw_instance*>(this); }
 

@@ -26,8 +26,8 @@ class CoupledStep {
 
   // Takes v from v_free to the velocities that fulfil all laws. Throws ilaw::error where a law refuses.
   const ilaw_coupled_report& solve(StepView step, const double* inverse_mass, Dofs& v);
-  // Of the last solve: the reason where its contacts cannot or could not be solved; empty where they are
-  // many, and merely not solved yet.
+  // Why contacts of the last solve have no solution, or it is not found; empty where they are many, and
+  // merely not solved yet.
   std::string explain() const;
   // Throws where a motion drives a node against a law that cannot give way.
   void check_driven(const StepView& step, const Dofs& v) const;

@@ -48,7 +48,7 @@ TEST(RateAndState, SolvesItsEquationAtAnySpeed) {
       ASSERT_EQ(node.step({-1.0, v + drag * friction, 0.0}), ILAW_OK) << node.report.reason;
       ASSERT_NEAR(node.r[1], -friction, 1e-13);
       const double after = law.aged(middle, v, 0.5 * h);
-      // What v + drag mu rounds off is a part of mu, and exp(mu/a) of v.
+      // The rounding of v + drag mu is a part of mu, and exp(mu/a) of v.
       ASSERT_NEAR(node.state[0], after, 1e-12 * after) << evolution << ", v " << v;
     }
   }
