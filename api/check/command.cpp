@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/command.hpp"
+
+#include "check/report.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+namespace ilaw::check {
+namespace {
+
+struct CommandLine {
+  std::string file, junit;
+  Options check;
+  bool as_json = false, rules = false;
+};
+
+// Whole or not at all. A file that is no regular one, such as a device, would be replaced by one.
+void write_report(const Checked& checked, const std::string& file) {
+  const std::filesystem::file_status status = std::filesystem::symlink_status(file);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw UsageError(file + ": not a regular file; expected a new or an existing file for the report");
+  const std::string partial = file + ".partial";
+  std::ofstream report(partial, std::ios::binary | std::ios::trunc);
+  report << junit_of(checked);
+  report.close();
+  std::error_code failed;
+  if (report) std::filesystem::rename(partial, file, failed);
+  if (report && !failed) return;
+  std::filesystem::remove(partial, failed);
+  throw std::runtime_error(file + ": cannot be written");
+}
+
+int check_library(const CommandLine& line) {
+  if (line.rules) {
+    std::fputs(table_of_rules().c_str(), stdout);
+    return 0;
+  }
+  if (line.file.empty()) throw UsageError("found no library, expected one to check, or --rules");
+  const Checked checked{line.file, line.check.seed, check(line.file, line.check)};
+  if (!line.junit.empty()) write_report(checked, line.junit);
+  std::fputs((line.as_json ? json_of(checked) : text_of(checked)).c_str(), stdout);
+  return checked.all_passed() ? 0 : 1;
+}
+
+// CLI::Range lets nan pass.
+std::string complaint_of_limit(const std::string& found) {
+  double seconds = NAN;
+  const bool is_number = CLI::detail::lexical_cast(found, seconds);
+  if (is_number && seconds >= 0.1 && seconds <= 3600.0) return "";
+  return "found '" + found + "', expected a number from 0.1 to 3600";
+}
+
+}  // namespace
+
+std::function<int()> add_options(CLI::App& command) {
+  const auto line = std::make_shared<CommandLine>();
+  command.add_option("library", line->file, "Path of a library, or name of a law");
+  command.add_option("--law", line->check.law, "Only this law of the library");
+  command.add_option("--only", line->check.only, "Only this rule; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  command
+      .add_option("--seed", line->check.seed, "Seed of the random numbers: the same seed, the same findings")
+      ->capture_default_str();
+  command.add_option("--limit", line->check.limits.seconds, "Seconds for each rule and law")
+      ->check(CLI::Validator(complaint_of_limit, "from 0.1 to 3600"))
+      ->capture_default_str();
+  command.add_flag("--json", line->as_json, "Print an array of objects, one for each rule and law");
+  command.add_option("--junit", line->junit, "Also write a report in JUnit's XML");
+  command.add_flag("--rules", line->rules, "Print the table of rules");
+  return [line] { return check_library(*line); };
+}
+
+}  // namespace ilaw::check
