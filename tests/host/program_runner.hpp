@@ -20,15 +20,18 @@ struct Outcome {
 };
 
 // before: for the shell, as "ulimit -f 100; ".
-inline Outcome run_program(const std::string& arguments, const std::string& before = "") {
-  const std::string command = before + ILAW_PROGRAM + " " + arguments + " 2>&1 </dev/null";
-  FILE* pipe = popen(command.c_str(), "r");
+inline Outcome run_command(const std::string& command) {
+  FILE* pipe = popen((command + " 2>&1 </dev/null").c_str(), "r");
   std::string output;
   std::array<char, 4096> buffer{};
   for (std::size_t got; (got = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
     output.append(buffer.data(), got);
   const int status = pclose(pipe);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
+}
+
+inline Outcome run_program(const std::string& arguments, const std::string& before = "") {
+  return run_command(before + ILAW_PROGRAM + " " + arguments);
 }
 
 // Starts the program, its messages in a file; waitpid tells how it ended.

@@ -122,6 +122,22 @@ TEST(Program, ChecksALibrary) {
   EXPECT_NE(run_program("check --rules").output.find("| `purity-twice` | "), std::string::npos);
 }
 
+// The same checks and exit codes without a host.
+TEST(Program, ChecksALibraryByAProgramOfItsOwn) {
+  const std::string program = ILAW_CHECK_PROGRAM;
+  const Outcome sound = run_command(program + " coulomb --law coulomb --only mirror --json");
+  EXPECT_EQ(sound.code, 0) << sound.output;
+  EXPECT_EQ(nlohmann::json::parse(sound.output).at(0).at("result"), "passed");
+  EXPECT_EQ(run_command(program + " " ILAW_ODD_STATUS " --only status-meaning").code, 1);
+  const Outcome nothing = run_command(program + " no_such_law");
+  EXPECT_EQ(nothing.code, 2);
+  EXPECT_EQ(nothing.output.find("ilaw-check: "), 0U) << nothing.output;
+  const Outcome help = run_command(program + " --help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_NE(help.output.find("Example: ilaw-check "), std::string::npos) << help.output;
+  EXPECT_EQ(run_command(program + " --rules >/dev/full").code, 1);
+}
+
 // What is misspelt is named, rather than what is missing for it.
 TEST(Program, NamesWhatItDoesNotKnow) {
   const auto first_line = [](const std::string& arguments) {
