@@ -65,6 +65,8 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
   find_worst_contact(report);
   const std::int32_t refused = evaluate_balance(report);
   if (ranks_.any_rank(refused < 0)) return refused < 0 ? refused : std::int32_t{ILAW_INVALID_ARGUMENT};
+  const bool is_solved = !(report.residual > iterations_.tolerance());
+  if (!is_solved || !balance_.empty()) report.energy_error = energy_error();
   write(report);
   return report.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
@@ -205,24 +207,32 @@ void Solver::find_stable_step(ilaw_coupled_report& report) {
 
 // Contacts have moved on from the velocities of their last evaluation by the impulses of later ones. The
 // energies of a law belong to that evaluation: an impulse r at a contact that is off by s works r.s/2 more.
+double Solver::energy_error() const {
+  std::array<double, 3 * max_stride> made{}, velocity{};
+  double error = 0.0;
+  for (const Block& block : blocks_.list()) {
+    if (block.asleep) continue;
+    const Layout& layout = *block.layout;
+    sweep_.gather(block, velocity.data());
+    sweep_.respond(block, block.column(layout.impulse), block.stride, made.data());
+    for (std::size_t q = 0; q < block.count; ++q)
+      if (const Vector r = block.at(layout.impulse, q); !is_zero(r))
+        error += 0.5 * std::fabs(dot(r, at(velocity, q) - at(made, q) - block.at(layout.asked, q)));
+  }
+  return error;
+}
+
 void Solver::find_worst_contact(ilaw_coupled_report& report) {
   const bool has_grown = report.speed > rounded_growth * report.first_speed;
-  if (!(report.residual > 0.0) && !has_grown) return;
-  std::array<double, 3 * max_stride> response{}, velocity{};
+  if (!(report.residual > iterations_.tolerance()) && !has_grown) return;
+  std::array<double, 3 * max_stride> response{};
   double most = -1.0;
   const Block* worst = nullptr;
   std::size_t worst_lane = 0;
   for (const Block& block : blocks_.list()) {
     if (block.asleep) continue;
-    const Layout& layout = *block.layout;
-    sweep_.gather(block, velocity.data());
-    sweep_.respond(block, block.column(layout.impulse), block.stride, response.data());
-    for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] -= response[i];
-    sweep_.respond(block, block.column(layout.change), block.stride, response.data());
+    sweep_.respond(block, block.column(block.layout->change), block.stride, response.data());
     for (std::size_t q = 0; q < block.count; ++q) {
-      const Vector r = block.at(layout.impulse, q);
-      if (!is_zero(r))
-        report.energy_error += 0.5 * std::fabs(dot(r, at(velocity, q) - block.at(layout.asked, q)));
       const double change = largest(at(response, q));
       if (!(change > most)) continue;
       most = change;
@@ -233,7 +243,7 @@ void Solver::find_worst_contact(ilaw_coupled_report& report) {
   if (!worst) return;
   report.worst_group = worst->group;
   report.worst_contact = worst->contact[worst_lane];
-  if (report.residual > iterations_.tolerance() || has_grown) explain(*worst, worst_lane, report);
+  explain(*worst, worst_lane, report);
 }
 
 void Solver::explain(const Block& worst, std::size_t lane, ilaw_coupled_report& report) {

@@ -31,7 +31,9 @@ class Solver {
   double set_velocities();
   void find_bad_contacts(ilaw_coupled_report& report) const;
   void find_stable_step(ilaw_coupled_report& report);
+  // Where contacts are not solved: which is off by most, and what is coupled with it.
   void find_worst_contact(ilaw_coupled_report& report);
+  double energy_error() const;
   // Describes the contacts that are coupled with the worst one.
   void explain(const Block& worst, std::size_t lane, ilaw_coupled_report& report);
   void find_incompatible_laws(const Block& worst, std::size_t lane, ilaw_coupled_report& report) const;

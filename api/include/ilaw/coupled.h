@@ -137,7 +137,8 @@ typedef struct ilaw_coupled_report {
   uint32_t method;             /* ILAW_METHOD_* */
   uint32_t stalled;            /* 1: the residual is above the tolerance, and the last half of the
                                   iterations did not lower it by a tenth */
-  int64_t worst_group;         /* contact with the largest residual; -1: none */
+  int64_t worst_group;         /* contact with the largest residual, where that is above the tolerance;
+                                  -1: none */
   int64_t worst_contact;
   /* Ids of the law of the worst contact and of another law at its bodies (or the same law), where the two are
    * incompatible: impulses grow without bound. Null: not found. */
@@ -147,7 +148,8 @@ typedef struct ilaw_coupled_report {
                    of the options: residual * speed is a velocity */
   double first_speed;  /* the same of the first iteration */
   double energy_error; /* sum over contacts of |r.s|/2, where velocities are off by s from those of the last
-                          evaluation: the largest difference of `work` and energies [J] */
+                          evaluation: the largest difference of `work` and energies [J]; 0 where the
+                          residual is within the tolerance and no batch has energies or amounts */
   int64_t island_contacts; /* where the residual is above the tolerance: contacts that are coupled with the
                               worst one, and the ratio of the largest to the smallest mass of their bodies */
   double mass_ratio;
