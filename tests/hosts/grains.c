@@ -171,7 +171,7 @@ static void keep(void) {
 }
 
 static ilaw_coupled_report step(const ilaw_interface* interface, ilaw_coupled* solver, int n,
-                                const ilaw_coupled_options* options) {
+                                ilaw_coupled_options options) {
   for (int i = 0; i < grains; ++i)
     for (int c = 0; c < 3; ++c) x[i][c] += h * v[i][c];
   memcpy(v_previous, v, (size_t)grains * sizeof *v);
@@ -221,7 +221,7 @@ static ilaw_coupled_report step(const ilaw_interface* interface, ilaw_coupled* s
                                   .counterpart_arm = {&counterpart_arm[0][0], NULL, 3, 1}};
   const ilaw_contacts* const groups[] = {&contacts};
   ilaw_coupled_report report = {.struct_size = sizeof report};
-  if (ilaw_coupled_solve(solver, &bodies, groups, 1, options, &report) != ILAW_OK)
+  if (ilaw_coupled_solve(solver, &bodies, groups, 1, &options, &report) != ILAW_OK)
     fail("solve", report.reason);
   keep();
   return report;
@@ -275,7 +275,7 @@ int main(int argc, char** argv) {
       .struct_size = sizeof options, .most_sweeps = (uint32_t)atoi(argv[4]), .tolerance = 1e-8};
   double overlap = 0.0, residual = 0.0, sweeps = 0.0, contact_sweeps = 0.0, kinetic = 0.0;
   for (int n = 0; n < steps; ++n) {
-    const ilaw_coupled_report report = step(interface, solver, n, &options);
+    const ilaw_coupled_report report = step(interface, solver, n, options);
     sweeps += report.sweeps;
     contact_sweeps += (double)report.sweeps * count;
     residual = fmax(residual, report.residual);

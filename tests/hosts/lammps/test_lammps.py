@@ -245,7 +245,7 @@ def test_walls_hold_where_they_are(tmp_path, wall, lowest):
     (("tol 1e-10", "tol inf"), "tol is inf; expected a finite number above 0"),
     (("tol 1e-10", "area nan tol 1e-10"), "area is nan; expected a finite number, 0 or above"),
     (("tol 1e-10", "area -1 tol 1e-10"), "area is -1"),
-    (("fix nve all nve/sphere", "fix nve all nve"), "that fix nve/sphere moves, but fix nve turns none"),
+    (("fix nve all nve/sphere", "fix nve all nve"), "that fix nve/sphere moves, but fix nve does not rotate them"),
     (("tol 1e-10\n", "tol 1e-10\nfix late all gravity 1 vector 1 0 0\n"), "fix late comes later"),
 ])
 def test_says_what_it_refuses(tmp_path, change, message):
