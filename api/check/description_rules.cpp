@@ -90,6 +90,21 @@ void units(const Subject& subject) {
       fail_unit("amount '" + std::string(subject.law.amounts[k]->name) + "'", subject.law.amounts[k]->unit);
 }
 
+// A description in C that leaves the maximum out has the range [0, 0]. The loader accepts it: a parameter may
+// be 0 or infinite.
+void ranges(const Subject& subject) {
+  for (std::uint32_t k = 0; k < subject.law.parameter_count; ++k) {
+    const ilaw_parameter& p = *subject.law.parameters[k];
+    const bool is_single = p.minimum == p.maximum && !(p.flags & ILAW_PARAMETER_ALLOWS_INFINITY);
+    if (p.kind != ILAW_PARAMETER_CHOICE && is_single)
+      throw Finding{
+          "parameter '" + std::string(p.name) + "' allows the value " + text_of(p.minimum) + " alone",
+          "a maximum above the minimum, or ILAW_PARAMETER_ALLOWS_INFINITY",
+          {},
+          {}};
+  }
+}
+
 std::string bits(std::uint32_t mask) { return std::to_string(mask); }
 
 void info_within_description(const Subject& subject) {
@@ -267,6 +282,8 @@ std::vector<Rule> description_rules() {
        "ilaw.h, ilaw_entry_function", Needs::motion, description_constant},
       {"description-units", "Units of parameters and amounts are SI units, or 1.",
        "ilaw.h, ilaw_parameter.unit", Needs::library, units},
+      {"description-range", "A parameter that is a number allows more than one value.",
+       "ilaw.h, ilaw_parameter.maximum", Needs::library, ranges},
       {"extension-unknown", "An extension that nobody knows is null.", "ilaw.h, ilaw_law.extension",
        Needs::library, extension_unknown},
       {"info-within",

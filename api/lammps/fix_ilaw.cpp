@@ -131,7 +131,8 @@ void FixIlaw::check_integration() {
     if (moves.starts_with("nve")) without_spin = modify->fix[i]->id;
   }
   if (without_spin)
-    refuse("needs grains that fix nve/sphere moves, but fix " + std::string(without_spin) + " does not rotate them");
+    refuse("needs grains that fix nve/sphere moves, but fix " + std::string(without_spin) +
+           " does not rotate them");
 }
 
 // The most exact of what fixes ask for; those that say nothing leave it to the others.

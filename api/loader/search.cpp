@@ -79,6 +79,28 @@ bool is_name(const std::string& text) {
   return !text.empty() && text.front() != '.' && std::all_of(text.begin(), text.end(), usual);
 }
 
+// Whether at most `edits` insertions, deletions and changes of letters turn a into b.
+bool is_within(std::size_t edits, std::string_view a, std::string_view b) {
+  while (!a.empty() && !b.empty() && a.front() == b.front()) {
+    a.remove_prefix(1);
+    b.remove_prefix(1);
+  }
+  if (a.empty() || b.empty()) return a.size() + b.size() <= edits;
+  return edits > 0 && (is_within(edits - 1, a.substr(1), b) || is_within(edits - 1, a, b.substr(1)) ||
+                       is_within(edits - 1, a.substr(1), b.substr(1)));
+}
+
+// The library on the search path whose file is named nearest to this one.
+std::string suggestion(const std::string& file) {
+  for (const std::size_t edits : {1, 2})
+    for (const std::string& path : library_files()) {
+      const std::string known = path.substr(path.rfind('/') + 1);
+      if (is_within(edits, file, known))
+        return " (did you mean '" + known.substr(0, known.size() - 3) + "'?)";
+    }
+  return "";
+}
+
 }  // namespace
 
 std::string joined(const std::vector<std::string>& texts) {
@@ -110,7 +132,8 @@ std::string find_named(const std::string& name) {
   if (!path.relative.empty())
     where += "; not searched, since it is no absolute path: " + joined(path.relative);
   if (ends_in_so(name)) where += "; the path of a file has a '/', as ./" + name;
-  throw refusal(ILAW_NOT_FOUND, "'" + name + "': no " + file + " found, expected it in one of: " + where);
+  throw refusal(ILAW_NOT_FOUND, "'" + name + "': no " + file + " found" + suggestion(file) +
+                                    ", expected it in one of: " + where);
 }
 
 std::string find_library(const std::string& name_or_path) {

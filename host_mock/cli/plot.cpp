@@ -63,7 +63,8 @@ std::string unknown_panel(const std::vector<std::string>& wanted, const std::vec
 
 int refuse(const std::filesystem::path& history, const char* found) {
   complain(history.string() + ": found " + found +
-           ", expected the history that `ilaw run` writes of watched nodes");
+           ", expected the history of watched nodes that `ilaw run SCENE --out " +
+           history.parent_path().string() + "` writes");
   return exit_bad_input;
 }
 
@@ -97,14 +98,6 @@ int plot_history(const PlotOptions& options) {
     return exit_failed;
   std::printf("%s\n%s\n", (drawn / "history.png").c_str(), (drawn / "history.svg").c_str());
   return exit_done;
-}
-
-// The last names of a long list: resultants are there.
-std::string last_of(const std::vector<std::string>& names) {
-  constexpr std::size_t max_names = 20;
-  if (names.size() <= max_names) return joined(names);
-  return joined(std::vector<std::string>(names.end() - max_names, names.end())) + " and " +
-         std::to_string(names.size() - max_names) + " more";
 }
 
 void check_columns(const std::vector<RunFolder>& runs, const std::vector<std::string>& columns) {

@@ -132,6 +132,7 @@ __attribute__((constructor)) static void begin(void) {
   if (breaks("library-opens")) law.title = NULL;
   if (breaks("description-units")) friction.unit = "furlong";
   if (breaks("description-units: amount")) heat.unit = "calorie";
+  if (breaks("description-range")) wear.minimum = wear.maximum = 1.0;
   if (breaks("extension-unknown: library")) plugin.extension = library_extension;
   if (breaks("info-within: before")) law.inputs &= ~(uint32_t)ILAW_INPUT_V_PREVIOUS;
   if (breaks("energy-made")) law.outputs &= ~(uint32_t)ILAW_OUTPUT_ENERGY;

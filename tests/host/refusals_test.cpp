@@ -359,6 +359,19 @@ TEST(Warnings, TellOfAStepThatMayBeUnstable) {
   EXPECT_EQ(warnings[0].find("/time/dt: found 0.001, which may be unstable"), 0U) << warnings[0];
 }
 
+// 36 nodes of the upper block 1 cm inside the lower one.
+TEST(Warnings, TellOfAnOverlapWithASurface) {
+  json scene = json::parse(text_of(scene_files::named("two_blocks.json")));
+  scene["model"]["blocks"][1]["corner"][2] = 0.09;
+  const std::vector<std::string> warnings = scene_of(scene.dump()).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].find("/interfaces/1: 36 node(s) start inside the other body, node "), 0U)
+      << warnings[0];
+  EXPECT_NE(warnings[0].find(" by 0.01"), std::string::npos) << warnings[0];
+  scene["interfaces"][1]["gap_offset"] = -0.0101;
+  EXPECT_TRUE(scene_of(scene.dump()).warnings.empty());
+}
+
 TEST(Warnings, TellOfElementsThatLock) {
   json scene = json::parse(text_of(scene_files::named("block_impact.json")));
   json& block = scene["model"]["blocks"][0];

@@ -154,6 +154,7 @@ TEST(Plot, SaysWhatIsNoHistory) {
   };
   std::filesystem::create_directories(odd);
   refused("plot " + odd.string(), "found no such file, expected the history");
+  refused("plot " + odd.string(), "`ilaw run SCENE --out " + odd.string() + "` writes");
   std::filesystem::create_directories(odd / "history.csv");
   refused("plot " + odd.string(), "found something that is no file, expected the history");
   std::filesystem::remove(odd / "history.csv");
@@ -162,6 +163,7 @@ TEST(Plot, SaysWhatIsNoHistory) {
   refused("plot " + good.string() + " " + odd.string() + "/", "found no summary, expected that of a run");
   std::ofstream(odd / "summary.json") << "[]";
   refused("table " + odd.string(), "found no summary, expected that of a run");
+  refused("table " + odd.string(), "`ilaw run SCENE --out " + odd.string() + "` writes it");
   refused("plot " + good.string() + " --panels velocty", "--panels: found 'velocty', expected some of ");
   refused("plot " + good.string() + " --panels velocty", "(did you mean 'velocity'?)");
   refused("plot " + good.string() + " --y floor.F2",
@@ -171,6 +173,9 @@ TEST(Plot, SaysWhatIsNoHistory) {
           "--panels: found with several folders or --x");
   refused("table " + good.string() + " --columns n0.u0:median",
           "n0.u0:median: found 'median', expected one of last, min, max, mean");
+  refused("table " + good.string() + " --columns energy.kinetik", "(did you mean 'energy.kinetic'?)");
+  refused("table " + good.string() + " --columns n0.u7:max",
+          "or a column of history.csv, one of time, n0.u0, ");
   ASSERT_EQ(run_program("plot " + good.string() + "/ --panels velocity").code, 0);
   EXPECT_NE(text_of(good / "history.gnuplot").find("'velocity'"), std::string::npos);
   const Outcome table = run_program("table " + good.string() + "/ --csv --columns n0.u0:min,n0.v0:last");

@@ -366,6 +366,16 @@ TEST(Search, NeverLooksInTheCurrentFolder) {
   unsetenv("ILAW_PATH");
 }
 
+TEST(Search, SuggestsTheNearestLibrary) {
+  const fs::path folder = folder_with("spring");
+  setenv("ILAW_PATH", folder.c_str(), 1);
+  for (const char* name : {"sprin", "springs", "srping.so", "Spring"})
+    EXPECT_NE(refusal_of(name).second.find(" (did you mean 'spring'?)"), std::string::npos) << name;
+  for (const char* name : {"spr", "string_of", "ring_s"})
+    EXPECT_EQ(refusal_of(name).second.find("did you mean"), std::string::npos) << name;
+  unsetenv("ILAW_PATH");
+}
+
 bool loaded(const std::string& file) {
   void* handle = dlopen(file.c_str(), RTLD_NOLOAD | RTLD_LAZY);
   if (handle) dlclose(handle);

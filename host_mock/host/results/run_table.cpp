@@ -2,6 +2,7 @@
 #include "results/run_table.hpp"
 
 #include "base/csv.hpp"
+#include "base/words.hpp"
 #include "results/history_file.hpp"
 
 #include <algorithm>
@@ -80,6 +81,16 @@ std::vector<std::string> all_columns(const std::vector<RunFolder>& runs) {
   return columns;
 }
 
+[[noreturn]] void refuse_column(const std::string& column, const std::vector<RunFolder>& runs) {
+  const std::vector<std::string> of_history = HistoryFile(runs.front().folder / "history.csv").names();
+  std::vector<std::string> all = all_columns(runs);
+  const std::string numbers = joined(all);
+  all.insert(all.end(), of_history.begin(), of_history.end());
+  throw std::runtime_error(column + ": found in no run, expected a number of summary.json, one of " +
+                           numbers + "; or a column of history.csv, one of " + last_of(of_history) +
+                           suggestion(column.substr(0, column.rfind(':')), all));
+}
+
 }  // namespace
 
 std::string RunFolder::name() const { return folder.filename().string(); }
@@ -95,8 +106,10 @@ RunFolder open_run(const std::filesystem::path& folder) {
   std::ifstream stream(path / "summary.json");
   json summary = json::parse(stream, nullptr, false);
   if (!summary.is_object() || !summary.contains("/scene/source"_json_pointer))
-    throw std::runtime_error((path / "summary.json").string() +
-                             ": found no summary, expected that of a run in this folder");
+    throw std::runtime_error(
+        (path / "summary.json").string() +
+        ": found no summary, expected that of a run in this folder: `ilaw run SCENE --out " +
+        folder.string() + "` writes it");
   return {path, std::move(summary)};
 }
 
@@ -143,10 +156,7 @@ Rows table_of(const std::vector<RunFolder>& runs, const std::vector<std::string>
       found = found || value;
       rows[k + 1].push_back(value.value_or(""));
     }
-    if (!found)
-      throw std::runtime_error(column +
-                               ": found in no run, expected a number of summary.json (energy.kinetic) or a "
-                               "column of history.csv (n0.u0, n0.u0:max)");
+    if (!found) refuse_column(column, runs);
   }
   return rows;
 }

@@ -57,11 +57,11 @@ std::string library_of(const json& interface, const std::filesystem::path& scene
   return (std::filesystem::absolute(scene_file).parent_path() / library).string();
 }
 
-// The libraries there are, and which of them may be meant.
-std::string known_libraries(const std::string& wanted) {
+// The libraries there are.
+std::string known_libraries() {
   std::vector<std::string> names;
   for (const std::string& file : ilaw::search()) names.push_back(std::filesystem::path(file).stem().string());
-  return names.empty() ? "none" : joined(names) + suggestion(wanted, names);
+  return names.empty() ? "none" : joined(names);
 }
 
 // The first tangent, for laws that tell the two apart: one direction for the whole interface, which
@@ -126,9 +126,7 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
   const std::string library = pointer + (interface.contains("library") ? "/library" : "/law");
   if (error.code() == ILAW_BAD_LIBRARY) throw SceneError(library, error.what());
   if (error.code() == ILAW_NOT_FOUND)
-    throw SceneError(library,
-                     std::string(error.what()) + "; libraries found: " +
-                         known_libraries(interface.value("library", interface["law"].get<std::string>())));
+    throw SceneError(library, std::string(error.what()) + "; libraries found: " + known_libraries());
   throw SceneError(pointer, error.what());
 }
 

@@ -87,15 +87,16 @@ StartGaps gaps_at_start(const Scene& scene, const Interface& interface, double l
 
 }  // namespace
 
-// Nodes of the same body may lie on both sides of a mesh surface, so that only pairs of nodes and
-// obstacles tell.
+// The nearest point of a mesh surface comes from an iteration, so its gaps are rounded more.
 void warn_of_start(Scene& scene) {
-  const double rounding = 1e-12 * scene.model->position().cwiseAbs().maxCoeff();
+  const double rounding = 1e-12 * scene.model->position().cwiseAbs().maxCoeff(),
+               rounding_of_surfaces = std::max(rounding, 1e-6 * shortest_edge(*scene.model));
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
-    const bool rigid = interface.setup().counterpart->partners().empty();
-    if (!rigid && interface.setup().counterpart->shares_partners()) continue;
-    const StartGaps gaps = gaps_at_start(scene, interface, -rounding, HUGE_VAL);
+    const Counterpart& counterpart = *interface.setup().counterpart;
+    const bool rigid = counterpart.partners().empty();
+    const double limit = counterpart.shares_partners() ? rounding_of_surfaces : rounding;
+    const StartGaps gaps = gaps_at_start(scene, interface, -limit, HUGE_VAL);
     if (gaps.below > 0)
       scene.warnings.push_back(at("/interfaces", i) + ": " + std::to_string(gaps.below) +
                                " node(s) start inside the " + (rigid ? "obstacle" : "other body") +
