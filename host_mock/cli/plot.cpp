@@ -62,9 +62,14 @@ std::string unknown_panel(const std::vector<std::string>& wanted, const std::vec
 }
 
 int refuse(const std::filesystem::path& history, const char* found) {
+  const std::filesystem::path folder = history.parent_path();
+  if (std::filesystem::is_regular_file(folder)) {
+    complain(folder.string() + ": found a file, expected a folder that `ilaw run SCENE --out FOLDER` wrote");
+    return exit_bad_input;
+  }
   complain(history.string() + ": found " + found +
-           ", expected the history of watched nodes that `ilaw run SCENE --out " +
-           history.parent_path().string() + "` writes");
+           ", expected the history of watched nodes that `ilaw run SCENE --out " + folder.string() +
+           "` writes");
   return exit_bad_input;
 }
 

@@ -58,12 +58,14 @@ TEST(Program, TellsBadInputFromFailureByItsExitCode) {
     EXPECT_EQ(unwritable.output.find("ilaw: --out /proc: "), 0U) << unwritable.output;
   }
   EXPECT_EQ(run_program("describe no_such_law").code, 2);
-  const std::string wanted = ", expected the history that `ilaw run` writes of watched nodes\n";
   const Outcome empty = run_program("plot " + folder.string());
   EXPECT_EQ(empty.code, 2);
-  EXPECT_EQ(empty.output, "ilaw: " + (folder / "history.csv").string() + ": found no such file" + wanted);
+  EXPECT_EQ(empty.output, "ilaw: " + (folder / "history.csv").string() +
+                              ": found no such file, expected the history of watched nodes that `ilaw run "
+                              "SCENE --out " +
+                              folder.string() + "` writes\n");
   EXPECT_EQ(run_program("plot " + ball).output,
-            "ilaw: " + ball + "/history.csv: found no such file" + wanted);
+            "ilaw: " + ball + ": found a file, expected a folder that `ilaw run SCENE --out FOLDER` wrote\n");
   for (const char* command :
        {"", "run", "plot", "converge", "study", "list", "describe", "stress", "check", "bench"}) {
     const Outcome help = run_program(std::string(command) + " --help");
