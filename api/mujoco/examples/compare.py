@@ -24,6 +24,10 @@ CONTACTS = {
 }
 
 
+def short(number):
+    return f"{float(f'{number:.2g}'):g}"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", metavar="HOLD", type=Path)
@@ -32,14 +36,15 @@ def main():
     print("| case | contacts | step [ms] | slip [um/s] | after | a step [us] |\n" + "| --- " * 6 + "|")
     for case, model in CASES.items():
         for contacts, options in CONTACTS.items():
-            for step in (2, 1, 0.5) if "swung" in case and contacts == "coulomb" else (2,):
+            refined = "swung" in case and ("coulomb" in contacts or "noslip" in contacts)
+            for step in (2, 1, 0.5) if refined else (2,):
                 command = [given.program.resolve(), *model, *options, "--step", step / 1e3, "--seconds", given.seconds]
                 done = subprocess.run(list(map(str, command)), cwd=Path(__file__).parent, text=True, check=True,
                                       stdout=subprocess.PIPE)  # fmt: skip
                 found = re.match(r"slip (\S+) m in (\S+) s, (\S+) us", done.stdout).groups()
                 slip, time, spent = map(float, found)
                 after = f"{time:.0f} s, lost" if slip >= 0.05 else f"{time:.0f} s"
-                print(f"| {case} | {contacts} | {step:g} | {1e6 * slip / time:.2g} | {after} | {spent:.2g} |", flush=True)
+                print(f"| {case} | {contacts} | {step:g} | {short(1e6 * slip / time)} | {after} | {short(spent)} |", flush=True)
 
 
 if __name__ == "__main__":
