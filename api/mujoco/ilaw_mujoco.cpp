@@ -1,3 +1,5 @@
+// Steps of MuJoCo with laws at the contacts; see ilaw_mujoco.hpp.
+// SPDX-License-Identifier: BSD-3-Clause
 #include "ilaw_mujoco.hpp"
 
 #include <ilaw/arrays.hpp>

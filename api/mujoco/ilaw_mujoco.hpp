@@ -16,7 +16,7 @@ namespace ilaw::mujoco {
 struct options {
   bool has_model_friction = false;  // the parameter `friction` of the law is that of the geoms in the model
   double area = 1.0;                // of each contact, for laws with a strength per area [m^2]
-  std::uint32_t most_iterations = 50;  // of a step, over all contacts
+  std::uint32_t most_iterations = 20;  // of a step, over all contacts
   double tolerance = 1e-10;            // of the residual
 };
 
