@@ -130,7 +130,7 @@ def layers():
         box(axes, 0.4, 3.58 - 0.46 * k, 4.0, 0.4, text, "white", BLUE, 9.5)
     box(axes, 5.0, 2.55, 4.4, 1.85, "", PALE_BLUE, BLUE)
     axes.text(7.2, 4.2, "your solver", ha="center", va="center", fontweight="bold", color=DARK)
-    for k, text in enumerate(("C, C++, Fortran, Python", "LAMMPS, Yade, dolfinx", "its own forces and time step")):
+    for k, text in enumerate(("C, C++, Fortran, Python", "LAMMPS, Yade, dolfinx, MuJoCo", "its own forces and time step")):
         box(axes, 5.2, 3.58 - 0.46 * k, 4.0, 0.4, text, "white", BLUE, 9.5)
     box(axes, 0.2, 1.75, 9.2, 0.5, "api/loader: finds, checks and opens libraries      "
         "api/coupled: solves contacts that share bodies", PALE_GREY, GREY, 9.5)
@@ -306,7 +306,29 @@ def orders():
     save(figure, "orders")
 
 
-PICTURES = [contact_geometry, one_step, layers, law_times, stress, tests, dolfinx_error_time, error_over_time, orders]
+def mujoco_slip():
+    """Rates of slip at a step of 2 ms, on the page of the stepper for MuJoCo."""
+    rates = {}
+    for row in page_rows("../api/mujoco/README.md", "| case | contacts | step [ms]"):
+        if row["step [ms]"] == "2":
+            rates.setdefault(row["contacts"], []).append((row["case"], float(row["slip [um/s]"])))
+    colors = [ORANGE, "#e58a4e", "#f0b090", GREY, BLUE]
+    figure, axes = plt.subplots(figsize=(8.6, 3.2))
+    for k, ((contacts, runs), color) in enumerate(zip(rates.items(), colors)):
+        places = [case + 0.16 * (k - 2) for case in range(len(runs))]
+        axes.barh(places, [rate for _, rate in runs], 0.14, left=1e-12, color=color, label=contacts)
+        for place, (_, rate) in zip(places, runs):
+            axes.text(1.4 * rate, place, f"{rate:g}", va="center", fontsize=8, color=DARK)
+    axes.set(xscale="log", xlim=(1e-12, 1e6), xlabel="slip [um/s]")
+    axes.set_yticks(range(len(runs)), [case for case, _ in runs])
+    axes.invert_yaxis()
+    axes.grid(axis="y", visible=False)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8.5)
+    save(figure, "mujoco_slip")
+
+
+PICTURES = [contact_geometry, one_step, layers, law_times, stress, tests, dolfinx_error_time, error_over_time, orders,
+            mujoco_slip]
 
 
 def main():

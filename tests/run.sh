@@ -6,7 +6,7 @@
 #                                ctest -R reads it), told from the programs' names and the tests in their sources;
 #                                everything where no name fits, as with parameters that programs make up;
 #                                ctest then has an entry per test (ILAW_TEST_CASES), else one per program
-#   tests/run.sh --with-solvers ...    also installs the solvers LAMMPS, dolfinx and Yade (1 GB) and tests the laws in them
+#   tests/run.sh --with-solvers ...    also installs LAMMPS, dolfinx, Yade and MuJoCo (1 GB) and tests the laws in them
 #   tests/run.sh --help          this text
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

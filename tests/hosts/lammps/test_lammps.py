@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """fix ilaw/pair and fix ilaw/wall in the system's lmp, on one and two ranks: closed forms, runs that go on, restarts."""
+import math
 import os
 import pathlib
 import re
@@ -262,6 +263,21 @@ def test_examples_run(tmp_path, example):
     shorter = re.sub(r"^run .*", "run 50", text, flags=re.M)
     rows = thermo(lammps(tmp_path, f"variable ilaw string {STYLES}\n" + shorter))
     assert rows[-1][0] >= 50
+
+
+@pytest.mark.parametrize("dt", ["1e-3", "3.1e-4", "1e-4"])
+def test_grazing_impacts_lose_what_friction_takes(tmp_path, dt):
+    text = (EXAMPLES[0].parent / "in.graze").read_text()
+    lammps(tmp_path, f"variable ilaw string {STYLES}\nvariable dt index {dt}\n" + text)
+    rows = [list(map(float, line.split())) for line in (tmp_path / "graze.txt").read_text().splitlines()[-17:]]
+    assert [round(row[0]) for row in rows] == list(range(5, 90, 5))
+    for degrees, energy, speed in rows:
+        sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
+        # Mass and radius 1, 1/2; friction 1/2 and restitution 1: it slides throughout, or rolls in the end.
+        slides = sine > 3.5 * cosine
+        assert speed == pytest.approx((sine - cosine) / sine if slides else 5 / 7, abs=1e-12), degrees
+        after = (sine - cosine) ** 2 + 3.5 * cosine**2 if slides else cosine**2 + 5 / 7 * sine**2
+        assert energy == pytest.approx(after, abs=1e-12), degrees
 
 
 def test_the_comparison_with_pair_granular_runs(tmp_path):
