@@ -13,13 +13,14 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-void Iterations::begin(std::uint32_t most, double tolerance, double speed) {
+void Iterations::begin(std::uint32_t most, double tolerance, double speed, double rounding) {
   most_ = most;
   speed_ = speed;
+  rounding_ = rounding;
   tolerance_ = tolerance;
   count_ = most_counted_ = 0;
   failed_ = ILAW_OK;
-  residual_ = least_ = least_in_first_half_ = infinity;
+  residual_ = least_ = least_in_first_half_ = halved_ = infinity;
   size_ = first_size_ = 0.0;
   method_ = ILAW_METHOD_GAUSS_SEIDEL;
 }
@@ -34,7 +35,7 @@ std::int32_t Iterations::run(Blocks& blocks) {
     done = is_over() || !ranks_.any_rank(sweep_.wake(blocks));
   }
   most_counted_ = std::max(most_counted_, count_);
-  stalled_ = residual_ > tolerance_ && !(least_ < 0.9 * least_in_first_half_);
+  stalled_ = !is_solved() && !(least_ < 0.9 * least_in_first_half_);
   return failed_;
 }
 
@@ -59,7 +60,15 @@ bool Iterations::accept(Change change) {
   residual_ = change_ > 0.0 ? change_ / size_ : 0.0;
   least_ = std::min(least_, residual_);
   if (count_ <= most_ / 2) least_in_first_half_ = least_;
-  return failed_ >= 0 && residual_ <= tolerance_;
+  return failed_ >= 0 && (residual_ <= tolerance_ || stays_at_rounding());
+}
+
+bool Iterations::stays_at_rounding() {
+  if (change_ < 0.5 * halved_) {
+    halved_ = change_;
+    since_halved_ = 0;
+  }
+  return ++since_halved_ > plateau && change_ <= rounding_;
 }
 
 void Iterations::keep_start() {
@@ -125,6 +134,7 @@ void Iterations::read_scaled(const Blocks& blocks) {
 
 bool Iterations::anderson(Blocks& blocks, std::uint32_t most) {
   method_ = ILAW_METHOD_ANDERSON;
+  halved_ = infinity;
   const std::size_t size = 3 * scales_of(blocks);
   for (auto* vector : {&image_, &step_, &correction_}) vector->resize(size);
   anderson_.reset(size, Anderson::max_depth, 1.0);
@@ -132,6 +142,7 @@ bool Iterations::anderson(Blocks& blocks, std::uint32_t most) {
   for (std::uint32_t k = 0; k < most && !is_over(); ++k) {
     if (ranks_.any()) keep_start();
     if (iterate(blocks, {})) return true;
+    if (square_ < much_less * best_square_) note_best(blocks);
     if (k + 1 == most || is_over()) break;
     read_scaled(blocks);
     if (!anderson_.correct(image_, step_, sum, correction_)) continue;
@@ -147,9 +158,10 @@ bool Iterations::anderson(Blocks& blocks, std::uint32_t most) {
 // Anderson's acceleration goes on as long as each part of it lowers the residual to a tenth; then other
 // methods get a part, which grows from turn to turn. The best impulses of all are kept.
 bool Iterations::alternate(Blocks& blocks) {
-  if (ranks_.any()) return anderson(blocks, most_);  // no rank has the whole system
-  --most_;                                           // one iteration is left to return to the best impulses
-  const bool done = take_turns(blocks);
+  best_square_ = infinity;
+  --most_;  // one iteration is left to return to the best impulses
+  // With ranks none of them has the whole system.
+  const bool done = ranks_.any() ? anderson(blocks, most_) : take_turns(blocks);
   ++most_;
   return done || (best_square_ < square_ && !is_over() && return_to_best(blocks));
 }
@@ -157,7 +169,6 @@ bool Iterations::alternate(Blocks& blocks) {
 bool Iterations::take_turns(Blocks& blocks) {
   const bool is_small = problem_.bodies.dimension() * scales_of(blocks) <= Newton::max_unknowns;
   std::uint32_t gauss_seidel_part = first_part, splitting_part = first_part;
-  best_square_ = infinity;
   splitting_.reset();
   for (std::uint32_t turn = 0; !is_over(); ++turn) {
     for (double before = infinity; !is_over();) {
@@ -181,7 +192,10 @@ bool Iterations::take_turns(Blocks& blocks) {
 
 // Moves to these impulses, by contact, and iterates once from there.
 bool Iterations::move(Blocks& blocks, const std::vector<double>& changes) {
+  if (ranks_.any()) keep_start();
   sweep_.add_changes(blocks, changes.data());
+  exchange_velocities();
+  if (ranks_.any()) keep_start();
   return iterate(blocks, {});
 }
 
@@ -230,6 +244,10 @@ void Iterations::keep_best(Blocks& blocks) {
     if (!is_over()) return_to_best(blocks);
     return;
   }
+  note_best(blocks);
+}
+
+void Iterations::note_best(const Blocks& blocks) {
   best_square_ = square_;
   read_impulses(blocks, best_);
 }

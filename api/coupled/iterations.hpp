@@ -24,8 +24,9 @@ class Iterations {
   Iterations(Problem& problem, Ranks& ranks, Sweep& sweep)
       : problem_(problem), ranks_(ranks), sweep_(sweep) {}
 
-  // speed: the residual is relative to no smaller velocity.
-  void begin(std::uint32_t most, double tolerance, double speed);
+  // speed: the residual is relative to no smaller velocity. rounding: a change of a contact's velocity below
+  // it that iterations no longer lower counts as solved.
+  void begin(std::uint32_t most, double tolerance, double speed, double rounding);
   // To the tolerance, or to the largest number of iterations since begin(). Velocities of the bodies belong
   // to the impulses, but for rounding. Returns the code of a law that failed, or ILAW_OK.
   std::int32_t run(Blocks& blocks);
@@ -39,6 +40,8 @@ class Iterations {
   double first_size() const { return first_size_; }
   double size() const { return size_; }
   double tolerance() const { return tolerance_; }
+  double rounding() const { return rounding_; }
+  bool is_solved() const { return !(residual_ > tolerance_) || residual_ * size_ <= rounding_; }
 
  private:
   // Beyond this growth of the largest velocity impulses are rounding alone: iterations end.
@@ -47,12 +50,17 @@ class Iterations {
   static constexpr std::uint32_t few = 100, first_conjugate = 30;
   // Iterations between looks for sleeping contacts that come within reach.
   static constexpr std::uint32_t wake_interval = 4;
+  // Factor of the squared residual with which impulses are better than the best, and are copied.
+  static constexpr double much_less = 0.25;
+  // Iterations that have not halved the change, where that is below rounding: the last ones.
+  static constexpr std::uint32_t plateau = 20;
   // Iterations of a method before another one gets its turn.
   static constexpr std::uint32_t first_part = 100;
 
-  // One iteration, the same on all ranks. True where the residual is below the tolerance.
+  // One iteration, the same on all ranks. True where contacts are solved.
   bool iterate(Blocks& blocks, const Sweep::Conjugate& conjugate);
   bool accept(Change change);
+  bool stays_at_rounding();
   void exchange_velocities();
   void keep_start();
   bool conjugate(Blocks& blocks, std::uint32_t most);
@@ -64,6 +72,7 @@ class Iterations {
   bool move(Blocks& blocks, const std::vector<double>& changes);
   std::size_t scales_of(const Blocks& blocks);
   void keep_best(Blocks& blocks);
+  void note_best(const Blocks& blocks);
   bool return_to_best(Blocks& blocks);
   void read_impulses(const Blocks& blocks, std::vector<double>& impulses) const;
   void read_scaled(const Blocks& blocks);
@@ -76,9 +85,11 @@ class Iterations {
   Ranks& ranks_;
   Sweep& sweep_;
   std::uint32_t most_ = 0, count_ = 0, most_counted_ = 0, method_ = ILAW_METHOD_GAUSS_SEIDEL;
-  double tolerance_ = 0.0, speed_ = 0.0, size_ = 0.0, first_size_ = 0.0, residual_ = 0.0, change_ = 0.0,
-         square_ = 0.0;
+  double tolerance_ = 0.0, speed_ = 0.0, rounding_ = 0.0, size_ = 0.0, first_size_ = 0.0, residual_ = 0.0,
+         change_ = 0.0, square_ = 0.0;
   double least_in_first_half_ = 0.0, least_ = 0.0;
+  double halved_ = 0.0;  // the change at its last halving
+  std::uint32_t since_halved_ = 0;
   bool stalled_ = false;
   std::int32_t failed_ = ILAW_OK;
   std::vector<Motion> start_, direction_;

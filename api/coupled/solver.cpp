@@ -47,7 +47,8 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
   sweep_.reset();
   set_velocities();
   const double tolerance = options.tolerance > 0.0 ? options.tolerance : default_tolerance;
-  iterations_.begin(options.most_sweeps > 0 ? options.most_sweeps : default_sweeps, tolerance, options.speed);
+  iterations_.begin(options.most_sweeps > 0 ? options.most_sweeps : default_sweeps, tolerance, options.speed,
+                    options.rounding);
   const std::int32_t code = iterate(tolerance);
   if (code < 0) {
     report.bad_group = sweep_.failed_group();
@@ -65,8 +66,7 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
   find_worst_contact(report);
   const std::int32_t refused = evaluate_balance(report);
   if (ranks_.any_rank(refused < 0)) return refused < 0 ? refused : std::int32_t{ILAW_INVALID_ARGUMENT};
-  const bool is_solved = !(report.residual > iterations_.tolerance());
-  if (!is_solved || !balance_.empty()) report.energy_error = energy_error();
+  if (!iterations_.is_solved() || !balance_.empty()) report.energy_error = energy_error();
   write(report);
   return report.bad_count > 0 ? ILAW_BAD_NODES : ILAW_OK;
 }
@@ -122,7 +122,7 @@ std::int32_t Solver::iterate(double tolerance) {
   constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
   for (int times = 0;; ++times) {
     if (const std::int32_t code = iterations_.run(blocks_); code < 0) return code;
-    const double limit = std::max(tolerance, rounding) * iterations_.size();
+    const double limit = std::max(std::max(tolerance, rounding) * iterations_.size(), iterations_.rounding());
     const bool moved = ranks_.any_rank(set_velocities() > limit);
     if (!moved || times == most_times || iterations_.is_over()) return ILAW_OK;
   }
@@ -224,7 +224,7 @@ double Solver::energy_error() const {
 
 void Solver::find_worst_contact(ilaw_coupled_report& report) {
   const bool has_grown = report.speed > rounded_growth * report.first_speed;
-  if (!(report.residual > iterations_.tolerance()) && !has_grown) return;
+  if (iterations_.is_solved() && !has_grown) return;
   std::array<double, 3 * max_stride> response{};
   double most = -1.0;
   const Block* worst = nullptr;
@@ -255,7 +255,7 @@ void Solver::explain(const Block& worst, std::size_t lane, ilaw_coupled_report& 
       if (of.block == block && of.lane == static_cast<std::int32_t>(lane)) island = islands_.lanes(i);
   report.island_contacts = static_cast<std::int64_t>(island.size());
   report.mass_ratio = mass_ratio_of(island);
-  const bool is_solved = !(report.residual > iterations_.tolerance());
+  const bool is_solved = iterations_.is_solved();
   const double growth = is_solved ? rounded_growth : runaway_growth;
   if (report.speed > growth * report.mass_ratio * report.first_speed)
     find_incompatible_laws(worst, lane, report);

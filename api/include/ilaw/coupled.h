@@ -109,6 +109,10 @@ typedef struct ilaw_coupled_options {
   double speed;                  /* the residual is relative to no smaller velocity; 0: no limit. The largest
                                     speed of the bodies, where they move together: differences of velocities
                                     have its rounding */
+  double rounding;               /* velocity [m/s] to which contacts are known, such as the rounding of a gap
+                                    over the step; 0: none. A residual below it that iterations no longer lower
+                                    counts as solved: redundant contacts, whose gaps differ by rounding, have
+                                    no better solution */
 } ilaw_coupled_options;
 
 /* Method that made the last iteration of the island that took most of them. */
@@ -154,8 +158,8 @@ typedef struct ilaw_coupled_report {
                               worst one, and the ratio of the largest to the smallest mass of their bodies */
   double mass_ratio;
   const char* message; /* what is not solved, as a sentence that names contact and laws, until the solver's
-                          next call; null: the residual is within the tolerance, and no laws are
-                          incompatible */
+                          next call; null: the residual is within the tolerance or rounding, and
+                          no laws are incompatible */
 } ilaw_coupled_report;
 
 /* The work arrays of solves, which grow as needed and are kept. */
@@ -179,7 +183,7 @@ ilaw_result ILAW_CALL ilaw_coupled_solve(ilaw_coupled* solver, const ilaw_bodies
 #define ILAW_BODIES_SIZE_1_0 ILAW_SIZE_TO(ilaw_bodies, angular_impulse)
 #define ILAW_CONTACTS_SIZE_1_0 ILAW_SIZE_TO(ilaw_contacts, reserved)
 #define ILAW_EXCHANGE_SIZE_1_0 ILAW_SIZE_TO(ilaw_exchange, sum)
-#define ILAW_COUPLED_OPTIONS_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_options, speed)
+#define ILAW_COUPLED_OPTIONS_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_options, rounding)
 #define ILAW_COUPLED_REPORT_SIZE_1_0 ILAW_SIZE_TO(ilaw_coupled_report, message)
 
 #if defined(ILAW_BUILDING_SHARED_COUPLED)

@@ -87,6 +87,7 @@ class coupled_options(ctypes.Structure):
         ("tolerance", c_double),
         ("exchange", POINTER(exchange)),
         ("speed", c_double),
+        ("rounding", c_double),
     ]
 
 

@@ -341,6 +341,7 @@ class Solver(NotCopied):
         most_sweeps: int = 1000,
         tolerance: float = 1e-10,
         speed: float = 0.0,
+        rounding: float = 0.0,
         exchange: Exchange | None = None,
         bad_nodes: str = "raise",
     ) -> Report:
@@ -348,8 +349,9 @@ class Solver(NotCopied):
 
         groups: contacts of one law each, all at the same bodies. time [s]: of the configuration that gaps belong
         to. Steps [s]: those of each interface unless given. tolerance: of the residual; reaching most_sweeps is
-        no error, look at the residual. speed [m/s]: the residual is relative to no smaller velocity. bad_nodes:
-        "raise" raises BadNodes (after all others were solved), "report" says so in the report and the status alone.
+        no error, look at the residual. speed [m/s]: the residual is relative to no smaller velocity. rounding
+        [m/s]: a residual below it that iterations no longer lower counts as solved. bad_nodes: "raise" raises
+        BadNodes (after all others were solved), "report" says so in the report and the status alone.
         """
         if bad_nodes not in ("raise", "report"):
             raise InvalidArgument(f"bad_nodes: {bad_nodes!r}, expected 'raise' or 'report'")
@@ -365,7 +367,7 @@ class Solver(NotCopied):
         pointers = (ctypes.POINTER(_coupled_abi.contacts) * len(groups))(*(ctypes.pointer(g._struct) for g in groups))
         options = sized(_coupled_abi.coupled_options)
         options.most_sweeps, options.tolerance = whole("most_sweeps", most_sweeps, 0, 2**32 - 1), tolerance
-        options.speed = speed
+        options.speed, options.rounding = speed, rounding
         calls = None
         if exchange is not None:
             calls = _Calls(exchange, bodies.count)

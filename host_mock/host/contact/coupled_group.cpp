@@ -3,6 +3,9 @@
 
 #include <ilaw/arrays.hpp>
 
+#include <algorithm>
+#include <utility>
+
 namespace ilaw::host {
 
 CoupledGroup::CoupledGroup(const Law& law, const std::string& interface, int dimension,
@@ -47,11 +50,46 @@ void CoupledGroup::add(const CoupledContact& contact, const ContactArrays& array
   for (std::size_t number = 0; number < state_size_; ++number) state_.push_back(arrays.state.at(k, number));
 }
 
-// The iterations begin without impulses: a resumed run has none of the step before.
+void CoupledGroup::keep_forces(double velocity_step) {
+  forget_forces();
+  const auto d = static_cast<std::size_t>(dimension_);
+  ContactList contacts;
+  std::vector<double> forces;
+  for (std::size_t i = 0; i < count(); ++i) {
+    if (impulse(i).isZero(0.0)) continue;
+    contacts.push_back(contacts_[i]);
+    for (std::size_t c = 0; c < d; ++c) forces.push_back(impulse_[d * i + c] / velocity_step);
+  }
+  keep(std::move(contacts), std::move(forces));
+}
+
+void CoupledGroup::forget_forces() {
+  const auto d = static_cast<std::size_t>(dimension_);
+  for (const std::int32_t contact : kept_)
+    std::fill_n(start_.begin() + static_cast<std::ptrdiff_t>(d * static_cast<std::size_t>(contact)), d, 0.0);
+  kept_.clear();
+  kept_forces_.clear();
+}
+
+void CoupledGroup::keep(ContactList contacts, std::vector<double> forces) {
+  kept_ = std::move(contacts);
+  kept_forces_ = std::move(forces);
+  const auto d = static_cast<std::size_t>(dimension_);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const std::size_t first = d * static_cast<std::size_t>(kept_[i]);
+    if (start_.size() < first + d) start_.resize(first + d, 0.0);
+    std::copy_n(&kept_forces_[d * i], d, &start_[first]);
+  }
+}
+
 const ilaw_contacts& CoupledGroup::close(const Vector& tangent, const StepView& step) {
   const auto d = static_cast<std::size_t>(dimension_);
   const auto size = static_cast<std::int64_t>(state_size_);
   impulse_.assign(d * count(), 0.0);
+  for (std::size_t i = 0; i < count(); ++i)
+    for (std::size_t c = 0; c < d; ++c)
+      if (const std::size_t k = d * static_cast<std::size_t>(contacts_[i]) + c; k < start_.size())
+        impulse_[d * i + c] = step.velocity_step() * start_[k];
   energy_.assign(ILAW_ENERGY_COUNT * count(), 0.0);
   status_.assign(count(), ILAW_FREE);
   next_state_.resize(state_.size());

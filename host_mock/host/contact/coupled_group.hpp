@@ -61,13 +61,23 @@ class CoupledGroup {
   double state(std::size_t i, std::size_t number) const { return next_state_[state_size_ * i + number]; }
   const Refusal& refusal() const { return law_.refusal(); }
 
+  // ---- between steps: the forces with which the iterations of the next step begin ----
+  void keep_forces(double velocity_step);
+  void forget_forces();
+  // For a checkpoint: contacts that have a force, and the forces.
+  const ContactList& kept() const { return kept_; }
+  const std::vector<double>& kept_forces() const { return kept_forces_; }
+  void keep(ContactList contacts, std::vector<double> forces);
+
  private:
   int dimension_;
   ilaw_delassus_forms form_;
   int partner_count_;
   std::size_t state_size_;
   WatchedLaw law_;
-  ContactList contacts_;
+  ContactList contacts_, kept_;
+  std::vector<double> kept_forces_;  // d for each of kept_
+  std::vector<double> start_;        // the same for each contact of the interface; zero if not kept
   std::vector<std::int32_t> body_, counterpart_;
   std::vector<double> weights_, surface_, surface_before_, gap_, normal_, area_, impulse_, energy_, state_,
       next_state_;

@@ -21,7 +21,7 @@ json identity_of(const Scene& scene) {
                     {"state_size", interface->info().state_size},
                     {"state_version", interface->info().state_version}});
   return {
-      {"format", "ilaw checkpoint 6"}, {"program", ILAW_VERSION}, {"scene", scene.source}, {"laws", laws}};
+      {"format", "ilaw checkpoint 7"}, {"program", ILAW_VERSION}, {"scene", scene.source}, {"laws", laws}};
 }
 
 using Bytes = std::vector<std::uint8_t>;

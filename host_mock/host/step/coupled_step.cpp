@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "step/coupled_step.hpp"
 
+#include "base/bytes.hpp"
 #include "step/dof_loops.hpp"
 
 #include <ilaw/arrays.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace ilaw::host {
 
@@ -46,6 +49,7 @@ const ilaw_coupled_report& CoupledStep::solve(StepView step, const double* inver
     v = v_free;
     open(step);
     solve_groups(step, speed, inverse_mass, v);
+    if (report_.message && forget_forces()) continue;  // from rest, then
     const double fastest = largest_speed(v, model_.dimension());
     if (!(fastest > step.speed_after)) return report_;
     step.speed_after = 2.0 * fastest;
@@ -75,6 +79,17 @@ void CoupledStep::number_bodies() {
     group.for_each_body([&](std::int32_t& node) { node = body_[static_cast<std::size_t>(node)]; });
 }
 
+// Of a difference of coordinates, as a velocity.
+double CoupledStep::rounding_of_gaps(const StepView& step) const {
+  constexpr double ulps = 16.0;  // of the dozen roundings of a node, its facet and their normal
+  const int d = model_.dimension();
+  double largest = 0.0;
+  for (const std::int32_t node : nodes_)
+    for (Eigen::Index dof = Eigen::Index{d} * node; dof < Eigen::Index{d} * (node + 1); ++dof)
+      largest = std::max(largest, std::fabs(model_.position()[dof] + step.u[dof]));
+  return ulps * std::numeric_limits<double>::epsilon() * largest / step.dt;
+}
+
 void CoupledStep::solve_groups(const StepView& step, double speed, const double* inverse_mass, Dofs& v) {
   const auto d = static_cast<std::size_t>(model_.dimension());
   for (std::vector<double>* values : {&inverse_mass_, &velocity_, &previous_})
@@ -99,6 +114,7 @@ void CoupledStep::solve_groups(const StepView& step, double speed, const double*
   options.most_sweeps = most_sweeps;
   options.tolerance = tolerance;
   options.speed = speed;
+  options.rounding = rounding_of_gaps(step);
   try {
     report_ = solver_.solve(bodies, given_, options);
   } catch (const ilaw::error&) {
@@ -144,6 +160,40 @@ void CoupledStep::check_driven(const StepView& step, const Dofs& v) const {
 
 void CoupledStep::accept(const StepView& step, const Dofs& v) {
   for (std::size_t i = 0; i < interfaces_.size(); ++i) interfaces_[i]->accept(step, v, groups_[i]);
+  for (CoupledGroup& group : groups_) group.keep_forces(step.velocity_step());
+  if (report_.message) forget_forces();  // impulses that run away would begin where they ended
+}
+
+// Whether there were any.
+bool CoupledStep::forget_forces() {
+  bool had_some = false;
+  for (CoupledGroup& group : groups_) {
+    had_some = had_some || !group.kept().empty();
+    group.forget_forces();
+  }
+  return had_some;
+}
+
+void CoupledStep::save(std::ostream& out) const {
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    std::vector<int> nodes;
+    for (const std::int32_t contact : groups_[i].kept())
+      nodes.push_back(interfaces_[i]->node_index_of(contact));
+    write_sized(out, nodes);
+    write_sized(out, groups_[i].kept_forces());
+  }
+}
+
+void CoupledStep::load(std::istream& in, const Dofs& u) {
+  const auto d = static_cast<std::size_t>(model_.dimension());
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    ContactList contacts;
+    for (const int node : ContactArrays::load_nodes(in, interfaces_[i]->nodes().size()))
+      contacts.push_back(interfaces_[i]->contact_index_of(node, u));
+    std::vector<double> forces = read_sized<double>(in, d * contacts.size());
+    if (forces.size() != d * contacts.size()) refuse_damaged();
+    groups_[i].keep(std::move(contacts), std::move(forces));
+  }
 }
 
 }  // namespace ilaw::host

@@ -8,6 +8,7 @@
 #include <ilaw/coupled.hpp>
 
 #include <cstdint>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -34,9 +35,15 @@ class CoupledStep {
   // The step is done: states are accepted.
   void accept(const StepView& step, const Dofs& v);
 
+  // The forces with which the next step begins.
+  void save(std::ostream& out) const;
+  void load(std::istream& in, const Dofs& u);
+
  private:
   void open(const StepView& step);
   void number_bodies();
+  bool forget_forces();
+  double rounding_of_gaps(const StepView& step) const;
   void solve_groups(const StepView& step, double speed, const double* inverse_mass, Dofs& v);
 
   const Model& model_;

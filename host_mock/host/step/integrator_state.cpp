@@ -141,6 +141,7 @@ void Integrator::save(std::ostream& out) const {
   for (const Dofs* dofs : {&u_, &v_}) write_array(out, dofs->data(), static_cast<std::size_t>(dofs->size()));
   accounts_.save(out);
   for (const auto& interface : interfaces_) interface->save(out);
+  if (coupled_) coupled_->save(out);
 }
 
 void Integrator::load(std::istream& in) {
@@ -151,6 +152,7 @@ void Integrator::load(std::istream& in) {
   if (has_started_ && !interfaces_.empty()) find_contact_mass({0.0, dt_});
   speed_before_ = largest_speed(v_, model_.dimension());
   for (const auto& interface : interfaces_) interface->load(in, u_);
+  if (coupled_) coupled_->load(in, u_);
 }
 
 }  // namespace ilaw::host
