@@ -20,7 +20,7 @@ void Iterations::begin(std::uint32_t most, double tolerance, double speed, doubl
   tolerance_ = tolerance;
   count_ = most_counted_ = 0;
   failed_ = ILAW_OK;
-  residual_ = least_ = least_in_first_half_ = halved_ = infinity;
+  residual_ = least_ = least_in_first_half_ = lowered_ = infinity;
   size_ = first_size_ = 0.0;
   method_ = ILAW_METHOD_GAUSS_SEIDEL;
 }
@@ -56,7 +56,7 @@ bool Iterations::accept(Change change) {
   if (most[3] > 0.0) change_ = infinity;
   square_ = change.square;
   size_ = std::max(most[1], speed_);
-  if (count_ == 1) first_size_ = size_;
+  if (count_ == 1 && !(first_size_ > 0.0)) first_size_ = size_;
   residual_ = change_ > 0.0 ? change_ / size_ : 0.0;
   least_ = std::min(least_, residual_);
   if (count_ <= most_ / 2) least_in_first_half_ = least_;
@@ -64,11 +64,11 @@ bool Iterations::accept(Change change) {
 }
 
 bool Iterations::stays_at_rounding() {
-  if (change_ < 0.5 * halved_) {
-    halved_ = change_;
-    since_halved_ = 0;
+  if (change_ < 0.9 * lowered_) {
+    lowered_ = change_;
+    since_lowered_ = 0;
   }
-  return ++since_halved_ > plateau && change_ <= rounding_;
+  return ++since_lowered_ > plateau && change_ <= rounding_;
 }
 
 void Iterations::keep_start() {
@@ -134,7 +134,7 @@ void Iterations::read_scaled(const Blocks& blocks) {
 
 bool Iterations::anderson(Blocks& blocks, std::uint32_t most) {
   method_ = ILAW_METHOD_ANDERSON;
-  halved_ = infinity;
+  lowered_ = infinity;
   const std::size_t size = 3 * scales_of(blocks);
   for (auto* vector : {&image_, &step_, &correction_}) vector->resize(size);
   anderson_.reset(size, Anderson::max_depth, 1.0);

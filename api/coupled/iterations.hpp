@@ -27,6 +27,8 @@ class Iterations {
   // speed: the residual is relative to no smaller velocity. rounding: a change of a contact's velocity below
   // it that iterations no longer lower counts as solved.
   void begin(std::uint32_t most, double tolerance, double speed, double rounding);
+  // The largest velocity of a contact without impulses, where iterations begin with some.
+  void set_first_size(double size) { first_size_ = size > speed_ ? size : speed_; }
   // To the tolerance, or to the largest number of iterations since begin(). Velocities of the bodies belong
   // to the impulses, but for rounding. Returns the code of a law that failed, or ILAW_OK.
   std::int32_t run(Blocks& blocks);
@@ -36,7 +38,7 @@ class Iterations {
   double residual() const { return residual_; }
   std::uint32_t method() const { return method_; }
   bool has_stalled() const { return stalled_; }
-  // Largest velocity of the first iteration and of the last.
+  // Largest velocity of the first iteration, or without impulses, and that of the last iteration.
   double first_size() const { return first_size_; }
   double size() const { return size_; }
   double tolerance() const { return tolerance_; }
@@ -52,7 +54,7 @@ class Iterations {
   static constexpr std::uint32_t wake_interval = 4;
   // Factor of the squared residual with which impulses are better than the best, and are copied.
   static constexpr double much_less = 0.25;
-  // Iterations that have not halved the change, where that is below rounding: the last ones.
+  // Iterations that have not lowered the change by a tenth, where that is below rounding: the last ones.
   static constexpr std::uint32_t plateau = 20;
   // Iterations of a method before another one gets its turn.
   static constexpr std::uint32_t first_part = 100;
@@ -88,8 +90,8 @@ class Iterations {
   double tolerance_ = 0.0, speed_ = 0.0, rounding_ = 0.0, size_ = 0.0, first_size_ = 0.0, residual_ = 0.0,
          change_ = 0.0, square_ = 0.0;
   double least_in_first_half_ = 0.0, least_ = 0.0;
-  double halved_ = 0.0;  // the change at its last halving
-  std::uint32_t since_halved_ = 0;
+  double lowered_ = 0.0;  // the change when it last fell by a tenth
+  std::uint32_t since_lowered_ = 0;
   bool stalled_ = false;
   std::int32_t failed_ = ILAW_OK;
   std::vector<Motion> start_, direction_;

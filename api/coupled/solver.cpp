@@ -45,10 +45,11 @@ std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const
   }
   report.bad_group = -1;
   sweep_.reset();
-  set_velocities();
   const double tolerance = options.tolerance > 0.0 ? options.tolerance : default_tolerance;
   iterations_.begin(options.most_sweeps > 0 ? options.most_sweeps : default_sweeps, tolerance, options.speed,
                     options.rounding);
+  if (ranks_.any_rank(begins_with_impulses())) iterations_.set_first_size(free_size());
+  set_velocities();
   const std::int32_t code = iterate(tolerance);
   if (code < 0) {
     report.bad_group = sweep_.failed_group();
@@ -137,6 +138,27 @@ double Solver::set_velocities() {
     ranks_.sum_bodies(everywhere_, problem_.bodies.rotate());
   }
   return problem_.bodies.set(ranks_.any() ? everywhere_ : here_);
+}
+
+bool Solver::begins_with_impulses() const {
+  for (const Block& block : blocks_.list())
+    for (std::size_t lane = 0; lane < block.count; ++lane)
+      if (!is_zero(block.at(block.layout->impulse, lane))) return true;
+  return false;
+}
+
+// The largest velocity of a contact without impulses, of all ranks.
+double Solver::free_size() {
+  here_.assign(static_cast<std::size_t>(problem_.bodies.count()), {});
+  problem_.bodies.set(here_);
+  std::array<double, 3 * max_stride> velocity{};
+  double most = 0.0;
+  for (const Block& block : blocks_.list()) {
+    sweep_.gather(block, velocity.data());
+    for (std::size_t lane = 0; lane < block.count; ++lane) most = std::max(most, largest(at(velocity, lane)));
+  }
+  ranks_.largest(&most, 1);
+  return most;
 }
 
 void Solver::find_bad_contacts(ilaw_coupled_report& report) const {

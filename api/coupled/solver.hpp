@@ -29,6 +29,8 @@ class Solver {
   std::int32_t iterate(double tolerance);
   // From the impulses. Returns the largest change of a velocity.
   double set_velocities();
+  bool begins_with_impulses() const;
+  double free_size();
   void find_bad_contacts(ilaw_coupled_report& report) const;
   void find_stable_step(ilaw_coupled_report& report);
   // Where contacts are not solved: which is off by most, and what is coupled with it.

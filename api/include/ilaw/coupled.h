@@ -150,7 +150,7 @@ typedef struct ilaw_coupled_report {
   const char* other_law;
   double speed; /* largest velocity of a contact, before or by an impulse, in the last iteration, or that
                    of the options: residual * speed is a velocity */
-  double first_speed;  /* the same of the first iteration */
+  double first_speed;  /* the same of the first iteration, or without impulses where it begins with some */
   double energy_error; /* sum over contacts of |r.s|/2, where velocities are off by s from those of the last
                           evaluation: the largest difference of `work` and energies [J]; 0 where the
                           residual is within the tolerance and no batch has energies or amounts */

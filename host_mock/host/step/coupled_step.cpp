@@ -160,8 +160,10 @@ void CoupledStep::check_driven(const StepView& step, const Dofs& v) const {
 
 void CoupledStep::accept(const StepView& step, const Dofs& v) {
   for (std::size_t i = 0; i < interfaces_.size(); ++i) interfaces_[i]->accept(step, v, groups_[i]);
+  constexpr double most_growth = 1e4;  // the weight of a column over that of a body
   for (CoupledGroup& group : groups_) group.keep_forces(step.velocity_step());
-  if (report_.message) forget_forces();  // impulses that run away would begin where they ended
+  // Impulses that run away would begin where they ended.
+  if (report_.message || report_.speed > most_growth * report_.first_speed) forget_forces();
 }
 
 // Whether there were any.
