@@ -30,7 +30,8 @@ class SceneThatFailed : public ::testing::TestWithParam<Solved> {};
 // Energy was added near the critical step, by a bond that caught a moving node, by bonds that were not
 // solved, by one whose damage had no digits left for its shear, by a rounded ground, and by one that
 // remembered a velocity in the axes of the step before; a resumed run had other bits; a node at rest was
-// given an impulse that is not a number; ties of masses of 1:5e6 were taken for a contradiction.
+// given an impulse that is not a number; ties of masses of 1:5e6 were taken for a contradiction; rounding
+// where no energy was put in was taken for an instability.
 TEST_P(SceneThatFailed, IsSolved) {
   json scene = scene_that_failed(GetParam().name);
   scene["time"]["end"] = scene["time"]["end"].get<double>() * GetParam().part;
@@ -50,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Solved{"strengths_far_apart", 1.0}, Solved{"strong_bond_that_swings", 1.0},
                       Solved{"stiff_bond_on_a_sphere", 1.0}, Solved{"bond_after_a_step_left_unsolved", 1.0},
                       Solved{"opening_of_rounding", 1.0}, Solved{"ties_of_masses_far_apart", 0.05},
-                      Solved{"bond_that_leaves_by_rounding", 1.0}));
+                      Solved{"bond_that_leaves_by_rounding", 1.0}, Solved{"nothing_put_in", 1.0}));
 
 // A contact and a bond push each other up to 1e15 times what they agree on: v keeps nothing of that.
 TEST(CoupledContacts, KeepNoRoundingOfWhatWasLargeOnTheWay) {

@@ -122,12 +122,16 @@ void Accounts::add_counts(const Interface& interface) {
 // Below the critical step the kinetic energy of a linear model is at most 1/(1 - cfl^2) times what the scheme
 // conserves, and that is at most what was put in. At the critical step a disturbance of the fastest vibration
 // grows by the same amplitude in every step, and disturbances in all of n steps to n^2/2 of one: energy as
-// n^4. Beyond it all grow by a factor in every step.
-bool Accounts::has_diverged(const Model& model, const Dofs& v, double speed, std::int64_t steps) const {
+// n^4. Beyond it all grow by a factor in every step. Where nothing was put in, rounding of positions moves
+// bodies.
+bool Accounts::has_diverged(const Model& model, const Dofs& v, double speed, double dt,
+                            std::int64_t steps) const {
   const auto n = static_cast<double>(steps);
   const double most = (unstable_growth + n * n * n * n) * energy_.put_in();
   if (!(0.5 * total_mass_ * speed * speed > most)) return false;
-  return kinetic_energy(model, v) > most;
+  const double rounding =
+      std::numeric_limits<double>::epsilon() * model.position().cwiseAbs().maxCoeff() / dt;
+  return kinetic_energy(model, v) > std::max(most, unstable_growth * total_mass_ * rounding * rounding);
 }
 
 std::string Accounts::step_warning(double dt) const {
@@ -162,7 +166,7 @@ std::vector<std::string> Accounts::warnings(std::int64_t steps, double dt, const
     say("the kinetic energy is %.2g, where all that was put in is at most %.2g: the fastest vibration of the "
         "mesh grows from step to step, as it does at the critical step; \"cfl\": 0.999 bounds it",
         energy.kinetic, energy_.largest());
-  if (energy.reaction_work > much_energy * energy.scale + rounding_energy_)
+  if (energy.reaction_work > much_energy * energy.scale + rounding_energy_ + tally_.coupling_energy)
     say("interfaces put in the energy %.2g, where %.2g is the largest in the run: an explicit penalty too stiff "
         "for the time step does, and one that is pressed in at the start; contact, friction and bonds do not",
         energy.reaction_work, energy.scale);

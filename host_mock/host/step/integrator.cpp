@@ -243,7 +243,7 @@ void Integrator::add_coupled_reactions(const StepView& step) {
 
 // An unstable step closes its energy balance, too: what the bodies gain in motion they lose in stored energy.
 void Integrator::check_energy() const {
-  if (!accounts_.has_diverged(model_, v_, speed_before_, steps_)) return;
+  if (!accounts_.has_diverged(model_, v_, speed_before_, dt_, steps_)) return;
   std::array<char, 160> text{};
   std::snprintf(
       text.data(), text.size(), "the kinetic energy is %.3g, where %.3g was put in, step %lld, time %g",
