@@ -111,11 +111,7 @@ struct table_friction : changing_friction<table_friction, conditions, V> {
 
   template <class Node>
   conditions<V> coefficient_in(const Node& node) const {
-    const auto contact =
-        contact_problem_of(contact_at(node, restitution, activation), node.v_free, node.v_previous);
-    const V normal = pressing_impulse(node.delassus, contact), force = normal / node.velocity_step;
-    return {zero_unless(normal > 0.0, force / node.area), temperature, node.time,
-            node.v_previous.tangential_length()};
+    return {this->pressure_in(node), temperature, node.time, node.v_previous.tangential_length()};
   }
   coefficient_from_table<V> curve_of(const conditions<V>& given) const { return {given, friction}; }
   template <class Node>
