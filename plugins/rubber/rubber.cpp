@@ -61,15 +61,9 @@ struct bell {
 
 template <class V>
 struct rubber : changing_friction<rubber, bell, V> {
-  V static_friction;
-  V peak_friction;
-  V peak_speed;
-  V width;
-  V temperature;
-  V reference_temperature;
-  V pressure_exponent;
-  V reference_pressure;
-  V restitution;
+  V static_friction, peak_friction, peak_speed, width;
+  V temperature, reference_temperature, pressure_exponent, reference_pressure;
+  V restitution, heat_partition, wear_coefficient;
   double activation;
 
   static constexpr law_card card{
@@ -106,7 +100,9 @@ struct rubber : changing_friction<rubber, bell, V> {
       own{&rubber::pressure_exponent, "pressure_exponent", "n", "1", "It falls as p^-n.", 0.0, 0.0, 1.0},
       own{&rubber::reference_pressure, "reference_pressure", "p_0", "Pa", "Of mu_0 and mu_m.", 1e5, 1e-6},
       restitution_parameter(&rubber::restitution),
-      activation_parameter(&rubber::activation)};
+      activation_parameter(&rubber::activation),
+      heat_partition_parameter(&rubber::heat_partition),
+      wear_coefficient_parameter(&rubber::wear_coefficient)};
 
   std::uint32_t inputs() const { return pressure_exponent > 0.0 ? card.inputs : card.inputs & ~reads_area; }
 

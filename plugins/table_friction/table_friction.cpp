@@ -73,6 +73,8 @@ struct table_friction : changing_friction<table_friction, conditions, V> {
   V temperature;
   V restitution;
   double activation;
+  V heat_partition;
+  V wear_coefficient;
 
   static constexpr law_card card{
       .id = "table_friction",
@@ -103,7 +105,9 @@ struct table_friction : changing_friction<table_friction, conditions, V> {
        .default_value = 293.15,
        .is_field = true},
       restitution_parameter(&table_friction::restitution),
-      activation_parameter(&table_friction::activation)};
+      activation_parameter(&table_friction::activation),
+      heat_partition_parameter(&table_friction::heat_partition),
+      wear_coefficient_parameter(&table_friction::wear_coefficient)};
 
   std::uint32_t inputs() const {
     return friction.along(1).count > 0 ? card.inputs : card.inputs & ~reads_area;

@@ -33,6 +33,10 @@ TEST(LawScenes, RubberSlowsDownAsTheRoadCools) {
     const double t = (static_cast<double>(shown.integrator.steps()) + 0.5) * shown.scene.dt;
     EXPECT_NEAR(speed / speed_on_the_cooling_road(t), 1.0, 2e-3) << t;
   });
+  const std::vector<double>& amounts = shown.scene.interfaces[0]->amounts();
+  const double path = shown.integrator.displacement()[0];
+  EXPECT_NEAR(amounts[2], 1e-9 * 10.0 / 0.01 * path, 1e-3 * amounts[2]);
+  EXPECT_NEAR(amounts[0] + amounts[1], 8.0 * path, 0.05 * 8.0 * path);
   EXPECT_NEAR(speed, 0.1 * std::pow(10.0, -std::sqrt(std::log(2.0))), 1e-12);
 }
 
