@@ -17,6 +17,8 @@ struct coulomb {
   V restitution;
   V tangential_restitution;
   double activation;
+  V heat_partition;
+  V wear_coefficient;
 
   static constexpr law_card card{
       .id = "coulomb",
@@ -65,7 +67,9 @@ struct coulomb {
        .symbol = "e_T",
        .doc = "Part of the tangential velocity before the step that a sticking contact reverses.",
        .maximum = 1.0},
-      activation_parameter(&coulomb::activation)};
+      activation_parameter(&coulomb::activation),
+      heat_partition_parameter(&coulomb::heat_partition),
+      wear_coefficient_parameter(&coulomb::wear_coefficient)};
 
   bool tells_tangents_apart() const { return (friction_2 != infinity) & (friction_2 != friction); }
   bool asks() const { return tells_tangents_apart(); }

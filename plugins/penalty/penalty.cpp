@@ -13,7 +13,8 @@ constexpr double implicitly = 1.0;
 
 template <class V>
 struct penalty {
-  V stiffness, damping, exponent, restitution, friction, tangential_stiffness;
+  V stiffness, damping, exponent, restitution, friction, tangential_stiffness, heat_partition,
+      wear_coefficient;
   double integration;
 
   static constexpr law_card card{
@@ -63,7 +64,9 @@ struct penalty {
       {.member = &penalty::integration,
        .name = "integration",
        .doc = "explicit: forces from the gap and slip of the step; implicit: from their mean over the step.",
-       .choices = integration_choices}};
+       .choices = integration_choices},
+      heat_partition_parameter(&penalty::heat_partition),
+      wear_coefficient_parameter(&penalty::wear_coefficient)};
 
   struct state {
     V indentation;

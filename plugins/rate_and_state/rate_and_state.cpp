@@ -37,6 +37,8 @@ struct rate_and_state : changing_friction<rate_and_state, direct_effect, V> {
   V restitution;
   double evolution;
   double activation;
+  V heat_partition;
+  V wear_coefficient;
 
   static constexpr law_card card{
       .id = "rate_and_state",
@@ -91,7 +93,9 @@ struct rate_and_state : changing_friction<rate_and_state, direct_effect, V> {
        .name = "evolution",
        .doc = "aging: theta' = 1 - v theta/D_c (Dieterich); slip: -(v theta/D_c) ln(v theta/D_c) (Ruina).",
        .choices = evolution_choices},
-      activation_parameter(&rate_and_state::activation)};
+      activation_parameter(&rate_and_state::activation),
+      heat_partition_parameter(&rate_and_state::heat_partition),
+      wear_coefficient_parameter(&rate_and_state::wear_coefficient)};
 
   struct state {
     V theta;

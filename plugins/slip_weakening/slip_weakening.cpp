@@ -27,6 +27,8 @@ struct slip_weakening : changing_friction<slip_weakening, weakening, V> {
   V initial_slip;
   V restitution;
   double activation;
+  V heat_partition;
+  V wear_coefficient;
 
   static constexpr law_card card{
       .id = "slip_weakening",
@@ -69,7 +71,9 @@ struct slip_weakening : changing_friction<slip_weakening, weakening, V> {
        .unit = "m",
        .doc = "Slip at the start."},
       restitution_parameter(&slip_weakening::restitution),
-      activation_parameter(&slip_weakening::activation)};
+      activation_parameter(&slip_weakening::activation),
+      heat_partition_parameter(&slip_weakening::heat_partition),
+      wear_coefficient_parameter(&slip_weakening::wear_coefficient)};
 
   static constexpr amount_card amounts[] = {
       {.name = "steepness",

@@ -73,6 +73,8 @@ struct table_friction : changing_friction<table_friction, conditions, V> {
   V temperature;
   V restitution;
   double activation;
+  V heat_partition;
+  V wear_coefficient;
 
   static constexpr law_card card{
       .id = "table_friction",
@@ -103,7 +105,9 @@ struct table_friction : changing_friction<table_friction, conditions, V> {
        .default_value = 293.15,
        .is_field = true},
       restitution_parameter(&table_friction::restitution),
-      activation_parameter(&table_friction::activation)};
+      activation_parameter(&table_friction::activation),
+      heat_partition_parameter(&table_friction::heat_partition),
+      wear_coefficient_parameter(&table_friction::wear_coefficient)};
 
   std::uint32_t inputs() const {
     return friction.along(1).count > 0 ? card.inputs : card.inputs & ~reads_area;
@@ -111,11 +115,7 @@ struct table_friction : changing_friction<table_friction, conditions, V> {
 
   template <class Node>
   conditions<V> coefficient_in(const Node& node) const {
-    const auto contact =
-        contact_problem_of(contact_at(node, restitution, activation), node.v_free, node.v_previous);
-    const V normal = pressing_impulse(node.delassus, contact), force = normal / node.velocity_step;
-    return {zero_unless(normal > 0.0, force / node.area), temperature, node.time,
-            node.v_previous.tangential_length()};
+    return {this->pressure_in(node), temperature, node.time, node.v_previous.tangential_length()};
   }
   coefficient_from_table<V> curve_of(const conditions<V>& given) const { return {given, friction}; }
   template <class Node>

@@ -26,9 +26,15 @@ struct Units {
   // Of a parameter by its declared unit, say N.s/m^2 or N/m^p; exponents: the values of letters like p.
   double of(const std::string& unit, const std::map<std::string, double>& exponents) const {
     const double force = mass * length / (time * time);
-    const std::map<std::string, double> known = {{"1", 1.0},  {"kg", mass}, {"m", length},
-                                                 {"s", time}, {"N", force}, {"J", force * length},
-                                                 {"K", 1.0}};
+    const std::map<std::string, double> known = {{"1", 1.0},
+                                                 {"kg", mass},
+                                                 {"m", length},
+                                                 {"s", time},
+                                                 {"N", force},
+                                                 {"J", force * length},
+                                                 {"K", 1.0},
+                                                 {"Pa", force / (length * length)},
+                                                 {"W", force * length / time}};
     double product = 1.0;
     bool divides = false;
     std::istringstream factors(std::regex_replace(unit, std::regex("[./]"), " $& "));
@@ -212,7 +218,9 @@ class Runner {
         tangent_(nodes.count),
         gap_(nodes.count),
         area_(nodes.count),
-        h_(nodes.count) {
+        h_(nodes.count),
+        amounts_(interface_.info().amount_count, std::vector<double>(nodes.count)) {
+    for (std::vector<double>& values : amounts_) amount_outputs_.push_back(ilaw::output(values.data(), 1, 0));
     report.struct_size = sizeof report;
   }
 
@@ -238,6 +246,13 @@ class Runner {
   double named(const char* name, std::size_t i) const {
     const std::size_t at = place_of(name, i);
     return at < state.size() ? state[at] : std::numeric_limits<double>::quiet_NaN();
+  }
+  // The named amount of node i.
+  double amount(const char* name, std::size_t i) const {
+    const ilaw_instance_info info = interface_.info();
+    for (std::uint32_t k = 0; k < info.amount_count; ++k)
+      if (std::strcmp(info.amounts[k]->name, name) == 0) return amounts_[k][i];
+    return std::numeric_limits<double>::quiet_NaN();
   }
   void set(const char* name, std::size_t i, double value) { state.at(place_of(name, i)) = value; }
 
@@ -315,6 +330,7 @@ class Runner {
     b.status = status.data();
     b.status_stride = 1;
     b.per_node_parameters = per_node.data();
+    b.amounts = amount_outputs_.data();
     return b;
   }
 
@@ -338,6 +354,8 @@ class Runner {
   std::vector<Vector> v_free_, v_previous_, normal_, tangent_;
   std::vector<double> gap_, area_;
   std::vector<std::array<double, 6>> h_;
+  std::vector<std::vector<double>> amounts_;
+  std::vector<ilaw_output> amount_outputs_;
 };
 
 }  // namespace ilaw::testing

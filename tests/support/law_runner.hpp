@@ -110,7 +110,8 @@ struct NodeRun {
           std::uint32_t form = ILAW_DELASSUS_SCALAR)
       : interface(make_law(law, SetupBuilder(parameters, 3, form, ILAW_FRAME_LOCAL))),
         dt(step),
-        state(std::max<std::size_t>(interface.info().state_size, 1)) {
+        state(std::max<std::size_t>(interface.info().state_size, 1)),
+        amounts(interface.info().amount_count) {
     initialise();
   }
 
@@ -131,6 +132,9 @@ struct NodeRun {
     b.energy = ilaw::output(energy.data(), 0, 1);
     b.status = &status;
     b.status_stride = 1;
+    std::vector<ilaw_output> amount_outputs;
+    for (double& amount : amounts) amount_outputs.push_back(ilaw::output(&amount, 0, 0));
+    b.amounts = amount_outputs.data();
     report.struct_size = sizeof report;
     const std::int32_t code = interface.evaluate(b, &report);
     v_previous = v;
@@ -146,6 +150,15 @@ struct NodeRun {
       at += info.state_variables[i]->count;
     }
     ADD_FAILURE() << "no state variable " << name;
+    return NAN;
+  }
+
+  // The named amount of the last step.
+  double amount(const std::string& name) const {
+    const ilaw_instance_info info = interface.info();
+    for (std::uint32_t k = 0; k < info.amount_count; ++k)
+      if (info.amounts[k]->name == name) return amounts[k];
+    ADD_FAILURE() << "no amount " << name;
     return NAN;
   }
 
@@ -173,7 +186,7 @@ struct NodeRun {
   std::array<double, 4> energy{};
   std::uint8_t status = 0;
   ilaw_report report{};
-  std::vector<double> state;
+  std::vector<double> state, amounts;
 };
 
 // Whether another law with the inputs of the node gives the same bits.

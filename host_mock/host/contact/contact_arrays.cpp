@@ -26,7 +26,7 @@ ContactArrays::ContactArrays(int dimension, const ilaw_instance_info& info, std:
       parameters(info.per_node_parameter_count),
       dimension_(dimension),
       state_size_(info.state_size),
-      reads_area_((info.inputs & ILAW_INPUT_AREA) != 0),
+      reads_area_(((info.inputs | info.balance_inputs) & ILAW_INPUT_AREA) != 0),
       partnered_(partnered),
       contact_index_(node_count, -1) {}
 

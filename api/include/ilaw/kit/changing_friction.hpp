@@ -20,9 +20,7 @@
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
 template <class V>
-struct coefficient {
-  V value, slope;
-};
+using coefficient = value_and_slope<V>;
 
 // a asinh(e^x), where e^x may overflow, and its derivative by x.
 template <class V>
@@ -195,6 +193,13 @@ struct changing_friction {
     const status_of<V> found = finish_friction(node, a.friction);
     law().slide(node, a.speed);
     return found;
+  }
+
+  // The pressure in the step; for an H that is not transverse that of the contact without friction.
+  template <class Node>
+  V pressure_in(const Node& node) const {
+    const V normal = pressing_impulse(node.delassus, contact(node));
+    return zero_unless(normal > 0.0, normal / node.velocity_step / node.area);
   }
 
  private:

@@ -8,7 +8,7 @@
 //   is    card, references, parameters       what it is called, serves and reads
 //         state, state_variables             named memory (state.hpp)
 //         history                            a memory of any number of doubles
-//         amounts                            scalars that it gives per node and step: heat, wear
+//         amounts                            scalars that it gives per node and step; heat.hpp has some
 //   does  step(node)                         its equations in closed form; returns the status
 //         problem, answer                    where a solver is needed, structs whose members are V, for the step
 //                                            in parts:
@@ -236,11 +236,21 @@ ILAW_KIT_INLINE bool remembers(const Law& law) {
   else
     return has_state<Law>;
 }
+// See heat.hpp.
 template <class Law>
-inline constexpr int amount_count = [] {
+concept gives_heat = requires(const Law& law) {
+  law.heat_partition;
+  law.wear_coefficient;
+};
+inline constexpr int heat_amount_count = 3;
+// Those that the law's step writes, and all.
+template <class Law>
+inline constexpr int own_amount_count = [] {
   if constexpr (has_amounts<Law>) return static_cast<int>(std::size(Law::amounts));
   return 0;
 }();
+template <class Law>
+inline constexpr int amount_count = own_amount_count<Law> + (gives_heat<Law> ? heat_amount_count : 0);
 template <class Law>
 inline constexpr int parameter_count = static_cast<int>(std::size(Law::parameters));
 

@@ -88,7 +88,7 @@ struct node {
   using V = number;
 
   const double time, velocity_step, position_step, per_position_step;
-  const bool wants_energy;  // whether what follows "stored" below is asked for
+  const bool wants_energy;  // whether what follows "stored" below is asked for, or an amount
   const prepared_t<Law>& prepared;
   const Vector v_free;  // relative velocity without interface
   const input_t<Law, reads_v_previous, Vector, undeclared_vector<Vector>>
@@ -106,7 +106,7 @@ struct node {
   // dissipated.
   V normal_gain = 0.0, tangential_gain = 0.0;
   V rupture = 0.0;  // part of these gains that is not stored: dissipated by rupture
-  V amounts[amount_count<Law> + 1] = {};
+  V amounts[own_amount_count<Law> + 1] = {};
   V refused = 0.0;  // code of a refusal
 
   ILAW_KIT_INLINE void refuse(mask_of<V> where, refusal reason) {

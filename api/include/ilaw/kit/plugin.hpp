@@ -58,7 +58,8 @@ inline constexpr ilaw_law abi_law = [] {
                   .delassus_forms = Law::card.delassus_forms,
                   .frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL,
                   .numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT,
-                  .inputs = Law::card.inputs | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT,
+                  .inputs = Law::card.inputs | ILAW_INPUT_NORMAL | ILAW_INPUT_TANGENT |
+                            flag_if(gives_heat<Law>, ILAW_INPUT_AREA),
                   .outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY,
                   .capabilities = Law::card.capabilities,
                   .permissions = Law::card.permissions,

@@ -52,6 +52,32 @@ ILAW_KIT_INLINE V root_between(V low, V high, V x, mask_of<V> active, Function f
   }
 }
 
+template <class V>
+struct value_and_slope {
+  V value, slope;
+};
+
+// Where f, not positive at low and not negative at high, changes sign, in the lanes where active; others keep
+// high. Newton's steps from high on, halves of the bracket where these leave it and after most_steps of them.
+// For x of size 1 to 1e3, such as logarithms: the error is 2^-50, or the rounding of x.
+template <class V, class Function>
+ILAW_KIT_INLINE V newton_between(V low, V high, mask_of<V> active, Function f) {
+  constexpr int most_steps = 20, most_bisections = 80;
+  constexpr double close = 0x1p-33, closest = 0x1p-50;  // close: the next step of Newton is the square of it
+  V x = high;
+  for (int k = 0; any(active) && k < most_steps + most_bisections; ++k) {
+    const value_and_slope<V> at = f(x);
+    low = select(at.value < 0.0, x, low);
+    high = select(at.value < 0.0, high, x);
+    const V newton = x - at.value / at.slope;
+    const mask_of<V> inside = (newton >= low) & (newton <= high) & (V(k) < V(most_steps));
+    const V next = select(inside, newton, 0.5 * (low + high)), step = absolute(next - x);
+    x = select(active, next, x);
+    active = active & (step > select(inside, V(close), V(closest)));
+  }
+  return x;
+}
+
 // The largest part of [0, 1] at which `holds` is true, as it is at 0 where active, and false at 1: bisection
 // to neighbouring numbers. 0 in other lanes.
 template <class V, class Predicate>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/kit/heat.hpp>
 #include <ilaw/kit/state.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -84,10 +85,14 @@ template <class Law>
 constexpr auto abi_amounts() {
   std::array<ilaw_amount, static_cast<std::size_t>(amount_count<Law>)> result{};
   std::size_t i = 0;
+  const auto add = [&](const amount_card& a) {
+    result[i++] = {
+        .struct_size = sizeof(ilaw_amount), .reserved = 0, .name = a.name, .unit = a.unit, .doc = a.doc};
+  };
   if constexpr (has_amounts<Law>)
-    for (const amount_card& a : Law::amounts)
-      result[i++] = {
-          .struct_size = sizeof(ilaw_amount), .reserved = 0, .name = a.name, .unit = a.unit, .doc = a.doc};
+    for (const amount_card& a : Law::amounts) add(a);
+  if constexpr (gives_heat<Law>)
+    for (const amount_card& a : heat_amounts) add(a);
   return result;
 }
 

@@ -366,7 +366,10 @@ class instance_builder {
     if (made_.frame == ILAW_FRAME_GLOBAL && made_.has_tangent && made_.dimension == 3)
       mask |= ILAW_INPUT_TANGENT;
     made_.inputs = mask;
-    made_.balance_inputs = ILAW_INPUT_V_PREVIOUS & ~mask;
+    std::uint32_t balance = ILAW_INPUT_V_PREVIOUS;
+    if constexpr (gives_heat<Law>)
+      if (!(with_unknowns().wear_coefficient == 0.0)) balance |= ILAW_INPUT_AREA;
+    made_.balance_inputs = balance & ~mask;
     made_.capabilities = Law::card.capabilities;
     if constexpr (requires { made_.law.capabilities(); })
       if (!made_.varies()) made_.capabilities = made_.law.capabilities();

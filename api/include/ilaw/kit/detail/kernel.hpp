@@ -10,6 +10,7 @@
 
 #include <ilaw/kit/detail/frame.hpp>
 #include <ilaw/kit/detail/parameters.hpp>
+#include <ilaw/kit/heat.hpp>
 #include <ilaw/kit/node.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -152,6 +153,24 @@ struct step_limit {
   V least = infinity, most_normal = 0.0, most_tangential = 0.0;
   bool is_by_node = false;
 };
+
+// ---- heat and wear
+
+// friction is what it dissipated, so that friction/|r_T| is the mean speed of slip. Apart from the loop,
+// which rarely needs it. first: the place of heat among the amounts.
+template <class V, class Vector, class Number>
+[[gnu::noinline]] void store_heat(const view<Number>& b, std::int64_t i, int first, V friction,
+                                  Vector impulse, Vector twice_mean, V partition, V coefficient) {
+  const V rubs = impulse.tangential_length(), rest = 1.0 - partition;
+  const V speed = select(rubs > 0.0, friction / rubs, 0.5 * twice_mean.tangential_length());
+  const V area = b.area ? load<V>(b.area + i) : V(0.0);
+  const mask_of<V> wears = (impulse.n > 0.0) & (coefficient > 0.0) & (area > 0.0) & (speed > 0.0);
+  const V amounts[heat_amount_count] = {zero_unless(partition > 0.0, partition * friction),
+                                        zero_unless(rest > 0.0, rest * friction),
+                                        zero_unless(wears, coefficient * (impulse.n / area) * speed)};
+  for (int k = 0; k < heat_amount_count; ++k)
+    if (b.amounts[first + k]) detail::store(amounts[k], b.amounts[first + k] + i);
+}
 
 // ---- a pack from end to end
 
@@ -323,7 +342,7 @@ struct kernel {
                      .velocity_step = b.step.velocity_step,
                      .position_step = b.step.position_step,
                      .per_position_step = b.step.per_position_step,
-                     .wants_energy = b.energy.at != nullptr,
+                     .wants_energy = wants_energy(b),
                      .prepared = prepared,
                      .v_free = v_free,
                      .v_previous = declared<reads_v_previous>(v_previous),
@@ -420,11 +439,19 @@ struct kernel {
 
   // ---- store
 
+  ILAW_KIT_INLINE static bool wants_energy(const view_type& b) {
+    if constexpr (amount_count < Law >> 0)
+      return b.has_balance;
+    else
+      return b.energy.at != nullptr;
+  }
+
   // Energy split of ilaw.h from the work of the impulse, -r.(v^- + v)/2 less what was stored of it, normal
   // and tangential part apart. Where H couples them one may be negative, and is then taken off the other, so
-  // that both are dissipations and their sum stays the work.
-  ILAW_KIT_INLINE static void store_energy(const loaded& p, const view_type& b, std::int64_t i, vector_type v,
-                                           status_of<V> status, mask accepted) {
+  // that both are dissipations and their sum stays the work. With it heat and wear.
+  ILAW_KIT_INLINE static void store_energy(const Wide& law, const loaded& p, const view_type& b,
+                                           std::int64_t i, vector_type v, status_of<V> status,
+                                           mask accepted) {
     const node_type& n = p.node;
     vector_type previous{};
     mask known = accepted & p.motion_known;
@@ -450,7 +477,11 @@ struct kernel {
     const V parts[ILAW_ENERGY_COUNT] = {zero_unless(known & !broken, tangential),
                                         zero_unless(known & !broken, normal), zero_unless(known, rupture),
                                         zero_unless(accepted, stored)};
-    store_numbers(parts, b.energy, i);
+    if constexpr (gives_heat<Law>)
+      if (b.has_amounts)
+        store_heat(b, i, own_amount_count<Law>, zero_unless(!(status == status::free), parts[0]),
+                   zero_unless(known, n.impulse), mean, law.heat_partition, law.wear_coefficient);
+    if (b.energy.at) store_numbers(parts, b.energy, i);
   }
 
   ILAW_KIT_INLINE static void store_state(const node_type& n, const view_type& b, std::int64_t i,
@@ -531,14 +562,14 @@ struct kernel {
         if constexpr (careful) out = select(accepted, out, p.free);
         store_vector(out, b.velocity, i);
       }
-      if (b.energy.at) store_energy(p, b, i, v, status, accepted);
+      if (wants_energy(b)) store_energy(law, p, b, i, v, status, accepted);
       if (b.status) {
         V code = status.code();
         if constexpr (careful) code = select(accepted, code, V(double{ILAW_BAD_INPUT}));
         store_bytes(code, b.status + i);
       }
       if constexpr (has_amounts<Law>)
-        for (int k = 0; k < amount_count<Law>; ++k)
+        for (int k = 0; k < own_amount_count<Law>; ++k)
           if (b.amounts[k]) detail::store(zero_unless(accepted, n.amounts[k]), b.amounts[k] + i);
     }
     store_state(n, b, i, accepted);

@@ -27,6 +27,8 @@ struct view_options {
   bool varying;         // some parameter comes per node
   bool in_memory;       // no cache holds the batch
   bool moves;           // more than impulse and state is asked for
+  bool has_balance;     // energy or an amount is
+  bool has_amounts;     // an amount is
   const table* tables;  // by the law's parameters, over fields that come per node; null: none
 };
 

@@ -455,7 +455,9 @@ class batch_walk {
   void open_inputs(view<Number>& v, const node_range& n) {
     v.v_free = gather(b_.v_free, d_, n, s_.v_free);
     v.reads_previous = made_.inputs & ILAW_INPUT_V_PREVIOUS;
-    if (v.reads_previous || wants_balance()) v.v_previous = gather(b_.v_previous, d_, n, s_.v_previous);
+    const bool has_balance = wants_balance();
+    const std::uint32_t read = made_.inputs | (has_balance ? made_.balance_inputs : 0U);
+    if (v.reads_previous || has_balance) v.v_previous = gather(b_.v_previous, d_, n, s_.v_previous);
     if (made_.frame == ILAW_FRAME_GLOBAL) v.normal = gather(b_.normal, d_, n, s_.normal);
     if (made_.inputs & ILAW_INPUT_TANGENT) v.tangent = gather(b_.tangent, d_, n, s_.tangent);
     v.delassus = gather_delassus(n);
@@ -463,7 +465,7 @@ class batch_walk {
       v.gap = gather_scalar(b_.gap, n, s_.gap);
       v.gap_offset = gather_scalar(b_.gap_offset, n, s_.gap_offset);
     }
-    if (made_.inputs & ILAW_INPUT_AREA) v.area = gather_scalar(b_.area, n, s_.area);
+    if (read & ILAW_INPUT_AREA) v.area = gather_scalar(b_.area, n, s_.area);
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
       v.parameters[made_.per_node_parameters[k]] =
           gather_scalar(b_.per_node_parameters[k], n, s_.parameters[k]);
@@ -473,11 +475,12 @@ class batch_walk {
     v.velocity = aim(b_.velocity, d_, n, s_.velocity);
     v.energy = aim(b_.energy, ILAW_ENERGY_COUNT, n, s_.energy);
     if (b_.status) v.status = status_stays(n) ? b_.status + n.first : s_.status;
-    v.moves = v.velocity.at || v.energy.at || v.status;
     for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k) {
       v.amounts[k] = aim(b_.amounts[k], 1, n, s_.amounts[k]).at;
-      v.moves = v.moves || v.amounts[k];
+      v.has_amounts = v.has_amounts || v.amounts[k];
     }
+    v.moves = v.velocity.at || v.energy.at || v.status || v.has_amounts;
+    v.has_balance = v.energy.at || v.has_amounts;
   }
   bool status_stays(const node_range& n) const { return !n.listed && b_.status_stride == 1; }
   tangents tangents_from() const {

@@ -1,0 +1,176 @@
+// Heat and wear of every law with friction: shares of what friction dissipates, and Archard's depth.
+#include "random_nodes.hpp"
+
+#include "support/numbers.hpp"
+
+#include <set>
+
+namespace ilaw::testing {
+namespace {
+
+constexpr double partition = 0.3, wear_coefficient = 1e-3;
+
+bool wears(const std::string& law) {
+  const ilaw::library library(plugin_file(law));
+  const ilaw_law& description = *library.law(law);
+  return std::any_of(description.amounts, description.amounts + description.amount_count,
+                     [](const ilaw_amount* a) { return a->name == std::string("wear"); });
+}
+Parameters worn(Parameters parameters, double eta = partition) {
+  parameters.numbers["heat_partition"] = eta;
+  parameters.numbers["wear_coefficient"] = wear_coefficient;
+  return parameters;
+}
+
+std::vector<LawCase> cases_with_wear() {
+  std::vector<LawCase> cases;
+  for (const LawCase& one : law_cases("properties"))
+    if (wears(one.law)) cases.push_back(one);
+  return cases;
+}
+
+class HeatOf : public ::testing::TestWithParam<std::tuple<LawCase, std::uint32_t, std::uint32_t>> {};
+
+// heat + counterpart_heat is the friction part of the energy. friction/|r_T| is the mean speed of slip, or
+// |v_T^- + v_T|/2 without friction, and the depth k_w p |v_T| h with p = r_N/(h A).
+TEST_P(HeatOf, IsTheFrictionPartOfTheEnergy) {
+  const auto& [law, form, dimension] = GetParam();
+  RandomNodes nodes(500, dimension, form, inertia_of(law), 1);
+  Runner run(law.law, worn(law.parameters), nodes);
+  run.initialise();
+  std::size_t warmed = 0, worn_nodes = 0;
+  for (int k = 0; k < 20; ++k) {
+    nodes.draw();
+    for (std::size_t i = 0; i < nodes.count; ++i) {
+      nodes.v_previous[i] = k > 0 ? run.v[i] : nodes.v_free[nodes.count - 1 - i];
+      nodes.gap[i] = nodes.uniform(-2.0, 0.5) * RandomNodes::step;
+    }
+    run.time += run.position_step;
+    ASSERT_EQ(run.evaluate(), ILAW_OK) << run.report.reason;
+    for (std::size_t i = 0; i < nodes.count; ++i) {
+      const bool is_free = run.status[i] == ILAW_FREE;  // what a spring loses as it lets go
+      const double friction = is_free ? 0.0 : run.energy[i][ILAW_ENERGY_FRICTION],
+                   heat = run.amount("heat", i);
+      ASSERT_NEAR(heat, partition * friction, 2 * ulp * friction) << "node " << i;
+      ASSERT_NEAR(heat + run.amount("counterpart_heat", i), friction, 2 * ulp * friction) << "node " << i;
+      const Vector &r = run.r[i], &v = run.v[i], &before = nodes.v_previous[i];
+      const double rubs = std::hypot(r[1], r[2]);
+      const double mean = 0.5 * std::hypot(before[1] + v[1], before[2] + v[2]);
+      const double depth =
+          wear_coefficient * std::max(r[0], 0.0) / nodes.area[i] * (rubs > 0.0 ? friction / rubs : mean);
+      ASSERT_NEAR(run.amount("wear", i), depth, 8 * ulp * depth) << "node " << i;
+      warmed += heat > 0.0;
+      worn_nodes += depth > 0.0;
+    }
+  }
+  EXPECT_GT(worn_nodes, nodes.count);
+  const json& statuses = law.more.at("statuses");
+  if (std::find(statuses.begin(), statuses.end(), "slip") != statuses.end()) {
+    EXPECT_GT(warmed, nodes.count);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Laws, HeatOf,
+                         ::testing::Combine(::testing::ValuesIn(cases_with_wear()), delassus_forms,
+                                            ::testing::Values(2U, 3U)),
+                         name_of_combination);
+
+// ---- closed forms
+
+// Rigid contact of a pin or block that is pressed with 10 N: laws with parameters near mu = 0.3.
+std::vector<LawCase> rubbing_laws() {
+  const auto law = [](const char* name, const std::map<std::string, double>& numbers) {
+    return LawCase{name, name, {numbers, {{"activation", "moreau"}}}, {}};
+  };
+  return {law("coulomb", {{"friction", 0.3}}),
+          law("slip_weakening", {{"friction", 0.4}, {"dynamic_friction", 0.3}, {"critical_slip", 0.1}}),
+          law("rate_and_state", {{"reference_friction", 0.3},
+                                 {"direct_effect", 0.02},
+                                 {"evolution_effect", 0.01},
+                                 {"reference_speed", 0.1},
+                                 {"critical_slip", 0.01}}),
+          law("table_friction", {{"friction", 0.3}}),
+          law("rubber", {{"static_friction", 0.3}, {"peak_friction", 0.8}, {"peak_speed", 0.2}})};
+}
+class RubbingLaw : public ::testing::TestWithParam<LawCase> {
+ protected:
+  static constexpr double force = 10.0, mass = 2.0, step = 1e-3;
+};
+
+TEST(RubbingLaws, AreAllThatGiveWear) {
+  std::set<std::string> known{"penalty"}, found;
+  for (const LawCase& law : rubbing_laws()) known.insert(law.law);
+  for (const std::string& law : laws_of_tree())
+    if (wears(law)) found.insert(law);
+  EXPECT_EQ(found, known);
+}
+
+// A block that slides loses its kinetic energy, all of it as heat of the block and of its counterpart.
+TEST_P(RubbingLaw, HeatsByTheKineticEnergyOfABlock) {
+  NodeRun node(GetParam().law, worn(GetParam().parameters, 0.8), step);
+  node.h[0] = 1.0 / mass;
+  node.v = node.v_previous = {0.0, 1.2, -0.9};
+  double heat = 0.0, counterpart_heat = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    ASSERT_EQ(node.step({-step * force / mass, node.v[1], node.v[2]}), ILAW_OK) << node.report.reason;
+    heat += node.amount("heat");
+    counterpart_heat += node.amount("counterpart_heat");
+  }
+  const double lost = 0.5 * mass * (1.2 * 1.2 + 0.9 * 0.9 - dot(node.v, node.v));
+  EXPECT_GT(lost, 2.0);
+  EXPECT_NEAR(heat + counterpart_heat, lost, 1e-12);
+  EXPECT_NEAR(heat, 0.8 * lost, 1e-12);
+}
+
+// A pin that is drawn at one speed wears by k_w p s.
+TEST_P(RubbingLaw, WearsAPinByPressureAndDistance) {
+  NodeRun node(GetParam().law, worn(GetParam().parameters), step);
+  node.area = 0.25;
+  node.h[0] = 1.0 / mass;
+  const double speed = 0.4;
+  double depth = 0.0, drag = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    node.v_previous = {0.0, speed, 0.0};
+    for (int pass = 0; pass < 60; ++pass) {  // the load that keeps the speed
+      const std::vector<double> before = node.state;
+      ASSERT_EQ(node.step({-step * force / mass, speed + drag / mass, 0.0}), ILAW_OK);
+      const double off = node.v[1] - speed;
+      if (std::abs(off) < 1e-14) break;
+      node.state = before;
+      node.v_previous = {0.0, speed, 0.0};
+      drag -= mass * off;
+    }
+    depth += node.amount("wear");
+  }
+  EXPECT_NEAR(depth, wear_coefficient * (force / 0.25) * speed * 1.0, 1e-10);
+}
+INSTANTIATE_TEST_SUITE_P(Laws, RubbingLaw, ::testing::ValuesIn(rubbing_laws()), name_of_case);
+
+// Elastic motion of a tangential spring wears nothing: k_w p (s - mu N/k_T) is left.
+TEST(Penalty, WearsByTheSlipBeyondItsSpring) {
+  const double k = 1e4, k_t = 2e3, x = 1e-3, mu = 0.3, h = 1e-3, speed = 0.4;
+  NodeRun node("penalty", worn({{{"stiffness", k}, {"tangential_stiffness", k_t}, {"friction", mu}}, {}}), h);
+  node.gap = -x;
+  double depth = 0.0;
+  for (int step = 0; step < 1000; ++step) {
+    node.v_previous = {0.0, speed, 0.0};
+    const double pull = step == 0 ? 0.0 : -node.r[1];
+    ASSERT_EQ(node.step({-h * k * x, speed + pull, 0.0}), ILAW_OK);
+    depth += node.amount("wear");
+  }
+  const double slip = speed * 1.0 - mu * k * x / k_t;
+  EXPECT_NEAR(depth, wear_coefficient * k * x * slip, 1e-3 * wear_coefficient * k * x * slip);
+}
+
+// The area is asked for where wear is, and there alone.
+TEST(Coulomb, ReadsTheAreaForWearAlone) {
+  const auto reads_area = [](double coefficient) {
+    const NodeRun node("coulomb", {{{"friction", 0.3}, {"wear_coefficient", coefficient}}, {}});
+    EXPECT_FALSE(node.interface.info().inputs & ILAW_INPUT_AREA);
+    return (node.interface.info().balance_inputs & ILAW_INPUT_AREA) != 0;
+  };
+  EXPECT_FALSE(reads_area(0.0));
+  EXPECT_TRUE(reads_area(1e-9));
+}
+
+}  // namespace
+}  // namespace ilaw::testing
