@@ -29,6 +29,7 @@ SECTIONS = [
     ("Bars", [("model_bars", "`model` of type `bars`"), ("bar", "entries of `bars`")]),
     ("Blocks", [("model_blocks", "`model` of type `blocks`"), ("block", "entries of `blocks`"),
                 ("material", "`material`")]),
+    ("Solids", [("model_solids", "`model` of type `solids`"), ("mesh", "entries of `meshes`")]),
     ("Nodes", [("near", "nodes near places"), ("box", "nodes in a box")]),
     ("Initial displacements", [("initial", "entries of `initial`")]),
     ("Springs", [("spring", "entries of `springs`")]),

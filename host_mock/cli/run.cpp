@@ -18,6 +18,7 @@
 #include "results/gnuplot.hpp"
 #include "results/history.hpp"
 #include "results/summary.hpp"
+#include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
 
 #include <array>
@@ -307,6 +308,8 @@ int run(const RunOptions& options) {
   warn_of_search_path();
   std::optional<Scene> scene = read_or_explain(options.scene);
   if (!scene) return exit_bad_input;
+  for (const nlohmann::json& mesh : scene->meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
+  std::fflush(stdout);  // before what goes to stderr
   return run_scene(*scene, options);
 }
 

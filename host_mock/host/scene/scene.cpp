@@ -90,7 +90,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   scene.source = std::move(source);
   expand_both_sides(scene.source);
   scene.title = scene.source.value("title", file.stem().string());
-  scene.model = read_model(scene.source["model"]);
+  scene.model = read_model(scene.source["model"], scene.file, scene.meshes);
   read_sets(scene.source.value("sets", json::object()), *scene.model);
   if (scene.source.contains("initial")) read_initial(scene.source["initial"], *scene.model);
   const std::vector<Spring> springs =

@@ -43,6 +43,7 @@ struct Scene {
   std::string title;
   nlohmann::json source;
   std::unique_ptr<Model> model;
+  nlohmann::json meshes = nlohmann::json::array();  // what was read of files
   Loads loads;
   Interfaces interfaces;
   double dt = 0.0;

@@ -239,15 +239,23 @@ void warn_of_open_bonds(Scene& scene) {
   }
 }
 
+// Constant strain locks far earlier than hexahedra do.
 void warn_of_locking(Scene& scene) {
-  constexpr double least_poisson = 0.49;
-  const json blocks = scene.source["model"].value("blocks", json::array());
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const json& poisson = blocks[k]["material"]["poisson"];
-    if (poisson.get<double>() > least_poisson && blocks[k].value("element", "full") == "full")
-      scene.warnings.push_back(at("/model/blocks", k) + "/material/poisson: found " + poisson.dump() +
-                               ", at which full elements can hardly bend; \"element\": "
-                               "\"mean_dilatation\" can");
+  constexpr double max_full_hexahedra = 0.49, max_full_tetrahedra = 0.4;
+  const json& model = scene.source["model"];
+  const auto warn = [&](const json& body, double limit, const std::string& pointer, const char* elements) {
+    const json& poisson = body["material"]["poisson"];
+    if (poisson.get<double>() > limit && body.value("element", "full") == "full")
+      scene.warnings.push_back(pointer + "/material/poisson: found " + poisson.dump() + ", at which full " +
+                               elements + " can hardly bend; \"element\": \"mean_dilatation\" can");
+  };
+  const json blocks = model.value("blocks", json::array());
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+    warn(blocks[k], max_full_hexahedra, at("/model/blocks", k), "elements");
+  for (std::size_t k = 0; k < scene.meshes.size(); ++k) {
+    const bool has_tetrahedra = scene.meshes[k]["tetrahedra"].get<std::size_t>() > 0;
+    warn(model["meshes"][k], has_tetrahedra ? max_full_tetrahedra : max_full_hexahedra,
+         at("/model/meshes", k), has_tetrahedra ? "tetrahedra" : "elements");
   }
 }
 
