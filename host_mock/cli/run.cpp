@@ -55,7 +55,7 @@ class Run {
   Run(Scene& scene, const RunOptions& options)
       : scene_(scene),
         options_(options),
-        integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt),
+        integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress),
         fields_(scene, options.folder) {
     if (options.resume) {
       resume();
@@ -170,6 +170,9 @@ class Run {
 
   void start() {
     integrator_.start();
+    if (const auto& found = integrator_.prestressed(); found && options_.tells_of_start)
+      std::printf("prestress: static equilibrium after %lld steps, residual %.2g\n",
+                  static_cast<long long>(found->steps), found->residual);
     history_->add_start(integrator_);
     if (events_) events_->add_step(integrator_);
     if (scene_.output.fields > 0) fields_.write(integrator_);

@@ -114,6 +114,8 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
         {"interfaces", seconds.interfaces},
         {"output", record.seconds_output}}},
       {"execution", describe_execution(scene, tally, record, seconds)}};
+  if (const auto& found = integrator.prestressed())
+    summary["prestress"] = {{"steps", found->steps}, {"residual", found->residual}};
   if (!scene.meshes.empty()) summary["meshes"] = scene.meshes;
   AtomicFile file(folder / "summary.json");
   // Names of files need not be UTF-8.
