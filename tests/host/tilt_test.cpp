@@ -121,9 +121,14 @@ TEST(Tilt, GapAndNormalAreThoseOfTheAngle) {
     const Dofs u = Eigen::Vector3d(0.3, 0.7, -0.2);
     const ContactPoint found = plane.contact_point(0, u, time);
     EXPECT_LT((found.normal - normal).norm(), 1e-15);
+    EXPECT_LT((plane.turned(Eigen::Vector3d::UnitY(), 0.0, time) - normal).norm(), 1e-15);
     EXPECT_NEAR(found.gap, (Eigen::Vector3d(1.8, 0.5, 3) + u - Eigen::Vector3d(1, 0.5, -2)).dot(normal),
                 1e-15);
   }
+  // In 2D as well.
+  Scene flat = scene_of(on_plane(2, 0.8, 0.3, 0.01).dump());
+  const Vector turned = flat.interfaces[0]->setup().counterpart->turned(Eigen::Vector2d(1, 0), 0.0, 1.3);
+  EXPECT_LT((turned - Eigen::Vector2d(std::cos(rate * 1.3), std::sin(rate * 1.3))).norm(), 1e-15);
 }
 
 // A plane that swings up to a point far from its axis finds it, with and without the filter, to the same
@@ -153,17 +158,19 @@ TEST(Tilt, IsNotMissedByTheFilter) {
 
 // A bond that remembers where it is along the surface keeps hold while the plane tilts by a quarter turn.
 TEST(Tilt, MemoryTurnsWithThePlane) {
-  json source = on_plane(3, 0.3, 0.3, 0.002);
-  source["interfaces"][0]["law"] = "cohesive";
-  source["interfaces"][0]["parameters"] = {{"strength", 1e3}, {"toughness", 10.0}, {"stiffness", 1e6}};
-  source["interfaces"][0]["obstacle"]["tilt"]["angles"] = {{0, 0}, {3, 1.5}};
-  source["model"]["points"][0]["velocity"] = {0, 0.15, 0};
-  Scene scene = scene_of(source.dump());
-  Integrator integrator = integrator_of(scene);
-  while (integrator.steps() < scene.steps) integrator.step();
-  const double angle = 1.5 * integrator.time() / 3.0;
-  EXPECT_NEAR(integrator.displacement()[0], 0.3 * (std::cos(angle) - 1.0), 1e-3);
-  EXPECT_NEAR(integrator.displacement()[1], 0.3 * std::sin(angle), 1e-3);
+  for (const int dimension : {2, 3}) {
+    json source = on_plane(dimension, 0.3, 0.3, 0.002);
+    source["interfaces"][0]["law"] = "cohesive";
+    source["interfaces"][0]["parameters"] = {{"strength", 1e3}, {"toughness", 10.0}, {"stiffness", 1e6}};
+    source["interfaces"][0]["obstacle"]["tilt"]["angles"] = {{0, 0}, {3, 1.5}};
+    source["model"]["points"][0]["velocity"] = dimension == 2 ? json{0, 0.15} : json{0, 0.15, 0};
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) integrator.step();
+    const double angle = 1.5 * integrator.time() / 3.0;
+    EXPECT_NEAR(integrator.displacement()[0], 0.3 * (std::cos(angle) - 1.0), 1e-3);
+    EXPECT_NEAR(integrator.displacement()[1], 0.3 * std::sin(angle), 1e-3);
+  }
 }
 
 // The shipped scene: an elastic block sticks, then slides as a whole at tan(angle) = 0.4, at 2.2903.
