@@ -191,8 +191,8 @@ std::string name_of(const char* array) {
   return name;
 }
 
-bool is_integer(const vtkDataArray& array) {
-  const int type = const_cast<vtkDataArray&>(array).GetDataType();
+bool is_integer(vtkDataArray& array) {
+  const int type = array.GetDataType();
   return type != VTK_FLOAT && type != VTK_DOUBLE;
 }
 
