@@ -53,6 +53,8 @@ SCENES = {
     "postit_3d": ("time", "time", "gap of the strip", [("n82.gap", "free end"), ("n92.gap", "at the tab")]),
     "block_impact": ("time", "time", "velocity of a corner", [("n0.v0", "x"), ("n0.v2", "z")]),
     "two_blocks": ("time", "time", "gap of a node", [("n405.gap", "edge"), ("n440.gap", "middle")]),
+    "tilting_plane": ("time", "time", "displacement of the block", [("n4.u0", "x"), ("n4.u2", "z")]),
+    "prestressed_seal": ("time", "time", "force", [("lid.F2", "lid"), ("fluid.F0", "fluid")]),
     "seal": ("time", "time", "displacement of the seal", [("n21.u0", "x"), ("n21.u2", "z")]),
 }
 

@@ -18,6 +18,7 @@
 #include "results/gnuplot.hpp"
 #include "results/history.hpp"
 #include "results/summary.hpp"
+#include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
 
 #include <array>
@@ -54,7 +55,7 @@ class Run {
   Run(Scene& scene, const RunOptions& options)
       : scene_(scene),
         options_(options),
-        integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt),
+        integrator_(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress),
         fields_(scene, options.folder) {
     if (options.resume) {
       resume();
@@ -169,6 +170,9 @@ class Run {
 
   void start() {
     integrator_.start();
+    if (const auto& found = integrator_.prestressed(); found && options_.tells_of_start)
+      std::printf("prestress: static equilibrium after %lld steps, residual %.2g\n",
+                  static_cast<long long>(found->steps), found->residual);
     history_->add_start(integrator_);
     if (events_) events_->add_step(integrator_);
     if (scene_.output.fields > 0) fields_.write(integrator_);
@@ -307,6 +311,8 @@ int run(const RunOptions& options) {
   warn_of_search_path();
   std::optional<Scene> scene = read_or_explain(options.scene);
   if (!scene) return exit_bad_input;
+  for (const nlohmann::json& mesh : scene->meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
+  std::fflush(stdout);  // before what goes to stderr
   return run_scene(*scene, options);
 }
 

@@ -15,6 +15,7 @@ struct RunOptions {
   bool resume = false;
   int threads = 1;
   bool shows_progress = true;
+  bool tells_of_start = true;  // on stdout
 };
 
 // Runs a scene that was read into options.folder, which it makes and holds; says on stderr what goes wrong.

@@ -157,7 +157,8 @@ void run_all(std::vector<Variant>& variants, const std::vector<Setting>& setting
     Variant& variant = variants[static_cast<std::size_t>(k)];
     RunOptions own = options;
     own.folder = options.folder / variant.name;
-    own.shows_progress = false;  // bars of several runs would overwrite each other
+    own.shows_progress = false;
+    own.tells_of_start = false;  // bars of several runs would overwrite each other
     try {
       std::unique_lock lock(reading);
       Scene scene = scene_of(variant, settings, source, options.scene);

@@ -14,6 +14,7 @@ from pathlib import Path
 PAGE = (Path(__file__).resolve().parents[2] / "docs/reference/outputs.md").read_text()
 SCENE = {
     "model": {"type": "points", "dimension": 2, "points": [{"mass": 1, "position": [0, 0.01], "velocity": [1, 0]}]},
+    "prestress": {},
     "time": {"dt": 1e-3, "end": 0.2},
     "loads": [{"type": "gravity", "acceleration": [0, -10]}],
     "interfaces": [{"name": "floor", "law": "coulomb", "parameters": {"friction": 0.3}, "nodes": "all",

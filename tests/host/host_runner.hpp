@@ -48,7 +48,7 @@ inline std::string refusal_of_text(const std::string& text) {
 inline std::string refusal_of_scene(const nlohmann::json& scene) { return refusal_of_text(scene.dump()); }
 
 inline Integrator integrator_of(Scene& scene) {
-  return Integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
+  return Integrator(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress);
 }
 
 // Of a number in a scene, all its digits.

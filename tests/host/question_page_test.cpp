@@ -24,7 +24,7 @@ TEST(QuestionPage, DrawsWhatItShows) {
                               folder.string() + " >" + (folder / "said").string() + " 2>&1 </dev/null";
   ASSERT_EQ(std::system(command.c_str()), 0) << text_of(folder / "said");
   const std::set<std::string> pictures = pictures_of(text_of(root / "docs/from_question_to_picture.md"));
-  EXPECT_EQ(pictures.size(), 3U);
+  EXPECT_EQ(pictures.size(), 4U);
   for (const std::string& name : pictures) {
     EXPECT_EQ(text_of(folder / name).substr(1, 3), "PNG") << name;
     // The one that stands beside the page.

@@ -34,7 +34,7 @@ void turn_axes(const InterfaceSetup& setup, const std::vector<std::size_t>& axes
                const StepView& step, Number number) {
   if (!setup.counterpart->turns()) return;
   for (const std::size_t first : axes)
-    turn_axis(*setup.counterpart, dimension, step.time_before(), step.time,
+    turn_axis(*setup.counterpart, dimension, step.since, step.time,
               [&](std::size_t c) -> double& { return number(first + c); });
 }
 

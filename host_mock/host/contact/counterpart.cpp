@@ -44,6 +44,14 @@ Vector RigidCounterpart::position(int node_index, const Dofs& u) const {
   return position_of(model_, nodes_[static_cast<std::size_t>(node_index)], u);
 }
 
+double RigidCounterpart::tilting_speed(double from, double to, const Dofs& u) const {
+  double fastest = 0.0;
+  if (!obstacle_->tilts()) return fastest;
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    fastest = std::max(fastest, obstacle_->tilting_speed(position(static_cast<int>(k), u), from, to));
+  return fastest;
+}
+
 ContactPoint RigidCounterpart::contact_point(int node_index, const Dofs& u, double time) const {
   const RigidSurface surface = obstacle_->at(position(node_index, u), time);
   return {surface.gap, surface.normal, 0, {}, {}, false};

@@ -40,6 +40,11 @@ struct ContactPoint {
   double delassus(const double* inverse_mass, int dimension, int node, int axis = 0) const;
 };
 
+// The steps before and after a time.
+struct Steps {
+  double since, time, until;
+};
+
 // How fast a rigid counterpart turns in the steps before and after a time.
 struct TurningRates {
   TurningRate before, after;
@@ -116,7 +121,9 @@ class Counterpart {
   // Whether it is rigid and its surface moves along itself, too; then how fast it turns, and the
   // velocity of its surface at rate 1, where a node meets it.
   virtual bool turns() const { return false; }
-  virtual TurningRates rates(double /*time*/, double /*dt*/) const { return {}; }
+  virtual TurningRates rates(const Steps& /*steps*/) const { return {}; }
+  // How fast a plane that tilts nears any of the nodes at most, between two times, beside its velocity.
+  virtual double tilting_speed(double /*from*/, double /*to*/, const Dofs& /*u*/) const { return 0.0; }
   // Whether its velocity, how it turns and where it is flat are the same in all steps.
   virtual bool stands_still() const { return true; }
   virtual SurfaceTurn unit_turn(int /*node_index*/, const Dofs& /*u*/, double /*time*/,
@@ -172,8 +179,8 @@ class RigidCounterpart : public Counterpart {
   std::optional<FlatSurface> flat_at(double time) const override { return obstacle_->flat_at(time); }
   Vector velocity(double from, double to) const override { return obstacle_->velocity(from, to); }
   bool turns() const override { return obstacle_->turns(); }
-  TurningRates rates(double time, double dt) const override {
-    return {obstacle_->rate_before(time, dt), obstacle_->rate_after(time, dt)};
+  TurningRates rates(const Steps& steps) const override {
+    return {obstacle_->rate_before(steps.since, steps.time), obstacle_->rate_after(steps.time, steps.until)};
   }
   SurfaceTurn unit_turn(int node_index, const Dofs& u, double time,
                         const RigidSurface& there) const override {
@@ -182,6 +189,7 @@ class RigidCounterpart : public Counterpart {
   Vector turned(const Vector& direction, double from, double to) const override {
     return obstacle_->turned(direction, from, to);
   }
+  double tilting_speed(double from, double to, const Dofs& u) const override;
   bool stands_still() const override { return obstacle_->stands_still(); }
   const std::vector<int>& partners() const override { return none_; }
   bool keeps_normal() const override { return obstacle_->is_flat(); }

@@ -215,13 +215,15 @@ void Interface::look_at(std::size_t chunk, const StepView& step) {
 void Interface::follow_obstacle(const StepView& step) {
   if (obstacle_is_known_) return;
   const Counterpart& counterpart = *setup_.counterpart;
-  obstacle_velocity_before_ = counterpart.velocity(step.time - step.dt, step.time);
-  obstacle_velocity_ = counterpart.velocity(step.time, step.time + step.dt);
+  obstacle_velocity_before_ = counterpart.velocity(step.since, step.time);
+  obstacle_velocity_ = counterpart.velocity(step.time, step.until);
   if (step.number == 0)
     obstacle_velocity_before_ = obstacle_velocity_;  // the start is no impact of the obstacle
   obstacle_speed_before_ = obstacle_velocity_before_.norm();
   obstacle_speed_ = obstacle_velocity_.norm();
-  if (counterpart.turns()) rates_ = counterpart.rates(step.time, step.dt);
+  obstacle_speed_before_ += counterpart.tilting_speed(step.since, step.time, step.u);
+  obstacle_speed_ += counterpart.tilting_speed(step.time, step.until, step.u);
+  if (counterpart.turns()) rates_ = counterpart.rates({step.since, step.time, step.until});
   if (step.number == 0) rates_.before = rates_.after;
   flat_ = counterpart.flat_at(step.time);
   tangent_ = counterpart.turned(setup_.tangent, 0.0, step.time);
@@ -236,7 +238,8 @@ void Interface::choose_active(const StepView& step) {
                closing_after = moving * std::max(step.speed_after, least_speed) + obstacle_speed_;
   closing_ = step.dt * closing_after;
   const bool due = proximity_.refresh_due(step.dt, closing_before, closing_after, counterpart.validity());
-  acts_ = !(step.time < setup_.birth || step.time >= setup_.death);
+  const double clock = std::max(step.time, 0.0);  // before it, a run is prestressed
+  acts_ = !(clock < setup_.birth || clock >= setup_.death);
   if (!acts_)
     proximity_.invalidate();
   else if (due)

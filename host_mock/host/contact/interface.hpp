@@ -35,6 +35,9 @@ class Interface {
   const ilaw_instance_info& info() const { return law_.info(); }
   const std::vector<int>& nodes() const { return setup_.nodes; }
 
+  // What laws gave so far is forgotten.
+  void clear_amounts() { amounts_.assign(amounts_.size(), 0.0); }
+
   // Whether laws are asked for what contacts dissipate and store, which takes them as long again as
   // the impulse, and changes no bit of it. They are, where nobody says that it is not wanted.
   void ask_energies(bool asks) { asks_energies_ = asks; }

@@ -35,9 +35,10 @@ struct StepView {
   double speed_before;   // at the half step before time
   double speed_after;    // of v_free, and of what other contacts may make of it
   std::int64_t number;
+  // The times that obstacles move from and to; they stand still where that is time itself.
+  double since = number == 0 ? time : time - dt, until = time + dt;
 
   double velocity_step() const { return number == 0 ? 0.5 * dt : dt; }
-  double time_before() const { return number == 0 ? time : time - dt; }
 };
 
 using ContactList = std::vector<std::int32_t>;  // by contact_index

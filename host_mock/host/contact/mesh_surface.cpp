@@ -49,6 +49,40 @@ Vector3d point_of(const Corners& x, const Vector2d& at) {
   return n[0] * x[0] + n[1] * x[1] + n[2] * x[2] + n[3] * x[3];
 }
 
+bool is_triangle(const std::array<int, 4>& facet) { return facet[2] == facet[3]; }
+
+// The nearest point of an edge from a to b, in parts of it from a on.
+double along_edge(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+  return std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+}
+
+// The nearest point of a triangle: inside, or that of the nearest edge. Its third edge is that from corner 3,
+// which is corner 2 once more, to corner 0.
+Projection project_on_triangle(const Vector3d& p, const Corners& x) {
+  const Vector3d area = (x[1] - x[0]).cross(x[2] - x[0]);
+  const auto part = [&](const Vector3d& a, const Vector3d& b) {
+    return (a - p).cross(b - p).dot(area) / area.squaredNorm();
+  };
+  std::array<double, 4> weights{part(x[1], x[2]), part(x[2], x[0]), part(x[0], x[1]), 0.0};
+  std::array<bool, 4> is_at{};
+  if (*std::min_element(weights.begin(), weights.begin() + 3) <= 0.0) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      const double t = along_edge(p, x[k], x[next]);
+      const double square = (p - (1.0 - t) * x[k] - t * x[next]).squaredNorm();
+      if (!(square < least)) continue;
+      least = square;
+      weights = {};
+      weights[k] = 1.0 - t;
+      weights[next] = t;
+    }
+    is_at = {weights[2] == 0.0, weights[0] == 0.0, false, weights[1] == 0.0};
+  }
+  const Vector3d point = weights[0] * x[0] + weights[1] * x[1] + weights[2] * x[2];
+  return {weights, point, area.normalized(), (p - point).norm(), is_at};
+}
+
 // Gauss-Newton for the nearest point, which takes one step on a parallelogram; a coordinate that
 // leaves the patch is held at its edge.
 Projection project(const Vector3d& p, const Corners& x) {
@@ -95,8 +129,8 @@ MeshSurface::MeshSurface(const Model& model, std::vector<int> nodes, const NodeS
   const Dofs undeformed = Dofs::Zero(model.mass().size());
   for (const Facet& facet : facets_)
     for (std::size_t k = 0; k < 4; ++k)
-      shortest_edge_ = std::min(
-          shortest_edge_, (position(facet[k], undeformed) - position(facet[(k + 1) % 4], undeformed)).norm());
+      if (const int a = facet[k], b = facet[(k + 1) % 4]; a != b)
+        shortest_edge_ = std::min(shortest_edge_, (position(a, undeformed) - position(b, undeformed)).norm());
   MeshSurface::refresh(undeformed);
 }
 
@@ -196,7 +230,8 @@ ContactPoint MeshSurface::contact_point(int node_index, const Dofs& u, double /*
   for (const std::size_t f : neighbours_[nearest_[k]]) {
     const Corners corners{position(facets_[f][0], u), position(facets_[f][1], u), position(facets_[f][2], u),
                           position(facets_[f][3], u)};
-    const Projection projection = project(p, corners);
+    const Projection projection =
+        is_triangle(facets_[f]) ? project_on_triangle(p, corners) : project(p, corners);
     if (projection.distance < best.distance) {
       best = projection;
       facet = f;

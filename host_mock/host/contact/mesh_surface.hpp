@@ -6,8 +6,8 @@
 
 namespace ilaw::host {
 
-// A point is projected on the nearest facet, a bilinear patch of four nodes: the contact's partners
-// are these nodes, with the shape functions there as weights, so that impulses balance. Which facet
+// A point is projected on the nearest facet, a bilinear patch of four nodes or a triangle: the contact's
+// partners are these nodes, with the shape functions there as weights, so that impulses balance. Which facet
 // is the nearest is found among all at a refresh, and among that one's neighbours in between:
 // validity is what a point may slide meanwhile.
 //

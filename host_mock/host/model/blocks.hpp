@@ -16,10 +16,6 @@
 
 namespace ilaw::host {
 
-// Which dilatation an integration point feels: its own, or the mean of its element (Nagtegaal, Parks
-// and Rice 1974; Hughes 1980; Simo, Taylor and Pister 1985).
-enum class Element { full, mean_dilatation };
-
 struct BlockSetup {
   std::string name;
   Eigen::Vector3d corner, size, velocity;

@@ -16,10 +16,19 @@ namespace {
 constexpr std::array<std::array<std::size_t, 3>, 8> neighbours = {
     {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
 
+constexpr std::array<std::array<std::size_t, 3>, 4> tetrahedron_neighbours = {
+    {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}}};
+
+const std::array<std::size_t, 3>& neighbours_of(std::size_t corner, int count) {
+  return count == 4 ? tetrahedron_neighbours[corner] : neighbours[corner];
+}
+
 // The nodes of an element.
 class Cell {
  public:
-  Cell(const Model& model, std::size_t first) : model_(model), nodes_(&model.mesh().cells[first]) {}
+  Cell(const Model& model, const int* nodes, int count) : model_(model), nodes_(nodes), count_(count) {}
+
+  std::size_t corners() const { return static_cast<std::size_t>(count_); }
 
   Vector at(std::size_t corner, const Dofs& u) const {
     const Eigen::Index d = model_.dimension(), dof = d * nodes_[corner];
@@ -27,9 +36,9 @@ class Cell {
   }
   bool is_inverted(const Dofs& u) const {
     if (model_.dimension() == 1) return !(at(1, u)[0] > at(0, u)[0]);
-    for (std::size_t k = 0; k < neighbours.size(); ++k) {
-      const Eigen::Vector3d x = at(k, u), a = at(neighbours[k][0], u), b = at(neighbours[k][1], u),
-                            c = at(neighbours[k][2], u);
+    for (std::size_t k = 0; k < corners(); ++k) {
+      const auto& [i, j, l] = neighbours_of(k, count_);
+      const Eigen::Vector3d x = at(k, u), a = at(i, u), b = at(j, u), c = at(l, u);
       if (!((a - x).cross(b - x).dot(c - x) > 0.0)) return true;
     }
     return false;
@@ -38,13 +47,19 @@ class Cell {
  private:
   const Model& model_;
   const int* nodes_;
+  int count_;
 };
 
 template <class Visit>
 void for_each_cell(const Model& model, Visit visit) {
-  const auto size = static_cast<std::size_t>(model.mesh().nodes_per_cell);
-  for (std::size_t first = 0; size > 0 && first < model.mesh().cells.size(); first += size)
-    visit(Cell(model, first), first / size);
+  const Mesh& mesh = model.mesh();
+  std::size_t number = 0;
+  const auto visit_all = [&](const std::vector<int>& cells, int count) {
+    for (std::size_t first = 0; first < cells.size(); first += static_cast<std::size_t>(count))
+      visit(Cell(model, &cells[first], count), number++);
+  };
+  if (mesh.nodes_per_cell > 0) visit_all(mesh.cells, mesh.nodes_per_cell);
+  visit_all(mesh.tetrahedra, 4);
 }
 
 std::string text_of(double value) {
@@ -55,6 +70,18 @@ std::string text_of(double value) {
 
 }  // namespace
 
+CornerQuality worst_corner(const Eigen::Vector3d* corners, int count) {
+  CornerQuality worst{std::numeric_limits<double>::infinity(), -1};
+  for (int corner = 0; corner < count; ++corner) {
+    const auto& [i, j, l] = neighbours_of(static_cast<std::size_t>(corner), count);
+    const Eigen::Vector3d &x = corners[corner], a = (corners[i] - x).normalized(),
+                          b = (corners[j] - x).normalized(), c = (corners[l] - x).normalized();
+    const double quality = a.cross(b).dot(c) * (count == 4 ? std::sqrt(2.0) : 1.0);
+    if (!(quality >= worst.scaled_jacobian)) worst = {quality, corner};
+  }
+  return worst;
+}
+
 double shortest_edge(const Model& model) {
   const Dofs undeformed = Dofs::Zero(model.position().size());
   double shortest = std::numeric_limits<double>::infinity();
@@ -63,8 +90,11 @@ double shortest_edge(const Model& model) {
       shortest = std::min(shortest, (cell.at(1, undeformed) - cell.at(0, undeformed)).norm());
       return;
     }
-    for (const std::size_t end : neighbours[0])
-      shortest = std::min(shortest, (cell.at(end, undeformed) - cell.at(0, undeformed)).norm());
+    // The edges of a box are those at one corner; of other elements all count.
+    for (std::size_t k = 0; k < cell.corners(); ++k)
+      for (const std::size_t end : neighbours_of(k, static_cast<int>(cell.corners())))
+        if (end > k)
+          shortest = std::min(shortest, (cell.at(end, undeformed) - cell.at(k, undeformed)).norm());
   });
   return shortest;
 }
@@ -78,14 +108,13 @@ std::vector<int> inverted_elements(const Model& model, const Dofs& u) {
 }
 
 InvertedElement first_inverted(const Model& model, const Dofs& u) {
-  const auto corners = static_cast<std::size_t>(model.mesh().nodes_per_cell);
   const Dofs undeformed = Dofs::Zero(u.size());
   InvertedElement found;
   for_each_cell(model, [&](const Cell& cell, std::size_t number) {
     if (found.number >= 0 || !cell.is_inverted(u)) return;
     found = {static_cast<int>(number), Vector::Zero(model.dimension())};
-    for (std::size_t k = 0; k < corners; ++k)
-      found.centre += cell.at(k, undeformed) / static_cast<double>(corners);
+    for (std::size_t k = 0; k < cell.corners(); ++k)
+      found.centre += cell.at(k, undeformed) / static_cast<double>(cell.corners());
   });
   return found;
 }

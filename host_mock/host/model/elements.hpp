@@ -9,6 +9,15 @@
 
 namespace ilaw::host {
 
+// The least scaled Jacobian of the corners of a tetrahedron or hexahedron (4 or 8 corners, in VTK's order),
+// and its corner: the triple product of the unit vectors along the edges there, times sqrt(2) in a
+// tetrahedron.
+struct CornerQuality {
+  double scaled_jacobian;
+  int corner;
+};
+CornerQuality worst_corner(const Eigen::Vector3d* corners, int count);
+
 // Of the undeformed mesh; infinite without one.
 double shortest_edge(const Model& model);
 

@@ -12,6 +12,10 @@ namespace ilaw::host {
 
 enum class MaterialLaw { linear, neo_hookean };
 
+// Which dilatation an integration point feels: its own, or the mean of its element (Nagtegaal, Parks
+// and Rice 1974; Hughes 1980; Simo, Taylor and Pister 1985).
+enum class Element { full, mean_dilatation };
+
 struct Material {
   MaterialLaw law;
   double young, poisson, density;
@@ -19,6 +23,18 @@ struct Material {
   double shear_modulus() const { return 0.5 * young / (1.0 + poisson); }
   double lame() const { return young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)); }
 };
+
+// Linear elasticity with the displacement gradient H, and a dilatation theta in the place of its trace:
+//   sigma = 2 mu (eps - tr(eps)/3 I) + K theta I,  K = lambda + 2/3 mu.
+inline Eigen::Matrix3d linear_stress(const Material& material, const Eigen::Matrix3d& H, double theta) {
+  const double mu = material.shear_modulus(), bulk = material.lame() + 2.0 / 3.0 * mu;
+  return mu * (H + H.transpose()) + (bulk * theta - 2.0 / 3.0 * mu * H.trace()) * Eigen::Matrix3d::Identity();
+}
+inline double linear_energy(const Material& material, const Eigen::Matrix3d& H, double theta) {
+  const double mu = material.shear_modulus(), bulk = material.lame() + 2.0 / 3.0 * mu;
+  const Eigen::Matrix3d strain = 0.5 * (H + H.transpose());
+  return mu * (strain.squaredNorm() - H.trace() * H.trace() / 3.0) + 0.5 * bulk * theta * theta;
+}
 
 // Compressible neo-Hookean solid (Simo and Pister 1984; Bonet and Wood 2008, eq. 6.27):
 //   W = mu/2 (F:F - 3) - mu ln J + lambda/2 (ln J)^2,  P = mu (F - F^-T) + lambda ln J F^-T,

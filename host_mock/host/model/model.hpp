@@ -22,7 +22,8 @@ using Dofs = Eigen::VectorXd;
 struct NodeSet {
   std::vector<int> nodes;
   std::vector<double> areas;
-  std::vector<std::array<int, 4>> facets;  // of a surface in 3D, counter-clockwise seen from outside
+  std::vector<std::array<int, 4>> facets;  // of a surface in 3D, counter-clockwise seen from outside; the
+                                           // last node twice in a triangle
 };
 
 // What all models have in common, filled by their constructors.
@@ -37,6 +38,7 @@ struct Nodes {
 struct Mesh {
   int nodes_per_cell = 0;  // 2: line, 8: hexahedron in VTK's order
   std::vector<int> cells;
+  std::vector<int> tetrahedra;  // four nodes each; their numbers follow those of the cells
 };
 
 class Model {

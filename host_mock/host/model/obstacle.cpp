@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ilaw::host {
@@ -25,13 +26,26 @@ Vector across(const Vector& axis) {
   return (unit - unit.dot(axis) * axis).normalized();
 }
 
+Vector Turning::at_angle(const Vector& direction, double angle) const {
+  Eigen::Vector3d in_space = Eigen::Vector3d::Zero();
+  in_space.head(direction.size()) = direction;
+  return (Eigen::AngleAxisd(angle, axis_) * in_space).head(direction.size());
+}
+
 Vector Turning::turned(const Vector& direction, double from, double to) const {
-  const double angle = angles_ ? angles_->at(to)[0] - angles_->at(from)[0] : rate_ * (to - from);
-  return Eigen::AngleAxisd(angle, axis_) * Eigen::Vector3d(direction);
+  return at_angle(direction, angles_ ? angles_->at(to)[0] - angles_->at(from)[0] : rate_ * (to - from));
 }
 
 Vector Obstacle::turned(const Vector& direction, double from, double to) const {
-  return turning_ && direction.size() == 3 ? turning_->turned(direction, from, to) : direction;
+  const bool turns_with_it = turning_ && (direction.size() == 3 || tilts());
+  return turns_with_it ? turning_->turned(direction, from, to) : direction;
+}
+
+// |(x - p) . (n' - n)| is at most |x - p| times the angle.
+double Obstacle::tilting_speed(const Vector& x, double from, double to) const {
+  if (!tilts() || from == to) return 0.0;
+  return std::abs(turning_->rate(from, to)) * std::max((x - motion_.displacement(from) - pivot()).norm(),
+                                                       (x - motion_.displacement(to) - pivot()).norm());
 }
 
 SurfaceTurn Turning::unit_velocity(const Vector& arm) const {
@@ -44,6 +58,7 @@ SurfaceTurn Turning::unit_velocity(const Vector& arm) const {
 // On a plane a point that is held goes round a circle: its way in a step is a chord, which leads to where the
 // plane carries it. On a round surface that would lead below it.
 TurningRate Obstacle::rate(double from, double to, double side) const {
+  if (from == to) return {};  // it stands still
   const double rate = turning_->rate(from, to), dt = to - from, angle = rate * dt;
   if (!is_flat()) return {rate, 0.0};
   const double half = std::sin(0.5 * angle);
@@ -55,17 +70,21 @@ SurfaceTurn Obstacle::unit_velocity(const Vector& x, const RigidSurface& there, 
   return turning_->unit_velocity(touched - motion_.displacement(time) - pivot());
 }
 
-Plane::Plane(Vector point, const Vector& normal, Motion motion, std::optional<Turning> turning)
+Plane::Plane(Vector point, const Vector& normal, Motion motion, std::optional<Turning> turning, bool tilts)
     : Obstacle(std::move(motion), std::move(turning)),
       point_(std::move(point)),
-      normal_(normal.normalized()) {}
+      normal_(normal.normalized()),
+      tilts_(tilts) {}
 
-RigidSurface Plane::shape_at(const Vector& x) const { return {(x - point_).dot(normal_), normal_}; }
+RigidSurface Plane::shape_at(const Vector& x, double time) const {
+  const Vector normal = normal_at(time);
+  return {(x - point_).dot(normal), normal};
+}
 
 Sphere::Sphere(Vector center, double radius, Motion motion, std::optional<Turning> turning)
     : Obstacle(std::move(motion), std::move(turning)), center_(std::move(center)), radius_(radius) {}
 
-RigidSurface Sphere::shape_at(const Vector& x) const {
+RigidSurface Sphere::shape_at(const Vector& x, double /*time*/) const {
   return round_surface(x - center_, radius_, Vector::Unit(x.size(), 0));
 }
 
@@ -76,7 +95,7 @@ Cylinder::Cylinder(Vector point, const Vector& axis, double radius, Motion motio
       axis_(axis.normalized()),
       radius_(radius) {}
 
-RigidSurface Cylinder::shape_at(const Vector& x) const {
+RigidSurface Cylinder::shape_at(const Vector& x, double /*time*/) const {
   const Vector offset = x - point_;
   return round_surface(offset - offset.dot(axis_) * axis_, radius_, across(axis_));
 }

@@ -1,4 +1,5 @@
-// obstacle.hpp - rigid surfaces that nodes touch. They may move along, and turn so that their shape stays.
+// obstacle.hpp - rigid surfaces that nodes touch. They may move along, turn so that their shape stays, and
+// planes may tilt.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -20,6 +21,7 @@ class Motion {
   Vector displacement(double time) const { return path_ ? path_->at(time) : time * velocity_; }
   // The mean velocity makes predicted gaps exact.
   Vector velocity(double from, double to) const {
+    if (from == to) return Vector::Zero(displacement(to).size());  // it stands still
     if (!path_) return velocity_;
     return (displacement(to) - displacement(from)) / (to - from);
   }
@@ -52,6 +54,9 @@ class Turning {
   double rate(double from, double to) const {
     return angles_ ? (angles_->at(to)[0] - angles_->at(from)[0]) / (to - from) : rate_;
   }
+  double angle(double time) const { return angles_ ? angles_->at(time)[0] : rate_ * time; }
+  // A direction that is given for the angle 0, in 2D or 3D.
+  Vector at_angle(const Vector& direction, double angle) const;
   // A direction in space, as it turns between two times.
   Vector turned(const Vector& direction, double from, double to) const;
   // Of what is there, seen from the axis; in 2D the axis is across the plane.
@@ -84,15 +89,20 @@ class Obstacle {
   Obstacle(const Obstacle&) = delete;
   Obstacle& operator=(const Obstacle&) = delete;
 
-  RigidSurface at(const Vector& x, double time) const { return shape_at(x - motion_.displacement(time)); }
+  RigidSurface at(const Vector& x, double time) const {
+    return shape_at(x - motion_.displacement(time), time);
+  }
   // Mean, between two times.
   Vector velocity(double from, double to) const { return motion_.velocity(from, to); }
   // Whether its surface moves along itself, beside that, and how fast; mean, between two times.
   bool turns() const { return turning_.has_value(); }
-  TurningRate rate_before(double time, double dt) const { return rate(time - dt, time, -1.0); }
-  TurningRate rate_after(double time, double dt) const { return rate(time, time + dt, 1.0); }
+  TurningRate rate_before(double since, double time) const { return rate(since, time, -1.0); }
+  TurningRate rate_after(double time, double until) const { return rate(time, until, 1.0); }
   bool stands_still() const { return !turns() && motion_.stands_still(); }
-  // A direction in space, as it turns between two times; the same where nothing turns, or in a plane.
+  // Whether its normal turns, too. Then how fast it nears a place at most, between two times.
+  virtual bool tilts() const { return false; }
+  double tilting_speed(const Vector& x, double from, double to) const;
+  // A direction in space, as it turns between two times; the same where nothing turns, or for a disc in 2D.
   Vector turned(const Vector& direction, double from, double to) const;
   // Of its surface, at the place with that gap and normal.
   SurfaceTurn unit_velocity(const Vector& x, const RigidSurface& there, double time) const;
@@ -103,11 +113,12 @@ class Obstacle {
 
  protected:
   const Motion& motion() const { return motion_; }
+  const std::optional<Turning>& turning() const { return turning_; }
 
  private:
   TurningRate rate(double from, double to, double side) const;
-  // The obstacle where it is at time 0.
-  virtual RigidSurface shape_at(const Vector& x) const = 0;
+  // The obstacle at a time, without its displacement.
+  virtual RigidSurface shape_at(const Vector& x, double time) const = 0;
   // A point of the axis that it turns about, at time 0.
   virtual const Vector& pivot() const = 0;
 
@@ -117,17 +128,23 @@ class Obstacle {
 
 class Plane : public Obstacle {
  public:
-  // Turns about its normal.
-  Plane(Vector point, const Vector& normal, Motion motion, std::optional<Turning> turning = {});
+  // Turns about its normal, or tilts about another axis; the normal is then that of the angle 0.
+  Plane(Vector point, const Vector& normal, Motion motion, std::optional<Turning> turning = {},
+        bool tilts = false);
   bool is_flat() const override { return true; }
+  bool tilts() const override { return tilts_; }
   std::optional<FlatSurface> flat_at(double time) const override {
-    return FlatSurface{motion().displacement(time), point_, normal_};
+    return FlatSurface{motion().displacement(time), point_, normal_at(time)};
   }
 
  private:
-  RigidSurface shape_at(const Vector& x) const override;
+  RigidSurface shape_at(const Vector& x, double time) const override;
+  Vector normal_at(double time) const {
+    return tilts_ ? turning()->at_angle(normal_, turning()->angle(time)) : normal_;
+  }
   const Vector& pivot() const override { return point_; }
   Vector point_, normal_;
+  bool tilts_;
 };
 
 // A sphere in 3D, a disc in 2D.
@@ -136,7 +153,7 @@ class Sphere : public Obstacle {
   Sphere(Vector center, double radius, Motion motion, std::optional<Turning> turning = {});
 
  private:
-  RigidSurface shape_at(const Vector& x) const override;
+  RigidSurface shape_at(const Vector& x, double time) const override;
   const Vector& pivot() const override { return center_; }
   Vector center_;
   double radius_;
@@ -149,7 +166,7 @@ class Cylinder : public Obstacle {
            std::optional<Turning> turning = {});
 
  private:
-  RigidSurface shape_at(const Vector& x) const override;
+  RigidSurface shape_at(const Vector& x, double time) const override;
   const Vector& pivot() const override { return point_; }
   Vector point_, axis_;
   double radius_;

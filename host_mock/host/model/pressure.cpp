@@ -13,7 +13,6 @@ namespace {
 constexpr double gauss = 0.57735026918962576451;
 constexpr std::array<std::array<double, 2>, 4> corner_at = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
-using FacetCorners = Eigen::Matrix<double, 3, 4>;
 using Shape = Eigen::Vector4d;
 
 // The area vector at a point, and the shape functions there.
@@ -31,6 +30,16 @@ Eigen::Vector3d area_vector(const FacetCorners& x, double xi, double eta, Shape&
 }
 
 }  // namespace
+
+FacetCorners facet_area_vectors(const FacetCorners& x) {
+  FacetCorners parts = FacetCorners::Zero();
+  for (const auto& [s, t] : corner_at) {
+    Shape shape;
+    const Eigen::Vector3d area = area_vector(x, gauss * s, gauss * t, shape);
+    parts += area * shape.transpose();
+  }
+  return parts;
+}
 
 Pressure::Pressure(const Model& model, std::vector<Facet> facets, Table history)
     : model_(model), facets_(std::move(facets)), history_(std::move(history)) {}

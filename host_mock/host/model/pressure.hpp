@@ -13,6 +13,12 @@ namespace ilaw::host {
 //   -p int N_a (dx/dxi x dx/deta) dxi deta
 // of the deformed facet (Hibbitt 1979): the force is p times the derivative of the volume that a closed
 // surface encloses, so that its work is that of p on the volume.
+using FacetCorners = Eigen::Matrix<double, 3, 4>;
+
+// The integral of each shape function times the normal over a bilinear facet. Of a triangle, whose last
+// corner stands twice, the two parts of that corner belong together.
+FacetCorners facet_area_vectors(const FacetCorners& x);
+
 class Pressure : public Load {
  public:
   using Facet = std::array<int, 4>;

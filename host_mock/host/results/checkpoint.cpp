@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/checkpoint.hpp"
 
+#include "scene/read_meshes.hpp"
+
 #include <cstdint>
 #include <sstream>
 #include <stdexcept>
@@ -20,8 +22,11 @@ json identity_of(const Scene& scene) {
                     {"version", interface->library().plugin().version},
                     {"state_size", interface->info().state_size},
                     {"state_version", interface->info().state_version}});
-  return {
-      {"format", "ilaw checkpoint 7"}, {"program", ILAW_VERSION}, {"scene", scene.source}, {"laws", laws}};
+  return {{"format", "ilaw checkpoint 7"},
+          {"program", ILAW_VERSION},
+          {"scene", scene.source},
+          {"laws", laws},
+          {"meshes", marks_of_meshes(scene.source["model"], scene.file)}};
 }
 
 using Bytes = std::vector<std::uint8_t>;
@@ -87,7 +92,8 @@ std::string differences(const json& was, const json& is) {
 void check_identity(const json& found, const json& expected) {
   for (const auto& [part, other] :
        {std::pair{"format", "of another format"}, std::pair{"program", "of another version of the program"},
-        std::pair{"laws", "of other laws, or of other versions of them"}})
+        std::pair{"laws", "of other laws, or of other versions of them"},
+        std::pair{"meshes", "of other meshes"}})
     if (const json was = found.value(part, json()); was != expected[part])
       throw std::runtime_error("is " + std::string(other) + " (" + differences(was, expected[part]) +
                                "), expected the very run that is to be resumed");

@@ -71,9 +71,11 @@ void add_geometry(vtkUnstructuredGrid& grid, const Model& model) {
     for (int k = 0; k < count; ++k) cell->InsertNextId(nodes[k]);
     grid.InsertNextCell(type, cell);
   };
-  for (int node = 0; mesh.cells.empty() && node < model.node_count(); ++node) add_cell(VTK_VERTEX, &node, 1);
+  for (int node = 0; mesh.cells.empty() && mesh.tetrahedra.empty() && node < model.node_count(); ++node)
+    add_cell(VTK_VERTEX, &node, 1);
   for (std::size_t k = 0; k < mesh.cells.size(); k += static_cast<std::size_t>(mesh.nodes_per_cell))
     add_cell(mesh.nodes_per_cell == 8 ? VTK_HEXAHEDRON : VTK_LINE, &mesh.cells[k], mesh.nodes_per_cell);
+  for (std::size_t k = 0; k < mesh.tetrahedra.size(); k += 4) add_cell(VTK_TETRA, &mesh.tetrahedra[k], 4);
 }
 
 vtkDoubleArray* add_cell_array(vtkUnstructuredGrid& grid, const char* name, int components,

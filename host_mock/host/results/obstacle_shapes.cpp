@@ -47,6 +47,17 @@ struct Bodies {
   }
 };
 
+// Of a plane, which may tilt.
+Point normal_of(const json& obstacle, int dimension, const std::string& pointer, double time) {
+  const Point normal = in_3d(read_vector(obstacle["normal"], dimension, pointer + "/normal")).normalized();
+  if (!obstacle.contains("tilt")) return normal;
+  const json& tilt = obstacle["tilt"];
+  const Point axis = dimension == 2 ? Point(Point::UnitZ())
+                                    : in_3d(read_direction(tilt["axis"], dimension, pointer + "/tilt/axis"));
+  const double angle = read_table(tilt["angles"], 1, pointer + "/tilt/angles").at(time)[0];
+  return Eigen::AngleAxisd(angle, axis.normalized()) * normal;
+}
+
 class Shapes {
  public:
   Shapes(vtkUnstructuredGrid& grid, int dimension, const Bodies& bodies)
@@ -63,7 +74,7 @@ class Shapes {
     };
     const Point moved = in_3d(read_motion(obstacle, dimension_, pointer).displacement(time));
     if (type == "plane")
-      add_plane(vector("point") + moved, vector("normal").normalized());
+      add_plane(vector("point") + moved, normal_of(obstacle, dimension_, pointer, time));
     else if (type == "sphere")
       add_sphere(vector("center") + moved, obstacle["radius"].get<double>());
     else
@@ -182,7 +193,7 @@ bool has_obstacles(const Scene& scene) {
 bool has_moving_obstacles(const Scene& scene) {
   bool found = false;
   for_each_obstacle(scene, [&](const json& obstacle, std::size_t /*number*/) {
-    found = found || obstacle.contains("velocity") || obstacle.contains("path");
+    found = found || obstacle.contains("velocity") || obstacle.contains("path") || obstacle.contains("tilt");
   });
   return found;
 }

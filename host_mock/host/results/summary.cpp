@@ -86,7 +86,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
   std::vector<std::string> warnings = scene.warnings;
   warnings.insert(warnings.end(), record.warnings.begin(), record.warnings.end());
   const json source = with_packed_points_as(scene.source, {{"count", scene.model->node_count()}});
-  const json summary = {
+  json summary = {
       {"program", {{"name", "ilaw"}, {"version", ILAW_VERSION}, {"abi", {ILAW_ABI_MAJOR, ILAW_ABI_MINOR}}}},
       {"scene", {{"file", scene.file.filename().string()}, {"title", scene.title}, {"source", source}}},
       {"interfaces", interfaces},
@@ -114,6 +114,9 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
         {"interfaces", seconds.interfaces},
         {"output", record.seconds_output}}},
       {"execution", describe_execution(scene, tally, record, seconds)}};
+  if (const auto& found = integrator.prestressed())
+    summary["prestress"] = {{"steps", found->steps}, {"residual", found->residual}};
+  if (!scene.meshes.empty()) summary["meshes"] = scene.meshes;
   AtomicFile file(folder / "summary.json");
   // Names of files need not be UTF-8.
   file.stream() << summary.dump(2, ' ', false, json::error_handler_t::replace) << '\n';

@@ -39,12 +39,35 @@ std::optional<Turning> read_turning(const json& obstacle, int d, const std::stri
   return Turning(axis, read_table(obstacle["angles"], 1, key));
 }
 
+// The axis that a plane tilts about, through its point: across 2D, given in 3D.
+Eigen::Vector3d read_tilt_axis(const json& tilt, int d, const std::string& pointer) {
+  if (d == 2 && !tilt.contains("axis")) return Eigen::Vector3d::UnitZ();
+  if (d == 2) throw mistake(pointer + "/axis", tilt["axis"].dump(), "none: a plane in 2D tilts in its plane");
+  if (!tilt.contains("axis")) throw SceneError(pointer, "key 'axis' is missing, about which the plane tilts");
+  return read_direction(tilt["axis"], d, pointer + "/axis");
+}
+
+std::unique_ptr<const Obstacle> read_tilting(const json& obstacle, int d, const Motion& motion,
+                                             const std::string& pointer) {
+  for (const char* key : {"rate", "angles"})
+    if (obstacle.contains(key))
+      throw mistake(pointer, std::string("both 'tilt' and '") + key + "'", "one of them");
+  if (d == 1) throw mistake(pointer + "/tilt", "a plane in 1D", "none: it cannot tilt");
+  const json& tilt = obstacle["tilt"];
+  const Turning turning(read_tilt_axis(tilt, d, pointer + "/tilt"),
+                        read_table(tilt["angles"], 1, pointer + "/tilt/angles"));
+  return std::make_unique<Plane>(read_vector(obstacle["point"], d, pointer + "/point"),
+                                 read_direction(obstacle["normal"], d, pointer + "/normal"), motion, turning,
+                                 true);
+}
+
 std::unique_ptr<const Obstacle> read_obstacle(const json& obstacle, int d, const std::string& pointer) {
   const std::string type = obstacle["type"].get<std::string>();
   const Motion motion = read_motion(obstacle, d, pointer);
   if (type == "cylinder" && d != 3)
     throw mistake(pointer + "/type", "\"cylinder\" in " + std::to_string(d) + "D",
                   "a model in 3D (in 2D a sphere is a disc)");
+  if (obstacle.contains("tilt")) return read_tilting(obstacle, d, motion, pointer);
   const std::optional<Turning> turning = read_turning(obstacle, d, pointer);
   if (type == "plane")
     return std::make_unique<Plane>(read_vector(obstacle["point"], d, pointer + "/point"),

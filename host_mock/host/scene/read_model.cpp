@@ -7,6 +7,7 @@
 #include "model/rotating_spring.hpp"
 #include "scene/json_text.hpp"
 #include "scene/packed_points.hpp"
+#include "scene/read_meshes.hpp"
 #include "scene/values.hpp"
 
 #include <sys/resource.h>
@@ -56,8 +57,13 @@ std::unique_ptr<Model> read_rotating_spring(const json& model) {
 class BodyNames {
  public:
   explicit BodyNames(const char* kind) : kind_(kind) {}
+  // Of the bodies that follow.
+  void name_kind(const char* kind) {
+    kind_ = kind;
+    first_ = seen_.size();
+  }
   std::string next(const json& body, const std::string& pointer) {
-    std::string name = body.value("name", kind_ + std::to_string(seen_.size()));
+    std::string name = body.value("name", kind_ + std::to_string(seen_.size() - first_));
     if (name == "all" || !seen_.insert(name).second)
       throw mistake(pointer + "/name", "'" + name + "'", "a name of its own for each body, other than 'all'");
     return name;
@@ -65,6 +71,7 @@ class BodyNames {
 
  private:
   std::string kind_;
+  std::size_t first_ = 0;
   std::set<std::string> seen_;
 };
 
@@ -134,12 +141,15 @@ Material read_material(const json& material) {
           material["density"].get<double>()};
 }
 
-std::unique_ptr<Model> read_blocks(const json& model) {
+Element read_element(const json& body) {
+  return body.value("element", "full") == "full" ? Element::full : Element::mean_dilatation;
+}
+
+std::vector<BlockSetup> read_boxes(const json& given, BodyNames& names) {
   std::vector<BlockSetup> blocks;
-  BodyNames names("block");
   double nodes = 0.0;
-  for (std::size_t k = 0; k < model["blocks"].size(); ++k) {
-    const json& block = model["blocks"][k];
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const json& block = given[k];
     const std::string pointer = at("/model/blocks", k);
     const auto elements = block["elements"].get<std::array<int, 3>>();
     nodes += (elements[0] + 1.0) * (elements[1] + 1.0) * (elements[2] + 1.0);
@@ -147,19 +157,44 @@ std::unique_ptr<Model> read_blocks(const json& model) {
     blocks.push_back({names.next(block, pointer), read_vector_or_zero(block, "corner", 3, pointer),
                       read_vector(block["size"], 3, pointer + "/size"),
                       read_vector_or_zero(block, "velocity", 3, pointer), elements,
-                      read_material(block["material"]),
-                      block.value("element", "full") == "full" ? Element::full : Element::mean_dilatation});
+                      read_material(block["material"]), read_element(block)});
   }
   check_memory(nodes, 3, "/model/blocks");
-  return std::make_unique<Blocks>(blocks);
+  return blocks;
+}
+
+std::unique_ptr<Model> read_blocks(const json& model) {
+  BodyNames names("block");
+  return std::make_unique<Blocks>(read_boxes(model["blocks"], names));
+}
+
+std::unique_ptr<Model> read_solids(const json& model, const std::filesystem::path& scene_file,
+                                   json& described) {
+  BodyNames names("block");
+  const std::vector<BlockSetup> blocks = read_boxes(model.value("blocks", json::array()), names);
+  names.name_kind("mesh");
+  std::vector<MeshSetup> meshes;
+  for (std::size_t k = 0; k < model["meshes"].size(); ++k) {
+    const json& mesh = model["meshes"][k];
+    const std::string pointer = at("/model/meshes", k);
+    const std::string name = names.next(mesh, pointer);
+    MeshSetup& setup = meshes.emplace_back(read_mesh(mesh, pointer, scene_file));
+    setup.name = name;
+    setup.material = read_material(mesh["material"]);
+    setup.element = read_element(mesh);
+  }
+  auto solids = std::make_unique<Solids>(blocks, meshes);
+  described = describe_meshes(model["meshes"], meshes, *solids);
+  return solids;
 }
 
 }  // namespace
 
-std::unique_ptr<Model> read_model(const json& model) {
+std::unique_ptr<Model> read_model(const json& model, const std::filesystem::path& scene_file, json& meshes) {
   const std::string type = model["type"].get<std::string>();
   if (type == "points") return read_points(model);
   if (type == "rotating_spring") return read_rotating_spring(model);
+  if (type == "solids") return read_solids(model, scene_file, meshes);
   return type == "bars" ? read_bars(model) : read_blocks(model);
 }
 

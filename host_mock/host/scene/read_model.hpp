@@ -6,11 +6,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <memory>
 
 namespace ilaw::host {
 
-// Throws SceneError.
-std::unique_ptr<Model> read_model(const nlohmann::json& model);
+// meshes: what was read of files, as describe_meshes has it. Throws SceneError.
+std::unique_ptr<Model> read_model(const nlohmann::json& model, const std::filesystem::path& scene_file,
+                                  nlohmann::json& meshes);
 
 }  // namespace ilaw::host

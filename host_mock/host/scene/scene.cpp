@@ -46,6 +46,14 @@ void read_output(const json& output, Scene& scene) {
   scene.output.forces = read_forces(output.value("forces", json::array()), scene);
 }
 
+PrestressSetup read_prestress(const json& given) {
+  PrestressSetup setup;
+  setup.ramp = given.value("ramp", setup.ramp);
+  setup.tolerance = given.value("tolerance", setup.tolerance);
+  setup.steps = given.value("steps", setup.steps);
+  return setup;
+}
+
 void check_names(const Scene& scene) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i)
@@ -90,13 +98,14 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   scene.source = std::move(source);
   expand_both_sides(scene.source);
   scene.title = scene.source.value("title", file.stem().string());
-  scene.model = read_model(scene.source["model"]);
+  scene.model = read_model(scene.source["model"], scene.file, scene.meshes);
   read_sets(scene.source.value("sets", json::object()), *scene.model);
   if (scene.source.contains("initial")) read_initial(scene.source["initial"], *scene.model);
   const std::vector<Spring> springs =
       read_springs(scene.source.value("springs", json::array()), *scene.model);
   if (!springs.empty()) scene.model = std::make_unique<Sprung>(std::move(scene.model), springs);
   read_time(scene.source["time"], scene);
+  if (scene.source.contains("prestress")) scene.prestress = read_prestress(scene.source["prestress"]);
   const json loads = scene.source.value("loads", json::array());
   for (std::size_t i = 0; i < loads.size(); ++i)
     scene.loads.push_back(read_load(loads[i], *scene.model, at("/loads", i)));

@@ -6,6 +6,7 @@
 #include "model/load.hpp"
 #include "model/model.hpp"
 #include "model/springs.hpp"
+#include "step/prestress.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -43,10 +44,12 @@ struct Scene {
   std::string title;
   nlohmann::json source;
   std::unique_ptr<Model> model;
+  nlohmann::json meshes = nlohmann::json::array();  // what was read of files
   Loads loads;
   Interfaces interfaces;
   double dt = 0.0;
   std::int64_t steps = 0;
+  std::optional<PrestressSetup> prestress;
   OutputSetup output;
   std::vector<std::string> warnings;  // of what can run, but can hardly be meant
 };

@@ -58,6 +58,9 @@ void warn_of_times(Scene& scene) {
 
 namespace {
 
+// When bodies are where the model has them.
+double time_of_start(const Scene& scene) { return scene.prestress ? -scene.prestress->ramp : 0.0; }
+
 // A gap of some interface at the start, and where.
 struct StartGaps {
   std::size_t below = 0, above = 0;  // nodes with gaps below and above the limits
@@ -69,7 +72,7 @@ StartGaps gaps_at_start(const Scene& scene, const Interface& interface, double l
   StartGaps found;
   const Dofs& start = scene.model->initial_displacement();
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
-    const double gap = interface.gap_at(static_cast<int>(k), start, 0.0);
+    const double gap = interface.gap_at(static_cast<int>(k), start, time_of_start(scene));
     const int node = interface.nodes()[k];
     if (gap < low) ++found.below;
     if (gap > high) ++found.above;
@@ -128,7 +131,7 @@ double depth_behind(const FlatSurface& flat, const Model& model) {
 void warn_of_side(Scene& scene) {
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
-    const std::optional<FlatSurface> flat = interface.setup().counterpart->flat_at(0.0);
+    const std::optional<FlatSurface> flat = interface.setup().counterpart->flat_at(time_of_start(scene));
     const double depth = flat ? depth_behind(*flat, *scene.model) : 0.0;
     if (!(depth > 0.0) || gaps_at_start(scene, interface, -1e-9 * depth, HUGE_VAL).below > 0) continue;
     scene.warnings.push_back(at("/interfaces", i) + "/obstacle/normal: all of the model lies behind the " +
@@ -240,15 +243,23 @@ void warn_of_open_bonds(Scene& scene) {
   }
 }
 
+// Constant strain locks far earlier than hexahedra do.
 void warn_of_locking(Scene& scene) {
-  constexpr double least_poisson = 0.49;
-  const json blocks = scene.source["model"].value("blocks", json::array());
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const json& poisson = blocks[k]["material"]["poisson"];
-    if (poisson.get<double>() > least_poisson && blocks[k].value("element", "full") == "full")
-      scene.warnings.push_back(at("/model/blocks", k) + "/material/poisson: found " + poisson.dump() +
-                               ", at which full elements can hardly bend; \"element\": "
-                               "\"mean_dilatation\" can");
+  constexpr double max_full_hexahedra = 0.49, max_full_tetrahedra = 0.4;
+  const json& model = scene.source["model"];
+  const auto warn = [&](const json& body, double limit, const std::string& pointer, const char* elements) {
+    const json& poisson = body["material"]["poisson"];
+    if (poisson.get<double>() > limit && body.value("element", "full") == "full")
+      scene.warnings.push_back(pointer + "/material/poisson: found " + poisson.dump() + ", at which full " +
+                               elements + " can hardly bend; \"element\": \"mean_dilatation\" can");
+  };
+  const json blocks = model.value("blocks", json::array());
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+    warn(blocks[k], max_full_hexahedra, at("/model/blocks", k), "elements");
+  for (std::size_t k = 0; k < scene.meshes.size(); ++k) {
+    const bool has_tetrahedra = scene.meshes[k]["tetrahedra"].get<std::size_t>() > 0;
+    warn(model["meshes"][k], has_tetrahedra ? max_full_tetrahedra : max_full_hexahedra,
+         at("/model/meshes", k), has_tetrahedra ? "tetrahedra" : "elements");
   }
 }
 

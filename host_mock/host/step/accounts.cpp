@@ -127,7 +127,8 @@ void Accounts::add_counts(const Interface& interface) {
 bool Accounts::has_diverged(const Model& model, const Dofs& v, double speed, double dt,
                             std::int64_t steps) const {
   const auto n = static_cast<double>(steps);
-  const double most = (unstable_growth + n * n * n * n) * energy_.put_in();
+  // A body at rest moves by the rounding of what reactions take from it in a step.
+  const double most = (unstable_growth + n * n * n * n) * energy_.put_in() + rounding_energy_;
   if (!(0.5 * total_mass_ * speed * speed > most)) return false;
   const double rounding =
       std::numeric_limits<double>::epsilon() * model.position().cwiseAbs().maxCoeff() / dt;

@@ -43,7 +43,9 @@ double mixed_potential(const Model& model, const Dofs& u, const Dofs& u_next) {
 }  // namespace
 
 void EnergyBalance::start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) {
+  const double stored = sums_.stored_before;
   sums_ = {};
+  begin_with_stored(stored);
   sums_.initial = kinetic_sum(model, v);
   sums_.initial += model.is_linear() ? mixed_potential(model, u, u_next) : model.potential(u);
   if (!model.is_linear()) sums_.internal_work = -static_cast<Sum>(model.potential(u));
@@ -110,7 +112,7 @@ EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs
     parts += by_law_[k];
   }
   report.least_dissipation = sums_.least_dissipation;
-  report.reaction_work = static_cast<double>(sums_.relative_work + parts);
+  report.reaction_work = static_cast<double>(sums_.relative_work + parts - sums_.stored_before);
   return report;
 }
 

@@ -48,6 +48,7 @@ class EnergyBalance {
   // obstacles added, and the most that interfaces have stored.
   double put_in() const { return sums_.put_in + sums_.most_stored; }
   void set_stored(double energy);
+  void begin_with_stored(double energy) { sums_.stored_before = sums_.most_stored = energy; }
 
   EnergyReport report(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v) const;
 
@@ -66,11 +67,12 @@ class EnergyBalance {
     double least_dissipation = 0.0;
     double largest = 0.0;  // of the energies and works so far
     double put_in = 0.0, most_stored = 0.0;
+    double stored_before = 0.0;  // by interfaces, in a prestress
   };
   static constexpr std::array all_sums{&Sums::initial,       &Sums::external_work,  &Sums::damping_work,
                                        &Sums::internal_work, &Sums::interface_work, &Sums::relative_work};
   static constexpr std::array all_extremes{&Sums::least_dissipation, &Sums::largest, &Sums::put_in,
-                                           &Sums::most_stored};
+                                           &Sums::most_stored, &Sums::stored_before};
   void note_size(Sum energy);
 
   Sums sums_;

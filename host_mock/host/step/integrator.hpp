@@ -10,6 +10,7 @@
 #include "model/load.hpp"
 #include "step/accounts.hpp"
 #include "step/coupled_step.hpp"
+#include "step/prestress.hpp"
 
 #include <iosfwd>
 #include <optional>
@@ -32,7 +33,10 @@ struct PhaseSeconds {
 
 class Integrator {
  public:
-  Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt);
+  // With a prestress the start finds the static equilibrium first. Throws std::runtime_error where it is not
+  // found.
+  Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt,
+             std::optional<PrestressSetup> prestress = {});
 
   // The half step that a run starts with, from V_0 to V_{1/2}, as interfaces let it: what rests or is bonded
   // carries its load from time 0 on. The first step does it where nobody has; later calls do nothing. Throws
@@ -60,6 +64,8 @@ class Integrator {
   double interface_work() const { return accounts_.energy().interface_work(); }
   // At the half step after time(); components as in energy.hpp.
   Vector angular_momentum() const { return host::angular_momentum(model_, u_, v_); }
+  // Where the start has found an equilibrium, or sought one in vain.
+  const std::optional<PrestressReport>& prestressed() const { return prestressed_; }
   PhaseSeconds seconds() const {
     const double tick = tick_length_.seconds();
     return {tick * static_cast<double>(force_ticks_), tick * static_cast<double>(interface_ticks_)};
@@ -90,6 +96,11 @@ class Integrator {
   Dofs force_at_start() const;
   StepTimes start_times() const { return {-0.5 * dt_, 0.0, dt_}; }
   void add_start_kick();
+  void settle();
+  void relax(StepTimes times, bool from_rest);
+  double residual();
+  void stop();
+  void begin_anew();
   void hold_driven_before();
   void add_reactions(const StepView& step);
   void add_coupled_reactions(const StepView& step);
@@ -104,6 +115,10 @@ class Integrator {
   Interfaces& interfaces_;
   std::optional<CoupledStep> coupled_;  // where contacts share nodes
   double dt_;
+  std::optional<PrestressSetup> prestress_;
+  std::optional<PrestressReport> prestressed_;
+  bool was_held_ = true;         // obstacles stood still in the last step of the prestress
+  double first_residual_ = 0.0;  // of the prestress, as an impulse
   bool loads_are_steady_;
   bool transmits_steadily_;               // H is the same in all steps
   bool forces_are_steady_;                // loads are, and there are no others

@@ -27,11 +27,13 @@ std::vector<std::size_t> order_of_corrections(const Loads& loads) {
 
 }  // namespace
 
-Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt)
+Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& interfaces, double dt,
+                       std::optional<PrestressSetup> prestress)
     : model_(model),
       loads_(loads),
       interfaces_(interfaces),
       dt_(dt),
+      prestress_(prestress),
       loads_are_steady_(
           std::all_of(loads.begin(), loads.end(), [](const auto& load) { return load->is_steady(); })),
       transmits_steadily_(std::all_of(loads.begin(), loads.end(),
@@ -91,7 +93,12 @@ void Integrator::hold_driven_before() {
 void Integrator::start() {
   if (has_started_) return;
   has_started_ = true;
+  if (prestress_) settle();
   add_start_kick();  // once more: by now it is known whose impulses are kept
+  if (prestress_) {
+    accounts_.start(model_, u_, u_ + dt_ * v_, v_);
+    speed_before_ = largest_speed(v_, model_.dimension());
+  }
   if (interfaces_.empty()) return;
   RunningLaw::set_step(0);
   const Eigen::Index d = model_.dimension();

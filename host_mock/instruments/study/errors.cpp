@@ -123,7 +123,7 @@ void ask_no_energies(const Interfaces& interfaces) {
 Trace trace_of(Scene& scene) {
   const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
   ask_no_energies(scene.interfaces);
-  Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
+  Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress);
   const std::vector<WatchedContact> contacts = watched_contacts(scene);
   Trace trace;
   trace.dt = scene.dt;
@@ -150,7 +150,7 @@ Trace trace_of(Scene& scene) {
 
 double seconds_of(Scene& scene) {
   ask_no_energies(scene.interfaces);
-  Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
+  Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress);
   integrator.start();
   const double start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
   while (integrator.steps() < scene.steps) integrator.step();

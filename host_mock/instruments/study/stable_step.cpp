@@ -10,7 +10,7 @@
 namespace ilaw::host {
 
 bool is_stable(Scene scene) {
-  Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt);
+  Integrator integrator(*scene.model, scene.loads, scene.interfaces, scene.dt, scene.prestress);
   // A report costs as much as a step.
   const std::int64_t every = std::max<std::int64_t>(scene.steps / 500, 1);
   try {

@@ -63,6 +63,8 @@ json refined(const json& source, const Sweep& sweep, double by) {
 void check_mesh(const json& source, const Sweep& sweep, const std::string& pointer) {
   if (!sweep.with_mesh) return;
   const json& model = source["model"];
+  if (model.contains("meshes"))
+    throw mistake(pointer + "/refine", "\"mesh\"", "\"time\": a mesh from a file cannot be refined");
   if (!model.contains("bars") && !model.contains("blocks"))
     throw mistake(pointer + "/refine", "\"mesh\"", "\"time\": the model has no mesh");
   refuse_numbers_in(source, "");

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/mesh_body.hpp"
+
+#include "base/parallel.hpp"
+#include "model/solid_element.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace ilaw::host {
+namespace {
+
+// Elements that are worth a thread.
+constexpr std::ptrdiff_t element_chunk = 128;
+
+// Corners of the reference cube, in VTK's order.
+constexpr std::array<std::array<int, 3>, 8> reference_corners{
+    {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
+
+Eigen::Vector3d reference_corner(std::size_t k) {
+  return Eigen::Map<const Eigen::Vector3i>(reference_corners[k].data()).cast<double>();
+}
+
+// Values and derivatives, by the reference coordinates, of the trilinear shape functions.
+Eigen::Matrix<double, 1, 8> shapes_at(const Eigen::Vector3d& at) {
+  Eigen::Matrix<double, 1, 8> shapes;
+  for (std::size_t a = 0; a < 8; ++a)
+    shapes[static_cast<Eigen::Index>(a)] = 0.125 * (1.0 + reference_corner(a).array() * at.array()).prod();
+  return shapes;
+}
+Eigen::Matrix<double, 3, 8> derivatives_at(const Eigen::Vector3d& at) {
+  Eigen::Matrix<double, 3, 8> derivatives;
+  for (std::size_t a = 0; a < 8; ++a) {
+    const Eigen::Vector3d s = reference_corner(a), along = 1.0 + s.array() * at.array();
+    derivatives.col(static_cast<Eigen::Index>(a)) =
+        0.125 *
+        Eigen::Vector3d(s[0] * along[1] * along[2], along[0] * s[1] * along[2], along[0] * along[1] * s[2]);
+  }
+  return derivatives;
+}
+
+// The Gauss points: at the corners of a cube within.
+Eigen::Vector3d gauss_point(std::size_t g) { return reference_corner(g) / std::sqrt(3.0); }
+
+template <int N>
+Eigen::Matrix<double, 3, N> corner_positions(const std::array<int, N>& nodes, const Dofs& position) {
+  Eigen::Matrix<double, 3, N> x;
+  for (std::size_t a = 0; a < N; ++a)
+    x.col(static_cast<Eigen::Index>(a)) = position.segment<3>(3 * Eigen::Index{nodes[a]});
+  return x;
+}
+
+// An isoparametric element: dN/dx = J^-T dN/dxi with J = dx/dxi.
+template <int N, int P>
+void add_point(SolidElement<N, P>& element, std::size_t g, const Eigen::Matrix<double, 3, N>& x,
+               const Eigen::Matrix<double, 3, N>& derivatives, double reference_volume) {
+  const Eigen::Matrix3d jacobian = x * derivatives.transpose();
+  const double determinant = jacobian.determinant();
+  if (!(determinant > 0.0))
+    throw MeshError("an element with the node " + std::to_string(element.nodes[0]) + ": found the Jacobian " +
+                    std::to_string(determinant) +
+                    " inside it, expected a positive one: the element is inverted");
+  element.gradients[g] = jacobian.inverse().transpose() * derivatives;
+  element.weights[g] = determinant * reference_volume;
+  element.volume += element.weights[g];
+}
+
+Hexahedron hexahedron_of(const std::array<int, 8>& nodes, const Dofs& position) {
+  Hexahedron element{nodes, {}, {}, 0.0};
+  for (std::size_t g = 0; g < 8; ++g)
+    add_point(element, g, corner_positions<8>(nodes, position), derivatives_at(gauss_point(g)), 1.0);
+  return element;
+}
+
+Tetrahedron tetrahedron_of(const std::array<int, 4>& nodes, const Dofs& position) {
+  Tetrahedron element{nodes, {}, {}, 0.0};
+  Eigen::Matrix<double, 3, 4> derivatives;
+  derivatives << -1.0, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 1.0;
+  add_point(element, 0, corner_positions<4>(nodes, position), derivatives, 1.0 / 6.0);
+  return element;
+}
+
+// The sums of the rows of the consistent mass.
+Eigen::Matrix<double, 1, 8> lumped_volumes(const Hexahedron& element) {
+  Eigen::Matrix<double, 1, 8> volumes = Eigen::Matrix<double, 1, 8>::Zero();
+  for (std::size_t g = 0; g < 8; ++g) volumes += element.weights[g] * shapes_at(gauss_point(g));
+  return volumes;
+}
+Eigen::Matrix<double, 1, 4> lumped_volumes(const Tetrahedron& element) {
+  return Eigen::Matrix<double, 1, 4>::Constant(0.25 * element.volume);
+}
+
+// The largest eigenvalue of M^-1 K of an element, K column by column from the forces of unit displacements.
+template <int N, int P>
+double largest_eigenvalue(const SolidElement<N, P>& element, const Material& material, Element kind) {
+  const Material linear{MaterialLaw::linear, material.young, material.poisson, material.density};
+  Eigen::Matrix<double, 3 * N, 3 * N> stiffness;
+  for (Eigen::Index k = 0; k < 3 * N; ++k) {
+    Eigen::Matrix<double, 3, N> u = Eigen::Matrix<double, 3, N>::Zero();
+    u(k % 3, k / 3) = 1.0;
+    const Eigen::Matrix<double, 3, N> force = DeformedElement<N, P>(element, u, linear, kind).force();
+    stiffness.col(k) = Eigen::Map<const Eigen::Matrix<double, 3 * N, 1>>(force.data());
+  }
+  Eigen::Matrix<double, 3 * N, 1> scale;
+  const Eigen::Matrix<double, 1, N> volumes = lumped_volumes(element);
+  for (Eigen::Index k = 0; k < 3 * N; ++k) scale[k] = 1.0 / std::sqrt(material.density * volumes[k / 3]);
+  const Eigen::Matrix<double, 3 * N, 3 * N> scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 3 * N, 3 * N>> modes(
+      0.5 * (scaled + scaled.transpose()), Eigen::EigenvaluesOnly);
+  return modes.eigenvalues().maxCoeff();
+}
+
+template <int N, int P>
+double largest_eigenvalue(const std::vector<SolidElement<N, P>>& elements, const Material& material,
+                          Element kind) {
+  std::vector<double> values(elements.size());
+  for_each_chunk(static_cast<std::ptrdiff_t>(elements.size()), element_chunk,
+                 [&](std::ptrdiff_t, std::ptrdiff_t begin, std::ptrdiff_t end) {
+                   for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+                     values[k] = largest_eigenvalue(elements[k], material, kind);
+                 });
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+template <int N>
+std::array<int, N> shifted(std::array<int, N> nodes, int by) {
+  for (int& node : nodes) node += by;
+  return nodes;
+}
+
+}  // namespace
+
+MeshBody::MeshBody(const MeshTopology& topology, const Dofs& position, int first, const Material& material,
+                   Element element)
+    : first_(first), material_(material), element_(element) {
+  for (const auto& nodes : topology.hexahedra)
+    hexahedra_.push_back(hexahedron_of(shifted<8>(nodes, first), position));
+  for (const auto& nodes : topology.tetrahedra)
+    tetrahedra_.push_back(tetrahedron_of(shifted<4>(nodes, first), position));
+  index_corners(static_cast<int>(topology.sets.at("").nodes.size()));
+  corner_forces_.resize(3, static_cast<Eigen::Index>(corners_.size()));
+  if (!averages_at_nodes()) return;
+  nodal_.resize(first_corner_.size() - 1);
+  tetrahedron_gradients_.resize(tetrahedra_.size());
+}
+
+void MeshBody::index_corners(int node_count) {
+  std::vector<std::vector<std::size_t>> of_node(static_cast<std::size_t>(node_count));
+  std::size_t corner = 0;
+  for (const Hexahedron& element : hexahedra_)
+    for (const int node : element.nodes) of_node[static_cast<std::size_t>(node - first_)].push_back(corner++);
+  for (const Tetrahedron& element : tetrahedra_)
+    for (const int node : element.nodes) of_node[static_cast<std::size_t>(node - first_)].push_back(corner++);
+  for (const std::vector<std::size_t>& corners : of_node) {
+    first_corner_.push_back(corners_.size());
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+  }
+  first_corner_.push_back(corners_.size());
+}
+
+void MeshBody::add_mass(Dofs& mass) const {
+  const auto add = [&](const auto& elements) {
+    for (const auto& element : elements) {
+      const auto volumes = lumped_volumes(element);
+      for (std::size_t a = 0; a < element.nodes.size(); ++a)
+        mass.segment<3>(3 * Eigen::Index{element.nodes[a]}).array() +=
+            material_.density * volumes[static_cast<Eigen::Index>(a)];
+    }
+  };
+  add(hexahedra_);
+  add(tetrahedra_);
+}
+
+double MeshBody::critical_step() const {
+  return 2.0 / std::sqrt(std::max(largest_eigenvalue(hexahedra_, material_, element_),
+                                  largest_eigenvalue(tetrahedra_, material_, Element::full)));
+}
+
+// ---- tetrahedra with the dilatations of their nodes -----------------------------------------------------
+
+// Calls visit for the tetrahedra at a node.
+template <class Visit>
+void MeshBody::for_each_corner(int node, Visit visit) const {
+  const std::size_t first_column = 8 * hexahedra_.size();
+  const auto k = static_cast<std::size_t>(node);
+  for (std::size_t i = first_corner_[k]; i < first_corner_[k + 1]; ++i)
+    if (corners_[i] >= first_column) visit((corners_[i] - first_column) / 4);
+}
+
+double MeshBody::mean_distortion(int node) const {
+  const MeanDilatation solid{material_.shear_modulus(), material_.lame(),
+                             nodal_[static_cast<std::size_t>(node)].dilatation};
+  double sum = 0.0, volume = 0.0;
+  for_each_corner(node, [&](std::size_t e) {
+    const Eigen::Matrix3d& F = tetrahedron_gradients_[e];
+    sum += tetrahedra_[e].volume * solid.scale(F.determinant()) * F.squaredNorm();
+    volume += tetrahedra_[e].volume;
+  });
+  return sum / volume;
+}
+
+void MeshBody::find_nodal_dilatations(const Dofs& u) const {
+  const bool linear = is_linear();
+  const auto each = [](std::size_t count, auto visit) {
+    for_each_chunk(static_cast<std::ptrdiff_t>(count), element_chunk,
+                   [&](std::ptrdiff_t, std::ptrdiff_t begin, std::ptrdiff_t end) {
+                     for (std::ptrdiff_t k = begin; k < end; ++k) visit(static_cast<std::size_t>(k));
+                   });
+  };
+  each(tetrahedra_.size(), [&](std::size_t e) {
+    Eigen::Matrix3d& gradient = tetrahedron_gradients_[e];
+    gradient = gather(tetrahedra_[e], u) * tetrahedra_[e].gradients[0].transpose();
+    if (!linear) gradient += Eigen::Matrix3d::Identity();
+  });
+  each(nodal_.size(), [&](std::size_t node) {
+    double sum = 0.0, volume = 0.0;
+    for_each_corner(static_cast<int>(node), [&](std::size_t e) {
+      const Eigen::Matrix3d& gradient = tetrahedron_gradients_[e];
+      sum += tetrahedra_[e].volume * (linear ? gradient.trace() : gradient.determinant());
+      volume += tetrahedra_[e].volume;
+    });
+    if (!(volume > 0.0)) return;
+    nodal_[node].dilatation = sum / volume;
+    if (!linear)
+      nodal_[node].pressure =
+          MeanDilatation{material_.shear_modulus(), material_.lame(), nodal_[node].dilatation}.pressure(
+              mean_distortion(static_cast<int>(node)));
+  });
+}
+
+// The first Piola-Kirchhoff stress of a tetrahedron, a fourth of the derivative of the energy by F for each
+// node.
+Eigen::Matrix3d MeshBody::nodal_stress(std::size_t tetrahedron) const {
+  const Eigen::Matrix3d& gradient = tetrahedron_gradients_[tetrahedron];
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const int node : tetrahedra_[tetrahedron].nodes) {
+    const NodalDilatation& nodal = nodal_[static_cast<std::size_t>(node - first_)];
+    if (is_linear()) {
+      sum += 0.25 * linear_stress(material_, gradient, nodal.dilatation);
+      continue;
+    }
+    const MeanDilatation solid{material_.shear_modulus(), material_.lame(), nodal.dilatation};
+    const double volume = gradient.determinant();
+    sum += 0.25 * solid.stress(nodal.pressure, gradient, volume, solid.scale(volume));
+  }
+  return sum;
+}
+
+double MeshBody::nodal_energy(const Dofs& u) const {
+  find_nodal_dilatations(u);
+  double sum = 0.0;
+  for (std::size_t e = 0; e < tetrahedra_.size(); ++e)
+    for (const int node : tetrahedra_[e].nodes) {
+      const Eigen::Matrix3d& gradient = tetrahedron_gradients_[e];
+      const double dilatation = nodal_[static_cast<std::size_t>(node - first_)].dilatation;
+      const MeanDilatation solid{material_.shear_modulus(), material_.lame(), dilatation};
+      sum += 0.25 * tetrahedra_[e].volume *
+             (is_linear() ? linear_energy(material_, gradient, dilatation)
+                          : solid.energy(solid.scale(gradient.determinant()) * gradient.squaredNorm()));
+    }
+  return sum;
+}
+
+// ---- the body as a whole --------------------------------------------------------------------------------
+
+void MeshBody::add_internal_forces(const Dofs& u, Dofs& force) const {
+  if (averages_at_nodes()) find_nodal_dilatations(u);
+  const auto hexahedra = static_cast<std::ptrdiff_t>(hexahedra_.size());
+  for_each_chunk(hexahedra, element_chunk, [&](std::ptrdiff_t, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t k = begin; k < end; ++k) {
+      const Hexahedron& element = hexahedra_[static_cast<std::size_t>(k)];
+      corner_forces_.middleCols<8>(8 * k) =
+          DeformedElement<8, 8>(element, gather(element, u), material_, element_).force();
+    }
+  });
+  const auto tetrahedra = static_cast<std::ptrdiff_t>(tetrahedra_.size());
+  for_each_chunk(tetrahedra, element_chunk, [&](std::ptrdiff_t, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t k = begin; k < end; ++k) {
+      const Tetrahedron& element = tetrahedra_[static_cast<std::size_t>(k)];
+      auto forces = corner_forces_.middleCols<4>(8 * hexahedra + 4 * k);
+      if (averages_at_nodes())
+        forces = element.volume * nodal_stress(static_cast<std::size_t>(k)) * element.gradients[0];
+      else
+        forces = DeformedElement<4, 1>(element, gather(element, u), material_, element_).force();
+    }
+  });
+  const auto nodes = static_cast<std::ptrdiff_t>(first_corner_.size()) - 1;
+  for_each_chunk(nodes, element_chunk, [&](std::ptrdiff_t, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t node = begin; node < end; ++node)
+      for (std::size_t i = first_corner_[static_cast<std::size_t>(node)];
+           i < first_corner_[static_cast<std::size_t>(node) + 1]; ++i)
+        force.segment<3>(3 * (first_ + node)) -= corner_forces_.col(static_cast<Eigen::Index>(corners_[i]));
+  });
+}
+
+double MeshBody::potential(const Dofs& u) const {
+  double sum = 0.0;
+  for (const Hexahedron& element : hexahedra_)
+    sum += DeformedElement<8, 8>(element, gather(element, u), material_, element_).energy();
+  if (averages_at_nodes()) return sum + nodal_energy(u);
+  for (const Tetrahedron& element : tetrahedra_)
+    sum += DeformedElement<4, 1>(element, gather(element, u), material_, element_).energy();
+  return sum;
+}
+
+void MeshBody::add_stresses(const Dofs& u, std::vector<Eigen::Matrix3d>& of_hexahedra,
+                            std::vector<Eigen::Matrix3d>& of_tetrahedra) const {
+  for (const Hexahedron& element : hexahedra_)
+    of_hexahedra.push_back(
+        DeformedElement<8, 8>(element, gather(element, u), material_, element_).mean_stress());
+  if (averages_at_nodes()) find_nodal_dilatations(u);
+  for (std::size_t e = 0; e < tetrahedra_.size(); ++e) {
+    const Tetrahedron& element = tetrahedra_[e];
+    if (!averages_at_nodes()) {
+      of_tetrahedra.push_back(
+          DeformedElement<4, 1>(element, gather(element, u), material_, element_).mean_stress());
+      continue;
+    }
+    const Eigen::Matrix3d& F = tetrahedron_gradients_[e];
+    of_tetrahedra.push_back(is_linear() ? nodal_stress(e)
+                                        : Eigen::Matrix3d(nodal_stress(e) * F.transpose() / F.determinant()));
+  }
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/read_meshes.hpp"
+
+#include "base/files.hpp"
+#include "scene/json_text.hpp"
+#include "scene/mesh_file.hpp"
+#include "scene/values.hpp"
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <numeric>
+
+namespace ilaw::host {
+namespace {
+
+using nlohmann::json;
+
+// Relative to the scene, not to wherever the user happens to be.
+std::filesystem::path path_of(const json& mesh, const std::filesystem::path& scene_file) {
+  return std::filesystem::absolute(scene_file).parent_path() / mesh["file"].get<std::string>();
+}
+
+std::string text_of(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+FileMark mark_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  FileMark mark;
+  std::array<char, 1 << 16> part{};
+  while (stream.read(part.data(), part.size()) || stream.gcount() > 0)
+    mark.add(part.data(), static_cast<std::size_t>(stream.gcount()));
+  return mark;
+}
+
+json describe_sets(const MeshTopology& topology) {
+  json sets = json::object();
+  for (const auto& [name, set] : topology.sets)
+    if (!name.empty())
+      sets[name] = {{"nodes", set.nodes.size()},
+                    {"facets", set.facets.size()},
+                    {"area", std::accumulate(set.areas.begin(), set.areas.end(), 0.0)}};
+  return sets;
+}
+
+}  // namespace
+
+MeshSetup read_mesh(const json& mesh, const std::string& pointer, const std::filesystem::path& scene_file) {
+  MeshSetup setup;
+  try {
+    setup.mesh = read_mesh_file(path_of(mesh, scene_file));
+    setup.topology = topology_of(setup.mesh);
+  } catch (const MeshError& error) {
+    throw SceneError(pointer + "/file", mesh["file"].get<std::string>() + ": " + error.what());
+  }
+  setup.offset = read_vector_or_zero(mesh, "offset", 3, pointer);
+  setup.velocity = read_vector_or_zero(mesh, "velocity", 3, pointer);
+  return setup;
+}
+
+json describe_meshes(const json& meshes, const std::vector<MeshSetup>& setups, const Solids& solids) {
+  json described = json::array();
+  for (std::size_t k = 0; k < setups.size(); ++k) {
+    const MeshTopology& topology = setups[k].topology;
+    described.push_back(
+        {{"name", setups[k].name},
+         {"file", meshes[k]["file"]},
+         {"nodes", setups[k].mesh.nodes.size()},
+         {"hexahedra", topology.hexahedra.size()},
+         {"tetrahedra", topology.tetrahedra.size()},
+         {"parts", topology.parts},
+         {"critical_step", solids.critical_step_of_mesh(k)},
+         {"worst_element", {{"cell", topology.worst_cell}, {"scaled_jacobian", topology.worst_quality}}},
+         {"sets", describe_sets(topology)}});
+  }
+  return described;
+}
+
+std::string line_of_mesh(const json& mesh) {
+  const auto count = [&](const char* key) { return mesh[key].dump() + " " + key; };
+  std::string line =
+      mesh["name"].get<std::string>() + " from " + mesh["file"].get<std::string>() + ": " + count("nodes");
+  for (const char* kind : {"hexahedra", "tetrahedra"})
+    if (mesh[kind].get<std::size_t>() > 0) line += ", " + count(kind);
+  if (mesh["parts"].get<int>() > 1) line += " in " + count("parts") + " that share no node";
+  line += "; critical step " + text_of(mesh["critical_step"].get<double>()) + "; worst element: cell " +
+          mesh["worst_element"]["cell"].dump() + ", scaled Jacobian " +
+          text_of(mesh["worst_element"]["scaled_jacobian"].get<double>()) + "; sets (facets):";
+  for (const auto& [name, set] : mesh["sets"].items()) line += " " + name + " (" + set["facets"].dump() + ")";
+  return line;
+}
+
+json marks_of_meshes(const json& model, const std::filesystem::path& scene_file) {
+  json marks = json::array();
+  for (const json& mesh : model.value("meshes", json::array())) {
+    const FileMark mark = mark_of(path_of(mesh, scene_file));
+    marks.push_back({{"size", mark.size}, {"checksum", mark.checksum}});
+  }
+  return marks;
+}
+
+}  // namespace ilaw::host

@@ -1,0 +1,27 @@
+// read_meshes.hpp - the bodies of a scene whose meshes are in files.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "model/solids.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ilaw::host {
+
+// The mesh at a pointer of a scene in that file. Throws SceneError.
+MeshSetup read_mesh(const nlohmann::json& mesh, const std::string& pointer,
+                    const std::filesystem::path& scene_file);
+
+// Counts, quality, critical step and sets of each mesh, for the summary; and a line of it for a terminal.
+nlohmann::json describe_meshes(const nlohmann::json& meshes, const std::vector<MeshSetup>& setups,
+                               const Solids& solids);
+std::string line_of_mesh(const nlohmann::json& described);
+
+// Sizes and checksums of the files, by which a checkpoint knows its meshes.
+nlohmann::json marks_of_meshes(const nlohmann::json& model, const std::filesystem::path& scene_file);
+
+}  // namespace ilaw::host

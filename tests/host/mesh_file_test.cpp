@@ -1,0 +1,323 @@
+// Files of meshes: sets that they name, mistakes that are refused, and files that are damaged in any way.
+#include "run_result.hpp"
+
+#include "mesh_writer.hpp"
+#include "model/mesh_topology.hpp"
+#include "scene/mesh_file.hpp"
+
+#include <random>
+#include <set>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+json scene_with(const std::string& file) {
+  return {{"model",
+           {{"type", "solids"},
+            {"meshes",
+             {{{"name", "b"},
+               {"file", file},
+               {"material", {{"type", "linear"}, {"young", 1e6}, {"poisson", 0.3}, {"density", 1000.0}}}}}}}},
+          {"time", {{"cfl", 0.9}, {"end", 0.1}}},
+          {"interfaces", json::array()}};
+}
+
+std::string refusal_of_mesh(const WrittenMesh& mesh) {
+  const MeshFile file(mesh);
+  return refusal_of_scene(scene_with(file.path()));
+}
+
+WrittenMesh two_cells() { return box_mesh({2, 1, 1}, {2, 1, 1}, false); }
+
+void expect_refusal(const std::string& found, const std::string& expected) {
+  EXPECT_EQ(found.rfind("/model/meshes/0/file: ", 0), 0U) << found;
+  EXPECT_NE(found.find(expected), std::string::npos) << found;
+}
+
+// ---- what is refused ------------------------------------------------------------------------------------
+
+TEST(MeshFile, ThatIsNotThereIsRefused) {
+  expect_refusal(refusal_of_scene(scene_with("nowhere.vtu")), "nowhere.vtu: no such file, expected a mesh");
+  expect_refusal(refusal_of_scene(scene_with("/tmp")), "found no file, expected a mesh");
+}
+
+TEST(MeshFile, OfGmshNamesTheConverter) {
+  const MeshFile file("$MeshFormat\n", "part.msh");
+  expect_refusal(
+      refusal_of_scene(scene_with(file.path())),
+      "found the extension '.msh', expected .vtu or .vtk; `meshio convert mesh.msh mesh.vtu` writes one "
+      "(Debian package python3-meshio)");
+}
+
+TEST(MeshFile, WithAnInvertedElementIsRefused) {
+  WrittenMesh mesh = two_cells();
+  std::swap(mesh.cells[1].nodes[0], mesh.cells[1].nodes[1]);
+  expect_refusal(refusal_of_mesh(mesh), "cell 1: found the scaled Jacobian -");
+  mesh = box_mesh({1, 1, 1}, {1, 1, 1}, true);
+  std::swap(mesh.cells[4].nodes[0], mesh.cells[4].nodes[1]);
+  expect_refusal(refusal_of_mesh(mesh), "cell 4: found the scaled Jacobian -");
+}
+
+TEST(MeshFile, WithAFlatElementIsRefused) {
+  WrittenMesh mesh = box_mesh({1, 1, 1}, {1, 1, 1}, true);
+  mesh.nodes[7] = mesh.nodes[3];
+  expect_refusal(refusal_of_mesh(mesh), "cell 0: found the scaled Jacobian ");
+}
+
+TEST(MeshFile, WithANodeOfNoElementIsRefused) {
+  WrittenMesh mesh = two_cells();
+  mesh.nodes.emplace_back(5, 5, 5);
+  expect_refusal(refusal_of_mesh(mesh), "node 12: found in no element, expected every node in one");
+}
+
+TEST(MeshFile, WithACellOfAnotherTypeIsRefused) {
+  std::string text = two_cells().vtu();
+  const auto at = text.rfind("12 12");
+  const MeshFile file(text.replace(at, 5, "12 13"));
+  expect_refusal(refusal_of_scene(scene_with(file.path())),
+                 "cell 1: found VTK's cell type 13, expected elements with 4 or 8 nodes (types 10, 12)");
+}
+
+TEST(MeshFile, WithANodeOutOfRangeIsRefused) {
+  for (const int node : {12, -1, 2147483647}) {
+    WrittenMesh mesh = two_cells();
+    mesh.cells[1].nodes[3] = node;
+    expect_refusal(refusal_of_mesh(mesh),
+                   "cell 1: found node " + std::to_string(node) + ", expected 0 to 11");
+  }
+}
+
+TEST(MeshFile, WithAWrongNumberOfNodesIsRefused) {
+  const MeshFile file([] {
+    std::string text = two_cells().vtu();
+    return text.replace(text.rfind("8 16"), 4, "7 16");
+  }());
+  expect_refusal(refusal_of_scene(scene_with(file.path())), "cell 0: found 7 nodes, expected 8");
+}
+
+TEST(MeshFile, WithAFaceOfThreeElementsIsRefused) {
+  WrittenMesh mesh = two_cells();
+  mesh.cells.push_back(mesh.cells[1]);
+  mesh.cells.push_back(mesh.cells[1]);
+  expect_refusal(refusal_of_mesh(mesh),
+                 "found one face in all of them, expected a face in at most two elements");
+}
+
+TEST(MeshFile, WithATriangleOfNoElementIsRefused) {
+  WrittenMesh mesh = two_cells();
+  mesh.cells.push_back({CellKind::triangle, {0, 1, 11, 0, 0, 0, 0, 0}});
+  expect_refusal(refusal_of_mesh(mesh),
+                 "cell 2: found a triangle that is a face of no element, expected one");
+}
+
+TEST(MeshFile, WithoutElementsIsRefused) {
+  WrittenMesh mesh = two_cells();
+  mesh.cells = {{CellKind::quadrangle, {0, 1, 4, 3, 0, 0, 0, 0}}};
+  expect_refusal(refusal_of_mesh(mesh), "found no elements, expected tetrahedra or hexahedra");
+}
+
+TEST(MeshFile, WithAnInfiniteCoordinateIsRefused) {
+  std::string text = two_cells().vtu();
+  text.replace(text.find("\n0 0 0 ") + 1, 1, "nan");
+  const MeshFile file(text);
+  const std::string said = refusal_of_scene(scene_with(file.path()));
+  EXPECT_EQ(said.rfind("/model/meshes/0/file: ", 0), 0U) << said;
+}
+
+TEST(MeshFile, ThatIsCutOffIsRefused) {
+  const std::string text = two_cells().vtu();
+  for (std::size_t size = 0; size + 2 < text.size(); size += 37) {
+    const MeshFile file(text.substr(0, size));
+    expect_refusal(refusal_of_scene(scene_with(file.path())), "the file is damaged: ");
+  }
+}
+
+TEST(MeshFile, WithoutTheSetOfASceneNamesThoseThereAre) {
+  const MeshFile file(two_cells());
+  json scene = scene_with(file.path());
+  scene["loads"] = {{{"type", "pressure"}, {"surface", "b.top"}, {"history", {{0, 1}}}}};
+  EXPECT_EQ(
+      refusal_of_scene(scene),
+      "/loads/0/surface: found \"b.top\", expected one of b.boundary, b.x_max, b.x_min, b.y_max, b.y_min, "
+      "b.z_max, b.z_min");
+}
+
+TEST(MeshFile, WithASetOfATakenNameIsRefused) {
+  WrittenMesh mesh = two_cells();
+  mesh.of_cells["boundary"] = {0, 1};
+  expect_refusal(refusal_of_mesh(mesh), "array 'boundary': found the name of a set that every mesh has");
+}
+
+// ---- sets -----------------------------------------------------------------------------------------------
+
+TEST(MeshFile, NamesSetsByArraysOfIntegers) {
+  WrittenMesh mesh = box_mesh({2, 1, 1}, {2, 1, 1}, true);
+  const auto elements = static_cast<int>(mesh.cells.size());
+  mesh.cells.push_back({CellKind::triangle, {0, 1, 4, 0, 0, 0, 0, 0}});  // of z = 0, seen from inside
+  mesh.cells.push_back({CellKind::vertex, {5, 0, 0, 0, 0, 0, 0, 0}});
+  mesh.of_cells["gmsh:physical"].assign(mesh.cells.size(), 3);
+  mesh.of_cells["gmsh:physical"][static_cast<std::size_t>(elements)] = 7;
+  mesh.of_cells["gmsh:physical"].back() = 0;
+  mesh.of_nodes["left"].assign(12, 0);
+  for (const int node : {0, 3, 6, 9}) mesh.of_nodes["left"][static_cast<std::size_t>(node)] = 1;
+  const MeshFile file(mesh);
+  const Scene scene = scene_of(scene_with(file.path()).dump());
+  const auto& sets = scene.model->sets();
+  const NodeSet& physical = sets.at("b.gmsh_physical_7");
+  EXPECT_EQ(physical.nodes, (std::vector<int>{0, 1, 4}));
+  ASSERT_EQ(physical.facets.size(), 1U);
+  // Counter-clockwise seen from outside, which is from below.
+  const auto& facet = physical.facets[0];
+  const auto at = [&](std::size_t k) { return mesh.nodes[static_cast<std::size_t>(facet[k])]; };
+  EXPECT_LT((at(1) - at(0)).cross(at(2) - at(0))[2], 0.0);
+  for (const double area : physical.areas) EXPECT_NEAR(area, 0.5 / 3.0, 1e-15);
+  EXPECT_EQ(sets.at("b.gmsh_physical_3").nodes.size(), 12U);
+  EXPECT_EQ(sets.at("b.gmsh_physical_3").facets.size(), sets.at("b.boundary").facets.size());
+  EXPECT_EQ(sets.at("b.left").nodes, (std::vector<int>{0, 3, 6, 9}));
+  EXPECT_EQ(sets.at("b.left").facets.size(), 2U);
+  EXPECT_EQ(sets.count("b.left_1"), 0U);
+}
+
+// Numbers of nodes are no names.
+TEST(MeshFile, DoesNotNameASetPerNode) {
+  WrittenMesh mesh = box_mesh({10, 10, 10}, {1, 1, 1}, false);
+  for (int node = 0; node < 1331; ++node) mesh.of_nodes["id"].push_back(node);
+  const MeshFile file(mesh);
+  EXPECT_TRUE(read_mesh_file(file.path()).groups.empty());
+}
+
+// ---- formats and the program ----------------------------------------------------------------------------
+
+TEST(MeshFile, MayBeALegacyFile) {
+  const MeshFile file(
+      "# vtk DataFile Version 3.0\na tetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+      "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
+      "CELL_DATA 1\nSCALARS part int 1\nLOOKUP_TABLE default\n1\n",
+      "mesh.vtk");
+  const Scene scene = scene_of(scene_with(file.path()).dump());
+  EXPECT_EQ(scene.model->node_count(), 4);
+  EXPECT_NEAR(scene.model->mass().sum(), 3.0 * 1000.0 / 6.0, 1e-10);
+  EXPECT_EQ(scene.model->sets().at("b.part").facets.size(), 4U);
+}
+
+TEST(MeshFile, IsRelativeToTheSceneAndTold) {
+  const MeshFile file(box_mesh({2, 2, 2}, {1, 1, 1}, true));
+  const auto folder = file.path().parent_path();
+  std::ofstream(folder / "scene.json") << scene_with("mesh.vtu").dump();
+  const Outcome outcome =
+      run_command("cd / && " + std::string(ILAW_PROGRAM) + " run " + (folder / "scene.json").string() +
+                  " --out " + (folder / "out").string());
+  EXPECT_EQ(outcome.code, 0) << outcome.output;
+  EXPECT_EQ(outcome.output.rfind("b from mesh.vtu: 27 nodes, 48 tetrahedra; critical step ", 0), 0U)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("; worst element: cell "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("scaled Jacobian 0.5774; sets (facets): boundary (48) x_max (8)"),
+            std::string::npos)
+      << outcome.output;
+  const json summary = json::parse(text_of(folder / "out" / "summary.json"));
+  EXPECT_EQ(summary["meshes"][0]["tetrahedra"], 48);
+  EXPECT_NEAR(summary["meshes"][0]["sets"]["boundary"]["area"].get<double>(), 6.0, 1e-14);
+}
+
+TEST(MeshFile, TellsOfPartsThatShareNoNode) {
+  WrittenMesh mesh = two_cells();
+  const WrittenMesh other = box_mesh({1, 1, 1}, {1, 1, 1}, false);
+  for (const Eigen::Vector3d& node : other.nodes) mesh.nodes.push_back(node + Eigen::Vector3d(2, 0, 0));
+  MeshCell cell = other.cells[0];
+  for (int& node : cell.nodes) node += 12;
+  mesh.cells.push_back(cell);
+  const MeshFile file(mesh);
+  EXPECT_EQ(scene_of(scene_with(file.path()).dump()).meshes[0]["parts"], 2);
+}
+
+TEST(MeshFile, OfACheckpointMustBeTheSame) {
+  const MeshFile file(two_cells());
+  const auto folder = file.path().parent_path();
+  std::ofstream(folder / "scene.json") << scene_with("mesh.vtu").dump();
+  const std::string run = "run " + (folder / "scene.json").string() + " --out " + (folder / "out").string();
+  EXPECT_EQ(run_program(run + " --checkpoint-every 1").code, 0);
+  EXPECT_EQ(run_program(run + " --resume").code, 0);
+  WrittenMesh mesh = two_cells();
+  mesh.nodes[0] -= Eigen::Vector3d(0.01, 0, 0);
+  std::ofstream(file.path()) << mesh.vtu();
+  const Outcome outcome = run_program(run + " --resume");
+  EXPECT_EQ(outcome.code, 2) << outcome.output;
+  EXPECT_NE(outcome.output.find("is of other meshes"), std::string::npos) << outcome.output;
+}
+
+TEST(MeshFile, CannotBeRefined) {
+  const MeshFile file(two_cells());
+  json scene = scene_with(file.path());
+  scene["converge"] = {{"refine", "mesh"}};
+  scene["exact"] = {{"type", "held_rod"}};
+  std::ofstream(file.path().parent_path() / "scene.json") << scene.dump();
+  const Outcome outcome = run_program("converge " + (file.path().parent_path() / "scene.json").string() +
+                                      " --out " + (file.path().parent_path() / "out").string());
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.output.find("a mesh from a file cannot be refined"), std::string::npos) << outcome.output;
+}
+
+TEST(MeshFile, WarnsOfTetrahedraThatLock) {
+  const MeshFile file(box_mesh({1, 1, 1}, {1, 1, 1}, true));
+  json scene = scene_with(file.path());
+  json& mesh = scene["model"]["meshes"][0];
+  mesh["material"]["poisson"] = 0.45;
+  ASSERT_EQ(scene_of(scene.dump()).warnings.size(), 1U);
+  EXPECT_EQ(
+      scene_of(scene.dump()).warnings[0],
+      "/model/meshes/0/material/poisson: found 0.45, at which full tetrahedra can hardly bend; \"element\": "
+      "\"mean_dilatation\" can");
+  mesh["element"] = "mean_dilatation";
+  EXPECT_TRUE(scene_of(scene.dump()).warnings.empty());
+}
+
+// ---- damage ---------------------------------------------------------------------------------------------
+
+// Whatever the bytes are, a mesh is read or refused; address sanitizers see that nothing else happens.
+void read_damaged(const std::string& text, const std::string& name, int cases, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  int refused = 0;
+  for (int k = 0; k < cases; ++k) {
+    std::string damaged = text;
+    for (std::size_t edits = 1 + random() % 4; edits > 0; --edits) {
+      const std::size_t at = random() % damaged.size();
+      switch (random() % 4) {
+        case 0:
+          damaged[at] = static_cast<char>(random());
+          break;
+        case 1:
+          damaged[at] = "0123456789-e."[random() % 13];
+          break;
+        case 2:
+          damaged.erase(at, 1 + random() % 20);
+          break;
+        default:
+          damaged.insert(at, std::to_string(random() >> (random() % 64)));
+          break;
+      }
+      if (damaged.empty()) damaged = " ";
+    }
+    const MeshFile file(damaged, name);
+    try {
+      topology_of(read_mesh_file(file.path()));
+    } catch (const MeshError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, cases / 4);
+}
+
+TEST(MeshFile, SurvivesDamage) {
+  WrittenMesh mesh = two_cells();
+  mesh.of_cells["part"] = {1, 2};
+  read_damaged(mesh.vtu(), "mesh.vtu", 1500, 1);
+  read_damaged(
+      "# vtk DataFile Version 3.0\na tetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+      "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n",
+      "mesh.vtk", 1500, 2);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing

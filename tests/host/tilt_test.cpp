@@ -1,0 +1,211 @@
+// Planes that tilt: gap, normal and velocity of the surface belong together.
+#include "host_runner.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <Eigen/Geometry>
+
+#include <functional>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+constexpr double fall = 10.0, rate = 0.2;
+
+// The start gives it the velocity of the plane, an impact of its own. A point at the distance s from the axis
+// of a plane that tilts at a constant rate.
+json on_plane(int dimension, double s, double friction, double dt) {
+  const bool flat = dimension == 2;
+  json scene = {{"model", {{"type", "points"}, {"dimension", dimension}}},
+                {"time", {{"dt", dt}, {"end", 3.0}}}};
+  scene["model"]["points"] = {{{"mass", 2},
+                               {"position", flat ? json{1 + s, 0.5} : json{1 + s, 0.5, 3}},
+                               {"velocity", flat ? json{0, 0} : json{0, 0, 0}}}};
+  scene["loads"] = {{{"type", "gravity"}, {"acceleration", flat ? json{0, -fall} : json{0, -fall, 0}}}};
+  json tilt = {{"angles", {{0, 0}, {10, 10 * rate}}}};
+  if (!flat) tilt["axis"] = {0, 0, 3};
+  scene["interfaces"] = {{{"name", "plane"},
+                          {"law", "coulomb"},
+                          {"nodes", "all"},
+                          {"parameters", {{"friction", friction}, {"restitution", 0}}},
+                          {"obstacle",
+                           {{"type", "plane"},
+                            {"point", flat ? json{1, 0.5} : json{1, 0.5, -2}},
+                            {"normal", flat ? json{0, 3} : json{0, 3, 0}},
+                            {"tilt", tilt}}}}};
+  return scene;
+}
+
+// The time at which a friction is not enough any more.
+double time_of(const std::function<double(double)>& missing) {
+  double low = 0.0, high = 3.0;
+  while (high - low > 1e-14) (missing(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
+  return low;
+}
+
+// On the axis a body slides as soon as tan(angle) is the friction. At a distance s it needs w^2 s towards the
+// axis, which the slope helps to give: g sin(angle) - w^2 s = friction g cos(angle).
+TEST(Tilt, SlidesWhereTheAngleIsThatOfFriction) {
+  for (const int dimension : {2, 3})
+    for (const double s : {0.0, 0.8})
+      for (const double friction : {0.2, 0.4})
+        for (const double dt : {0.01, 0.0073, 0.0031}) {
+          Scene scene = scene_of(on_plane(dimension, s, friction, dt).dump());
+          Integrator integrator = integrator_of(scene);
+          const double expected = time_of([&](double time) {
+            return fall * std::sin(rate * time) - rate * rate * s - friction * fall * std::cos(rate * time);
+          });
+          EXPECT_TRUE(s > 0.0 || std::abs(std::tan(rate * expected) - friction) < 1e-12);
+          const auto slid = [&] {
+            const double angle = rate * integrator.time();
+            return (s + integrator.displacement()[0]) * std::cos(angle) +
+                   integrator.displacement()[1] * std::sin(angle) - s;
+          };
+          while (integrator.steps() < scene.steps && std::abs(slid()) < 1e-10) integrator.step();
+          EXPECT_LT(slid(), 0.0);  // downhill
+          EXPECT_GT(integrator.time(), expected - 1.01 * dt) << dimension << "D, s " << s << ", " << friction;
+          EXPECT_LT(integrator.time(), expected + 2.01 * dt) << dimension << "D, s " << s << ", " << friction;
+        }
+}
+
+// What sticks goes round with the plane, to rounding, whatever the step; the work is its height's.
+TEST(Tilt, CarriesWhatSticks) {
+  for (const int dimension : {2, 3})
+    for (const double dt : {0.02, 0.0137, 0.0059}) {
+      const double s = 0.8;
+      json source = on_plane(dimension, s, 50.0, dt);
+      source["interfaces"][0]["obstacle"]["path"] =
+          dimension == 2 ? json{{0, 0, 0}, {4, 0.4, 0.2}} : json{{0, 0, 0, 0}, {4, 0.4, 0.2, 0}};
+      Scene scene = scene_of(source.dump());
+      Integrator integrator = integrator_of(scene);
+      while (integrator.steps() < scene.steps) {
+        integrator.step();
+        const double t = integrator.time(), angle = rate * t;
+        ASSERT_NEAR(integrator.displacement()[0], 0.1 * t + s * (std::cos(angle) - 1.0), 1e-13) << t;
+        ASSERT_NEAR(integrator.displacement()[1], 0.05 * t + s * std::sin(angle), 1e-13) << t;
+      }
+      EXPECT_LT(integrator.energy().balance_error, 1e-13);
+      EXPECT_NEAR(integrator.energy().external_work, -2.0 * fall * integrator.displacement()[1], 0.3 * dt);
+    }
+}
+
+// What slides leaves the plane by no more than the second order of the step.
+TEST(Tilt, KeepsWhatSlidesOnThePlane) {
+  std::vector<double> steps, depths;
+  for (const double dt : {0.02, 0.0137, 0.0091, 0.0059}) {
+    Scene scene = scene_of(on_plane(2, 0.8, 0.0, dt).dump());
+    Integrator integrator = integrator_of(scene);
+    double deepest = 0.0;
+    while (integrator.time() < 1.0) {
+      integrator.step();
+      deepest = std::max(
+          deepest, std::abs(scene.interfaces[0]->gap_at(0, integrator.displacement(), integrator.time())));
+    }
+    steps.push_back(dt);
+    depths.push_back(deepest);
+  }
+  EXPECT_GT(order(steps, depths), 1.8);
+  EXPECT_LT(depths.back(), 1e-4);
+}
+
+// The gap is the distance to the plane through the point, with the normal turned about the axis.
+TEST(Tilt, GapAndNormalAreThoseOfTheAngle) {
+  const json source = on_plane(3, 0.8, 0.3, 0.01);
+  Scene scene = scene_of(source.dump());
+  const Counterpart& plane = *scene.interfaces[0]->setup().counterpart;
+  for (const double time : {0.0, 1.3, 2.9}) {
+    const Eigen::Vector3d normal =
+        Eigen::AngleAxisd(rate * time, Eigen::Vector3d::UnitZ()) * Eigen::Vector3d::UnitY();
+    const Dofs u = Eigen::Vector3d(0.3, 0.7, -0.2);
+    const ContactPoint found = plane.contact_point(0, u, time);
+    EXPECT_LT((found.normal - normal).norm(), 1e-15);
+    EXPECT_LT((plane.turned(Eigen::Vector3d::UnitY(), 0.0, time) - normal).norm(), 1e-15);
+    EXPECT_NEAR(found.gap, (Eigen::Vector3d(1.8, 0.5, 3) + u - Eigen::Vector3d(1, 0.5, -2)).dot(normal),
+                1e-15);
+  }
+  // In 2D as well.
+  Scene flat = scene_of(on_plane(2, 0.8, 0.3, 0.01).dump());
+  const Vector turned = flat.interfaces[0]->setup().counterpart->turned(Eigen::Vector2d(1, 0), 0.0, 1.3);
+  EXPECT_LT((turned - Eigen::Vector2d(std::cos(rate * 1.3), std::sin(rate * 1.3))).norm(), 1e-15);
+}
+
+// A plane that swings up to a point far from its axis finds it, with and without the filter, to the same
+// bits.
+TEST(Tilt, IsNotMissedByTheFilter) {
+  std::vector<Dofs> found;
+  for (const bool skip : {true, false}) {
+    json source = on_plane(2, 30.0, 0.3, 0.001);
+    source["model"]["points"][0]["position"] = {31, 2.0};
+    source["model"]["points"][0]["velocity"] = {0, 0};
+    source["loads"] = json::array();
+    source["interfaces"][0]["skip"] = skip;
+    source["interfaces"][0]["obstacle"]["tilt"]["angles"] = {{"rows", {{0.2, 0}, {0.4, 0.2}}},
+                                                             {"smooth", true}};
+    source["time"]["end"] = 0.5;
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) {
+      integrator.step();
+      ASSERT_GT(scene.interfaces[0]->gap_at(0, integrator.displacement(), integrator.time()), -1e-3);
+    }
+    EXPECT_GT(integrator.displacement()[1], 1.0);
+    found.push_back(integrator.displacement());
+  }
+  EXPECT_EQ(found[0], found[1]);
+}
+
+// A bond that remembers where it is along the surface keeps hold while the plane tilts by a quarter turn.
+TEST(Tilt, MemoryTurnsWithThePlane) {
+  for (const int dimension : {2, 3}) {
+    json source = on_plane(dimension, 0.3, 0.3, 0.002);
+    source["interfaces"][0]["law"] = "cohesive";
+    source["interfaces"][0]["parameters"] = {{"strength", 1e3}, {"toughness", 10.0}, {"stiffness", 1e6}};
+    source["interfaces"][0]["obstacle"]["tilt"]["angles"] = {{0, 0}, {3, 1.5}};
+    source["model"]["points"][0]["velocity"] = dimension == 2 ? json{0, 0.15} : json{0, 0.15, 0};
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    while (integrator.steps() < scene.steps) integrator.step();
+    const double angle = 1.5 * integrator.time() / 3.0;
+    EXPECT_NEAR(integrator.displacement()[0], 0.3 * (std::cos(angle) - 1.0), 1e-3);
+    EXPECT_NEAR(integrator.displacement()[1], 0.3 * std::sin(angle), 1e-3);
+  }
+}
+
+// The shipped scene: an elastic block sticks, then slides as a whole at tan(angle) = 0.4, at 2.2903.
+TEST(Tilt, BlockSlidesAtTheAngleOfItsFriction) {
+  for (const double cfl : {0.7, 0.53, 0.31}) {
+    json source = read_scene_source(scene_files::named("tilting_plane.json"));
+    source["time"]["cfl"] = cfl;
+    Scene scene = scene_of(source.dump());
+    Integrator integrator = integrator_of(scene);
+    const Eigen::Index middle = 3 * scene.output.watch.at(0);
+    double slid_at = 0.0;
+    while (integrator.steps() < scene.steps) {
+      integrator.step();
+      if (slid_at == 0.0 && integrator.displacement()[middle] > 1e-5) slid_at = integrator.time();
+    }
+    EXPECT_NEAR(slid_at, 2.2903, 0.02) << cfl;
+    EXPECT_GT(integrator.displacement()[middle], 5e-3) << cfl;
+    EXPECT_LT(integrator.energy().balance_error, 1e-11) << cfl;
+  }
+}
+
+TEST(Tilt, RefusesWhatCannotTilt) {
+  json source = on_plane(2, 0.0, 0.3, 0.01);
+  json& obstacle = source["interfaces"][0]["obstacle"];
+  const std::string pointer = "/interfaces/0/obstacle";
+  obstacle["tilt"]["axis"] = {0, 0, 1};
+  EXPECT_EQ(refusal_of_scene(source),
+            pointer + "/tilt/axis: found [0,0,1], expected none: a plane in 2D tilts in its plane");
+  obstacle["tilt"].erase("axis");
+  obstacle["rate"] = 1.0;
+  EXPECT_EQ(refusal_of_scene(source), pointer + ": found both 'tilt' and 'rate', expected one of them");
+  source = on_plane(3, 0.0, 0.3, 0.01);
+  source["interfaces"][0]["obstacle"]["tilt"].erase("axis");
+  EXPECT_EQ(refusal_of_scene(source), pointer + "/tilt: key 'axis' is missing, about which the plane tilts");
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
