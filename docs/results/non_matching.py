@@ -103,7 +103,7 @@ def main():
                 summary, rows = run(arguments.ilaw, scene(case, coarse, fine, side))
                 p = pressures(rows if case == "impact" else rows[-1:], coarse, fine, 0 if case == "sliding" else 2)
                 off = abs(p - 1).max()
-                cells.append(f"{p.min():.2f} to {p.max():.2f}" if off > 1e-3 else f"1, to {off:.0e}")
+                cells.append(f"{p.min():.3f} to {p.max():.3f}" if off > 1e-3 else f"1, to {off:.0e}")
                 sweeps[side] = summary["coupling"]["sweeps"] / summary["steps"]
             print(f"| {case} | {coarse} on {fine} | {' | '.join(cells)} | {sweeps['fine']:.0f}, {sweeps['both']:.0f} |",
                   flush=True)

@@ -65,15 +65,15 @@ struct conductance {
   }
 
  private:
-  // (T_c - T) G h (1 - e^-x)/x with x = G h (1/C + 1/C_c), the exchange of two capacities over the step,
-  // where G h = h_0 A h + h_p r_N.
+  // (T_c - T) (1 - e^-x)/c with x = c G h and c = 1/C + 1/C_c, the exchange of two capacities over the step,
+  // where G h = h_0 A h + h_p r_N; (T_c - T) G h where both are infinite.
   template <class Node>
   V conducted(const Node& node) const {
     const V by_area = zero_unless(constant > 0.0, constant * node.area * node.velocity_step);
     const V flow = by_area + per_pressure * node.impulse.n;
-    const V x = flow * (1.0 / heat_capacity + 1.0 / counterpart_heat_capacity);
-    const V part = select(x > 0.0, -exp_minus_one(-x) / x, 1.0);
-    return (counterpart_temperature - temperature) * (flow * part);
+    const V c = 1.0 / heat_capacity + 1.0 / counterpart_heat_capacity;
+    const V exchanged = -exp_minus_one(-(flow * c)) / select(c > 0.0, c, 1.0);
+    return (counterpart_temperature - temperature) * select(c > 0.0, exchanged, flow);
   }
 };
 

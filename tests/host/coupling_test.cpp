@@ -216,6 +216,19 @@ TEST(Column, EachContactCarriesWhatLiesAboveIt) {
   }
 }
 
+// A step begins with the forces of the last one: at rest it has hardly anything to find.
+TEST(Column, StaysAtRestWithFewIterations) {
+  Scene scene = column(60);
+  Integrator integrator = integrator_of(scene);
+  integrator.start();
+  integrator.step();
+  const std::int64_t first = integrator.tally().sweeps;
+  EXPECT_GT(first, 100) << "a column that is hard to solve";
+  while (integrator.steps() < scene.steps) integrator.step();
+  EXPECT_LT(integrator.tally().sweeps - first, 30 * (integrator.steps() - 1)) << "iterations a step";
+  EXPECT_EQ(integrator.tally().unconverged, 0);
+}
+
 // Too long for accelerated iterations, but not for Newton's method between them: to what 250 roundings leave.
 TEST(Column, IsSolvedByNewtonStepsWhenLong) {
   constexpr int balls = 250;

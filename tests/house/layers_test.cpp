@@ -111,8 +111,8 @@ TEST(Layers, EveryFolderOfTheHostIsAFloor) {
 const std::vector<std::vector<std::string>> kit_rooms = {
     {"pack", "math", "vector", "symmetric", "roots", "table"},
     {"law", "state", "node"},
-    {"contact", "resolved_impact", "regular_coulomb", "exact_coulomb", "friction", "changing_friction",
-     "bond", "rigid_bond", "window"},
+    {"contact", "heat", "resolved_impact", "regular_coulomb", "exact_coulomb", "friction",
+     "changing_friction", "bond", "rigid_bond", "window"},
     {"plugin"}};
 
 std::size_t room_of(const std::string& header) {

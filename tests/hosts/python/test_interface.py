@@ -276,7 +276,7 @@ def test_libraries_describe_themselves():
     assert ilaw.search_path()
     law = ilaw.describe("coulomb")
     assert law.id == "coulomb" and law.dimensions == (1, 2, 3)
-    assert str(law.inputs) == "gap, v_previous, normal, tangent" and not law.capabilities
+    assert str(law.inputs) == "gap, v_previous, area, normal, tangent" and not law.capabilities
     assert law.parameters["friction"].default is None
     assert law.parameters["activation"].default in law.parameters["activation"].choices
     plugin = ilaw.Library("coulomb").plugin()

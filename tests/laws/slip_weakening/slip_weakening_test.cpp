@@ -1,6 +1,7 @@
 // Slip weakening: its equation, the slip that is taken, its fracture energy, its order against the ODE.
 #include "support/law_runner.hpp"
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -99,16 +100,17 @@ TEST(SlipWeakening, IsContinuousInTheCoupling) {
 
 // The amount: h h_T r_N (mu_s - mu_d)/(4 D_c) while the node weakens.
 double steepness_of(NodeRun& node, const Vector& v_free) {
-  double found = -1.0;
-  const ilaw_output amount = ilaw::output(&found, 0, 1);
+  std::array<double, 4> found{};  // heat, counterpart_heat and wear after it
+  std::array<ilaw_output, 4> amounts{};
+  for (std::size_t k = 0; k < found.size(); ++k) amounts[k] = ilaw::output(&found[k], 0, 1);
   node.v_free = v_free;
   ilaw_batch b = node.batch();
   b.state_in = ilaw::input(node.state.data(), 0, 1);
   b.state_out = ilaw::output(node.state.data(), 0, 1);
   b.impulse = ilaw::output(node.r.data(), 0, 1);
-  b.amounts = &amount;
+  b.amounts = amounts.data();
   EXPECT_EQ(node.interface.evaluate(b), ILAW_OK);
-  return found;
+  return found[0];
 }
 TEST(SlipWeakening, GivesItsSteepness) {
   const Weakening law{0.6, 0.1, 0.01};
