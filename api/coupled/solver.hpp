@@ -43,11 +43,11 @@ class Solver {
   std::int32_t evaluate_balance(ilaw_coupled_report& report);
   void write(ilaw_coupled_report& report);
 
-  Problem problem_;
+  Sweep sweep_{problem_};  // has cache lines: first
   Ranks ranks_;
   Colours colours_;
   Blocks blocks_;
-  Sweep sweep_{problem_};
+  Problem problem_;
   Iterations iterations_{problem_, ranks_, sweep_};
   std::vector<std::int32_t> order_;
   std::vector<Motion> here_, everywhere_;  // sums of impulses per body, of this rank and of all

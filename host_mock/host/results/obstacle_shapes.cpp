@@ -49,7 +49,7 @@ struct Bodies {
 
 // Of a plane, which may tilt.
 Point normal_of(const json& obstacle, int dimension, const std::string& pointer, double time) {
-  const Point normal = in_3d(read_vector(obstacle["normal"], dimension, pointer + "/normal")).normalized();
+  Point normal = in_3d(read_vector(obstacle["normal"], dimension, pointer + "/normal")).normalized();
   if (!obstacle.contains("tilt")) return normal;
   const json& tilt = obstacle["tilt"];
   const Point axis = dimension == 2 ? Point(Point::UnitZ())
