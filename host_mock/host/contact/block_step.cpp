@@ -213,8 +213,10 @@ class BlockWalk {
     if (count == 0) return;
     if (!contacts_in_row_) parameter_room_.resize(count * block_size);
     parameters_.resize(count);
-    for (std::size_t p = 0; p < count; ++p)
-      parameters_[p] = ilaw::input(column(at_.parameters[p], parameter_room_.data() + p * block_size), 1, 0);
+    for (std::size_t p = 0; p < count; ++p) {
+      double* room = contacts_in_row_ ? nullptr : parameter_room_.data() + p * block_size;
+      parameters_[p] = ilaw::input(column(at_.parameters[p], room), 1, 0);
+    }
     batch.per_node_parameters = parameters_.data();
   }
 
