@@ -21,7 +21,7 @@ std::filesystem::path path_of(const json& mesh, const std::filesystem::path& sce
   return std::filesystem::absolute(scene_file).parent_path() / mesh["file"].get<std::string>();
 }
 
-std::string text_of(double value) {
+std::string four_digits(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.4g", value);
   return text.data();
@@ -86,9 +86,9 @@ std::string line_of_mesh(const json& mesh) {
   for (const char* kind : {"hexahedra", "tetrahedra"})
     if (mesh[kind].get<std::size_t>() > 0) line += ", " + count(kind);
   if (mesh["parts"].get<int>() > 1) line += " in " + count("parts") + " that share no node";
-  line += "; critical step " + text_of(mesh["critical_step"].get<double>()) + "; worst element: cell " +
+  line += "; critical step " + four_digits(mesh["critical_step"].get<double>()) + "; worst element: cell " +
           mesh["worst_element"]["cell"].dump() + ", scaled Jacobian " +
-          text_of(mesh["worst_element"]["scaled_jacobian"].get<double>()) + "; sets (facets):";
+          four_digits(mesh["worst_element"]["scaled_jacobian"].get<double>()) + "; sets (facets):";
   for (const auto& [name, set] : mesh["sets"].items()) line += " " + name + " (" + set["facets"].dump() + ")";
   return line;
 }
