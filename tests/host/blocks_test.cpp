@@ -3,6 +3,7 @@
 
 #include "host_runner.hpp"
 #include "model/bars.hpp"
+#include "solid_fields.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -42,24 +43,6 @@ Blocks block_of(Kind kind, std::array<int, 3> elements = {4, 3, 2}) {
                   elements,
                   {kind.first, young, poisson, density},
                   kind.second}});
-}
-
-Dofs forces(const Model& model, const Dofs& u) {
-  Dofs force = Dofs::Zero(u.size());
-  model.add_internal_forces(u, force);
-  return force;
-}
-
-// u = G x at all nodes.
-Dofs linear_field(const Model& model, const Eigen::Matrix3d& gradient) {
-  const Eigen::Map<const Eigen::Matrix3Xd> x(model.position().data(), 3, model.node_count());
-  const Eigen::Matrix3Xd u = gradient * x;
-  return Eigen::Map<const Dofs>(u.data(), u.size());
-}
-
-Dofs random_field(const Model& model, double size, std::mt19937_64& random) {
-  std::uniform_real_distribution<double> draw(-size, size);
-  return Dofs::NullaryExpr(model.mass().size(), [&] { return draw(random); });
 }
 
 Eigen::Matrix3d random_matrix(double size, std::mt19937_64& random) {

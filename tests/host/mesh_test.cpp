@@ -1,6 +1,7 @@
 // Bodies with meshes from files: elements against closed forms, and equality with boxes.
 #include "host_runner.hpp"
 #include "mesh_writer.hpp"
+#include "solid_fields.hpp"
 
 #include "model/elements.hpp"
 #include "model/solids.hpp"
@@ -64,24 +65,6 @@ WrittenMesh distorted(bool tetrahedra) {
   });
 }
 
-Dofs forces(const Model& model, const Dofs& u) {
-  Dofs force = Dofs::Zero(u.size());
-  model.add_internal_forces(u, force);
-  return force;
-}
-
-Dofs linear_field(const Model& model, const Eigen::Matrix3d& gradient) {
-  const Eigen::Map<const Eigen::Matrix3Xd> x(model.position().data(), 3, model.node_count());
-  const Eigen::Matrix3Xd u = gradient * x;
-  return Eigen::Map<const Dofs>(u.data(), u.size());
-}
-
-Dofs random_field(const Model& model, double size, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> part(-size, size);
-  return Dofs::NullaryExpr(model.mass().size(), [&] { return part(random); });
-}
-
 class MeshKinds : public ::testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(All, MeshKinds, ::testing::ValuesIn(all_kinds()),
                          [](const auto& kind) { return name_of(kind.param); });
@@ -114,7 +97,8 @@ TEST_P(MeshKinds, PassThePatchTest) {
 TEST_P(MeshKinds, AreTheGradientOfTheirEnergy) {
   const Kind kind = GetParam();
   const Solids model = solids_of(distorted(kind.tetrahedra), kind);
-  const Dofs u = random_field(model, 0.02, 1), along = random_field(model, 1.0, 2);
+  const Dofs u = random_field(model, 0.02, std::mt19937_64(1)),
+             along = random_field(model, 1.0, std::mt19937_64(2));
   const double h = 1e-5;
   const double slope = (model.potential(u + h * along) - model.potential(u - h * along)) / (2.0 * h);
   const Dofs force = forces(model, u);
@@ -186,7 +170,7 @@ TEST_P(MeshKinds, HaveFacetsThatPointOutwards) {
 
 // The largest displacement in free vibration from random velocities.
 double amplitude(const Model& model, double dt, int steps) {
-  Dofs u = Dofs::Zero(model.mass().size()), v = random_field(model, 1e-6, 3);
+  Dofs u = Dofs::Zero(model.mass().size()), v = random_field(model, 1e-6, std::mt19937_64(3));
   double largest = 0.0;
   for (int n = 0; n < steps; ++n) {
     u += dt * v;
@@ -203,7 +187,7 @@ TEST_P(MeshKinds, AreStableUpToTheCriticalStep) {
     EXPECT_LT(amplitude(model, part * model.critical_step(), 3000), 1e-3) << part;
 }
 
-// Of one full element the bound is the critical step itself.
+// The bound of one full element is the critical step itself.
 TEST(Mesh, CriticalStepOfOneElementIsSharp) {
   for (const bool tetrahedra : {false, true}) {
     const Kind kind{tetrahedra, MaterialLaw::linear, Element::full};
@@ -233,7 +217,7 @@ TEST_P(MeshKinds, AreThoseOfABox) {
   EXPECT_TRUE(near(mesh.mass(), box.mass()));
   EXPECT_TRUE(near(mesh.position(), box.position()));
   EXPECT_NEAR(mesh.critical_step(), box.critical_step(), 1e-13 * box.critical_step());
-  const Dofs u = random_field(box, 0.02, 4);
+  const Dofs u = random_field(box, 0.02, std::mt19937_64(4));
   EXPECT_LT((forces(mesh, u) - forces(box, u)).norm(), 1e-13 * forces(box, u).norm());
   EXPECT_NEAR(mesh.potential(u), box.potential(u), 1e-13 * box.potential(u));
   // A block lists its cells in another order: by their first nodes.
