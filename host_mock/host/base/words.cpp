@@ -2,6 +2,8 @@
 #include "base/words.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 namespace ilaw::host {
 namespace {
@@ -22,6 +24,12 @@ std::size_t edits(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+std::string in_digits(double value, int digits) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+  return text.data();
+}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;

@@ -1,4 +1,4 @@
-// words.hpp - names in messages: those that are allowed, and the one that was meant.
+// words.hpp - numbers and names in messages: those that are allowed, and the one that was meant.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,6 +6,9 @@
 #include <vector>
 
 namespace ilaw::host {
+
+// A number in so many digits at most.
+std::string in_digits(double value, int digits);
 
 // "one, two, three".
 std::string joined(const std::vector<std::string>& words);

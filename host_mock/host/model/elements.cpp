@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/elements.hpp"
 
+#include "base/words.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace ilaw::host {
@@ -60,12 +61,6 @@ void for_each_cell(const Model& model, Visit visit) {
   };
   if (mesh.nodes_per_cell > 0) visit_all(mesh.cells, mesh.nodes_per_cell);
   visit_all(mesh.tetrahedra, 4);
-}
-
-std::string text_of(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
 }
 
 }  // namespace
@@ -124,13 +119,14 @@ std::string advice_on_divergence(const Model& model, const Dofs& u, double dt) {
   if (const InvertedElement inverted = first_inverted(model, u); inverted.number >= 0) {
     text = "; element " + std::to_string(inverted.number) + ", at (";
     for (Eigen::Index c = 0; c < inverted.centre.size(); ++c)
-      text += (c > 0 ? ", " : "") + text_of(inverted.centre[c]);
+      text += (c > 0 ? ", " : "") + in_digits(inverted.centre[c], 4);
     text += ") of the undeformed body, is turned inside out";
   }
   const double critical = model.critical_step();
   if (!std::isfinite(critical)) return text + "; a smaller 'dt' may cure it";
-  if (dt > critical) return text + "; the critical step is " + text_of(critical) + ", 0.9 of it \"cfl\": 0.9";
-  return text + "; half the step is \"cfl\": " + text_of(0.5 * dt / critical);
+  if (dt > critical)
+    return text + "; the critical step is " + in_digits(critical, 4) + ", 0.9 of it \"cfl\": 0.9";
+  return text + "; half the step is \"cfl\": " + in_digits(0.5 * dt / critical, 4);
 }
 
 }  // namespace ilaw::host

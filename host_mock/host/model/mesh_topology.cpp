@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/mesh_topology.hpp"
 
+#include "base/words.hpp"
 #include "model/elements.hpp"
 #include "model/pressure.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -20,12 +20,6 @@ constexpr double min_quality = 1e-6;
 
 bool is_flat(CellKind kind) { return kind == CellKind::triangle || kind == CellKind::quadrangle; }
 bool is_element(CellKind kind) { return kind == CellKind::tetrahedron || kind == CellKind::hexahedron; }
-
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
-}
 
 // FaceList in VTK's order of corners, counter-clockwise seen from outside. A triangle has its last corner
 // twice.
@@ -106,7 +100,7 @@ Facet facet_of(const MeshCell& cell) {
   return nodes;
 }
 
-// Of each node: the area that its facets have, and the length of their area vectors together.
+// By node: the area that its facets have, and the length of their area vectors together.
 struct BoundaryAreas {
   std::vector<double> areas;
   std::vector<Eigen::Vector3d> vectors;
@@ -235,8 +229,8 @@ void add_elements(const MeshData& mesh, MeshTopology& topology) {
     const CornerQuality worst = worst_corner(x.data(), corners_of(cell.kind));
     if (!(worst.scaled_jacobian > min_quality))
       throw MeshError("cell " + std::to_string(k) + ": found the scaled Jacobian " +
-                      number_text(worst.scaled_jacobian) + " at its corner " + std::to_string(worst.corner) +
-                      ", expected above " + number_text(min_quality) +
+                      in_digits(worst.scaled_jacobian, 4) + " at its corner " + std::to_string(worst.corner) +
+                      ", expected above " + in_digits(min_quality, 4) +
                       ": the element is inverted, flat, or has its nodes in another order than VTK");
     if (worst.scaled_jacobian < topology.worst_quality) {
       topology.worst_quality = worst.scaled_jacobian;

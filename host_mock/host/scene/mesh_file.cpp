@@ -3,6 +3,7 @@
 
 #include "base/bytes.hpp"
 #include "base/child_process.hpp"
+#include "base/words.hpp"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
@@ -22,7 +23,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdint>
-#include <cstdio>
 #include <exception>
 #include <fstream>
 #include <map>
@@ -39,12 +39,6 @@ namespace {
 
 // An array with more values numbers nodes or cells; it names no sets.
 constexpr std::size_t max_sets_per_array = 1000;
-
-std::string text_of(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.10g", value);
-  return text.data();
-}
 
 // The first error that VTK reports while it reads.
 struct ReaderError {
@@ -124,8 +118,8 @@ void read_nodes(vtkUnstructuredGrid& grid, MeshData& mesh) {
     grid.GetPoint(node, x.data());
     for (const double coordinate : x)
       if (!std::isfinite(coordinate))
-        throw MeshError("node " + std::to_string(node) + ": found the coordinate " + text_of(coordinate) +
-                        ", expected a finite number");
+        throw MeshError("node " + std::to_string(node) + ": found the coordinate " +
+                        in_digits(coordinate, 10) + ", expected a finite number");
   }
 }
 
@@ -163,8 +157,8 @@ MeshCell read_cell(const CellBounds& bounds, vtkIdType cell, CellKind kind, std:
   for (vtkIdType k = 0; k < count; ++k) {
     const double node = bounds.nodes.GetComponent(first + k, 0);
     if (!(node >= 0.0 && node < static_cast<double>(node_count)))
-      throw MeshError("cell " + std::to_string(cell) + ": found node " + text_of(node) + ", expected 0 to " +
-                      std::to_string(static_cast<std::ptrdiff_t>(node_count) - 1));
+      throw MeshError("cell " + std::to_string(cell) + ": found node " + in_digits(node, 10) +
+                      ", expected 0 to " + std::to_string(static_cast<std::ptrdiff_t>(node_count) - 1));
     read.nodes[static_cast<std::size_t>(k)] = static_cast<int>(node);
   }
   return read;
@@ -222,7 +216,7 @@ void read_groups(vtkDataSetAttributes& arrays, std::size_t count, std::vector<in
     const auto entries = entries_by_value(*array);
     const bool is_flag = entries.size() == 1 && entries.begin()->first == 1.0;
     for (const auto& [value, members] : entries)
-      mesh.groups[name_of(array->GetName()) + (is_flag ? "" : "_" + text_of(value))].*part = members;
+      mesh.groups[name_of(array->GetName()) + (is_flag ? "" : "_" + in_digits(value, 10))].*part = members;
   }
 }
 
@@ -265,7 +259,7 @@ void check_range(const std::vector<int>& numbers, std::size_t count) {
     if (number < 0 || static_cast<std::size_t>(number) >= count) refuse_damaged();
 }
 
-// What a crashed reader may have left behind is not trusted.
+// A crashed reader may leave anything behind: it is not trusted.
 MeshData mesh_of(const std::string& bytes) {
   std::istringstream in(bytes);
   MeshData mesh;

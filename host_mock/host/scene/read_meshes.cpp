@@ -2,12 +2,12 @@
 #include "scene/read_meshes.hpp"
 
 #include "base/files.hpp"
+#include "base/words.hpp"
 #include "scene/json_text.hpp"
 #include "scene/mesh_file.hpp"
 #include "scene/values.hpp"
 
 #include <array>
-#include <cstdio>
 #include <fstream>
 #include <numeric>
 
@@ -19,12 +19,6 @@ using nlohmann::json;
 // Relative to the scene, not to wherever the user happens to be.
 std::filesystem::path path_of(const json& mesh, const std::filesystem::path& scene_file) {
   return std::filesystem::absolute(scene_file).parent_path() / mesh["file"].get<std::string>();
-}
-
-std::string four_digits(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
 }
 
 FileMark mark_of(const std::filesystem::path& file) {
@@ -86,9 +80,9 @@ std::string line_of_mesh(const json& mesh) {
   for (const char* kind : {"hexahedra", "tetrahedra"})
     if (mesh[kind].get<std::size_t>() > 0) line += ", " + count(kind);
   if (mesh["parts"].get<int>() > 1) line += " in " + count("parts") + " that share no node";
-  line += "; critical step " + four_digits(mesh["critical_step"].get<double>()) + "; worst element: cell " +
+  line += "; critical step " + in_digits(mesh["critical_step"].get<double>(), 4) + "; worst element: cell " +
           mesh["worst_element"]["cell"].dump() + ", scaled Jacobian " +
-          four_digits(mesh["worst_element"]["scaled_jacobian"].get<double>()) + "; sets (facets):";
+          in_digits(mesh["worst_element"]["scaled_jacobian"].get<double>(), 4) + "; sets (facets):";
   for (const auto& [name, set] : mesh["sets"].items()) line += " " + name + " (" + set["facets"].dump() + ")";
   return line;
 }
