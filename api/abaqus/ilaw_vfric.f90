@@ -43,7 +43,7 @@ contains
     call ilaw_library_close(library)
   end subroutine
 
-  ! Forces f(:,k) in local axes: along the predicted slip `tangent`, and across it. Of each contact come the slip
+  ! Forces f(:,k) in local axes: along the predicted slip `tangent`, and across it. Each contact gives the slip
   ! of the increment, the force that stops it, the normal force, and memory(:,k): whether it has begun, its slip
   ! velocity, the state of the law. message is blank where all is well.
   subroutine friction_forces(law, time, dt, slip, stick, pressing, tangent, normal, area, memory, f, message)

@@ -85,7 +85,7 @@ TEST(Prestress, BalanceBeginsAtTheEquilibrium) {
   EXPECT_GT(run.summary["prestress"]["steps"].get<int>(), 10);
 }
 
-// What a penalty stores in the equilibrium is none that it puts in later.
+// A penalty does not put in later what it stores in the equilibrium.
 TEST(Prestress, StoredEnergyOfInterfacesIsNotPutIn) {
   json source = column(0.8);
   const double stiffness = 2e4;

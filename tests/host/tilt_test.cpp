@@ -70,7 +70,7 @@ TEST(Tilt, SlidesWhereTheAngleIsThatOfFriction) {
         }
 }
 
-// What sticks goes round with the plane, to rounding, whatever the step; the work is its height's.
+// A sticking point goes round with the plane, to rounding, whatever the step; the work is its height's.
 TEST(Tilt, CarriesWhatSticks) {
   for (const int dimension : {2, 3})
     for (const double dt : {0.02, 0.0137, 0.0059}) {
@@ -91,7 +91,7 @@ TEST(Tilt, CarriesWhatSticks) {
     }
 }
 
-// What slides leaves the plane by no more than the second order of the step.
+// A sliding point leaves the plane by no more than the second order of the step.
 TEST(Tilt, KeepsWhatSlidesOnThePlane) {
   std::vector<double> steps, depths;
   for (const double dt : {0.02, 0.0137, 0.0091, 0.0059}) {

@@ -35,7 +35,7 @@ class Interface {
   const ilaw_instance_info& info() const { return law_.info(); }
   const std::vector<int>& nodes() const { return setup_.nodes; }
 
-  // What laws gave so far is forgotten.
+  // Forgets the amounts that laws gave so far.
   void clear_amounts() { amounts_.assign(amounts_.size(), 0.0); }
 
   // Whether laws are asked for what contacts dissipate and store, which takes them as long again as

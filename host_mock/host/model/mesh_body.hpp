@@ -69,7 +69,7 @@ class MeshBody {
   Element element_;
   std::vector<Hexahedron> hexahedra_;
   std::vector<Tetrahedron> tetrahedra_;
-  // Of each node, the columns of corner_forces_ that it has: those of hexahedra, then those of tetrahedra.
+  // Columns of corner_forces_ by node: those of hexahedra, then those of tetrahedra.
   std::vector<std::size_t> first_corner_, corners_;
   // Scratch of add_internal_forces, which one thread calls at a time.
   mutable Eigen::Matrix3Xd corner_forces_;

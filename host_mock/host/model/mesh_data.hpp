@@ -12,7 +12,7 @@
 
 namespace ilaw::host {
 
-// What is wrong with a mesh: where, the value found, and what is allowed.
+// A mistake in a mesh: where, the value found, and what is allowed.
 class MeshError : public std::runtime_error {
  public:
   explicit MeshError(const std::string& what) : std::runtime_error(what) {}

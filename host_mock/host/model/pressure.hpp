@@ -15,8 +15,8 @@ namespace ilaw::host {
 // surface encloses, so that its work is that of p on the volume.
 using FacetCorners = Eigen::Matrix<double, 3, 4>;
 
-// The integral of each shape function times the normal over a bilinear facet. Of a triangle, whose last
-// corner stands twice, the two parts of that corner belong together.
+// The integral of each shape function times the normal over a bilinear facet. A triangle has its last corner
+// twice, and both parts of it belong together.
 FacetCorners facet_area_vectors(const FacetCorners& x);
 
 class Pressure : public Load {

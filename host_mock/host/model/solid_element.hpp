@@ -22,7 +22,7 @@ Eigen::Matrix<double, 3, N> gather(const SolidElement<N, P>& element, const Dofs
   return local;
 }
 
-// What the integration points of an element feel at the displacements of its corners.
+// Deformation at the integration points of an element, by the displacements of its corners.
 template <int N, int P>
 class DeformedElement {
  public:

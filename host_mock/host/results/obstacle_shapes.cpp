@@ -47,7 +47,7 @@ struct Bodies {
   }
 };
 
-// Of a plane, which may tilt.
+// The normal of a plane, which may tilt.
 Point normal_of(const json& obstacle, int dimension, const std::string& pointer, double time) {
   Point normal = in_3d(read_vector(obstacle["normal"], dimension, pointer + "/normal")).normalized();
   if (!obstacle.contains("tilt")) return normal;

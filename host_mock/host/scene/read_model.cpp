@@ -57,7 +57,7 @@ std::unique_ptr<Model> read_rotating_spring(const json& model) {
 class BodyNames {
  public:
   explicit BodyNames(const char* kind) : kind_(kind) {}
-  // Of the bodies that follow.
+  // Names the kind of the bodies that follow.
   void name_kind(const char* kind) {
     kind_ = kind;
     first_ = seen_.size();

@@ -45,7 +45,7 @@ class Accounts {
   explicit Accounts(std::size_t interface_count = 0)
       : first_contact_(interface_count, std::numeric_limits<double>::infinity()) {}
   void start(const Model& model, const Dofs& u, const Dofs& u_next, const Dofs& v);
-  // What interfaces stored before: it is none of what they put in later.
+  // Energy that interfaces stored before: they do not put it in later.
   void begin_with_stored(double energy) { energy_.begin_with_stored(energy); }
   // The work of interfaces at the start is part of that state already. speed: the largest then.
   void add_start(const Interfaces& interfaces, double speed);

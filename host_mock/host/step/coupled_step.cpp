@@ -79,7 +79,7 @@ void CoupledStep::number_bodies() {
     group.for_each_body([&](std::int32_t& node) { node = body_[static_cast<std::size_t>(node)]; });
 }
 
-// Of a difference of coordinates, as a velocity.
+// Rounding of a difference of coordinates, as a velocity.
 double CoupledStep::rounding_of_gaps(const StepView& step) const {
   constexpr double ulps = 16.0;  // of the dozen roundings of a node, its facet and their normal
   const int d = model_.dimension();

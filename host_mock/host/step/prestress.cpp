@@ -95,8 +95,8 @@ void Integrator::stop() {
   speed_before_ = 0.0;
 }
 
-// The clock is at 0, bodies have the velocities of the scene, and the accounts begin. What interfaces store
-// by then was put in before.
+// The clock is at 0, bodies have the velocities of the scene, and the accounts begin. The energy that
+// interfaces store by then was put in before.
 void Integrator::begin_anew() {
   v_ = v_before_ = model_.initial_velocity();
   double stored = 0.0;

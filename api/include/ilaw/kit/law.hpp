@@ -243,7 +243,7 @@ concept gives_heat = requires(const Law& law) {
   law.wear_coefficient;
 };
 inline constexpr int heat_amount_count = 3;
-// Those that the law's step writes, and all.
+// Amounts that the law's step writes, and all of them.
 template <class Law>
 inline constexpr int own_amount_count = [] {
   if constexpr (has_amounts<Law>) return static_cast<int>(std::size(Law::amounts));
