@@ -46,7 +46,9 @@ def runs_of(files):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bench", nargs="+", help="bench.csv, each case with two numbers of nodes")
-    cases = runs_of(parser.parse_args().bench)
+    parser.add_argument("--local", action="store_true", help="only the cases in the local frame with rows and no outputs")
+    given = parser.parse_args()
+    cases = {key: runs for key, runs in runs_of(given.bench).items() if not given.local or key[1].endswith("local aos")}
     print("| law | case | bytes | in cache, ns | beyond, ns | aim, ns | ratio | aim |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for (law, case), runs in cases.items():

@@ -23,27 +23,42 @@ concept can_ask = requires(const Law& law, Node& n, typename Law::problem& p) {
   law.ask(n, p);
 };
 
+template <class Law, class Node>
+concept can_choose = requires(const Law& law, Node& n) {
+  law.step(n);
+}
+&&(
+    requires(const Law& law) { law.asks(); } || requires(const Law& law) { law.asks(true); });
+
+// Null: there is none for floats, which are then converted by blocks: a solver takes longer than that, and of
+// a step beside one little is to be gained where a state of doubles moves with it.
 template <class Law, class Number, template <class> class Frame, template <class> class Delassus,
           bool Remembers = has_state<Law>>
-auto loop_of(const instance<Law>& made) {
+typename batch_walk<Number>::run_function loop_of(const instance<Law>& made) {
   if constexpr (Remembers && requires { made.law.remembers(); })
     if (made.states == 0) return loop_of<Law, Number, Frame, Delassus, false>(made);
   using V = loop_number<Law>;
   using plain = kernel<Law, V, Number, Frame, Delassus, Remembers>;
   using Wide = law_on_t<Law, V>;
   using node_type = typename plain::node_type;
-  constexpr bool can_step = requires(const Wide& law, node_type& n) { law.step(n); };
-  using run_function = typename batch_walk<Number>::run_function;
-  if constexpr (can_ask<Wide, node_type>) {
-    using solving = solver_kernel<Law, V, Number, Frame, Delassus, Remembers>;
-    if constexpr (can_step && (
-                                  requires { made.law.asks(); } || requires { made.law.asks(true); }))
-      return made.asks ? run_function(solving::run) : run_function(plain::run);
-    else
-      return run_function(solving::run);
+  constexpr bool has_solver = can_ask<Wide, node_type>, is_chosen = can_choose<Wide, node_type>;
+  if constexpr (std::is_same_v<Number, float> && has_solver &&
+                (Remembers || has_history<Law> || !is_chosen)) {
+    return nullptr;
+  } else if constexpr (has_solver && !is_chosen) {
+    return solver_kernel<Law, V, Number, Frame, Delassus, Remembers>::run;
   } else {
-    static_assert(can_step, "the law has neither step nor ask for nodes of this form of H and frame");
-    return run_function(plain::run);
+    if constexpr (has_solver)
+      if (made.asks) {
+        if constexpr (std::is_same_v<Number, float>)
+          return nullptr;
+        else
+          return solver_kernel<Law, V, Number, Frame, Delassus, Remembers>::run;
+      }
+    static_assert(
+        requires(const Wide& law, node_type& n) { law.step(n); },
+        "the law has neither step nor ask for nodes of this form of H and frame");
+    return plain::run;
   }
 }
 
@@ -72,13 +87,21 @@ typename batch_walk<Number>::run_function choose_loop(const instance<Law>& made)
   return nullptr;
 }
 
-template <class Law, class Number>
-tally walk_in(const instance<Law>& made, const ilaw_batch& batch) {
+template <class Law, class Host, class Number>
+tally walk_with(const instance<Law>& made, const ilaw_batch& batch,
+                typename batch_walk<Number>::run_function loop) {
   const Law law = made.at(batch.time);
   constexpr int columns = 2 * (state_numbers<Law> + (has_history<Law> || has_state<Law> ? 6 : 0));
   alignas(64) double state_scratch[columns * block_nodes + 1];
-  batch_walk<Number, has_window<Law>> walk(made, batch, state_scratch);
-  return walk.run(choose_loop<Law, Number>(made), &law);
+  batch_walk<Host, Number, has_window<Law>> walk(made, batch, state_scratch);
+  return walk.run(loop, &law);
+}
+template <class Law>
+tally walk_in(const instance<Law>& made, const ilaw_batch& batch) {
+  if (made.numbers == ILAW_NUMBERS_DOUBLE)
+    return walk_with<Law, double, double>(made, batch, choose_loop<Law, double>(made));
+  if (const auto loop = choose_loop<Law, float>(made)) return walk_with<Law, float, float>(made, batch, loop);
+  return walk_with<Law, float, double>(made, batch, choose_loop<Law, double>(made));
 }
 
 // An ilaw_kit_walk: a checked batch from end to end, compiled for this level.
@@ -86,8 +109,7 @@ tally walk_in(const instance<Law>& made, const ilaw_batch& batch) {
 template <class Law>
 [[gnu::noinline]] void walk_batch(const void* opaque, const ilaw_batch& batch, void* found) {
   const auto& made = *static_cast<const instance<Law>*>(opaque);
-  *static_cast<tally*>(found) = made.numbers == ILAW_NUMBERS_FLOAT ? walk_in<Law, float>(made, batch)
-                                                                   : walk_in<Law, double>(made, batch);
+  *static_cast<tally*>(found) = walk_in(made, batch);
 }
 
 // ---- why a node is bad

@@ -67,6 +67,7 @@ struct normal_frame {
   static constexpr bool turns = true, has_normal = true, has_axes = false;
   axis<V> n;
 
+  static constexpr bool turns_now() { return true; }
   ILAW_KIT_INLINE projected<V> to_local(axis<V> a) const {
     const V normal = dot(n, a);
     return {normal, a.x - normal * n.x, a.y - normal * n.y, a.z - normal * n.z};
@@ -87,6 +88,7 @@ struct axes_frame {
   static constexpr bool turns = true, has_normal = true, has_axes = true;
   axis<V> n, t1, t2;
 
+  static constexpr bool turns_now() { return true; }
   ILAW_KIT_INLINE vector<V> to_local(axis<V> a) const { return {dot(n, a), dot(t1, a), dot(t2, a)}; }
   ILAW_KIT_INLINE axis<V> to_global(vector<V> a) const {
     return {a.n * n.x + a.t1 * t1.x + a.t2 * t2.x, a.n * n.y + a.t1 * t1.y + a.t2 * t2.y,
@@ -105,6 +107,25 @@ struct axes_frame {
   ILAW_KIT_INLINE void turn_in_plane(int dimension) {
     t1 = {0.0, 1.0, 0.0};
     if (dimension == 2) t1 = {-n.y, n.x, 0.0};
+  }
+};
+
+// One of the two, as the batch says: for the careful loop, which is compiled once for both.
+template <class V>
+struct either_frame : axes_frame<V> {
+  using base = axes_frame<V>;
+  bool is_local = false;
+
+  ILAW_KIT_INLINE bool turns_now() const { return !is_local; }
+  ILAW_KIT_INLINE vector<V> to_local(axis<V> a) const {
+    return is_local ? vector<V>{a.x, a.y, a.z} : base::to_local(a);
+  }
+  ILAW_KIT_INLINE axis<V> to_global(vector<V> a) const {
+    return is_local ? axis<V>{a.n, a.t1, a.t2} : base::to_global(a);
+  }
+  template <class Delassus>
+  ILAW_KIT_INLINE Delassus to_local(Delassus h, int dimension) const {
+    return is_local ? h : base::to_local(h, dimension);
   }
 };
 

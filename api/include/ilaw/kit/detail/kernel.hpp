@@ -3,8 +3,8 @@
 // batch share.
 //
 // A pack with a bad node writes nothing. It is copied to columns of doubles and done again by the careful
-// kernel, which finds the reason and also does the last, unfilled pack: one per law, form of H and frame,
-// whatever the layout.
+// kernel, which finds the reason and also does the last, unfilled pack: one per law and form of H, whatever
+// the layout and the axes.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -189,7 +189,10 @@ struct kernel {
   using limit = step_limit<V>;
   static constexpr bool careful = view_type::is_copy;
   using checks_type = checks<V, careful>;
-  using careful_kernel = kernel<Law, V, copied, Frame, Delassus, Remembers>;
+  static constexpr bool is_projected = std::is_same_v<frame_type, normal_frame<V>>;
+  using careful_kernel =
+      std::conditional_t<is_projected, kernel<Law, V, copied, normal_frame, Delassus, Remembers>,
+                         kernel<Law, V, copied, either_frame, Delassus, Remembers>>;
   static constexpr int width = lanes_of<V>, states = Remembers ? state_numbers<Law> : 0;
   static constexpr bool may_pull = (Law::card.capabilities & ILAW_CAN_ADHERE) != 0;
   static constexpr bool stays_in_reach = (Law::card.permissions & ILAW_MAY_SKIP_FRESH) != 0 &&
@@ -207,6 +210,10 @@ struct kernel {
 
   ILAW_KIT_INLINE static void load_frame(frame_type& f, const view_type& b, std::int64_t i, checks_type& c,
                                          mask& framed) {
+    if constexpr (careful && frame_type::has_axes) {
+      f.is_local = !b.normal.at;
+      if (f.is_local) return;
+    }
     if constexpr (frame_type::has_normal) {
       V unused = 0.0;
       load_vector(f.n, b.normal, i, unused);
@@ -306,7 +313,8 @@ struct kernel {
     axis<V> free;
     load_vector(free, b.v_free, i, numbers);
     vector_type v_free = frame.to_local(free), v_previous{};
-    if constexpr (frame_type::turns) v_free.n = v_free.n + 0.0;
+    if constexpr (frame_type::turns)
+      if (frame.turns_now()) v_free.n = v_free.n + 0.0;
     if constexpr (reads<Law>(reads_v_previous)) load_previous(v_previous, known, b, frame, i, numbers);
     H h;
     load_delassus(h, b, i);
@@ -676,14 +684,12 @@ struct kernel {
     careful_kernel::run_copy(given, copy.pack, i, found, limits);
     copy.give_back(b);
   }
-  [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& all, tally& found) {
-    const Law& given = *static_cast<const Law*>(opaque);
-    const view_type b = all;
+  // All full packs.
+  ILAW_KIT_INLINE static void run_fast(const Law& given, const view_type& b, std::int64_t& i, tally& found,
+                                       limit& limits) {
     Wide law = broadcast<V>(given);
     auto prepared = kit::prepared(law, b.step);
-    limit limits = limit_of(given, b);
     const int is_special = b.varying + b.in_memory;
-    std::int64_t i = 0;
     for (; i + width <= b.count; i += width) {
       bool is_usual = true;
       if (is_special) [[unlikely]]
@@ -691,7 +697,14 @@ struct kernel {
       if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), found, limits, i)) [[unlikely]]
         run_carefully(given, b, i, found, limits);
     }
-    if (i < b.count) run_carefully(given, b, i, found, limits);
+  }
+  [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& all, tally& found) {
+    const Law& given = *static_cast<const Law*>(opaque);
+    const view_type b = all;
+    limit limits = limit_of(given, b);
+    std::int64_t i = 0;
+    if constexpr (!ILAW_KIT_IS_SPARE) run_fast(given, b, i, found, limits);
+    for (; i < b.count; i += width) run_carefully(given, b, i, found, limits);
     if constexpr (width == 1) found.by_scalar_fallback += b.count;
     give_limit(limits, given, found);
   }

@@ -8,6 +8,14 @@
 #define ILAW_KIT_LEVEL baseline
 #endif
 
+// Whether better levels are compiled beside this one. It then serves processors older than 2013 and must give
+// the bits, not the speed: all its nodes go the careful way, and the fast loops are not compiled.
+#ifdef ILAW_KIT_OTHER_LEVELS
+#define ILAW_KIT_IS_SPARE true
+#else
+#define ILAW_KIT_IS_SPARE false
+#endif
+
 #ifdef __FAST_MATH__
 #error "the kit needs IEEE arithmetic: compile without -ffast-math"
 #endif

@@ -83,7 +83,7 @@ ILAW_KIT_INLINE void get_packed(double& v, unsigned lanes, const double* from) {
 
 inline constexpr int problem_block = 128;  // nodes
 
-using solver_pack = pack_of<2>;
+using solver_pack = pack_of<ILAW_KIT_IS_SPARE ? 1 : 2>;
 
 template <class Struct, class V>
 inline constexpr int numbers_in_struct = static_cast<int>(sizeof(Struct) / sizeof(V));
@@ -208,7 +208,9 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
   using typename base::node_type;
   using typename base::view_type;
   using typename base::Wide;
-  using careful_kernel = solver_kernel<Law, V, copied, Frame, Delassus, Remembers>;
+  using careful_kernel =
+      std::conditional_t<base::is_projected, solver_kernel<Law, V, copied, normal_frame, Delassus, Remembers>,
+                         solver_kernel<Law, V, copied, either_frame, Delassus, Remembers>>;
   using problem = typename Wide::problem;
   using answer = typename Wide::answer;
   using problems_type = open_problems<Law>;
@@ -334,24 +336,26 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
   [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& whole, tally& found) {
     const Law& given = *static_cast<const Law*>(opaque);
     const view_type b = whole;
-    Wide law = broadcast<V>(given);
-    auto prepared = kit::prepared(law, b.step);
+    [[maybe_unused]] Wide law = broadcast<V>(given);
+    [[maybe_unused]] auto prepared = kit::prepared(law, b.step);
     limit limits = base::limit_of(given, b);
     problems_type all;
     for (int c = 0; c < parameter_count<Law>; ++c)
       if (b.varies(c)) all.varying |= std::uint64_t{1} << c;
-    const int is_special = b.varying + b.in_memory;
     for (std::int64_t start = 0; start < b.count; start += problem_block) {
       const std::int64_t end = b.count - start < problem_block ? b.count : start + problem_block;
       all.count = 0;
       for (pass at{};; at = {.finishing = true}) {
         for (std::int64_t i = start; i < end; i += width, ++at.k) {
           if (at.finishing && all.state[at.k] == pack_state::stored) continue;
-          bool is_usual = i + width <= end && !(at.finishing && all.state[at.k] == pack_state::careful);
-          if (is_special && is_usual) [[unlikely]]
-            is_usual = base::get_ready(law, prepared, given, b, i);
-          if (!is_usual || !run_pack(law, prepared, b, i, checks_type(), all, at, found, limits, i))
-              [[unlikely]]
+          bool is_done = false;
+          if constexpr (!ILAW_KIT_IS_SPARE) {
+            bool is_usual = i + width <= end && !(at.finishing && all.state[at.k] == pack_state::careful);
+            if (is_usual && b.varying + b.in_memory) [[unlikely]]
+              is_usual = base::get_ready(law, prepared, given, b, i);
+            is_done = is_usual && run_pack(law, prepared, b, i, checks_type(), all, at, found, limits, i);
+          }
+          if (!is_done) [[unlikely]]
             run_carefully(given, b, i, all, at, found, limits);
           if (at.finishing) at.first += __builtin_popcount(all.open[at.k]);
         }

@@ -1,5 +1,5 @@
 // walk.hpp - a batch as views: all of it at once where its arrays are rows or columns, else blocks of nodes,
-// of which the other arrays are copied. Once per level and number type, not per law.
+// of which the other arrays are copied. Once per level and number types, not per law.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -129,7 +129,8 @@ struct window_place {
 
 // ---- the walk
 
-template <class Number, bool HasWindow = false>
+// Host: what the arrays of the batch hold. Number: what the loop reads; another type is converted by blocks.
+template <class Host, class Number = Host, bool HasWindow = false>
 class batch_walk {
  public:
   // Copies of 64 nodes stay in the first cache; windows cost more than them.
@@ -156,9 +157,10 @@ class batch_walk {
  private:
   // ---- which arrays stay
 
+  static constexpr bool converts = !std::is_same_v<Host, Number>;
   template <class Array>
   bool stays_or_absent(const Array& a, int components) const {
-    return !numbers_in<Number>(a) || stays(a, components);
+    return !numbers_in<Host>(a) || stays(a, components);
   }
   bool delassus_stays() const {
     if (!made_.is_transverse() && d_ < 3) return false;
@@ -175,7 +177,7 @@ class batch_walk {
            a.node_stride == made_.states && a.component_stride == 1;
   }
   bool all_stay() const {
-    bool stay = !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) &&
+    bool stay = !converts && !b_.index && !b_.index64 && (!b_.status || b_.status_stride == 1) &&
                 stays_or_absent(b_.v_free, d_) && stays_or_absent(b_.v_previous, d_) &&
                 stays_or_absent(b_.normal, d_) && stays_or_absent(b_.tangent, d_) && delassus_stays() &&
                 stays_or_absent(b_.gap, 1) && stays_or_absent(b_.gap_offset, 1) &&
@@ -195,17 +197,17 @@ class batch_walk {
   [[gnu::noinline]] static void gather_column(const From* values, std::int64_t stride, const node_range& n,
                                               T* to) {
     if (n.listed)
-      for (std::int64_t i = 0; i < n.count; ++i) to[i] = values[n.where[i] * stride];
+      for (std::int64_t i = 0; i < n.count; ++i) to[i] = static_cast<T>(values[n.where[i] * stride]);
     else
-      for (std::int64_t i = 0; i < n.count; ++i) to[i] = values[(n.first + i) * stride];
+      for (std::int64_t i = 0; i < n.count; ++i) to[i] = static_cast<T>(values[(n.first + i) * stride]);
   }
-  template <class T>
+  template <class T, class From>
   [[gnu::noinline]] static void scatter_column(T* values, std::int64_t stride, const node_range& n,
-                                               const T* from) {
+                                               const From* from) {
     if (n.listed)
-      for (std::int64_t i = 0; i < n.count; ++i) values[n.where[i] * stride] = from[i];
+      for (std::int64_t i = 0; i < n.count; ++i) values[n.where[i] * stride] = static_cast<T>(from[i]);
     else
-      for (std::int64_t i = 0; i < n.count; ++i) values[(n.first + i) * stride] = from[i];
+      for (std::int64_t i = 0; i < n.count; ++i) values[(n.first + i) * stride] = static_cast<T>(from[i]);
   }
   // Rows of four numbers or more, four nodes by four numbers at a time; the last four may overlap the others.
   using four = double __attribute__((vector_size(32)));
@@ -266,24 +268,24 @@ class batch_walk {
     return are_in_order;
   }
   // Components that lie in other lines of memory: node by node.
-  template <class T>
-  [[gnu::noinline]] static void gather_three(const T* values, std::int64_t stride, std::int64_t component,
+  template <class T, class From>
+  [[gnu::noinline]] static void gather_three(const From* values, std::int64_t stride, std::int64_t component,
                                              const node_range& n, T* to) {
     for (std::int64_t i = 0; i < n.count; ++i) {
-      const T* const at = values + n(i) * stride;
-      to[i] = at[0];
-      to[block_nodes + i] = at[component];
-      to[2 * block_nodes + i] = at[2 * component];
+      const From* const at = values + n(i) * stride;
+      to[i] = static_cast<T>(at[0]);
+      to[block_nodes + i] = static_cast<T>(at[component]);
+      to[2 * block_nodes + i] = static_cast<T>(at[2 * component]);
     }
   }
-  template <class T>
+  template <class T, class From>
   [[gnu::noinline]] static void scatter_three(T* values, std::int64_t stride, std::int64_t component,
-                                              const node_range& n, const T* from) {
+                                              const node_range& n, const From* from) {
     for (std::int64_t i = 0; i < n.count; ++i) {
       T* const at = values + n(i) * stride;
-      at[0] = from[i];
-      at[component] = from[block_nodes + i];
-      at[2 * component] = from[2 * block_nodes + i];
+      at[0] = static_cast<T>(from[i]);
+      at[component] = static_cast<T>(from[block_nodes + i]);
+      at[2 * component] = static_cast<T>(from[2 * block_nodes + i]);
     }
   }
   template <class T>
@@ -295,11 +297,12 @@ class batch_walk {
   }
 
   array<const Number> gather(const ilaw_input& a, int components, const node_range& n, Number* copy) const {
-    const Number* const values = numbers_in<Number>(a);
+    const Host* const values = numbers_in<Host>(a);
     if (!values) return {};
-    if (!n.listed && stays(a, components))
-      return {values + n.first * a.node_stride, a.component_stride, components,
-              a.node_stride != 1 ? components : 0};
+    if constexpr (!converts)
+      if (!n.listed && stays(a, components))
+        return {values + n.first * a.node_stride, a.component_stride, components,
+                a.node_stride != 1 ? components : 0};
     prefetch_block(values, a.node_stride, a.component_stride, n);
     if (components == 3)
       gather_three(values, a.node_stride, a.component_stride, n, copy);
@@ -315,7 +318,7 @@ class batch_walk {
   array<const Number> gather_delassus(const node_range& n) {
     const int numbers = made_.delassus_numbers();
     if (made_.is_transverse() || d_ == 3) return gather(b_.delassus, numbers, n, s_.delassus);
-    const Number* const values = numbers_in<Number>(b_.delassus);
+    const Host* const values = numbers_in<Host>(b_.delassus);
     const auto take = [&](int from, int to) {
       gather_column(values + from * b_.delassus.component_stride, b_.delassus.node_stride, n,
                     s_.delassus + to * block_nodes);
@@ -328,17 +331,18 @@ class batch_walk {
     return {s_.delassus, block_nodes, 6, 0};
   }
   array<Number> aim(const ilaw_output& a, int components, const node_range& n, Number* copy) const {
-    Number* const values = numbers_in<Number>(a);
+    Host* const values = numbers_in<Host>(a);
     if (!values) return {};
-    if (!n.listed && stays(a, components))
-      return {values + n.first * a.node_stride, a.component_stride, components,
-              a.node_stride != 1 ? components : 0};
+    if constexpr (!converts)
+      if (!n.listed && stays(a, components))
+        return {values + n.first * a.node_stride, a.component_stride, components,
+                a.node_stride != 1 ? components : 0};
     return {copy, block_nodes, components, 0};
   }
   void scatter(const ilaw_output& a, const array<Number>& aimed, const node_range& n,
                const Number* copy) const {
     if (aimed.at != copy) return;
-    Number* const values = numbers_in<Number>(a);
+    Host* const values = numbers_in<Host>(a);
     prefetch_block(values, a.node_stride, a.component_stride, n);
     if (aimed.count == 3) return scatter_three(values, a.node_stride, a.component_stride, n, copy);
     for (int c = 0; c < aimed.count; ++c)
@@ -447,9 +451,9 @@ class batch_walk {
 
   // Whether energy or an amount is asked for.
   bool wants_balance() const {
-    if (numbers_in<Number>(b_.energy)) return true;
+    if (numbers_in<Host>(b_.energy)) return true;
     for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k)
-      if (numbers_in<Number>(b_.amounts[k])) return true;
+      if (numbers_in<Host>(b_.amounts[k])) return true;
     return false;
   }
   void open_inputs(view<Number>& v, const node_range& n) {
@@ -493,14 +497,14 @@ class batch_walk {
     view<Number> v{};
     v.count = n.count;
     v.step = {b_.time, b_.velocity_step, b_.position_step, 1.0 / b_.position_step};
-    v.impulse_guard = std::is_same_v<Number, float> ? 0x1p898 : 4.0;
+    v.impulse_guard = std::is_same_v<Host, float> ? 0x1p898 : 4.0;
     v.dimension = d_;
     v.tangents_from = tangents_from();
     v.is_scalar = made_.delassus_numbers() == 1;
     v.frame_follows = made_.frame_follows;
     v.varying = made_.per_node_count > 0;
     v.tables = made_.node_tables;
-    v.in_memory = std::is_same_v<Number, double> && n.count >= prefetch_from;
+    v.in_memory = std::is_same_v<Host, double> && n.count >= prefetch_from;
     open_inputs(v, n);
     open_outputs(v, n);
     open_state(v, n);
