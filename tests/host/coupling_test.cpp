@@ -20,7 +20,7 @@ Scene shipped(const char* name) {
 // would push a node whose slip turned round, which it may do less than that.
 void expect_law(const Interface& interface, int contact_index, const Dofs& v, const Dofs& before,
                 double h_step, double friction, double speed) {
-  const Vector relative = interface.relative(contact_index, v) - interface.obstacle_velocity();
+  const Vector relative = interface.relative(contact_index, v) - interface.obstacle().velocity();
   const Vector impulse = interface.impulse(contact_index), normal = interface.normal(contact_index);
   const Vector relative_before = interface.relative(contact_index, before);
   const double arrival = -std::max(interface.gap(contact_index), 0.0) / h_step;

@@ -27,8 +27,8 @@ class BlockWalk {
   explicit BlockWalk(const BlockStep& step)
       : step_(step),
         at_(step.contacts),
-        obstacle_(components(step.obstacle_velocity)),
-        obstacle_before_(components(step.obstacle_velocity_before)),
+        obstacle_(components(step.obstacle.velocity())),
+        obstacle_before_(components(step.obstacle.velocity_before())),
         moves_(obstacle_ != Components{}),
         moved_(obstacle_before_ != Components{}),
         stands_still_(!Turns && !moves_ && !moved_) {
@@ -89,9 +89,9 @@ class BlockWalk {
 
   // All nodes have the plane's normal: it is written once.
   void locate_at_plane() {
-    flat_gaps<D>(step_.model, node_, count_, step_.step.u, *step_.flat, gap_.data());
+    flat_gaps<D>(step_.model, node_, count_, step_.step.u, *step_.obstacle.flat(), gap_.data());
     for (; normals_ < count_; ++normals_)
-      for (int c = 0; c < D; ++c) normal_[c * block_size + normals_] = step_.flat->normal[c];
+      for (int c = 0; c < D; ++c) normal_[c * block_size + normals_] = step_.obstacle.flat()->normal[c];
   }
 
   // Of the surface where it is touched: a gap offset is a body's own.
@@ -99,7 +99,7 @@ class BlockWalk {
     for (std::ptrdiff_t i = 0; i < count_; ++i) {
       const RigidSurface there{gap_[i], Eigen::Map<const Vector>(&normal_[D * i], D)};
       const SurfaceVelocities turn = surface_velocities(*step_.setup.counterpart, node_index(i), step_.step.u,
-                                                        step_.step.time, there, step_.rates);
+                                                        step_.step.time, there, step_.obstacle.rates());
       for (int c = 0; c < D; ++c) {
         turn_before_[D * i + c] = turn.before[c];
         turn_after_[D * i + c] = turn.after[c];
@@ -151,7 +151,7 @@ class BlockWalk {
   }
   // Component by component, as laws work on them.
   static ilaw_input in_columns(const Vectors& vectors) { return ilaw::input(vectors.data(), 1, block_size); }
-  bool meets_plane() const { return What == Meets::obstacle && step_.flat; }
+  bool meets_plane() const { return What == Meets::obstacle && step_.obstacle.flat(); }
 
   // An array of all contacts from the block's first on, or what was gathered of it; null where it
   // is empty.
@@ -188,7 +188,8 @@ class BlockWalk {
     delassus_ = column(at_.delassus, delassus_room_.data());
     impulse_ = contacts_in_row_ ? &at_.impulse[contact(0) * D] : impulse_room_.data();
     status_ = contacts_in_row_ ? &at_.status[contact(0)] : status_room_.data();
-    ilaw_batch batch = empty_batch(step_.tangent, step_.step.time, step_.step.velocity_step(), step_.step.dt);
+    ilaw_batch batch =
+        empty_batch(step_.obstacle.tangent(), step_.step.time, step_.step.velocity_step(), step_.step.dt);
     batch.node_count = count_;
     batch.v_free = relative(step_.v, obstacle_, moves_, turn_after_, v_free_);
     if ((info.inputs | (step_.gets_energies ? info.balance_inputs : 0U)) & ILAW_INPUT_V_PREVIOUS)

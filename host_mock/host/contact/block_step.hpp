@@ -6,12 +6,10 @@
 #pragma once
 
 #include "contact/contact_arrays.hpp"
+#include "contact/contact_search.hpp"
 #include "contact/contact_sums.hpp"
-#include "contact/interface_setup.hpp"
 #include "contact/law.hpp"
-
-#include <cstddef>
-#include <cstdint>
+#include "contact/obstacle_motion.hpp"
 
 namespace ilaw::host {
 
@@ -23,11 +21,9 @@ struct BlockStep {
   const Law& law;
   ContactArrays& contacts;
   const StepView& step;
-  const FlatSurface* flat;  // the obstacle, where it is a plane
-  const Vector &obstacle_velocity, &obstacle_velocity_before, &tangent;
+  const ObstacleMotion& obstacle;
   const std::vector<std::size_t>& axes;  // where they begin in the state
-  TurningRates rates;
-  Dofs& v;  // v_free, then what the impulses make of it
+  Dofs& v;                               // v_free, then what the impulses make of it
   bool gets_energies;
   bool is_watched;  // whether the law writes to its inputs
 };
@@ -36,21 +32,6 @@ struct BlockStep {
 struct ChunkOutcome {
   ContactSums sums;
   Refusal refusal;
-};
-
-// Nodes of an interface whose contacts a thread takes at a time.
-constexpr std::ptrdiff_t contact_chunk = 2048;
-
-// Some contacts, by contact_index, and the nodes of the model that they are of.
-struct NearContacts {
-  const std::int32_t *index, *nodes;
-  std::ptrdiff_t count;
-
-  void leave_out(std::ptrdiff_t first) {
-    index += first;
-    nodes += first;
-    count -= first;
-  }
 };
 
 // Adds what becomes of the contacts to outcome.

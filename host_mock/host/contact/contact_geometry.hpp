@@ -27,6 +27,14 @@ inline ContactGeometry locate_contact(const InterfaceSetup& setup, int node_inde
   return found;
 }
 
+// Of a node, to its partners.
+inline Vector relative_velocity(const ContactPoint& point, int node, Eigen::Index dimension, const Dofs& v) {
+  Vector relative = v.segment(node * dimension, dimension);
+  for (std::size_t p = 0; p < static_cast<std::size_t>(point.partner_count); ++p)
+    relative -= point.weights[p] * v.segment(point.partners[p] * dimension, dimension);
+  return relative;
+}
+
 // The memory of a law is that of the surface, which has turned since the last step. axes: where they begin
 // in the state; number(c): entry c of the state.
 template <class Number>

@@ -1,23 +1,22 @@
 // interface.hpp - one interface of a scene: the contacts between some nodes and their counterpart,
 // and the law that acts there. It brings together the law (law.hpp), what is stored of contacts
-// (contact_arrays.hpp), what the nodes touch (counterpart.hpp), which of them are near
-// (proximity_filter.hpp), and the step of contacts that share no nodes (block_step.hpp).
+// (contact_arrays.hpp), what the nodes touch (counterpart.hpp, obstacle_motion.hpp), which of them are near
+// (contact_search.hpp), and the step of contacts that share no nodes (plain_step.hpp, block_step.hpp). Where
+// contacts share nodes, coupled_interface.hpp takes its step.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "contact/block_step.hpp"
 #include "contact/contact_arrays.hpp"
+#include "contact/contact_search.hpp"
 #include "contact/contact_sums.hpp"
-#include "contact/counterpart.hpp"
-#include "contact/coupled_group.hpp"
 #include "contact/interface_setup.hpp"
 #include "contact/law.hpp"
-#include "contact/proximity_filter.hpp"
+#include "contact/obstacle_motion.hpp"
 
 #include <cstdint>
 #include <iosfwd>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,24 +53,8 @@ class Interface {
   // energies and status, and takes v from v_free to v_free + H r. Throws ilaw::error on bad nodes.
   void solve(const StepView& step, Dofs& v);
 
-  // ---- a step where contacts share nodes, in the order of the calls ----
-  void keep_geometry() { contacts_.keep_geometry(); }
-  CoupledGroup make_group() const;
-  // Chooses the active contacts, by contact_index, finds their gaps, normals and partners, and gives the
-  // solver those that may act: the others are out of reach of the speeds of the step.
-  const ilaw_contacts& open_step(const StepView& step, CoupledGroup& group);
-  // Takes the impulses that were found.
-  void take(const CoupledGroup& group);
-  // Throws as solve(), given the first contact with bad input (place in the group; -1: none).
-  void check_solve(const CoupledGroup& group, const ilaw_coupled_report& report, std::int64_t bad_contact,
-                   double dt) const;
-  // Throws std::runtime_error where a motion drives a node against a law that cannot give way.
-  void check_driven(const StepView& step, const Dofs& v, const CoupledGroup& group) const;
-  // The step is done: its state becomes the state before the next.
-  void accept(const StepView& step, const Dofs& v, const CoupledGroup& group);
-
   // ---- the last step ----
-  const ContactList& active() const { return acts_ ? near_ : none_; }
+  const ContactList& active() const { return search_.active(); }
   const ContactSums& sums() const { return sums_; }
   // Totals of the run, in the order of info().amounts.
   const std::vector<double>& amounts() const { return amounts_; }
@@ -94,8 +77,7 @@ class Interface {
   void add_impulse(int contact_index, Dofs& impulse) const;
   // Relative velocity of a contact in a velocity field, without the obstacle's own.
   Vector relative(int contact_index, const Dofs& v) const;
-  const Vector& obstacle_velocity() const { return obstacle_velocity_; }
-  const Vector& obstacle_velocity_before() const { return obstacle_velocity_before_; }
+  const ObstacleMotion& obstacle() const { return obstacle_; }
   // Only where contacts share nodes.
   auto normal(int contact_index) const { return contacts_.vector(contacts_.normal, contact_index); }
   double gap(int contact_index) const { return contacts_.gap[at(contact_index)]; }
@@ -120,20 +102,11 @@ class Interface {
   void load(std::istream& in, const Dofs& u);
 
  private:
+  friend class CoupledInterface;
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
-  bool is_idle(int contact_index) const;
-  Vector v_free_of(const CoupledGroup& group, std::size_t place, const Dofs& v) const;
-  void accept_contact(const StepView& step, const Dofs& v, const CoupledGroup& group, std::size_t place);
-  void find_fault(const CoupledGroup& group, double dt) const;
-  // Whether the state of a contact that is out of reach changes: axes follow the normal.
-  bool axes_turn() const;
-  bool may_skip() const;
   void find_delassus(std::size_t contact);
-  void follow_obstacle(const StepView& step);
   void choose_active(const StepView& step);
   void total_amounts();
-  void refresh_near(const StepView& step);
-  void look_at(std::size_t chunk, const StepView& step);
   std::vector<double> parameters_of(int node_index) const;
   std::vector<double> first_state(int node_index, const Dofs& u) const;
   // Throws what a law refused; node: the first, empty where it is none in particular.
@@ -146,20 +119,8 @@ class Interface {
   Law law_;
   std::vector<std::size_t> axes_;  // where they begin in the state
   ContactArrays contacts_;
-  ProximityFilter proximity_;
-  double closing_ = 0.0;           // how far a gap may close in the coming step
-  bool acts_ = false;              // between birth and death
-  ContactList near_, near_nodes_;  // contacts, and the nodes that they are of
-  const ContactList none_;
-  std::vector<std::ptrdiff_t> chunk_starts_;  // in near_, and its end
-  std::vector<std::uint8_t> is_near_;         // by node_index, at the last refresh
-  std::vector<FarNodes> far_;                 // by chunk of nodes; no bound where some are near
-  Vector obstacle_velocity_, obstacle_velocity_before_;
-  Vector tangent_;  // turned with the obstacle
-  double obstacle_speed_ = 0.0, obstacle_speed_before_ = 0.0;
-  TurningRates rates_;
-  std::optional<FlatSurface> flat_;
-  bool obstacle_is_known_ = false;      // it stands still, and all of it is above
+  ContactSearch search_;
+  ObstacleMotion obstacle_;
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
   std::vector<double> amounts_;

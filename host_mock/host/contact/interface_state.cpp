@@ -73,8 +73,7 @@ void Interface::load(std::istream& in, const Dofs& u) {
   amounts_ = read_sized<double>(in, info().amount_count);
   if (amounts_.size() != info().amount_count) refuse_damaged();
   setup_.counterpart->load(in);
-  far_.clear();
-  proximity_.invalidate();
+  search_.forget();
 }
 
 }  // namespace ilaw::host

@@ -30,11 +30,10 @@ bool share_nodes(const Model& model, const Interfaces& interfaces) {
 }
 
 CoupledStep::CoupledStep(const Model& model, Interfaces& interfaces)
-    : model_(model), interfaces_(interfaces), body_(static_cast<std::size_t>(model.node_count()), -1) {
-  groups_.reserve(interfaces.size());
-  for (const auto& interface : interfaces_) {
-    interface->keep_geometry();
-    groups_.push_back(interface->make_group());
+    : model_(model), body_(static_cast<std::size_t>(model.node_count()), -1) {
+  interfaces_.reserve(interfaces.size());
+  for (const auto& interface : interfaces) {
+    interfaces_.emplace_back(*interface);
     has_driven_nodes_ = has_driven_nodes_ || interface->setup().has_driven_nodes;
   }
 }
@@ -58,16 +57,15 @@ const ilaw_coupled_report& CoupledStep::solve(StepView step, const double* inver
 
 void CoupledStep::open(const StepView& step) {
   given_.clear();
-  for (std::size_t i = 0; i < interfaces_.size(); ++i)
-    given_.push_back(&interfaces_[i]->open_step(step, groups_[i]));
+  for (CoupledInterface& interface : interfaces_) given_.push_back(&interface.open(step));
   number_bodies();
 }
 
 void CoupledStep::number_bodies() {
   for (const std::int32_t node : nodes_) body_[static_cast<std::size_t>(node)] = -1;
   nodes_.clear();
-  for (CoupledGroup& group : groups_)
-    group.for_each_body([&](std::int32_t node) {
+  for (CoupledInterface& interface : interfaces_)
+    interface.group().for_each_body([&](std::int32_t node) {
       std::int32_t& body = body_[static_cast<std::size_t>(node)];
       if (body < 0) nodes_.push_back(node);
       body = 0;
@@ -75,8 +73,9 @@ void CoupledStep::number_bodies() {
   std::sort(nodes_.begin(), nodes_.end());
   for (std::size_t b = 0; b < nodes_.size(); ++b)
     body_[static_cast<std::size_t>(nodes_[b])] = static_cast<std::int32_t>(b);
-  for (CoupledGroup& group : groups_)
-    group.for_each_body([&](std::int32_t& node) { node = body_[static_cast<std::size_t>(node)]; });
+  for (CoupledInterface& interface : interfaces_)
+    interface.group().for_each_body(
+        [&](std::int32_t& node) { node = body_[static_cast<std::size_t>(node)]; });
 }
 
 // Rounding of a difference of coordinates, as a velocity.
@@ -118,15 +117,14 @@ void CoupledStep::solve_groups(const StepView& step, double speed, const double*
   try {
     report_ = solver_.solve(bodies, given_, options);
   } catch (const ilaw::error&) {
-    for (std::size_t i = 0; i < groups_.size(); ++i)
-      interfaces_[i]->check_solve(groups_[i], report_, -1, step.dt);
+    for (const CoupledInterface& interface : interfaces_) interface.check(report_, -1, step.dt);
     throw;
   }
-  for (std::size_t i = 0; i < groups_.size(); ++i)
-    interfaces_[i]->check_solve(groups_[i], report_,
-                                report_.bad_group == static_cast<std::int64_t>(i) ? report_.bad_contact : -1,
-                                step.dt);
-  for (std::size_t i = 0; i < groups_.size(); ++i) interfaces_[i]->take(groups_[i]);
+  for (std::size_t i = 0; i < interfaces_.size(); ++i) {
+    const bool is_bad = report_.bad_group == static_cast<std::int64_t>(i);
+    interfaces_[i].check(report_, is_bad ? report_.bad_contact : -1, step.dt);
+  }
+  for (CoupledInterface& interface : interfaces_) interface.take();
   for (std::size_t b = 0; b < nodes_.size(); ++b)
     for (std::size_t c = 0; c < d; ++c)
       v[static_cast<Eigen::Index>(d * static_cast<std::size_t>(nodes_[b]) + c)] = velocity_[d * b + c];
@@ -141,27 +139,28 @@ std::string CoupledStep::explain() const {
   const bool is_stuck = report_.residual * report_.speed > beyond_rounding * report_.first_speed &&
                         report_.island_contacts <= most_named;
   if (!report_.other_law && !is_stuck) return "";
-  const auto group = static_cast<std::size_t>(report_.worst_group);
-  const Interface& interface = *interfaces_[group];
+  const CoupledInterface& worst = interfaces_[static_cast<std::size_t>(report_.worst_group)];
   std::array<char, 768> text{};
   std::snprintf(
       text.data(), text.size(),
       "contacts that share node %d of interface '%s' have no common solution%s; the energy is wrong by "
       "%.3g: %s",
-      interface.node_of(groups_[group].contact(static_cast<std::size_t>(report_.worst_contact))),
-      interface.name().c_str(), report_.other_law ? "" : ", or it is not found", report_.energy_error,
+      worst.interface().node_of(worst.group().contact(static_cast<std::size_t>(report_.worst_contact))),
+      worst.interface().name().c_str(), report_.other_law ? "" : ", or it is not found", report_.energy_error,
       report_.message);
   return text.data();
 }
 
 void CoupledStep::check_driven(const StepView& step, const Dofs& v) const {
-  for (std::size_t i = 0; i < interfaces_.size(); ++i) interfaces_[i]->check_driven(step, v, groups_[i]);
+  for (const CoupledInterface& interface : interfaces_) interface.check_driven(step, v);
 }
 
 void CoupledStep::accept(const StepView& step, const Dofs& v) {
-  for (std::size_t i = 0; i < interfaces_.size(); ++i) interfaces_[i]->accept(step, v, groups_[i]);
   constexpr double most_growth = 1e4;  // the weight of a column over that of a body
-  for (CoupledGroup& group : groups_) group.keep_forces(step.velocity_step());
+  for (CoupledInterface& interface : interfaces_) {
+    interface.accept(step, v);
+    interface.group().keep_forces(step.velocity_step());
+  }
   // Impulses that run away would begin where they ended.
   if (report_.message || report_.speed > most_growth * report_.first_speed) forget_forces();
 }
@@ -169,32 +168,33 @@ void CoupledStep::accept(const StepView& step, const Dofs& v) {
 // Whether there were any.
 bool CoupledStep::forget_forces() {
   bool had_some = false;
-  for (CoupledGroup& group : groups_) {
-    had_some = had_some || !group.kept().empty();
-    group.forget_forces();
+  for (CoupledInterface& interface : interfaces_) {
+    had_some = had_some || !interface.group().kept().empty();
+    interface.group().forget_forces();
   }
   return had_some;
 }
 
 void CoupledStep::save(std::ostream& out) const {
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
+  for (const CoupledInterface& interface : interfaces_) {
     std::vector<int> nodes;
-    for (const std::int32_t contact : groups_[i].kept())
-      nodes.push_back(interfaces_[i]->node_index_of(contact));
+    for (const std::int32_t contact : interface.group().kept())
+      nodes.push_back(interface.interface().node_index_of(contact));
     write_sized(out, nodes);
-    write_sized(out, groups_[i].kept_forces());
+    write_sized(out, interface.group().kept_forces());
   }
 }
 
 void CoupledStep::load(std::istream& in, const Dofs& u) {
   const auto d = static_cast<std::size_t>(model_.dimension());
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
+  for (CoupledInterface& part : interfaces_) {
+    Interface& interface = part.interface();
     ContactList contacts;
-    for (const int node : ContactArrays::load_nodes(in, interfaces_[i]->nodes().size()))
-      contacts.push_back(interfaces_[i]->contact_index_of(node, u));
+    for (const int node : ContactArrays::load_nodes(in, interface.nodes().size()))
+      contacts.push_back(interface.contact_index_of(node, u));
     std::vector<double> forces = read_sized<double>(in, d * contacts.size());
     if (forces.size() != d * contacts.size()) refuse_damaged();
-    groups_[i].keep(std::move(contacts), std::move(forces));
+    part.group().keep(std::move(contacts), std::move(forces));
   }
 }
 

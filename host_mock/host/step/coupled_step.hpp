@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "contact/interface.hpp"
+#include "contact/coupled_interface.hpp"
 
 #include <ilaw/coupled.hpp>
 
@@ -47,9 +47,8 @@ class CoupledStep {
   void solve_groups(const StepView& step, double speed, const double* inverse_mass, Dofs& v);
 
   const Model& model_;
-  Interfaces& interfaces_;
   bool has_driven_nodes_ = false;
-  std::vector<CoupledGroup> groups_;
+  std::vector<CoupledInterface> interfaces_;
   std::vector<const ilaw_contacts*> given_;
   std::vector<std::int32_t> nodes_;  // of the bodies, in ascending order
   std::vector<std::int32_t> body_;   // of each node of the model; -1: no contact has it

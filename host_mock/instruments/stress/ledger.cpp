@@ -71,7 +71,7 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
   const Interface& interface = *scene_.interfaces[number];
   const bool is_alone = interface.setup().counterpart->partners().empty();
   const double obstacle =
-      std::max(interface.obstacle_velocity_before().norm(), interface.obstacle_velocity().norm());
+      std::max(interface.obstacle().velocity_before().norm(), interface.obstacle().velocity().norm());
   fastest_ = std::max(fastest_, (is_alone ? 1.0 : 2.0) * speed + obstacle);
   if (interface.sums().penetration > penetration_) measure_depth(number, integrator);
   const double stored = interface.sums().energy[ILAW_ENERGY_STORED];
@@ -92,7 +92,7 @@ void Ledger::add(std::size_t number, const Integrator& integrator, double speed)
 Ledger::Ends Ledger::ends_of(const Interface& interface, int contact, const Integrator& integrator) const {
   const Counterpart& counterpart = *interface.setup().counterpart;
   const Dofs& v = integrator.velocity();
-  Vector before = interface.obstacle_velocity_before(), after = interface.obstacle_velocity();
+  Vector before = interface.obstacle().velocity_before(), after = interface.obstacle().velocity();
   if (counterpart.turns()) {
     const int k = interface.node_index_of(contact);
     const double time = integrator.time();

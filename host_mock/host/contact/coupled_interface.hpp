@@ -1,0 +1,45 @@
+// coupled_interface.hpp - the step of an interface whose contacts share nodes with others: what it gives the
+// solver of ilaw/coupled.h, and what it takes from it. Calls come in the order below.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/coupled_group.hpp"
+#include "contact/interface.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace ilaw::host {
+
+class CoupledInterface {
+ public:
+  explicit CoupledInterface(Interface& interface);
+
+  CoupledGroup& group() { return group_; }
+  const CoupledGroup& group() const { return group_; }
+  Interface& interface() { return interface_; }
+  const Interface& interface() const { return interface_; }
+
+  // Chooses the active contacts, finds their gaps, normals and partners, and gives the solver those that may
+  // act: the others are out of reach of the speeds of the step.
+  const ilaw_contacts& open(const StepView& step);
+  // Takes the impulses that were found.
+  void take();
+  // Throws as Interface::solve(), given the first contact with bad input (place in the group; -1: none).
+  void check(const ilaw_coupled_report& report, std::int64_t bad_contact, double dt) const;
+  // Throws std::runtime_error where a motion drives a node against a law that cannot give way.
+  void check_driven(const StepView& step, const Dofs& v) const;
+  // The step is done: its state becomes the state before the next.
+  void accept(const StepView& step, const Dofs& v);
+
+ private:
+  bool is_idle(std::int32_t contact) const;
+  Vector v_free_of(std::size_t place, const Dofs& v) const;
+  void accept_contact(const StepView& step, const Dofs& v, std::size_t place);
+  void find_fault(double dt) const;
+
+  Interface& interface_;
+  CoupledGroup group_;
+};
+
+}  // namespace ilaw::host
