@@ -109,6 +109,23 @@ TEST(ExactMotion, PostitRefusesWhatItDoesNotCover) {
     EXPECT_EQ(refusal_of(scene).substr(0, 45), "/exact: expected one point at rest in 1D on a");
 }
 
+// ---- a mass on a spring against a stop
+
+// Thrown at -1 from rest length, w = 10, towards a stop at 0.05: there at pi/60 with sqrt(3)/2, of which 0.8
+// is left. Then u = -0.05 cos(10 s) + 0.04 sqrt(3) sin(10 s), s the time since.
+TEST(ExactMotion, ImpactOscillatorFollowsTheStoryByHand) {
+  const double meets = M_PI / 60.0, leaves = 0.4 * std::sqrt(3.0);
+  const auto again = [&](double s) { return -0.05 * std::cos(10.0 * s) + 0.1 * leaves * std::sin(10.0 * s); };
+  expect_instants("impact_oscillator",
+                  {{0.03, -0.1 * std::sin(0.3), -std::cos(0.3)},
+                   {meets + 0.05 * M_PI, 0.1 * leaves, 0.5},
+                   {meets + 0.2, again(0.2), 0.5 * std::sin(2.0) + leaves * std::cos(2.0)}});
+  const ExactNode exact = exact_of(shipped("impact_oscillator"));
+  EXPECT_NEAR(exact.instants.first_impulse, meets, 1e-15);
+  EXPECT_NEAR(exact.impulse(0.2), 0.9 * std::sqrt(3.0), 1e-14);
+  EXPECT_NEAR(exact.work(0.2), -0.135, 1e-15);
+}
+
 // ---- bars -----------------------------------------------------------------------------------------------
 
 // Dropped from 5 under g = 10 onto the plane, at 10 from 1 to 5/3; up for 1 and down for 1 while the end
@@ -253,6 +270,12 @@ TEST(ExactMotion, OfPointsIsRefusedForEachDepartureFromItsScene) {
         {"oblique_impact", "/loads/0/acceleration", "[0, 10]"},
         {"oblique_impact", "/loads/0", R"({"type": "shock", "nodes": [0], "time": 1, "impulse": [1, 1]})"},
         {"oblique_impact", "/loads", "[]"},
+        {"impact_oscillator", "/model/points/0/velocity", "[0]"},
+        {"impact_oscillator", "/model/points/0/stiffness", "[0]"},
+        {"impact_oscillator", "/model/points/0/position", "[0]"},
+        {"impact_oscillator", "/model/points/1", R"({"mass": 1, "position": [1]})"},
+        {"impact_oscillator", "/interfaces/0/obstacle/normal", "[-1]"},
+        {"impact_oscillator", "/loads", R"([{"type": "gravity", "acceleration": [1]}])"},
         {"postit_test1", "/model", resting_points},
         {"postit_test1", "/model/points/0/stiffness", "[1]"},
         {"postit_test1", "/model/points/0/velocity", "[1]"},

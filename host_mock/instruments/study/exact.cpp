@@ -68,6 +68,67 @@ ExactNode bouncing_ball(const Scene& scene) {
   return node;
 }
 
+// On a spring at rest length above a stop: u = A cos(w t - phi) about where it starts, until it meets the
+// stop at -gap, from where it leaves at e times its speed.
+struct StoppedSwing {
+  struct Motion {
+    double u, v, impulse, work;
+  };
+
+  double mass, frequency, gap, speed, e;
+
+  Motion at(double time) const {
+    Motion now{0.0, speed, 0.0, 0.0};
+    for (;;) {
+      const double size = std::hypot(now.u, now.v / frequency), phase = std::atan2(now.v / frequency, now.u),
+                   until = size > gap ? (phase + std::acos(-gap / size)) / frequency : INFINITY;
+      if (time < until) {
+        now.u = size * std::cos(frequency * time - phase);
+        now.v = -frequency * size * std::sin(frequency * time - phase);
+        return now;
+      }
+      time -= until;
+      const double arrives = frequency * std::sqrt((size - gap) * (size + gap));
+      now.u = -gap;
+      now.v = e * arrives;
+      now.impulse += mass * (1.0 + e) * arrives;
+      now.work -= 0.5 * mass * (1.0 - e * e) * arrives * arrives;
+    }
+  }
+};
+
+ExactNode impact_oscillator(const Scene& scene) {
+  const json& model = scene.source["model"];
+  const json& interface = scene.source["interfaces"][0];
+  const std::string wanted =
+      "one point in 1D on a spring, thrown above a plane, without loads, with law 'contact'";
+  require(model["type"] == "points" && model["points"].size() == 1 && model["dimension"] == 1 &&
+              model["points"][0].contains("stiffness") && scene.loads.empty() &&
+              scene.source["interfaces"].size() == 1 && interface["law"] == "contact" &&
+              interface.contains("obstacle") && interface["obstacle"]["type"] == "plane" &&
+              interface["obstacle"]["normal"][0].get<double>() > 0.0,
+          wanted);
+  const json& point = model["points"][0];
+  const double mass = point["mass"].get<double>(), stiffness = point["stiffness"][0].get<double>();
+  const StoppedSwing swing{
+      mass, std::sqrt(stiffness / mass),
+      point["position"][0].get<double>() - interface["obstacle"]["point"][0].get<double>(),
+      point.value("velocity", json{0.0})[0].get<double>(),
+      interface.value("parameters", json::object()).value("restitution", 0.0)};
+  require(stiffness > 0.0 && swing.gap > 0.0 && swing.speed != 0.0, wanted);
+  ExactNode node;
+  node.displacement = [=](double time) { return swing.at(time).u; };
+  node.velocity = [=](double time) { return swing.at(time).v; };
+  node.impulse = [=](double time) { return swing.at(time).impulse; };
+  node.work = [=](double time) { return swing.at(time).work; };
+  const double size = std::fabs(swing.speed) / swing.frequency;
+  if (size > swing.gap)
+    node.instants.first_impulse =
+        (std::acos(-swing.gap / size) + std::copysign(0.5 * M_PI, swing.speed)) / swing.frequency;
+  node.energy = 0.5 * mass * swing.speed * swing.speed;
+  return node;
+}
+
 // Thrown along a plane from above it, under gravity: bounces as above, of which every one takes
 // mu (1 + e) times the speed of arrival from the sliding, as long as there is any (Moreau 1988); then
 // mu g.
@@ -219,8 +280,10 @@ std::vector<ExactNode> exact_solution(const Scene& scene) {
   if (type == "oblique_impact") return oblique_impact(scene);
   using Solution = ExactNode (*)(const Scene&);
   static const std::map<std::string, Solution> solutions{
-      {"bouncing_ball", bouncing_ball}, {"bar_on_wall", bar_on_wall}, {"bouncing_bar", bouncing_bar},
-      {"held_rod", held_rod},           {"glued_bar", glued_bar},     {"postit_point", postit_point}};
+      {"bouncing_ball", bouncing_ball}, {"impact_oscillator", impact_oscillator},
+      {"bar_on_wall", bar_on_wall},     {"bouncing_bar", bouncing_bar},
+      {"held_rod", held_rod},           {"glued_bar", glued_bar},
+      {"postit_point", postit_point}};
   return {solutions.at(type)(scene)};
 }
 
