@@ -34,11 +34,7 @@ struct contact {
   struct state {
     V work;
   };
-  static constexpr state_variable<state> state_variables[] = {
-      {.member = &state::work,
-       .name = "waiting_work",
-       .unit = "J",
-       .doc = "Work that the impact of the last step leaves to the impulse of the next one; 0: none."}};
+  static constexpr state_variable<state> state_variables[] = {waiting_work_variable(&state::work)};
   bool remembers() const { return activation == resolved; }
   std::uint32_t capabilities() const { return remembers() ? can_store_energy : 0; }
 

@@ -1,5 +1,6 @@
 // Contact with dry friction. See coulomb.md for the equations.
 #include <ilaw/kit.hpp>
+#include <ilaw/kit/resolved_impact.hpp>
 
 namespace {
 
@@ -27,6 +28,7 @@ struct coulomb {
           "Signorini-Moreau contact with Coulomb friction: the tangential impulse stays within the friction cone, "
           "circular or elliptical, and dissipates at most. Exact for any symmetric positive definite H.",
       .inputs = reads_gap | reads_v_previous,
+      .capabilities = can_store_energy,
       .permissions = may_skip_fresh | may_skip_free,
       .is_isotropic = true};
 
@@ -67,9 +69,32 @@ struct coulomb {
        .symbol = "e_T",
        .doc = "Part of the tangential velocity before the step that a sticking contact reverses.",
        .maximum = 1.0},
-      activation_parameter(&coulomb::activation),
+      resolving_activation_parameter(&coulomb::activation),
       heat_partition_parameter(&coulomb::heat_partition),
       wear_coefficient_parameter(&coulomb::wear_coefficient)};
+
+  // Only where activation is resolved.
+  struct state {
+    V work, ratio;
+  };
+  static constexpr state_variable<state> state_variables[] = {
+      waiting_work_variable(&state::work),
+      {.member = &state::ratio,
+       .name = "stick_ratio",
+       .doc = "Impulse that held the node in the last step over its limit; 0: it was not held.",
+       .minimum = 0.0,
+       .maximum = 1.0}};
+  bool remembers() const { return activation == resolved; }
+  std::uint32_t capabilities() const { return remembers() ? can_store_energy : 0; }
+
+  const char* conflict() const {
+    if (activation != resolved) return nullptr;
+    if (tells_tangents_apart()) return "'activation' resolved has one coefficient: no 'friction_2'";
+    if ((kinetic_friction < friction) & (decay < infinity))
+      return "'activation' resolved has 'kinetic_friction' at once: no 'decay'";
+    if (tangential_restitution != 0.0) return "'activation' resolved has no 'tangential_restitution'";
+    return nullptr;
+  }
 
   bool tells_tangents_apart() const { return (friction_2 != infinity) & (friction_2 != friction); }
   bool asks() const { return tells_tangents_apart(); }
@@ -77,6 +102,7 @@ struct coulomb {
   // One coefficient, and H = diag(h_N, h_T, h_T).
   template <class Node>
   status_of<V> step(Node& node) const requires is_transverse<Node> {
+    if constexpr (has_memory<Node>) return resolved_step(node);
     return apply_isotropic_friction(node, contact(node), fallen(node, friction));
   }
 
@@ -84,7 +110,13 @@ struct coulomb {
   using problem = friction_problem<V>;
   using answer = friction_answer<V>;
   template <class Node>
-  asked<V> ask(Node& node, problem& open) const requires has_tangents<Node> {
+  asked<V> ask(Node& node, problem& open) const
+      requires(has_tangents<Node> && !(has_memory<Node> && is_transverse<Node>)) {
+    if constexpr (has_memory<Node>) {
+      open = {};
+      node.refuse(is_anisotropic(node.delassus), refusal::unserved_delassus);
+      return {V(0.0) != V(0.0), resolved_step(node)};
+    }
     const V second = select(friction_2 == infinity, friction, friction_2);
     return ask_friction(node, contact(node), fallen(node, friction), fallen(node, second), open);
   }
@@ -96,6 +128,17 @@ struct coulomb {
   }
 
  private:
+  template <class Node>
+  status_of<V> resolved_step(Node& node) const {
+    const resolved_impact<V> impact = resolve_impact(node, restitution, node.state.work);
+    if (node.wants_energy) {
+      node.stored = positive_part(impact.work);
+      node.normal_gain = node.stored - positive_part(node.state.work);
+    }
+    node.state.work = impact.work;
+    return apply_resolved_friction(node, impact, restitution, fallen(node, friction),
+                                   smaller(kinetic_friction, friction), node.state.ratio);
+  }
   template <class Node>
   auto contact(const Node& node) const {
     return contact_problem_of(contact_at(node, restitution, activation), node.v_free, node.v_previous,

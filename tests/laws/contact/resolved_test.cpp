@@ -1,5 +1,7 @@
 // activation: "resolved", through the ABI: its order, its energy, its state. The equations are those of
 // docs/theory/resolved_impact.md.
+#include "laws/changing_steps.hpp"
+
 #include "support/law_runner.hpp"
 #include "support/numbers.hpp"
 
@@ -15,19 +17,6 @@ Parameters resolved(double restitution) {
 }
 
 // ---- a mass under a force that depends on its position
-
-// Steps of three sequences without a common factor, from coarse to fine.
-const std::vector<double> step_sets[] = {
-    {1.03e-2, 2.9e-3, 1.03e-3, 2.9e-4}, {8.7e-3, 2.3e-3, 7.1e-4, 1.9e-4}, {1.3e-2, 3.7e-3, 1.3e-3, 3.7e-4}};
-
-// The step at a time: fixed, or changing smoothly by 40 %.
-using Steps = std::function<double(double time)>;
-Steps fixed(double h) {
-  return [h](double) { return h; };
-}
-Steps varying(double h) {
-  return [h](double time) { return h * (1.0 + 0.4 * std::sin(3.0 * time)); };
-}
 
 using Motion = std::function<double(double)>;
 

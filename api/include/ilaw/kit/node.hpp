@@ -53,6 +53,7 @@ enum class refusal {
   no_solution,          // the law's equations have none for this input
   impossible_state,     // the law cannot have written this state
   time_before_history,  // the clock was set back
+  unserved_delassus,    // these parameters serve no such H
 };
 
 // ---- a node

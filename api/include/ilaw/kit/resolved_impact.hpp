@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/contact.hpp>
+#include <ilaw/kit/friction.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL {
 
@@ -21,10 +21,21 @@ constexpr parameter<Law> resolving_activation_parameter(double Law::*member) {
   return p;
 }
 
+template <class State>
+constexpr state_variable<State> waiting_work_variable(double State::*member) {
+  return {.member = member,
+          .name = "waiting_work",
+          .unit = "J",
+          .doc = "Work that the impact of the last step leaves to the impulse of the next one; 0: none."};
+}
+
 // The impulse of a step, and the work W that the impact leaves to the impulse of the next step; 0: none.
+// For friction: the gain that the last impact left to this step, and the impact of this step, if it bounces,
+// at the part `instant` of the step with the speed `speed`.
 template <class V>
 struct resolved_impact {
-  V impulse, work;
+  V impulse, work, rebound, instant, speed;
+  mask_of<V> lands, bounces;
 };
 
 // Marks an impact that has no work left to do, but a rebound.
@@ -51,7 +62,13 @@ ILAW_KIT_INLINE auto resolve_impact(const Node& node, number_of<Node> restitutio
   // gamma + v_n s + change s^2/2 = 0: the impact at the part s of the step, with the velocity -speed.
   const V open = positive_part(node.gap);
   const mask_of<V> hits = open + node.position_step * (free + gain) <= 0.0;
-  V left = 0.0;
+  resolved_impact<V> found{.impulse = 0.0,
+                           .work = 0.0,
+                           .rebound = gain,
+                           .instant = 0.0,
+                           .speed = 0.0,
+                           .lands = hits,
+                           .bounces = hits};
   if (any(hits)) {
     const V gamma = open * node.per_position_step, now = mean + gain;
     const V square = positive_part(now * now - 2.0 * change * gamma), speed = square_root(square);
@@ -63,12 +80,106 @@ ILAW_KIT_INLINE auto resolve_impact(const Node& node, number_of<Node> restitutio
     const V needed = positive_part(smaller(target - free, most));
     const V loss = 0.5 * (1.0 - restitution * restitution) * square;
     const V after = work - (loss + needed * (mean + 0.5 * needed)) / inverse_mass;
-    left = zero_unless(hits & bounces & (needed > 0.0),
-                       select((after == 0.0) & (needed < most), V(no_work), after));
+    found.work = zero_unless(hits & bounces & (needed > 0.0),
+                             select((after == 0.0) & (needed < most), V(no_work), after));
+    found.bounces = hits & bounces;
+    found.instant = zero_unless(found.bounces, s);
+    found.speed = zero_unless(found.bounces, speed);
     gain = select(hits, needed, gain);
   }
-  const V impulse = gain / inverse_mass;
-  return resolved_impact<V>{impulse, zero_unless(impulse > 0.0, left)};
+  found.impulse = gain / inverse_mass;
+  found.work = zero_unless(found.impulse > 0.0, found.work);
+  return found;
+}
+
+// A tangential impulse, and the status where the contact is pressed.
+template <class Vector>
+struct resolved_rubbing {
+  Vector impulse;
+  status_of<typename Vector::number> status;
+};
+
+// That of a node that lands and stays, or was there: the friction of `predictive`. friction: at rest the
+// static coefficient. ratio is the impulse that held the node in the last step over its limit, 0 where it was
+// not held. Where the load passes the limit before the next half step, the kinetic coefficient acts from that
+// instant on.
+template <class Node, class V>
+ILAW_KIT_INLINE auto rub_in_touch(const Node& node, V normal, V friction, V kinetic, V& ratio) {
+  using Vector = std::remove_cvref_t<decltype(node.v_free)>;
+  const Vector &free = node.v_free, &before = node.v_previous;
+  const V h_t = node.delassus.tangential(), arrival = positive_part(node.gap) * -node.per_position_step;
+  const scaled_length<V> speed = free.scaled_tangential_length();
+  friction_factor<V> found = rub(h_t, normal, speed, tangential_product(speed.down * free, before),
+                                 smaller(before.n + arrival, V(0.0)), friction);
+  if (any((kinetic < friction) | (ratio > 0.0))) {
+    const V slip = speed.root(), limit = speed.down * friction_limit(friction, normal),
+            now = slip / (h_t * limit), rate = now - ratio;
+    const mask_of<V> starts = (kinetic < friction) & (ratio > 0.0) & (rate > 0.0) & (now + 0.5 * rate > 1.0);
+    const V until = smaller(larger((1.0 - now) / rate, V(-0.5)), V(0.5));
+    const V slides = (0.5 - until) * (slip - h_t * (speed.down * friction_limit(kinetic, normal)));
+    const V factor = positive_part(slip - slides) / (slip * h_t);
+    found.factor = select(starts & (factor < found.factor), factor, found.factor);
+    found.status = select(starts, status_of<V>(status::slip), found.status);
+    ratio = zero_unless((found.status == status::stick) & (normal > 0.0) & (kinetic < friction),
+                        smaller(now, V(1.0)));
+  }
+  return resolved_rubbing<Vector>{free.against(V(0.0), found.factor), found.status};
+}
+
+// The part of its step at which the last impact was, from the rebound that it left: rebound = s (1 + e) w and
+// v_n = e w + change (1 - s), so that (1 + e) change s^2 + (1 + e) (v_n - change) s = e rebound.
+template <class V>
+ILAW_KIT_INLINE V instant_of_rebound(V restitution, V rebound, V velocity, V change) {
+  const V c2 = (1.0 + restitution) * change, c1 = (1.0 + restitution) * (velocity - change),
+          c0 = restitution * rebound;
+  const V root = c1 + square_root(positive_part(c1 * c1 + 4.0 * c2 * c0));
+  return select(2.0 * c0 < root, 2.0 * c0 / root, 1.0);
+}
+
+// That of a node that rebounds: the part s_0 of the friction of the last impact and the part 1 - s of that of
+// this one, each in its cone, less what is outside the cone of r_N or would be positive work.
+template <class Node, class V>
+ILAW_KIT_INLINE auto rub_at_impact(const Node& node, const resolved_impact<V>& impact, V restitution,
+                                   V friction) {
+  using Vector = std::remove_cvref_t<decltype(node.v_free)>;
+  const V h_n = node.delassus.normal(), h_t = node.delassus.tangential();
+  const Vector motion = node.v_previous + node.v_free, change = node.v_free - node.v_previous;
+  const auto rub_on = [&](V normal, const Vector& q) ILAW_KIT_LAMBDA {
+    return rub(h_t, normal, q.scaled_tangential_length(), V(0.0), V(0.0), friction);
+  };
+  const V then = instant_of_rebound(restitution, impact.rebound, 0.5 * motion.n + impact.rebound, change.n);
+  const Vector last = node.v_previous + (then - 0.5) * change;
+  const friction_factor<V> of_last = rub_on(impact.rebound / h_n, last);
+  Vector r = last.against(V(0.0), of_last.factor);
+  const Vector now = V(0.5) * motion + h_t * r + impact.instant * change;
+  const friction_factor<V> of_this = rub_on((1.0 + restitution) * impact.speed / h_n, now);
+  r = r + (1.0 - impact.instant) * now.against(V(0.0), of_this.factor);
+
+  const scaled_length<V> size = r.scaled_tangential_length();
+  const Vector scaled = size.down * r;
+  const V limit = size.down * friction_limit(friction, impact.impulse), length = size.root();
+  const V inside = select(length > limit, limit / length, 1.0);
+  const V part = smaller(
+      inside, dissipative_part(tangential_product(scaled, motion), h_t * tangential_product(scaled, r)));
+  const status_of<V> moved = select(impact.bounces, of_this.status, of_last.status);
+  return resolved_rubbing<Vector>{part * r, select(part < sticking_part, status_of<V>(status::slip), moved)};
+}
+
+// Friction of a resolved contact for H = diag(h_N, h_T, h_T). Writes the impulse, returns the status.
+template <class Node>
+ILAW_KIT_INLINE status_of<number_of<Node>> apply_resolved_friction(
+    Node& node, const resolved_impact<number_of<Node>>& impact, number_of<Node> restitution,
+    number_of<Node> friction, number_of<Node> kinetic, number_of<Node>& ratio) {
+  auto found = rub_in_touch(node, impact.impulse, friction, kinetic, ratio);
+  const mask_of<number_of<Node>> rebounds = impact.bounces | ((impact.rebound > 0.0) & !impact.lands);
+  if (any(rebounds)) {
+    const auto other = rub_at_impact(node, impact, restitution, kinetic);
+    found = {select(rebounds, other.impulse, found.impulse), select(rebounds, other.status, found.status)};
+    ratio = zero_unless(!rebounds, ratio);
+  }
+  node.impulse = found.impulse;
+  node.impulse.n = impact.impulse;
+  return select(impact.impulse > 0.0, found.status, status::free);
 }
 
 }  // namespace ilaw::kit

@@ -190,6 +190,8 @@ const char* reason_text(const instance<Law>& made, const ilaw_batch& batch, cons
       return "the state is not one that the law can have written";
     case reason_time_before_history:
       return "the time lies before what the state remembers";
+    case reason_unserved_delassus:
+      return "H couples directions, or differs along the tangents, which these parameters do not serve";
     case reason_not_a_number:
       return "the law gave an impulse that is not a number";
     case reason_overflow:

@@ -433,7 +433,7 @@ struct kernel {
   ILAW_KIT_INLINE static void check_result(const node_type& n, const view_type& b, checks_type& c) {
     const V size = sum_of_sizes(n.impulse);
     if constexpr (careful) {
-      for (int k = 1; k <= 4; ++k)
+      for (int k = 1; k <= 5; ++k)
         c.require(n.refused != static_cast<double>(k), static_cast<reason>(reason_several_solutions + k - 1));
       c.require((size == size) | is_infinite(n.impulse), reason_not_a_number);
     } else {

@@ -184,6 +184,7 @@ enum reason : int {
   reason_no_solution,
   reason_impossible_state,
   reason_time_before_history,
+  reason_unserved_delassus,
   reason_not_a_number,
   reason_overflow,
   reason_pull,

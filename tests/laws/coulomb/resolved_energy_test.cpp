@@ -1,0 +1,167 @@
+// activation: "resolved" with friction, through the ABI: its energy, its limits, its state. The proof is in
+// docs/theory/resolved_impact.md.
+#include "resolved_friction.hpp"
+
+#include <algorithm>
+#include <random>
+
+namespace ilaw::testing {
+namespace {
+
+// ---- energy
+
+// A mass on springs of different h omega against a rough stop. The energy of a step is that of the scheme,
+// and what the law stores.
+double largest_gain(const Body& body, double h_omega, double h_omega_t, double middle, int steps) {
+  NodeRun node("coulomb", resolved(body.friction, body.restitution), h_omega);
+  double before = INFINITY, gained = -INFINITY, size = 0.0;
+  const double ratio = h_omega_t / h_omega * (h_omega_t / h_omega);
+  struct {
+    double u, v, x, y;
+  } at{1.0, 0.0, 0.7, 0.3};  // y: velocity along the tangent
+  for (int k = 0; k < steps; ++k) {
+    node.gap = at.u;
+    node.v_previous = {at.v, at.y, 0.0};
+    if (node.step({at.v - h_omega * (at.u + middle), at.y - h_omega * ratio * at.x, 0.0}) != ILAW_OK)
+      ADD_FAILURE() << node.report.reason;
+    at.v = node.v[0];
+    at.y = node.v[1];
+    const double u = at.u + h_omega * at.v, x = at.x + h_omega * at.y;
+    const double energy =
+        0.5 * (at.v * at.v + at.y * at.y + (at.u + middle) * (u + middle) + ratio * at.x * x) +
+        node.energy[ILAW_ENERGY_STORED];
+    size = std::max(size, 0.5 * (at.v * at.v + at.y * at.y + (u + middle) * (u + middle) + ratio * x * x));
+    gained = std::max(gained, energy - before);
+    before = energy;
+    at.u = u;
+    at.x = x;
+  }
+  return gained / size;
+}
+
+TEST(ResolvedFriction, NeverGainsUpToTheCriticalStep) {
+  for (const double restitution : {1.0, 0.8, 0.3})
+    for (const double friction : {0.1, 1.0, inf_value})
+      for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.999})
+        for (const double h_omega_t : {0.3, 1.7, 1.999})
+          for (const double middle : {0.3, -0.2})
+            EXPECT_LE(largest_gain({friction, restitution}, h_omega, h_omega_t, middle, 10000), 1e-14)
+                << "mu " << friction << ", e " << restitution << ", h w " << h_omega << " and " << h_omega_t;
+}
+
+TEST(ResolvedFriction, NeverGainsInAMillionSteps) {
+  for (const double h_omega : {0.1, 0.5, 1.0, 1.5, 1.9, 1.999})
+    EXPECT_LE(largest_gain({0.01, 1.0}, h_omega, 0.7 * h_omega, 0.3, 1000000), 1e-14) << "h w " << h_omega;
+}
+
+// Whatever the velocities, forces, steps and inverse masses: the impulse is in the cone, the parts are the
+// work, and none is negative.
+TEST(ResolvedFriction, MakesNoEnergyWhateverMovesIt) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int waiting = 0, sticks = 0;
+  for (const double friction : {0.1, 1.0, inf_value})
+    for (const double restitution : {0.05, 0.4, 0.9, 1.0}) {
+      NodeRun node("coulomb", resolved(friction, restitution), 1e-3, ILAW_DELASSUS_TRANSVERSE);
+      double stored = 0.0;
+      for (int k = 0; k < 50000; ++k) {
+        const Vector before = k % 3 == 0 ? node.v : Vector{uniform(random), uniform(random), uniform(random)};
+        Vector free = before;
+        for (double& v : free) v += 0.5 * uniform(random);
+        node.h[0] = std::pow(10.0, uniform(random));
+        node.h[1] = node.h[0] * std::pow(10.0, uniform(random));
+        node.position_dt = 1e-3 * (1.0 + 0.5 * uniform(random));
+        node.gap = k % 5 == 0 ? 0.0 : 1e-3 * uniform(random);
+        node.v_previous = before;
+        ASSERT_EQ(node.step(free), ILAW_OK) << node.report.reason;
+        const double now = node.energy[ILAW_ENERGY_STORED],
+                     work = 0.5 * (dot(node.r, before) + dot(node.r, node.v));
+        const double size =
+            std::sqrt(dot(node.r, node.r)) * (std::sqrt(dot(before, before)) + std::sqrt(dot(free, free)) +
+                                              node.r[0] * node.h[0] + tangential(node.r) * node.h[1]);
+        const double rounding = 64 * ulp * (size + now + stored);
+        expect_in_cone(node.r, friction);
+        ASSERT_LE(0.5 * (node.r[1] * (before[1] + node.v[1]) + node.r[2] * (before[2] + node.v[2])) +
+                      0.5 * node.r[0] * (before[0] + node.v[0]) + now - stored,
+                  rounding);
+        ASSERT_NEAR(work + now - stored + node.energy[ILAW_ENERGY_IMPACT] + node.energy[ILAW_ENERGY_FRICTION],
+                    0.0, rounding)
+            << "k " << k;
+        waiting += node.state[0] != 0.0;
+        sticks += node.status == ILAW_STICK;
+        stored = now;
+      }
+    }
+  EXPECT_GT(waiting, 10000);
+  EXPECT_GT(sticks, 10000);
+}
+
+// ---- its limits, its state
+
+TEST(ResolvedFriction, IsPredictiveWithoutRestitution) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-100.0, 100.0);
+  for (const double friction : {0.3, inf_value}) {
+    NodeRun node("coulomb", resolved(friction, 0.0)), other("coulomb", {{{"friction", friction}}, {}});
+    for (int k = 0; k < 50000; ++k) {
+      const double scale = std::pow(10.0, k % 2 ? exponent(random) : 0.0);
+      node.gap = k % 10 == 0 ? 0.0 : 1e-3 * scale * uniform(random);
+      node.h[0] = 1.0 + 0.9 * uniform(random);
+      node.v_previous = {scale * uniform(random), scale * uniform(random), scale * uniform(random)};
+      other.v_previous = node.v_previous;
+      ASSERT_TRUE(step_alike(node, other,
+                             {scale * uniform(random), scale * uniform(random), scale * uniform(random)}))
+          << "k " << k;
+      ASSERT_EQ(node.state[0], 0.0) << "k " << k;
+    }
+  }
+}
+
+TEST(ResolvedFriction, RefusesWhatItDoesNotKnow) {
+  const auto refused = [](const std::string& name, double value) {
+    Parameters parameters = resolved(0.5, 0.5);
+    parameters.numbers[name] = value;
+    return refusal_of("coulomb", parameters);
+  };
+  EXPECT_EQ(
+      refused("friction_2", 0.4),
+      "law 'coulomb': 'activation' resolved has one coefficient: no 'friction_2'; found friction_2 = 0.4, "
+      "activation = \"resolved\"");
+  EXPECT_EQ(refused("tangential_restitution", 0.1),
+            "law 'coulomb': 'activation' resolved has no 'tangential_restitution'; found "
+            "tangential_restitution = 0.1, activation = \"resolved\"");
+  EXPECT_EQ(refused("friction_2", 0.5), "not refused");
+  EXPECT_EQ(refused("kinetic_friction", 0.4), "not refused");
+  Parameters falling = resolved(0.5, 0.5);
+  falling.numbers["kinetic_friction"] = 0.4;
+  falling.numbers["decay"] = 2.0;
+  EXPECT_EQ(refusal_of("coulomb", falling),
+            "law 'coulomb': 'activation' resolved has 'kinetic_friction' at once: no 'decay'; found "
+            "kinetic_friction = 0.4, decay = 2, activation = \"resolved\"");
+
+  NodeRun node("coulomb", resolved(0.5, 0.5), 1e-3, ILAW_DELASSUS_FULL);
+  node.h = {1.0, 2.0, 2.0, 0.0, 0.0, 0.0};
+  node.v_previous = {-1.0, 0.5, 0.0};
+  EXPECT_EQ(node.step({-1.0, 0.5, 0.0}), ILAW_OK);
+  EXPECT_GT(node.r[0], 0.0);
+  for (const int entry : {2, 3, 4, 5}) {
+    node.h = {1.0, 2.0, 2.0, 0.0, 0.0, 0.0};
+    node.h[static_cast<std::size_t>(entry)] += 0.1;
+    EXPECT_EQ(node.step({-1.0, 0.5, 0.0}), ILAW_BAD_NODES) << "entry " << entry;
+    EXPECT_STREQ(node.report.reason,
+                 "H couples directions, or differs along the tangents, which these parameters do not serve");
+  }
+}
+
+TEST(ResolvedFriction, AloneHasAState) {
+  for (const char* activation : {"moreau", "predictive", "resolved"}) {
+    const NodeRun node("coulomb", {{{"friction", 0.5}}, {{"activation", activation}}});
+    const bool remembers = activation == std::string("resolved");
+    const ilaw_instance_info info = node.interface.info();
+    EXPECT_EQ(info.state_size, remembers ? 2U : 0U) << activation;
+    EXPECT_EQ(info.capabilities, remembers ? std::uint32_t{ILAW_CAN_STORE_ENERGY} : 0U) << activation;
+  }
+}
+
+}  // namespace
+}  // namespace ilaw::testing

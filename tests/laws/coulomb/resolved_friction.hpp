@@ -1,0 +1,26 @@
+// resolved_friction.hpp - what the tests of activation "resolved" with friction share.
+#pragma once
+
+#include "support/law_runner.hpp"
+#include "support/numbers.hpp"
+
+namespace ilaw::testing {
+
+inline Parameters resolved(double friction, double restitution) {
+  return {{{"friction", friction}, {"restitution", restitution}}, {{"activation", "resolved"}}};
+}
+
+inline double tangential(const Vector& a) { return std::hypot(a[1], a[2]); }
+
+inline void expect_in_cone(const Vector& r, double friction) {
+  if (r[0] == 0.0)
+    EXPECT_EQ(r, Vector{});
+  else
+    EXPECT_LE(tangential(r), friction * r[0] * (1.0 + 8 * ulp));
+}
+
+struct Body {
+  double friction = 0.3, restitution = 0.5, coupling = 1.0;
+};
+
+}  // namespace ilaw::testing
