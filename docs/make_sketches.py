@@ -286,6 +286,25 @@ def error_over_time():
     save(figure, "error_over_time")
 
 
+def impacts():
+    """Run time against error through impacts, of the study of docs/results/impacts.py."""
+    titles = {"ball_e08": "ball, e = 0.8", "oscillator_e08": "mass on a spring against a stop",
+              "oblique_e05": "thrown along a rough floor"}
+    looks = {"resolved": (BLUE, "o-"), "predictive": (GREEN, "s-"), "moreau": (PINK, "^-"),
+             "explicit k=1e+06": (ORANGE, "v-"), "implicit k=1e+06": (GREY, "D-")}
+    figure, all_axes = plt.subplots(1, 3, figsize=(11.4, 3.7), sharey=True, gridspec_kw={"wspace": 0.08})
+    for axes, (scene, title) in zip(all_axes, titles.items()):
+        for law, (color, look) in looks.items():
+            rows = [row for row in table("impacts_runs") if row["scene"] == scene and row["law"] == law]
+            name = law.replace("explicit", "explicit penalty").replace("implicit", "implicit penalty")
+            axes.plot([float(row["time"]) for row in rows], [float(row["u_L2"]) for row in rows], look, color=color,
+                      linewidth=1.6, markersize=4, label=name.replace("1e+06", "1e6"))
+        axes.set(xscale="log", yscale="log", xlabel="run time", title=title)
+    all_axes[0].set_ylabel("error of u")
+    all_axes[-1].legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    save(figure, "impacts")
+
+
 def orders():
     groups = [("points", ["postit_test1", "postit_test2", "postit_test3", "bouncing_ball_e08"]),
               ("bars and the peeled strip", ["bar_on_wall", "two_bars", "glued_bar", "postit_3d"])]
@@ -327,7 +346,7 @@ def mujoco_slip():
     save(figure, "mujoco_slip")
 
 
-PICTURES = [contact_geometry, one_step, layers, law_times, stress, tests, dolfinx_error_time, error_over_time, orders,
+PICTURES = [contact_geometry, one_step, layers, law_times, stress, tests, dolfinx_error_time, error_over_time, impacts, orders,
             mujoco_slip]
 
 

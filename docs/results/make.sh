@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures everything that docs/results shows: builds in Release, runs the cases, writes tables/*.csv and img/*.png, and
 # puts the tables into the pages. About ten minutes on two quiet cores, after the build. With names of parts (orders,
-# study, long, share) it measures these alone.
+# study, impacts, long, share) it measures these alone.
 # Usage: docs/results/make.sh [BUILD_FOLDER] [PART...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -136,6 +136,9 @@ measure_studies() {
 }
 if wanted study; then measure_studies; fi
 
+# ---- impacts at their instants
+if wanted impacts; then /usr/bin/python3 $here/impacts.py "$ilaw"; fi
+
 # ---- a million steps
 long=$here/tables/million_steps.csv
 run_long() {
@@ -211,5 +214,5 @@ put_tables() {
     }' "$1" >"$work/page.md"
   cp "$work/page.md" "$1"
 }
-for page in $here/README.md $here/study.md; do put_tables "$page"; done
+for page in $here/README.md $here/study.md docs/theory/resolved_impact.md; do put_tables "$page"; done
 echo "done: $here"
