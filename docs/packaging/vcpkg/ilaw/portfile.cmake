@@ -1,0 +1,10 @@
+# An overlay port: it builds the tree that it stands in.
+get_filename_component(SOURCE_PATH "${CURRENT_PORT_DIR}/../../../.." ABSOLUTE)
+
+vcpkg_cmake_configure(SOURCE_PATH "${SOURCE_PATH}"
+                      OPTIONS -DILAW_HOST=OFF -DILAW_TESTS=OFF -DILAW_LAMMPS=OFF)
+vcpkg_cmake_install()
+vcpkg_cmake_config_fixup(CONFIG_PATH lib/cmake/ilaw)
+vcpkg_fixup_pkgconfig()
+file(REMOVE_RECURSE "${CURRENT_PACKAGES_DIR}/debug/include" "${CURRENT_PACKAGES_DIR}/debug/share")
+vcpkg_install_copyright(FILE_LIST "${SOURCE_PATH}/LICENSE")
