@@ -262,22 +262,11 @@ class cone_contact {
   eigenvectors axes_;
 };
 
-// Any coefficients. A held axis is eliminated and its impulse recovered; an axis without friction gives none.
-inline contact_mode solve_axes(const contact& a, double mu1, double mu2, double* r) {
-  if (mu1 == infinity) {
-    const contact_mode mode = solve_axes(hold_first(a), 0.0, mu2, r);
-    if (!(r[0] > 0.0)) return contact_mode::none;
-    r[1] = -(a.q1 + a.n1 * r[0] + a.t12 * r[2]) / a.t11;
-    return mode;
-  }
-  if (mu2 == infinity || mu1 < mu2 * negligible) {  // its turn to be the first axis
-    const contact_mode mode = solve_axes(exchanged(a), mu2, mu1, r);
-    const double first = r[2];
-    r[2] = r[1];
-    r[1] = first;
-    return mode;
-  }
-  if (mu1 < negligible) {
+// Devices allow no recursion, so the cases of held axes call each other in one direction.
+
+// Finite coefficients, the first not below a negligible part of the second.
+inline contact_mode solve_ordered(const contact& a, double mu1, double mu2, double* r) {
+  if (mu1 < negligible) {  // an axis without friction gives no impulse
     r[0] = -a.qn / a.nn;
     r[1] = r[2] = 0.0;
     const bool moves = absolute(a.q1 + a.n1 * r[0]) + absolute(a.q2 + a.n2 * r[0]) > 0.0;
@@ -285,6 +274,43 @@ inline contact_mode solve_axes(const contact& a, double mu1, double mu2, double*
   }
   if (mu2 < mu1 * negligible) return cone_contact(exchanged(drop_first(exchanged(a))), mu1, mu1).solve(r);
   return cone_contact(a, mu1, mu2).solve(r);
+}
+
+// With the axes exchanged.
+template <class Solve>
+contact_mode solve_exchanged(const contact& a, double* r, Solve solve) {
+  const contact_mode mode = solve(exchanged(a), r);
+  const double first = r[2];
+  r[2] = r[1];
+  r[1] = first;
+  return mode;
+}
+// With the first axis held: eliminated, and its impulse recovered.
+template <class Solve>
+contact_mode solve_held(const contact& a, double* r, Solve solve) {
+  const contact_mode mode = solve(hold_first(a), r);
+  if (!(r[0] > 0.0)) return contact_mode::none;
+  r[1] = -(a.q1 + a.n1 * r[0] + a.t12 * r[2]) / a.t11;
+  return mode;
+}
+
+inline contact_mode solve_finite(const contact& a, double mu1, double mu2, double* r) {
+  if (!(mu1 < mu2 * negligible)) return solve_ordered(a, mu1, mu2, r);
+  return solve_exchanged(a, r, [=](const contact& b, double* s) { return solve_ordered(b, mu2, mu1, s); });
+}
+inline contact_mode solve_first_held(const contact& a, double mu2, double* r) {
+  return solve_held(a, r, [=](const contact& b, double* s) { return solve_finite(b, 0.0, mu2, s); });
+}
+inline contact_mode solve_second_held(const contact& a, double mu1, double* r) {
+  return solve_exchanged(a, r, [=](const contact& b, double* s) { return solve_first_held(b, mu1, s); });
+}
+
+// Any coefficients.
+inline contact_mode solve_axes(const contact& a, double mu1, double mu2, double* r) {
+  if (mu1 < infinity && mu2 < infinity) return solve_finite(a, mu1, mu2, r);
+  if (mu1 < infinity) return solve_second_held(a, mu1, r);
+  if (mu2 < infinity) return solve_first_held(a, mu2, r);
+  return solve_held(a, r, [](const contact& b, double* s) { return solve_second_held(b, 0.0, s); });
 }
 
 }  // namespace local
