@@ -17,7 +17,8 @@ using namespace ilaw::kit;
 template <class V>
 V damping_ratio(V restitution) {
   constexpr double least = 0.03, pi = 3.14159265358979323846;
-  const V lost = 0.0 - ilaw::kit::log(larger(restitution, V(least)));
+  using ilaw::kit::log;  // not libm's, whatever V is
+  const V lost = 0.0 - log(larger(restitution, V(least)));
   return lost / pi * (((0.0081 * lost + 0.022) * lost + 0.2088) * lost + 1.0);
 }
 
