@@ -151,5 +151,17 @@ constexpr int state_entry(int k, int dimension) {
   return -1;
 }
 
+// The entries of the host's state in which the numbers of a state stand, of each dimension; see batch_walk.
+// In the order of the entries in space.
+template <class Law>
+inline constexpr auto state_entries = [] {
+  std::array<std::array<int, static_cast<std::size_t>(state_numbers<Law>) + 1>, 4> all{};
+  for (int d = 1; d <= 3; ++d)
+    for (int k = 0; k < state_numbers<Law>; ++k)
+      all[static_cast<std::size_t>(d)][static_cast<std::size_t>(state_entry<Law>(k, 3))] =
+          state_entry<Law>(k, d);
+  return all;
+}();
+
 }  // namespace detail
 }  // namespace ilaw::kit

@@ -57,19 +57,21 @@ Integer smallest(const Integer* index, std::int64_t count) {
   return least;
 }
 
-inline const char* wrong_index(const ilaw_batch& b) {
+// is_here: the list can be read.
+inline const char* wrong_index(const ilaw_batch& b, bool is_here) {
   if (b.index_base != 0 && b.index_base != 1) return "index_base is neither 0 nor 1";
   if (b.index && b.index64) return "index and index64 are both given";
+  if (!is_here) return nullptr;
   if ((b.index && smallest(b.index, b.node_count) < b.index_base) ||
       (b.index64 && smallest(b.index64, b.node_count) < b.index_base))
     return "a node of the index list lies below index_base";
   return nullptr;
 }
 
-inline const char* wrong_scalars(const ilaw_batch& b) {
+inline const char* wrong_scalars(const ilaw_batch& b, bool list_is_here = true) {
   if (b.node_count < 0) return "node_count is negative";
   if (!is_finite(b.time)) return "time is not finite";
-  return wrong_index(b);
+  return wrong_index(b, list_is_here);
 }
 
 // Whether an output gives two numbers the same place.
@@ -102,8 +104,8 @@ inline bool wants_balance(const instance_base& made, const ilaw_batch& b) {
   return false;
 }
 
-inline const char* wrong_batch(const instance_base& made, const ilaw_batch& b) {
-  if (const char* wrong = wrong_scalars(b)) return wrong;
+inline const char* wrong_batch(const instance_base& made, const ilaw_batch& b, bool list_is_here = true) {
+  if (const char* wrong = wrong_scalars(b, list_is_here)) return wrong;
   if (!(b.velocity_step > 0.0) || !is_finite(b.velocity_step))
     return "velocity_step is not a finite number > 0";
   if (!(b.position_step > 0.0) || !is_finite(b.position_step))

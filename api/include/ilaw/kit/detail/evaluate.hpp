@@ -12,23 +12,8 @@ namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // ---- the loop of a batch
 
-// Free histories are read and written node by node.
-template <class Law>
-inline constexpr bool has_free_history = has_history<Law> && !has_window<Law>;
 template <class Law>
 using loop_number = std::conditional_t<has_free_history<Law>, double, pack>;
-
-template <class Law, class Node>
-concept can_ask = requires(const Law& law, Node& n, typename Law::problem& p) {
-  law.ask(n, p);
-};
-
-template <class Law, class Node>
-concept can_choose = requires(const Law& law, Node& n) {
-  law.step(n);
-}
-&&(
-    requires(const Law& law) { law.asks(); } || requires(const Law& law) { law.asks(true); });
 
 // Null: there is none for floats, which are then converted by blocks: a solver takes longer than that, and of
 // a step beside one little is to be gained where a state of doubles moves with it.
@@ -61,13 +46,6 @@ typename batch_walk<Number>::run_function loop_of(const instance<Law>& made) {
     return plain::run;
   }
 }
-
-template <class Law>
-inline constexpr bool serves_transverse = (Law::card.delassus_forms &
-                                           (ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE)) != 0;
-template <class Law>
-inline constexpr bool serves_full = (Law::card.delassus_forms &
-                                     (ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL)) != 0;
 
 template <class Law, class Number>
 typename batch_walk<Number>::run_function choose_loop(const instance<Law>& made) {
@@ -154,16 +132,14 @@ const char* wrong_parameters(const instance<Law>& made, const ilaw_batch& batch,
 }
 
 template <class Law>
-const char* reason_text(const instance<Law>& made, const ilaw_batch& batch, const tally& found) {
-  if (found.reason == reason_parameter) {
-    Law law = made.at(batch.time);
-    return wrong_parameters(made, batch, found.first_bad_node, law);
-  }
+const char* reason_text(int code) {
   if constexpr (has_state<Law>)
-    if (found.reason >= reason_of_first_variable)
-      return text_of_variable<Law>(found.reason - reason_of_first_variable,
+    if (code >= reason_of_first_variable)
+      return text_of_variable<Law>(code - reason_of_first_variable,
                                    std::make_index_sequence<std::size(Law::state_variables)>{});
-  switch (found.reason) {
+  switch (code) {
+    case reason_parameter:
+      return "a per-node parameter is out of range, or several do not go together";
     case reason_normal:
       return "the normal is not a unit vector";
     case reason_tangent:
@@ -203,6 +179,13 @@ const char* reason_text(const instance<Law>& made, const ilaw_batch& batch, cons
     default:
       return nullptr;
   }
+}
+
+template <class Law>
+const char* reason_text(const instance<Law>& made, const ilaw_batch& batch, const tally& found) {
+  if (found.reason != reason_parameter) return reason_text<Law>(found.reason);
+  Law law = made.at(batch.time);
+  return wrong_parameters(made, batch, found.first_bad_node, law);
 }
 
 // ---- evaluate and initialise

@@ -5,6 +5,7 @@
 #include <ilaw/kit/detail/describe.hpp>
 #include <ilaw/kit/detail/dispatch.hpp>
 #include <ilaw/kit/detail/float_environment.hpp>
+#include <ilaw/kit/detail/forms.hpp>
 #include <ilaw/kit/detail/kernel.hpp>
 #include <ilaw/kit/detail/parameters.hpp>
 #include <ilaw/kit/detail/walk.hpp>
@@ -19,24 +20,6 @@ inline constexpr history_card frame_variables[] = {
     {.name = "frame_normal", .doc = "Normal of the last step.", .internal = true},
     {.name = "frame_tangent", .doc = "First tangent of the last step.", .internal = true}};
 inline constexpr std::int64_t frame_size = 6;
-
-// Whether kernels may work from the normal alone: no tangent named, and no vector remembered, which would
-// need tangents to be written in.
-template <class Law>
-inline constexpr bool needs_no_tangents =
-    Law::card.is_isotropic && !has_history<Law> && !has_vector_state<Law>();
-
-// The entries of the host's state in which the numbers of a state stand, of each dimension; see batch_walk.
-// In the order of the entries in space.
-template <class Law>
-inline constexpr auto state_entries = [] {
-  std::array<std::array<int, static_cast<std::size_t>(state_numbers<Law>) + 1>, 4> all{};
-  for (int d = 1; d <= 3; ++d)
-    for (int k = 0; k < state_numbers<Law>; ++k)
-      all[static_cast<std::size_t>(d)][static_cast<std::size_t>(state_entry<Law>(k, 3))] =
-          state_entry<Law>(k, d);
-  return all;
-}();
 
 // Law: L<double>.
 template <class Law>

@@ -9,7 +9,7 @@
 #pragma once
 
 #include <ilaw/kit/detail/frame.hpp>
-#include <ilaw/kit/detail/parameters.hpp>
+#include <ilaw/kit/detail/parameter_range.hpp>
 #include <ilaw/kit/heat.hpp>
 #include <ilaw/kit/node.hpp>
 
@@ -135,6 +135,33 @@ template <class Wide, class Law, class Number>
   return good;
 }
 
+// ---- H of any form
+
+// Diagonal with three entries, or full with six; of copies always all six.
+template <class V, class Array>
+ILAW_KIT_INLINE void load_symmetric(full<V>& h, const Array& a, std::int64_t i) {
+  if (a.count == 6) {
+    if (a.rows) {
+      V c[6], unused = 0.0;
+      load_rows(c, a.at + 6 * i, unused);
+      h.nn = c[0], h.t11 = c[1], h.t22 = c[2], h.n1 = c[3], h.n2 = c[4], h.t12 = c[5];
+    } else {
+      h.nn = load<V>(a.at + i);
+      h.t11 = load<V>(a.at + a.component + i);
+      h.t22 = load<V>(a.at + 2 * a.component + i);
+      h.n1 = load<V>(a.at + 3 * a.component + i);
+      h.n2 = load<V>(a.at + 4 * a.component + i);
+      h.t12 = load<V>(a.at + 5 * a.component + i);
+    }
+  } else {
+    axis<V> d;
+    V unused = 0.0;
+    load_vector(d, a, i, unused);
+    h.nn = d.x, h.t11 = d.y, h.t22 = d.z;
+    h.n1 = 0.0, h.n2 = 0.0, h.t12 = 0.0;
+  }
+}
+
 // ---- the state of a node, as an array of numbers
 
 template <class V, class State>
@@ -159,8 +186,8 @@ struct step_limit {
 // friction is what it dissipated, so that friction/|r_T| is the mean speed of slip. Apart from the loop,
 // which rarely needs it. first: the place of heat among the amounts.
 template <class V, class Vector, class Number>
-[[gnu::noinline]] void store_heat(const view<Number>& b, std::int64_t i, int first, V friction,
-                                  Vector impulse, Vector twice_mean, V partition, V coefficient) {
+ILAW_KIT_APART void store_heat(const view<Number>& b, std::int64_t i, int first, V friction, Vector impulse,
+                               Vector twice_mean, V partition, V coefficient) {
   const V rubs = impulse.tangential_length(), rest = 1.0 - partition;
   const V speed = select(rubs > 0.0, friction / rubs, 0.5 * twice_mean.tangential_length());
   const V area = b.area ? load<V>(b.area + i) : V(0.0);
@@ -187,7 +214,7 @@ struct kernel {
   using view_type = view<Number>;
   using mask = mask_of<V>;
   using limit = step_limit<V>;
-  static constexpr bool careful = view_type::is_copy;
+  static constexpr bool careful = view_type::is_careful;
   using checks_type = checks<V, careful>;
   static constexpr bool is_projected = std::is_same_v<frame_type, normal_frame<V>>;
   using careful_kernel =
@@ -255,29 +282,8 @@ struct kernel {
       h.t = load<V>(a.at + a.component + i);
     }
   }
-  // Diagonal with three entries, or full with six; of copies always all six.
   ILAW_KIT_INLINE static void load_delassus(full<V>& h, const view_type& b, std::int64_t i) {
-    const auto& a = b.delassus;
-    if (a.count == 6) {
-      if (a.rows) {
-        V c[6], unused = 0.0;
-        load_rows(c, a.at + 6 * i, unused);
-        h.nn = c[0], h.t11 = c[1], h.t22 = c[2], h.n1 = c[3], h.n2 = c[4], h.t12 = c[5];
-      } else {
-        h.nn = load<V>(a.at + i);
-        h.t11 = load<V>(a.at + a.component + i);
-        h.t22 = load<V>(a.at + 2 * a.component + i);
-        h.n1 = load<V>(a.at + 3 * a.component + i);
-        h.n2 = load<V>(a.at + 4 * a.component + i);
-        h.t12 = load<V>(a.at + 5 * a.component + i);
-      }
-    } else {
-      axis<V> d;
-      V unused = 0.0;
-      load_vector(d, a, i, unused);
-      h.nn = d.x, h.t11 = d.y, h.t22 = d.z;
-      h.n1 = 0.0, h.n2 = 0.0, h.t12 = 0.0;
-    }
+    load_symmetric(h, b.delassus, i);
   }
 
   // Where the law reads no v_previous it is there for energies alone: finite always, turned or not.

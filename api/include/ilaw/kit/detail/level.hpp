@@ -24,6 +24,13 @@
 #define ILAW_KIT_INLINE [[gnu::always_inline]] inline
 #define ILAW_KIT_LAMBDA __attribute__((always_inline))
 
+// Functions that a loop over packs rarely needs. On a device a call would put the node into memory.
+#if defined(ILAW_KIT_DEVICE)
+#define ILAW_KIT_APART ILAW_KIT_INLINE
+#else
+#define ILAW_KIT_APART [[gnu::noinline]]
+#endif
+
 // A value that is kept in a vector register: compilers would else read parts of it from memory again.
 #if defined(__SSE2__)
 #define ILAW_KIT_IN_REGISTER(value) asm("" : "+v"(value))

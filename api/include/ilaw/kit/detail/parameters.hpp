@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ilaw/kit/detail/parameter_range.hpp>
 #include <ilaw/kit/law.hpp>
-#include <ilaw/kit/math.hpp>
 #include <ilaw/sized.hpp>
 
 #include <cstdarg>
@@ -34,20 +34,6 @@ class message {
   std::size_t size_, used_ = 0;
 };
 
-// What a parameter may be.
-struct parameter_range {
-  double minimum, excluded, maximum, beyond;
-
-  constexpr parameter_range(double least, bool excludes, double most, bool allows_infinity)
-      : minimum(least),
-        excluded(excludes ? least : not_a_number),
-        maximum(smaller(most, std::numeric_limits<double>::max())),
-        beyond(allows_infinity ? infinity : not_a_number) {}
-  template <class V>
-  ILAW_KIT_INLINE auto has(V value) const {
-    return (value >= minimum) & (value != excluded) & ((value <= maximum) | (value == beyond));
-  }
-};
 inline bool in_range(const ilaw_parameter& p, double value) {
   return parameter_range(p.minimum, p.flags & ILAW_PARAMETER_EXCLUDES_MINIMUM, p.maximum,
                          p.flags & ILAW_PARAMETER_ALLOWS_INFINITY)

@@ -189,7 +189,7 @@ struct open_problems {
 
 // Where it is asked rarely: once per form of H, whatever the host's numbers and frame.
 template <class Wide, class Node>
-[[gnu::noinline]] auto ask_apart(const Wide& law, Node& node, typename Wide::problem& open) {
+ILAW_KIT_APART auto ask_apart(const Wide& law, Node& node, typename Wide::problem& open) {
   return law.ask(node, open);
 }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <ilaw/kit/detail/load_store.hpp>
-#include <ilaw/kit/detail/parameters.hpp>
 #include <ilaw/kit/law.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
@@ -35,12 +34,33 @@ struct view_options {
 // In the place of a host's number type: a pack of nodes that was copied to columns of doubles.
 struct copied {};
 
+// The arrays of a view. Careful: the loop finds the reason of each bad node, and writes such nodes, too.
+template <class Number>
+struct arrays_of {
+  static constexpr bool are_careful = false;
+  using value = Number;
+  template <class T, int Count>
+  using array_type = array<T>;
+  template <class T>
+  using state_type = array<T>;
+};
+template <>
+struct arrays_of<copied> {
+  static constexpr bool are_careful = true;
+  using value = double;
+  template <class T, int Count>
+  using array_type = columns<T, Count>;
+  template <class T>
+  using state_type = columns<T, most_states>;
+};
+
 template <class Number>
 struct view : view_options {
-  static constexpr bool is_copy = std::is_same_v<Number, copied>;
-  using value = std::conditional_t<is_copy, double, Number>;
+  using arrays = arrays_of<Number>;
+  static constexpr bool is_careful = arrays::are_careful;
+  using value = typename arrays::value;
   template <class T, int Count>
-  using array_of = std::conditional_t<is_copy, columns<T, Count>, array<T>>;
+  using array_of = typename arrays::template array_type<T, Count>;
 
   array_of<const value, 3> v_free, v_previous, normal, tangent;
   array_of<const value, 6> delassus;
@@ -50,8 +70,8 @@ struct view : view_options {
   array_of<value, ILAW_ENERGY_COUNT> energy;
   value* amounts[most_amounts];
   std::uint8_t* status;
-  array_of<const double, most_states> state_in;
-  array_of<double, most_states> state_out;
+  typename arrays::template state_type<const double> state_in;
+  typename arrays::template state_type<double> state_out;
   array_of<const double, 6> frame_in;
   array_of<double, 6> frame_out;
   // Windows: what they sum up to, and codes of refusals; the impulse, and 1 or 0 for windows that take it in,

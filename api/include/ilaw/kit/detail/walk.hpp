@@ -24,6 +24,11 @@ struct instance_base {
   const table* node_tables = nullptr;        // by parameter: over fields that come per node; null: none
   std::uint32_t amount_count;
 
+  tangents tangents_from() const {
+    if (dimension < 3) return tangents::of_plane;
+    if (has_tangent) return tangents::given;
+    return carries_frame ? tangents::carried : tangents::chosen;
+  }
   bool is_transverse() const {
     return delassus_form == ILAW_DELASSUS_SCALAR || delassus_form == ILAW_DELASSUS_TRANSVERSE;
   }
@@ -41,6 +46,9 @@ struct instance_base {
     }
   }
 };
+
+// An impulse times this must be finite.
+constexpr double impulse_guard(bool is_float) { return is_float ? 0x1p898 : 4.0; }
 
 template <class Number, class Array>
 auto numbers_in(const Array& a) {
@@ -487,19 +495,13 @@ class batch_walk {
     v.has_balance = v.energy.at || v.has_amounts;
   }
   bool status_stays(const node_range& n) const { return !n.listed && b_.status_stride == 1; }
-  tangents tangents_from() const {
-    if (d_ < 3) return tangents::of_plane;
-    if (made_.has_tangent) return tangents::given;
-    return made_.carries_frame ? tangents::carried : tangents::chosen;
-  }
-
   void run_part(const node_range& n, run_function loop, const void* law, tally& all) {
     view<Number> v{};
     v.count = n.count;
     v.step = {b_.time, b_.velocity_step, b_.position_step, 1.0 / b_.position_step};
-    v.impulse_guard = std::is_same_v<Host, float> ? 0x1p898 : 4.0;
+    v.impulse_guard = impulse_guard(std::is_same_v<Host, float>);
     v.dimension = d_;
-    v.tangents_from = tangents_from();
+    v.tangents_from = made_.tangents_from();
     v.is_scalar = made_.delassus_numbers() == 1;
     v.frame_follows = made_.frame_follows;
     v.varying = made_.per_node_count > 0;
