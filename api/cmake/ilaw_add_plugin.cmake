@@ -1,8 +1,9 @@
 # ilaw_add_plugin(name source) makes the law library <name>.so, as portable as a library can be: nothing exported
 # but the entry, nothing needed but libc and libm, the same bits on every processor. On x86-64 a source in C++ is
 # compiled once per instruction-set level; the library takes the best one that it finds when an instance is created.
-# A source in C (ilaw/plain_c.h) is compiled once.
+# A source in C (ilaw/plain_c.h) is compiled once. DEVICE: with kernels for GPUs, where they can be made.
 function(ilaw_add_plugin name source)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "DEVICE" "" "")
   get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
   if(source MATCHES "[.]c$" AND NOT "C" IN_LIST languages)
     message(FATAL_ERROR "${source} is in C, which this project lacks: project(${PROJECT_NAME} LANGUAGES C)")
@@ -28,6 +29,9 @@ function(ilaw_add_plugin name source)
       ilaw_add_level(${name} ${source} ${level})
     endforeach()
     target_compile_options(${name}_v4 PRIVATE $<$<CXX_COMPILER_ID:GNU>:-mprefer-vector-width=512>)
+  endif()
+  if(arg_DEVICE AND NOT source MATCHES "[.]c$")
+    ilaw_add_kernels(${name} ${source})
   endif()
   set_target_properties(${name} PROPERTIES
     PREFIX "" SUFFIX ".so"

@@ -2,18 +2,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#if defined(ILAW_KIT_DEVICE)
+#include <ilaw/kit/detail/device_plugin.hpp>
+#else
+
 #ifndef ILAW_BUILDING_PLUGIN
 #define ILAW_BUILDING_PLUGIN
 #endif
 #include <ilaw/ext/draft/profile.h>
 #include <ilaw/kit/detail/evaluate.hpp>
 #include <ilaw/kit/detail/law_checks.hpp>
+#if defined(ILAW_HAS_PTX) || defined(ILAW_HAS_SPIRV)
+#include <ilaw/kit/detail/device_extension.hpp>
+#endif
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
 // The walks of this level, in the order of the laws.
 template <template <class> class... Laws>
-inline constexpr ilaw_kit_walk walks[] = {walk_batch<Laws<double>>...};
+inline constexpr ilaw_kit_walk walks[] = {walk_batch<Laws<double> >...};
 
 // The functions of the law at a place of its library, which the law does not know.
 template <std::size_t Place, class Law>
@@ -42,6 +49,10 @@ struct functions {
 
   static const void* ILAW_CALL extension(const char* name) {
     if (name && std::strcmp(name, ILAW_PROFILE) == 0) return &profile;
+#if defined(ILAW_HAS_PTX) || defined(ILAW_HAS_SPIRV)
+    if constexpr (serves_devices<Law>)
+      if (name && std::strcmp(name, ILAW_DEVICE) == 0) return &device_functions<Place, Law>::law;
+#endif
     if constexpr (requires { Law::extension(name); })
       return Law::extension(name);
     else
@@ -131,4 +142,6 @@ using library_of = library<(checked<Laws>() && ...), Laws<double>...>;
   extern "C" ILAW_EXPORT const ilaw_plugin* ILAW_CALL ILAW_ENTRY(void) {                         \
     return ilaw::kit::detail::library_of<__VA_ARGS__>::describe(name, version, vendor, licence); \
   }
+#endif
+
 #endif

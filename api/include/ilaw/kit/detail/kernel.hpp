@@ -237,7 +237,7 @@ struct kernel {
 
   ILAW_KIT_INLINE static void load_frame(frame_type& f, const view_type& b, std::int64_t i, checks_type& c,
                                          mask& framed) {
-    if constexpr (careful && frame_type::has_axes) {
+    if constexpr (requires { f.is_local; }) {
       f.is_local = !b.normal.at;
       if (f.is_local) return;
     }

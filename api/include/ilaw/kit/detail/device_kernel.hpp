@@ -1,0 +1,263 @@
+// device_kernel.hpp - a law's kernels for a device: one thread a node, on the careful loop of the CPU with V
+// = double, straight from the host's arrays. No allocation, no synchronization.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/device_number.hpp>
+
+#include <ilaw/kit/detail/device_arguments.hpp>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// ---- the arrays of one node, as a view: node 0 of it
+
+template <class Law, class Number>
+struct at_node {};
+
+template <class T>
+struct node_array {
+  T* at = nullptr;
+  std::int64_t component = 0;
+  int count = 0;
+  static constexpr int rows = 0;
+};
+template <class Law, class T>
+struct node_state {
+  T* at = nullptr;
+  std::int64_t component = 0;
+  int dimension = 3;
+
+  // Of a number of struct state; null: a component beyond the dimension.
+  ILAW_KIT_INLINE T* number(int k) const {
+    const int entry =
+        dimension == 3 ? k : state_entries<Law>[dimension == 2 ? 2 : 1][static_cast<std::size_t>(k)];
+    return entry < 0 ? nullptr : at + entry * component;
+  }
+};
+
+template <class Law, class Number>
+struct arrays_of<at_node<Law, Number>> {
+  static constexpr bool are_careful = true;
+  using value = Number;
+  template <class T, int Count>
+  using array_type = node_array<T>;
+  template <class T>
+  using state_type = node_state<Law, T>;
+};
+
+template <int N, class Law>
+ILAW_KIT_INLINE void load_numbers(device_number (&to)[N], const node_state<Law, const double>& a,
+                                  std::int64_t) {
+#pragma unroll
+  for (int k = 0; k < N; ++k) {
+    const double* const from = a.number(k);
+    to[k] = from ? *from : 0.0;
+  }
+}
+template <int N, class Law>
+ILAW_KIT_INLINE void store_numbers(const device_number (&a)[N], const node_state<Law, double>& to,
+                                   std::int64_t) {
+#pragma unroll
+  for (int k = 0; k < N; ++k)
+    if (double* const place = to.number(k)) *place = a[k].v;
+}
+
+// Of fewer dimensions than three: filled up as batch_walk does.
+template <class T>
+ILAW_KIT_INLINE void load_symmetric(full<device_number>& h, const node_array<T>& a, std::int64_t) {
+  const auto number = [&](int c) ILAW_KIT_LAMBDA { return static_cast<double>(a.at[c * a.component]); };
+  h.nn = number(0);
+  h.t11 = a.count > 1 ? number(1) : h.nn;
+  h.t22 = a.count == 3 || a.count == 6 ? number(2) : h.t11;
+  h.n1 = a.count == 6 ? number(3) : (a.count == full_in_plane ? number(2) : 0.0);
+  h.n2 = a.count == 6 ? number(4) : 0.0;
+  h.t12 = a.count == 6 ? number(5) : 0.0;
+}
+
+// Null where the array is absent, and without a branch: the compiler then knows that all arrays of an
+// argument lie in global memory, whose loads are the fastest.
+template <class T>
+ILAW_KIT_INLINE T* place_in(const device_array& a, std::int64_t node) {
+  return static_cast<T*>(a.at) + (a.at ? node * a.node_stride : 0);
+}
+template <class T>
+ILAW_KIT_INLINE node_array<T> array_at(const device_array& a, std::int64_t node, int count) {
+  return {place_in<T>(a, node), a.component_stride, count};
+}
+template <class Law, class T>
+ILAW_KIT_INLINE node_state<Law, T> state_at(const device_array& a, std::int64_t node, int dimension) {
+  return {place_in<T>(a, node), a.component_stride, dimension};
+}
+
+ILAW_KIT_INLINE std::int64_t node_of(const device_options& a, std::int64_t k) {
+  if (a.index64) return a.index64[k] - a.index_base;
+  return a.index ? std::int64_t{a.index[k]} - a.index_base : k;
+}
+
+template <class Law, class Number>
+ILAW_KIT_INLINE view<at_node<Law, Number>> view_of(const device_arguments<Law>& a, std::int64_t node) {
+  view<at_node<Law, Number>> v{};
+  v.count = 1;
+  v.step = a.step;
+  v.impulse_guard = a.impulse_guard;
+  v.dimension = a.dimension;
+  v.tangents_from = a.tangents_from;
+  v.is_scalar = a.delassus_numbers == 1;
+  v.reads_previous = a.reads_previous;
+  v.frame_follows = a.frame_follows;
+  v.varying = a.varying;
+  v.moves = a.moves;
+  v.has_balance = a.has_balance;
+  v.has_amounts = a.has_amounts;
+  v.v_free = array_at<const Number>(a.v_free, node, a.dimension);
+  v.v_previous = array_at<const Number>(a.v_previous, node, a.dimension);
+  v.normal = array_at<const Number>(a.normal, node, a.dimension);
+  v.tangent = array_at<const Number>(a.tangent, node, a.dimension);
+  v.delassus = array_at<const Number>(a.delassus, node, a.delassus_numbers);
+  v.gap = array_at<const Number>(a.gap, node, 1).at;
+  v.gap_offset = array_at<const Number>(a.gap_offset, node, 1).at;
+  v.area = array_at<const Number>(a.area, node, 1).at;
+  v.impulse = array_at<Number>(a.impulse, node, a.dimension);
+  v.velocity = array_at<Number>(a.velocity, node, a.dimension);
+  v.energy = array_at<Number>(a.energy, node, ILAW_ENERGY_COUNT);
+  v.status = array_at<std::uint8_t>(a.status, node, 1).at;
+  v.state_in = state_at<Law, const double>(a.state_in, node, a.dimension);
+  v.state_out = state_at<Law, double>(a.state_out, node, a.dimension);
+  v.frame_in = array_at<const double>(a.frame_in, node, 6);
+  v.frame_out = array_at<double>(a.frame_out, node, 6);
+#pragma unroll
+  for (int k = 0; k < amount_count<Law>; ++k) v.amounts[k] = array_at<Number>(a.amounts[k], node, 1).at;
+  return v;
+}
+
+// ---- the parameters of a node
+
+// As take_parameters; false where they are not good, and the law then stays as it was.
+template <class Law, class Number, std::size_t... K>
+ILAW_KIT_INLINE bool take_parameters_at(Law& law, const device_arguments<Law>& a, std::int64_t node,
+                                        std::index_sequence<K...>) {
+  bool good = true;
+  Law own = law;
+  const auto take = [&](auto place) ILAW_KIT_LAMBDA {
+    constexpr int k = decltype(place)::value;
+    const device_array& given = a.parameters[k];
+    if (!given.at) return;
+    const auto value = static_cast<double>(static_cast<const Number*>(given.at)[node * given.node_stride]);
+    constexpr parameter_range range = range_of(Law::parameters[k]);
+    good = good & range.has(value);
+    Law::parameters[k].member.set(own, value);
+  };
+  (take(std::integral_constant<int, static_cast<int>(K)>{}), ...);
+  if constexpr (requires { own.conflict(); }) good = good & !own.conflict();
+  if (good) law = own;
+  return good;
+}
+
+// ---- one node
+
+// Laws in closed form, as kernel::run_pack, or with the solver: ask, solve and finish of one node.
+template <class Kernel, class Law, class View>
+ILAW_KIT_INLINE void step_node(const Law& law, const View& b, typename Kernel::checks_type c, tally& found,
+                               typename Kernel::limit& limits) {
+  Kernel::run_pack(law, kit::prepared(law, b.step), b, 0, c, found, limits, 0);
+}
+template <class Law, class Problem, class Answer, class Prepared>
+ILAW_KIT_INLINE auto solve_with(const Law& law, const Problem& p, Answer& a, const Prepared& prepared) {
+  if constexpr (requires { law.solve(p, a, prepared); })
+    return law.solve(p, a, prepared);
+  else
+    return law.solve(p, a);
+}
+// Wide: the law on packs, whose solver may leave a node to the scalar fallback.
+template <class Law, class Wide, class Prepared>
+ILAW_KIT_INLINE void solve_node(const Law& law, const Wide& wide, const step_sizes& step,
+                                const typename Wide::problem& p, typename Wide::answer& a,
+                                const Prepared& prepared) {
+  if (!any(solve_with(wide, p, a, prepared))) return;
+  typename Law::problem one;
+  typename Law::answer answer{};
+  static_assert(sizeof one == sizeof p && sizeof answer == sizeof a);
+  __builtin_memcpy(static_cast<void*>(&one), &p, sizeof one);
+  const auto own = kit::prepared(law, step);
+  if constexpr (requires { law.solve_scalar(one, answer, own); })
+    law.solve_scalar(one, answer, own);
+  else
+    law.solve_scalar(one, answer);
+  __builtin_memcpy(static_cast<void*>(&a), &answer, sizeof a);
+}
+template <class Solver, class Law, class Wide, class View>
+ILAW_KIT_INLINE void solve_and_step_node(const Law& law, const Wide& wide, const View& b,
+                                         typename Solver::checks_type c, tally& found,
+                                         typename Solver::limit& limits) {
+  const auto prepared = kit::prepared(wide, b.step);
+  auto p = Solver::load_pack(prepared, b, 0, c);
+  Solver::take_state(p.node, b, 0, c);
+  auto closed = Solver::as_it_came(p.node);
+  typename Wide::problem open;
+  const asked<device_number> asked = wide.ask(closed, open);
+  const device_mask is_open = asked.open & !c.bad();
+  status_of<device_number> status = asked.status;
+  if (any(is_open)) {
+    typename Wide::answer answer{};
+    solve_node(law, wide, b.step, open, answer, prepared);
+    status = wide.finish(p.node, answer);
+  }
+  Solver::choose(p.node, closed, is_open);
+  Solver::check_result(p.node, b, c);
+  Solver::store_pack(wide, p, b, 0, status, !c.bad());
+  Solver::add_limit(limits, wide, p.node, b, !c.bad());
+  Solver::add_bad(found, c, {true}, 0);
+}
+
+// Node k of a batch.
+template <class Law, device_variant Variant>
+ILAW_KIT_INLINE void run_node(const device_arguments<Law>& a, std::int64_t k) {
+  using Number = std::conditional_t<Variant.numbers == device_numbers::of_float, float, double>;
+  using variant = device_loop<Law, Variant>;
+  using loop = typename variant::template kernel_on<at_node<Law, Number>, device_number>;
+  if (k >= a.count) return;
+  const std::int64_t node = node_of(a, k);
+  const auto b = view_of<Law, Number>(a, node);
+  typename loop::checks_type c;
+  Law law = a.law;
+  if (a.varying)
+    c.require({take_parameters_at<Law, Number>(
+                  law, a, node, std::make_index_sequence<static_cast<std::size_t>(parameter_count<Law>)>{})},
+              reason_parameter);
+  const auto wide = broadcast<device_number>(law);
+  tally found;
+  typename loop::limit limits = loop::limit_of(a.law, b);
+  if constexpr (variant::solves)
+    solve_and_step_node<typename variant::template solver_kernel_on<at_node<Law, Number>, device_number>>(
+        law, wide, b, c, found, limits);
+  else
+    step_node<loop>(wide, b, c, found, limits);
+  if (a.reasons) a.reasons[k] = static_cast<std::uint8_t>(found.reason);
+  if (a.limits) {
+    a.limits[3 * k] = limits.least.v;
+    a.limits[3 * k + 1] = limits.most_normal.v;
+    a.limits[3 * k + 2] = limits.most_tangential.v;
+  }
+}
+
+// The kernels of a library: nothing where a law has no such variant.
+template <std::size_t Size>
+struct alignas(8) device_block {
+  unsigned char bytes[Size];
+};
+template <template <class> class... Laws>
+using device_block_of = device_block<std::max({sizeof(device_arguments<Laws<double>>)...})>;
+
+template <device_variant Variant, class Law>
+ILAW_KIT_INLINE void run_law(const void* block, int place, std::int64_t k) {
+  const auto& a = *static_cast<const device_arguments<Law>*>(block);
+  if constexpr (device_loop<Law, Variant>::exists)
+    if (a.law_place == place) run_node<Law, Variant>(a, k);
+}
+template <device_variant Variant, template <class> class... Laws>
+ILAW_KIT_INLINE void run_laws(const void* block, std::int64_t k) {
+  int place = 0;
+  (run_law<Variant, Laws<double>>(block, place++, k), ...);
+}
+
+}  // namespace ilaw::kit::detail
