@@ -14,7 +14,8 @@ site=(doxygen python3-breathe python3-myst-parser furo libjs-katex)  # docs/site
 [ "${2:-}" != with-solvers ] || for_tests+=("${solvers[@]}")
 case ${1:-} in
   tests) packages+=("${for_tests[@]}") ;;
-  ci) packages+=("${for_tests[@]}" "${solvers[@]}" "${site[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache) ;;
+  ci) packages+=("${for_tests[@]}" "${solvers[@]}" "${site[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache
+                  llvm-14 llvm-spirv-14 pocl-opencl-icd ocl-icd-opencl-dev) ;;
   site) packages=("${site[@]}") ;;
   results) packages+=("${for_tests[@]}" jq) ;;
 esac

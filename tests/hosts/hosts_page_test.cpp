@@ -48,7 +48,8 @@ std::string pages_of_hosts() {
 
 TEST(HostsPage, QuotesCodeThatIsBuiltAndRun) {
   const std::map<std::string, std::string> sources{
-      {"c", read(ILAW_EXAMPLES "/blocks.c") + read(ILAW_EXAMPLES "/grains.c")},
+      {"c", read(ILAW_EXAMPLES "/blocks.c") + read(ILAW_EXAMPLES "/grains.c") +
+                read(ILAW_EXAMPLES "/../device/points.c")},
       {"cpp", read(ILAW_EXAMPLES "/blocks.cpp") + read(ILAW_EXAMPLES "/adaptor_test.cpp")},
       {"fortran", read(ILAW_EXAMPLES "/blocks.f90")},
       {"python", read(ILAW_EXAMPLES "/python/blocks.py")}};
