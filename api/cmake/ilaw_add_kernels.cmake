@@ -1,7 +1,8 @@
 # ilaw_add_kernels(name source) gives the law library <name>.so kernels for GPUs (ilaw/ext/draft/device.h): the same
 # source goes once more through clang, which alone makes PTX of it, and SPIR-V with llvm-spirv; neither CUDA nor ROCm
-# is needed. It does nothing where clang cannot, and in instrumented and debug builds.
-option(ILAW_KERNELS "Kernels for GPUs in laws, where clang and llvm-spirv are found" ON)
+# is needed. It does nothing where ILAW_KERNELS does not name the law, where clang cannot, and in instrumented and debug
+# builds.
+set(ILAW_KERNELS OFF CACHE STRING "Kernels for GPUs: ON for all laws that ask for them, or names of laws")
 
 # Each operation is rounded, as on the CPU. The standard headers are the host's.
 macro(ilaw_set_kernel_flags)
@@ -84,7 +85,7 @@ endfunction()
 
 function(ilaw_add_kernels name source)
   ilaw_makes_kernels(makes_kernels)
-  if(makes_kernels)
+  if(makes_kernels AND (ILAW_KERNELS STREQUAL "ON" OR name IN_LIST ILAW_KERNELS))
     get_filename_component(source ${source} ABSOLUTE)
     ilaw_add_kernel_images(${name} ${name} ${source} ilaw_kit)
   endif()
