@@ -307,7 +307,7 @@ void Contacts::fill_delassus(Block& block, std::size_t lane, const Bodies& bodie
   Symmetric h = bodies.rotate() || layout_.weight_size > 1 ? coupled_delassus(block, lane, bodies)
                                                            : diagonal_delassus(block, lane, bodies);
   const double most = std::max({h[0], h[1], h[2]});
-  for (std::uint32_t c = 0; c < dimension_; ++c) h[c] = h[c] == 0.0 ? driven_delassus * most : h[c];
+  for (std::uint32_t c = 0; c < dimension_; ++c) h[c] = std::max(h[c], driven_delassus * most);
   write_form(block, lane, layout_, h, given_.delassus_form, dimension_, block.at(layout_.normal, lane));
 }
 

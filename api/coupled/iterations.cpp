@@ -11,6 +11,20 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// Part of the changes, at most 1, after which the first impulse of a contact has vanished.
+double part_to_first_opening(const std::vector<double>& impulses, const std::vector<double>& changes) {
+  double part = 1.0;
+  for (std::size_t i = 0; i < impulses.size(); i += 3) {
+    double square = 0.0, product = 0.0;
+    for (std::size_t c = i; c < i + 3; ++c) {
+      square += impulses[c] * impulses[c];
+      product += impulses[c] * changes[c];
+    }
+    if (-product * part > square && square > 0.0) part = square / -product;
+  }
+  return part;
+}
+
 }  // namespace
 
 void Iterations::begin(std::uint32_t most, double tolerance, double speed, double rounding) {
@@ -167,7 +181,6 @@ bool Iterations::alternate(Blocks& blocks) {
 }
 
 bool Iterations::take_turns(Blocks& blocks) {
-  const bool is_small = problem_.bodies.dimension() * scales_of(blocks) <= Newton::max_unknowns;
   std::uint32_t gauss_seidel_part = first_part, splitting_part = first_part;
   splitting_.reset();
   for (std::uint32_t turn = 0; !is_over(); ++turn) {
@@ -178,7 +191,7 @@ bool Iterations::take_turns(Blocks& blocks) {
     }
     if (is_over()) break;
     keep_best(blocks);
-    if (is_small && newton(blocks)) return true;
+    if (newton(blocks)) return true;
     if (is_over()) break;
     keep_best(blocks);
     // With acceleration, then without: both happen to run in circles.
@@ -199,13 +212,25 @@ bool Iterations::move(Blocks& blocks, const std::vector<double>& changes) {
   return iterate(blocks, {});
 }
 
+// The derivatives of laws hold until a contact opens: steps end there. Redundant contacts whose conditions
+// contradict each other by rounding open one by one. Velocities known to their rounding end it.
 bool Iterations::newton(Blocks& blocks) {
-  constexpr std::uint32_t most_steps = 30;
+  constexpr std::uint32_t most_steps = 60, most_failures = 5;
   double least = square_;
-  for (std::uint32_t k = 0, failures = 0; k < most_steps && failures < 3 && !is_over(); ++k) {
-    if (!newton_.step(blocks, problem_, sweep_, correction_)) return false;
+  for (std::uint32_t k = 0, failures = 0; k < most_steps && failures < most_failures && !is_over(); ++k) {
+    const double delta = std::clamp(residual_, 1e-12, 1e-10);
+    if (!newton_.step(blocks, problem_, sweep_, delta, correction_)) return false;
     method_ = ILAW_METHOD_NEWTON;
+    read_impulses(blocks, image_);
+    const double part = part_to_first_opening(image_, correction_);
+    double largest = 0.0;
+    for (std::size_t i = 0; i < correction_.size(); ++i) {
+      correction_[i] *= part;
+      largest = std::max(largest, scales_[i / 3] * scales_[i / 3] * std::fabs(correction_[i]));
+    }
+    if (largest > max_newton_growth * first_size_) return false;
     if (move(blocks, correction_)) return true;
+    if (change_ <= rounding_ && square_ > much_less * least) return true;
     failures = square_ < least ? 0 : failures + 1;
     least = std::min(least, square_);
   }

@@ -2,8 +2,8 @@
 //
 // Few iterations: nonlinear conjugate directions (Silcowitz, Niebe, Erleben 2010, A nonsmooth nonlinear
 // conjugate gradient method for interactive contact force problems). To a tolerance: some of these, then
-// island by island Anderson's acceleration; where that stalls, Newton steps in small islands, and
-// Douglas-Rachford splitting.
+// island by island Anderson's acceleration; where that stalls, Newton steps and Douglas-Rachford
+// splitting.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -48,6 +48,8 @@ class Iterations {
  private:
   // Beyond this growth of the largest velocity impulses are rounding alone: iterations end.
   static constexpr double max_growth = 0x1p50;
+  // The same of one Newton step: laws that contradict each other have no finite solution.
+  static constexpr double max_newton_growth = 0x1p14;
   // Iterations of the conjugate method before others; with at most `few` iterations in all there is no other.
   static constexpr std::uint32_t few = 100, first_conjugate = 30;
   // Iterations between looks for sleeping contacts that come within reach.

@@ -2,6 +2,7 @@
 #include "newton.hpp"
 
 #include <Eigen/Dense>
+#include <Eigen/SparseLU>
 
 #include <algorithm>
 #include <array>
@@ -59,52 +60,121 @@ bool Newton::linearize(const Blocks& blocks, const Problem& problem, const Sweep
   return true;
 }
 
-// f(r + dr) = f + f' (W - H) dr has to be r + dr: (1 - f' (W - H)) dr = f - r, with W = B B'. Redundant
-// contacts make it singular: pivots find a solution.
-bool Newton::step(const Blocks& blocks, const Problem& problem, const Sweep& sweep,
-                  std::vector<double>& changes) {
-  if (!linearize(blocks, problem, sweep)) return false;
-  equations_.read(blocks, problem);
-  const auto rows = static_cast<Eigen::Index>(equations_.rows());
-  const auto columns = static_cast<Eigen::Index>(equations_.columns());
-  Eigen::MatrixXd b = Eigen::MatrixXd::Zero(rows, columns);
-  for (const RowEntry& entry : equations_.entries()) b(entry.row, entry.column) += entry.value;
-  Eigen::MatrixXd coupling = b * b.transpose();  // W, then W - H
-  Eigen::Index k = 0;
+// A tangent t of a contact as t = p q', with as many columns as its rank: none at an open contact, one
+// without friction.
+struct Newton::Factors {
+  Eigen::Matrix3d p, q;
+  Eigen::Index rank = 0;
+
+  Factors(const Eigen::Matrix3d& tangent, double delassus) {
+    constexpr double noise = 1e-7;  // of differences, relative to the tangent of a rigid contact
+    const Eigen::ColPivHouseholderQR<Eigen::Matrix3d> qr(tangent);
+    const Eigen::Matrix3d r = qr.matrixQR().triangularView<Eigen::Upper>();
+    while (rank < 3 && std::fabs(r(rank, rank)) * delassus > noise) ++rank;
+    p = qr.householderQ();
+    q = (r * qr.colsPermutation().transpose()).transpose();
+  }
+};
+
+struct Newton::System {
+  std::vector<Factors> factors;      // by contact
+  std::vector<Eigen::Index> first;   // row of a contact's factors, and their end
+  std::vector<Eigen::Matrix3d> h;    // of the contacts
+  std::vector<Eigen::Index> column;  // of a component of x; -1: in no equation of y
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd right;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> factor;
+};
+
+Newton::Newton() : system_(std::make_unique<System>()) {}
+Newton::~Newton() = default;
+
+void Newton::read_delassus(const Blocks& blocks, const Sweep& sweep) {
   std::array<double, 3 * max_stride> unit{}, made{};
+  std::vector<Eigen::Matrix3d>& h = system_->h;
+  h.clear();
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
+    const std::size_t first = h.size();
+    h.resize(first + block.count);
     for (std::size_t c = 0; c < 3; ++c) {
       unit.fill(0.0);
       std::fill_n(unit.begin() + static_cast<std::ptrdiff_t>(c * max_stride), max_stride, 1.0);
       sweep.respond(block, unit.data(), max_stride, made.data());
       for (std::size_t q = 0; q < block.count; ++q)
         for (std::size_t row = 0; row < 3; ++row)
-          coupling(k + 3 * static_cast<Eigen::Index>(q) + static_cast<Eigen::Index>(row),
-                   k + 3 * static_cast<Eigen::Index>(q) + static_cast<Eigen::Index>(c)) -=
+          h[first + q](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c)) =
               made[row * max_stride + q];
     }
-    k += 3 * static_cast<Eigen::Index>(block.count);
   }
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(rows, rows);
-  for (Eigen::Index contact = 0; 3 * contact < rows; ++contact) {
-    const Eigen::Map<const Eigen::Matrix3d> tangent(&tangents_[static_cast<std::size_t>(9 * contact)]);
-    matrix.middleRows(3 * contact, 3).noalias() -= tangent * coupling.middleRows(3 * contact, 3);
+}
+
+// f(r + dr) = f + t (W - H) dr has to be r + dr, with the tangents t = p q' and W = B B'. With x = B' dr and
+// y = q' (W - H) dr, so that dr = f - r + p y:
+//   x - B' p y = B' (f - r),   (1 + delta) y + q' H p y - q' B x = -q' H (f - r).
+// delta makes redundant contacts solvable: a step of the proximal point method (Rockafellar 1976).
+void Newton::assemble(double delta) {
+  auto& [factors, first, h, column, entries, right, factor] = *system_;
+  factors.clear();
+  first.assign(1, 0);
+  for (std::size_t k = 0; k < h.size(); ++k) {
+    const double scale = equations_.scales()[k];
+    factors.emplace_back(Eigen::Map<const Eigen::Matrix3d>(&tangents_[9 * k]), scale * scale);
+    first.push_back(first.back() + factors.back().rank);
   }
-  // In the scales of the contacts' impulses: H of masses 1:1e7 differs as much.
-  Eigen::VectorXd scale(rows);
-  for (Eigen::Index i = 0; i < rows; ++i) scale[i] = equations_.scales()[static_cast<std::size_t>(i / 3)];
-  matrix = scale.asDiagonal() * matrix * scale.cwiseInverse().asDiagonal();
-  const Eigen::Map<const Eigen::VectorXd> right(difference_.data(), rows);
-  std::vector<Eigen::Index> used;  // the others are 0 in dimensions 1 and 2
-  for (Eigen::Index i = 0; i < rows; ++i)
-    if (i % 3 < static_cast<Eigen::Index>(problem.bodies.dimension())) used.push_back(i);
-  const Eigen::MatrixXd reduced = matrix(used, used);
-  Eigen::VectorXd solution = Eigen::VectorXd::Zero(rows);
-  solution(used) = reduced.colPivHouseholderQr().solve(scale.cwiseProduct(right)(used));
-  solution = solution.cwiseQuotient(scale);
+  const auto add = [&list = entries](Eigen::Index row, Eigen::Index of, double value) {
+    if (value != 0.0) list.emplace_back(static_cast<int>(row), static_cast<int>(of), value);
+  };
+  entries.clear();
+  column.assign(equations_.columns(), -1);
+  Eigen::Index size = first.back();
+  for (const RowEntry& entry : equations_.entries()) {
+    const auto k = static_cast<std::size_t>(entry.row / 3);
+    Eigen::Index& x = column[static_cast<std::size_t>(entry.column)];
+    for (Eigen::Index i = 0; i < factors[k].rank; ++i) {
+      const double p = entry.value * factors[k].p(entry.row % 3, i),
+                   q = entry.value * factors[k].q(entry.row % 3, i);
+      if (x < 0 && (p != 0.0 || q != 0.0)) add(size, size, 1.0), x = size++;
+      add(x, first[k] + i, -p);
+      add(first[k] + i, x, -q);
+    }
+  }
+  right = Eigen::VectorXd::Zero(size);
+  for (const RowEntry& entry : equations_.entries())
+    if (const Eigen::Index x = column[static_cast<std::size_t>(entry.column)]; x >= 0)
+      right[x] += entry.value * difference_[static_cast<std::size_t>(entry.row)];
+  for (std::size_t k = 0; k < h.size(); ++k) {
+    const Eigen::Index rank = factors[k].rank;
+    const Eigen::Map<const Eigen::Vector3d> difference(&difference_[3 * k]);
+    const Eigen::Matrix3d own = factors[k].q.transpose() * h[k] * factors[k].p;
+    right.segment(first[k], rank) = -(factors[k].q.transpose() * (h[k] * difference)).head(rank);
+    for (Eigen::Index i = 0; i < rank; ++i)
+      for (Eigen::Index j = 0; j < rank; ++j)
+        add(first[k] + i, first[k] + j, own(i, j) + (i == j ? 1.0 + delta : 0.0));
+  }
+}
+
+bool Newton::step(const Blocks& blocks, const Problem& problem, const Sweep& sweep, double delta,
+                  std::vector<double>& changes) {
+  if (!linearize(blocks, problem, sweep)) return false;
+  equations_.read(blocks, problem);
+  read_delassus(blocks, sweep);
+  assemble(delta);
+  auto& [factors, first, h, column, entries, right, factor] = *system_;
+  if (right.size() > static_cast<Eigen::Index>(max_unknowns)) return false;
+  changes = difference_;
+  if (right.size() == 0) return true;
+  Eigen::SparseMatrix<double> matrix(right.size(), right.size());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  factor.compute(matrix);
+  if (factor.info() != Eigen::Success) return false;
+  const Eigen::VectorXd solution = factor.solve(right);
   if (!solution.allFinite()) return false;
-  changes.assign(solution.begin(), solution.end());
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    const Eigen::Index rank = factors[k].rank;
+    Eigen::Map<Eigen::Vector3d>(&changes[3 * k]) +=
+        factors[k].p.leftCols(rank) * solution.segment(first[k], rank);
+  }
   return true;
 }
 

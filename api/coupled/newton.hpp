@@ -1,6 +1,6 @@
-// newton.hpp - Newton's method for small islands (Alart, Curnier 1991, A mixed formulation for frictional
-// contact problems prone to Newton like solution methods), with derivatives of the laws by differences: ties
-// between masses that are far apart, which are linear while they hold.
+// newton.hpp - Newton's method (Alart, Curnier 1991, A mixed formulation for frictional contact problems
+// prone to Newton like solution methods), with derivatives of the laws by differences and a sparse factor:
+// ties between masses that are far apart, long columns, redundant contacts.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,23 +8,33 @@
 #include "sweep.hpp"
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace ilaw::coupled {
 
 class Newton {
  public:
-  // The dense matrix has as many rows: with more of them a step takes longer than the iterations that it
-  // saves.
-  static constexpr std::size_t max_unknowns = 300;
+  // Rows of the sparse system: with more of them a step takes longer than the iterations that it saves.
+  static constexpr std::size_t max_unknowns = 4000;
+
+  Newton();
+  ~Newton();
 
   // Changes of impulses from the present ones to the solution of the linearized equations, by contact. False
-  // where a law refuses or the system has no finite solution.
-  bool step(const Blocks& blocks, const Problem& problem, const Sweep& sweep, std::vector<double>& changes);
+  // where a law refuses, or the system is too large or has no finite solution.
+  bool step(const Blocks& blocks, const Problem& problem, const Sweep& sweep, double delta,
+            std::vector<double>& changes);
 
  private:
-  bool linearize(const Blocks& blocks, const Problem& problem, const Sweep& sweep);
+  struct Factors;
+  struct System;
 
+  bool linearize(const Blocks& blocks, const Problem& problem, const Sweep& sweep);
+  void read_delassus(const Blocks& blocks, const Sweep& sweep);
+  void assemble(double delta);
+
+  std::unique_ptr<System> system_;
   Equations equations_;
   std::vector<double> difference_;  // law's impulse less the present one
   std::vector<double> tangents_;    // 3 x 3 by columns per contact: of the law's impulse by v_free

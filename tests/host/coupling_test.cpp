@@ -175,7 +175,7 @@ TEST(Chain, ImpulsesAddUpFromBallToBall) {
 
 // Balls of mass 1 that rest on each other in a column, a little compressed: rounding opens no contact. Where
 // there are more, they are a column of their own beside it.
-Scene column(int balls, int more = 0) {
+nlohmann::json column_scene(int balls, int more = 0) {
   nlohmann::json points = nlohmann::json::array(), interfaces = nlohmann::json::array();
   for (int k = 0; k < balls + more; ++k) {
     const int place = k < balls ? k : k - balls;
@@ -187,13 +187,13 @@ Scene column(int balls, int more = 0) {
       interfaces.back()["against"] = {{"nodes", {k - 1}}, {"normal", {1.0}}};
   }
   const nlohmann::json gravity = {{"type", "gravity"}, {"acceleration", {-10.0}}};
-  return scene_of(nlohmann::json{
-      {"model", {{"type", "points"}, {"dimension", 1}, {"points", points}}},
-      {"time", {{"dt", 0.001}, {"end", 0.01}}},
-      {"loads", nlohmann::json::array({gravity})},
-      {"interfaces",
-       interfaces}}.dump());
+  return {{"model", {{"type", "points"}, {"dimension", 1}, {"points", points}}},
+          {"time", {{"dt", 0.001}, {"end", 0.01}}},
+          {"loads", nlohmann::json::array({gravity})},
+          {"interfaces", interfaces}};
 }
+Scene column(int balls, int more = 0) { return scene_of(column_scene(balls, more).dump()); }
+constexpr int too_long = 2100;  // for Newton's method, too
 
 // Each contact carries what lies above it. Sweeps alone would take some 2000 for twelve balls.
 TEST(Column, EachContactCarriesWhatLiesAboveIt) {
@@ -247,7 +247,7 @@ TEST(Column, IsSolvedByNewtonStepsWhenLong) {
 // The residual is the last change of an impulse: it bounds by how much impulses differ from those of the
 // laws.
 TEST(Column, WarnsWhenTooLong) {
-  Scene scene = column(350);
+  Scene scene = column(too_long);
   Integrator integrator = integrator_of(scene);
   integrator.start();
   EXPECT_GE(integrator.tally().sweeps_max, 999);
@@ -273,7 +273,7 @@ TEST(Column, WarnsWhenTooLong) {
 // A short column beside it is solved. The first 30 iterations have one common direction, so that the residual
 // of the long one is of the same size, but not the same.
 TEST(Column, WarnsWhenOneOfTwoIsTooLong) {
-  Scene alone = column(350), both = column(350, 30);
+  Scene alone = column(too_long), both = column(too_long, 30);
   Integrator of_one = integrator_of(alone), of_both = integrator_of(both);
   of_one.start();
   of_both.start();
@@ -329,7 +329,7 @@ TEST(RunWarnings, TellThatTheFastestVibrationGrows) {
 // On stderr, in the run's line and in the summary.
 TEST(RunWarnings, AreSaidByTheProgram) {
   const auto folder = fresh_folder();
-  nlohmann::json scene = column(350).source;
+  nlohmann::json scene = column_scene(too_long);
   scene["time"]["end"] = 0.001;
   std::ofstream(folder / "scene.json") << scene.dump();
   const Outcome outcome =

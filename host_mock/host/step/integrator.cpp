@@ -235,7 +235,7 @@ void Integrator::add_reactions(const StepView& step) try {
 void Integrator::add_coupled_reactions(const StepView& step) {
   const ilaw_coupled_report& solution = coupled_->solve(step, contact_inverse_mass(), v_);
   coupled_->check_driven(step, v_);
-  if (accounts_.is_wrong(model_, solution, v_before_))
+  if (solution.other_law || accounts_.is_wrong(model_, solution, v_before_))
     if (const std::string why = coupled_->explain(); !why.empty()) throw std::runtime_error(why);
   accounts_.add_solution(solution);
   coupled_->accept(step, v_);
