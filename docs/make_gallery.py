@@ -54,6 +54,8 @@ SCENES = {
     "block_impact": ("time", "time", "velocity of a corner", [("n0.v0", "x"), ("n0.v2", "z")]),
     "two_blocks": ("time", "time", "gap of a node", [("n405.gap", "edge"), ("n440.gap", "middle")]),
     "tilting_plane": ("time", "time", "displacement of the block", [("n4.u0", "x"), ("n4.u2", "z")]),
+    "patch_test": ("time", "time", "impulse of a node", [("n37.r2", "both sides"), ("n193.r2", "one side")]),
+    "half_model": ("time", "time", "force of the floor", [("floor.F2", "whole"), ("floor_2.F2", "half")]),
     "prestressed_seal": ("time", "time", "force", [("lid.F2", "lid"), ("fluid.F0", "fluid")]),
     "seal": ("time", "time", "displacement of the seal", [("n21.u0", "x"), ("n21.u2", "z")]),
 }

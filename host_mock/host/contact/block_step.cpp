@@ -75,8 +75,9 @@ class BlockWalk {
     else
       locate_at_obstacle();
     if constexpr (Turns) find_turns();
-    if (const double offset = step_.setup.gap_offset; offset != 0.0)
-      for (std::ptrdiff_t i = 0; i < count_; ++i) gap_[i] -= offset;
+    const InterfaceSetup& setup = step_.setup;
+    if (setup.common_gap_offset != 0.0 || !setup.own_gap_offsets.empty())
+      for (std::ptrdiff_t i = 0; i < count_; ++i) gap_[i] -= setup.gap_offset(node_index(i));
   }
   int node_index(std::ptrdiff_t i) const { return at_.node_index[contact(i)]; }
 

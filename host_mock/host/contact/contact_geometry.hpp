@@ -23,7 +23,7 @@ inline ContactGeometry locate_contact(const InterfaceSetup& setup, int node_inde
   if (counterpart.turns())
     found.surface =
         surface_velocities(counterpart, node_index, step.u, step.time, {found.point.gap, normal}, rates);
-  found.point.gap -= setup.gap_offset;
+  found.point.gap -= setup.gap_offset(node_index);
   return found;
 }
 

@@ -20,10 +20,16 @@ struct InterfaceSetup {
   std::vector<double> areas;  // tributary, per node
   std::unique_ptr<Counterpart> counterpart;
   double birth = 0.0, death = std::numeric_limits<double>::infinity();  // while birth <= t < death
-  Vector tangent;                 // first tangent of all nodes; empty: none given
-  double gap_offset = 0.0;        // taken off every gap: thickness, radius
-  bool has_driven_nodes = false;  // motions drive some of its nodes or partners: H differs by axis
-  bool keeps_all_active = false;  // also contacts that cannot be reached: same results, more work
+  Vector tangent;                       // first tangent of all nodes; empty: none given
+  double common_gap_offset = 0.0;       // taken off every gap: thickness, radius
+  std::vector<double> own_gap_offsets;  // the same of each node, beside that; empty: none
+  bool has_driven_nodes = false;        // motions drive some of its nodes or partners: H differs by axis
+  bool keeps_all_active = false;        // also contacts that cannot be reached: same results, more work
+
+  double gap_offset(int node_index) const {
+    if (own_gap_offsets.empty()) return common_gap_offset;
+    return common_gap_offset + own_gap_offsets[static_cast<std::size_t>(node_index)];
+  }
 };
 
 // A step from the interface's side. Speeds bound those of all nodes. Step 0 is the start: half a step of the

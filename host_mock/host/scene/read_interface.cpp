@@ -97,6 +97,19 @@ std::map<std::string, std::vector<double>> read_fields(const json& scene, const 
   return fields;
 }
 
+// "initial": all nodes touch at the start, as the faces of two meshes of one curved face are meant to.
+void read_gap_offset(const json& interface, InterfaceSetup& setup, const Scene& scene) {
+  const json offset = interface.value("gap_offset", json(0.0));
+  if (offset.is_number()) {
+    setup.common_gap_offset = offset.get<double>();
+    return;
+  }
+  const Dofs& u = scene.model->initial_displacement();
+  for (std::size_t k = 0; k < setup.nodes.size(); ++k)
+    setup.own_gap_offsets.push_back(
+        setup.counterpart->contact_point(static_cast<int>(k), u, scene.start_time()).gap);
+}
+
 InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene& scene, const NodeSet& own,
                           const std::string& pointer) {
   InterfaceSetup setup;
@@ -116,7 +129,7 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
     throw mistake(pointer + "/death", interface["death"].dump(),
                   "a time after birth, " + json(setup.birth).dump());
   setup.tangent = read_tangent(interface, setup, *scene.model, pointer + "/tangent");
-  setup.gap_offset = interface.value("gap_offset", 0.0);
+  read_gap_offset(interface, setup, scene);
   setup.keeps_all_active = !interface.value("skip", true);
   return setup;
 }

@@ -52,6 +52,9 @@ struct Scene {
   std::optional<PrestressSetup> prestress;
   OutputSetup output;
   std::vector<std::string> warnings;  // of what can run, but can hardly be meant
+
+  // Before 0 with a prestress: its ramp.
+  double start_time() const { return prestress ? -prestress->ramp : 0.0; }
 };
 
 // Reads and checks a scene, loads its laws. Throws SceneError, whose message starts with the JSON

@@ -58,9 +58,6 @@ void warn_of_times(Scene& scene) {
 
 namespace {
 
-// When bodies are where the model has them.
-double time_of_start(const Scene& scene) { return scene.prestress ? -scene.prestress->ramp : 0.0; }
-
 // A gap of some interface at the start, and where.
 struct StartGaps {
   std::size_t below = 0, above = 0;  // nodes with gaps below and above the limits
@@ -72,7 +69,7 @@ StartGaps gaps_at_start(const Scene& scene, const Interface& interface, double l
   StartGaps found;
   const Dofs& start = scene.model->initial_displacement();
   for (std::size_t k = 0; k < interface.nodes().size(); ++k) {
-    const double gap = interface.gap_at(static_cast<int>(k), start, time_of_start(scene));
+    const double gap = interface.gap_at(static_cast<int>(k), start, scene.start_time());
     const int node = interface.nodes()[k];
     if (gap < low) ++found.below;
     if (gap > high) ++found.above;
@@ -131,7 +128,7 @@ double depth_behind(const FlatSurface& flat, const Model& model) {
 void warn_of_side(Scene& scene) {
   for (std::size_t i = 0; i < scene.interfaces.size(); ++i) {
     const Interface& interface = *scene.interfaces[i];
-    const std::optional<FlatSurface> flat = interface.setup().counterpart->flat_at(time_of_start(scene));
+    const std::optional<FlatSurface> flat = interface.setup().counterpart->flat_at(scene.start_time());
     const double depth = flat ? depth_behind(*flat, *scene.model) : 0.0;
     if (!(depth > 0.0) || gaps_at_start(scene, interface, -1e-9 * depth, HUGE_VAL).below > 0) continue;
     scene.warnings.push_back(at("/interfaces", i) + "/obstacle/normal: all of the model lies behind the " +
@@ -232,7 +229,7 @@ void warn_of_open_bonds(Scene& scene) {
     const ilaw_instance_info& info = interface.info();
     const bool bonds = (info.capabilities & ILAW_CAN_ADHERE) && !(info.permissions & ILAW_MAY_SKIP_FRESH);
     if (!bonds || interface.setup().birth > 0.0) continue;
-    const double offset = std::abs(interface.setup().gap_offset);
+    const double offset = std::abs(interface.setup().common_gap_offset);
     const double limit = most_of_edge * (std::isfinite(edge) ? std::max(edge, offset) : offset);
     if (!(limit > 0.0)) continue;
     const StartGaps gaps = gaps_at_start(scene, interface, 0.0, limit);
