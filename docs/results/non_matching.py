@@ -124,10 +124,13 @@ def of_rings(case, coarse, fine, side, folder, keeps_gaps):
 
 
 
-def run(ilaw, case, coarse, fine, side, keeps_gaps):
+def run(ilaw, case, coarse, fine, side, keeps_gaps, stiffness):
     with tempfile.TemporaryDirectory() as folder:
         rings = case.startswith("ring")
         made = of_rings(case, coarse, fine, side, folder, keeps_gaps) if rings else of_blocks(case, coarse, fine, side)
+        if stiffness:
+            penalty = {"stiffness": stiffness, "integration": "implicit", "restitution": 0}
+            made["interfaces"][0].update(law="penalty", parameters=penalty)
         faces = FACES["rings" if rings else "blocks"]
         made["output"] = {"watch": [f"{body}.{face}" for body, face in faces.items()],
                           "every": 1000000 if "damping" in str(made.get("loads")) else 1}
@@ -167,6 +170,7 @@ def main():
     parser.add_argument("--meshes", nargs="+", default=["3:5", "6:10", "12:20"])
     parser.add_argument("--cases", nargs="+", default=["impact", "at rest", "sliding", "ring, wave", "ring, at rest"])
     parser.add_argument("--keep-gaps", action="store_true", help="of the facets of rings, at the start")
+    parser.add_argument("--penalty", type=float, help="implicit springs of this stiffness per node instead of contact")
     arguments = parser.parse_args()
     pressure_rows, error_rows = [], []
     for case in arguments.cases:
@@ -174,7 +178,7 @@ def main():
             coarse, fine = map(int, mesh.split(":"))
             pressures, errors, sweeps, seconds, unsolved = [], [], {}, {}, {}
             for side in SIDES:
-                summary, rows = run(arguments.ilaw, case, coarse, fine, side, arguments.keep_gaps)
+                summary, rows = run(arguments.ilaw, case, coarse, fine, side, arguments.keep_gaps, arguments.penalty)
                 p, u = fields(case, rows, coarse, fine)
                 off = abs(p - 1).max()
                 pressures.append(f"{p.min():.3f} to {p.max():.3f}" if off > 1e-3 else f"1, to {off:.0e}")
