@@ -3,7 +3,7 @@
 
     tests/mutants/run.py                   all mutants of mutants.json
     tests/mutants/run.py --only window     those whose name holds this word
-    tests/mutants/run.py --area kit        those of an area: plugins, kit, loader or host
+    tests/mutants/run.py --area kit        those of an area (AREAS)
     tests/mutants/run.py --last 24         the last ones of mutants.json
     tests/mutants/run.py --check           only whether each still fits the sources, exactly once
     tests/mutants/run.py --table           and writes the score into docs/reliability.md
@@ -34,10 +34,18 @@ TREE = SOURCE / "build" / "mutants"
 BUILD = TREE / "build" / "dev"
 GOAL = 0.9
 HANGS = 300  # seconds
+# Every program that runs through the sources of an area.
 AREAS = {"plugins": ["laws_test"],
          "kit": ["kit_test", "laws_test"],
-         "loader": ["loader_test"],
-         "host": ["host_test", "bars_test", "blocks_test", "proximity_filter_test", "keys_test", "checkpoint_test"]}
+         "loader": ["loader_test", "loader_memory_test", "unusual_hosts_test"],
+         "coupled": ["coupled_test", "host_test", "closed_forms_test", "prestress_test"],
+         "check": ["check_test"],
+         "study": ["converge_test", "study_test"],
+         "stress": ["stress_test"],
+         "results": ["forces_test", "fields_test", "summary_test", "runs_test", "checkpoint_test", "resume_test"],
+         "cli": ["program_test", "runs_test", "resume_test", "keys_test", "study_test", "question_page_test"],
+         "host": ["host_test", "bars_test", "blocks_test", "bodies_test", "scene_keys_test", "closed_forms_test",
+                  "prestress_test", "mesh_test", "proximity_filter_test", "keys_test", "checkpoint_test"]}
 SWITCH = """#pragma once
 #include <cstdlib>
 // Read when a program or law is loaded, so that evaluate stays pure.
