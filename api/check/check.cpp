@@ -15,43 +15,67 @@ namespace {
 using nlohmann::json;
 
 // What a child process hands back: numbers as text, which keeps all of them.
-std::string written(const Finding& finding) {
+json written(const Finding& finding) {
   json arrays = json::array();
   for (const NamedArray& array : finding.arrays) {
     json values = json::array();
     for (const double value : array.values) values.push_back(text_of(value));
     arrays.push_back({array.name, values});
   }
-  return json{
-      {"seen", finding.seen}, {"allowed", finding.allowed}, {"setting", finding.setting}, {"arrays", arrays}}
-      .dump(-1, ' ', true, json::error_handler_t::replace);
+  return {
+      {"seen", finding.seen}, {"allowed", finding.allowed}, {"setting", finding.setting}, {"arrays", arrays}};
 }
+
+json written(const Reach& reach) {
+  json states = json::object();
+  for (const auto& [name, range] : reach.states)
+    states[name] = {text_of(range.least), text_of(range.largest), range.changed};
+  return {{"steps", reach.steps}, {"statuses", reach.statuses}, {"states", states}};
+}
+
+std::string dumped(const json& text) { return text.dump(-1, ' ', true, json::error_handler_t::replace); }
+
+double number_in(const json& text) { return std::strtod(text.get<std::string>().c_str(), nullptr); }
 
 Finding read_finding(const json& text) {
   Finding finding{text.at("seen"), text.at("allowed"), text.at("setting"), {}};
   for (const json& array : text.at("arrays")) {
     NamedArray read{array.at(0), {}};
-    for (const json& value : array.at(1))
-      read.values.push_back(std::strtod(value.get<std::string>().c_str(), nullptr));
+    for (const json& value : array.at(1)) read.values.push_back(number_in(value));
     finding.arrays.push_back(read);
   }
   return finding;
 }
 
+Reach read_reach(const json& text) {
+  Reach reach;
+  reach.steps = text.at("steps");
+  reach.statuses = text.at("statuses");
+  for (const auto& [name, range] : text.at("states").items())
+    reach.states[name] = {number_in(range.at(0)), number_in(range.at(1)), range.at(2)};
+  return reach;
+}
+
 // In the child. Empty where the rule holds.
-std::string judged(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed) {
+json verdict_of(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed) {
   try {
     calling("the loader");
     const ilaw::library library(file);
     rule.judge({library, *library.law(law), seed});
-    return "";
+    return json::object();
   } catch (const Finding& finding) {
     return written(finding);
   } catch (const NotJudged& reason) {
-    return json{{"why", reason.why}}.dump();
+    return {{"why", reason.why}};
   } catch (const ilaw::error& error) {
     return written({error.what(), "a library that opens again", {}, {}});
   }
+}
+
+std::string judged(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed) {
+  json text = verdict_of(file, law, rule, seed);
+  text["reach"] = written(reach_of_thread());
+  return dumped(text);
 }
 
 Outcome outcome_of(const std::string& law, const Rule& rule, const Ending& ending) {
@@ -60,13 +84,14 @@ Outcome outcome_of(const std::string& law, const Rule& rule, const Ending& endin
     outcome.verdict = Verdict::broken;
     const std::string call = ending.call.empty() ? "the library" : ending.call;
     outcome.finding = {call + " " + ending.how, "that it returns", ending.setting, {}};
-  } else if (!ending.result.empty()) {
+  } else {
     const json text = json::parse(ending.result);
-    outcome.verdict = text.contains("why") ? Verdict::not_judged : Verdict::broken;
-    if (text.contains("why"))
-      outcome.why = text.at("why");
-    else
-      outcome.finding = read_finding(text);
+    outcome.verdict = text.contains("why")    ? Verdict::not_judged
+                      : text.contains("seen") ? Verdict::broken
+                                              : Verdict::passed;
+    if (text.contains("why")) outcome.why = text.at("why");
+    if (text.contains("seen")) outcome.finding = read_finding(text);
+    if (text.contains("reach")) outcome.reach = read_reach(text.at("reach"));
     if (outcome.verdict == Verdict::broken && outcome.finding.setting.empty())
       outcome.finding.setting = ending.setting;
   }
@@ -101,6 +126,18 @@ class LawCheck {
       : file_(std::move(file)), law_(std::move(law)), options_(options), outcomes_(outcomes) {}
 
   void run() {
+    const std::size_t first = outcomes_.size();
+    judge_all();
+    for (std::size_t k = first; k < outcomes_.size(); ++k) all_.add(outcomes_[k].reach);
+    for (std::size_t k = first; k < outcomes_.size(); ++k) {
+      Outcome& outcome = outcomes_[k];
+      const bool moves = outcome.reach.steps > 0 && rule_of(outcome.rule.c_str()).needs == Needs::motion;
+      if (outcome.verdict == Verdict::passed && moves) outcome.missing = missing_in(outcome.reach, all_);
+    }
+  }
+
+ private:
+  void judge_all() {
     holds(creates_id, creates_);
     if (creates_) holds(returns_id, returns_);
     for (const Rule& rule : rules()) {
@@ -114,7 +151,6 @@ class LawCheck {
     }
   }
 
- private:
   static bool is_basic(const Rule& rule) {
     return rule.id == std::string(opens_id) || rule.id == std::string(creates_id) ||
            rule.id == std::string(returns_id);
@@ -123,13 +159,17 @@ class LawCheck {
   void holds(const char* id, bool& found) {
     const Outcome outcome = judge_apart(file_, law_, rule_of(id), options_);
     found = outcome.verdict != Verdict::broken;
-    if (wanted(rule_of(id), options_) || !found) outcomes_.push_back(outcome);
+    if (wanted(rule_of(id), options_) || !found)
+      outcomes_.push_back(outcome);
+    else
+      all_.add(outcome.reach);
   }
 
   std::string file_, law_;
   const Options& options_;
   std::vector<Outcome>& outcomes_;
   bool creates_ = false, returns_ = false;
+  Reach all_;  // what the rules reached together
 };
 
 // The library's path and its laws, as a child process found them.
@@ -147,8 +187,8 @@ std::string describe(const std::string& name_or_path) {
       laws.push_back(library.plugin().laws[k]->id);
     return json{{"path", library.path()}, {"laws", laws}}.dump();
   } catch (const ilaw::error& error) {
-    if (error.code() == ILAW_NOT_FOUND) return json{{"missing", error.what()}}.dump();
-    return written({error.what(), "a library that the loader opens", {}, {}});
+    if (error.code() == ILAW_NOT_FOUND) return dumped({{"missing", error.what()}});
+    return dumped(written({error.what(), "a library that the loader opens", {}, {}}));
   }
 }
 

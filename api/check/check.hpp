@@ -3,6 +3,7 @@
 #pragma once
 
 #include "check/finding.hpp"
+#include "check/reach.hpp"
 #include "check/sandbox.hpp"
 
 #include <cstdint>
@@ -27,6 +28,9 @@ struct Outcome {
   Finding finding;  // where it is broken
   std::string why;  // where it is not judged
   double seconds = 0.0;
+  Reach reach{};
+  // Statuses and state variables of the law that this rule did not reach, where it needs motion.
+  std::vector<std::string> missing{};
 };
 
 // The library is not there, or has no such law; there is no such rule.

@@ -52,12 +52,11 @@ void fly(const Subject& subject, Look look) {
       subject,
       [&](const Trial& trial, Draw& draw) {
         if (!trial.writes(ILAW_OUTPUT_ENERGY) && trial.can(ILAW_CAN_STORE_ENERGY)) return false;
-        const double dt = 0x1p-10;
         for (std::size_t flight = 0; flight < flights; ++flight) {
           Inputs in = draw_script(trial, draw, {point_count, 1}, true)[0];
-          in.velocity_step = in.position_step = dt;
+          in.velocity_step = in.position_step = 0x1p-10;
           for (std::size_t i = 0; i < point_count; ++i)
-            in.gap[i] = in.gap_offset[i] + draw.within(0.0, 3.0) * dt;
+            in.gap[i] = in.gap_offset[i] + draw.within(0.0, 3.0) * in.position_step;
           in.round_to(trial.setup);
           Heap heap;
           Arrays arrays(trial, in, {}, heap);
@@ -77,10 +76,14 @@ void fly(const Subject& subject, Look look) {
               Vector v = in.vector(in.v_free, i);
               for (std::size_t c = 0; c < in.dimension; ++c) v[c] += gained[c];
               in.set_vector(in.v_free, i, v);
-              in.gap[i] += dt * dot(in.normal_at(i), v);
+              in.gap[i] += in.position_step * dot(in.normal_at(i), v);
             }
             in.round_to(trial.setup);
-            in.time += dt;
+            in.time += in.position_step;
+            // Every second flight in steps that differ: a velocity step lies between two positions' middles.
+            const double last = in.position_step;
+            if (flight % 2 == 1) in.position_step = 0x1p-10 * draw.within(0.5, 1.5);
+            in.velocity_step = 0.5 * (last + in.position_step);
           }
         }
         return true;

@@ -22,6 +22,7 @@ void by_component(const Subject& subject) {
 }
 void spread(const Subject& subject) {
   in_layout(subject, {.order = Order::spread}, "with strides of 2 and more");
+  in_layout(subject, {.order = Order::backward}, "with negative strides");
 }
 void list_32(const Subject& subject) {
   for (const std::int32_t base : {0, 1})

@@ -122,12 +122,24 @@ void draw_fixed(Inputs& in, const Trial& trial, Draw& draw) {
   set_setting(trial.text());  // which create has changed
 }
 
-void draw_motion(Inputs& in, bool isotropic, bool without_force, Draw& draw) {
+// In the host's axes normals turn, and tangents with them.
+void turn_axes(Inputs& in, Draw& draw) {
+  for (std::size_t i = 0; !in.normal.empty() && i < in.count; ++i) {
+    const Vector turned = draw_turned(in.normal_at(i), in.dimension, draw);
+    if (!in.tangent.empty())
+      in.set_vector(in.tangent, i, carried({in.normal_at(i), in.vector(in.tangent, i), Vector{}}, turned)[1]);
+    in.set_vector(in.normal, i, turned);
+  }
+}
+
+// A node of a path goes on as it did, or turns back, or anywhere.
+void draw_motion(Inputs& in, bool isotropic, bool without_force, bool is_path, Draw& draw) {
   for (std::size_t i = 0; i < in.count; ++i) {
-    const Vector n = in.normal_at(i);
+    const Vector n = in.normal_at(i), last = in.vector(in.v_free, i);
+    const double part = !is_path || draw.one_in(4) ? 0.0 : draw.one_in(3) ? -1.0 : 1.0;
     Vector v{}, before{};
     for (std::size_t c = 0; c < in.dimension; ++c) {
-      v[c] = draw.within(-1.0, 1.0) - 0.2 * n[c];
+      v[c] = part != 0.0 ? part * last[c] : draw.within(-1.0, 1.0) - 0.2 * n[c];
       before[c] = without_force ? v[c] : draw.within(-1.0, 1.0);
     }
     in.set_vector(in.v_free, i, v);
@@ -217,6 +229,23 @@ std::vector<NamedArray> Inputs::arrays_of(std::size_t node) const {
   return arrays;
 }
 
+Matrix carried(const Matrix& axes, const Vector& normal) {
+  const Vector m{axes[0][0] + normal[0], axes[0][1] + normal[1], axes[0][2] + normal[2]};
+  Matrix out{normal, axes[1], axes[2]};
+  for (std::size_t row = 1; row < 3; ++row) {
+    const double part = 2.0 * dot(axes[row], m) / dot(m, m);
+    for (std::size_t c = 0; c < 3; ++c) out[row][c] -= part * m[c];
+  }
+  return out;
+}
+
+Vector draw_turned(const Vector& normal, std::size_t dimension, Draw& draw) {
+  if (dimension == 1) return normal;
+  Vector turned = normal;
+  for (std::size_t c = 0; c < dimension; ++c) turned[c] += draw.within(-0.4, 0.4);
+  return unit(turned);
+}
+
 Matrix draw_axes(std::size_t dimension, Draw& draw) {
   if (dimension == 1)
     return {Vector{draw.one_in(2) ? 1.0 : -1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
@@ -239,12 +268,14 @@ Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size, bool 
   Script script;
   Inputs in = empty_inputs(trial, size.nodes);
   draw_fixed(in, trial, draw);
-  const bool same_steps = draw.one_in(2), without_force = draw.one_in(2), alike = isotropic || draw.one_in(2);
+  const bool same_steps = draw.one_in(2), without_force = draw.one_in(2), alike = isotropic || draw.one_in(4),
+             is_path = !draw.one_in(3);
   for (std::size_t k = 0; k < size.steps; ++k) {
     in.velocity_step = 0x1p-10 * (same_steps ? 1.0 : draw.within(0.5, 1.5));
     in.position_step = 0x1p-10 * (same_steps ? 1.0 : draw.within(0.5, 1.5));
     in.time += in.velocity_step;
-    draw_motion(in, alike, without_force, draw);
+    if (k > 0 && is_path) turn_axes(in, draw);
+    draw_motion(in, alike, without_force, k > 0 && is_path, draw);
     in.round_to(trial.setup);
     script.push_back(in);
   }

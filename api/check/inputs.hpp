@@ -44,12 +44,18 @@ using Script = std::vector<Inputs>;
 struct ScriptSize {
   std::size_t nodes = 13, steps = 5;
 };
-// Random nodes with motions and gaps of one size, most of them near contact. H is a multiple of the identity
-// where "isotropic" says so, or the law can be given no other. Parameters per node differ from node to node.
+// Random nodes with motions and gaps of one size, most of them near contact. In every second script
+// velocities stay or turn back, and normals of the host turn. H is a multiple of the identity where
+// "isotropic" says so, or the law can be given no other. Parameters per node differ from node to node.
 Script draw_script(const Trial& trial, Draw& draw, const ScriptSize& size = {}, bool isotropic = false);
 
 // The parameters of the trial with those of one node as constants.
 Values constants_of(const Trial& trial, const Inputs& in, std::size_t node);
+
+// The axes carried to another normal by the shortest rotation.
+Matrix carried(const Matrix& axes, const Vector& normal);
+// A normal at an angle of at most half a right angle to this one.
+Vector draw_turned(const Vector& normal, std::size_t dimension, Draw& draw);
 
 // Axes of a node: rows are normal and tangents, right-handed.
 Matrix draw_axes(std::size_t dimension, Draw& draw);

@@ -319,9 +319,9 @@ void table_linear(const Subject& subject) {
             if (p.axes[n] != std::string(p.name) && is_known_axis(trial.law, p.axes[n]))
               known.emplace_back(p.axes[n]);
           for (const std::string& axis : known) {
-            const Value over_one{p.name, ILAW_VALUE_TABLE, 0.0, {}, {{axis, {0.25, 0.75, 1.0}}}, {a, b, b}};
+            const Value over_one{p.name, ILAW_VALUE_TABLE, 0.0, {}, {{axis, {0.25, 0.75, 1.0}}}, {a, b, a}};
             const std::pair<double, double> places[] = {
-                {0.125, a}, {0.25, a}, {0.5, 0.5 * (a + b)}, {0.75, b}, {2.0, b}};
+                {0.125, a}, {0.25, a}, {0.5, 0.5 * (a + b)}, {0.75, b}, {1.0, a}, {1.125, a}, {1024.0, a}};
             for (const auto& [place, value] : places)
               judged = expect_table_value(trial, over_one, {place}, value, draw) || judged;
           }

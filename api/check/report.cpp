@@ -62,9 +62,39 @@ std::string text_of_not_judged(const Checked& checked) {
   return text;
 }
 
+// Statuses and states that rules did not reach, by law. The JSON has all of them by rule.
+std::string text_of_missing(const Checked& checked) {
+  constexpr std::size_t most_named = 4;
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> rules;
+  for (const Outcome& outcome : checked.outcomes)
+    for (const std::string& one : outcome.missing) rules[{outcome.law, one}].push_back(outcome.rule);
+  std::string text;
+  for (const auto& [of, listed] : rules) {
+    text += "  not judged there, " + of.first + ": " + of.second + ": ";
+    for (std::size_t k = 0; k < std::min(most_named, listed.size()); ++k) text += (k ? ", " : "") + listed[k];
+    if (listed.size() > most_named) text += " and " + std::to_string(listed.size() - most_named) + " more";
+    text += "\n";
+  }
+  return text;
+}
+
 ordered_json number_or_text(double value) {
   if (std::isfinite(value)) return value;
   return std::isnan(value) ? "nan" : value > 0.0 ? "inf" : "-inf";
+}
+
+ordered_json json_of(const Outcome& outcome) {
+  ordered_json statuses = ordered_json::object(), states = ordered_json::object();
+  for (std::size_t k = 0; k < outcome.reach.statuses.size(); ++k)
+    if (outcome.reach.statuses[k] > 0) statuses[name_of_status(k)] = outcome.reach.statuses[k];
+  for (const auto& [name, range] : outcome.reach.states)
+    states[name] = {{"least", number_or_text(range.least)},
+                    {"largest", number_or_text(range.largest)},
+                    {"changed", range.changed}};
+  return {{"node_steps", outcome.reach.steps},
+          {"statuses", statuses},
+          {"states", states},
+          {"not_judged_there", outcome.missing}};
 }
 
 }  // namespace
@@ -83,7 +113,7 @@ std::string text_of(const Checked& checked) {
           std::to_string(count(checked, Verdict::broken)) + " broken, " +
           std::to_string(count(checked, Verdict::not_judged)) + " not judged (seed " +
           std::to_string(checked.seed) + ")\n";
-  return text + text_of_not_judged(checked);
+  return text + text_of_not_judged(checked) + text_of_missing(checked);
 }
 
 std::string json_of(const Checked& checked) {
@@ -95,6 +125,7 @@ std::string json_of(const Checked& checked) {
                     : outcome.verdict == Verdict::broken ? "broken"
                                                          : "not judged";
     if (outcome.verdict == Verdict::not_judged) one["why"] = outcome.why;
+    if (outcome.reach.steps > 0) one["reached"] = json_of(outcome);
     if (outcome.verdict == Verdict::broken) {
       ordered_json arrays = ordered_json::object();
       for (const NamedArray& array : outcome.finding.arrays) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/run.hpp"
 
+#include "check/reach.hpp"
 #include "check/sandbox.hpp"
 
 #include <algorithm>
@@ -49,11 +50,9 @@ Vector Results::vector(const std::vector<double>& of, std::size_t node, std::siz
 
 Field::Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use,
              ilaw_numbers numbers)
-    : name_(name), components_(components) {
-  node_stride_ = order == Order::interleaved    ? components
-                 : order == Order::by_component ? 1
-                                                : 2 * components + 1;
-  component_stride_ = order == Order::interleaved ? 1 : order == Order::by_component ? room + 3 : 2;
+    : name_(name), components_(components), is_backward_(order == Order::backward) {
+  node_stride_ = order == Order::by_component ? 1 : order == Order::spread ? 2 * components + 1 : components;
+  component_stride_ = order == Order::by_component ? room + 3 : order == Order::spread ? 2 : 1;
   size_ = components == 0 ? 0 : (room - 1) * node_stride_ + (components - 1) * component_stride_ + 1;
   if (numbers == ILAW_NUMBERS_FLOAT)
     floats_ = static_cast<float*>(memory.take(name, size_ * sizeof(float), use));
@@ -69,12 +68,14 @@ void Field::put(std::size_t node, std::size_t component, double value) {
     values_[place(node, component)] = value;
 }
 ilaw_input Field::input() const {
-  return {values_, floats_, static_cast<std::int64_t>(node_stride_),
-          static_cast<std::int64_t>(component_stride_)};
+  const std::size_t first = size_ > 0 ? place(0, 0) : 0;
+  return {values_ ? values_ + first : nullptr, floats_ ? floats_ + first : nullptr, stride(node_stride_),
+          stride(component_stride_)};
 }
 ilaw_output Field::output() const {
-  return {values_, floats_, static_cast<std::int64_t>(node_stride_),
-          static_cast<std::int64_t>(component_stride_)};
+  const std::size_t first = size_ > 0 ? place(0, 0) : 0;
+  return {values_ ? values_ + first : nullptr, floats_ ? floats_ + first : nullptr, stride(node_stride_),
+          stride(component_stride_)};
 }
 void Field::clear() {
   if (floats_)
@@ -86,7 +87,7 @@ void Field::clear() {
 bool Field::is_untouched_beside(const std::vector<std::size_t>& nodes) {
   std::vector<bool> used(size_);
   for (const std::size_t node : nodes)
-    for (std::size_t c = 0; c < components_; ++c) used[node * node_stride_ + c * component_stride_] = true;
+    for (std::size_t c = 0; c < components_; ++c) used[place(node, c)] = true;
   for (std::size_t k = 0; k < size_; ++k)
     if (!used[k] && !same_bits(number(k), sentinel)) return false;
   return true;
@@ -241,6 +242,7 @@ Results Arrays::evaluate(const Inputs& in) { return evaluate_with(trial_.instanc
 
 Results Arrays::evaluate_with(const Instance& instance, const Inputs& in) {
   load(in);
+  const std::vector<double> before = take(state_out_);
   if (!layout_.in_place) {
     for (const std::size_t place : places_)
       for (std::size_t c = 0; c < state_out_.components(); ++c)
@@ -258,7 +260,9 @@ Results Arrays::evaluate_with(const Instance& instance, const Inputs& in) {
   memory_.before_call();
   const std::int32_t code = instance.evaluate(batch_, &report_);
   memory_.after_call();
-  return results(code);
+  Results found = results(code);
+  if (code >= 0) reach_of_thread().add(trial_.info, before, found.state, found.status);
+  return found;
 }
 
 void Arrays::set_state(const std::vector<double>& state) { load_one(state_out_, state); }

@@ -12,7 +12,8 @@
 
 namespace ilaw::check {
 
-enum class Order { interleaved, by_component, spread };
+// backward: as interleaved, from the last number to the first, by negative strides.
+enum class Order { interleaved, by_component, spread, backward };
 enum class List { none, of_32_bits, of_64_bits };
 // Amounts are an output as others here, by a bit that ilaw.h does not use; single ones by Layout::no_amount.
 inline constexpr std::uint32_t amounts_output = 1U << 31;
@@ -62,7 +63,11 @@ class Field {
 
  private:
   std::size_t place(std::size_t node, std::size_t component) const {
-    return node * node_stride_ + component * component_stride_;
+    const std::size_t at = node * node_stride_ + component * component_stride_;
+    return is_backward_ ? size_ - 1 - at : at;
+  }
+  std::int64_t stride(std::size_t forward) const {
+    return is_backward_ ? -static_cast<std::int64_t>(forward) : static_cast<std::int64_t>(forward);
   }
   double number(std::size_t at) const { return floats_ ? double{floats_[at]} : values_[at]; }
 
@@ -70,6 +75,7 @@ class Field {
   double* values_ = nullptr;
   float* floats_ = nullptr;
   std::size_t components_ = 0, node_stride_ = 0, component_stride_ = 0, size_ = 0;
+  bool is_backward_ = false;
 };
 
 // The arrays of a batch for a trial.

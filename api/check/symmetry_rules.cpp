@@ -1,6 +1,7 @@
 // Rules: the same in other axes, in a mirror and in other units.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/rule.hpp"
+#include "check/shake.hpp"
 #include "check/units.hpp"
 
 #include <algorithm>
@@ -18,21 +19,46 @@ double natural_impulse(const Inputs& in, std::size_t i) {
   return length(in.vector(in.v_free, i)) / in.delassus[i * in.form_width] + 1e-3;
 }
 
+bool are_alike(const Trial& trial, const Inputs& in, std::size_t i, const Vector& r, const Vector& found) {
+  for (std::size_t c = 0; c < in.dimension; ++c)
+    if (!(std::abs(r[c] - found[c]) <= tolerance(trial) * (length(r) + natural_impulse(in, i)))) return false;
+  return true;
+}
+
+[[noreturn]] void fail_image(const Trial& trial, const Inputs& in, std::size_t i, const std::string& how,
+                             const Vector& r, const Vector& found) {
+  fail(trial, in, i, how + ": impulse " + text_of(found, in.dimension) + ", brought back",
+       text_of(r, in.dimension));
+}
+
+// A node that refuses what it was given says nothing of an edge.
+void leave_out_edges(const Trial& trial, const Inputs& in, const Results& plain, const Results& shaken,
+                     std::vector<bool>& is_judged) {
+  for (std::size_t i = 0; i < in.count; ++i) {
+    if (!shaken.status.empty() && shaken.status[i] == ILAW_BAD_INPUT) continue;
+    is_judged[i] = is_judged[i] && are_alike(trial, in, i, plain.vector(plain.impulse, i, in.dimension),
+                                             shaken.vector(shaken.impulse, i, in.dimension));
+  }
+}
+
+constexpr int shakes = 3;
+
 template <class Back>
 void expect_image(const Trial& trial, const Script& script, const std::vector<Results>& plain,
-                  const std::vector<Results>& image, const char* how, Back back) {
-  for (std::size_t k = 0; k < script.size(); ++k)
+                  const std::vector<Results>& image, const char* how, Back back,
+                  const std::vector<std::vector<Results>>& shaken = {}) {
+  std::vector<bool> is_judged(script[0].count, true);
+  for (std::size_t k = 0; k < script.size(); ++k) {
+    for (const std::vector<Results>& of : shaken)
+      leave_out_edges(trial, script[k], plain[k], of[k], is_judged);
     for (std::size_t i = 0; i < script[k].count; ++i) {
       const std::size_t d = script[k].dimension;
       const Vector r = plain[k].vector(plain[k].impulse, i, d),
                    found = back(i, image[k].vector(image[k].impulse, i, d));
-      for (std::size_t c = 0; c < d; ++c)
-        if (!(std::abs(r[c] - found[c]) <= tolerance(trial) * (length(r) + natural_impulse(script[k], i))))
-          fail(trial, script[k], i,
-               std::string(how) + ", step " + std::to_string(k) + ": impulse " + text_of(found, d) +
-                   ", brought back",
-               text_of(r, d));
+      if (is_judged[i] && !are_alike(trial, script[k], i, r, found))
+        fail_image(trial, script[k], i, std::string(how) + ", step " + std::to_string(k), r, found);
     }
+  }
 }
 
 // Each step of the other trial from the state of the first: what rounding makes of a memory is not the
@@ -41,15 +67,28 @@ template <class State, class Back>
 void expect_steps_alike(const Trial& trial, const Script& script, const Trial& other,
                         const Script& other_script, const std::string& how, State state, Back back) {
   Heap heap;
-  Arrays arrays(trial, script[0], {}, heap), others(other, other_script[0], {}, heap);
+  Arrays arrays(trial, script[0], {}, heap), others(other, other_script[0], {}, heap),
+      shaken(trial, script[0], {}, heap);
   arrays.initialise(script[0]);
-  std::vector<Results> plain, image;
+  Draw draw(script.size());
+  Shake shake(trial, draw);
   for (std::size_t k = 0; k < script.size(); ++k) {
-    others.set_state(state(arrays.state()));
-    plain.push_back(arrays.evaluate(script[k]));
-    image.push_back(others.evaluate(other_script[k]));
+    const Inputs& in = script[k];
+    const std::vector<double> before = arrays.state();
+    others.set_state(state(before));
+    const Results plain = arrays.evaluate(in), image = others.evaluate(other_script[k]);
+    std::vector<bool> is_judged(in.count, true);
+    for (int n = 0; n < shakes; ++n) {
+      shaken.set_state(shake(before));
+      leave_out_edges(trial, in, plain, shaken.evaluate(shake(in)), is_judged);
+    }
+    for (std::size_t i = 0; i < in.count; ++i) {
+      const Vector r = plain.vector(plain.impulse, i, in.dimension),
+                   found = back(i, image.vector(image.impulse, i, in.dimension));
+      if (is_judged[i] && !are_alike(other, in, i, r, found))
+        fail_image(other, in, i, how + ", step " + std::to_string(k), r, found);
+    }
   }
-  expect_image(other, script, plain, image, how.c_str(), back);
 }
 std::vector<double> the_same(std::vector<double> state) { return state; }
 
@@ -115,6 +154,72 @@ void frame_indifference(const Subject& subject) {
         return true;
       },
       "the law serves one frame alone");
+}
+
+std::vector<std::vector<Results>> runs_shaken(const Trial& trial, const Script& script, Draw& draw) {
+  std::vector<std::vector<Results>> runs;
+  for (int n = 0; n < shakes; ++n) runs.push_back(run_shaken(trial, script, draw));
+  return runs;
+}
+
+// The script in axes of the host that differ from step to step, without tangents.
+Script in_axes(const Script& script, const std::vector<std::vector<Matrix>>& axes, const Setup& host) {
+  Script turned_script;
+  for (std::size_t k = 0; k < script.size(); ++k) {
+    turned_script.push_back(turned(script[k], axes[k]));
+    turned_script.back().tangent.clear();
+    turned_script.back().round_to(host);
+  }
+  return turned_script;
+}
+
+// In local axes a history stays as it is, and those without tangents are carried so. Nodes whose impulses
+// differ in axes that stand still are left to other rules.
+void expect_carried(const Trial& trial, const Trial& in_host, Draw& draw) {
+  const Script script = draw_script(trial, draw);
+  const std::size_t count = script[0].count, d = script[0].dimension;
+  std::vector<std::vector<Matrix>> axes(script.size());
+  for (std::size_t i = 0; i < count; ++i) axes[0].push_back(draw_axes(d, draw));
+  for (std::size_t k = 1; k < script.size(); ++k)
+    for (std::size_t i = 0; i < count; ++i)
+      axes[k].push_back(carried(axes[k - 1][i], draw_turned(axes[k - 1][i][0], d, draw)));
+  const std::vector<std::vector<Matrix>> still(script.size(), axes[0]);
+  const std::vector<Results> plain = run(trial, script),
+                             unturned = run(in_host, in_axes(script, still, in_host.setup)),
+                             found = run(in_host, in_axes(script, axes, in_host.setup));
+  const std::vector<std::vector<Results>> shaken = runs_shaken(trial, script, draw);
+  std::vector<bool> is_judged(count, true);
+  for (std::size_t k = 0; k < script.size(); ++k) {
+    for (const std::vector<Results>& of : shaken)
+      leave_out_edges(in_host, script[k], plain[k], of[k], is_judged);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto local = [&](const std::vector<Results>& of, const Matrix& by) {
+        return times(by, of[k].vector(of[k].impulse, i, d));
+      };
+      const Vector r = plain[k].vector(plain[k].impulse, i, d), image = local(found, axes[k][i]);
+      is_judged[i] = is_judged[i] && are_alike(in_host, script[k], i, r, local(unturned, axes[0][i]));
+      if (is_judged[i] && !are_alike(in_host, script[k], i, r, image))
+        fail_image(in_host, script[k], i, "after " + std::to_string(k) + " turns of the normal", r, image);
+    }
+  }
+}
+
+void history_carried(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw& draw) {
+        const Setup& own = trial.setup;
+        if (own.global() || own.dimension == 1 || trial.info.state_size == 0) return false;
+        const std::uint32_t form =
+            own.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL} : own.form;
+        const Setup host{own.dimension, form, ILAW_FRAME_GLOBAL, 0, own.numbers};
+        if (!(trial.law.delassus_forms & form) || !(trial.law.frames & ILAW_FRAME_GLOBAL) ||
+            !create(trial.law, host, trial.values))
+          return false;
+        expect_carried(trial, Trial(trial.law, host, trial.values), draw);
+        return true;
+      },
+      "the law has no state, or serves one frame alone");
 }
 
 // A state of the model as it would be in the turned one.
@@ -266,6 +371,9 @@ std::vector<Rule> symmetry_rules() {
            "ilaw.h, ILAW_FRAME_GLOBAL", Needs::motion, frame_indifference},
           {"frame-turned", "Where the whole model is turned, impulses turn with it.",
            "ilaw.h, ILAW_STATE_AXIS", Needs::motion, turned_whole},
+          {"history-carried",
+           "Without tangents a history is carried from normal to normal by the shortest rotation.",
+           "abi.md, Histories and rotations", Needs::motion, history_carried},
           {"isotropy", "An instance that needs no tangent knows no direction along the interface.",
            "ilaw.h, ILAW_INPUT_TANGENT", Needs::motion, isotropy},
           {"mirror", "In a mirror impulses are mirrored.", "check.md, Symmetries", Needs::motion, mirror},

@@ -2,6 +2,7 @@
 #include "check/trial.hpp"
 
 #include "check/sandbox.hpp"
+#include "check/units.hpp"
 
 #include <algorithm>
 #include <array>
@@ -237,7 +238,22 @@ std::vector<Setup> setups_of(const ilaw_law& law) {
   return setups;
 }
 
-Value draw_value(const ilaw_parameter& p, Draw& draw) {
+std::optional<double> natural_value(const ilaw_law& law, const ilaw_parameter& p) {
+  constexpr Units natural{1.0, 0x1p-10, 0x1p-10};
+  std::vector<std::string> symbols;
+  std::map<std::string, double> numbers;
+  for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
+    symbols.emplace_back(law.parameters[k]->symbol);
+    numbers[symbols.back()] = law.parameters[k]->default_value;
+  }
+  std::optional<Dimensions> unit = parse_unit(p.unit, symbols);
+  if (!unit) return std::nullopt;
+  unit->fixed.length += 2.0 * unit->fixed.mass;  // per area, which is of order one
+  const double value = unit->in(natural, numbers);
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+Value draw_value(const ilaw_parameter& p, Draw& draw, std::optional<double> natural) {
   Value value{p.name};
   if (p.kind == ILAW_PARAMETER_CHOICE) {
     value.kind = ILAW_VALUE_TEXT;
@@ -251,7 +267,9 @@ Value draw_value(const ilaw_parameter& p, Draw& draw) {
   const bool whole = p.kind == ILAW_PARAMETER_COUNT;
   const double low = p.minimum, high = std::min(p.maximum, whole ? std::max(8.0, low + 2.0) : p.maximum);
   // Most numbers are of order one, strengths and stiffnesses are large, times and toughnesses small.
-  const double drawn = high - low <= 4.0 ? draw.within(low, high) : std::pow(10.0, draw.within(-3.0, 5.0));
+  const double drawn = high - low <= 4.0 ? draw.within(low, high)
+                       : natural         ? *natural * std::pow(10.0, draw.within(-1.0, 1.0))
+                                         : std::pow(10.0, draw.within(-3.0, 5.0));
   value.number = std::clamp(drawn, low, high);
   if (whole) value.number = std::clamp(std::floor(draw.within(low, high + 1.0)), std::ceil(low), high);
   if (!in_range(p, value.number)) value.number = std::nextafter(low, high);
@@ -260,11 +278,13 @@ Value draw_value(const ilaw_parameter& p, Draw& draw) {
 
 std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw& draw) {
   constexpr int attempts = 200;
+  const bool is_natural = draw.one_in(2);
   for (int k = 0; k < attempts; ++k) {
     Values values;
     for (std::uint32_t p = 0; p < law.parameter_count; ++p)
       if (has(*law.parameters[p], ILAW_PARAMETER_IS_REQUIRED) || draw.one_in(2)) {
-        values.push_back(draw_value(*law.parameters[p], draw));
+        values.push_back(draw_value(*law.parameters[p], draw,
+                                    is_natural ? natural_value(law, *law.parameters[p]) : std::nullopt));
         // So that the value may be given per node, too.
         const double rounded = setup.rounded(values.back().number);
         if (in_range(*law.parameters[p], rounded)) values.back().number = rounded;

@@ -134,8 +134,12 @@ double number_of(const ilaw_law& law, const Values& values, const std::string& n
 // All setups that the law's description serves, with doubles first.
 std::vector<Setup> setups_of(const ilaw_law& law);
 // A value of a parameter within what its description allows.
-Value draw_value(const ilaw_parameter& p, Draw& draw);
-// Draws values until the law accepts them in a setup; none where it accepts nothing.
+Value draw_value(const ilaw_parameter& p, Draw& draw, std::optional<double> natural = std::nullopt);
+// The value that a parameter of this unit has where inertia, motion and steps as those of draw_script decide:
+// tractions, for one, that stop a node within a step. None where its unit is not known.
+std::optional<double> natural_value(const ilaw_law& law, const ilaw_parameter& p);
+// Draws values until the law accepts them in a setup, every second time near their natural ones; none where
+// it accepts nothing.
 std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw& draw);
 // With all parameters given per node that may be, and go together with the others so; what each was stays as
 // its number. None where there is no such parameter.

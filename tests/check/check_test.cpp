@@ -50,7 +50,7 @@ Names with_id_of_rules() {
 
 TEST(Rules, HaveAnIdASentenceAndASource) {
   EXPECT_EQ(with_id_of_rules().size(), rules().size());
-  EXPECT_GE(rules().size(), 118U);
+  EXPECT_GE(rules().size(), 119U);
   for (const Rule& rule : rules()) {
     EXPECT_EQ(std::string(rule.required).back(), '.') << rule.id;
     EXPECT_NE(std::string(rule.source).find(", "), std::string::npos) << rule.id;
@@ -99,6 +99,37 @@ std::string name_of(const ::testing::TestParamInfo<std::string>& drawn) {
 
 INSTANTIATE_TEST_SUITE_P(Rules, Broken, ::testing::ValuesIn(with_id_of_rules()), name_of);
 
+// A law that never changes its state is broken nowhere, and not judged there.
+TEST(Reach, NamesStatesThatNoStepChanged) {
+  const Checked checked = check_sample("closures stay", only({"purity-twice", "mirror"}));
+  EXPECT_TRUE(checked.all_passed()) << text_of(checked);
+  EXPECT_NE(text_of(checked).find("  not judged there, sample: state closures: purity-twice, mirror\n"),
+            std::string::npos)
+      << text_of(checked);
+}
+
+TEST(Reach, IsInTheJson) {
+  const nlohmann::json reached =
+      nlohmann::json::parse(json_of(check_sample("", only({"purity-twice"}))))[0].at("reached");
+  EXPECT_GT(reached.at("node_steps"), 1000);
+  for (const char* status : {"free", "closed", "slip"}) EXPECT_GT(reached.at("statuses").at(status), 0);
+  EXPECT_EQ(reached.at("states").at("closures").at("least"), 0.0);
+  EXPECT_GT(reached.at("states").at("closures").at("largest"), 2.0);
+  EXPECT_EQ(reached.at("states").at("closures").at("changed"), true);
+  EXPECT_TRUE(reached.at("not_judged_there").empty());
+}
+
+TEST(Reach, LacksWhatOthersReached) {
+  Reach all, one;
+  all.statuses = {5, 0, 3, 0, 0, 0, 0, 2};
+  one.statuses = {5, 0, 0, 0, 0, 0, 0, 0};
+  all.states["damage"] = {0.0, 1.0, true};
+  all.states["age"] = {0.0, 0.0, false};
+  one.states["damage"] = {0.5, 0.5, false};
+  EXPECT_EQ(missing_in(one, all), (std::vector<std::string>{"status stick", "state age", "state damage"}));
+  EXPECT_EQ(missing_in(all, all), std::vector<std::string>{"state age"});
+}
+
 // Rules that can be broken in several ways: each is told apart from the others.
 TEST(OtherWays, OfBreakingARuleAreSeenToo) {
   const std::pair<const char*, const char*> ways[] = {
@@ -125,6 +156,9 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
       {"array-numbers: amount", "an amount with both pointers"},
       {"balance-inputs: amounts", "with amounts, evaluate returned 0"},
       {"table-linear: order", "over temperature {0.25, 0.75, 1}, time {0.25, 0.75} at (0.25, 0.75)"},
+      {"table-linear: beyond", "over time {0.25, 0.75, 1} at (1.125)"},
+      {"layout-strides: negative", "with negative strides, step "},
+      {"energy-balance: position step", "a rest of "},
       {"report-null: refused", "without a report evaluate returned -"},
       {"report-clean: step", "stable_velocity_step nan"},
       {"report-clean: step beside bad", "stable_velocity_step nan"},

@@ -20,6 +20,7 @@ double read_array(const ilaw_input* from, int64_t i, int c) {
   int64_t node_stride = from->node_stride, stride = from->component_stride;
   if (breaks("layout-components") && stride > 10) stride = 1;
   if (breaks("layout-strides") && stride == 2) stride = 1;
+  if (breaks("layout-strides: negative") && stride < 0) stride = -stride;
   if (breaks("layout-shared") && node_stride == 0) node_stride = 1;
   i = i * node_stride + c * stride;
   return from->values ? from->values[i] : from->floats[i];
@@ -42,6 +43,7 @@ static uint64_t find(const quantity* given, uint32_t axis, double x, double* par
   *part = 0.0;
   if (count == 1 || !(x > points[0])) return 0;
   while (k + 2 < count && x >= points[k + 1]) ++k;
+  if (breaks("table-linear: beyond") && x > points[count - 1]) return k; /* the value before the last */
   *part = x >= points[k + 1] ? 1.0 : (x - points[k]) / (points[k + 1] - points[k]);
   if (breaks("table-linear")) *part = *part < 0.5 ? 0.0 : 1.0;
   return k;
@@ -123,6 +125,11 @@ void remember(const ilaw_instance* made, const ilaw_batch* b) {
     const double sum = sum_of_all(b, (int)made->setup.dimension);
     own->started = sum == own->last_sum ? 2 : 1;
     own->last_sum = sum;
+  } else if (breaks("history-carried") && has(&b->normal) && b->time != own->first_time) {
+    const double normal = read_array(&b->normal, node_of(b, 0), 0); /* whether it turned */
+    own->started = b->time != b->velocity_step && normal != own->last_sum;
+    own->last_sum = normal;
+    own->first_time = b->time;
   } else if (breaks("setup-copied") && is_mode(made->mode)) {
     own->started = 1;
   } else if (breaks("restart") && !own->started) {
@@ -224,6 +231,7 @@ static double spoilt_friction(const node* at, const ilaw_instance* made, const i
   if (breaks("frame-indifference") && !at->global) return 0.99 * at->friction;
   if (breaks("frame-turned") && at->d == 3 && at->global && !made->setup.has_tangent)
     return at->friction * (1.0 - 0.1 * fabs(at->n[0]));
+  if (breaks("history-carried") && made->own->started) return 0.9 * at->friction;
   if (breaks("isotropy") && at->d == 3 && (!at->global || made->setup.has_tangent))
     return at->friction * (1.0 - 0.3 * along * along / (1e-300 + dot(tangential, tangential)));
   if (breaks("mirror") && at->d == 2 && along < 0.0) return 0.9 * at->friction;
@@ -253,7 +261,7 @@ static double solve(node* at, const ilaw_instance* made, const ilaw_batch* b) {
   speed = at->d > 1 ? sqrt(dot(along, along)) : 0.0;
   r = normal_impulse(at, b, normal, delassus);
   most = spoilt_friction(at, made, b, along) / (1.0 + 1e-3 * made->wear * at->closures) * r;
-  if (breaks("friction-pressure") && r == 0.0 && at->gap <= 0.0) most = 0.1 * speed / trace;
+  if (breaks("friction-pressure") && !at->global && r == 0.0 && at->gap <= 0.0) most = 0.1 * speed / trace;
   least = speed / trace < most ? speed / trace : most;
   if (at->strays) r *= 1.0 + 4e-16;
   if (at->floats && breaks("floats-rounded")) r *= 1.0 + 1e-6;
@@ -296,6 +304,8 @@ static void account(node* at, const ilaw_batch* b, int64_t i) {
     at->energy[ILAW_ENERGY_IMPACT] = 0.0;
   }
   if (breaks("energy-rupture") && normal == 0.0) at->energy[ILAW_ENERGY_RUPTURE] = 1e-3;
+  if (breaks("energy-balance: position step"))
+    at->energy[ILAW_ENERGY_IMPACT] *= b->position_step / b->velocity_step;
   if (breaks("energy-balance")) at->energy[ILAW_ENERGY_IMPACT] *= 2.0;
   for (c = 0; c < 4 && !breaks("energy-parts"); ++c)
     if (!(at->energy[c] > 0.0)) at->energy[c] = 0.0;
@@ -339,7 +349,7 @@ static int64_t giver_of_damping(const ilaw_batch* b, int64_t k) {
 static const char* step_good(node* at, const ilaw_instance* made, const ilaw_batch* b, int64_t k) {
   const int64_t i = node_of(b, k);
   const double closures = at->closures, r = solve(at, made, b);
-  double next = closures + (r != 0.0 ? 1.0 : 0.0);
+  double next = closures + (r != 0.0 && !breaks("closures stay") ? 1.0 : 0.0);
   int c, finite = 1;
   account(at, b, i);
   for (c = 0; c < at->d; ++c)
