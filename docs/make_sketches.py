@@ -178,7 +178,7 @@ def law_times():
         row = rows[key]
         beyond, cached = float(row["beyond, ns"]), float(row["in cache, ns"])
         memory = beyond / float(row["ratio"])
-        axes.barh(k - 0.18, beyond, 0.34, color=BLUE, label="beyond the cache, $10^7$ nodes" if not k else None)
+        axes.barh(k - 0.18, beyond, 0.34, color=BLUE, label="beyond the cache" if not k else None)
         axes.barh(k + 0.18, cached, 0.34, color="#9ecae1", label="in cache, 2000 nodes" if not k else None)
         axes.plot([memory, memory], [k - 0.36, k + 0.02], color=ORANGE, linewidth=2.4,
                   label="time of its bytes at memory bandwidth" if not k else None)

@@ -158,6 +158,7 @@ void frame_indifference(const Subject& subject) {
 
 std::vector<std::vector<Results>> runs_shaken(const Trial& trial, const Script& script, Draw& draw) {
   std::vector<std::vector<Results>> runs;
+  runs.reserve(shakes);
   for (int n = 0; n < shakes; ++n) runs.push_back(run_shaken(trial, script, draw));
   return runs;
 }
@@ -165,6 +166,7 @@ std::vector<std::vector<Results>> runs_shaken(const Trial& trial, const Script& 
 // The script in axes of the host that differ from step to step, without tangents.
 Script in_axes(const Script& script, const std::vector<std::vector<Matrix>>& axes, const Setup& host) {
   Script turned_script;
+  turned_script.reserve(script.size());
   for (std::size_t k = 0; k < script.size(); ++k) {
     turned_script.push_back(turned(script[k], axes[k]));
     turned_script.back().tangent.clear();
