@@ -166,9 +166,11 @@ class Cuda : public Driver {
     cuda_.check(cuda_.allocate(&memory, size), "memory");
     return reinterpret_cast<void*>(memory);
   }
-  void free(void* memory) override {
-    const Current current(cuda_, context_);
+  void free(void* memory) noexcept override {
+    Handle before = nullptr;
+    if (cuda_.push(context_) != 0) return;
     cuda_.free(reinterpret_cast<Pointer>(memory));
+    cuda_.pop(&before);
   }
   void write(void* queue, void* to, const void* from, std::size_t size) override {
     const Current current(cuda_, context_);

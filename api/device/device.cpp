@@ -63,6 +63,14 @@ const ilaw_device_law& extension_of(const ilaw_law& law) {
   return *static_cast<const ilaw_device_law*>(found);
 }
 
+ilaw_instance_info info_of(const ilaw_law& law, const ilaw_instance& instance) {
+  ilaw_instance_info info{};
+  info.struct_size = sizeof info;
+  if (const ilaw_result code = law.info(&instance, &info); code != ILAW_OK)
+    throw Error(code, std::string("law '") + law.id + "' does not describe its instance");
+  return info;
+}
+
 const ilaw_device_image& image_of(const ilaw_device_law& law, ilaw_kind kind) {
   for (std::uint32_t k = 0; k < law.image_count; ++k)
     if (law.images[k]->kind == kind) return *law.images[k];
@@ -70,7 +78,7 @@ const ilaw_device_image& image_of(const ilaw_device_law& law, ilaw_kind kind) {
               kind == ILAW_IMAGE_PTX ? "the library has no PTX" : "the library has no SPIR-V");
 }
 
-// Of the kernels of totals.cpp.
+// The image with the kernels of totals.cpp.
 ilaw_device_image own_image(ilaw_kind kind) {
   ilaw_device_image image{sizeof(ilaw_device_image), kind, nullptr, nullptr};
 #if defined(ILAW_HAS_PTX)
@@ -99,6 +107,7 @@ class Launcher {
       : driver_(driver),
         law_(extension_of(law)),
         instance_(instance),
+        info_(info_of(law, instance)),
         most_nodes_(most_nodes),
         argument_(law_.argument_size),
         reasons_(driver, most_nodes),
@@ -123,7 +132,7 @@ class Launcher {
       throw Error(ILAW_INVALID_ARGUMENT, "the batch has more nodes than the launcher was made for");
     has_report_ = wants_report;
     if (batch_.node_count == 0) return ILAW_OK;
-    std::vector<void*> pointers = pointers_of(*batch);
+    std::vector<void*> pointers = pointers_of(batch_);
     if (wants_report) pointers.insert(pointers.end(), {reasons_.get(), limits_.get()});
     kernel_->launch(queue_or_own(queue), batch_.node_count, argument_.data(), argument_.size(), pointers);
     if (wants_report) {
@@ -221,12 +230,15 @@ class Launcher {
                                 &b.normal, &b.tangent, &b.state_in})
       add_array(*a);
     for (const ilaw_output* a : {&b.state_out, &b.impulse, &b.velocity, &b.energy}) add_array(*a);
+    for (std::uint32_t k = 0; k < info_.per_node_parameter_count; ++k) add_array(b.per_node_parameters[k]);
+    for (std::uint32_t k = 0; b.amounts && k < info_.amount_count; ++k) add_array(b.amounts[k]);
     return found;
   }
 
   Driver& driver_;
   const ilaw_device_law& law_;
   const ilaw_instance& instance_;
+  const ilaw_instance_info info_;
   const std::int64_t most_nodes_;
   std::vector<unsigned char> argument_;
   Array<std::uint8_t> reasons_;
@@ -249,7 +261,7 @@ namespace {
 void put_message(char* message, std::size_t size, const char* text) {
   if (message && size > 0) std::snprintf(message, size, "%s", text);
 }
-// What Work throws, as a code and through Say.
+// No exception leaves it: work gives the code, or an exception does, whose text say is told.
 template <class Work, class Say>
 ilaw_result guarded(Work work, Say say) {
   try {

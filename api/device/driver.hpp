@@ -58,7 +58,7 @@ class Driver {
   virtual void* own_queue() const = 0;
   virtual ilaw_kind image_kind() const = 0;  // that it takes from a library
   virtual void* allocate(std::size_t size) = 0;
-  virtual void free(void* memory) = 0;
+  virtual void free(void* memory) noexcept = 0;
   virtual void write(void* queue, void* to, const void* from, std::size_t size) = 0;
   virtual void read(void* queue, void* to, const void* from, std::size_t size) = 0;
   virtual std::unique_ptr<Kernel> load(const ilaw_device_image& image, const std::string& kernel) = 0;

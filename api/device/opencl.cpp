@@ -95,11 +95,11 @@ struct Place {
   }
 };
 
-// Of SPIR-V, by a program llvm-spirv.
+// SPIR made from SPIR-V by a program like llvm-spirv.
 std::string spir_of(const ilaw_device_image& image, const std::string& translator) {
   namespace fs = std::filesystem;
-  char folder[] = "/tmp/ilaw_device_XXXXXX";
-  if (!mkdtemp(folder)) throw Error(ILAW_UNSUPPORTED, "no temporary folder for " + translator);
+  std::string folder = fs::temp_directory_path() / "ilaw_device_XXXXXX";
+  if (!mkdtemp(folder.data())) throw Error(ILAW_UNSUPPORTED, "no temporary folder for " + translator);
   const fs::path from = fs::path(folder) / "image.spv", to = fs::path(folder) / "image.bc";
   std::ofstream(from, std::ios::binary).write(image.begin, image.end - image.begin);
   const char* const command[] = {translator.c_str(), "-r",   "--spirv-target-env=CL1.2", from.c_str(), "-o",
@@ -226,7 +226,7 @@ class Opencl : public Driver {
   void* own_queue() const override { return queue_; }
   ilaw_kind image_kind() const override { return ILAW_IMAGE_SPIRV; }
   void* allocate(std::size_t size) override { return cl_.allocate(place_.context, read_write, size, 0); }
-  void free(void* memory) override { cl_.free(place_.context, memory); }
+  void free(void* memory) noexcept override { cl_.free(place_.context, memory); }
   void write(void* queue, void* to, const void* from, std::size_t size) override {
     check(cl_.copy(queue, yes, to, from, size, 0, nullptr, nullptr), "write");
   }
