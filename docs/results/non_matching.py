@@ -5,8 +5,8 @@ docs/theory/non_matching_meshes.md.
 Usage: ILAW_PATH=build/release/lib/ilaw docs/results/non_matching.py build/release/bin/ilaw
 
 Bodies are blocks, or quarters of rings, one inside the other. By symmetry pressure and displacement are the same at all
-nodes of a face. Of both faces: least and largest pressure over the mean one; largest error of the displacement over the
-mean one. Cost: iterations a step from the fine side and from both, time of the second over that of the first, and steps
+nodes of a face. The table has for both faces least and largest pressure over the mean one, and the largest error of the
+displacement over the mean one. Cost: iterations a step from the fine side and from both, time of the second over that of the first, and steps
 that are not solved.
 """
 import argparse
@@ -143,7 +143,7 @@ def run(ilaw, case, coarse, fine, side, keeps_gaps, stiffness):
 
 
 def fields(case, rows, coarse, fine):
-    """Of each face: pressure and displacement at its nodes, over their mean."""
+    """Pressure and displacement at the nodes of each face, over their mean."""
     found = []
     for elements, first in ((coarse, (coarse + 1) ** 2 * layers(coarse)),
                             (fine, (coarse + 1) ** 2 * (layers(coarse) + 1))):

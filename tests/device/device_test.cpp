@@ -43,7 +43,7 @@ bool serves(const LawCase& given, const Use& use) {
   return !lacks_tangent && (law.dimensions & (1U << use.dimension)) && (law.delassus_forms & use.form);
 }
 
-// What the comparisons came to, for the page.
+// The comparisons and their outcome, for the page.
 struct Counts {
   std::int64_t batches = 0, nodes = 0, bad_nodes = 0, differences = 0;
 };

@@ -320,19 +320,28 @@ TEST(NonMatchingMeshes, BearAUniformPressureFromBothSides) {
   EXPECT_GT(both.least, 0.0);
 }
 
+// A block on another with a different mesh, in contact from both sides, under a pressure that grows until
+// 0.2.
+Scene pressed_blocks(const json& low, const json& high, double end) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  json scene = json::parse(R"({"model": {"type": "blocks", "blocks": [
+      {"name": "a", "size": [1, 1, 0.5], "material": {"type": "linear", "young": 1e6, "poisson": 0.3, "density": 1000}},
+      {"name": "b", "corner": [0, 0, 0.5], "size": [1, 1, 0.5],
+       "material": {"type": "linear", "young": 1e6, "poisson": 0.3, "density": 1000}}]},
+    "time": {"cfl": 0.9},
+    "loads": [{"type": "motion", "nodes": "a.z_min", "axes": [2]}, {"type": "damping", "rate": 60},
+      {"type": "pressure", "surface": "b.z_max", "history": {"rows": [[0, 0], [0.2, 1000]], "smooth": true}}],
+    "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "a.z_max", "both_sides": true}}]})");
+  scene["model"]["blocks"][0]["elements"] = low;
+  scene["model"]["blocks"][1]["elements"] = high;
+  scene["time"]["end"] = end;
+  return read_scene(scene, "pressed.json");
+}
+
 // Contacts of both sides are redundant, and their gaps differ by rounding: below that there is no better
 // solution, for which iterations would creep. A pressure with lateral strain comes to rest.
 TEST(NonMatchingMeshes, AreSolvedToTheRoundingOfTheirGaps) {
-  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  Scene read = read_scene(json::parse(R"({"model": {"type": "blocks", "blocks": [
-      {"name": "a", "size": [1, 1, 0.5], "elements": [3, 3, 2], "material": {"type": "linear", "young": 1e6, "poisson": 0.3, "density": 1000}},
-      {"name": "b", "corner": [0, 0, 0.5], "size": [1, 1, 0.5], "elements": [5, 5, 2],
-       "material": {"type": "linear", "young": 1e6, "poisson": 0.3, "density": 1000}}]},
-    "time": {"cfl": 0.9, "end": 0.8},
-    "loads": [{"type": "motion", "nodes": "a.z_min", "axes": [2]}, {"type": "damping", "rate": 60},
-      {"type": "pressure", "surface": "b.z_max", "history": {"rows": [[0, 0], [0.2, 1000]], "smooth": true}}],
-    "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "a.z_max", "both_sides": true}}]})"),
-                          "rest.json");
+  Scene read = pressed_blocks({3, 3, 2}, {5, 5, 2}, 0.8);
   Integrator integrator = integrator_of(read);
   integrator.start();
   while (integrator.steps() < read.steps) integrator.step();
@@ -350,16 +359,7 @@ TEST(NonMatchingMeshes, AreSolvedToTheRoundingOfTheirGaps) {
 // While a load grows, faces are not quite flat: redundant contacts contradict each other by rounding, and
 // iterations alone would creep until one of them opens.
 TEST(NonMatchingMeshes, AreSolvedWhileALoadGrows) {
-  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  Scene read = read_scene(json::parse(R"({"model": {"type": "blocks", "blocks": [
-      {"name": "a", "size": [1, 1, 0.5], "elements": [6, 6, 3], "material": {"type": "linear", "young": 1e6, "poisson": 0.3, "density": 1000}},
-      {"name": "b", "corner": [0, 0, 0.5], "size": [1, 1, 0.5], "elements": [10, 10, 5],
-       "material": {"type": "linear", "young": 1e6, "poisson": 0.3, "density": 1000}}]},
-    "time": {"cfl": 0.9, "end": 0.1},
-    "loads": [{"type": "motion", "nodes": "a.z_min", "axes": [2]}, {"type": "damping", "rate": 60},
-      {"type": "pressure", "surface": "b.z_max", "history": {"rows": [[0, 0], [0.2, 1000]], "smooth": true}}],
-    "interfaces": [{"law": "contact", "nodes": "b.z_min", "against": {"surface": "a.z_max", "both_sides": true}}]})"),
-                          "growing.json");
+  Scene read = pressed_blocks({6, 6, 3}, {10, 10, 5}, 0.1);
   Integrator integrator = integrator_of(read);
   integrator.start();
   while (integrator.steps() < read.steps) integrator.step();

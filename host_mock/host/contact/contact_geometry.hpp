@@ -27,7 +27,7 @@ inline ContactGeometry locate_contact(const InterfaceSetup& setup, int node_inde
   return found;
 }
 
-// Of a node, to its partners.
+// The velocity of a node relative to its partners.
 inline Vector relative_velocity(const ContactPoint& point, int node, Eigen::Index dimension, const Dofs& v) {
   Vector relative = v.segment(node * dimension, dimension);
   for (std::size_t p = 0; p < static_cast<std::size_t>(point.partner_count); ++p)

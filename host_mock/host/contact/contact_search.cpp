@@ -58,7 +58,7 @@ bool ContactSearch::may_skip() const {
   return !axes_turn_;
 }
 
-// Of chunks whose nodes are all far, only what may have come closer is looked at.
+// Where all nodes of a chunk are far, it is looked at only if they may have come closer.
 void ContactSearch::refresh(const StepView& step, const MakeContact& make) {
   setup_.counterpart->refresh(step.u);
   const auto count = static_cast<std::ptrdiff_t>(setup_.nodes.size());

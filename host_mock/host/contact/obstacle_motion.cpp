@@ -9,7 +9,7 @@ ObstacleMotion::ObstacleMotion(const InterfaceSetup& setup, int dimension)
       velocity_before_(velocity_),
       tangent_(setup.tangent) {}
 
-// One that stands still is asked once: a few virtual calls take as long as a law that has one node.
+// An obstacle that stands still is asked once: a few virtual calls take as long as a law that has one node.
 void ObstacleMotion::follow(const StepView& step) {
   if (is_known_) return;
   const Counterpart& counterpart = *setup_.counterpart;

@@ -27,7 +27,7 @@ struct node_state {
   std::int64_t component = 0;
   int dimension = 3;
 
-  // Of a number of struct state; null: a component beyond the dimension.
+  // The place of number k of struct state; null: a component beyond the dimension.
   ILAW_KIT_INLINE T* number(int k) const {
     const int entry =
         dimension == 3 ? k : state_entries<Law>[dimension == 2 ? 2 : 1][static_cast<std::size_t>(k)];
@@ -62,7 +62,7 @@ ILAW_KIT_INLINE void store_numbers(const device_number (&a)[N], const node_state
     if (double* const place = to.number(k)) *place = a[k].v;
 }
 
-// Of fewer dimensions than three: filled up as batch_walk does.
+// With fewer dimensions than three H is filled up as batch_walk does.
 template <class T>
 ILAW_KIT_INLINE void load_symmetric(full<device_number>& h, const node_array<T>& a, std::int64_t) {
   const auto number = [&](int c) ILAW_KIT_LAMBDA { return static_cast<double>(a.at[c * a.component]); };
