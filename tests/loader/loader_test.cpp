@@ -353,6 +353,13 @@ TEST(Search, GoesOnUntilTheVisitorHasSeenEnough) {
   };
   EXPECT_EQ(ilaw_search(visit, &seen), 7);
   EXPECT_EQ(seen, std::vector<std::string>{(folder / "here.so").string()});
+  const ilaw_visit_function failing = [](const char*, void* calls) -> std::int32_t {
+    ++*static_cast<int*>(calls);
+    return -7;
+  };
+  int calls = 0;
+  EXPECT_EQ(ilaw_search(failing, &calls), -7);
+  EXPECT_EQ(calls, 1);
   EXPECT_EQ(ilaw_search(nullptr, nullptr), ILAW_INVALID_ARGUMENT);
   EXPECT_EQ(ilaw::search()[1], (folder / "there.so").string());
   char text[8];
