@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what the project needs and this machine lacks (Debian 12). Does nothing, and needs no network, when all is
-# there. Usage: host_mock/setup.sh [tests|ci|results|site] [with-solvers]; without arguments for host_mock/demo.sh.
+# there. Usage: host_mock/setup.sh [tests|ci|results|site|dealii] [with-solvers]; without arguments for host_mock/demo.sh.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libtinyxml2-dev gnuplot-nox
@@ -10,6 +10,7 @@ for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsico
            python3-matplotlib python3-pycparser python3-yaml)
 # Foreign solvers in which the laws are tested, and MPI. They are large: 1 GB with their dependencies.
 solvers=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade libmujoco-dev)
+dealii=(libdeal.ii-dev libopenmpi-dev openmpi-bin)  # 1.4 GB, so neither ci nor with-solvers has it
 site=(doxygen python3-breathe python3-myst-parser furo libjs-katex)  # docs/site/build.sh
 [ "${2:-}" != with-solvers ] || for_tests+=("${solvers[@]}")
 case ${1:-} in
@@ -17,6 +18,7 @@ case ${1:-} in
   ci) packages+=("${for_tests[@]}" "${solvers[@]}" "${site[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache
                   llvm-14 llvm-spirv-14 pocl-opencl-icd ocl-icd-opencl-dev) ;;
   site) packages=("${site[@]}") ;;
+  dealii) packages+=("${for_tests[@]}" "${dealii[@]}") ;;
   results) packages+=("${for_tests[@]}" jq) ;;
 esac
 
