@@ -9,7 +9,7 @@ for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsico
            dpkg-dev pkgconf python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv
            python3-matplotlib python3-pycparser python3-yaml)
 # Foreign solvers in which the laws are tested, and MPI. They are large: 1 GB with their dependencies.
-solvers=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade libmujoco-dev)
+solvers=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade libmujoco-dev calculix-ccx)
 dealii=(libdeal.ii-dev libopenmpi-dev openmpi-bin)  # 1.4 GB, so neither ci nor with-solvers has it
 site=(doxygen python3-breathe python3-myst-parser furo libjs-katex)  # docs/site/build.sh
 [ "${2:-}" != with-solvers ] || for_tests+=("${solvers[@]}")
