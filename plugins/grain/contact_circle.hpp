@@ -100,7 +100,10 @@ struct circle_step {
     const V deep = b * (b * b * b - scale.s) - apart - travel + give * scale.pull;
     const V farthest = square_root(square_root(positive_part(deep))) + scale.touch;
     const V most = select(there > 0.0, most_that_opens(), positive_part(farthest - b));
-    return sign * root_between(V(0.0), most, most, there != 0.0, [&](V size_of) ILAW_KIT_LAMBDA {
+    // By the stiffness of Hertz's contact before the step, where there was one.
+    const V cube = b * b * b, first = absolute(there) / (4.0 * cube * (1.0 + give * (b * b)));
+    const V start = select((grown != 0.0) & (first < most), first, most);
+    return sign * root_between(V(0.0), most, start, there != 0.0, [&](V size_of) ILAW_KIT_LAMBDA {
              const V z = b + sign * size_of, square = z * z, steep = 4.0 * (z * square) + scale.s;
              const motion m = by(sign * size_of);
              const V rise = steep - 2.0 * scale.s + give * m.slope;
