@@ -107,7 +107,8 @@ struct circle_step {
              const V z = b + sign * size_of, square = z * z, steep = 4.0 * (z * square) + scale.s;
              const motion m = by(sign * size_of);
              const V rise = steep - 2.0 * scale.s + give * m.slope;
-             const V size = steep * (1.0 + give * (square * (2.0 + m.viscosity)));
+             const V fourth = square * square, part = fourth / (fourth + apart);  // of the way, in contact
+             const V size = steep * (1.0 + give * (square * (2.0 * part + m.viscosity)));
              const mask_of<V> is_exact = (size_of > 1e-4 * z) & (rise > 0.125 * size);
              return root_trial<V>{sign * residual(m), size, select(is_exact, rise, size), 1.0, is_exact};
            });
