@@ -70,6 +70,7 @@ device_frame device_frame_of(const instance<Law>& made) {
 template <class Law>
 const char* not_served(const instance<Law>& made) {
   if (made.window.duration > 0.0) return "memory is a window, which no device serves: expected 0";
+  if (made.has_spins()) return "H has spins, which no device serves: expected another form";
   if (made.node_tables) return "a table is over a value per node, which no device serves";
   return nullptr;
 }
