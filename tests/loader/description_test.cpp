@@ -3,7 +3,9 @@
 #include <description.hpp>
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -379,6 +381,19 @@ TEST(Readable, IsMemoryThatIsThereToItsLastByte) {
   EXPECT_FALSE(ilaw::loading::readable(text.data(), SIZE_MAX));
   EXPECT_FALSE(ilaw::loading::readable(nullptr, 1));
   EXPECT_FALSE(ilaw::loading::readable(no_address, 1));
+}
+
+TEST(Readable, EndsWithTheLastPage) {
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  void* const room = mmap(nullptr, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(room, MAP_FAILED);
+  char* const begin = static_cast<char*>(room);
+  ASSERT_EQ(mprotect(begin + page, page, PROT_NONE), 0);
+  for (const std::size_t size : {std::size_t{1}, page - 1, page}) {
+    EXPECT_TRUE(ilaw::loading::readable(begin + page - size, size)) << size;
+    EXPECT_FALSE(ilaw::loading::readable(begin + page - size, size + 1)) << size;
+  }
+  munmap(room, 2 * page);
 }
 
 // The kernel is asked through a pipe: a host that has no descriptors left still loads libraries.

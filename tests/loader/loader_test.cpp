@@ -199,6 +199,18 @@ TEST(Loader, RefusesALibraryThatRoundsOtherwise) {
   EXPECT_EQ(std::fegetround(), FE_TONEAREST);
 }
 
+TEST(Loader, RefusesToChooseAmongSeveralLaws) {
+  const ilaw_setup setup = setup_1d();
+  ilaw_interface* law = nullptr;
+  char message[200] = "";
+  const ilaw::library alone(variant("good")), several(variant("two_laws"));
+  ASSERT_EQ(ilaw_interface_create(alone.get(), nullptr, &setup, &law, nullptr, 0), ILAW_OK);
+  ilaw_interface_destroy(law);
+  EXPECT_EQ(ilaw_interface_create(several.get(), nullptr, &setup, &law, message, sizeof message),
+            ILAW_NOT_FOUND);
+  EXPECT_NE(std::string(message).find("expected one of: zero, one"), std::string::npos) << message;
+}
+
 // A host of another minor version than the loader: its structs are longer, or as short as 1.0 had them.
 TEST(Loader, FillsStructsOfLongerHosts) {
   struct Longer {
@@ -341,6 +353,13 @@ TEST(Search, GoesOnUntilTheVisitorHasSeenEnough) {
   };
   EXPECT_EQ(ilaw_search(visit, &seen), 7);
   EXPECT_EQ(seen, std::vector<std::string>{(folder / "here.so").string()});
+  const ilaw_visit_function failing = [](const char*, void* calls) -> std::int32_t {
+    ++*static_cast<int*>(calls);
+    return -7;
+  };
+  int calls = 0;
+  EXPECT_EQ(ilaw_search(failing, &calls), -7);
+  EXPECT_EQ(calls, 1);
   EXPECT_EQ(ilaw_search(nullptr, nullptr), ILAW_INVALID_ARGUMENT);
   EXPECT_EQ(ilaw::search()[1], (folder / "there.so").string());
   char text[8];
