@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # An ilaw as users get it, by `cmake --install`, from the archive and from the Debian packages: an outside project
 # builds hosts against it, and they run. Laws are built by first_law_test, against what cmake --install leaves: the
-# other two ways must bring the same files.
+# other two ways must bring the same files. Packages are also installed and removed by dpkg (clean_root.sh).
 # Usage: install.sh BUILD SOURCE C_COMPILER CXX_COMPILER install|archive|packages
 set -euo pipefail
 build=$1 source=$2 cc=$3 cxx=$4 way=$5
@@ -60,6 +60,10 @@ if [ -e "$build/lib/libilaw_lammps.so" ] && [ -x "$(command -v lmp)" ]; then
   sed 's/^run .*/run 2/' "$prefix/share/ilaw/lammps/examples/in.settle" >in.settle
   ILAW_PATH=$prefix/lib/ilaw lmp -in in.settle -var ilaw "$prefix/share/ilaw/lammps/ilaw.lmp" -log none >lammps.log ||
     { tail lammps.log; exit 1; }
+fi
+
+if [ "$way" = packages ]; then
+  "$source/tests/hosts/install/clean_root.sh" made "$source/tests/hosts" "$source" "$build"
 fi
 
 # The other two ways bring the same files, with which the same can be built.
