@@ -60,7 +60,7 @@ inside 'cd /mnt && project/out/blocks coulomb' >/dev/null
 
 echo "== purge"
 inside "dpkg --purge $names" >"$top/log" 2>&1 || { cat "$top/log"; exit 1; }
-# What dpkg, ldconfig and man-db note of every package; character devices stand for files that were removed.
+# dpkg, ldconfig and man-db keep notes, packages or not.
 notes='^/(var/lib/dpkg|var/log/(dpkg\.log|alternatives\.log)|etc/ld\.so\.cache|var/cache/(ldconfig|man)|mnt|dev|proc)(/|$)'
 left=$(cd "$top/changes" && find . -mindepth 1 | sed 's/^\.//' | grep -Ev "$notes" |
          while read -r name; do [ -d "$root$name" ] && [ -d "$name" ] || echo "$name"; done)

@@ -15,7 +15,7 @@ done
 
 mkdir -p "$other/docs"
 cp -r "$source"/{CMakeLists.txt,LICENSE,api,plugins,host_mock} "$other"
-cp -r "$source/docs/template_repository" "$other/docs"
+cp -r "$source"/docs/{man,template_repository} "$other/docs"
 options=(-DILAW_TESTS=OFF)
 [ "$1" = whole ] || options+=(-DILAW_HOST=OFF -DILAW_LAMMPS=OFF)
 while read -r option; do options+=("-D$option"); done < <(
