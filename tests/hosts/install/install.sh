@@ -39,6 +39,7 @@ for file in bin/ilaw bin/ilaw-describe lib/ilaw/contact.so lib/ilaw/contact.json
             share/bash-completion/completions/ilaw; do
   [ -e "$prefix/$file" ] || { echo "missing: $file"; exit 1; }
 done
+[ ! -e "$build/ilaw.spdx.json" ] || cmp "$build/ilaw.spdx.json" "$prefix/share/doc/ilaw/ilaw.spdx.json"
 [ ! -e "$prefix/lib/ilaw/template_law.so" ]
 if [ "$way" != install ]; then
   cmake --install "$build" --prefix "$work/installed" >/dev/null
