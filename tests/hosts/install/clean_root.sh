@@ -65,4 +65,6 @@ notes='^/(var/lib/dpkg|var/log/(dpkg\.log|alternatives\.log)|etc/ld\.so\.cache|v
 left=$(cd "$top/changes" && find . -mindepth 1 | sed 's/^\.//' | grep -Ev "$notes" |
          while read -r name; do [ -d "$root$name" ] && [ -d "$name" ] || echo "$name"; done)
 [ -z "$left" ] || { echo "left after the purge: $left"; exit 1; }
-for name in $names; do ! inside "dpkg-query --show $name" >/dev/null 2>&1; done
+for name in $names; do
+  if inside "dpkg-query --show $name" >/dev/null 2>&1; then echo "$name is still known to dpkg"; exit 1; fi
+done

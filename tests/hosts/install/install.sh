@@ -57,7 +57,7 @@ echo "== the program, from where it lies"
 if [ -e "$build/lib/libilaw_lammps.so" ] && [ -x "$(command -v lmp)" ]; then
   echo "== the fixes in LAMMPS"
   [ -e "$prefix/lib/libilaw_lammps.so" ]
-  ! grep -rqF "$build" "$prefix/share/ilaw/lammps"
+  if grep -rF "$build" "$prefix/share/ilaw/lammps"; then exit 1; fi
   sed 's/^run .*/run 2/' "$prefix/share/ilaw/lammps/examples/in.settle" >in.settle
   ILAW_PATH=$prefix/lib/ilaw lmp -in in.settle -var ilaw "$prefix/share/ilaw/lammps/ilaw.lmp" -log none >lammps.log ||
     { tail lammps.log; exit 1; }
