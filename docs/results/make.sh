@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures everything that docs/results shows: builds in Release, runs the cases, writes tables/*.csv and img/*.png, and
-# puts the tables into the pages. About ten minutes on two quiet cores, after the build. With names of parts (orders,
+# puts the tables into the pages. A quarter of an hour on two quiet cores, after the build. With names of parts (orders,
 # study, sides, impacts, long, share) it measures these alone.
 # Usage: docs/results/make.sh [BUILD_FOLDER] [PART...]
 set -euo pipefail

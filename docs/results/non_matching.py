@@ -6,8 +6,8 @@ Usage: ILAW_PATH=build/release/lib/ilaw docs/results/non_matching.py build/relea
 
 Bodies are blocks, or quarters of rings, one inside the other. By symmetry pressure and displacement are the same at all
 nodes of a face. The table has for both faces least and largest pressure over the mean one, and the largest error of the
-displacement over the mean one. Cost: iterations a step from the fine side and from both, time of the second over that of the first, and steps
-that are not solved.
+displacement over the mean one. Cost: iterations a step from the fine side and from both, time of the second over that of
+the first, and steps that are not solved.
 """
 import argparse
 import csv
@@ -193,8 +193,8 @@ def main():
             print(pressure_rows[-1], error_rows[-1], flush=True)
             if arguments.append:
                 with arguments.append.open("a") as table:
-                    print(case, f"{coarse} on {fine}", law, *(p.replace("1, to", "exact to") for p in pressures), " / ".join(errors),
-                          f"{sweeps['fine']:.0f} / {sweeps['both']:.0f}", sep=",", file=table)
+                    print(case, f"{coarse} on {fine}", law, *(p.replace("1, to", "exact to") for p in pressures),
+                          " / ".join(errors), f"{sweeps['fine']:.0f} / {sweeps['both']:.0f}", sep=",", file=table)
     print("\n| case | elements | nodes of the fine side | of the coarse side | both sides |")
     print("| --- | --- | --- | --- | --- |", *pressure_rows, sep="\n")
     print("\n| case | elements | fine side | coarse side | both sides | iterations | time | unsolved |")
