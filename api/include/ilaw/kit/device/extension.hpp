@@ -1,10 +1,10 @@
-// device_extension.hpp - the extension ilaw.device/1 of a law whose library carries kernels for devices.
+// extension.hpp - the extension ilaw.device/1 of a law whose library carries kernels for devices.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ilaw/ext/draft/device.h>
-#include <ilaw/kit/detail/device_arguments.hpp>
 #include <ilaw/kit/detail/evaluate.hpp>
+#include <ilaw/kit/device/arguments.hpp>
 
 // The images that ilaw_add_plugin links into the library.
 extern "C" {
