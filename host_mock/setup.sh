@@ -11,11 +11,12 @@ for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsico
 # Foreign solvers in which the laws are tested, and MPI. They are large: 1 GB with their dependencies.
 solvers=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade libmujoco-dev calculix-ccx)
 dealii=(libdeal.ii-dev libopenmpi-dev openmpi-bin)  # 1.4 GB, so neither ci nor with-solvers has it
+documents=(pandoc mandoc man-db python3-jsonschema python3-license-expression)  # manual pages, the paper, the list of parts
 site=(doxygen python3-breathe python3-myst-parser furo libjs-katex)  # docs/site/build.sh
 [ "${2:-}" != with-solvers ] || for_tests+=("${solvers[@]}")
 case ${1:-} in
   tests) packages+=("${for_tests[@]}") ;;
-  ci) packages+=("${for_tests[@]}" "${solvers[@]}" "${site[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache
+  ci) packages+=("${for_tests[@]}" "${solvers[@]}" "${site[@]}" "${documents[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache
                   llvm-14 llvm-spirv-14 pocl-opencl-icd ocl-icd-opencl-dev) ;;
   site) packages=("${site[@]}") ;;
   dealii) packages+=("${for_tests[@]}" "${dealii[@]}") ;;
