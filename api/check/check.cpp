@@ -6,8 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstring>
+#include <exception>
+#include <mutex>
+#include <thread>
 
 namespace ilaw::check {
 namespace {
@@ -57,11 +61,12 @@ Reach read_reach(const json& text) {
 }
 
 // In the child. Empty where the rule holds.
-json verdict_of(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed) {
+json verdict_of(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed,
+                const Options& options) {
   try {
     calling("the loader");
     const ilaw::library library(file);
-    rule.judge({library, *library.law(law), seed});
+    rule.judge({library, *library.law(law), seed, options.parameters});
     return json::object();
   } catch (const Finding& finding) {
     return written(finding);
@@ -72,8 +77,9 @@ json verdict_of(const std::string& file, const std::string& law, const Rule& rul
   }
 }
 
-std::string judged(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed) {
-  json text = verdict_of(file, law, rule, seed);
+std::string judged(const std::string& file, const std::string& law, const Rule& rule, std::uint64_t seed,
+                   const Options& options) {
+  json text = verdict_of(file, law, rule, seed, options);
   text["reach"] = written(reach_of_thread());
   return dumped(text);
 }
@@ -100,13 +106,51 @@ Outcome outcome_of(const std::string& law, const Rule& rule, const Ending& endin
   return outcome;
 }
 
-Outcome judge_apart(const std::string& file, const std::string& law, const Rule& rule,
-                    const Options& options) {
+Outcome judge_with(std::uint64_t seed, const std::string& file, const std::string& law, const Rule& rule,
+                   const Options& options) {
   const auto start = std::chrono::steady_clock::now();
-  const Ending ending = run_apart(options.limits, [&] { return judged(file, law, rule, options.seed); });
+  const Ending ending = run_apart(options.limits, [&] { return judged(file, law, rule, seed, options); });
   Outcome outcome = outcome_of(law, rule, ending);
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  outcome.seed = seed;
   return outcome;
+}
+
+// The first finding, or what all seeds reached. A rule that one seed could judge is judged.
+Outcome judge_apart(const std::string& file, const std::string& law, const Rule& rule,
+                    const Options& options) {
+  Outcome outcome = judge_with(options.seeds.at(0), file, law, rule, options);
+  for (std::size_t k = 1; k < options.seeds.size() && rule.follows_motion; ++k) {
+    if (outcome.verdict == Verdict::broken) break;
+    Outcome next = judge_with(options.seeds[k], file, law, rule, options);
+    next.seconds += outcome.seconds;
+    next.reach.add(outcome.reach);
+    if (next.verdict == Verdict::not_judged) next.verdict = outcome.verdict;
+    outcome = std::move(next);
+  }
+  return outcome;
+}
+
+// Calls work(0) to work(count - 1), as many at a time as there are processors. Each waits for a process of
+// its own.
+template <class Work>
+void in_parallel(std::size_t count, Work work) {
+  std::atomic<std::size_t> next{0};
+  std::mutex failing;
+  std::exception_ptr failure;
+  const auto take = [&] {
+    for (std::size_t k = next++; k < count; k = next++) try {
+        work(k);
+      } catch (...) {
+        const std::lock_guard lock(failing);
+        failure = std::current_exception();
+      }
+  };
+  std::vector<std::thread> threads;
+  for (unsigned k = 1; k < std::max(1U, std::thread::hardware_concurrency()); ++k) threads.emplace_back(take);
+  take();
+  for (std::thread& thread : threads) thread.join();
+  if (failure) std::rethrow_exception(failure);
 }
 
 bool wanted(const Rule& rule, const Options& options) {
@@ -140,15 +184,20 @@ class LawCheck {
   void judge_all() {
     holds(creates_id, creates_);
     if (creates_) holds(returns_id, returns_);
-    for (const Rule& rule : rules()) {
-      if (!wanted(rule, options_) || is_basic(rule)) continue;
-      const char* lacking = rule.needs >= Needs::instance && !creates_ ? creates_id
-                            : rule.needs == Needs::motion && !returns_ ? returns_id
-                                                                       : nullptr;
-      outcomes_.push_back(
-          lacking ? Outcome{law_, rule.id, Verdict::not_judged, {}, std::string("needs ") + lacking}
-                  : judge_apart(file_, law_, rule, options_));
-    }
+    std::vector<const Rule*> left;
+    for (const Rule& rule : rules())
+      if (wanted(rule, options_) && !is_basic(rule)) left.push_back(&rule);
+    const std::size_t first = outcomes_.size();
+    outcomes_.resize(first + left.size());
+    in_parallel(left.size(), [&](std::size_t k) { outcomes_[first + k] = judge(*left[k]); });
+  }
+
+  Outcome judge(const Rule& rule) const {
+    const char* lacking = rule.needs >= Needs::instance && !creates_ ? creates_id
+                          : rule.needs == Needs::motion && !returns_ ? returns_id
+                                                                     : nullptr;
+    if (lacking) return {law_, rule.id, Verdict::not_judged, {}, std::string("needs ") + lacking};
+    return judge_apart(file_, law_, rule, options_);
   }
 
   static bool is_basic(const Rule& rule) {
@@ -211,6 +260,28 @@ void check_usage(const Options& options) {
       throw UsageError("found rule '" + id + "', expected one that `ilaw check --rules` lists");
 }
 
+// In the child: why no setup of the law takes the parameters; empty where one does.
+std::string refusal_of(const std::string& file, const std::string& name, const Values& values) {
+  const ilaw::library library(file);
+  const ilaw_law& law = *library.law(name);
+  Refusal refusal{};
+  for (const Setup& setup : setups_of(law))
+    if (create(law, SetupStruct(setup, values).given, refusal)) return "";
+  return refusal.message.empty() ? "code " + std::to_string(refusal.code) : refusal.message;
+}
+
+void check_parameters(const Opened& opened, const Options& options) {
+  if (!options.parameters || opened.path.empty()) return;
+  const std::string law = options.law.empty() && opened.laws.size() == 1 ? opened.laws[0] : options.law;
+  if (law.empty())
+    throw UsageError("found parameters for a library of " + std::to_string(opened.laws.size()) +
+                     " laws, expected --law with them");
+  const Ending ending =
+      run_apart(options.limits, [&] { return refusal_of(opened.path, law, *options.parameters); });
+  if (ending.returned && !ending.result.empty())
+    throw UsageError("law '" + law + "' refuses the parameters: " + ending.result);
+}
+
 void check_law(const Opened& opened, const std::string& law) {
   if (law.empty() || opened.path.empty()) return;
   if (std::find(opened.laws.begin(), opened.laws.end(), law) != opened.laws.end()) return;
@@ -226,6 +297,7 @@ std::vector<Outcome> check(const std::string& name_or_path, const Options& optio
   std::vector<Outcome> outcomes;
   const Opened opened = open(name_or_path, options, outcomes);
   check_law(opened, options.law);
+  check_parameters(opened, options);
   for (const std::string& law : opened.laws)
     if (options.law.empty() || options.law == law) LawCheck(opened.path, law, options, outcomes).run();
   return outcomes;

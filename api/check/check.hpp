@@ -5,8 +5,10 @@
 #include "check/finding.hpp"
 #include "check/reach.hpp"
 #include "check/sandbox.hpp"
+#include "check/trial.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,8 +18,10 @@ namespace ilaw::check {
 struct Options {
   std::string law;                // empty: all of the library
   std::vector<std::string> only;  // ids of rules; empty: all
-  std::uint64_t seed = 1;
-  Limits limits;  // of a rule and a law
+  // Rules that follow random motions are judged with all seeds, others with the first.
+  std::vector<std::uint64_t> seeds{1, 2, 3};
+  std::optional<Values> parameters;  // of every instance of the law, instead of drawn ones
+  Limits limits;                     // of a rule, a law and a seed
 };
 
 enum class Verdict { passed, broken, not_judged };
@@ -25,8 +29,9 @@ enum class Verdict { passed, broken, not_judged };
 struct Outcome {
   std::string law, rule;  // law empty: of the library
   Verdict verdict;
-  Finding finding;  // where it is broken
-  std::string why;  // where it is not judged
+  Finding finding;         // where it is broken
+  std::string why;         // where it is not judged
+  std::uint64_t seed = 0;  // of the finding
   double seconds = 0.0;
   Reach reach{};
   // Statuses and state variables of the law that this rule did not reach, where it needs motion.

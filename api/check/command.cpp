@@ -3,10 +3,13 @@
 
 #include "check/report.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 
@@ -14,7 +17,7 @@ namespace ilaw::check {
 namespace {
 
 struct CommandLine {
-  std::string file, junit;
+  std::string file, junit, parameters;
   Options check;
   bool as_json = false, rules = false;
 };
@@ -35,13 +38,47 @@ void write_report(const Checked& checked, const std::string& file) {
   throw std::runtime_error(file + ": cannot be written");
 }
 
+Value value_of(const std::string& name, const nlohmann::json& given) {
+  Value value{name};
+  if (given.is_number()) {
+    value.number = given;
+  } else if (given == "inf") {
+    value.number = infinity;
+  } else if (given.is_string()) {
+    value.kind = ILAW_VALUE_TEXT;
+    value.text = given;
+  } else {
+    throw UsageError("parameter '" + name + "' is " + given.dump() +
+                     ", expected a number, \"inf\" or a text");
+  }
+  return value;
+}
+
+// A JSON object, or a file with one.
+Values read_parameters(const std::string& text_or_file) {
+  std::string text = text_or_file;
+  if (text.find('{') == std::string::npos) {
+    std::ifstream file(text);
+    if (!file) throw UsageError(text + ": cannot be read, expected a file or a JSON object of parameters");
+    text.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  const nlohmann::json given = nlohmann::json::parse(text, nullptr, false);
+  if (!given.is_object())
+    throw UsageError("--parameters: found no JSON object, expected one such as '{\"friction\": 0.3}'");
+  Values values;
+  for (const auto& [name, value] : given.items()) values.push_back(value_of(name, value));
+  return values;
+}
+
 int check_library(const CommandLine& line) {
   if (line.rules) {
     std::fputs(table_of_rules().c_str(), stdout);
     return 0;
   }
   if (line.file.empty()) throw UsageError("found no library, expected one to check, or --rules");
-  const Checked checked{line.file, line.check.seed, check(line.file, line.check)};
+  Options options = line.check;
+  if (!line.parameters.empty()) options.parameters = read_parameters(line.parameters);
+  const Checked checked{line.file, options.seeds, check(line.file, options), line.parameters};
   if (!line.junit.empty()) write_report(checked, line.junit);
   std::fputs((line.as_json ? json_of(checked) : text_of(checked)).c_str(), stdout);
   return checked.all_passed() ? 0 : 1;
@@ -65,8 +102,13 @@ std::function<int()> add_options(CLI::App& command) {
       ->take_all()
       ->allow_extra_args(false);
   command
-      .add_option("--seed", line->check.seed, "Seed of the random numbers: the same seed, the same findings")
+      .add_option("--seed", line->check.seeds,
+                  "Seed of the random numbers: the same seed, the same findings; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false)
       ->capture_default_str();
+  command.add_option("--parameters", line->parameters,
+                     "Parameters of all instances instead of drawn ones: a JSON object, or a file with one");
   command.add_option("--limit", line->check.limits.seconds, "Seconds for each rule and law")
       ->check(CLI::Validator(complaint_of_limit, "from 0.1 to 3600"))
       ->capture_default_str();

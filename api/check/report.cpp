@@ -23,7 +23,15 @@ const Rule& rule_of(const Outcome& outcome) {
 
 std::string repeat(const Checked& checked, const Outcome& outcome) {
   return "ilaw check " + checked.file + (outcome.law.empty() ? "" : " --law " + outcome.law) + " --only " +
-         outcome.rule + " --seed " + std::to_string(checked.seed);
+         outcome.rule + " --seed " + std::to_string(outcome.seed) +
+         (checked.parameters.empty() ? "" : " --parameters '" + checked.parameters + "'");
+}
+
+std::string text_of_seeds(const Checked& checked) {
+  std::string text = checked.seeds.size() > 1 ? "seeds" : "seed";
+  for (std::size_t k = 0; k < checked.seeds.size(); ++k)
+    text += (k ? ", " : " ") + std::to_string(checked.seeds[k]);
+  return text;
 }
 
 std::string text_of_values(const std::vector<double>& values) {
@@ -111,8 +119,8 @@ std::string text_of(const Checked& checked) {
   }
   text += checked.file + ": " + std::to_string(count(checked, Verdict::passed)) + " passed, " +
           std::to_string(count(checked, Verdict::broken)) + " broken, " +
-          std::to_string(count(checked, Verdict::not_judged)) + " not judged (seed " +
-          std::to_string(checked.seed) + ")\n";
+          std::to_string(count(checked, Verdict::not_judged)) + " not judged (" + text_of_seeds(checked) +
+          ")\n";
   return text + text_of_not_judged(checked) + text_of_missing(checked);
 }
 
@@ -138,7 +146,7 @@ std::string json_of(const Checked& checked) {
                   {"allowed", outcome.finding.allowed},
                   {"setting", outcome.finding.setting},
                   {"arrays", arrays},
-                  {"seed", checked.seed},
+                  {"seed", outcome.seed},
                   {"repeat", repeat(checked, outcome)}});
     }
     all.push_back(one);

@@ -11,8 +11,9 @@ namespace ilaw::check {
 // What is needed to repeat a finding.
 struct Checked {
   std::string file;
-  std::uint64_t seed;
+  std::vector<std::uint64_t> seeds;
   std::vector<Outcome> outcomes;
+  std::string parameters{};  // as they were given
 
   bool all_passed() const;
 };

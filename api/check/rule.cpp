@@ -22,7 +22,7 @@ bool look_at_trials(const Subject& subject, const Look& look) {
   for (std::size_t k = 0; k < count; ++k) {
     const Setup& setup = setups[k % setups.size()];
     Draw draw = draw_of(subject, k);
-    const std::optional<Values> values = draw_values(subject.law, setup, draw);
+    const std::optional<Values> values = values_of(subject, setup, draw);
     if (!values) continue;
     const Trial trial(subject.law, setup, *values);
     set_setting(trial.text());
@@ -36,12 +36,16 @@ bool look_at_trials(const Subject& subject, const Look& look) {
 const std::vector<Rule>& rules() {
   static const std::vector<Rule> all = [] {
     std::vector<Rule> made;
+    const auto add = [&made](const std::vector<Rule>& part, bool follows_motion) {
+      for (Rule rule : part) {
+        rule.follows_motion = follows_motion;
+        made.push_back(rule);
+      }
+    };
     for (const auto part : {description_rules, parameter_rules, setup_rules, call_rules, purity_rules,
-                            independence_rules, memory_rules, quiet_rules, float_rules, bad_input_rules,
-                            state_rules, result_rules, energy_rules, symmetry_rules}) {
-      const std::vector<Rule> more = part();
-      made.insert(made.end(), more.begin(), more.end());
-    }
+                            independence_rules, memory_rules, quiet_rules, float_rules, bad_input_rules})
+      add(part(), false);
+    for (const auto part : {state_rules, result_rules, energy_rules, symmetry_rules}) add(part(), true);
     return made;
   }();
   return all;
@@ -63,11 +67,21 @@ void for_trials_per_node_too(const Subject& subject, const Look& look, const cha
   if (!look_at_trials(subject, look_twice)) throw NotJudged{otherwise};
 }
 
+std::optional<Values> values_of(const Subject& subject, const Setup& setup, Draw& draw) {
+  if (!subject.given) return draw_values(subject.law, setup, draw);
+  Values values = *subject.given;
+  for (Value& value : values) {  // so that it may be given per node, too
+    const ilaw_parameter* p = parameter_of(subject.law, value.name);
+    if (p && in_range(*p, setup.rounded(value.number))) value.number = setup.rounded(value.number);
+  }
+  return create(subject.law, setup, values) ? std::optional(values) : std::nullopt;
+}
+
 Trial any_trial(const Subject& subject) {
   const std::vector<Setup> setups = setups_of(subject.law);
   for (std::size_t k = 0; k < setups.size(); ++k) {
     Draw draw = draw_of(subject, k);
-    if (const std::optional<Values> values = draw_values(subject.law, setups[k], draw))
+    if (const std::optional<Values> values = values_of(subject, setups[k], draw))
       return Trial(subject.law, setups[k], *values);
   }
   throw NotJudged{"the law accepted no parameters"};

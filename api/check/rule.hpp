@@ -9,15 +9,17 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace ilaw::check {
 
-// What is judged, by which random numbers.
+// What is judged, by which random numbers. given: parameters that replace the drawn ones.
 struct Subject {
   const ilaw::library& library;
   const ilaw_law& law;
   std::uint64_t seed;
+  const std::optional<Values>& given;
 };
 
 // What must hold before a rule can be judged.
@@ -30,6 +32,7 @@ struct Rule {
   const char* source;
   Needs needs;
   void (*judge)(const Subject& subject);
+  bool follows_motion = false;  // judges results of random motions, which differ from seed to seed
 };
 
 // The three that others need: Needs::library, instance and motion.
@@ -63,6 +66,9 @@ void for_trials(const Subject& subject, const std::function<bool(const Trial& tr
 void for_trials_per_node_too(const Subject& subject,
                              const std::function<bool(const Trial& trial, Draw& draw)>& look,
                              const char* otherwise = "the law accepted no parameters");
+
+// The given parameters where the law accepts them in this setup, or drawn ones.
+std::optional<Values> values_of(const Subject& subject, const Setup& setup, Draw& draw);
 
 // Some parameters that the law accepts, in the first setup that it serves.
 Trial any_trial(const Subject& subject);

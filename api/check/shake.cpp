@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/shake.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 namespace ilaw::check {
 namespace {
@@ -11,8 +14,9 @@ constexpr double size_of_zero = 1e-6;
 }  // namespace
 
 Inputs Shake::operator()(Inputs in) {
-  for (double& v : in.v_free) v = changed(v);
   for (std::size_t i = 0; i < in.count; ++i) {
+    const double speed = length(in.vector(in.v_free, i));
+    for (std::size_t c = 0; c < in.dimension; ++c) in.v_free[i * in.dimension + c] += rounding_of(speed);
     const double factor = 1.0 + size() * draw_.within(-1.0, 1.0);
     for (std::size_t c = 0; c < in.form_width; ++c) in.delassus[i * in.form_width + c] *= factor;
   }
@@ -22,16 +26,31 @@ Inputs Shake::operator()(Inputs in) {
 
 std::vector<double> Shake::operator()(std::vector<double> state) {
   for (std::size_t first = 0; first < state.size(); first += trial_.info.state_size)
-    for (std::size_t k = 0, at = first; k < trial_.info.state_variable_count; ++k) {
-      const ilaw_state_variable& variable = *trial_.info.state_variables[k];
-      for (const std::size_t end = at + variable.count; at < end; ++at) {
-        if (variable.kind == ILAW_STATE_SCALAR)
-          state[at] = within_range(state[at]);
-        else if (variable.kind != ILAW_STATE_AXIS)
-          state[at] = changed(state[at]);
-      }
-    }
+    change_node(&state[first]);
   return state;
+}
+
+// Components are rounded as those of a vector, which may be the one of several variables: other axes mix
+// them.
+void Shake::change_node(double* state) {
+  std::map<std::string, double> sizes;
+  const auto for_variables = [&](const auto& visit) {
+    double* at = state;
+    for (std::uint32_t k = 0; k < trial_.info.state_variable_count; ++k) {
+      const ilaw_state_variable& variable = *trial_.info.state_variables[k];
+      for (const double* const end = at + variable.count; at != end; ++at) visit(variable, *at);
+    }
+  };
+  for_variables([&](const ilaw_state_variable& variable, double value) {
+    double& size = sizes[variable.unit];
+    size = std::max(size, std::abs(value));
+  });
+  for_variables([&](const ilaw_state_variable& variable, double& value) {
+    if (variable.kind == ILAW_STATE_SCALAR)
+      value = within_range(value);
+    else if (variable.kind != ILAW_STATE_AXIS)
+      value += rounding_of(sizes[variable.unit]);
+  });
 }
 
 // Scalars often have a range that begins at 0 and ends at a value that is reached.
@@ -39,8 +58,8 @@ double Shake::within_range(double value) {
   return value == 0.0 ? size() * size_of_zero : value * (1.0 - size() * draw_.within(0.0, 1.0));
 }
 
-double Shake::changed(double value) {
-  return value + size() * draw_.within(-1.0, 1.0) * (std::abs(value) + size_of_zero);
+double Shake::rounding_of(double size_of_vector) {
+  return size() * draw_.within(-1.0, 1.0) * (size_of_vector + size_of_zero);
 }
 
 std::vector<Results> run_shaken(const Trial& trial, const Script& script, Draw& draw) {
@@ -50,7 +69,7 @@ std::vector<Results> run_shaken(const Trial& trial, const Script& script, Draw& 
   Shake shake(trial, draw);
   std::vector<Results> results;
   for (const Inputs& in : script) {
-    arrays.set_state(shake(arrays.state()));
+    if (!results.empty()) arrays.set_state(shake(arrays.state()));
     results.push_back(arrays.evaluate(shake(in)));
   }
   return results;

@@ -19,14 +19,16 @@ class Shake {
 
  private:
   double size() const { return 16.0 * trial_.epsilon(); }
-  double changed(double value);
+  double rounding_of(double size_of_vector);
   double within_range(double value);
+  void change_node(double* state);
 
   const Trial& trial_;
   Draw& draw_;
 };
 
-// Every step from the state that the one before left, shaken.
+// Every step from the state that the one before left, shaken. The first state is left alone: many laws tell a
+// fresh node by its exact zeros.
 std::vector<Results> run_shaken(const Trial& trial, const Script& script, Draw& draw);
 
 }  // namespace ilaw::check

@@ -31,6 +31,12 @@ bool are_alike(const Trial& trial, const Inputs& in, std::size_t i, const Vector
        text_of(r, in.dimension));
 }
 
+// Whether another form or frame refuses an H that is isotropic or transverse but for the rounding of its
+// floats.
+bool is_rounded_away(const Trial& other, const Results& image, std::size_t i) {
+  return other.setup.floats() && !image.status.empty() && image.status[i] == ILAW_BAD_INPUT;
+}
+
 // A node that refuses what it was given says nothing of an edge.
 void leave_out_edges(const Trial& trial, const Inputs& in, const Results& plain, const Results& shaken,
                      std::vector<bool>& is_judged) {
@@ -79,13 +85,13 @@ void expect_steps_alike(const Trial& trial, const Script& script, const Trial& o
     const Results plain = arrays.evaluate(in), image = others.evaluate(other_script[k]);
     std::vector<bool> is_judged(in.count, true);
     for (int n = 0; n < shakes; ++n) {
-      shaken.set_state(shake(before));
+      shaken.set_state(k > 0 ? shake(before) : before);  // a fresh node is told by its zeros
       leave_out_edges(trial, in, plain, shaken.evaluate(shake(in)), is_judged);
     }
     for (std::size_t i = 0; i < in.count; ++i) {
       const Vector r = plain.vector(plain.impulse, i, in.dimension),
                    found = back(i, image.vector(image.impulse, i, in.dimension));
-      if (is_judged[i] && !are_alike(other, in, i, r, found))
+      if (is_judged[i] && !is_rounded_away(other, image, i) && !are_alike(other, in, i, r, found))
         fail_image(other, in, i, how + ", step " + std::to_string(k), r, found);
     }
   }
@@ -200,6 +206,8 @@ void expect_carried(const Trial& trial, const Trial& in_host, Draw& draw) {
       };
       const Vector r = plain[k].vector(plain[k].impulse, i, d), image = local(found, axes[k][i]);
       is_judged[i] = is_judged[i] && are_alike(in_host, script[k], i, r, local(unturned, axes[0][i]));
+      // A refused node keeps its state bit for bit: that step has not carried it.
+      if (!found[k].status.empty() && found[k].status[i] == ILAW_BAD_INPUT) is_judged[i] = false;
       if (is_judged[i] && !are_alike(in_host, script[k], i, r, image))
         fail_image(in_host, script[k], i, "after " + std::to_string(k) + " turns of the normal", r, image);
     }
@@ -322,6 +330,7 @@ std::optional<Values> in_units(const Trial& trial, const Units& units) {
     if (p.kind == ILAW_PARAMETER_CHOICE) continue;
     const std::optional<Dimensions> unit = parse_unit(p.unit, symbols);
     if (!unit) return std::nullopt;
+    if (has(p, ILAW_PARAMETER_NEEDS_SPINS)) continue;  // no trial has spins
     const double scaled = unit->in(units, numbers) * number_of(trial.law, values, p.name);
     if (!std::isfinite(scaled) && !std::isinf(number_of(trial.law, values, p.name))) return std::nullopt;
     values = with(values, {p.name, ILAW_VALUE_NUMBER, scaled});

@@ -174,7 +174,11 @@ struct postit {
     const vector<V> s = scale * sum;
     const V pull = positive_part(-s.n), length = square_root(s.t1 * s.t1 + s.t2 * s.t2);
     const V by_lambda = smaller(1.0 / tangent_influence, V(std::numeric_limits<double>::max()));
-    const V shear = positive_part(length - friction_limit(friction, s.n)) * by_lambda;
+    V excess = length - friction_limit(friction, s.n);
+    if (any(excess != excess))  // both overflowed, beside an adhesion that is as good as none
+      excess = select(excess == excess, excess,
+                      scale * (sum.tangential_length() - friction_limit(friction, sum.n)));
+    const V shear = positive_part(excess) * by_lambda;
     const V of_both = factor * (limit * limit) - (pull * pull + shear * shear);
     return select(tangent_influence == infinity, of_pull, of_both) >= 0.0;
   }

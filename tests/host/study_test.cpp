@@ -301,6 +301,21 @@ TEST(Study, OfSeveralScenesHasAFolderForEach) {
     EXPECT_TRUE(std::filesystem::exists(folder / name / "study.csv")) << name;
 }
 
+TEST(Study, EndsWithTheSceneThatFails) {
+  const auto folder = fresh_folder();
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "second.json") << R"({"title": "no scene"})";
+  std::ofstream(folder / "third.json") << ball().dump();
+  const Outcome outcome = run_program(
+      "study " + scene_files::named("postit_test2.json").string() + " " + (folder / "second.json").string() +
+      " " + (folder / "third.json").string() +
+      " --law '{\"name\": \"own\"}' --levels 2 --repetitions 1 --out " + (folder / "out").string());
+  EXPECT_EQ(outcome.code, 2) << outcome.output;
+  EXPECT_NE(outcome.output.find("second.json: "), std::string::npos) << outcome.output;
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/postit_test2/study.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/third"));
+}
+
 TEST(Study, RefusesWhatItCannotCompare) {
   const auto refusal = [](const json& scene, const std::string& options, const std::string& said) {
     const Result study = study_of(scene, options);

@@ -3,7 +3,9 @@
 #include <description.hpp>
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -138,7 +140,16 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NoDimension", [](Description& d) { d.law.dimensions = 0; },
               "law 'bond': dimensions is 0, expected at least one of the bits of 14"},
         Fault{"NoForm", [](Description& d) { d.law.delassus_forms = 0; },
-              "law 'bond': delassus_forms is 0, expected at least one of the bits of 15"},
+              "law 'bond': delassus_forms is 0, expected at least one of the bits of 31"},
+        Fault{"SpinsInThePlane",
+              [](Description& d) {
+                d.law.delassus_forms = ILAW_DELASSUS_TRANSVERSE_SPIN;
+                d.law.dimensions = ILAW_DIMENSION_2;
+              },
+              "law 'bond': delassus_forms has spins, expected dimension 3 among dimensions"},
+        Fault{
+            "ParameterWithoutSpins", [](Description& d) { d.number.flags |= ILAW_PARAMETER_NEEDS_SPINS; },
+            "law 'bond': parameter 'strength' needs spins, expected a form with spins among delassus_forms"},
         Fault{"NoFrame", [](Description& d) { d.law.frames = 0; },
               "law 'bond': frames is 0, expected at least one of the bits of 3"},
         Fault{"UnknownFrame", [](Description& d) { d.law.frames = 4; },
@@ -219,8 +230,8 @@ INSTANTIATE_TEST_SUITE_P(
               "law 'bond': parameter 'strength' is declared twice"},
         Fault{"UnknownKind", [](Description& d) { d.number.kind = 9; },
               "law 'bond': parameter 'strength': kind is 9, expected at most 2"},
-        Fault{"UnknownFlags", [](Description& d) { d.number.flags = 32; },
-              "law 'bond': parameter 'strength': flags is 32, expected only the bits of 31"},
+        Fault{"UnknownFlags", [](Description& d) { d.number.flags = 64; },
+              "law 'bond': parameter 'strength': flags is 64, expected only the bits of 63"},
         Fault{"RangeUpsideDown", [](Description& d) { d.number.minimum = 2.0; },
               "law 'bond': parameter 'strength': minimum 2.000000 is not below maximum 1.000000"},
         Fault{"RangeOfNoNumbers", [](Description& d) { d.number.maximum = NAN; },
@@ -370,6 +381,19 @@ TEST(Readable, IsMemoryThatIsThereToItsLastByte) {
   EXPECT_FALSE(ilaw::loading::readable(text.data(), SIZE_MAX));
   EXPECT_FALSE(ilaw::loading::readable(nullptr, 1));
   EXPECT_FALSE(ilaw::loading::readable(no_address, 1));
+}
+
+TEST(Readable, EndsWithTheLastPage) {
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  void* const room = mmap(nullptr, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(room, MAP_FAILED);
+  char* const begin = static_cast<char*>(room);
+  ASSERT_EQ(mprotect(begin + page, page, PROT_NONE), 0);
+  for (const std::size_t size : {std::size_t{1}, page - 1, page}) {
+    EXPECT_TRUE(ilaw::loading::readable(begin + page - size, size)) << size;
+    EXPECT_FALSE(ilaw::loading::readable(begin + page - size, size + 1)) << size;
+  }
+  munmap(room, 2 * page);
 }
 
 // The kernel is asked through a pipe: a host that has no descriptors left still loads libraries.

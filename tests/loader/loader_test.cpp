@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"bad_default",
                 "law 'zero': parameter 'strength': default 2.000000 lies outside its own range"},
         Refused{"long_count", "law 'zero': parameters has 4000000000 entries, expected at most 10000"},
-        Refused{"unknown_bits", "law 'zero': delassus_forms is 65, expected only the bits of 15"},
+        Refused{"unknown_bits", "law 'zero': delassus_forms is 65, expected only the bits of 31"},
         Refused{"unknown_frame", "law 'zero': frames is 7, expected only the bits of 3"},
         Refused{"control_text", "law 'zero': title has bytes that are no UTF-8 or control characters"},
         Refused{"no_utf8", "law 'zero': title has bytes that are no UTF-8 or control characters"},
@@ -197,6 +197,18 @@ TEST(Loader, RefusesALibraryThatRoundsOtherwise) {
   EXPECT_EQ(code, ILAW_BAD_LIBRARY);
   EXPECT_THAT(text, ::testing::HasSubstr("loading it changed how the processor rounds"));
   EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+}
+
+TEST(Loader, RefusesToChooseAmongSeveralLaws) {
+  const ilaw_setup setup = setup_1d();
+  ilaw_interface* law = nullptr;
+  char message[200] = "";
+  const ilaw::library alone(variant("good")), several(variant("two_laws"));
+  ASSERT_EQ(ilaw_interface_create(alone.get(), nullptr, &setup, &law, nullptr, 0), ILAW_OK);
+  ilaw_interface_destroy(law);
+  EXPECT_EQ(ilaw_interface_create(several.get(), nullptr, &setup, &law, message, sizeof message),
+            ILAW_NOT_FOUND);
+  EXPECT_NE(std::string(message).find("expected one of: zero, one"), std::string::npos) << message;
 }
 
 // A host of another minor version than the loader: its structs are longer, or as short as 1.0 had them.
@@ -341,6 +353,13 @@ TEST(Search, GoesOnUntilTheVisitorHasSeenEnough) {
   };
   EXPECT_EQ(ilaw_search(visit, &seen), 7);
   EXPECT_EQ(seen, std::vector<std::string>{(folder / "here.so").string()});
+  const ilaw_visit_function failing = [](const char*, void* calls) -> std::int32_t {
+    ++*static_cast<int*>(calls);
+    return -7;
+  };
+  int calls = 0;
+  EXPECT_EQ(ilaw_search(failing, &calls), -7);
+  EXPECT_EQ(calls, 1);
   EXPECT_EQ(ilaw_search(nullptr, nullptr), ILAW_INVALID_ARGUMENT);
   EXPECT_EQ(ilaw::search()[1], (folder / "there.so").string());
   char text[8];

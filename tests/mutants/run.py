@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Do the tests notice? Faults of one line, all compiled into one copy of the tree, switched on one at a time.
+"""Do the tests notice? Faults of one line, the chosen ones compiled into one copy of the tree, switched on one by one.
 
     tests/mutants/run.py                   all mutants of mutants.json
     tests/mutants/run.py --only window     those whose name holds this word
@@ -83,6 +83,9 @@ def switched(mutant):
     number, before, after = mutant["number"], mutant["from"], mutant["to"]
     if not before.endswith(";") and re.match(r"\s*(if\b|return\b|&&|\|\|)|.*[^=<>!]=[^=]", before):
         raise ValueError(f"{mutant['name']}: neither an expression nor a statement: {before}")
+    for text in (before, after):
+        if text.count("(") != text.count(")"):
+            raise ValueError(f"{mutant['name']}: parentheses do not balance: {text}")
     if before.endswith(";"):
         return f"{{ if (ilaw_mutant == {number}) {{ {after} }} else {{ {before} }} }}"
     return f"(ilaw_mutant == {number} ? ({after}) : ({before}))"
@@ -169,7 +172,8 @@ def main():
         mutant["number"] = number
         by_file[mutant["file"]].append(mutant)
     try:
-        sources = {file: with_mutants(file, mutants) for file, mutants in by_file.items()}
+        for file, mutants in by_file.items():
+            with_mutants(file, mutants)
     except ValueError as misfit:
         print(misfit)
         return 1
@@ -179,7 +183,8 @@ def main():
 
     chosen = [mutant for mutant in everything[-options.last:]
               if options.only in mutant["name"] and mutant["area"] in (options.area or AREAS)]
-    copy_tree(sources)
+    copy_tree({file: with_mutants(file, [one for one in mutants if one in chosen]) for file, mutants in by_file.items()
+               if any(one in chosen for one in mutants)})
     tests = {test for mutant in chosen for test in tests_of(mutant)}
     build({test.partition(":")[0] for test in tests}, options.jobs)
     score, survivors = collections.defaultdict(list), []

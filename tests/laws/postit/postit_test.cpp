@@ -224,6 +224,23 @@ TEST(Postit, AnAdhesionThatOverflowsIsRefused) {
   EXPECT_EQ(node.named("adhesion"), 1.6e308);
 }
 
+// An adhesion in subnormal numbers is as good as none: scaled to it, pressure and shear overflow.
+TEST(Postit, ShearBreaksAnAdhesionThatUnderflows) {
+  for (const double friction : {0.0, 0.2, 0.3})
+    for (const double tangential : {1e-3, 1.0, 1e3}) {
+      Glued node({{{"memory", inf_value},
+                   {"initial_adhesion", 5e-316},
+                   {"adhesion_limit", 5e-316},
+                   {"tangent_influence", tangential},
+                   {"friction", friction}},
+                  {}},
+                 1e-3);
+      EXPECT_EQ(node.push({-4.0, 0.0, 0.0}), ILAW_BONDED);
+      // |S_T| - mu S_N = 1 - 4 mu
+      EXPECT_EQ(node.push({0.0, 1.0, 0.0}), friction < 0.25 ? ILAW_BROKEN : ILAW_BONDED) << friction;
+    }
+}
+
 // Pull and shear together: the ellipse (a/R)^2 + (b/(lambda R))^2 = 1.
 TEST(Postit, MixedModeFollowsTheEllipse) {
   for (double angle = 0.0; angle < 1.58; angle += 0.1)

@@ -262,30 +262,38 @@ typedef struct newer_law {
 #define FRAMES ILAW_FRAME_LOCAL
 #endif
 
-static const newer_law zero = {{.struct_size = LAW_SIZE,
-                                .dimensions = DIMENSIONS,
-                                .delassus_forms = FORMS,
-                                .frames = FRAMES,
-                                .numbers = ILAW_NUMBERS_DOUBLE,
-                                .inputs = ILAW_INPUT_GAP,
-                                .outputs = OUTPUTS,
-                                .permissions = ILAW_MAY_SKIP_FRESH,
-                                .id = ID,
-                                .title = TITLE,
-                                .doc = "Gives no impulse.",
-                                .parameters = parameters,
-                                .parameter_count = PARAMETER_COUNT,
-                                .amounts = amounts,
-                                .amount_count = 1,
-                                .create = create,
-                                .destroy = destroy,
-                                .info = info,
-                                .initialise = nothing,
-                                .evaluate = EVALUATE,
-                                .extension = extension},
-                               1.0};
-
+#define LAW(name)                        \
+  {                                      \
+    {.struct_size = LAW_SIZE,            \
+     .dimensions = DIMENSIONS,           \
+     .delassus_forms = FORMS,            \
+     .frames = FRAMES,                   \
+     .numbers = ILAW_NUMBERS_DOUBLE,     \
+     .inputs = ILAW_INPUT_GAP,           \
+     .outputs = OUTPUTS,                 \
+     .permissions = ILAW_MAY_SKIP_FRESH, \
+     .id = name,                         \
+     .title = TITLE,                     \
+     .doc = "Gives no impulse.",         \
+     .parameters = parameters,           \
+     .parameter_count = PARAMETER_COUNT, \
+     .amounts = amounts,                 \
+     .amount_count = 1,                  \
+     .create = create,                   \
+     .destroy = destroy,                 \
+     .info = info,                       \
+     .initialise = nothing,              \
+     .evaluate = EVALUATE,               \
+     .extension = extension},            \
+        1.0                              \
+  }
+static const newer_law zero = LAW(ID);
+#ifdef VARIANT_TWO_LAWS
+static const newer_law one = LAW("one");
+static const ilaw_law* const laws[] = {&zero.law, &one.law};
+#else
 static const ilaw_law* const laws[] = {&zero.law, &zero.law};
+#endif
 
 static const ilaw_plugin plugin = {
 #ifdef VARIANT_SMALL_PLUGIN
@@ -299,7 +307,7 @@ static const ilaw_plugin plugin = {
     ILAW_ABI_MAJOR,
 #endif
     MINOR, "variant", "0.1", "tests", "BSD-3-Clause", laws,
-#ifdef VARIANT_DUPLICATE_LAW
+#if defined(VARIANT_DUPLICATE_LAW) || defined(VARIANT_TWO_LAWS)
     2,
 #elif defined(VARIANT_NO_LAWS)
     0,

@@ -1,0 +1,40 @@
+# A law of the tree with one mistake, as libraries that tests check: name law file from to. The file is the law's
+# source or a header of the kit, "from" stands in it exactly once.
+function(ilaw_add_wrong_law name law file from to)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${file})
+  file(READ ${PROJECT_SOURCE_DIR}/${file} text)
+  string(FIND "${text}" "${from}" first)
+  string(FIND "${text}" "${from}" last REVERSE)
+  if(first EQUAL -1 OR NOT first EQUAL last)
+    message(FATAL_ERROR "${file} has not exactly once: ${from}")
+  endif()
+  string(REPLACE "${from}" "${to}" text "${text}")
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/${name})
+  set(source ${PROJECT_SOURCE_DIR}/plugins/${law}/${law}.cpp)
+  if(file MATCHES "^api/include/(.*)")
+    file(CONFIGURE OUTPUT ${folder}/${CMAKE_MATCH_1} CONTENT "${text}" @ONLY)
+  else()
+    set(source ${folder}/${law}.cpp)
+    file(CONFIGURE OUTPUT ${source} CONTENT "${text}" @ONLY)
+  endif()
+  add_library(${name} MODULE ${source})
+  target_include_directories(${name} BEFORE PRIVATE ${folder} ${PROJECT_SOURCE_DIR}/plugins/${law})
+  ilaw_compile_law(${name})
+  set_target_properties(${name} PROPERTIES PREFIX "" SUFFIX ".so" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+  add_dependencies(check_test ${name})
+endfunction()
+
+# Wrong where H is transverse alone.
+ilaw_add_wrong_law(cohesive_transverse cohesive api/include/ilaw/kit/bond.hpp
+                   "return {m.left_n * d.n, m.left_t * d.t1, m.left_t * d.t2};"
+                   "return {m.left_n * d.n, m.left_n * d.t1, m.left_n * d.t2};")
+# Writes its state before its node is solved.
+ilaw_add_wrong_law(cohesive_asks cohesive api/include/ilaw/kit/bond.hpp
+                   "    if (any(open)) {\n      p = {as_full(node.delassus)"
+                   "    if (any(open)) {\n      node.state.opening = select(open, node.state.position, node.state.opening);\n      p = {as_full(node.delassus)")
+# Loses adhesion per step, not per time.
+ilaw_add_wrong_law(rccm_step rccm plugins/rccm/rccm.cpp "viscosity / all.step.velocity_step"
+                   "viscosity / (all.step.velocity_step > 0.0 ? 0x1p-10 : 0.0)")
+# Does not turn its history with the normal.
+ilaw_add_wrong_law(postit_unturned postit api/include/ilaw/kit/detail/kernel.hpp
+                   "f.t1 = transported_tangent(n, t, f.n);" "f.t1 = any_tangent(f.n);")
