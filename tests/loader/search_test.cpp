@@ -70,8 +70,8 @@ TEST_F(Searched, RelativeEntriesOfThePathAreLeftOut) {
 // Laws of a package serve a host that links the loader of another installation.
 TEST_F(Searched, FoldersOfTheSystemAreSearched) {
   const std::string path = ilaw::search_path() + ":";
-  for (const char* folder : {":/usr/local/lib/ilaw:", ":/usr/lib/ilaw:"})
-    EXPECT_NE(path.find(folder), std::string::npos) << path;
+  for (const char* wanted : {":/usr/local/lib/ilaw:", ":/usr/lib/ilaw:"})
+    EXPECT_NE(path.find(wanted), std::string::npos) << path;
 }
 
 TEST_F(Searched, NamesWithOddLettersAreRefusedInEveryWay) {

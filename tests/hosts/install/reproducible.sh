@@ -22,12 +22,13 @@ while read -r option; do options+=("-D$option"); done < <(
   grep -E '^(CMAKE_BUILD_TYPE|CMAKE_CXX?_COMPILER|ILAW_(UNITY|WERROR|KERNELS|SANITIZE)):' "$build/CMakeCache.txt")
 
 export SOURCE_DATE_EPOCH=0  # the list of parts has a date
+# The build folder is as deep as that of the presets: ccache makes names of sources relative to it.
 # ccache may give what a run of this test compiled, but nothing that was compiled for BUILD.
 export CCACHE_NAMESPACE=ilaw_other_folder CCACHE_BASEDIR=$other CCACHE_NOHASHDIR=1
 targets=()
 [ "$1" = whole ] || targets=(--target "$@")
-{ cmake -S "$other" -B "$other/build" -G Ninja "${options[@]}" &&
-    cmake --build "$other/build" "${targets[@]}"; } >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+{ cmake -S "$other" -B "$other/build/release" -G Ninja "${options[@]}" &&
+    cmake --build "$other/build/release" "${targets[@]}"; } >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 
 compared=0 different=()
 compare() {
@@ -41,11 +42,11 @@ if [ "$1" = whole ]; then
   rm -f "$build/ilaw.spdx.json"
   cmake --build "$build" --target ilaw_sbom >/dev/null
   cmake --install "$build" --prefix "$work/first" >/dev/null
-  cmake --install "$other/build" --prefix "$work/second" >/dev/null
+  cmake --install "$other/build/release" --prefix "$work/second" >/dev/null
   diff <(cd "$work/first" && find . | sort) <(cd "$work/second" && find . | sort)
   compare "$work/first" "$work/second" .
 else
-  compare "$other/build" "$build" lib bin
+  compare "$other/build/release" "$build" lib bin
 fi
 echo "$compared files compared, ${#different[@]} differ: ${different[*]:-}"
 [ "$compared" -gt 0 ] && [ ${#different[@]} -eq 0 ]
