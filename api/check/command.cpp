@@ -101,14 +101,12 @@ std::function<int()> add_options(CLI::App& command) {
   command.add_option("--only", line->check.only, "Only this rule; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
-  command
-      .add_option("--seed", line->check.seeds,
-                  "Seed of the random numbers: the same seed, the same findings; may be repeated")
+  command.add_option("--seed", line->check.seeds, "Seed of the random numbers; may be repeated")
       ->take_all()
       ->allow_extra_args(false)
       ->capture_default_str();
   command.add_option("--parameters", line->parameters,
-                     "Parameters of all instances instead of drawn ones: a JSON object, or a file with one");
+                     "Parameters instead of drawn ones: a JSON object, or a file with one");
   command.add_option("--limit", line->check.limits.seconds, "Seconds for each rule and law")
       ->check(CLI::Validator(complaint_of_limit, "from 0.1 to 3600"))
       ->capture_default_str();

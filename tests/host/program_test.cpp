@@ -121,6 +121,21 @@ TEST(Program, ChecksALibrary) {
        {"check", "check no_such_law", "check coulomb --only nonsense", "check coulomb --law tie"})
     EXPECT_EQ(run_program(wrong).code, 2) << wrong;
   EXPECT_EQ(run_program("check coulomb --only mirror --junit /dev/full/report.xml").code, 1);
+  EXPECT_EQ(
+      run_program("check coulomb --only mirror --seed 4 --seed 5 --parameters '{\"friction\": \"inf\"}'")
+          .code,
+      0);
+  const std::pair<const char*, const char*> refused[] = {
+      {"'{\"friction\": -0.5}'", "law 'coulomb' refuses the parameters: "},
+      {"'{\"friction\": [1]}'", "parameter 'friction' is [1], expected a number, \"inf\" or a text"},
+      {"'{\"friction\"'", "--parameters: found no JSON object"},
+      {"no_such_file", "no_such_file: cannot be read"}};
+  for (const auto& [parameters, said] : refused) {
+    const Outcome outcome =
+        run_program(std::string("check coulomb --only mirror --parameters ") + parameters);
+    EXPECT_EQ(outcome.code, 2) << outcome.output;
+    EXPECT_NE(outcome.output.find(said), std::string::npos) << outcome.output;
+  }
   EXPECT_NE(run_program("check --rules").output.find("| `purity-twice` | "), std::string::npos);
 }
 

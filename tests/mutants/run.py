@@ -5,6 +5,7 @@
     tests/mutants/run.py --only window     those whose name holds this word
     tests/mutants/run.py --area kit        those of an area (AREAS)
     tests/mutants/run.py --last 24         the last ones of mutants.json
+    tests/mutants/run.py --near            by the nearest tests of each alone: survivors may be caught by others
     tests/mutants/run.py --check           only whether each still fits the sources, exactly once
     tests/mutants/run.py --table           and writes the score into docs/reliability.md
 
@@ -61,6 +62,7 @@ def arguments():
     parser.add_argument("--only", default="", help="mutants whose name holds this word")
     parser.add_argument("--area", choices=sorted(AREAS), action="append", help="mutants of this area; to be repeated")
     parser.add_argument("--last", type=int, default=0, help="this many from the end of mutants.json")
+    parser.add_argument("--near", action="store_true", help="the nearest tests of each alone")
     parser.add_argument("--check", action="store_true", help="do not build: see whether mutants fit the sources")
     parser.add_argument("--table", action="store_true", help="write the score into docs/reliability.md")
     parser.add_argument("--jobs", default=os.cpu_count(), type=int, help="processes of the build and of the tests")
@@ -146,14 +148,14 @@ def passes(test, number):
         return False
 
 
-def tests_of(mutant):
-    return list(dict.fromkeys(mutant["tests"] + AREAS[mutant["area"]]))
+def tests_of(mutant, near):
+    return list(dict.fromkeys(mutant["tests"] + ([] if near else AREAS[mutant["area"]])))
 
 
-def caught_by(mutant):
+def caught_by(mutant, near):
     """The first tests that fail with it; none where it survives."""
     begin = time.monotonic()
-    found = next((test for test in tests_of(mutant) if not passes(test, mutant["number"])), "")
+    found = next((test for test in tests_of(mutant, near) if not passes(test, mutant["number"])), "")
     return found, time.monotonic() - begin
 
 
@@ -185,7 +187,7 @@ def main():
               if options.only in mutant["name"] and mutant["area"] in (options.area or AREAS)]
     copy_tree({file: with_mutants(file, [one for one in mutants if one in chosen]) for file, mutants in by_file.items()
                if any(one in chosen for one in mutants)})
-    tests = {test for mutant in chosen for test in tests_of(mutant)}
+    tests = {test for mutant in chosen for test in tests_of(mutant, options.near)}
     build({test.partition(":")[0] for test in tests}, options.jobs)
     score, survivors = collections.defaultdict(list), []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
@@ -193,7 +195,7 @@ def main():
         if broken:
             print("fail without any mutant: " + ", ".join(sorted(broken)))
             return 1
-        for mutant, (test, seconds) in zip(chosen, pool.map(caught_by, chosen)):
+        for mutant, (test, seconds) in zip(chosen, pool.map(lambda one: caught_by(one, options.near), chosen)):
             score[mutant["area"]].append(bool(test))
             print(f"{'caught' if test else 'SURVIVED':8} {seconds:6.1f} s  {mutant['area']:8} {mutant['name']}"
                   + (f"  ({test})" if test else ""), flush=True)
