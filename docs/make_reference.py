@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Writes the reference pages that repeat what the sources say.
+"""Writes the reference pages and the manual pages that repeat what the sources say.
 
     docs/make_reference.py keys                    docs/reference/scene_keys.md, from the schema of scenes
     docs/make_reference.py commands PROGRAM        docs/reference/commands.md, from the --help of ilaw
+    docs/make_reference.py man ILAW ILAW-CHECK     docs/man/*.1, from their --help and docs/man/*.1.in, by pandoc
     ... --check                                    writes nothing; exit code 1 where the page is out of date
 """
 # SPDX-License-Identifier: BSD-3-Clause
@@ -17,6 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = ROOT / "docs" / "reference"
+MANUALS = ROOT / "docs" / "man"
 SCHEMA = ROOT / "host_mock" / "schema" / "scene.schema.json"
 
 # Sections in the order of a scene: heading, then the objects of the schema that it lists.
@@ -45,6 +47,7 @@ SECTIONS = [
                           ("path_curve", "a curve in place of a list of [time, displacement...]"),
                           ("sine", "`sine`")]),
     ("Interfaces", [("interface", "entries of `interfaces`"), ("against", "`against`"),
+                    ("pair", "rows of the tables of `pairs`"),
                     ("obstacle", "`obstacle`, common to all types")]),
     ("Plane", [("obstacle_plane", "`obstacle` of type `plane`"), ("tilt", "`tilt` of a plane")]),
     ("Sphere", [("obstacle_sphere", "`obstacle` of type `sphere`")]),
@@ -208,30 +211,88 @@ def help_of(program, *command):
     return "\n".join(line.rstrip() for line in done.stdout.strip("\n").splitlines())
 
 
+def commands_of(main):
+    return re.findall(r"^  (\w+) +\S", main[main.index("\nSubcommands:"):], re.M)
+
+
 def commands_page(program):
     main = help_of(program)
-    commands = re.findall(r"^  (\w+) +\S", main[main.index("\nSubcommands:"):], re.M)
     text = wrapped(COMMANDS_HEAD) + f"\n```text\n{main}\n```\n"
-    for command in commands:
+    for command in commands_of(main):
         text += f"\n## ilaw {command}\n\n```text\n{help_of(program, command)}\n```\n"
     return text
 
 
+def literal(text):
+    """Text that Markdown leaves as it is."""
+    return re.sub(r"([^\w\s,.;:/=-])|(-(?=-))", r"\\\g<0>", text)
+
+
+def arguments_of(text):
+    """The positionals and options that a help lists, as a list of definitions in Markdown."""
+    found = []
+    for line in text.splitlines():
+        if line.startswith(" " * 30):
+            found[-1][1] += " " + line.strip()
+        elif entry := re.fullmatch(r"  (\S.*?)(?:  +(.*))?", line):
+            found.append([entry[1], entry[2] or ""])
+    found = [(names, meaning.strip()) for names, meaning in found if not names.startswith("-h,")]
+    items = []
+    for names, meaning in found:
+        name, _, form = names.partition(" ")
+        items.append(f"**{literal(name)}** {literal(form)}".strip() + f"\n:   {literal(meaning)}\n")
+    return "\n".join(items)
+
+
+def command_manual(program, command):
+    text = help_of(program, command)
+    about, usage, *_ = text.splitlines()
+    usage = literal(usage.removeprefix(f"Usage: ilaw {command}").strip())
+    return f"## ilaw {command}\n\n**ilaw {command}** {usage}\n\n{literal(about)}.\n\n{arguments_of(text)}"
+
+
+def manual(name, parts):
+    """A manual page: its Markdown with the parts that come from the programs, set by pandoc."""
+    text = (MANUALS / f"{name}.1.in").read_text()
+    for part, content in parts.items():
+        text = text.replace(f"@{part}@", content)
+    done = subprocess.run(["pandoc", "--standalone", "--fail-if-warnings", "--from=markdown-smart", "--to=man"],
+                          input=text, capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"{name}.1.in: {done.stderr}")
+    # mandoc's lint refuses paragraphs after headings and pandoc's name of a font.
+    return re.sub(r"^(\.S[HS] .*)\n\.PP$", r"\1", done.stdout, flags=re.M).replace("\\f[C]", "\\f[CR]")
+
+
+def manuals(program, checker):
+    version = re.search(r"project\(ilaw VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    commands = "\n".join(command_manual(program, command) for command in commands_of(help_of(program)))
+    yield "ilaw", {"VERSION": version, "COMMANDS": commands}
+    yield "ilaw-check", {"VERSION": version, "OPTIONS": arguments_of(help_of(checker))}
+    yield "ilaw-describe", {"VERSION": version}
+
+
+def generated(arguments):
+    """The pages that the arguments ask for, with their texts."""
+    if arguments == ["keys"]:
+        return {PAGES / "scene_keys.md": keys_page()}
+    if arguments[:1] == ["commands"] and len(arguments) == 2:
+        return {PAGES / "commands.md": commands_page(arguments[1])}
+    if arguments[:1] == ["man"] and len(arguments) == 3:
+        return {MANUALS / f"{name}.1": manual(name, parts) for name, parts in manuals(*arguments[1:])}
+    sys.exit(__doc__)
+
+
 def main():
     arguments = [argument for argument in sys.argv[1:] if argument != "--check"]
-    if arguments == ["keys"]:
-        page, text = PAGES / "scene_keys.md", keys_page()
-    elif arguments[:1] == ["commands"] and len(arguments) == 2:
-        page, text = PAGES / "commands.md", commands_page(arguments[1])
-    else:
-        sys.exit(__doc__)
-    if "--check" not in sys.argv:
-        page.write_text(text)
-        return
-    before = page.read_text()
-    if before != text:
-        print("".join(difflib.unified_diff(before.splitlines(True), text.splitlines(True), str(page), "source")))
-        sys.exit(f"{page.name} is out of date: run docs/make_reference.py {' '.join(arguments)}")
+    for page, text in generated(arguments).items():
+        if "--check" not in sys.argv:
+            page.write_text(text)
+            continue
+        before = page.read_text()
+        if before != text:
+            print("".join(difflib.unified_diff(before.splitlines(True), text.splitlines(True), str(page), "source")))
+            sys.exit(f"{page.name} is out of date: run docs/make_reference.py {' '.join(arguments)}")
 
 
 if __name__ == "__main__":

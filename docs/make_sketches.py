@@ -126,14 +126,21 @@ def layers():
     figure, axes = canvas(9.6, 4.6)
     box(axes, 0.2, 2.55, 4.4, 1.85, "", PALE_BLUE, BLUE)
     axes.text(2.4, 4.2, "host_mock: the program ilaw", ha="center", va="center", fontweight="bold", color=DARK)
-    for k, text in enumerate(("cli, bench, stress, study", "results, scene, step", "contact, model, check, base")):
+    rooms = ("cli: a file per command", "instruments: bench, stress, study",
+             "host: results, scene, step, contact, model, base")
+    for k, text in enumerate(rooms):
         box(axes, 0.4, 3.58 - 0.46 * k, 4.0, 0.4, text, "white", BLUE, 9.5)
+    drawn = set(re.findall(r"\w+", " ".join(rooms)))
+    for folder in (DOCS.parent / "host_mock").glob("*/*/"):
+        if folder.parent.name in ("host", "instruments"):
+            assert folder.name in drawn, f"the picture of the layers leaves out {folder}"
     box(axes, 5.0, 2.55, 4.4, 1.85, "", PALE_BLUE, BLUE)
     axes.text(7.2, 4.2, "your solver", ha="center", va="center", fontweight="bold", color=DARK)
     for k, text in enumerate(("C, C++, Fortran, Python", "LAMMPS, Yade, dolfinx, MuJoCo", "its own forces and time step")):
         box(axes, 5.2, 3.58 - 0.46 * k, 4.0, 0.4, text, "white", BLUE, 9.5)
-    box(axes, 0.2, 1.75, 9.2, 0.5, "api/loader: finds, checks and opens libraries      "
-        "api/coupled: solves contacts that share bodies", PALE_GREY, GREY, 9.5)
+    libraries = ("api/loader: opens libraries", "api/coupled: shared bodies", "api/check: the contract", "api/device: GPUs")
+    for k, text in enumerate(libraries):
+        box(axes, 0.2 + 2.34 * k, 1.75, 2.18, 0.5, text, PALE_GREY, GREY, 9.5)
     axes.plot([0.0, 9.6], [1.5, 1.5], color=ORANGE, linewidth=2.5)
     axes.text(4.8, 1.5, " ilaw.h: the ABI, plain C structs and one symbol ", ha="center", va="center", fontsize=10,
               color=ORANGE, fontweight="bold", bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})

@@ -1,22 +1,25 @@
 #!/usr/bin/env bash
 # Installs what the project needs and this machine lacks (Debian 12). Does nothing, and needs no network, when all is
-# there. Usage: host_mock/setup.sh [tests|ci|results|site] [with-solvers]; without arguments for host_mock/demo.sh.
+# there. Usage: host_mock/setup.sh [tests|ci|results|site|dealii] [with-solvers]; without arguments for host_mock/demo.sh.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libcli11-dev libtinyxml2-dev gnuplot-nox
           libvtk9-dev zlib1g-dev)
-for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsiconos-numerics-dev qemu-user
+for_tests=(gfortran binutils abigail-tools libgtest-dev libbenchmark-dev libsiconos-numerics-dev libfclib-dev qemu-user
            dpkg-dev pkgconf python3-numpy python3-pytest python3-setuptools python3-wheel python3-pip python3-venv
            python3-matplotlib python3-pycparser python3-yaml)
 # Foreign solvers in which the laws are tested, and MPI. They are large: 1 GB with their dependencies.
-solvers=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade libmujoco-dev)
+solvers=(lammps liblammps-dev libopenmpi-dev openmpi-bin python3-dolfinx python3-mpi4py yade libmujoco-dev calculix-ccx)
+dealii=(libdeal.ii-dev libopenmpi-dev openmpi-bin)  # 1.4 GB, so neither ci nor with-solvers has it
+documents=(pandoc mandoc man-db python3-jsonschema python3-license-expression)  # manual pages, the paper, the list of parts
 site=(doxygen python3-breathe python3-myst-parser furo libjs-katex)  # docs/site/build.sh
 [ "${2:-}" != with-solvers ] || for_tests+=("${solvers[@]}")
 case ${1:-} in
   tests) packages+=("${for_tests[@]}") ;;
-  ci) packages+=("${for_tests[@]}" "${solvers[@]}" "${site[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache
+  ci) packages+=("${for_tests[@]}" "${solvers[@]}" "${site[@]}" "${documents[@]}" clang-format clang-tidy clang libclang-rt-14-dev libomp-dev ccache
                   llvm-14 llvm-spirv-14 pocl-opencl-icd ocl-icd-opencl-dev) ;;
   site) packages=("${site[@]}") ;;
+  dealii) packages+=("${for_tests[@]}" "${dealii[@]}") ;;
   results) packages+=("${for_tests[@]}" jq) ;;
 esac
 

@@ -157,7 +157,9 @@ void varying(const Subject& subject) {
 // Every value at an end of its range is accepted beside some others: which, a law may restrict.
 bool accepted_somewhere(const Trial& trial, const Value& value, Draw& draw) {
   constexpr int attempts = 300;
-  const std::vector<Setup> setups = setups_of(trial.law);
+  std::vector<Setup> setups = setups_of(trial.law);
+  if (const ilaw_parameter* p = parameter_of(trial.law, value.name); p && has(*p, ILAW_PARAMETER_NEEDS_SPINS))
+    for (Setup& setup : setups) setup.dimension = 3, setup.form = ILAW_DELASSUS_TRANSVERSE_SPIN;
   for (int k = 0; k < attempts; ++k) {
     Values values = {value};
     for (std::uint32_t p = 0; p < trial.law.parameter_count; ++p) {
@@ -200,7 +202,7 @@ void defaults(const Subject& subject) {
           const ilaw_parameter& p = *trial.law.parameters[k];
           const bool given = std::any_of(values.begin(), values.end(),
                                          [&](const Value& value) { return value.name == p.name; });
-          if (given || has(p, ILAW_PARAMETER_IS_REQUIRED)) continue;
+          if (given || has(p, ILAW_PARAMETER_IS_REQUIRED | ILAW_PARAMETER_NEEDS_SPINS)) continue;
           values.push_back(is_choice(p) ? text(p, p.choices[static_cast<std::size_t>(p.default_value)])
                                         : number(p, p.default_value));
         }
@@ -230,9 +232,11 @@ bool expect_no_change(const Trial& trial, const Value& value, Draw& draw) {
   return true;
 }
 
-bool may_be_table(const ilaw_parameter& p) { return !is_choice(p) && p.axis_count > 0; }
+// Setups of trials have no spins.
+bool is_tried(const ilaw_parameter& p) { return !is_choice(p) && !has(p, ILAW_PARAMETER_NEEDS_SPINS); }
+bool may_be_table(const ilaw_parameter& p) { return is_tried(p) && p.axis_count > 0; }
 bool may_be_per_node(const ilaw_parameter& p) {
-  return !is_choice(p) && has(p, ILAW_PARAMETER_ALLOWS_PER_NODE);
+  return is_tried(p) && has(p, ILAW_PARAMETER_ALLOWS_PER_NODE);
 }
 
 // Over each axis, and over as many as there may be.

@@ -330,6 +330,7 @@ std::optional<Values> in_units(const Trial& trial, const Units& units) {
     if (p.kind == ILAW_PARAMETER_CHOICE) continue;
     const std::optional<Dimensions> unit = parse_unit(p.unit, symbols);
     if (!unit) return std::nullopt;
+    if (has(p, ILAW_PARAMETER_NEEDS_SPINS)) continue;  // no trial has spins
     const double scaled = unit->in(units, numbers) * number_of(trial.law, values, p.name);
     if (!std::isfinite(scaled) && !std::isinf(number_of(trial.law, values, p.name))) return std::nullopt;
     values = with(values, {p.name, ILAW_VALUE_NUMBER, scaled});

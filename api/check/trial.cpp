@@ -282,7 +282,8 @@ std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw&
   for (int k = 0; k < attempts; ++k) {
     Values values;
     for (std::uint32_t p = 0; p < law.parameter_count; ++p)
-      if (has(*law.parameters[p], ILAW_PARAMETER_IS_REQUIRED) || draw.one_in(2)) {
+      if (!has(*law.parameters[p], ILAW_PARAMETER_NEEDS_SPINS) &&  // no setup of setups_of has spins
+          (has(*law.parameters[p], ILAW_PARAMETER_IS_REQUIRED) || draw.one_in(2))) {
         values.push_back(draw_value(*law.parameters[p], draw,
                                     is_natural ? natural_value(law, *law.parameters[p]) : std::nullopt));
         // So that the value may be given per node, too.

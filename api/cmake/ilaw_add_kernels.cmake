@@ -8,7 +8,7 @@ set(ILAW_KERNELS OFF CACHE STRING "Kernels for GPUs: ON for all laws that ask fo
 macro(ilaw_set_kernel_flags)
   set(ILAW_KERNEL_FLAGS -std=c++20 -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-exceptions -fno-rtti
       -fno-threadsafe-statics -DILAW_KIT_DEVICE -DILAW_KIT_LEVEL=device
-      -include ilaw/kit/detail/device_prelude.hpp -Wno-bitwise-instead-of-logical -Wno-c++11-narrowing
+      -include ilaw/kit/device/prelude.hpp -Wno-bitwise-instead-of-logical -Wno-c++11-narrowing
       -Wno-unknown-cuda-version)
   set(ILAW_KERNEL_FLAGS_PTX -x cuda --cuda-device-only -nocudainc -nocudalib --cuda-gpu-arch=sm_70 -Xclang
       -target-feature -Xclang +ptx63 -S)

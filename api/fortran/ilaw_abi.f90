@@ -12,7 +12,7 @@ module ilaw_abi
   public
 
   integer(c_int32_t), parameter :: &
-    ILAW_ABI_MAJOR = 1, ILAW_ABI_MINOR = 0
+    ILAW_ABI_MAJOR = 1, ILAW_ABI_MINOR = 1
 
   integer(c_int32_t), parameter :: &
     ILAW_OK = 0, ILAW_BAD_NODES = 1, ILAW_INVALID_ARGUMENT = -1, ILAW_INVALID_PARAMETER = -2, &
@@ -23,7 +23,7 @@ module ilaw_abi
 
   integer(c_int32_t), parameter :: &
     ILAW_DELASSUS_SCALAR = 1, ILAW_DELASSUS_DIAGONAL = 2, ILAW_DELASSUS_FULL = 4, &
-    ILAW_DELASSUS_TRANSVERSE = 8
+    ILAW_DELASSUS_TRANSVERSE = 8, ILAW_DELASSUS_TRANSVERSE_SPIN = 16
 
   integer(c_int32_t), parameter :: &
     ILAW_FRAME_LOCAL = 1, ILAW_FRAME_GLOBAL = 2
@@ -49,7 +49,7 @@ module ilaw_abi
 
   integer(c_int32_t), parameter :: &
     ILAW_PARAMETER_IS_REQUIRED = 1, ILAW_PARAMETER_EXCLUDES_MINIMUM = 2, ILAW_PARAMETER_ALLOWS_INFINITY = 4, &
-    ILAW_PARAMETER_ALLOWS_PER_NODE = 8, ILAW_PARAMETER_IS_FIELD = 16
+    ILAW_PARAMETER_ALLOWS_PER_NODE = 8, ILAW_PARAMETER_IS_FIELD = 16, ILAW_PARAMETER_NEEDS_SPINS = 32
 
   integer(c_int32_t), parameter :: &
     ILAW_VALUE_NUMBER = 0, ILAW_VALUE_TEXT = 1, ILAW_VALUE_TABLE = 2, ILAW_VALUE_PER_NODE = 3
@@ -174,7 +174,7 @@ module ilaw_abi
   end type
 
   type, bind(c) :: ilaw_batch
-    integer(c_int32_t) :: struct_size = 512
+    integer(c_int32_t) :: struct_size = 640
     integer(c_int32_t) :: index_base = 1
     integer(c_int64_t) :: flags = 0
     integer(c_int64_t) :: node_count = 0
@@ -200,6 +200,10 @@ module ilaw_abi
     type(c_ptr) :: status = c_null_ptr
     integer(c_int64_t) :: status_stride = 0
     type(c_ptr) :: amounts = c_null_ptr
+    type(ilaw_input) :: spin_free
+    type(ilaw_input) :: spin_previous
+    type(ilaw_output) :: moment
+    type(ilaw_output) :: spin
   end type
 
   type, bind(c) :: ilaw_report

@@ -9,14 +9,14 @@ namespace ilaw::loading {
 namespace {
 
 constexpr std::uint32_t known_dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3;
-constexpr std::uint32_t known_forms = 2 * ILAW_DELASSUS_TRANSVERSE - 1;
+constexpr std::uint32_t known_forms = 2 * ILAW_DELASSUS_TRANSVERSE_SPIN - 1;
 constexpr std::uint32_t known_frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL;
 constexpr std::uint32_t known_numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT;
 constexpr std::uint32_t known_inputs = 2 * ILAW_INPUT_TANGENT - 1;
 constexpr std::uint32_t known_outputs = 2 * ILAW_OUTPUT_ENERGY - 1;
 constexpr std::uint32_t known_capabilities = ILAW_CAN_ADHERE | ILAW_CAN_STORE_ENERGY;
 constexpr std::uint32_t known_permissions = ILAW_MAY_SKIP_FRESH | ILAW_MAY_SKIP_FREE;
-constexpr std::uint32_t known_parameter_flags = 2 * ILAW_PARAMETER_IS_FIELD - 1;
+constexpr std::uint32_t known_parameter_flags = 2 * ILAW_PARAMETER_NEEDS_SPINS - 1;
 
 // Doubles of state per node: 8 MB, more than any law needs.
 constexpr std::uint64_t most_state = std::uint64_t{1} << 20;
@@ -114,6 +114,17 @@ void check_functions(const checker& check, const ilaw_law& law) {
   given(law.evaluate, "evaluate");
 }
 
+// Spins are of dimension 3, and nobody could give a parameter that needs them to a law without.
+void check_spins(const checker& check, const ilaw_law& law) {
+  const bool has_spins = law.delassus_forms & ILAW_DELASSUS_TRANSVERSE_SPIN;
+  if (has_spins && !(law.dimensions & ILAW_DIMENSION_3))
+    check.refuse("delassus_forms has spins, expected dimension 3 among dimensions");
+  for (std::uint32_t i = 0; i < law.parameter_count; ++i)
+    if (has(*law.parameters[i], ILAW_PARAMETER_NEEDS_SPINS) && !has_spins)
+      check.refuse(quoted("parameter", law.parameters[i]->name) +
+                   " needs spins, expected a form with spins among delassus_forms");
+}
+
 void check_law(const checker& check, ilaw_law& law) {
   check.text(law.title, "title");
   check.prose(law.doc, "doc");
@@ -133,6 +144,7 @@ void check_law(const checker& check, ilaw_law& law) {
   law.state_variables = checked_elements(check, law.state_variables, law.state_variable_count,
                                          "state_variables", "state variable", check_state_variable);
   law.amounts = checked_elements(check, law.amounts, law.amount_count, "amounts", "amount", check_amount);
+  check_spins(check, law);
   check_functions(check, law);
 }
 

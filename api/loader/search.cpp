@@ -114,7 +114,9 @@ search_path folders_searched() {
   add_environment(path);
   add_beside_program(path);
   add_beside_library(path);
-  add_once(path, ILAW_INSTALLED_FOLDER);
+  // The last two serve a host that links the loader of one installation and runs beside laws of a package.
+  for (const char* folder : {ILAW_INSTALLED_FOLDER, "/usr/local/lib/ilaw", "/usr/lib/ilaw"})
+    add_once(path, folder);
   return path;
 }
 

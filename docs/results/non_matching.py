@@ -6,8 +6,8 @@ Usage: ILAW_PATH=build/release/lib/ilaw docs/results/non_matching.py build/relea
 
 Bodies are blocks, or quarters of rings, one inside the other. By symmetry pressure and displacement are the same at all
 nodes of a face. The table has for both faces least and largest pressure over the mean one, and the largest error of the
-displacement over the mean one. Cost: iterations a step from the fine side and from both, time of the second over that of the first, and steps
-that are not solved.
+displacement over the mean one. Cost: iterations a step from the fine side and from both, time of the second over that of
+the first, and steps that are not solved.
 """
 import argparse
 import csv
@@ -122,8 +122,6 @@ def of_rings(case, coarse, fine, side, folder, keeps_gaps):
     return made
 
 
-
-
 def run(ilaw, case, coarse, fine, side, keeps_gaps, stiffness):
     with tempfile.TemporaryDirectory() as folder:
         rings = case.startswith("ring")
@@ -171,7 +169,9 @@ def main():
     parser.add_argument("--cases", nargs="+", default=["impact", "at rest", "sliding", "ring, wave", "ring, at rest"])
     parser.add_argument("--keep-gaps", action="store_true", help="of the facets of rings, at the start")
     parser.add_argument("--penalty", type=float, help="implicit springs of this stiffness per node instead of contact")
+    parser.add_argument("--append", type=Path, help="a table of docs/results to which the rows are added")
     arguments = parser.parse_args()
+    law = f"penalty {arguments.penalty:.0e}".replace("e+0", "e") if arguments.penalty else "contact"
     pressure_rows, error_rows = [], []
     for case in arguments.cases:
         for mesh in arguments.meshes:
@@ -191,6 +191,10 @@ def main():
             error_rows.append(f"| {name} | {' | '.join(errors)} | {sweeps['fine']:.0f}, {sweeps['both']:.0f} | "
                               f"{seconds['both'] / seconds['fine']:.1f} | {unsolved['both']} of {summary['steps']} |")
             print(pressure_rows[-1], error_rows[-1], flush=True)
+            if arguments.append:
+                with arguments.append.open("a") as table:
+                    print(case, f"{coarse} on {fine}", law, *(p.replace("1, to", "exact to") for p in pressures),
+                          " / ".join(errors), f"{sweeps['fine']:.0f} / {sweeps['both']:.0f}", sep=",", file=table)
     print("\n| case | elements | nodes of the fine side | of the coarse side | both sides |")
     print("| --- | --- | --- | --- | --- |", *pressure_rows, sep="\n")
     print("\n| case | elements | fine side | coarse side | both sides | iterations | time | unsolved |")

@@ -50,7 +50,8 @@ std::string varying(const json& p) {
   if (has(p["flags"], "is_field")) ways.push_back("field");
   if (has(p["flags"], "allows_per_node")) ways.push_back("per_node");
   if (!p["axes"].empty()) ways.push_back("table over " + listed(p["axes"]));
-  return ways.empty() ? "constant" : "or " + joined(ways);
+  const char* condition = has(p["flags"], "needs_spins") ? "; needs spins" : "";
+  return (ways.empty() ? "constant" : "or " + joined(ways)) + condition;
 }
 
 Row row_of_parameter(const json& p) {

@@ -212,7 +212,7 @@ struct cohesive : adhesive_bond<cohesive, V> {
     V coefficient = friction_of(before.damage);
     bool is_tried = true;
     root_between(before.damage, V(1.0), before.damage, where, [&](V damage) ILAW_KIT_LAMBDA {
-      coefficient = select(where, this->friction_after(before.damage, damage), coefficient);
+      coefficient = select(where, this->mean_friction(before.damage, damage), coefficient);
       soften(step, where, all, before, coefficient, is_tried, found);
       is_tried = false;
       const mask_of<V> grows = (found.memory > before.damage) | (damage > before.damage);

@@ -10,7 +10,7 @@ using namespace ilaw::kit;
 constexpr double at_rest = 0x1p-26;
 
 template <class V>
-struct coulomb {
+struct coulomb : friction_solver<V> {
   V friction;
   V kinetic_friction;
   V decay;
@@ -107,10 +107,8 @@ struct coulomb {
   }
 
   // Any H, and a coefficient along each tangent.
-  using problem = friction_problem<V>;
-  using answer = friction_answer<V>;
   template <class Node>
-  asked<V> ask(Node& node, problem& open) const
+  asked<V> ask(Node& node, friction_problem<V>& open) const
       requires(has_tangents<Node> && !(has_memory<Node> && is_transverse<Node>)) {
     if constexpr (has_memory<Node>) {
       open = {};
@@ -119,12 +117,6 @@ struct coulomb {
     }
     const V second = select(friction_2 == infinity, friction, friction_2);
     return ask_friction(node, contact(node), fallen(node, friction), fallen(node, second), open);
-  }
-  static mask_of<V> solve(const problem& p, answer& a) { return solve_friction(p, a); }
-  static void solve_scalar(const problem& p, answer& a) { solve_friction_exactly(p, a); }
-  template <class Node>
-  status_of<V> finish(Node& node, const answer& a) const {
-    return finish_friction(node, a);
   }
 
  private:

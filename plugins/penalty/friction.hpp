@@ -16,7 +16,8 @@ struct problem {
   V free, previous, delassus, indentation;                // see normal_spring
   V c1 = 0.0, c2 = 0.0, a11 = 0.0, a22 = 0.0, a12 = 0.0;  // A = H_T/2 + 2/(h^2 k_T)
   V q1 = 0.0, q2 = 0.0, before1 = 0.0,
-    before2 = 0.0;  // before: v_T^- of a rigid stick, whose q is that of e_T = 0
+    before2 = 0.0;   // before: v_T^- of a rigid stick, whose q is that of e_T = 0
+  V withheld = 0.0;  // see normal_spring
 };
 // status: closed where friction has a closed form or there is none; no_solution: none of them.
 template <class V>

@@ -71,10 +71,13 @@ struct penalty {
   struct state {
     V indentation;
     vector<V> spring;  // its normal component is always zero
+    V withheld;
   };
   static constexpr state_variable<state> state_variables[] = {
       {&state::indentation, "indentation", "m", "Of the implicit normal spring since it closed.", false, 0.0},
-      {&state::spring, "spring", "m", "Elastic part of the slip; normal component zero."}};
+      {&state::spring, "spring", "m", "Elastic part of the slip; normal component zero."},
+      {&state::withheld, "withheld", "J", "Work that restitution gives back unless the spring opens.", false,
+       0.0}};
 
   std::uint32_t inputs() const {
     return reads_gap | (integration == implicitly || damping > 0.0 ? reads_v_previous : 0U);
@@ -117,7 +120,7 @@ struct penalty {
 
   // What all nodes of a batch share.
   struct numbers {
-    bool loses, rubs, sticks_rigidly, sticks_softly;
+    bool loses, withholds, rubs, sticks_rigidly, sticks_softly;
     V step, lead, ratio;         // h, tau, zeta
     V rate, per_rate, softness;  // h k_T and 1/(h k_T), 0 where there is none; 4/(h^2 k_T)
   };
@@ -128,6 +131,7 @@ struct penalty {
     const V rate = h * tangential_stiffness, least = std::numeric_limits<double>::min();
     const mask_of<V> counts = (integration == implicitly) | (rubs & (rate >= least));
     return {.loses = any((restitution < 1.0) | (damping > 0.0) | (stiffness == infinity) | (exponent != 1.0)),
+            .withholds = any(restitution < 1.0),
             .rubs = any(rubs),
             .sticks_rigidly = any(rubs & is_rigid),
             .sticks_softly = any(rubs & !is_rigid),
@@ -234,21 +238,24 @@ struct penalty {
   template <class Node>
   problem normal_problem(const Node& node) const {
     const V x = zero_unless(stiffness < infinity, node.state.indentation);
-    return {node.v_free.n, node.v_previous.n, node.delassus.normal(), x};
+    problem p{node.v_free.n, node.v_previous.n, node.delassus.normal(), x};
+    p.withheld = zero_unless(x > 0.0, node.state.withheld);
+    return p;
   }
   // Loss: see normal_spring. With the damper of the step.
   template <class Loss>
   normal_spring<V, Loss> spring_of(const problem& p, V free, const numbers& shared) const {
     const V h = shared.step, ratio = shared.ratio, h_n = p.delassus, root = square_root(h_n);
-    Loss damper{}, lead{};
+    Loss damper{}, lead{}, withheld{};
     if constexpr (std::is_same_v<Loss, V>) {
       const mask_of<V> is_soft = stiffness < infinity;
       const V k = zero_unless(is_soft, stiffness), c = zero_unless(is_soft, damping);
       const V fading = root * (1.0 + (0.25 + 0.5 * ratio) * (h * square_root(k) * root));
       damper = (2.0 * ratio * square_root(k) + c) / select(ratio > 0.0, fading, 1.0 + 0.5 * h * c * h_n);
       lead = shared.lead;
+      withheld = p.withheld;
     }
-    return {h, stiffness, exponent, free, p.previous, h_n, p.indentation, damper, lead};
+    return {h, stiffness, exponent, free, p.previous, h_n, p.indentation, damper, lead, withheld};
   }
 
   // q + H/2 r is the mean velocity of what slips, of which a rigid stick gives back the part e_T. Twice that,
@@ -286,15 +293,26 @@ struct penalty {
   status_of<V> keep(Node& node, V indentation, mask_of<V> slides) const {
     vector<V> slip{};
     if (node.prepared.sticks_softly) slip = strained(node, slides | !(friction * node.impulse.n > 0.0));
+    const V withheld = withheld_by(node, indentation);
     if (node.wants_energy) {
       const vector<V> before = node.state.spring;
-      const V normal = potential(indentation), tangential = tangential_potential(slip, slip);
-      node.normal_gain = normal - potential(node.state.indentation);
+      const V normal = potential(indentation) + withheld, tangential = tangential_potential(slip, slip);
+      node.normal_gain = normal - (potential(node.state.indentation) + node.state.withheld);
       node.tangential_gain = tangential - tangential_potential(before, before);
       node.stored = normal + tangential;
     }
-    node.state = {indentation, slip};
+    node.state = {indentation, slip, withheld};
     return status_of_pressed(node, slides);
+  }
+  // At most what lifts the zero of the spring, in the middle of the next step, back to the surface.
+  template <class Node>
+  V withheld_by(const Node& node, V indentation) const {
+    if (!node.prepared.withholds) return 0.0;
+    const V v = (node.v_free + node.delassus.times(node.impulse)).n;
+    const V depth = positive_part(0.0 - (node.gap + 0.5 * node.position_step * v + indentation));
+    const problem p = normal_problem(node);
+    const V most = zero_unless(indentation > 0.0, stiffness * indentation) * depth;
+    return spring_of<V>(p, p.free, node.prepared).withheld_after(v, indentation, most);
   }
   // The tangential spring after the step. A node that sticks strains it along; one that slides leaves no more
   // than the force holds, in the direction of its end.
@@ -330,8 +348,8 @@ struct penalty {
       kept = node.impulse.against(0.0, shared.per_rate);
       next = kept + strains * (node.v_free + node.delassus.times(node.impulse));
     }
-    node.refuse(node.state.indentation != 0.0, refusal::impossible_state);
-    node.state = {0.0, {0.0, next.t1, next.t2}};
+    node.refuse((node.state.indentation != 0.0) | (node.state.withheld != 0.0), refusal::impossible_state);
+    node.state = {0.0, {0.0, next.t1, next.t2}, 0.0};
     if (node.wants_energy) {
       // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
       const vector<V> v = node.v_free + node.delassus.times(node.impulse), mean = node.v_previous + v;

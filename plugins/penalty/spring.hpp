@@ -1,6 +1,7 @@
 // spring.hpp - one step of the implicit normal spring, an equation with one unknown (penalty.md):
 //     r = h <S - c phi vbar>,  v = v_free + H r,  vbar = (v^- + v)/2,  way = h (vbar + tau <v - v^->),
 //     x' = <x - way>,  S = phi (P(x) - P(x'))/(x - x'),  P = k x^(p+1)/(p+1),  phi = min(1, x/way).
+// While v < v^- a linear spring takes its lead back, -h tau <v^- - v>, as far as W, the work withheld, lasts.
 #pragma once
 
 #include <ilaw/kit/roots.hpp>
@@ -51,24 +52,38 @@ struct normal_spring {
   V step, stiffness, exponent;              // h, k, p
   V free, previous, delassus, indentation;  // v_free, v^-, H, x
   Loss damping, lead;                       // c, tau
+  Loss withheld{};                          // W
 
   using mask = mask_of<V>;
   using solution = spring_solution<V>;
   static constexpr bool loses = std::is_same_v<Loss, V>;
 
   ILAW_KIT_INLINE V mean_velocity(V v) const { return 0.5 * (previous + v); }
-  ILAW_KIT_INLINE V way(V v) const { return step * (mean_velocity(v) + lead * positive_part(v - previous)); }
+  ILAW_KIT_INLINE V way(V v) const {
+    const V ahead = step * (mean_velocity(v) + lead * positive_part(v - previous));
+    if constexpr (loses)
+      if (any(withheld > 0.0)) return select((withheld > 0.0) & (v < previous), way_back(v), ahead);
+    return ahead;
+  }
+  // W after a step that ends with v and x', at most `most`.
+  V withheld_after(V v, V end, V most) const requires loses {
+    const V work = 0.5 * soft() * (indentation + end) * (step * lead * (v - previous));
+    return zero_unless(end > 0.0, smaller(positive_part(withheld + work), most));
+  }
 
   // p = 1.
-  ILAW_KIT_INLINE solution linear() const {
-    V k = stiffness;
-    Loss rigid{}, never{}, tau{};
-    if constexpr (loses) {
-      k = soft();
-      rigid = select(stiffness == infinity, V(1.0), V(0.0));
-      never = select(stiffness == infinity, V(infinity), V(0.0));
-      tau = zero_unless(leads(k, rigid), lead);
-    }
+  ILAW_KIT_INLINE solution linear() const requires(!loses) { return linear_with(Loss{}, stiffness, Loss{}); }
+  ILAW_KIT_INLINE solution linear() const requires(loses) {
+    const V k = soft(), rigid = select(stiffness == infinity, V(1.0), V(0.0));
+    const mask goes_on = leads(k, rigid);
+    const solution found = linear_with(zero_unless(goes_on, lead), k, rigid);
+    const mask returns = (withheld > 0.0) & !goes_on;
+    return any(returns) ? select(returns, linear_back(k), found) : found;
+  }
+  // With this tau, whatever the sign of v - v^-.
+  ILAW_KIT_INLINE solution linear_with(Loss tau, V k, Loss rigid) const {
+    Loss never{};
+    if constexpr (loses) never = select(stiffness == infinity, V(infinity), V(0.0));
     // Closed to the end all is linear, r/2 = drive/resists, where that does not let it open.
     const V h = delassus, x = indentation, push = 0.5 * step * k, sum = free + previous;
     const V travel = 0.5 * step * sum + step * tau * (free - previous);
@@ -81,7 +96,7 @@ struct normal_spring {
 
     // Where it opens within the step, S = P(x)/way.
     const V held = positive_part(push * x - 0.5 * step * damping * sum);
-    const quotient open_way = opening(travel + 0.5 * step * x * damping * h, give, held);
+    const quotient open_way = opening(x, travel + 0.5 * step * x * damping * h, give, held);
     const V half = select(opens, open_way.numerator, drive) / select(opens, open_way.denominator, resists);
     const V r = half + half, stretch = step * (0.5 + tau);
     const V gain =
@@ -107,7 +122,7 @@ struct normal_spring {
     const V drive = pushes + stiff * ((x - z) - travel), resists = 1.0 + give * stiff;
 
     const V held = positive_part(force * (a * x) - c * travel);  // P(x) = k x^(5/2)/(5/2)
-    const quotient open_way = opening(travel + give * c * x, 4.0 * give, held);
+    const quotient open_way = opening(x, travel + give * c * x, 4.0 * give, held);
     const V half = select(opens, open_way.numerator, positive_part(drive)) /
                    select(opens, open_way.denominator, resists + resists);
     const V r = half + half, gain = 0.5 * step * select(opens, r + c * x, stiff);
@@ -159,15 +174,14 @@ struct normal_spring {
   }
 
  private:
-  // r (linear + give r/4) = x held, the quadratic equation of a spring that opens: r/2, not yet divided.
+  // r (linear + give r/4) = length held, the quadratic equation of a spring that opens: r/2, not yet divided.
   // Lengths that are squared are brought to [2, 4) by a power of two, to stay within the range of numbers.
   struct quotient {
     V numerator, denominator, root;
   };
-  ILAW_KIT_INLINE quotient opening(V linear, V give, V held) const {
-    const power_scale<V> scale =
-        power_scale_of(larger(step * (absolute(free) + absolute(previous)), indentation));
-    const V x = scale.down * indentation, b = scale.down * linear;
+  ILAW_KIT_INLINE quotient opening(V length, V linear, V give, V held) const {
+    const power_scale<V> scale = power_scale_of(larger(step * (absolute(free) + absolute(previous)), length));
+    const V x = scale.down * length, b = scale.down * linear;
     const V root = square_root(b * b + give * (x * (scale.down * held)));
     const V unscaled = 0.5 * scale.up;
     return {select(linear > 0.0, x * held, (root - b) * unscaled), select(linear > 0.0, b + root, give),
@@ -175,6 +189,45 @@ struct normal_spring {
   }
   // What a rigid spring multiplies by it counts nowhere.
   ILAW_KIT_INLINE V soft() const { return zero_unless(stiffness < infinity, stiffness); }
+  // S along a way that the spring goes in a step, p = 1.
+  ILAW_KIT_INLINE V force_along(V travel) const {
+    const V x = indentation;
+    return 0.5 * soft() * select(travel > x, x * x / travel, x + x - travel);
+  }
+  // S = k (x - h vbar/2) + k W/(2 S): all of W is given back. Where it opens, S = (P(x) + W)/(h vbar).
+  [[gnu::noinline]] V way_back(V v) const {
+    const V mean = step * mean_velocity(v), all = mean + step * lead * (v - previous), k = soft();
+    const mask lasts = force_along(all) * (mean - all) <= withheld;
+    const V b = k * (indentation - 0.5 * mean), root = square_root(b * b + 2.0 * k * withheld);
+    const V force = select(b > 0.0, 0.5 * (b + root), k * withheld / (root - b));
+    const V closed = mean - withheld / force, open = mean * (indentation / stretched());
+    return select(lasts, all, select(2.0 * force > k * indentation, closed, open));
+  }
+  // x (1 + W/P(x)).
+  ILAW_KIT_INLINE V stretched() const { return indentation + 2.0 * withheld / (soft() * indentation); }
+  // The step with v < v^-: all of the lead is taken back, or what W lasts for.
+  [[gnu::noinline]] solution linear_back(V k) const {
+    const solution all = linear_with(lead, k, V(0.0));
+    const V v = free + delassus * all.impulse, turned = step * lead * (previous - v);
+    const mask lasts = force_along(step * mean_velocity(v) - turned) * turned <= withheld;
+    return select(lasts, all, linear_to_the_last(k));
+  }
+  // All of W is given back. With q = 1 + h c H/2 and s = v_free + v^-, closed to the end,
+  //     (q + h^2 k H/4) S^2 - k (q x - h s/4) S - q k W/2 = 0,    r = h (S - c s/2)/q.
+  ILAW_KIT_INLINE solution linear_to_the_last(V k) const {
+    const V h = delassus, x = indentation, c = damping, sum = free + previous, longer = stretched();
+    const V q = 1.0 + 0.5 * step * c * h, resists = q + 0.25 * step * step * k * h;
+    const V b = k * (q * x - 0.25 * step * sum), root = square_root(b * b + 2.0 * resists * k * withheld * q);
+    const V force = select(b > 0.0, 0.5 * (b + root) / resists, k * withheld * q / (root - b));
+    const mask opens = !(2.0 * force > k * x);
+    const V held = positive_part(0.5 * step * (k * x - c * sum));
+    const quotient open_way = opening(longer, 0.5 * step * (sum + longer * c * h), 2.0 * step * h, held);
+    const V open_impulse = 2.0 * (open_way.numerator / open_way.denominator);
+    const V r = positive_part(select(opens, open_impulse, step * (force - 0.5 * c * sum) / q));
+    const V end = select(r > 0.0, 2.0 * force / k - x, x - way_back(free));
+    const V gain = 0.5 * step * select(opens, r + longer * c, 0.5 * step * k * force / root + c);
+    return {r, zero_unless(!opens, positive_part(end)), select(opens, open_way.root, q) / gain};
+  }
   // Whether v > v^- in the end: whether at v = v^- the spring gives more than leads there.
   ILAW_KIT_INLINE mask leads(V k, V rigid) const {
     const V x = indentation, travel = step * previous, viscous = damping * previous;

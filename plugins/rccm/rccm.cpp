@@ -94,7 +94,7 @@ struct rccm : adhesive_bond<rccm, V> {
     const V before = found.memory, rate = viscosity / all.step.velocity_step,
             most = mean_kappa(step, before, before);
     const auto trial = [&](V beta) ILAW_KIT_LAMBDA {
-      step.move(found.motion, mean_kappa(step, before, beta), this->friction_after(before, beta));
+      step.move(found.motion, mean_kappa(step, before, beta), this->mean_friction(before, beta));
       found.left = found.left | (where & found.motion.unsolved);
       const V q = mean_square(step, found.motion), size = 0.5 * q + rate, sum = before + beta;
       const V softer = 0.5 * sum * normal_stiffness * step.compliance * normal_stiffness * beta;

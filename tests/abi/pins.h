@@ -12,8 +12,11 @@ struct ilaw_pin {
   const char *name, *member;
   size_t offset, size;
 };
-const struct ilaw_pin* ilaw_pins_frozen(void); /* members of the frozen header, where they were */
-const struct ilaw_pin* ilaw_pins_today(void);  /* the same members, where they are */
+/* Members of the frozen header of a version, where they were; and where they are today. */
+const struct ilaw_pin* ilaw_pins_1_0_frozen(void);
+const struct ilaw_pin* ilaw_pins_1_0_today(void);
+const struct ilaw_pin* ilaw_pins_1_1_frozen(void);
+const struct ilaw_pin* ilaw_pins_1_1_today(void);
 #ifdef __cplusplus
 }
 #endif

@@ -257,7 +257,7 @@ TEST(Bench, RefusesWhatCannotBeMeasured) {
       {"no_such_law", "no_such_law"},
       {"contact --law coulomb", "--law: found 'coulomb', which is not in"},
       {"contact --delassus round",
-       "delassus: found 'round', expected one of scalar, diagonal, transverse, full"},
+       "delassus: found 'round', expected one of scalar, diagonal, transverse, full, transverse_spin"},
       {"contact --layout aos,zigzag", "layout: found 'zigzag', expected one of aos, soa"},
       {"contact --parameters '{\"restitution\": 2}'", "restitution"},
       {"contact --parameters '{'", "--parameters: found '{', expected an object in JSON"},

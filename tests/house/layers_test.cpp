@@ -141,7 +141,7 @@ TEST(Layers, RoomsOfTheKitStandOnEachOther) {
     const std::string name = fs::relative(entry.path(), include).string();
     ASSERT_LT(room_of(name), kit_rooms.size()) << name << " stands in no room";
     for (const std::string& header : kit_includes_of(entry.path())) {
-      if (header.starts_with("ilaw/kit/detail/"))
+      if (header.starts_with("ilaw/kit/detail/") || header.starts_with("ilaw/kit/device/"))
         EXPECT_TRUE(name.ends_with("/plugin.hpp") || header.ends_with("/level.hpp") ||
                     header.ends_with("/window_values.hpp"))
             << name << ": " << header;
@@ -154,14 +154,15 @@ TEST(Layers, RoomsOfTheKitStandOnEachOther) {
 // `using namespace ilaw::kit` brings in nothing of the machinery.
 TEST(Layers, MachineryOfTheKitHasANamespaceOfItsOwn) {
   int namespaces = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(ILAW_SOURCE) / "api/include/ilaw/kit/detail")) {
-    std::ifstream stream(entry.path());
-    for (std::string line; std::getline(stream, line);) {
-      if (!line.starts_with("namespace ")) continue;
-      ++namespaces;
-      EXPECT_EQ(line, "namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {") << entry.path();
+  for (const char* room : {"detail", "device"})
+    for (const auto& entry : fs::directory_iterator(fs::path(ILAW_SOURCE) / "api/include/ilaw/kit" / room)) {
+      std::ifstream stream(entry.path());
+      for (std::string line; std::getline(stream, line);) {
+        if (!line.starts_with("namespace ")) continue;
+        ++namespaces;
+        EXPECT_EQ(line, "namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {") << entry.path();
+      }
     }
-  }
   EXPECT_GT(namespaces, 10);
 }
 

@@ -29,7 +29,7 @@ std::vector<LawCase> cases_with_wear() {
   return cases;
 }
 
-class HeatOf : public ::testing::TestWithParam<std::tuple<LawCase, std::uint32_t, std::uint32_t>> {};
+class HeatOf : public ::testing::TestWithParam<Combination> {};
 
 // heat + counterpart_heat is the friction part of the energy. friction/|r_T| is the mean speed of slip, or
 // |v_T^- + v_T|/2 without friction, and the depth k_w p |v_T| h with p = r_N/(h A).
@@ -69,9 +69,7 @@ TEST_P(HeatOf, IsTheFrictionPartOfTheEnergy) {
     EXPECT_GT(warmed, nodes.count);
   }
 }
-INSTANTIATE_TEST_SUITE_P(Laws, HeatOf,
-                         ::testing::Combine(::testing::ValuesIn(cases_with_wear()), delassus_forms,
-                                            ::testing::Values(2U, 3U)),
+INSTANTIATE_TEST_SUITE_P(Laws, HeatOf, ::testing::ValuesIn(combinations_of(cases_with_wear())),
                          name_of_combination);
 
 // ---- closed forms

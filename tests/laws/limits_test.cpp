@@ -11,9 +11,7 @@ namespace {
 constexpr std::size_t node_count = 1000;
 constexpr int most_steps = 375;  // in 2D and 3D together: 750,000
 
-using Drawn = std::tuple<LawCase, std::uint32_t, std::uint32_t>;
-
-class Limits : public ::testing::TestWithParam<Drawn> {};
+class Limits : public ::testing::TestWithParam<Combination> {};
 
 TEST_P(Limits, GiveTheSameBits) {
   const auto& [law, form, dimension] = GetParam();
@@ -40,9 +38,7 @@ TEST_P(Limits, GiveTheSameBits) {
   EXPECT_GT(acting, 200 * steps);
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, Limits,
-                         ::testing::Combine(::testing::ValuesIn(law_cases("limits")), delassus_forms,
-                                            ::testing::Values(2U, 3U)),
+INSTANTIATE_TEST_SUITE_P(Laws, Limits, ::testing::ValuesIn(combinations_of(law_cases("limits"))),
                          name_of_combination);
 
 }  // namespace

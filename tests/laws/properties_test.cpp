@@ -56,8 +56,6 @@ int status_of(const std::string& name) {
   return statuses.at(name);
 }
 
-using Drawn = std::tuple<LawCase, std::uint32_t, std::uint32_t>;
-
 double length(const Vector& a) { return std::sqrt(dot(a, a)); }
 
 // Signorini, the cone, and maximum dissipation in it: no impulse of the cone takes more from the slip u_T
@@ -79,7 +77,7 @@ void expect_contact(const Law& law, bool open, const Vector& r, const Vector& u,
   ASSERT_NEAR(-(r[1] * u[1] + r[2] * u[2]), most, tolerance * length(r));
 }
 
-class AnyLaw : public ::testing::TestWithParam<Drawn> {
+class AnyLaw : public ::testing::TestWithParam<Combination> {
  protected:
   // Histories that start unloaded, open or just closed; the gap follows the motion. Velocities are drawn
   // anew, without external force (v_free = v^-); on the path of a law that sees one they change by random
@@ -141,16 +139,16 @@ class AnyLaw : public ::testing::TestWithParam<Drawn> {
     }
   }
 
-  // The impulse takes from the kinetic energy at least what the interface stores more than before; no part of
-  // the output is negative.
+  // The impulse takes from the kinetic energy at least what the interface stores more than before; no part
+  // that dissipates is negative.
   void expect_no_energy_created(const Runner& run, std::size_t i, double stored) const {
     const Vector& r = run.r[i];
-    for (const double part : run.energy[i]) ASSERT_GE(part, 0.0);
+    for (std::size_t part = 0; part < ILAW_ENERGY_STORED; ++part) ASSERT_GE(run.energy[i][part], 0.0);
     if (!law.keeps_energy) return;
     const double work = 0.5 * (dot(r, nodes.v_previous[i]) + dot(r, run.v[i]));
     const double now = run.energy[i][ILAW_ENERGY_STORED];
     const double natural = length(r) * (natural_velocity(i, r) + length(nodes.v_previous[i]));
-    ASSERT_LE(work + now - stored, 32 * ulp * (natural + now + stored));
+    ASSERT_LE(work + now - stored, 32 * ulp * (natural + std::abs(now) + std::abs(stored)));
   }
 
   const Law law{std::get<0>(GetParam())};
@@ -214,9 +212,7 @@ TEST_P(AnyLaw, IsIndifferentToTheFrame) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, AnyLaw,
-                         ::testing::Combine(::testing::ValuesIn(law_cases("properties")), delassus_forms,
-                                            ::testing::Values(2U, 3U)),
+INSTANTIATE_TEST_SUITE_P(Laws, AnyLaw, ::testing::ValuesIn(combinations_of(law_cases("properties"))),
                          name_of_combination);
 
 // A law without cases would be left out of all this, and of the tests of the kit.

@@ -98,12 +98,18 @@ inline Inertia inertia_of(const LawCase& given) {
   return given.more.value("inertia", "any") == "isotropic" ? Inertia::isotropic : Inertia::any;
 }
 
-// Each law in each form of H, in 2D and 3D.
-inline const auto delassus_forms =
-    ::testing::Values(std::uint32_t{ILAW_DELASSUS_SCALAR}, std::uint32_t{ILAW_DELASSUS_DIAGONAL},
-                      std::uint32_t{ILAW_DELASSUS_FULL}, std::uint32_t{ILAW_DELASSUS_TRANSVERSE});
-inline std::string name_of_combination(
-    const ::testing::TestParamInfo<std::tuple<LawCase, std::uint32_t, std::uint32_t>>& drawn) {
+// Each case in each form of H that its law serves, in 2D and 3D.
+using Combination = std::tuple<LawCase, std::uint32_t, std::uint32_t>;
+inline std::vector<Combination> combinations_of(const std::vector<LawCase>& cases) {
+  std::vector<Combination> all;
+  for (const LawCase& law : cases)
+    for (const std::uint32_t form :
+         {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE})
+      for (const std::uint32_t dimension : {2U, 3U})
+        if (serves(law, form)) all.emplace_back(law, form, dimension);
+  return all;
+}
+inline std::string name_of_combination(const ::testing::TestParamInfo<Combination>& drawn) {
   const auto& [law, form, dimension] = drawn.param;
   return law.name + "_" + name_of_form(form) + "_" + std::to_string(dimension) + "D";
 }

@@ -140,7 +140,16 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NoDimension", [](Description& d) { d.law.dimensions = 0; },
               "law 'bond': dimensions is 0, expected at least one of the bits of 14"},
         Fault{"NoForm", [](Description& d) { d.law.delassus_forms = 0; },
-              "law 'bond': delassus_forms is 0, expected at least one of the bits of 15"},
+              "law 'bond': delassus_forms is 0, expected at least one of the bits of 31"},
+        Fault{"SpinsInThePlane",
+              [](Description& d) {
+                d.law.delassus_forms = ILAW_DELASSUS_TRANSVERSE_SPIN;
+                d.law.dimensions = ILAW_DIMENSION_2;
+              },
+              "law 'bond': delassus_forms has spins, expected dimension 3 among dimensions"},
+        Fault{
+            "ParameterWithoutSpins", [](Description& d) { d.number.flags |= ILAW_PARAMETER_NEEDS_SPINS; },
+            "law 'bond': parameter 'strength' needs spins, expected a form with spins among delassus_forms"},
         Fault{"NoFrame", [](Description& d) { d.law.frames = 0; },
               "law 'bond': frames is 0, expected at least one of the bits of 3"},
         Fault{"UnknownFrame", [](Description& d) { d.law.frames = 4; },
@@ -221,8 +230,8 @@ INSTANTIATE_TEST_SUITE_P(
               "law 'bond': parameter 'strength' is declared twice"},
         Fault{"UnknownKind", [](Description& d) { d.number.kind = 9; },
               "law 'bond': parameter 'strength': kind is 9, expected at most 2"},
-        Fault{"UnknownFlags", [](Description& d) { d.number.flags = 32; },
-              "law 'bond': parameter 'strength': flags is 32, expected only the bits of 31"},
+        Fault{"UnknownFlags", [](Description& d) { d.number.flags = 64; },
+              "law 'bond': parameter 'strength': flags is 64, expected only the bits of 63"},
         Fault{"RangeUpsideDown", [](Description& d) { d.number.minimum = 2.0; },
               "law 'bond': parameter 'strength': minimum 2.000000 is not below maximum 1.000000"},
         Fault{"RangeOfNoNumbers", [](Description& d) { d.number.maximum = NAN; },

@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"bad_default",
                 "law 'zero': parameter 'strength': default 2.000000 lies outside its own range"},
         Refused{"long_count", "law 'zero': parameters has 4000000000 entries, expected at most 10000"},
-        Refused{"unknown_bits", "law 'zero': delassus_forms is 65, expected only the bits of 15"},
+        Refused{"unknown_bits", "law 'zero': delassus_forms is 65, expected only the bits of 31"},
         Refused{"unknown_frame", "law 'zero': frames is 7, expected only the bits of 3"},
         Refused{"control_text", "law 'zero': title has bytes that are no UTF-8 or control characters"},
         Refused{"no_utf8", "law 'zero': title has bytes that are no UTF-8 or control characters"},

@@ -67,6 +67,13 @@ TEST_F(Searched, RelativeEntriesOfThePathAreLeftOut) {
       << refusal_of("none");
 }
 
+// Laws of a package serve a host that links the loader of another installation.
+TEST_F(Searched, FoldersOfTheSystemAreSearched) {
+  const std::string path = ilaw::search_path() + ":";
+  for (const char* wanted : {":/usr/local/lib/ilaw:", ":/usr/lib/ilaw:"})
+    EXPECT_NE(path.find(wanted), std::string::npos) << path;
+}
+
 TEST_F(Searched, NamesWithOddLettersAreRefusedInEveryWay) {
   EXPECT_THROW(ilaw::library("he re"), ilaw::error);
   EXPECT_THROW(ilaw::library(".."), ilaw::error);

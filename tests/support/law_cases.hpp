@@ -12,6 +12,7 @@
 //   benchmarks   what ilaw bench --cases times (docs/benchmarks.md explains the keys)
 //
 // A case has "parameters" (numbers, "inf", choices; {} if left out) and, where a law has several, a "name".
+// "forms" names those of H that the law serves, where it does not serve all.
 #pragma once
 
 #include "law_runner.hpp"
@@ -98,6 +99,12 @@ inline std::uint32_t form_of(const LawCase& given) {
        {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE})
     if (name == name_of_form(form)) return form;
   throw std::runtime_error(given.name + ": no form of H is called " + name);
+}
+
+// Whether the "forms" of H of a case, all if left out, have this one.
+inline bool serves(const LawCase& given, std::uint32_t form) {
+  const json forms = given.more.value("forms", json());
+  return forms.is_null() || std::find(forms.begin(), forms.end(), name_of_form(form)) != forms.end();
 }
 
 }  // namespace ilaw::testing

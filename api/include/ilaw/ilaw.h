@@ -1,4 +1,4 @@
-/* ilaw.h - the interface-law ABI, version 1.0.
+/* ilaw.h - the interface-law ABI, version 1.1.
  *
  * An interface law answers one question per interface node of an explicit dynamics code: given the
  * velocity v_free that the node would have without interface, and the local inverse mass H (the
@@ -47,7 +47,7 @@
 extern "C" {
 #endif
 
-enum { ILAW_ABI_MAJOR = 1, ILAW_ABI_MINOR = 0 };
+enum { ILAW_ABI_MAJOR = 1, ILAW_ABI_MINOR = 1 };
 /* The major version is part of the name: a library for ABI 2 is not found by a host of ABI 1. */
 #define ILAW_ENTRY ilaw_plugin_v1
 #define ILAW_ENTRY_NAME "ilaw_plugin_v1"
@@ -104,12 +104,18 @@ enum { ILAW_DIMENSION_1 = 1 << 1, ILAW_DIMENSION_2 = 1 << 2, ILAW_DIMENSION_3 = 
  *   DIAGONAL  d values:       H_00, H_11, H_22, in the axes of the vectors
  *   FULL      d(d+1)/2 values: 1D H_00; 2D H_00 H_11 H_01; 3D H_00 H_11 H_22 H_01 H_02 H_12
  *   TRANSVERSE 2 values:      normal h_N and tangential h_T, H = h_N n n^T + h_T (I - n n^T), in any axes
- * (in dimension 1, too, where the second is not read). A law serves the forms in its mask. */
+ * (in dimension 1, too, where the second is not read). A law serves the forms in its mask.
+ *   TRANSVERSE_SPIN 5 values, dimension 3 (1.1): h_N h_T k j_N j_T, with H as before and
+ *     v = v_free + H r + k n x m ,   w = w_free + J m - k n x r ,   J = j_N n n^T + j_T (I - n n^T)
+ * for the relative velocity v at the contact point, the relative spin w and the moment m. A sphere of radius
+ * R on a fixed obstacle has h_N = 1/M, h_T = 1/M + R^2/I, k = R/I, j_N = j_T = 1/I. k changes its sign with
+ * n. */
 enum {
   ILAW_DELASSUS_SCALAR = 1,
   ILAW_DELASSUS_DIAGONAL = 2,
   ILAW_DELASSUS_FULL = 4,
   ILAW_DELASSUS_TRANSVERSE = 8,
+  ILAW_DELASSUS_TRANSVERSE_SPIN = 16,
 };
 
 /* Axes in which vectors and H are given; both frames are right-handed. */
@@ -172,6 +178,7 @@ enum {
   /* A field of the host's model (temperature, fluid_pressure: glossary in docs/abi.md), at the time of the
    * batch. A host that has a field of this name passes it per node, unless its user gave a value. */
   ILAW_PARAMETER_IS_FIELD = 1 << 4,
+  ILAW_PARAMETER_NEEDS_SPINS = 1 << 5, /* create refuses it for a form of H without spins (1.1) */
 };
 
 /* How the value of a parameter is given. */
@@ -210,7 +217,8 @@ enum {
 };
 
 /* Components of the energy output, per node and step; ABI 1 has these four for ever. The work of the impulse
- * over the step is r.(v_previous + v)/2, exactly, in a central-difference host; it divides into these parts.
+ * over the step is r.(v_previous + v)/2, exactly, in a central-difference host, and that of the moment
+ * m.(spin_previous + spin)/2; their sum divides into these parts.
  * Dissipated parts are never negative; a part that overflows is +infinity, none is NaN. */
 enum {
   ILAW_ENERGY_FRICTION = 0, /* dissipated by friction */
@@ -383,6 +391,11 @@ typedef struct ilaw_batch {
   int64_t status_stride;
   const ilaw_output* amounts; /* 1 each, in the order of the instance info; an absent one is not wanted; null:
                                  none is */
+  ilaw_input spin_free; /* the next four (1.1) where the form of H has spins, 3 each: spin without interface,
+                           relative to the obstacle's [rad/s] */
+  ilaw_input spin_previous; /* before this step; read where v_previous is */
+  ilaw_output moment;       /* m, on the body [N.m.s]; always written */
+  ilaw_output spin;         /* w, optional */
 } ilaw_batch;
 
 /* Findings of evaluate and initialise. The caller sets struct_size and zeroes the rest. */
@@ -456,9 +469,9 @@ typedef struct ilaw_law {
    * on that node's inputs and the scalars of the batch alone, bit for bit: not on the other nodes, their
    * order, the layout, threads, the processor, or which outputs are asked for. A node with bad input, of
    * which a state that the law cannot have written is one, gets r = 0, state_out = state_in, status
-   * ILAW_BAD_INPUT, energy and amounts 0 and velocity = v_free; the others are evaluated as ever. report may
-   * be null. Returns ILAW_OK, ILAW_BAD_NODES, or ILAW_INVALID_ARGUMENT or ILAW_UNSUPPORTED with nothing
-   * written. */
+   * ILAW_BAD_INPUT, energy and amounts 0, velocity = v_free, m = 0 and spin = spin_free; the others are
+   * evaluated as ever. report may be null. Returns ILAW_OK, ILAW_BAD_NODES, or ILAW_INVALID_ARGUMENT or
+   * ILAW_UNSUPPORTED with nothing written. */
   ilaw_batch_function evaluate;
 
   /* [any-thread] The extension of this name: a table of functions of the type that the extension's header

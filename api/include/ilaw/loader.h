@@ -7,7 +7,7 @@
  *   1. the folders of the environment variable ILAW_PATH, separated by ':' (empty and relative entries
  *      are skipped; the variable is not read in a set-uid program),
  *   2. the installed folder: lib/ilaw beside the bin/ of the running program (not in a set-uid program),
- *      then the folder fixed when the loader was built.
+ *      then that fixed when the loader was built, /usr/local/lib/ilaw and /usr/lib/ilaw.
  * A folder that every user may write to is not searched; the message of an opening that fails says so.
  * A text with a '/' in it is an explicit path; anything else is a name: letters, digits, '_', '-', '+', '.',
  * the first not '.'. A host that has names from an input file opens them by ilaw_library_open_named.

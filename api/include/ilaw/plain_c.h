@@ -6,9 +6,10 @@
  *   static const ilaw_plain_law brake = {{ILAW_PLAIN_LAW, .id = "brake", ...}, step};
  *   ILAW_PLAIN_LIBRARY("brake", "1.0.0", "vendor", "licence", &brake.law)      one law or several
  *
- * Serves isotropic laws (the tangent of a host is not read) with scalar or transverse H, whose state consists
- * of scalars that begin at 0, and which read all their inputs at every step. plugins/template_c is an
- * example. Compile with -ffp-contract=off: a fused multiply-add makes the bits depend on the processor.
+ * Serves isotropic laws (the tangent of a host is not read) with scalar or transverse H, also with spins
+ * (ILAW_PLAIN_LAW_OF), whose state consists of scalars that begin at 0, and which read all their inputs at
+ * every step. plugins/template_c is an example. Compile with -ffp-contract=off: a fused multiply-add makes
+ * the bits depend on the processor.
  *
  * SPDX-License-Identifier: BSD-3-Clause
  */
@@ -32,9 +33,10 @@ enum { ILAW_PLAIN_MAX = 16 }; /* parameters, state variables, amounts of a law *
 /* A node in the axes of the host; n is the normal, vectors have zeros beyond the dimension. */
 typedef struct ilaw_node {
   double time, velocity_step, position_step;
-  double gap, area; /* gap: without the offset; 0 where the law does not read them */
-  double h_N, h_T;  /* H = h_N n n^T + h_T (I - n n^T) */
-  double n[3], v_free[3], v_previous[3];
+  double gap, area;   /* gap: without the offset; 0 where the law does not read them */
+  double h_N, h_T;    /* H = h_N n n^T + h_T (I - n n^T) */
+  double k, j_N, j_T; /* where H has spins, as they have; all 0 elsewhere */
+  double n[3], v_free[3], v_previous[3], spin_free[3], spin_previous[3];
   double state[ILAW_PLAIN_MAX];
   double value[ILAW_PLAIN_MAX]; /* of each parameter of the law; see ilaw_value for tables */
   const ilaw_instance* instance;
@@ -42,7 +44,7 @@ typedef struct ilaw_node {
 
 /* All zero when step begins, but state (the node's) and stable_velocity_step (INFINITY). */
 typedef struct ilaw_node_result {
-  double r[3], state[ILAW_PLAIN_MAX], energy[ILAW_ENERGY_COUNT], amounts[ILAW_PLAIN_MAX];
+  double r[3], m[3], state[ILAW_PLAIN_MAX], energy[ILAW_ENERGY_COUNT], amounts[ILAW_PLAIN_MAX];
   double stable_velocity_step;
   ilaw_status status;
 } ilaw_node_result;
@@ -98,6 +100,12 @@ static inline double ilaw_length(const double* a) {
 static inline void ilaw_tangential(const double* a, const double* n, double* out) {
   const double a_N = ilaw_dot(a, n);
   for (int c = 0; c < 3; ++c) out[c] = a[c] - a_N * n[c];
+}
+
+static inline void ilaw_cross(const double* a, const double* b, double* out) {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* ---- arrays ------------------------------------------------------------------------------------- */
@@ -213,6 +221,8 @@ static inline const char* ilaw_plain_keep(ilaw_instance* own, uint32_t p, const 
   const ilaw_parameter* known = own->plain->law.parameters[p];
   const int is_choice = known->kind == ILAW_PARAMETER_CHOICE;
   if (own->given[p]++) return "is given twice";
+  if (known->flags & ILAW_PARAMETER_NEEDS_SPINS && own->form != ILAW_DELASSUS_TRANSVERSE_SPIN)
+    return "needs spins, which this form of H has not";
   own->kind[p] = a->kind, own->number[p] = a->number;
   if (a->kind == ILAW_VALUE_NUMBER && !is_choice)
     return ilaw_plain_is_allowed(known, a->number) ? NULL : "is out of range";
@@ -313,6 +323,7 @@ static inline ilaw_result ILAW_CALL ilaw_plain_create(const char* id, const ilaw
   if (!s || s->struct_size < ILAW_SETUP_SIZE_1_0 || (s->argument_count && !s->arguments))
     return ilaw_plain_refuse(ILAW_INVALID_ARGUMENT, message, size, id, "the setup is null or too small");
   if (s->flags || s->dimension < 1 || s->dimension > 3 || !(1U << s->dimension & law->dimensions) ||
+      (s->delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN && s->dimension != 3) ||
       !ILAW_PLAIN_IS_ONE(s->delassus_form, law->delassus_forms) ||
       !ILAW_PLAIN_IS_ONE(s->frame, law->frames) || !ILAW_PLAIN_IS_ONE(s->numbers, law->numbers))
     return ilaw_plain_refuse(ILAW_UNSUPPORTED, message, size, id,
@@ -379,6 +390,8 @@ static inline const char* ilaw_plain_wrong_call(const ilaw_instance* own, const 
 static inline const char* ilaw_plain_wrong_arrays(const ilaw_instance* own, const ilaw_batch* b) {
   const ilaw_law* law = &own->plain->law;
   const ilaw_inputs in = ilaw_plain_inputs(own);
+  const int has_spins = own->form == ILAW_DELASSUS_TRANSVERSE_SPIN;
+  const ilaw_output* outputs[] = {&b->impulse, &b->velocity, &b->energy, &b->moment, &b->spin};
   const struct {
     const ilaw_input* array;
     int is_read;
@@ -387,7 +400,9 @@ static inline const char* ilaw_plain_wrong_arrays(const ilaw_instance* own, cons
                 {&b->gap, (in & ILAW_INPUT_GAP) != 0},
                 {&b->v_previous, (in & ILAW_INPUT_V_PREVIOUS) != 0},
                 {&b->area, (in & ILAW_INPUT_AREA) != 0},
-                {&b->normal, (in & ILAW_INPUT_NORMAL) != 0}};
+                {&b->normal, (in & ILAW_INPUT_NORMAL) != 0},
+                {&b->spin_free, has_spins},
+                {&b->spin_previous, has_spins && (in & ILAW_INPUT_V_PREVIOUS)}};
   const char* wrong = NULL;
   if (!(b->velocity_step > 0.0 && b->velocity_step < INFINITY)) return "velocity_step is not finite and > 0";
   if (!(b->position_step > 0.0 && b->position_step < INFINITY)) return "position_step is not finite and > 0";
@@ -401,12 +416,10 @@ static inline const char* ilaw_plain_wrong_arrays(const ilaw_instance* own, cons
   for (uint32_t k = 0; k < own->per_node_count && !wrong; ++k)
     wrong =
         ilaw_plain_wrong_array(own, b->per_node_parameters[k].values, b->per_node_parameters[k].floats, 1);
-  for (uint32_t k = 0; k < 3 + (b->amounts ? law->amount_count : 0) && !wrong; ++k) {
-    const ilaw_output* a = k == 0   ? &b->impulse
-                           : k == 1 ? &b->velocity
-                           : k == 2 ? &b->energy
-                                    : &b->amounts[k - 3];
-    wrong = ilaw_plain_wrong_array(own, a->values, a->floats, k == 0);
+  const uint32_t fixed = has_spins ? 5 : 3;
+  for (uint32_t k = 0; k < fixed + (b->amounts ? law->amount_count : 0) && !wrong; ++k) {
+    const ilaw_output* a = k < fixed ? outputs[k] : &b->amounts[k - fixed];
+    wrong = ilaw_plain_wrong_array(own, a->values, a->floats, a == &b->impulse || a == &b->moment);
     if ((a->values || a->floats) && a->node_stride == 0 && b->node_count > 1)
       wrong = "an output has a node stride of 0";
   }
@@ -424,6 +437,21 @@ static inline int ilaw_plain_vector(const ilaw_input* a, int64_t i, uint32_t dim
   return is_finite;
 }
 
+/* The same of k, J and spins. k^2 < h_T j_T, or the inverse mass were not positive definite. */
+static inline const char* ilaw_plain_read_spins(const ilaw_instance* own, const ilaw_batch* b, int64_t i,
+                                                ilaw_node* node) {
+  node->k = ilaw_get(&b->delassus, i, 2);
+  node->j_N = ilaw_get(&b->delassus, i, 3), node->j_T = ilaw_get(&b->delassus, i, 4);
+  if (!(node->j_N > 0.0 && node->j_N < INFINITY && node->j_T > 0.0 && node->j_T < INFINITY) ||
+      !(node->k / node->h_T * (node->k / node->j_T) < 1.0 - 1e-12))
+    return "H is not positive definite";
+  if (!ilaw_plain_vector(&b->spin_free, i, 3, node->spin_free)) return "spin_free is not finite";
+  if (ilaw_plain_inputs(own) & ILAW_INPUT_V_PREVIOUS &&
+      !ilaw_plain_vector(&b->spin_previous, i, 3, node->spin_previous))
+    return "spin_previous is not finite";
+  return NULL;
+}
+
 /* Null, or why the input of the node is bad. */
 static inline const char* ilaw_plain_read(const ilaw_instance* own, const ilaw_batch* b, int64_t i,
                                           ilaw_node* node) {
@@ -434,9 +462,13 @@ static inline const char* ilaw_plain_read(const ilaw_instance* own, const ilaw_b
   node->velocity_step = b->velocity_step, node->position_step = b->position_step;
   if (!ilaw_plain_vector(&b->v_free, i, own->dimension, node->v_free)) return "v_free is not finite";
   node->h_N = node->h_T = ilaw_get(&b->delassus, i, 0);
-  if (own->form == ILAW_DELASSUS_TRANSVERSE && own->dimension > 1) node->h_T = ilaw_get(&b->delassus, i, 1);
+  if (own->form != ILAW_DELASSUS_SCALAR && own->dimension > 1) node->h_T = ilaw_get(&b->delassus, i, 1);
   if (!(node->h_N > 0.0 && node->h_N < INFINITY && node->h_T > 0.0 && node->h_T < INFINITY))
     return "H is not positive definite";
+  if (own->form == ILAW_DELASSUS_TRANSVERSE_SPIN) {
+    const char* wrong = ilaw_plain_read_spins(own, b, i, node);
+    if (wrong) return wrong;
+  }
   if (in & ILAW_INPUT_GAP) {
     const int has_offset = b->gap_offset.values || b->gap_offset.floats;
     node->gap = ilaw_get(&b->gap, i, 0);
@@ -472,19 +504,38 @@ static inline void ilaw_plain_spoil(const ilaw_instance* own, const ilaw_batch* 
   memset(result, 0, sizeof *result);
   result->status = ILAW_BAD_INPUT, result->stable_velocity_step = INFINITY;
   ilaw_plain_vector(&b->v_free, i, own->dimension, node->v_free);
+  if (own->form == ILAW_DELASSUS_TRANSVERSE_SPIN) ilaw_plain_vector(&b->spin_free, i, 3, node->spin_free);
   for (uint32_t s = 0; s < own->plain->law.state_variable_count; ++s)
     result->state[s] = ilaw_get(&b->state_in, i, s);
+}
+
+/* v = v_free + H r + k n x m, w = w_free + J m - k n x r. */
+static inline void ilaw_plain_move(const ilaw_node* node, const ilaw_node_result* result, double* v,
+                                   double* w) {
+  const double r_N = ilaw_dot(result->r, node->n), m_N = ilaw_dot(result->m, node->n);
+  double n_m[3], n_r[3];
+  ilaw_cross(node->n, result->m, n_m);
+  ilaw_cross(node->n, result->r, n_r);
+  for (int c = 0; c < 3; ++c) {
+    const double along_r = r_N * node->n[c], along_m = m_N * node->n[c];
+    v[c] = node->v_free[c] + (node->h_N * along_r + node->h_T * (result->r[c] - along_r));
+    w[c] = node->spin_free[c] + (node->j_N * along_m + node->j_T * (result->m[c] - along_m));
+    if (node->k != 0.0) v[c] += node->k * n_m[c], w[c] -= node->k * n_r[c];
+  }
 }
 
 static inline void ilaw_plain_write(const ilaw_instance* own, const ilaw_batch* b, int64_t i,
                                     const ilaw_node* node, const ilaw_node_result* result) {
   const ilaw_law* law = &own->plain->law;
   const int is_bad = result->status == ILAW_BAD_INPUT;
-  const double r_N = is_bad ? 0.0 : ilaw_dot(result->r, node->n);
+  double v[3], w[3];
+  ilaw_plain_move(node, result, v, w);
   for (uint32_t c = 0; c < own->dimension; ++c) {
-    const double r_Nc = r_N * node->n[c], gained = node->h_N * r_Nc + node->h_T * (result->r[c] - r_Nc);
     ilaw_put(&b->impulse, i, c, result->r[c] + 0.0); /* never -0 */
-    ilaw_put(&b->velocity, i, c, is_bad ? node->v_free[c] : node->v_free[c] + gained);
+    ilaw_put(&b->velocity, i, c, is_bad ? node->v_free[c] : v[c]);
+    if (own->form != ILAW_DELASSUS_TRANSVERSE_SPIN) continue;
+    ilaw_put(&b->moment, i, c, result->m[c] + 0.0);
+    ilaw_put(&b->spin, i, c, is_bad ? node->spin_free[c] : w[c]);
   }
   for (uint32_t e = 0; e < ILAW_ENERGY_COUNT; ++e) ilaw_put(&b->energy, i, e, result->energy[e]);
   for (uint32_t a = 0; b->amounts && a < law->amount_count; ++a)
@@ -526,7 +577,8 @@ static inline ilaw_result ilaw_plain_walk(const ilaw_instance* own, const ilaw_b
     memcpy(result.state, node.state, sizeof result.state);
     result.stable_velocity_step = INFINITY;
     if (!bad) bad = own->plain->step(&node, &result);
-    if (!bad && ilaw_plain_overflows(own, result.r)) bad = "the impulse overflows";
+    if (!bad && (ilaw_plain_overflows(own, result.r) || ilaw_plain_overflows(own, result.m)))
+      bad = "the impulse or moment overflows";
     if (bad) ilaw_plain_spoil(own, b, i, &node, &result);
     if (bad && count++ == 0) first = i, reason = bad;
     ilaw_plain_write(own, b, i, &node, &result);
@@ -571,11 +623,12 @@ static inline ilaw_result ILAW_CALL ilaw_plain_initialise(const ilaw_instance* o
 
 /* ---- descriptions ------------------------------------------------------------------------------- */
 
-/* First members of a law: what this header serves and does for it. */
-#define ILAW_PLAIN_LAW                                                                                    \
+/* First members of a law: what this header serves and does for it. Forms: of H, any of SCALAR, TRANSVERSE and
+ * TRANSVERSE_SPIN. */
+#define ILAW_PLAIN_LAW ILAW_PLAIN_LAW_OF(ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE)
+#define ILAW_PLAIN_LAW_OF(forms)                                                                          \
   .struct_size = sizeof(ilaw_law), .frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL,                        \
-  .numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT,                                                    \
-  .delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE,                                      \
+  .numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT, .delassus_forms = forms,                           \
   .outputs = ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY, .create = ilaw_plain_create, \
   .destroy = ilaw_plain_destroy, .info = ilaw_plain_info, .initialise = ilaw_plain_initialise,            \
   .evaluate = ilaw_plain_evaluate

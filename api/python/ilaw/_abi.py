@@ -11,7 +11,7 @@ from ctypes import c_char_p, c_double, c_int32, c_int64, c_size_t, c_uint16, c_u
 from enum import IntEnum, IntFlag
 
 ABI_MAJOR = 1
-ABI_MINOR = 0
+ABI_MINOR = 1
 DIMENSION_1 = 2
 DIMENSION_2 = 4
 DIMENSION_3 = 8
@@ -47,6 +47,7 @@ class Delassus(Flags):
     DIAGONAL = 2
     FULL = 4
     TRANSVERSE = 8
+    TRANSVERSE_SPIN = 16
 
 
 class Frame(Flags):
@@ -111,6 +112,7 @@ class ParameterFlag(Flags):
     ALLOWS_INFINITY = 4
     ALLOWS_PER_NODE = 8
     IS_FIELD = 16
+    NEEDS_SPINS = 32
 
 
 class ValueKind(IntEnum):
@@ -307,6 +309,10 @@ class batch(ctypes.Structure):
         ("status", c_void_p),
         ("status_stride", c_int64),
         ("amounts", POINTER(output)),
+        ("spin_free", input),
+        ("spin_previous", input),
+        ("moment", output),
+        ("spin", output),
     ]
 
 

@@ -12,13 +12,14 @@ from typing import Any
 from . import _abi
 from .errors import NotFound
 
+_WHEEL = Path(__file__).parent / "lib"  # filled in wheels that bring the libraries; the laws are in its ilaw
 
 def _places(name: str, variable: str) -> list[str]:
     """Where a library may be, best first. A bare name is looked up by the system's dynamic linker."""
     named = os.environ.get(variable)
     if named:
         return [named]
-    folders = [Path(prefix, "lib") for prefix in (sys.prefix, sys.base_prefix, "/usr/local")]
+    folders = [_WHEEL, *(Path(prefix, "lib") for prefix in (sys.prefix, sys.base_prefix, "/usr/local"))]
     if os.environ.get("ILAW_LOADER"):  # they are installed together
         folders.insert(0, Path(os.environ["ILAW_LOADER"]).parent)
     return [str(file) for folder in dict.fromkeys(folders) if (file := folder / name).is_file()] + [name]

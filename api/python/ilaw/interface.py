@@ -118,7 +118,7 @@ class Interface:
     library: a name along the search path ("coulomb"), the path of a library, or an open `Library`.
     law: which of the library's laws; not needed where it has one.
     dimension: 1, 2 or 3. frame: "local" (component 0 is normal) or "global" (batches give normals).
-    delassus: form of the inverse mass H [1/kg]: "scalar", "diagonal", "full" or "transverse".
+    delassus: form of the inverse mass H [1/kg]: "scalar", "diagonal", "full", "transverse" or "transverse_spin".
     numbers: "double" or "float", the type of the arrays of its batches (states are float64 always).
     velocity_step [s]: what evaluate takes unless it is told otherwise; an impulse is a force times it.
     position_step [s]: what predicted gaps take; the velocity step unless given.
@@ -206,7 +206,9 @@ class Interface:
     def delassus_components(self) -> int:
         """Numbers per node of H, in the order of ilaw.h (full, 3D: 00, 11, 22, 01, 02, 12)."""
         d = self.dimension
-        return {"scalar": 1, "diagonal": d, "full": d * (d + 1) // 2, "transverse": 2}[self.delassus.lower()]
+        full = d * (d + 1) // 2
+        numbers = {"scalar": 1, "diagonal": d, "full": full, "transverse": 2, "transverse_spin": 5}
+        return numbers[self.delassus.lower()]
 
     def batch(self, **given: Any) -> Batch:
         """Nodes that this law is applied to; see `Batch`."""
@@ -219,11 +221,13 @@ class Batch(NotCopied):
     Inputs, of the type `Interface.dtype`, read where they are at every call (so change them in place:
     `v[:] = ...`, `v += ...`):
       v_free (n, d) [m/s]      velocity without the interface, relative to the obstacle
-      delassus (n, k) [1/kg]   H: k = 1 (scalar), d, d(d+1)/2 (full) or 2 (transverse)
+      delassus (n, k) [1/kg]   H: k = 1 (scalar), d, d(d+1)/2 (full), 2 (transverse) or 5 (transverse_spin)
       gap (n,) [m]             signed distance at the time of the step; positive is open
       gap_offset (n,) [m]      subtracted from the gap
       v_previous (n, d) [m/s]  velocity before the step, relative to the obstacle
       area (n,) [m^2]          tributary area
+      spin_free (n, 3) [rad/s] where H has spins: spin without the interface, relative to the obstacle's
+      spin_previous (n, 3)     where v_previous is read
       normal (n, d)            unit vector from the obstacle into the body; global frame
       tangent (n, d)           unit vector, orthogonal to the normal; global frame
       fields (n,)              parameters that the interface has per node, by name: temperature=T; in the mapping
@@ -237,6 +241,8 @@ class Batch(NotCopied):
       impulse (n, d) [N.s]
       state (n, state_size)    float64, the memory of the interface: all that a restart needs
       velocity (n, d) [m/s]    v_free + H impulse; True or an array to have it
+      moment (n, 3) [N.m.s]    where H has spins
+      spin (n, 3) [rad/s]      True or an array to have it
       energy (n, 4) [J]        columns `Energy`; True or an array to have it
       amounts                  names of those to have, {name: array} of shape (n,), or True for all in
                                `Interface.amounts`; `batch.amounts["heat"]` is the array
@@ -258,10 +264,14 @@ class Batch(NotCopied):
         area: Any = None,
         normal: Any = None,
         tangent: Any = None,
+        spin_free: Any = None,
+        spin_previous: Any = None,
         index: Any = None,
         impulse: NDArray[Any] | None = None,
         state: NDArray[np.float64] | None = None,
         velocity: NDArray[Any] | bool = False,
+        moment: NDArray[Any] | None = None,
+        spin: NDArray[Any] | bool = False,
         energy: NDArray[Any] | bool = False,
         amounts: Iterable[str] | Mapping[str, NDArray[Any]] | bool = False,
         per_node: Mapping[str, Any] | None = None,
@@ -277,6 +287,8 @@ class Batch(NotCopied):
         vectors = {"v_free": v_free, "v_previous": v_previous, "normal": normal, "tangent": tangent}
         for name, value in vectors.items():
             self._read(name, value, d)
+        for name, value in {"spin_free": spin_free, "spin_previous": spin_previous}.items():
+            self._read(name, value, 3)
         for name, value in {"gap": gap, "gap_offset": gap_offset, "area": area}.items():
             self._read(name, value, 1)
         self._read("delassus", delassus, interface.delassus_components)
@@ -289,6 +301,9 @@ class Batch(NotCopied):
         self.state = self._write("state", state, interface.state_size)
         self._batch.state_in = arrays.read("state", self.state, self.node_count, interface.state_size)
         self.velocity = None if velocity is False else self._write("velocity", velocity, d)
+        has_spins = interface.delassus.lower() == "transverse_spin"
+        self.moment = self._write("moment", moment, 3) if has_spins else None
+        self.spin = self._write("spin", spin, 3) if has_spins and spin is not False else None
         self.energy = None if energy is False else self._write("energy", energy, _abi.ENERGY_COUNT)
         self.amounts = self._write_amounts(amounts)
         self.status = np.zeros(self.node_count, np.uint8)

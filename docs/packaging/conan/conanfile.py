@@ -7,7 +7,7 @@ from conan.tools.build import check_min_cppstd
 from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain, cmake_layout
 from conan.tools.files import copy
 
-TREE = ["CMakeLists.txt", "LICENSE", "api/*", "plugins/*", "docs/template_repository/*"]
+TREE = ["CMakeLists.txt", "LICENSE", "api/*", "plugins/*", "docs/man/*", "docs/template_repository/*"]
 
 
 class Ilaw(ConanFile):

@@ -86,7 +86,7 @@ void EnergyBalance::add_dissipation(const std::array<double, ILAW_ENERGY_COUNT>&
 
 void EnergyBalance::set_stored(double energy) {
   by_law_[ILAW_ENERGY_STORED] = energy;
-  sums_.most_stored = std::max(sums_.most_stored, energy);
+  sums_.most_stored = std::max(sums_.most_stored, std::abs(energy));  // adhesion stores less than nothing
 }
 
 EnergyReport EnergyBalance::report(const Model& model, const Dofs& u, const Dofs& u_next,

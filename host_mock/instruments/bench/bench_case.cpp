@@ -79,7 +79,7 @@ std::vector<BenchCase> cases_of_entry(const json& entry, const std::string& law_
 
 const std::vector<BenchWords>& bench_words() {
   static const std::vector<BenchWords> words = {
-      {"delassus", &BenchCase::delassus, {"scalar", "diagonal", "transverse", "full"}},
+      {"delassus", &BenchCase::delassus, {"scalar", "diagonal", "transverse", "full", "transverse_spin"}},
       {"frame", &BenchCase::frame, {"local", "global"}},
       {"layout", &BenchCase::layout, {"aos", "soa"}},
       {"outputs", &BenchCase::outputs, {"none", "motion", "all"}}};
@@ -89,6 +89,7 @@ const std::vector<BenchWords>& bench_words() {
 std::uint32_t form_of(const BenchCase& bench_case) {
   if (bench_case.delassus == "diagonal") return ILAW_DELASSUS_DIAGONAL;
   if (bench_case.delassus == "transverse") return ILAW_DELASSUS_TRANSVERSE;
+  if (bench_case.delassus == "transverse_spin") return ILAW_DELASSUS_TRANSVERSE_SPIN;
   return bench_case.delassus == "full" ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR;
 }
 

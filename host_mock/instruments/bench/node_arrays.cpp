@@ -20,6 +20,8 @@ std::int64_t components_of(std::uint32_t form, std::int64_t dimension) {
       return 1;
     case ILAW_DELASSUS_TRANSVERSE:
       return 2;
+    case ILAW_DELASSUS_TRANSVERSE_SPIN:
+      return 5;
     case ILAW_DELASSUS_DIAGONAL:
       return dimension;
     default:
@@ -27,6 +29,7 @@ std::int64_t components_of(std::uint32_t form, std::int64_t dimension) {
   }
 }
 
+bool has_spins(const BenchCase& bench_case) { return form_of(bench_case) == ILAW_DELASSUS_TRANSVERSE_SPIN; }
 bool gives_motion(const BenchCase& bench_case) { return bench_case.outputs != "none"; }
 bool gives_energy(const BenchCase& bench_case) { return bench_case.outputs == "all"; }
 
@@ -43,6 +46,8 @@ std::int64_t numbers_of(const BenchLaw& law, const BenchCase& bench_case) {
   for (const std::uint32_t one : {ILAW_INPUT_V_PREVIOUS, ILAW_INPUT_NORMAL, ILAW_INPUT_TANGENT})
     doubles += inputs & one ? d : 0;
   if (gives_motion(bench_case)) doubles += d;
+  if (has_spins(bench_case))
+    doubles += d * (2 + (inputs & ILAW_INPUT_V_PREVIOUS ? 1 : 0) + (gives_motion(bench_case) ? 1 : 0));
   if (gives_energy(bench_case)) doubles += ILAW_ENERGY_COUNT;
   return doubles + static_cast<std::int64_t>(law.per_node_values().size());
 }
@@ -89,7 +94,8 @@ NodeArrays::NodeArrays(const BenchLaw& law, const BenchCase& bench_case, std::in
       delassus_components_(components_of(form_of(bench_case), law.dimension())),
       state_size_(static_cast<std::int64_t>(law.info().state_size)),
       is_global_(bench_case.frame == "global"),
-      is_soa_(bench_case.layout == "soa") {
+      is_soa_(bench_case.layout == "soa"),
+      has_spins_(has_spins(bench_case)) {
   const auto count = static_cast<std::size_t>(drawn_), d = static_cast<std::size_t>(dimension_);
   v_free_.resize(d * count);
   v_previous_.resize(d * count);
@@ -103,8 +109,10 @@ NodeArrays::NodeArrays(const BenchLaw& law, const BenchCase& bench_case, std::in
     draw_node(draw, bench_case, i);
     draw_delassus(draw, i);
   }
+  if (has_spins_) draw_spins(draw);
   impulse_.resize(d * count);
   if (gives_motion(bench_case)) velocity_.resize(d * count);
+  if (has_spins_ && gives_motion(bench_case)) spin_.resize(d * count);
   if (gives_motion(bench_case)) status_.resize(static_cast<std::size_t>(nodes_));
   if (gives_energy(bench_case)) energy_.resize(ILAW_ENERGY_COUNT * count);
   for (const double value : law.per_node_values()) per_node_.emplace_back(count, value);
@@ -135,11 +143,20 @@ void NodeArrays::draw_node(Draw& draw, const BenchCase& bench_case, std::int64_t
   }
 }
 
-// Positive definite: a diagonal of at least 1, other entries of at most 0.3.
+// Positive definite: a diagonal of at least 1, other entries of at most 0.3. With spins the third couples.
 void NodeArrays::draw_delassus(Draw& draw, std::int64_t i) {
-  for (std::int64_t c = 0; c < delassus_components_; ++c)
+  for (std::int64_t c = 0; c < delassus_components_; ++c) {
+    const bool is_diagonal = has_spins_ ? c != 2 : c < dimension_;
     delassus_[place(i, c, delassus_components_)] =
-        c < dimension_ ? draw.uniform(1.0, 3.0) : draw.uniform(-0.3, 0.3);
+        is_diagonal ? draw.uniform(1.0, 3.0) : draw.uniform(-0.3, 0.3);
+  }
+}
+
+void NodeArrays::draw_spins(Draw& draw) {
+  spin_free_.resize(v_free_.size());
+  for (double& component : spin_free_) component = draw.uniform(-1.0, 1.0);
+  spin_previous_ = spin_free_;
+  moment_.resize(v_free_.size());
 }
 
 ilaw_input NodeArrays::input(const std::vector<double>& values, std::int64_t components) const {
@@ -165,6 +182,12 @@ void NodeArrays::lay_out(const BenchCase& bench_case) {
   for (const std::vector<double>& values : per_node_) per_node_inputs_.push_back(input(values, 1));
   batch_.per_node_parameters = per_node_inputs_.empty() ? nullptr : per_node_inputs_.data();
   batch_.impulse = output(impulse_, dimension_);
+  if (has_spins_) {
+    batch_.spin_free = input(spin_free_, dimension_);
+    if (inputs & ILAW_INPUT_V_PREVIOUS) batch_.spin_previous = input(spin_previous_, dimension_);
+    batch_.moment = output(moment_, dimension_);
+    if (!spin_.empty()) batch_.spin = output(spin_, dimension_);
+  }
   if (gives_motion(bench_case)) batch_.velocity = output(velocity_, dimension_);
   if (gives_energy(bench_case)) batch_.energy = output(energy_, ILAW_ENERGY_COUNT);
   batch_.status = status_.empty() ? nullptr : status_.data();
@@ -207,11 +230,15 @@ void NodeArrays::round_to_floats() {
   b.area = input(batch_.area, area_);
   b.normal = input(batch_.normal, normal_);
   b.tangent = input(batch_.tangent, tangent_);
+  b.spin_free = input(batch_.spin_free, spin_free_);
+  b.spin_previous = input(batch_.spin_previous, spin_previous_);
   for (std::size_t k = 0; k < per_node_.size(); ++k)
     per_node_floats_.push_back(input(per_node_inputs_[k], per_node_[k]));
   b.per_node_parameters = per_node_floats_.data();
   b.impulse = output(batch_.impulse, impulse_);
   b.velocity = output(batch_.velocity, velocity_);
+  b.moment = output(batch_.moment, moment_);
+  b.spin = output(batch_.spin, spin_);
   b.energy = output(batch_.energy, energy_);
   is_of_floats_ = true;
 }

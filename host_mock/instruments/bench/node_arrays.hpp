@@ -33,6 +33,7 @@ class NodeArrays {
  private:
   void draw_node(Draw& draw, const BenchCase& bench_case, std::int64_t i);
   void draw_delassus(Draw& draw, std::int64_t i);
+  void draw_spins(Draw& draw);
   void lay_out(const BenchCase& bench_case);
   void reach_a_representative_state();
   void round_to_floats();
@@ -46,8 +47,9 @@ class NodeArrays {
 
   const BenchLaw& law_;
   std::int64_t nodes_, drawn_, dimension_, delassus_components_, state_size_;
-  bool is_global_, is_soa_, is_of_floats_ = false;
+  bool is_global_, is_soa_, has_spins_, is_of_floats_ = false;
   std::vector<double> v_free_, v_previous_, delassus_, gap_, area_, normal_, tangent_;
+  std::vector<double> spin_free_, spin_previous_, moment_, spin_;
   std::vector<double> impulse_, velocity_, energy_, state_, first_state_;
   std::vector<std::vector<double>> per_node_;
   std::vector<ilaw_input> per_node_inputs_;

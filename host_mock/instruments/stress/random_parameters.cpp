@@ -19,7 +19,8 @@ struct Range {
 Range usual_range(const std::string& unit, double dt) {
   if (unit == "s") return {0.1 * dt, 1e4 * dt};
   if (unit == "1" || unit.empty()) return {1e-3, 1e6};
-  if (unit == "s/m") return {1e-3, 1e3};
+  if (unit == "s/m" || unit == "m") return {1e-3, 1e3};
+  if (unit == "J/m^2") return {1e-6, 1e3};
   return {1e-6, 1e12};
 }
 

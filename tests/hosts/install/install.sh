@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # An ilaw as users get it, by `cmake --install`, from the archive and from the Debian packages: an outside project
 # builds hosts against it, and they run. Laws are built by first_law_test, against what cmake --install leaves: the
-# other two ways must bring the same files.
+# other two ways must bring the same files. Packages are also installed and removed by dpkg (clean_root.sh).
 # Usage: install.sh BUILD SOURCE C_COMPILER CXX_COMPILER install|archive|packages
 set -euo pipefail
 build=$1 source=$2 cc=$3 cxx=$4 way=$5
@@ -33,12 +33,13 @@ for file in bin/ilaw bin/ilaw-describe lib/ilaw/contact.so lib/ilaw/contact.json
             lib/libilaw_loader.so lib/libilaw_loader.so.1 \
             lib/libilaw_coupled.a lib/libilaw_coupled.so lib/libilaw_coupled.so.1 include/ilaw/coupled.h lib/cmake/ilaw/ilawConfig.cmake lib/pkgconfig/ilaw.pc \
             lib/pkgconfig/ilaw_coupled.pc share/ilaw/fortran/ilaw.f90 share/ilaw/fortran/ilaw_coupled.f90 \
-            share/ilaw/yade/ilaw_yade.py share/ilaw/mujoco/ilaw_mujoco.hpp share/ilaw/mujoco/examples/gripper.xml share/ilaw/abaqus/vfric.f share/ilaw/template_repository/template_law.cpp share/ilaw/template_repository/.github/workflows/check.yml share/ilaw/python/examples/dolfinx/throw.py share/ilaw/python/ilaw/coupled.py \
-            share/ilaw/python/pyproject.toml share/man/man1/ilaw.1 share/doc/ilaw/copyright share/doc/libilaw-dev/copyright \
+            share/ilaw/yade/ilaw_yade.py share/ilaw/mujoco/ilaw_mujoco.hpp share/ilaw/mujoco/examples/gripper.xml share/ilaw/abaqus/vfric.f share/ilaw/dealii/CMakeLists.txt share/ilaw/template_repository/template_law.cpp share/ilaw/template_repository/.github/workflows/check.yml share/ilaw/python/examples/dolfinx/throw.py share/ilaw/python/ilaw/coupled.py \
+            share/ilaw/python/pyproject.toml share/man/man1/ilaw.1 share/man/man1/ilaw-check.1 share/man/man1/ilaw-describe.1 share/doc/ilaw/copyright share/doc/libilaw-dev/copyright \
             share/ilaw/scenes/two_bars.json share/ilaw/scenes/bouncing_ball.json \
             share/bash-completion/completions/ilaw; do
   [ -e "$prefix/$file" ] || { echo "missing: $file"; exit 1; }
 done
+[ ! -e "$build/ilaw.spdx.json" ] || cmp "$build/ilaw.spdx.json" "$prefix/share/doc/ilaw/ilaw.spdx.json"
 [ ! -e "$prefix/lib/ilaw/template_law.so" ]
 if [ "$way" != install ]; then
   cmake --install "$build" --prefix "$work/installed" >/dev/null
@@ -56,10 +57,14 @@ echo "== the program, from where it lies"
 if [ -e "$build/lib/libilaw_lammps.so" ] && [ -x "$(command -v lmp)" ]; then
   echo "== the fixes in LAMMPS"
   [ -e "$prefix/lib/libilaw_lammps.so" ]
-  ! grep -rqF "$build" "$prefix/share/ilaw/lammps"
+  if grep -rF "$build" "$prefix/share/ilaw/lammps"; then exit 1; fi
   sed 's/^run .*/run 2/' "$prefix/share/ilaw/lammps/examples/in.settle" >in.settle
   ILAW_PATH=$prefix/lib/ilaw lmp -in in.settle -var ilaw "$prefix/share/ilaw/lammps/ilaw.lmp" -log none >lammps.log ||
     { tail lammps.log; exit 1; }
+fi
+
+if [ "$way" = packages ]; then
+  "$source/tests/hosts/install/clean_root.sh" made "$source/tests/hosts" "$source" "$build"
 fi
 
 # The other two ways bring the same files, with which the same can be built.

@@ -280,6 +280,17 @@ def test_grazing_impacts_lose_what_friction_takes(tmp_path, dt):
         assert energy == pytest.approx(after, abs=1e-12), degrees
 
 
+@pytest.mark.parametrize("dt", ["3e-7", "7.3e-8", "1e-8"])
+def test_adhesive_grains_leave_with_what_their_neck_leaves_them(tmp_path, dt):
+    text = (EXAMPLES[0].parent / "in.stick").read_text()
+    lammps(tmp_path, f"variable ilaw string {STYLES}\nvariable dt index {dt}\n" + text)
+    rows = [list(map(float, line.split())) for line in (tmp_path / "stick.txt").read_text().splitlines()[-5:]]
+    assert [row[0] for row in rows] == [0.9, 1.1, 1.5, 2, 3]
+    assert rows[0][1] < 0.9  # held
+    for before, after in rows[1:]:
+        assert after == pytest.approx(math.sqrt(before**2 - 1), rel=1e-6)
+
+
 def test_the_comparison_with_pair_granular_runs(tmp_path):
     script = EXAMPLES[0].parent / "compare.py"
     options = ("--across 4 --layers 4 --settling 0.03 --shearing 0.004 --steps 1e-4 2e-4 --own-steps 2e-5 4e-5 "

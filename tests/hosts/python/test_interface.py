@@ -161,6 +161,27 @@ def test_transverse_h_of_rolling_spheres():
     assert transverse.delassus_components == 2
 
 
+def test_spins_and_moments():
+    # At rest on the plane z = 0 but for its spin, a solid ball of M = R = 1 keeps what resistance leaves.
+    form = dict(delassus="transverse_spin", velocity_step=1e-3)
+    law = ilaw.Interface("rolling", friction=0.5, rolling_friction=0.1, twisting_friction=0.2, **form)
+    v, w = np.array([[0.0, 0.0, -1.0]] * 2), np.array([[0.0, 0.0, 9.0], [0.0, 0.0, 0.25]])
+    batch = law.batch(
+        v_free=v, v_previous=v, spin_free=w, spin_previous=w, delassus=[1.0, 3.5, 2.5, 2.5, 2.5], gap=0.0,
+        normal=[0.0, 0.0, 1.0], velocity=True, spin=True, energy=True,
+    )
+    batch.evaluate(time=0.0)
+    np.testing.assert_allclose(batch.impulse, [[0, 0, 1], [0, 0, 1]], atol=1e-15)
+    np.testing.assert_allclose(batch.moment, [[0, 0, -0.2], [0, 0, -0.1]], atol=1e-15)
+    np.testing.assert_allclose(batch.spin, [[0, 0, 8.5], [0, 0, 0]], atol=1e-14)
+    np.testing.assert_allclose(batch.energy[:, 0], [0.2 * 8.75, 0.1 * 0.125], rtol=1e-14)
+    assert law.delassus_components == 5
+    with pytest.raises(ilaw.InvalidArgument, match="spin_free is null"):
+        law.batch(v_free=v, v_previous=v, delassus=[1.0, 3.5, 2.5, 2.5, 2.5], gap=0.0, normal=[0.0, 0.0, 1.0]).evaluate(0.0)
+    with pytest.raises(ilaw.InvalidParameter, match="'rolling_friction' needs spins"):
+        ilaw.Interface("rolling", friction=0.5, rolling_friction=0.1)
+
+
 def test_state_goes_through_a_restart():
     def bond():
         law = ilaw.Interface("postit", dimension=1, frame="local", velocity_step=1e-3, adhesion_limit=1.0)

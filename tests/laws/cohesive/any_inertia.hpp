@@ -242,7 +242,8 @@ inline std::optional<std::string> judge(const Problem& p, const NodeRun& node, b
     if (norm(contact) > 4.0 * impulse) return say("not the bond's impulse", norm(contact), impulse);
     return std::nullopt;
   }
-  const double limit = p.curve.friction * node.named("damage") * contact[0], slip = std::hypot(v[1], v[2]);
+  const double damage = 0.5 * (p.damage + node.named("damage"));
+  const double limit = p.curve.friction * damage * contact[0], slip = std::hypot(v[1], v[2]);
   if (std::hypot(contact[1], contact[2]) > limit + impulse)
     return say("beyond the cone", std::hypot(contact[1], contact[2]) - limit, impulse);
   double work = 0.0;

@@ -32,7 +32,7 @@ TEST(CohesiveProperties, HoldForAnyMotion) {
       // Not below zero, nor below where it is; a node that was leaving turns round at most at its speed.
       const double reach = std::abs(opening) + node.dt * (std::abs(v[0]) + std::abs(node.v_free[0]));
       ASSERT_GE(node.named("opening"),
-                std::min(opening, 0.0) - node.dt * std::max(v[0], 0.0) - 0x1p-44 * reach)
+                std::min(opening, 0.0) - node.dt * std::max(v[0], 0.0) - 0x1p-43 * reach)
           << "bond " << bond << ", step " << k;
       double balance = stored - node.energy[ILAW_ENERGY_STORED];
       double scale = 1e-13 * (node.energy[ILAW_ENERGY_STORED] + stored);

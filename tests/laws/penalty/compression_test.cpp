@@ -17,6 +17,7 @@ Parameters implicit(std::map<std::string, double> numbers) {
 // above. Written from the page, term by term.
 struct Equation {
   long double indentation, free, previous, delassus, step, stiffness, exponent, damping, lead;
+  long double withheld = 0.0L;
 
   long double potential(long double x) const {
     return stiffness * std::pow(x, exponent + 1.0L) / (exponent + 1.0L);
@@ -27,14 +28,28 @@ struct Equation {
     const auto force = [this](long double x) { return stiffness * std::pow(x, exponent); };
     return (5.0L * force(middle - off) + 8.0L * force(middle) + 5.0L * force(middle + off)) / 18.0L;
   }
-  long double excess(long double r) const {
-    const long double v = free + delassus * r, mean = 0.5L * (previous + v);
-    const long double way = step * (mean + lead * std::max(v - previous, 0.0L));
+  long double force_along(long double way) const {
     const long double end = std::max(indentation - way, 0.0L);
-    const long double closed = way > indentation ? indentation / way : 1.0L;
     const bool still = std::abs(way) < 1e-3L * indentation;
     const long double spring = still ? gauss_mean(way) : (potential(indentation) - potential(end)) / way;
-    const long double force = way == 0.0L && indentation == 0.0L ? 0.0L : spring;
+    return way == 0.0L && indentation == 0.0L ? 0.0L : spring;
+  }
+  // The part of the lead of v < v^- that the withheld work lasts for: force times lead, which grows with it.
+  long double lead_back(long double mean, long double all) const {
+    long double least = all, most = 0.0L;
+    if (-all * force_along(mean + all) <= withheld) return all;
+    for (int k = 0; k < 200; ++k) {
+      const long double middle = 0.5L * (least + most);
+      (-middle * force_along(mean + middle) <= withheld ? most : least) = middle;
+    }
+    return most;
+  }
+  long double excess(long double r) const {
+    const long double v = free + delassus * r, mean = 0.5L * (previous + v);
+    const long double all = step * lead * (v - previous);
+    const long double way = step * mean + (all > 0.0L ? all : lead_back(step * mean, all));
+    const long double closed = way > indentation ? indentation / way : 1.0L;
+    const long double force = force_along(way);
     return step * std::max(force - closed * damping * mean, 0.0L) - r;
   }
 };
@@ -64,7 +79,7 @@ TEST(Compression, LinearSolvesItsEquation) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0), decades(-50.0, 50.0), few(-3.0, 3.0);
   const int instances = part_of(1000);
-  int closed = 0, opening = 0;
+  int closed = 0, opening = 0, returned = 0, spent = 0;
   for (int instance = 0; instance < instances && !::testing::Test::HasFatalFailure(); ++instance) {
     const double h = 1e-3, delassus = std::pow(10.0, decades(random));
     const double stiffness = std::pow(10.0, few(random)) / (h * h * delassus);
@@ -80,16 +95,23 @@ TEST(Compression, LinearSolvesItsEquation) {
       node.v_previous = {scale * uniform(random), 0.0, 0.0};
       const double previous = node.v_previous[0];
       const double x = k % 3 ? h * scale * std::pow(10.0, few(random)) : 0.0;
-      node.state = {x, 0.0, 0.0, 0.0};
+      const double withheld = e < 1.0 && k % 2 ? 0.5 * stiffness * x * x * std::pow(10.0, few(random)) : 0.0;
+      node.state = {x, 0.0, 0.0, 0.0, withheld};
       ASSERT_EQ(node.step({v, 0.3 * scale, 0.0}), ILAW_OK) << node.report.reason;
-      expect_solution({x, v, previous, delassus, h, stiffness, 1.0L, damping, 1.0L / (1.0L + e) - 0.5L},
-                      node.r[0], 2e-14);
+      expect_solution(
+          {x, v, previous, delassus, h, stiffness, 1.0L, damping, 1.0L / (1.0L + e) - 0.5L, withheld},
+          node.r[0], 2e-14);
+      const bool turns = withheld > 0.0 && node.v[0] < previous;
+      returned += turns && node.state[4] > 0.0;
+      spent += turns && node.state[0] > 0.0 && node.state[4] == 0.0;
       closed += node.r[0] > 0.0;
       opening += node.r[0] > 0.0 && node.state[0] == 0.0;
     }
   }
   EXPECT_GT(closed, 400 * instances);
   EXPECT_GT(opening, 50 * instances);
+  EXPECT_GT(returned, 10 * instances);
+  EXPECT_GT(spent, 10 * instances);
 }
 
 TEST(Compression, PowerLawSolvesItsEquation) {

@@ -108,7 +108,7 @@ TEST(Rccm, DissipatesWhatItsEquationSays) {
       const bool pressed = rest[0] > 1e-12 * scale;
       touched += pressed;
       ASSERT_GE(rest[0], -1e-12 * scale);
-      const double limit = pressed ? law.friction * (1.0 - after) * rest[0] : 0.0;
+      const double limit = pressed ? law.friction * (1.0 - 0.5 * (before + after)) * rest[0] : 0.0;
       ASSERT_LE(std::hypot(rest[1], rest[2]), limit + 1e-12 * scale) << "bond " << bond << ", step " << k;
       double work = node.energy[ILAW_ENERGY_STORED] - stored,
              terms = node.energy[ILAW_ENERGY_STORED] + stored;

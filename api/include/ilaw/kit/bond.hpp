@@ -445,10 +445,10 @@ struct adhesive_bond {
     return status_of<V>::from(a.status);
   }
 
-  // The coefficient of friction with the memory after the step. An infinite one would jump as the memory
-  // first changes, and is that before the step.
-  ILAW_KIT_INLINE V friction_after(V before, V after) const {
-    return law().friction_of(select(law().friction < infinity, after, before));
+  // The coefficient of friction with the mean memory of the step, as the bond has its mean traction: second
+  // order. An infinite one would jump as the memory first changes, and is that before the step.
+  ILAW_KIT_INLINE V mean_friction(V before, V after) const {
+    return law().friction_of(select(law().friction < infinity, 0.5 * (before + after), before));
   }
 
  private:

@@ -277,4 +277,17 @@ ILAW_KIT_INLINE status_of<number_of<Node>> finish_friction(Node& node,
   return status_of<V>::from(a.status);
 }
 
+// Base of a law that leaves its contact to the solver as it is.
+template <class V>
+struct friction_solver {
+  using problem = friction_problem<V>;
+  using answer = friction_answer<V>;
+  static mask_of<V> solve(const problem& p, answer& a) { return solve_friction(p, a); }
+  static void solve_scalar(const problem& p, answer& a) { solve_friction_exactly(p, a); }
+  template <class Node>
+  status_of<V> finish(Node& node, const answer& a) const {
+    return finish_friction(node, a);
+  }
+};
+
 }  // namespace ilaw::kit

@@ -55,6 +55,7 @@ inline constexpr std::uint32_t may_skip_fresh = ILAW_MAY_SKIP_FRESH, may_skip_fr
 inline constexpr std::uint32_t all_dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3;
 inline constexpr std::uint32_t all_delassus_forms =
     ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL | ILAW_DELASSUS_TRANSVERSE;
+inline constexpr std::uint32_t with_spins = ILAW_DELASSUS_TRANSVERSE_SPIN;
 
 struct law_card {
   const char* id;
@@ -158,9 +159,10 @@ struct parameter {
   bool minimum_excluded = false;
   bool infinity_allowed = false;
   bool whole = false;
-  bool is_field = false;   // of the host's model, such as a temperature
-  texts choices = {};      // a choice: the member is double and holds the index
-  texts axes = over_time;  // over which a V or a grid may be a table
+  bool is_field = false;     // of the host's model, such as a temperature
+  bool needs_spins = false;  // refused for forms of H without
+  texts choices = {};        // a choice: the member is double and holds the index
+  texts axes = over_time;    // over which a V or a grid may be a table
 
   // Copies that differ in one thing.
   constexpr parameter with_doc(const char* text) const {

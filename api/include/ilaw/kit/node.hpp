@@ -80,6 +80,9 @@ struct undeclared_vector {
 template <class Law, std::uint32_t Input, class Declared, class Undeclared>
 using input_t = std::conditional_t<(Law::card.inputs & Input) != 0, Declared, Undeclared>;
 
+// Stands in the place of spins and moments where H has none.
+struct spinless {};
+
 // A step reads the first part and writes the second. Law: with its number type. Vector: vector<V>, or
 // projected<V> for isotropic laws in the host's axes. Delassus: transverse<V> or full<V>. State: stateless
 // where the law's parameters need none.
@@ -87,6 +90,7 @@ template <class Law, class Vector, class Delassus, class State = state_t<Law>>
 struct node {
   using number = typename number_of_law<Law>::type;
   using V = number;
+  using spin_type = std::conditional_t<has_spin_form<Delassus>, Vector, spinless>;
 
   const double time, velocity_step, position_step, per_position_step;
   const bool wants_energy;  // whether what follows "stored" below is asked for, or an amount
@@ -97,12 +101,15 @@ struct node {
   const Delassus delassus;
   const input_t<Law, reads_gap, V, undeclared_input<V, reads_gap>> gap;  // offset already taken off
   const input_t<Law, reads_area, V, undeclared_input<V, reads_area>> area;
+  // Of a spin w the components w_N and w x n: the velocity at the contact point of a sphere of unit radius.
+  const spin_type spin_free = {}, spin_previous = {};
   vector<V> earlier = {};      // what the law's window sums up to before the step
   const_history history = {};  // of laws with a free history
 
   Vector impulse = {};
-  State state = {};  // comes in as it was, leaves as it is
-  V stored = 0.0;    // energy stored by the interface at the end of the step
+  spin_type moment = {};  // m_N and m x n likewise
+  State state = {};       // comes in as it was, leaves as it is
+  V stored = 0.0;         // energy stored by the interface at the end of the step
   // Energy that the step added to it, by the normal and by the tangential motion; the rest of the work is
   // dissipated.
   V normal_gain = 0.0, tangential_gain = 0.0;
@@ -119,7 +126,7 @@ template <class Node>
 using number_of = typename Node::number;
 
 // Kinds of nodes that laws tell apart when they are compiled: whether H = diag(h_N, h_T, h_T) at all of them,
-// whether their vectors have tangential components with names, and whether they have the law's state.
+// whether their vectors have tangential components with names, whether they have the law's state, and spins.
 template <class Node>
 inline constexpr bool is_transverse = is_transverse_form<std::remove_cvref_t<decltype(Node::delassus)>>;
 template <class Node>
@@ -128,6 +135,8 @@ inline constexpr bool has_tangents =
 
 template <class Node>
 inline constexpr bool has_memory = !std::is_same_v<decltype(Node::state), stateless>;
+template <class Node>
+inline constexpr bool has_spins = has_spin_form<std::remove_cvref_t<decltype(Node::delassus)>>;
 
 // What initialise sees: there is no motion yet.
 template <class Law>

@@ -52,6 +52,30 @@ struct transverse {
   }
 };
 
+// The same with spins: v = v_free + H r - k q, u = u_free - k r_T + j_t q, w_N = w_free,N + j_n m_N, with
+// spins and moments as nodes have them, q = m x n and u = w x n. So the tangent plane has the block [h_T, -k;
+// -k, j_t].
+template <class V>
+struct transverse_spin : transverse<V> {
+  V k, j_n, j_t;
+
+  ILAW_KIT_INLINE mask_of<V> is_definite() const {
+    constexpr double least_ratio = 2.0 / largest_condition;
+    const V j = smaller(j_n, j_t), coupling = (k / this->t) * (k / j_t);
+    return transverse<V>::is_definite() & (least_ratio * absolute(j_n - j_t) <= j - smallest_delassus) &
+           (coupling <= 1.0 - least_ratio);
+  }
+  using transverse<V>::times;
+  template <class Vector>
+  ILAW_KIT_INLINE Vector times(Vector r, Vector q) const {
+    return transverse<V>::times(r) - k * q.tangential_part();
+  }
+  template <class Vector>
+  ILAW_KIT_INLINE Vector spin_of(Vector r, Vector q) const {
+    return transverse<V>{j_n, j_t}.times(q) - k * r.tangential_part();
+  }
+};
+
 // Any H. A diagonal one is this with zeros.
 template <class V>
 struct full {
@@ -124,6 +148,12 @@ template <class Delassus>
 inline constexpr bool is_transverse_form = false;
 template <class V>
 inline constexpr bool is_transverse_form<transverse<V>> = true;
+template <class V>
+inline constexpr bool is_transverse_form<transverse_spin<V>> = true;
+template <class Delassus>
+inline constexpr bool has_spin_form = false;
+template <class V>
+inline constexpr bool has_spin_form<transverse_spin<V>> = true;
 
 // A number that is zero for sure: products with it are not computed, which changes no bit but the sign of a
 // zero.

@@ -35,6 +35,7 @@ struct vector {
   ILAW_KIT_INLINE vector against(V normal, V factor) const {
     return {normal, 0.0 - factor * t1, 0.0 - factor * t2};
   }
+  ILAW_KIT_INLINE vector tangential_part() const { return {0.0, t1, t2}; }
   ILAW_KIT_INLINE friend V sum_of_sizes(vector a) {
     return absolute(a.n) + (absolute(a.t1) + absolute(a.t2));
   }
@@ -74,6 +75,7 @@ struct projected {
   ILAW_KIT_INLINE projected against(V normal, V factor) const {
     return {normal, 0.0 - factor * x, 0.0 - factor * y, 0.0 - factor * z};
   }
+  ILAW_KIT_INLINE projected tangential_part() const { return {0.0, x, y, z}; }
   ILAW_KIT_INLINE friend V sum_of_sizes(projected a) {
     return (absolute(a.n) + absolute(a.x)) + (absolute(a.y) + absolute(a.z));
   }

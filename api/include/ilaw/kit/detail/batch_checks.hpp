@@ -25,6 +25,9 @@ inline const char* other_numbers(const instance_base& made, const ilaw_batch& b,
       other(b.v_free) || other(b.delassus) || other(b.impulse) || other(b.velocity) || other(b.energy);
   is_bad = is_bad || ((read & ILAW_INPUT_GAP) && (other(b.gap) || other(b.gap_offset)));
   is_bad = is_bad || ((read & ILAW_INPUT_V_PREVIOUS) && other(b.v_previous));
+  if (made.has_spins())
+    is_bad = is_bad || other(b.spin_free) || other(b.moment) || other(b.spin) ||
+             ((read & ILAW_INPUT_V_PREVIOUS) && other(b.spin_previous));
   is_bad = is_bad || ((read & ILAW_INPUT_AREA) && other(b.area));
   is_bad = is_bad || ((read & ILAW_INPUT_NORMAL) && other(b.normal));
   is_bad = is_bad || ((read & ILAW_INPUT_TANGENT) && other(b.tangent));
@@ -90,10 +93,21 @@ inline const char* colliding_output(const instance_base& made, const ilaw_batch&
   if (collides(b.impulse, n, d)) return "impulse has a stride of 0";
   if (collides(b.velocity, n, d)) return "velocity has a stride of 0";
   if (collides(b.energy, n, ILAW_ENERGY_COUNT)) return "energy has a stride of 0";
+  if (made.has_spins() && collides(b.moment, n, 3)) return "moment has a stride of 0";
+  if (made.has_spins() && collides(b.spin, n, 3)) return "spin has a stride of 0";
   if (b.status && n > 1 && b.status_stride == 0) return "status_stride is 0";
   for (std::uint32_t k = 0; b.amounts && k < made.amount_count; ++k)
     if (collides(b.amounts[k], n, 1)) return "an amount has a stride of 0";
   return colliding_state(made, b);
+}
+
+// The same of what a form of H with spins needs; the batch of a host of ABI 1.0 ends before it.
+inline const char* missing_spins(const instance_base& made, const ilaw_batch& b, std::uint32_t needed) {
+  if (!made.has_spins()) return nullptr;
+  if (is_absent(made, b.spin_free)) return "spin_free is null";
+  if (is_absent(made, b.moment)) return "moment is null";
+  if ((needed & ILAW_INPUT_V_PREVIOUS) && is_absent(made, b.spin_previous)) return "spin_previous is null";
+  return nullptr;
 }
 
 // Whether energy or an amount is asked for.
@@ -118,6 +132,7 @@ inline const char* wrong_batch(const instance_base& made, const ilaw_batch& b, b
   if (const char* wrong = colliding_output(made, b)) return wrong;
   const std::uint32_t read = made.inputs | (wants_balance(made, b) ? made.balance_inputs : 0U);
   if (const char* wrong = missing_input(made, b, read)) return wrong;
+  if (const char* wrong = missing_spins(made, b, read)) return wrong;
   return other_numbers(made, b, read);
 }
 

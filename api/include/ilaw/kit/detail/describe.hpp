@@ -21,26 +21,27 @@ template <class Law>
 constexpr ilaw_parameter abi_parameter(const parameter<Law>& p) {
   const bool is_choice = p.choices.count > 0, varies = p.member.may_vary(),
              has_tables = varies || p.member.is_grid();
-  return {
-      .struct_size = sizeof(ilaw_parameter),
-      .kind = static_cast<ilaw_kind>(is_choice ? ILAW_PARAMETER_CHOICE
-                                               : (p.whole ? ILAW_PARAMETER_COUNT : ILAW_PARAMETER_NUMBER)),
-      .name = p.name,
-      .symbol = p.symbol,
-      .unit = p.unit,
-      .doc = p.doc,
-      .minimum = is_choice ? 0.0 : p.minimum,
-      .maximum = is_choice ? p.choices.count - 1.0 : p.maximum,
-      .default_value = p.default_value,
-      .flags = flag_if(p.required, ILAW_PARAMETER_IS_REQUIRED) |
-               flag_if(p.minimum_excluded, ILAW_PARAMETER_EXCLUDES_MINIMUM) |
-               flag_if(p.infinity_allowed, ILAW_PARAMETER_ALLOWS_INFINITY) |
-               flag_if(varies, ILAW_PARAMETER_ALLOWS_PER_NODE) | flag_if(p.is_field, ILAW_PARAMETER_IS_FIELD),
-      .choice_count = p.choices.count,
-      .choices = p.choices.values,
-      .axes = has_tables ? p.axes.values : nullptr,
-      .axis_count = has_tables ? p.axes.count : 0U,
-      .reserved = 0};
+  return {.struct_size = sizeof(ilaw_parameter),
+          .kind = static_cast<ilaw_kind>(
+              is_choice ? ILAW_PARAMETER_CHOICE : (p.whole ? ILAW_PARAMETER_COUNT : ILAW_PARAMETER_NUMBER)),
+          .name = p.name,
+          .symbol = p.symbol,
+          .unit = p.unit,
+          .doc = p.doc,
+          .minimum = is_choice ? 0.0 : p.minimum,
+          .maximum = is_choice ? p.choices.count - 1.0 : p.maximum,
+          .default_value = p.default_value,
+          .flags = flag_if(p.required, ILAW_PARAMETER_IS_REQUIRED) |
+                   flag_if(p.minimum_excluded, ILAW_PARAMETER_EXCLUDES_MINIMUM) |
+                   flag_if(p.infinity_allowed, ILAW_PARAMETER_ALLOWS_INFINITY) |
+                   flag_if(varies, ILAW_PARAMETER_ALLOWS_PER_NODE) |
+                   flag_if(p.is_field, ILAW_PARAMETER_IS_FIELD) |
+                   flag_if(p.needs_spins, ILAW_PARAMETER_NEEDS_SPINS),
+          .choice_count = p.choices.count,
+          .choices = p.choices.values,
+          .axes = has_tables ? p.axes.values : nullptr,
+          .axis_count = has_tables ? p.axes.count : 0U,
+          .reserved = 0};
 }
 template <class Wide>
 constexpr auto abi_parameters() {

@@ -50,6 +50,14 @@ typename batch_walk<Number>::run_function loop_of(const instance<Law>& made) {
 template <class Law, class Number>
 typename batch_walk<Number>::run_function choose_loop(const instance<Law>& made) {
   const bool is_local = made.frame == ILAW_FRAME_LOCAL;
+  if constexpr (serves_spins<Law>)
+    if (made.has_spins()) {
+      if (is_local) return kernel<Law, loop_number<Law>, Number, local_frame, transverse_spin>::run;
+      if constexpr (needs_no_tangents<Law>)
+        if (!made.has_tangent)
+          return kernel<Law, loop_number<Law>, Number, normal_frame, transverse_spin>::run;
+      return kernel<Law, loop_number<Law>, Number, axes_frame, transverse_spin>::run;
+    }
   if constexpr (serves_transverse<Law>)
     if (made.is_transverse()) {
       if (is_local) return loop_of<Law, Number, local_frame, transverse>(made);
@@ -152,6 +160,8 @@ const char* reason_text(int code) {
       return "the gap is not finite";
     case reason_v_previous:
       return "v_previous is not finite";
+    case reason_spin:
+      return "spin_free or spin_previous is not finite";
     case reason_area:
       return "the area is not a finite number >= 0";
     case reason_frame:

@@ -16,6 +16,8 @@ template <class Law>
 inline constexpr bool serves_transverse = (Law::card.delassus_forms &
                                            (ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE)) != 0;
 template <class Law>
+inline constexpr bool serves_spins = (Law::card.delassus_forms & with_spins) != 0;
+template <class Law>
 inline constexpr bool serves_full = (Law::card.delassus_forms &
                                      (ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL)) != 0;
 

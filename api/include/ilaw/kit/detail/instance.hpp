@@ -101,13 +101,19 @@ class instance_builder {
     }
     const std::uint32_t form = setup_.delassus_form;
     if ((form != ILAW_DELASSUS_SCALAR && form != ILAW_DELASSUS_DIAGONAL && form != ILAW_DELASSUS_FULL &&
-         form != ILAW_DELASSUS_TRANSVERSE) ||
+         form != ILAW_DELASSUS_TRANSVERSE && form != ILAW_DELASSUS_TRANSVERSE_SPIN) ||
         !(card.delassus_forms & form)) {
-      text_.add("law '%s': form %u of H is not served: expected one of%s%s%s%s", id, form,
+      text_.add("law '%s': form %u of H is not served: expected one of%s%s%s%s%s", id, form,
                 card.delassus_forms & ILAW_DELASSUS_SCALAR ? " 1 (scalar)" : "",
                 card.delassus_forms & ILAW_DELASSUS_DIAGONAL ? " 2 (diagonal)" : "",
                 card.delassus_forms & ILAW_DELASSUS_FULL ? " 4 (full)" : "",
-                card.delassus_forms & ILAW_DELASSUS_TRANSVERSE ? " 8 (transverse)" : "");
+                card.delassus_forms & ILAW_DELASSUS_TRANSVERSE ? " 8 (transverse)" : "",
+                card.delassus_forms & ILAW_DELASSUS_TRANSVERSE_SPIN ? " 16 (transverse_spin)" : "");
+      return ILAW_UNSUPPORTED;
+    }
+    if (form == ILAW_DELASSUS_TRANSVERSE_SPIN && setup_.dimension != 3) {
+      text_.add("law '%s': dimension %u has no spins: expected 3 for form 16 (transverse_spin) of H", id,
+                setup_.dimension);
       return ILAW_UNSUPPORTED;
     }
     if (setup_.frame != ILAW_FRAME_LOCAL && setup_.frame != ILAW_FRAME_GLOBAL) {
@@ -168,6 +174,11 @@ class instance_builder {
       return ILAW_INVALID_PARAMETER;
     }
     given_[i] = true;
+    if (Law::parameters[i].needs_spins && !made_.has_spins()) {
+      text_.add("law '%s': parameter '%s' needs spins, form %u of H has none: expected 16 (transverse_spin)",
+                id, a.name, made_.delassus_form);
+      return ILAW_INVALID_PARAMETER;
+    }
     const ilaw_parameter& p = description_type::parameters[i];
     if (a.kind == ILAW_VALUE_TABLE && p.axis_count > 0) return keep_table(p, i, a);
     if (a.kind == ILAW_VALUE_PER_NODE && (p.flags & ILAW_PARAMETER_ALLOWS_PER_NODE))

@@ -211,6 +211,8 @@ struct kernel {
   using H = Delassus<V>;
   using state_type = std::conditional_t<Remembers, state_t<Wide>, stateless>;
   using node_type = node<Wide, vector_type, H, state_type>;
+  using spin_type = typename node_type::spin_type;
+  static constexpr bool spins = has_spins<node_type>;
   using view_type = view<Number>;
   using mask = mask_of<V>;
   using limit = step_limit<V>;
@@ -230,7 +232,8 @@ struct kernel {
 
   struct loaded {
     frame_type frame;
-    axis<V> free;       // v_free in the axes of the batch
+    axis<V> free;  // v_free in the axes of the batch
+    std::conditional_t<spins, axis<V>, spinless> free_spin;
     mask motion_known;  // v_previous, for energies
     node_type node;
   };
@@ -285,27 +288,36 @@ struct kernel {
   ILAW_KIT_INLINE static void load_delassus(full<V>& h, const view_type& b, std::int64_t i) {
     load_symmetric(h, b.delassus, i);
   }
+  ILAW_KIT_INLINE static void load_delassus(transverse_spin<V>& h, const view_type& b, std::int64_t i) {
+    const auto& a = b.delassus;
+    h.n = load<V>(a.at + i);
+    h.t = load<V>(a.at + a.component + i);
+    h.k = load<V>(a.at + 2 * a.component + i);
+    h.j_n = load<V>(a.at + 3 * a.component + i);
+    h.j_t = load<V>(a.at + 4 * a.component + i);
+  }
 
   // Where the law reads no v_previous it is there for energies alone: finite always, turned or not.
+  template <class Array, class Turn>
   ILAW_KIT_INLINE static void load_previous(vector_type& to, mask& known, const view_type& b,
-                                            const frame_type& frame, std::int64_t i, V& found) {
-    if (!b.v_previous.at) {
+                                            const Array& from, Turn turned, std::int64_t i, V& found) {
+    if (!from.at) {
       to = {};
       return;
     }
     axis<V> a;
     V read = 0.0;
-    load_vector(a, b.v_previous, i, read);
+    load_vector(a, from, i, read);
     if (b.reads_previous) {
       found = found + read;
     } else {
       constexpr double guard = 4.0;
-      known = residual(a, V(0.0)) == 0.0;
+      known = known & (residual(a, V(0.0)) == 0.0);
       const axis<V> wide{guard * a.x, guard * a.y, guard * a.z};
       const mask good = residual(wide, V(0.0)) == 0.0;
       a = {zero_unless(good, a.x), zero_unless(good, a.y), zero_unless(good, a.z)};
     }
-    to = frame.to_local(a);
+    to = turned(a);
   }
 
   // is_checked: H has been found definite before, which takes the longest.
@@ -321,7 +333,17 @@ struct kernel {
     vector_type v_free = frame.to_local(free), v_previous{};
     if constexpr (frame_type::turns)
       if (frame.turns_now()) v_free.n = v_free.n + 0.0;
-    if constexpr (reads<Law>(reads_v_previous)) load_previous(v_previous, known, b, frame, i, numbers);
+    const auto turned = [&](axis<V> a) ILAW_KIT_LAMBDA { return frame.to_local(a); };
+    if constexpr (reads<Law>(reads_v_previous))
+      load_previous(v_previous, known, b, b.v_previous, turned, i, numbers);
+    std::conditional_t<spins, axis<V>, spinless> free_spin;
+    spin_type spin_free{}, spin_previous{};
+    if constexpr (spins) {
+      const auto turned_spin = [&](axis<V> a) ILAW_KIT_LAMBDA { return frame.spin_to_local(a); };
+      load_vector(free_spin, b.spin_free, i, numbers);
+      spin_free = turned_spin(free_spin);
+      load_previous(spin_previous, known, b, b.spin_previous, turned_spin, i, numbers);
+    }
     H h;
     load_delassus(h, b, i);
     h = frame.to_local(h, b.dimension);
@@ -343,6 +365,10 @@ struct kernel {
     if constexpr (reads<Law>(reads_gap)) c.finite(gap, reason_gap);
     if constexpr (reads<Law>(reads_v_previous) && (careful || frame_type::turns))
       c.finite_vector(v_previous, reason_v_previous, true);
+    if constexpr (spins && (careful || frame_type::turns)) {
+      c.finite_vector(spin_free, reason_spin, true);
+      c.finite_vector(spin_previous, reason_spin, true);
+    }
     if constexpr (reads<Law>(reads_area)) {
       c.finite(area, reason_area);
       c.require(area >= 0.0, reason_area);
@@ -351,6 +377,7 @@ struct kernel {
       if (b.tangents_from == tangents::carried) c.require(framed, reason_frame);
     return {.frame = frame,
             .free = free,
+            .free_spin = free_spin,
             .motion_known = known,
             .node = {.time = b.step.time,
                      .velocity_step = b.step.velocity_step,
@@ -362,7 +389,9 @@ struct kernel {
                      .v_previous = declared<reads_v_previous>(v_previous),
                      .delassus = h,
                      .gap = declared<reads_gap>(gap),
-                     .area = declared<reads_area>(area)}};
+                     .area = declared<reads_area>(area),
+                     .spin_free = spin_free,
+                     .spin_previous = spin_previous}};
   }
   template <std::uint32_t Input, class T>
   ILAW_KIT_INLINE static auto declared(T value) {
@@ -437,11 +466,14 @@ struct kernel {
     return (absolute(a.n) == infinity) | (absolute(a.x) + absolute(a.y) + absolute(a.z) == infinity);
   }
   ILAW_KIT_INLINE static void check_result(const node_type& n, const view_type& b, checks_type& c) {
-    const V size = sum_of_sizes(n.impulse);
+    V size = sum_of_sizes(n.impulse);
+    if constexpr (spins) size = size + sum_of_sizes(n.moment);
     if constexpr (careful) {
       for (int k = 1; k <= 5; ++k)
         c.require(n.refused != static_cast<double>(k), static_cast<reason>(reason_several_solutions + k - 1));
-      c.require((size == size) | is_infinite(n.impulse), reason_not_a_number);
+      mask overflows = is_infinite(n.impulse);
+      if constexpr (spins) overflows = overflows | is_infinite(n.moment);
+      c.require((size == size) | overflows, reason_not_a_number);
     } else {
       c.require(n.refused == 0.0, reason_overflow);
     }
@@ -462,10 +494,11 @@ struct kernel {
 
   // Energy split of ilaw.h from the work of the impulse, -r.(v^- + v)/2 less what was stored of it, normal
   // and tangential part apart. Where H couples them one may be negative, and is then taken off the other, so
-  // that both are dissipations and their sum stays the work. With it heat and wear.
+  // that both are dissipations and their sum stays the work. The work of a moment, twice_spin being twice
+  // the mean spin, counts as tangential. With it heat and wear.
   ILAW_KIT_INLINE static void store_energy(const Wide& law, const loaded& p, const view_type& b,
-                                           std::int64_t i, vector_type v, status_of<V> status,
-                                           mask accepted) {
+                                           std::int64_t i, vector_type v, spin_type twice_spin,
+                                           status_of<V> status, mask accepted) {
     const node_type& n = p.node;
     vector_type previous{};
     mask known = accepted & p.motion_known;
@@ -481,7 +514,11 @@ struct kernel {
     }
     const vector_type mean = previous + v;
     const V along_normal = -0.5 * normal_product(n.impulse, mean) - n.normal_gain;
-    const V along_tangents = -0.5 * tangential_product(n.impulse, mean) - n.tangential_gain;
+    V along_tangents = -0.5 * tangential_product(n.impulse, mean) - n.tangential_gain;
+    if constexpr (spins) {
+      const V twist = normal_product(n.moment, twice_spin), roll = tangential_product(n.moment, twice_spin);
+      along_tangents = along_tangents - 0.5 * (twist + roll);
+    }
     const V normal = positive_part(along_normal + smaller(along_tangents, 0.0));
     const V tangential = positive_part(along_tangents + smaller(along_normal, 0.0));
     mask broken = status == status::broken;
@@ -561,6 +598,15 @@ struct kernel {
     }
   }
 
+  // A spin or moment, in the axes of the batch; `bad` where the node is not accepted.
+  template <class Array>
+  ILAW_KIT_INLINE static void store_spin(const frame_type& frame, vector_type own, axis<V> bad,
+                                         const Array& to, std::int64_t i, mask accepted) {
+    axis<V> out = frame.spin_to_global(own);
+    if constexpr (careful) out = select(accepted, out, bad);
+    store_vector(out, to, i);
+  }
+
   ILAW_KIT_INLINE static void store_pack(const Wide& law, const loaded& p, const view_type& b, std::int64_t i,
                                          status_of<V> status, mask accepted) {
     const node_type& n = p.node;
@@ -569,14 +615,24 @@ struct kernel {
     store_vector(r, b.impulse, i);
     store_history(law, p, b, i, status, accepted);
     store_frame(p, b, i, status, accepted);
+    if constexpr (spins) store_spin(p.frame, n.moment, {0.0, 0.0, 0.0}, b.moment, i, accepted);
     if (b.moves) {
-      const vector_type v = n.v_free + n.delassus.times(n.impulse);
+      vector_type v;
+      spin_type twice_spin{};
+      if constexpr (spins) {
+        v = n.v_free + n.delassus.times(n.impulse, n.moment);
+        const vector_type spin = n.spin_free + n.delassus.spin_of(n.impulse, n.moment);
+        if (b.spin.at) store_spin(p.frame, spin, p.free_spin, b.spin, i, accepted);
+        twice_spin = n.spin_previous + spin;
+      } else {
+        v = n.v_free + n.delassus.times(n.impulse);
+      }
       if (b.velocity.at) {
         axis<V> out = p.frame.to_global(v);
         if constexpr (careful) out = select(accepted, out, p.free);
         store_vector(out, b.velocity, i);
       }
-      if (wants_energy(b)) store_energy(law, p, b, i, v, status, accepted);
+      if (wants_energy(b)) store_energy(law, p, b, i, v, twice_spin, status, accepted);
       if (b.status) {
         V code = status.code();
         if constexpr (careful) code = select(accepted, code, V(double{ILAW_BAD_INPUT}));

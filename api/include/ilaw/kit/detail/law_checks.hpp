@@ -244,6 +244,11 @@ constexpr bool all_nodes(auto is_right) {
       right = right && is_right(calls<Law, node_on<Law, projected, transverse>>{});
   }
   if constexpr (serves_full<Law>) right = right && is_right(calls<Law, node_on<Law, vector, full>>{});
+  if constexpr (serves_spins<Law>) {
+    right = right && is_right(calls<Law, node_on<Law, vector, transverse_spin>>{});
+    if constexpr (needs_no_tangents<Law>)
+      right = right && is_right(calls<Law, node_on<Law, projected, transverse_spin>>{});
+  }
   return right;
 }
 template <class Law>
@@ -489,6 +494,10 @@ struct checked_nodes {
   ILAW_KIT_CHECK(
       fits_finish, all_nodes<Law>([](auto call) { return call.finish_fits; }),
       "finish must be template <class Node> status_of<V> finish(Node& node, const answer& a) const");
+  ILAW_KIT_CHECK(serves_spins_rightly,
+                 !serves_spins<Law> || (reads<Law>(reads_v_previous) && !has_state<Law> &&
+                                        !has_history<Law> && (Law::card.dimensions & ILAW_DIMENSION_3)),
+                 "a law with_spins serves dimension 3, reads_v_previous, and has no state and no history");
   ILAW_KIT_CHECK(decides, all_nodes<Law>([](auto call) { return call.is_decided; }),
                  "step and ask take the same nodes: bool asks() const says which parameters need ask");
   ILAW_KIT_CHECK(
@@ -500,7 +509,7 @@ struct checked_nodes {
       "record must be template <class Node> void record(const Node& node, history_values own) const");
 
   static constexpr bool passes = has_state_apart && serves_nodes && steps && fits_ask && fits_finish &&
-                                 decides && limits_step && records;
+                                 serves_spins_rightly && decides && limits_step && records;
 #undef ILAW_KIT_CHECK
 #undef ILAW_KIT_FUNCTION
 #undef ILAW_KIT_NAME

@@ -62,11 +62,11 @@ struct view : view_options {
   template <class T, int Count>
   using array_of = typename arrays::template array_type<T, Count>;
 
-  array_of<const value, 3> v_free, v_previous, normal, tangent;
+  array_of<const value, 3> v_free, v_previous, normal, tangent, spin_free, spin_previous;
   array_of<const value, 6> delassus;
   const value *gap, *gap_offset, *area;
   const value* parameters[most_parameters];  // by the law's parameters; null: the same at all nodes
-  array_of<value, 3> impulse, velocity;
+  array_of<value, 3> impulse, velocity, moment, spin;
   array_of<value, ILAW_ENERGY_COUNT> energy;
   value* amounts[most_amounts];
   std::uint8_t* status;
@@ -102,6 +102,8 @@ class pack_copy {
     take(b.v_previous, pack.v_previous, v_previous_);
     take(b.normal, pack.normal, normal_);
     take(b.tangent, pack.tangent, tangent_);
+    take(b.spin_free, pack.spin_free, spin_free_);
+    take(b.spin_previous, pack.spin_previous, spin_previous_);
     take(b.delassus, pack.delassus, delassus_);
     if (b.is_scalar)
       for (int k = 0; k < width; ++k) delassus_[1][k] = delassus_[0][k];
@@ -112,6 +114,8 @@ class pack_copy {
     for (int p = 0; p < most_parameters; ++p) pack.parameters[p] = take(b.parameters[p], parameters_[p]);
     if (b.impulse.at) pack.impulse.at = impulse_[0];
     if (b.velocity.at) pack.velocity.at = velocity_[0];
+    if (b.moment.at) pack.moment.at = moment_[0];
+    if (b.spin.at) pack.spin.at = spin_[0];
     if (b.energy.at) pack.energy.at = energy_[0];
     for (int a = 0; a < most_amounts; ++a)
       if (b.amounts[a]) pack.amounts[a] = amounts_[a];
@@ -137,6 +141,8 @@ class pack_copy {
   [[gnu::noinline, gnu::cold]] void give_back(const view<Number>& b) const {
     give(b.impulse, impulse_);
     give(b.velocity, velocity_);
+    give(b.moment, moment_);
+    give(b.spin, spin_);
     give(b.energy, energy_);
     for (int a = 0; a < most_amounts; ++a) give(b.amounts[a], amounts_[a]);
     give(b.status, status_);
@@ -180,6 +186,7 @@ class pack_copy {
   const int width_;
   using column = double[copy_lanes];
   alignas(64) column v_free_[3], v_previous_[3], normal_[3], tangent_[3], delassus_[6], gap_, area_;
+  alignas(64) column spin_free_[3], spin_previous_[3], moment_[3], spin_[3];
   alignas(64) column parameters_[most_parameters], earlier_[4], given_[5], state_in_[most_states];
   alignas(64) column state_out_[most_states], frame_in_[6], frame_out_[6];
   alignas(64) column impulse_[3], velocity_[3], energy_[ILAW_ENERGY_COUNT], amounts_[most_amounts];
@@ -197,6 +204,7 @@ enum reason : int {
   reason_delassus,
   reason_gap,
   reason_v_previous,
+  reason_spin,
   reason_area,
   reason_frame,
   reason_state,

@@ -29,8 +29,9 @@ struct instance_base {
     if (has_tangent) return tangents::given;
     return carries_frame ? tangents::carried : tangents::chosen;
   }
+  bool has_spins() const { return delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN; }
   bool is_transverse() const {
-    return delassus_form == ILAW_DELASSUS_SCALAR || delassus_form == ILAW_DELASSUS_TRANSVERSE;
+    return delassus_form == ILAW_DELASSUS_SCALAR || delassus_form == ILAW_DELASSUS_TRANSVERSE || has_spins();
   }
   int delassus_numbers() const {
     const int d = static_cast<int>(dimension);
@@ -39,6 +40,8 @@ struct instance_base {
         return 1;
       case ILAW_DELASSUS_TRANSVERSE:
         return d == 1 ? 1 : 2;
+      case ILAW_DELASSUS_TRANSVERSE_SPIN:
+        return 5;
       case ILAW_DELASSUS_DIAGONAL:
         return d;
       default:
@@ -75,10 +78,10 @@ struct node_range {
   std::int64_t operator()(std::int64_t i) const { return listed ? where[i] : first + i; }
 };
 
-// Whether an array of so many components may stay where it is.
+// Whether an array of so many components may stay where it is; loops read no rows of five.
 template <class Array>
 bool stays(const Array& a, int components) {
-  return a.node_stride == 1 || (a.node_stride == components && a.component_stride == 1);
+  return a.node_stride == 1 || (a.node_stride == components && a.component_stride == 1 && components != 5);
 }
 
 // ---- windows: read before the loop over a block, written after it
@@ -192,6 +195,9 @@ class batch_walk {
                 stays_or_absent(b_.area, 1) && stays_or_absent(b_.impulse, d_) &&
                 stays_or_absent(b_.velocity, d_) && stays_or_absent(b_.energy, ILAW_ENERGY_COUNT) &&
                 state_stays(b_.state_in) && state_stays(b_.state_out);
+    if (made_.has_spins())
+      stay = stay && stays(b_.spin_free, 3) && stays_or_absent(b_.spin_previous, 3) && stays(b_.moment, 3) &&
+             stays_or_absent(b_.spin, 3);
     for (std::uint32_t k = 0; k < made_.per_node_count; ++k)
       stay = stay && stays(b_.per_node_parameters[k], 1);
     for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k)
@@ -473,6 +479,10 @@ class batch_walk {
     if (made_.frame == ILAW_FRAME_GLOBAL) v.normal = gather(b_.normal, d_, n, s_.normal);
     if (made_.inputs & ILAW_INPUT_TANGENT) v.tangent = gather(b_.tangent, d_, n, s_.tangent);
     v.delassus = gather_delassus(n);
+    if (made_.has_spins()) {
+      v.spin_free = gather(b_.spin_free, 3, n, s_.spin_free);
+      if (v.v_previous.at) v.spin_previous = gather(b_.spin_previous, 3, n, s_.spin_previous);
+    }
     if (made_.inputs & ILAW_INPUT_GAP) {
       v.gap = gather_scalar(b_.gap, n, s_.gap);
       v.gap_offset = gather_scalar(b_.gap_offset, n, s_.gap_offset);
@@ -486,12 +496,16 @@ class batch_walk {
     v.impulse = aim(b_.impulse, d_, n, s_.impulse);
     v.velocity = aim(b_.velocity, d_, n, s_.velocity);
     v.energy = aim(b_.energy, ILAW_ENERGY_COUNT, n, s_.energy);
+    if (made_.has_spins()) {
+      v.moment = aim(b_.moment, 3, n, s_.moment);
+      v.spin = aim(b_.spin, 3, n, s_.spin);
+    }
     if (b_.status) v.status = status_stays(n) ? b_.status + n.first : s_.status;
     for (std::uint32_t k = 0; b_.amounts && k < made_.amount_count; ++k) {
       v.amounts[k] = aim(b_.amounts[k], 1, n, s_.amounts[k]).at;
       v.has_amounts = v.has_amounts || v.amounts[k];
     }
-    v.moves = v.velocity.at || v.energy.at || v.status || v.has_amounts;
+    v.moves = v.velocity.at || v.spin.at || v.energy.at || v.status || v.has_amounts;
     v.has_balance = v.energy.at || v.has_amounts;
   }
   bool status_stays(const node_range& n) const { return !n.listed && b_.status_stride == 1; }
@@ -522,6 +536,10 @@ class batch_walk {
     add(all, found, n);
     scatter(b_.impulse, v.impulse, n, s_.impulse);
     scatter(b_.velocity, v.velocity, n, s_.velocity);
+    if (made_.has_spins()) {
+      scatter(b_.moment, v.moment, n, s_.moment);
+      scatter(b_.spin, v.spin, n, s_.spin);
+    }
     scatter(b_.energy, v.energy, n, s_.energy);
     if (v.status == s_.status)
       for (std::int64_t i = 0; i < n.count; ++i) b_.status[n(i) * b_.status_stride] = s_.status[i];
@@ -542,10 +560,11 @@ class batch_walk {
 
   struct alignas(64) scratch {
     Number v_free[3 * block_nodes], v_previous[3 * block_nodes], normal[3 * block_nodes],
-        tangent[3 * block_nodes];
+        tangent[3 * block_nodes], spin_free[3 * block_nodes], spin_previous[3 * block_nodes];
     Number delassus[6 * block_nodes], gap[block_nodes], gap_offset[block_nodes], area[block_nodes];
     Number parameters[most_parameters][block_nodes];
     Number impulse[3 * block_nodes], velocity[3 * block_nodes], energy[ILAW_ENERGY_COUNT * block_nodes];
+    Number moment[3 * block_nodes], spin[3 * block_nodes];
     Number amounts[most_amounts][block_nodes];
     std::uint8_t status[block_nodes];
   };

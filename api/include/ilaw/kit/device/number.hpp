@@ -1,4 +1,4 @@
-// device_number.hpp - the number type V of a law on a device: a pack of one lane. Not a double, with which
+// number.hpp - the number type V of a law on a device: a pack of one lane. Not a double, with which
 // laws mean the scalar fallback and may compute in another way.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once

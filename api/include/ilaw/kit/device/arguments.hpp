@@ -1,4 +1,4 @@
-// device_arguments.hpp - what a kernel of a device is given by value: the batch with its device pointers, the
+// arguments.hpp - what a kernel of a device is given by value: the batch with its device pointers, the
 // instance's options and the law. The host's compiler and the device's lay it out alike.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once

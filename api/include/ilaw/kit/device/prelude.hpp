@@ -1,4 +1,4 @@
-// device_prelude.hpp - what a device's compiler reads before a law's source (ilaw_add_plugin): the standard
+// prelude.hpp - what a device's compiler reads before a law's source (ilaw_add_plugin): the standard
 // headers as the host has them, from there on functions of host and device alike, and the number of a thread.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once

@@ -1,10 +1,10 @@
-// device_extension.hpp - the extension ilaw.device/1 of a law whose library carries kernels for devices.
+// extension.hpp - the extension ilaw.device/1 of a law whose library carries kernels for devices.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <ilaw/ext/draft/device.h>
-#include <ilaw/kit/detail/device_arguments.hpp>
 #include <ilaw/kit/detail/evaluate.hpp>
+#include <ilaw/kit/device/arguments.hpp>
 
 // The images that ilaw_add_plugin links into the library.
 extern "C" {
@@ -70,6 +70,7 @@ device_frame device_frame_of(const instance<Law>& made) {
 template <class Law>
 const char* not_served(const instance<Law>& made) {
   if (made.window.duration > 0.0) return "memory is a window, which no device serves: expected 0";
+  if (made.has_spins()) return "H has spins, which no device serves: expected another form";
   if (made.node_tables) return "a table is over a value per node, which no device serves";
   return nullptr;
 }

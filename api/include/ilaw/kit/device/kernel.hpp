@@ -1,11 +1,11 @@
-// device_kernel.hpp - a law's kernels for a device: one thread a node, on the careful loop of the CPU with V
+// kernel.hpp - a law's kernels for a device: one thread a node, on the careful loop of the CPU with V
 // = double, straight from the host's arrays. No allocation, no synchronization.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/device_number.hpp>
+#include <ilaw/kit/device/number.hpp>
 
-#include <ilaw/kit/detail/device_arguments.hpp>
+#include <ilaw/kit/device/arguments.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 

@@ -1,8 +1,8 @@
-// device_plugin.hpp - the entry of a law library as a device's compiler sees it: its kernels.
+// plugin.hpp - the entry of a law library as a device's compiler sees it: its kernels.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/device_kernel.hpp>
+#include <ilaw/kit/device/kernel.hpp>
 
 #define ILAW_KIT_KERNEL(numbers, frame, form, part)                                                          \
   extern "C"                                                                                                 \
