@@ -3,6 +3,7 @@
 #include "kit_probe.hpp"
 
 #include "support/law_cases.hpp"
+#include "support/small_batch.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -254,6 +255,23 @@ INSTANTIATE_TEST_SUITE_P(Kit, Contract,
                                            LawCase{"solver_probe", "solver_probe", {}, {}},
                                            LawCase{"tie", "tie_that_cannot_break", {}, {}}),
                          name_of_case);
+
+// A contact is closed where the gap is at most its offset, alone and in packs.
+TEST(GapOffset, IsSubtractedFromTheGap) {
+  const ilaw::interface law = make_law("contact", SetupBuilder({{}, {{"activation", "moreau"}}}));
+  for (const std::size_t count : {1U, 37U}) {
+    SmallBatch nodes(count, {-1.0, 0.0, 0.0}, law.info().state_size);
+    std::vector<double> gaps(count), offsets(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      gaps[i] = 0.25 * static_cast<double>(i % 3);
+      offsets[i] = 0.25 * static_cast<double>(i % 4) - 0.25;
+    }
+    nodes.b.gap = ilaw::input(gaps.data(), 1, 0);
+    nodes.b.gap_offset = ilaw::input(offsets.data(), 1, 0);
+    ASSERT_EQ(law.evaluate(nodes.b), ILAW_OK);
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(nodes.r[i][0], gaps[i] <= offsets[i] ? 1.0 : 0.0) << i;
+  }
+}
 
 }  // namespace
 }  // namespace ilaw::testing
