@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Draws the gallery of the shipped scenes, docs/img/gallery.png, and the first scene of docs/scenes.md.
+"""Draws the gallery of the shipped scenes, docs/img/gallery.png, and the scenes of docs/scenes.md.
 
     host_mock/demo.sh && docs/make_gallery.py build/release/demo [PROGRAM]
 
-The folder has the results of the demo. PROGRAM (build/release/bin/ilaw) runs the scene of the page. Needs matplotlib.
+The folder has the results of the demo. PROGRAM (build/release/bin/ilaw) runs the scenes of the page. Needs matplotlib.
 """
 # SPDX-License-Identifier: BSD-3-Clause
 
@@ -97,22 +97,23 @@ def gallery(folder):
     figure.savefig(DOCS / "img" / "gallery.png", dpi=95, metadata={"Software": None})
 
 
-def first_scene(program):
-    scene = re.search(r"```json\n(.*?)```", (DOCS / "scenes.md").read_text(), re.S)[1]
-    with tempfile.TemporaryDirectory() as folder:
-        file, results = Path(folder) / "scene.json", Path(folder) / "results"
-        file.write_text(scene)
-        subprocess.run([program, "run", file, "--out", results], check=True, stdout=subprocess.DEVNULL)
-        subprocess.run([program, "plot", results, "--panels", "displacement,velocity,force,status"], check=True,
-                       stdout=subprocess.DEVNULL)
-        (DOCS / "img" / "first_scene.png").write_bytes((results / "history.png").read_bytes())
+def scenes_of_page(program):
+    scenes = re.findall(r"```json\n(.*?)```", (DOCS / "scenes.md").read_text(), re.S)
+    pictures = [("first_scene", "displacement,velocity,force,status"), ("pressed_pad", "force,status")]
+    for scene, (name, panels) in zip(scenes, pictures, strict=True):
+        with tempfile.TemporaryDirectory() as folder:
+            file, results = Path(folder) / "scene.json", Path(folder) / "results"
+            file.write_text(scene)
+            subprocess.run([program, "run", file, "--out", results], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([program, "plot", results, "--panels", panels], check=True, stdout=subprocess.DEVNULL)
+            (DOCS / "img" / f"{name}.png").write_bytes((results / "history.png").read_bytes())
 
 
 def main():
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
     gallery(Path(sys.argv[1]))
-    first_scene(sys.argv[2] if len(sys.argv) > 2 else DOCS.parent / "build/release/bin/ilaw")
+    scenes_of_page(sys.argv[2] if len(sys.argv) > 2 else DOCS.parent / "build/release/bin/ilaw")
 
 
 if __name__ == "__main__":

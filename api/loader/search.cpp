@@ -129,6 +129,7 @@ std::string find_named(const std::string& name) {
   for (const std::string& folder : path.folders)
     if (std::string found = canonical(folder + "/" + file); !found.empty()) return found;
   std::string where = joined(path.folders);
+  if (!secure_getenv("ILAW_PATH")) where += "; ILAW_PATH adds folders by their absolute paths";
   if (!path.left_out.empty())
     where += "; not searched, since every user may write there: " + joined(path.left_out);
   if (!path.relative.empty())

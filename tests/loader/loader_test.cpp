@@ -368,6 +368,14 @@ TEST(Search, GoesOnUntilTheVisitorHasSeenEnough) {
   EXPECT_EQ(text, ilaw::search_path().substr(0, 7));
 }
 
+TEST(Search, NamesTheVariableWhereItIsNotSet) {
+  const std::string hint = "; ILAW_PATH adds folders by their absolute paths";
+  unsetenv("ILAW_PATH");
+  EXPECT_NE(refusal_of("nowhere").second.find(hint), std::string::npos);
+  setenv("ILAW_PATH", "/nowhere", 1);
+  EXPECT_EQ(refusal_of("nowhere").second.find(hint), std::string::npos);
+}
+
 TEST(Search, NeverLooksInTheCurrentFolder) {
   const fs::path folder = folder_with("local"), before = fs::current_path();
   fs::current_path(folder);

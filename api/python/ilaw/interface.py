@@ -283,6 +283,7 @@ class Batch(NotCopied):
         if not isinstance(v_free, np.ndarray) or v_free.ndim not in (1, 2):
             raise InvalidArgument(f"v_free: {type(v_free).__name__}, expected an array of shape (nodes, {d})")
         self.node_count = len(v_free)
+        self._check_dimension(v_free)
         self._inputs: dict[str, NDArray[Any]] = {}
         vectors = {"v_free": v_free, "v_previous": v_previous, "normal": normal, "tangent": tangent}
         for name, value in vectors.items():
@@ -310,6 +311,14 @@ class Batch(NotCopied):
         self._batch.status, self._batch.status_stride = self.status.ctypes.data, 1
         arrays.check_apart(self._outputs, self._inputs)
         self.index = index
+
+    def _check_dimension(self, v_free: NDArray[Any]) -> None:
+        d, columns = self.interface.dimension, v_free.shape[-1]
+        if v_free.ndim == 2 and columns != d and columns in (1, 2, 3):
+            raise InvalidArgument(
+                f"v_free: shape {v_free.shape}, expected {(self.node_count, d)}, or {(d,)} for all nodes: "
+                f"the interface has dimension {d}, see its argument dimension"
+            )
 
     def _read(self, name: str, value: Any, components: int) -> None:
         if value is None:
