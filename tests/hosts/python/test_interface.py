@@ -225,7 +225,7 @@ def given(**changed):
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"v_free": np.zeros((5, 2))}, r"v_free: shape \(5, 2\), expected \(5, 3\), or \(3,\) for all nodes"),
+        ({"v_free": np.zeros((5, 2))}, r"expected \(5, 3\), or \(3,\) for all nodes: the interface has dimension 3"),
         ({"v_free": 1.0}, r"v_free: float, expected an array of shape \(nodes, 3\)"),
         ({"gap": np.zeros(4)}, r"gap: shape \(4,\), expected \(5,\), or a number for all nodes"),
         ({"gap": np.zeros(5, np.float32)}, "gap: array of float32, expected float64"),
