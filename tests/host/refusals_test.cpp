@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{
             "/interface", "[]",
             "/interface: unknown key, expected one of: converge, doc, exact, fields, initial, interfaces, loads, "
-            "model, output, prestress, sets, springs, study, time, title (did you mean 'interfaces'?)"},
+            "model, output, pairs, prestress, sets, springs, study, time, title (did you mean 'interfaces'?)"},
         Mistake{"/model/type", "\"bar\"", "/model/type: found \"bar\", expected one of \"points\""},
         Mistake{"/model/dimension", "4", "/model/dimension: found 4, expected integer >= 1 and <= 3"},
         Mistake{"/model/points/1/mass", "0", "/model/points/1/mass: found 0, expected number > 0"},

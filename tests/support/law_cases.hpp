@@ -103,7 +103,7 @@ inline std::uint32_t form_of(const LawCase& given) {
 
 // Whether the "forms" of H of a case, all if left out, have this one.
 inline bool serves(const LawCase& given, std::uint32_t form) {
-  const json forms = given.more.value("forms", json());
+  const json forms = given.more.is_object() ? given.more.value("forms", json()) : json();
   return forms.is_null() || std::find(forms.begin(), forms.end(), name_of_form(form)) != forms.end();
 }
 

@@ -191,10 +191,11 @@ ILAW_KIT_APART void store_heat(const view<Number>& b, std::int64_t i, int first,
   const V rubs = impulse.tangential_length(), rest = 1.0 - partition;
   const V speed = select(rubs > 0.0, friction / rubs, 0.5 * twice_mean.tangential_length());
   const V area = b.area ? load<V>(b.area + i) : V(0.0);
-  const mask_of<V> wears = (impulse.n > 0.0) & (coefficient > 0.0) & (area > 0.0) & (speed > 0.0);
+  const V depth = coefficient * (impulse.n / area);  // per slip
+  const mask_of<V> wears = (depth > 0.0) & (area > 0.0) & (speed > 0.0);
   const V amounts[heat_amount_count] = {zero_unless(partition > 0.0, partition * friction),
                                         zero_unless(rest > 0.0, rest * friction),
-                                        zero_unless(wears, coefficient * (impulse.n / area) * speed)};
+                                        zero_unless(wears, depth * speed)};
   for (int k = 0; k < heat_amount_count; ++k)
     if (b.amounts[first + k]) detail::store(amounts[k], b.amounts[first + k] + i);
 }
