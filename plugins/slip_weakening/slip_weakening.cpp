@@ -104,8 +104,9 @@ struct slip_weakening : changing_friction<slip_weakening, weakening, V> {
   template <class Node>
   void slide(Node& node, V speed) const {
     const auto pressed = node.impulse.n > 0.0;
-    const V steep = node.delassus.largest_tangential() * node.impulse.n * -coefficient_in(node)(speed).slope;
-    node.amounts[0] = zero_unless(pressed, steep);
+    const V fall = -coefficient_in(node)(speed).slope;
+    const V steep = node.delassus.largest_tangential() * node.impulse.n * fall;
+    node.amounts[0] = zero_unless(pressed & (fall > 0.0), steep);
     const V path = 0.5 * node.velocity_step * (node.v_previous.tangential_length() + speed);
     node.state.slip = node.state.slip + zero_unless(pressed, path);
   }
