@@ -138,9 +138,10 @@ void read_pairs(const json& interface, const json& scene, const Model& model, co
     if (setup.arguments.gives(parameter))
       throw mistake(pointer + "/parameters/" + parameter,
                     "'" + parameter + "' here and in the table of 'pairs'", "one of them");
-    const bool is_one = std::ranges::all_of(values, [&](double value) { return value == values.front(); });
+    const double first = values.front();
+    const bool is_one = std::ranges::all_of(values, [first](double value) { return value == first; });
     if (is_one)
-      setup.arguments.numbers[parameter] = values.front();
+      setup.arguments.numbers[parameter] = first;
     else
       setup.arguments.per_node[parameter] = std::move(values);
   }
