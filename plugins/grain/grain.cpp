@@ -39,8 +39,7 @@ struct grain {
 
   static constexpr const char* references[] = {
       "K. L. Johnson, K. Kendall, A. D. Roberts, 1971, Surface energy and the contact of elastic solids",
-      "B. V. Derjaguin, V. M. Muller, Y. P. Toporov, 1975, Effect of contact deformations on the adhesion of "
-      "particles",
+      "B. V. Derjaguin, V. M. Muller, Y. P. Toporov, 1975, Effect of contact deformations on adhesion",
       "R. D. Mindlin, 1949, Compliance of elastic bodies in contact",
       "N. V. Brilliantov, F. Spahn, J.-M. Hertzsch, T. Poeschel, 1996, Model for collisions in granular gases"};
 
