@@ -8,7 +8,7 @@
 // into B B', and a column of three is a body that gives way alike in all directions; rows of B are the
 // weights of a contact.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "contact_problem.hpp"
+#include "problem_files.hpp"
 
 #include <ilaw/arrays.hpp>
 #include <ilaw/coupled.hpp>
@@ -19,7 +19,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <map>
 #include <string>
 #include <vector>
@@ -158,27 +157,14 @@ void print_row(const char* name, Problem& problem, const ilaw::library& library,
 }  // namespace
 
 int main(int argc, char** argv) {
-  double limit = 3.0;
-  int first = 1;
-  if (argc > 2 && std::strcmp(argv[1], "--limit") == 0) {
-    limit = std::atof(argv[2]);
-    first = 3;
-  }
-  if (first >= argc) {
-    std::fprintf(stderr, "usage: ilaw_bench_coupled_convergence [--limit SECONDS] FILE...\n");
-    return 2;
-  }
+  ProblemFiles files;
+  if (const auto code = files.parse(argc, argv, "Iterations and seconds of coupled contacts to a residual"))
+    return *code;
   const ilaw::library library("coulomb");
   std::printf("%-36s %6s %9s %8s %8s %9s %8s %9s %9s  %s\n", "problem", "count", "W - W'", "W by", "to 1e-4",
               "s", "to 1e-8", "s", "residual", "method");
-  for (int i = first; i < argc; ++i) {
-    Problem problem;
-    if (!read(argv[i], problem)) {
-      std::fprintf(stderr, "%s: not a local problem of contacts in dimension 3\n", argv[i]);
-      continue;
-    }
-    const std::string name = argv[i];
-    print_row(name.substr(name.rfind('/') + 1).c_str(), problem, library, limit);
-  }
+  files.for_each([&](const std::string& name, Problem& problem) {
+    print_row(name.c_str(), problem, library, files.limit);
+  });
   return 0;
 }

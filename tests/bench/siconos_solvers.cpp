@@ -4,7 +4,7 @@
 // Files, W and residual are those of ilaw_bench_coupled_convergence. A solver runs in a process of its own,
 // since some do not return or crash. A row has the problem, the solver and the seconds to either residual.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "contact_problem.hpp"
+#include "problem_files.hpp"
 
 #include <FrictionContactProblem.h>
 #include <Friction_cst.h>
@@ -16,7 +16,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstring>
 
 namespace {
 
@@ -122,39 +121,27 @@ Solved solve_apart(const Problem& problem, const char* file, int id, double targ
 }  // namespace
 
 int main(int argc, char** argv) {
-  double limit = 3.0;
-  int first = 1;
-  if (argc > 2 && std::strcmp(argv[1], "--limit") == 0) {
-    limit = std::atof(argv[2]);
-    first = 3;
-  }
-  if (first >= argc) {
-    std::fprintf(stderr, "usage: ilaw_bench_siconos_solvers [--limit SECONDS] FILE...\n");
-    return 2;
-  }
+  ProblemFiles files;
+  if (const auto code =
+          files.parse(argc, argv, "Seconds of Siconos' solvers to a residual of 1e-4 and of 1e-8"))
+    return *code;
   char copy[] = "/tmp/ilaw_problem_XXXXXX.dat";  // without an extension Siconos does not read it
   const int handle = mkstemps(copy, 4);
   if (handle < 0) return 1;
   close(handle);
-  for (int i = first; i < argc; ++i) {
-    Problem problem;
-    if (!read(argv[i], problem)) {
-      std::fprintf(stderr, "%s: not a local problem of contacts in dimension 3\n", argv[i]);
-      continue;
-    }
+  files.for_each([&](const std::string& name, Problem& problem) {
     make_semidefinite(problem, factor(problem));
     write(problem, copy);
-    const std::string name = argv[i];
     for (const Solver& solver : solvers) {
-      std::printf("%-36s %-8s", name.substr(name.rfind('/') + 1).c_str(), solver.name);
+      std::printf("%-36s %-8s", name.c_str(), solver.name);
       for (const double target : {1e-4, 1e-8}) {
-        const Solved solved = solve_apart(problem, copy, solver.id, target, limit);
+        const Solved solved = solve_apart(problem, copy, solver.id, target, files.limit);
         solved.seconds < 0.0 ? std::printf(" %9s", "-") : std::printf(" %9.5f", solved.seconds);
       }
       std::printf("\n");
       std::fflush(stdout);
     }
-  }
+  });
   std::remove(copy);
   return 0;
 }
