@@ -14,7 +14,7 @@
 
 namespace ilaw::check {
 
-// What is judged, by which random numbers. given: parameters that replace the drawn ones.
+// A law that is judged, by random numbers of this seed. given: parameters that replace the drawn ones.
 struct Subject {
   const ilaw::library& library;
   const ilaw_law& law;

@@ -40,7 +40,7 @@ block::block(const block_options& options)
   cells_.reinit(MappingQ1<3>(), dofs_, constraints_, QGauss<1>(2), data);
   make_nodes();
 
-  // Row sums. Those of hanging nodes go to the nodes between which they hang.
+  // Row sums; hanging nodes give theirs to the nodes between which they hang.
   mass_ = make_vector();
   const double density = options_.density;
   on_cells(

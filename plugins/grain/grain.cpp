@@ -96,7 +96,7 @@ struct grain {
                : nullptr;
   }
 
-  // What adhesion makes of a contact, in units of R and E.
+  // The scales of adhesion, in units of R and E.
   adhesion_scale<V> prepare(const step_sizes& /*step*/) const {
     constexpr double two_pi = 6.283185307179586;
     const V square = two_pi * adhesion_energy / (modulus * radius);
@@ -131,8 +131,7 @@ struct grain {
   mask_of<V> is_held(const Node& node) const {
     return node.state.growth != 0.0;
   }
-  // Of the circle of a node before the step; a circle that changed parameters made too small is the least
-  // one.
+  // The radius of the circle before the step, never below the least: parameters may have changed.
   template <class Node>
   V circle_of(const Node& node) const {
     const adhesion_scale<V>& scale = node.prepared;

@@ -52,7 +52,7 @@ TEST(RootBetween, FindsAJump) {
   }
 }
 
-// What f keeps is of the result: f is called there last.
+// f is called last at the result, so what it keeps belongs to that.
 TEST(RootBetween, CallsItsFunctionLastAtTheRoot) {
   double last = 0.0;
   const double found = root_between(0.0, 2.0, 2.0, true, [&](double x) {

@@ -101,7 +101,7 @@ struct node {
   const Delassus delassus;
   const input_t<Law, reads_gap, V, undeclared_input<V, reads_gap>> gap;  // offset already taken off
   const input_t<Law, reads_area, V, undeclared_input<V, reads_area>> area;
-  // Of a spin w the components w_N and w x n: the velocity at the contact point of a sphere of unit radius.
+  // A spin w is given as w_N and w x n: the velocity at the contact point of a sphere of unit radius.
   const spin_type spin_free = {}, spin_previous = {};
   vector<V> earlier = {};      // what the law's window sums up to before the step
   const_history history = {};  // of laws with a free history
