@@ -1,6 +1,6 @@
 // Contact of spheres with friction, rolling and twisting resistance. See rolling.md for the equations.
 #include <ilaw/kit.hpp>
-#include <ilaw/kit/roots.hpp>
+#include <ilaw/kit/rolling.hpp>
 
 namespace {
 
@@ -33,22 +33,8 @@ struct rolling : friction_solver<V> {
       friction_parameter(&rolling::friction)
           .with_doc("Coefficient of friction; inf forbids slip while the contact is pressed.")
           .as_required(),
-      {.member = &rolling::rolling_friction,
-       .name = "rolling_friction",
-       .symbol = "rho",
-       .unit = "m",
-       .doc =
-           "Largest rolling moment over the normal force: a coefficient of rolling friction times a radius.",
-       .infinity_allowed = true,
-       .needs_spins = true},
-      {.member = &rolling::twisting_friction,
-       .name = "twisting_friction",
-       .symbol = "tau",
-       .unit = "m",
-       .doc = "Largest moment about the normal over the normal force.",
-       .infinity_allowed = true,
-       .needs_spins = true},
-      restitution_parameter(&rolling::restitution),
+      rolling_friction_parameter(&rolling::rolling_friction),
+      twisting_friction_parameter(&rolling::twisting_friction), restitution_parameter(&rolling::restitution),
       activation_parameter(&rolling::activation)};
 
   template <class Node>
@@ -68,38 +54,19 @@ struct rolling : friction_solver<V> {
     return contact_problem_of(contact_at(node, restitution, activation), node.v_free, node.v_previous);
   }
 
-  // Slip and rolling share a block of the tangent plane, v = v_free + h r - k q and u = u_free - k r + j q,
-  // with |r| <= mu r_N against v, |q| <= rho r_N against u. With r = -part (v_free - k q), part = 1/(h +
-  // lambda), q is one projection and |r| falls with lambda >= 0: one root, of x = |v_free - k q| = mu
-  // r_N/part.
   template <class Node, class Vector>
   status_of<V> roll(Node& node, const contact_problem<Vector>& contact) const {
     const auto& h = node.delassus;
     const V normal = pressing_impulse(h, contact);
-    const Vector v = node.v_free.tangential_part(), u = node.spin_free.tangential_part();
-    const V most_r = friction_limit(friction, normal), most_q = friction_limit(rolling_friction, normal);
-    const V by_h = 1.0 / h.t, stuck = h.t * most_r;  // the largest speed that friction stops
-    Vector q{}, slip{};
-    V speed = stuck;
-    const auto trial = [&](V x) ILAW_KIT_LAMBDA {
-      const V part = select(x > stuck, most_r / x, by_h), j = h.j_t - (h.k * part) * h.k;
-      const Vector f = u + (h.k * part) * v;
-      const V length = f.tangential_length();
-      q = f.against(0.0, select(length > most_q * j, most_q / length, 1.0 / j));
-      slip = v - h.k * q;
-      speed = slip.tangential_length();
-      return root_trial<V>{x - speed, 1.0, 1.0, 1.0, V(0.0) != V(0.0)};
-    };
-    trial(stuck);
-    if (const mask_of<V> slips = speed > stuck; any(slips))
-      root_between(stuck, V(infinity), select(slips, speed, stuck), slips, trial);
-    const mask_of<V> slides = speed > stuck;
-    node.impulse = slip.against(normal, select(slides, most_r / speed, by_h));
-    node.moment = q;
-    const V most_twist = friction_limit(twisting_friction, normal), stops = node.spin_free.n / h.j_n;
-    node.moment.n = 0.0 - smaller(larger(stops, -most_twist), most_twist);
+    const auto found = solve_rolling<V, Vector>(
+        {h.t, h.k, h.j_t, node.v_free.tangential_part(), node.spin_free.tangential_part(),
+         friction_limit(friction, normal), friction_limit(rolling_friction, normal)},
+        [](Vector u) ILAW_KIT_LAMBDA { return u; });
+    node.impulse = found.slip.against(normal, found.factor);
+    node.moment = found.q;
+    node.moment.n = twisting_moment(node.spin_free.n, h.j_n, friction_limit(twisting_friction, normal));
     const V part = take_off_positive_work(node, normal * contact.rest.n);
-    return select(normal > 0.0, select(slides | (part < sticking_part), status::slip, status::stick),
+    return select(normal > 0.0, select(found.slides | (part < sticking_part), status::slip, status::stick),
                   status::free);
   }
 
