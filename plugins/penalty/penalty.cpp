@@ -2,6 +2,7 @@
 #include "friction.hpp"
 
 #include <ilaw/kit.hpp>
+#include <ilaw/kit/tangential_spring.hpp>
 
 namespace {
 
@@ -120,27 +121,22 @@ struct penalty {
 
   // What all nodes of a batch share.
   struct numbers {
-    bool loses, withholds, rubs, sticks_rigidly, sticks_softly;
-    V step, lead, ratio;         // h, tau, zeta
-    V rate, per_rate, softness;  // h k_T and 1/(h k_T), 0 where there is none; 4/(h^2 k_T)
+    bool loses, withholds, rubs;
+    V step, lead, ratio;  // h, tau, zeta
+    tangential_spring<V> tangent;
   };
   numbers prepare(const step_sizes& step) const {
     const double h = step.velocity_step;
-    const mask_of<V> rubs = friction > 0.0, is_rigid = tangential_stiffness == infinity;
-    // A spring too soft for 1/(h k_T) to be a number is none.
-    const V rate = h * tangential_stiffness, least = std::numeric_limits<double>::min();
-    const mask_of<V> counts = (integration == implicitly) | (rubs & (rate >= least));
+    const mask_of<V> rubs = friction > 0.0;
+    const mask_of<V> acts =
+        (integration == implicitly) | (rubs & tangential_spring<V>::counts(h, tangential_stiffness));
     return {.loses = any((restitution < 1.0) | (damping > 0.0) | (stiffness == infinity) | (exponent != 1.0)),
             .withholds = any(restitution < 1.0),
             .rubs = any(rubs),
-            .sticks_rigidly = any(rubs & is_rigid),
-            .sticks_softly = any(rubs & !is_rigid),
             .step = h,
             .lead = 1.0 / (1.0 + restitution) - 0.5,
             .ratio = any(restitution < 1.0) ? damping_ratio(restitution) : V(0.0),
-            .rate = zero_unless(counts, rate),
-            .per_rate = zero_unless(counts, 1.0 / rate),
-            .softness = 4.0 / h / rate};
+            .tangent = {h, tangential_stiffness, rubs, acts}};
   }
 
   using problem = penalty_law::problem<V>;
@@ -167,8 +163,9 @@ struct penalty {
   asked<V> ask(Node& node, problem& open) const {
     open = normal_problem(node);
     if constexpr (!is_transverse<Node>) {
-      const vector<V> q = 0.5 * sliding_velocity(node, 0.0);
-      const V softness = 0.5 * node.prepared.softness;
+      const tangential_spring<V>& tangent = node.prepared.tangent;
+      const vector<V> q = 0.5 * tangent.slip(node, node.state.spring, 0.0);
+      const V softness = 0.5 * tangent.softness;
       const full<V>& h = node.delassus;
       const mask_of<V> is_rigid = tangential_stiffness == infinity;
       open.c1 = h.n1, open.c2 = h.n2;
@@ -199,7 +196,7 @@ struct penalty {
     vector<V> impulse{a.normal, a.t1, a.t2};
     const mask_of<V> is_apart = a.status == status::closed.code;
     if (any(is_apart) && node.prepared.rubs) {
-      slides = slides | (is_apart & rub_apart(node, a.normal));
+      slides = slides | (is_apart & rub_on_spring(node, a.normal));
       impulse = select(is_apart, node.impulse, impulse);
     }
     node.impulse = impulse;
@@ -207,20 +204,13 @@ struct penalty {
   }
 
  private:
-  // Energies of the springs; none where they are rigid.
+  // Energy of the normal spring; none where it is rigid.
   V potential(V x) const {
     return zero_unless(stiffness < infinity, stiffness * to_exponent(x, exponent) * x / (exponent + 1.0));
   }
-  V tangential_potential(vector<V> a, vector<V> b) const {
-    return zero_unless(tangential_stiffness < infinity,
-                       0.5 * tangential_stiffness * tangential_product(a, b));
-  }
-  // The tangential impulse -q/resistance within the cone; says where the node slips.
   template <class Node>
-  mask_of<V> rub_against(Node& node, V normal, vector<V> q, V resistance) const {
-    const auto found = rub(resistance, normal, q.scaled_tangential_length(), V(0.0), V(0.0), friction);
-    node.impulse = q.against(normal, found.factor);
-    return found.status == status::slip;
+  mask_of<V> rub_on_spring(Node& node, V normal) const {
+    return node.prepared.tangent.rub(node, normal, node.state.spring, normal, friction);
   }
   template <class Node>
   status_of<V> status_of_pressed(const Node& node, mask_of<V> slides) const {
@@ -258,47 +248,30 @@ struct penalty {
     return {h, stiffness, exponent, free, p.previous, h_n, p.indentation, damper, lead, withheld};
   }
 
-  // q + H/2 r is the mean velocity of what slips, of which a rigid stick gives back the part e_T. Twice that,
-  // and twice what the spring adds to H/2.
-  template <class Node>
-  vector<V> sliding_velocity(const Node& node, V given_back) const {
-    if (!node.prepared.sticks_softly) return node.v_free + given_back * node.v_previous;
-    const mask_of<V> is_rigid = tangential_stiffness == infinity;
-    return node.v_free + select(is_rigid, given_back, V(1.0)) * node.v_previous +
-           zero_unless(!is_rigid, V(4.0 / node.velocity_step)) * node.state.spring;
-  }
-  // With one tangential entry of H, e_T is what of v_T^- the free velocity has turned round, so that the
-  // stick does no work. A little more, as rounding may leave velocities along v^-, which then do none either.
-  template <class Node>
-  mask_of<V> rub_apart(Node& node, V normal) const {
-    constexpr double more_than_rounding = 1.0 + 0x1p-48;
-    V part = 0.0;
-    if (node.prepared.sticks_rigidly) {
-      const V speed = tangential_product(node.v_previous, node.v_previous);
-      const V turned = 0.0 - more_than_rounding * tangential_product(node.v_free, node.v_previous);
-      part = zero_unless(turned > 0.0, turned / larger(turned, speed));
-    }
-    const V resistance = node.delassus.tangential() + node.prepared.softness;
-    return rub_against(node, normal, sliding_velocity(node, part), resistance);
-  }
   // Gives the node what its normal spring gives, and what friction makes of it.
   template <class Node>
   status_of<V> give(Node& node, V normal, V indentation) const {
     mask_of<V> slides = normal < 0.0;
     node.impulse.n = normal;
-    if (node.prepared.rubs) slides = rub_apart(node, normal);
+    if (node.prepared.rubs) slides = rub_on_spring(node, normal);
     return keep(node, indentation, slides);
   }
   template <class Node>
   status_of<V> keep(Node& node, V indentation, mask_of<V> slides) const {
+    const tangential_spring<V>& tangent = node.prepared.tangent;
+    const vector<V> before = node.state.spring;
     vector<V> slip{};
-    if (node.prepared.sticks_softly) slip = strained(node, slides | !(friction * node.impulse.n > 0.0));
+    if (tangent.is_soft) {
+      const vector<V> r = node.impulse, v = node.v_free + node.delassus.times(r);
+      slip =
+          tangent.strained(before, r, node.v_previous + v, node.delassus.tangential(),
+                           friction_limit(friction, r.n), slides | !(friction * r.n > 0.0), friction > 0.0);
+    }
     const V withheld = withheld_by(node, indentation);
     if (node.wants_energy) {
-      const vector<V> before = node.state.spring;
-      const V normal = potential(indentation) + withheld, tangential = tangential_potential(slip, slip);
+      const V normal = potential(indentation) + withheld, tangential = tangent.energy(slip, slip);
       node.normal_gain = normal - (potential(node.state.indentation) + node.state.withheld);
-      node.tangential_gain = tangential - tangential_potential(before, before);
+      node.tangential_gain = tangential - tangent.energy(before, before);
       node.stored = normal + tangential;
     }
     node.state = {indentation, slip, withheld};
@@ -314,27 +287,12 @@ struct penalty {
     const V most = zero_unless(indentation > 0.0, stiffness * indentation) * depth;
     return spring_of<V>(p, p.free, node.prepared).withheld_after(v, indentation, most);
   }
-  // The tangential spring after the step. A node that sticks strains it along; one that slides leaves no more
-  // than the force holds, in the direction of its end.
-  template <class Node>
-  vector<V> strained(const Node& node, mask_of<V> slides) const {
-    const V h = node.velocity_step, per_impulse = node.prepared.per_rate;
-    const vector<V> spring = node.state.spring, r = node.impulse, v = node.v_free + node.delassus.times(r);
-    const vector<V> moved = spring + (0.5 * h) * (node.v_previous + v);
-    const V most = per_impulse * friction_limit(friction, r.n), length = moved.tangential_length();
-    const mask_of<V> by_force = (h * h * tangential_stiffness * node.delassus.tangential() > 4.0) & !slides;
-    const vector<V> kept = select(slides & (length > most), most / length, V(1.0)) * moved;
-    const vector<V> next = select(by_force, (-2.0 * per_impulse) * r - spring, kept);
-    const mask_of<V> holds = (tangential_stiffness < infinity) & (friction > 0.0);
-    return {0.0, zero_unless(holds, next.t1) + 0.0, zero_unless(holds, next.t2) + 0.0};  // never -0
-  }
-
   // ---- explicit: forces of the configuration and the half step before
 
   // The spring is kept as the motion of this step will strain it, so that the next step finds it ready.
   template <class Node>
   status_of<V> step_explicitly(Node& node) const {
-    const numbers& shared = node.prepared;
+    const tangential_spring<V>& tangent = node.prepared.tangent;
     const V h = node.velocity_step, x = positive_part(-node.gap);
     const V elastic = h * (stiffness * to_exponent(x, exponent));
     const V normal = positive_part(elastic - zero_unless(x > 0.0, h * damping * node.v_previous.n));
@@ -342,10 +300,10 @@ struct penalty {
     vector<V> kept{}, next{};
     mask_of<V> slides = normal < 0.0;
     node.impulse.n = normal;
-    if (shared.rubs) {
-      slides = rub_against(node, normal, shared.rate * spring, 1.0);
-      const V strains = zero_unless((normal > 0.0) & (shared.rate > 0.0), V(node.position_step));
-      kept = node.impulse.against(0.0, shared.per_rate);
+    if (node.prepared.rubs) {
+      slides = rub_against(node, normal, tangent.rate * spring, V(1.0), normal, friction);
+      const V strains = zero_unless((normal > 0.0) & (tangent.rate > 0.0), V(node.position_step));
+      kept = node.impulse.against(0.0, tangent.per_rate);
       next = kept + strains * (node.v_free + node.delassus.times(node.impulse));
     }
     node.refuse((node.state.indentation != 0.0) | (node.state.withheld != 0.0), refusal::impossible_state);
@@ -354,7 +312,7 @@ struct penalty {
       // Levels as in the discrete energy of the central-difference scheme, 1/2 k g_n g_{n+1}; see penalty.md.
       const vector<V> v = node.v_free + node.delassus.times(node.impulse), mean = node.v_previous + v;
       const V level = potential(x) - 0.5 * elastic / h * node.position_step * v.n;
-      node.stored = positive_part(level + tangential_potential(kept, next));
+      node.stored = positive_part(level + tangent.energy(kept, next));
       node.normal_gain = -0.5 * elastic * mean.n;
       node.tangential_gain = tangential_product(node.impulse, V(1.0 / h) * (spring - kept) - V(0.5) * mean);
     }
