@@ -1,9 +1,10 @@
-// Elastic grains that adhere, and rub by Mindlin's spring. See grain.md for the equations.
+// Elastic grains that adhere, rub by Mindlin's spring, and resist rolling. See grain.md for the equations.
 #include "contact_circle.hpp"
 
-#include <ilaw/kit/friction.hpp>
 #include <ilaw/kit/heat.hpp>
 #include <ilaw/kit/plugin.hpp>
+#include <ilaw/kit/rolling.hpp>
+#include <ilaw/kit/tangential_spring.hpp>
 
 namespace {
 
@@ -22,16 +23,19 @@ struct grain {
   V viscous_time;
   V friction;
   V shear_modulus;
+  V rolling_friction;
+  V twisting_friction;
   V heat_partition;
   V wear_coefficient;
 
   static constexpr law_card card{
       .id = "grain",
-      .title = "Elastic grains with adhesion and friction",
+      .title = "Elastic grains with adhesion, friction and rolling resistance",
       .doc =
-          "Hertz's contact of spheres with the adhesion of JKR or DMT, viscosity, and Mindlin's tangential "
-          "spring; implicit, so that no stiffness limits the step. H of spheres.",
-      .delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE,
+          "Hertz's contact of spheres with the adhesion of JKR or DMT, viscosity, Mindlin's tangential spring, and "
+          "moments that resist rolling and twisting; implicit, so that no stiffness limits the step. H of "
+          "spheres, with or without spins.",
+      .delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_TRANSVERSE | with_spins,
       .inputs = reads_gap | reads_v_previous,
       .capabilities = can_adhere | can_store_energy,
       .permissions = may_skip_fresh | may_skip_free,
@@ -78,6 +82,8 @@ struct grain {
        .symbol = "G",
        .unit = "Pa",
        .doc = "1/G = (2 - nu_1)/G_1 + (2 - nu_2)/G_2; needed with friction."},
+      rolling_friction_parameter(&grain::rolling_friction),
+      twisting_friction_parameter(&grain::twisting_friction),
       heat_partition_parameter(&grain::heat_partition),
       wear_coefficient_parameter(&grain::wear_coefficient)};
 
@@ -104,26 +110,28 @@ struct grain {
   }
 
   using problem = circle_step<V>;
+  // The normal force in units of E R^2, and z less that at first touch before and after the step: 0 where
+  // there is no contact.
   struct answer {
-    V growth;
+    V force, before, after;
   };
   template <class Node>
   asked<V> ask(Node& node, problem& p) const {
     p = problem_of(node);
     const mask_of<V> held = is_held(node), breaks = held & p.breaks();
     const mask_of<V> arrives = (!held) & !is_out_of_reach(node) & (p.apart + p.travel < 0.0);
-    return {(held & !breaks) | arrives,
-            give(node, p, zero_unless(breaks, p.force_of_break()), V(0.0), breaks)};
+    const answer parted{zero_unless(breaks, p.force_of_break()), p.grown, V(0.0)};
+    return {(held & !breaks) | arrives, give(node, parted, breaks)};
   }
   mask_of<V> solve(const problem& p, answer& a) const {
-    a.growth = p.solve();
-    return !(absolute(a.growth) < infinity);
+    const V growth = p.solve();
+    a = {p.by(growth).force, p.grown, p.grown + growth};
+    return !(absolute(growth) < infinity);
   }
-  void solve_scalar(const problem& p, answer& a) const { a.growth = p.solve(); }
+  void solve_scalar(const problem& p, answer& a) const { solve(p, a); }
   template <class Node>
   status_of<V> finish(Node& node, const answer& a) const {
-    const problem p = problem_of(node);
-    return give(node, p, p.by(a.growth).force, p.grown + a.growth, p.apart < 0.0);
+    return give(node, a, radius < 0.0);
   }
 
  private:
@@ -153,33 +161,25 @@ struct grain {
             .give = half_way * h * node.delassus.normal() * modulus * radius * radius,
             .viscosity = 2.0 * viscous_time / h};
   }
-  // The normal force in units of E R^2, and how much more than at first touch z is, 0 where there is no
-  // contact.
   template <class Node>
-  status_of<V> give(Node& node, const problem& p, V force, V grown, mask_of<V> breaks) const {
+  status_of<V> give(Node& node, const answer& a, mask_of<V> breaks) const {
     const V h = node.velocity_step, unit = modulus * radius * radius, size = unit * radius;
-    const V stiffness_before = 8.0 * shear_modulus * circle_of(node), touch = p.scale.touch;
+    const adhesion_scale<V>& scale = node.prepared;
+    const V stiffness_before = 8.0 * shear_modulus * circle_of(node);
     const vector<V> before = node.state.spring;
-    const mask_of<V> adheres = adhesion_energy > 0.0, touches = grown != 0.0;
-    node.impulse = {h * unit * force, 0.0, 0.0};
-    node.state.growth = radius * (grown * (grown + 2.0 * touch));
-    mask_of<V> slides = radius < 0.0;
-    V stiffness = 0.0;
-    vector<V> spring{};
-    if (any(friction > 0.0)) {
-      stiffness = 8.0 * shear_modulus * circle_of(node);
-      // A spring that grows stiffer keeps its force, one that grows softer its length: neither makes energy.
-      const V kept = select(stiffness > stiffness_before, stiffness_before / stiffness, V(1.0));
-      spring = zero_unless(touches & (friction > 0.0), kept * before);
-      slides = rub_on(node, h * unit * (force + 2.0 * p.scale.pull), stiffness, spring);
-    }
-    node.state.spring = {spring.t1, spring.t2};
+    const mask_of<V> adheres = adhesion_energy > 0.0, touches = a.after != 0.0;
+    node.impulse = {h * unit * a.force, 0.0, 0.0};
+    node.state.growth = radius * (a.after * (a.after + 2.0 * scale.touch));
+    const V stiffness = zero_unless(friction > 0.0, 8.0 * shear_modulus * circle_of(node));
+    const V pressure = positive_part(zero_unless(touches, h * unit * (a.force + 2.0 * scale.pull)));
+    const mask_of<V> slides = rub_on(node, pressure, stiffness_before, stiffness);
     if (node.wants_energy) {
-      const V old = p.scale.energy(p.grown), now = p.scale.energy(grown);
-      const V lost = zero_unless(breaks, p.scale.lost);
+      const V old = scale.energy(a.before), now = scale.energy(a.after);
+      const V lost = zero_unless(breaks, scale.lost);
+      const vector<V> spring = node.state.spring;
       const V strained = 0.5 * stiffness * tangential_product(spring, spring);
       node.normal_gain = size * (select(breaks, lost, now) - old);
-      node.rupture = size * lost;
+      node.rupture = zero_unless(lost > 0.0, size * lost);
       node.tangential_gain = strained - 0.5 * stiffness_before * tangential_product(before, before);
       node.stored = size * now + strained;
     }
@@ -189,23 +189,52 @@ struct grain {
     return select(adheres, select(breaks, status::broken, select(touches, status::bonded, status::free)),
                   touching);
   }
-  // Mindlin's spring over the step, at most friction times the pressure; says where it slips.
+  // Tangential impulse, moment and Mindlin's spring after the step; says where the node slips.
   template <class Node>
-  mask_of<V> rub_on(Node& node, V pressure, V stiffness, vector<V>& spring) const {
-    const V h = node.velocity_step, rate = h * stiffness, h_t = node.delassus.tangential();
-    const mask_of<V> acts = rate >= std::numeric_limits<double>::min();
-    const V normal = node.impulse.n, resistance = h_t + zero_unless(acts, 4.0 / (h * rate));
-    const vector<V> q = node.v_free + node.v_previous + (4.0 / h) * spring;
-    const auto found = rub(resistance, zero_unless(acts, positive_part(pressure)),
-                           q.scaled_tangential_length(), V(0.0), V(0.0), friction);
-    node.impulse = q.against(normal, zero_unless(acts, found.factor));
-    const mask_of<V> slides = acts & (found.status == status::slip);
-    const vector<V> v = node.v_free + node.delassus.times(node.impulse);
-    const vector<V> moved = spring + (0.5 * h) * (node.v_previous + v);
-    const V most = friction_limit(friction, pressure) / rate, length = moved.tangential_length();
-    spring = zero_unless(acts, select(slides & (length > most), most / length, V(1.0)) * moved);
-    spring.n = 0.0;
+  mask_of<V> rub_on(Node& node, V pressure, V stiffness_before, V stiffness) const {
+    using mindlin = tangential_spring<V>;
+    const double h = node.velocity_step;
+    const mask_of<V> acts = (friction > 0.0) & mindlin::counts(h, stiffness);
+    if constexpr (!has_spins<Node>)
+      if (!any(acts)) {
+        node.state.spring = {};
+        return acts;
+      }
+    const mindlin tangent(h, stiffness, acts, acts);
+    // A spring that grows stiffer keeps its force, one that grows softer its length: neither makes energy.
+    const V kept = select(stiffness > stiffness_before, stiffness_before / stiffness, V(1.0));
+    const vector<V> before = node.state.spring, spring = zero_unless(acts, kept * before);
+    const V rubbed = zero_unless(acts, pressure);
+    mask_of<V> slides = acts;
+    vector<V> v;
+    if constexpr (has_spins<Node>) {
+      slides = acts & roll(node, tangent, spring, rubbed, pressure);
+      v = node.v_free + node.delassus.times(node.impulse, node.moment);
+    } else {
+      slides = acts & tangent.rub(node, node.impulse.n, spring, rubbed, friction);
+      v = node.v_free + node.delassus.times(node.impulse);
+    }
+    const vector<V> next =
+        tangent.strained(spring, node.impulse, node.v_previous + v, node.delassus.tangential(),
+                         friction_limit(friction, pressure), slides, acts);
+    node.state.spring = {next.t1, next.t2};
     return slides;
+  }
+  // H couples friction on the spring and rolling; twisting stands alone.
+  template <class Node>
+  mask_of<V> roll(Node& node, const tangential_spring<V>& tangent, vector<V> spring, V rubbed,
+                  V pressure) const {
+    const auto& h = node.delassus;
+    const auto found = solve_rolling<V, vector<V>>(
+        {h.t + tangent.softness, h.k, h.j_t, tangent.slip(node, spring, 0.0).tangential_part(),
+         node.spin_free.tangential_part(), friction_limit(friction, rubbed),
+         friction_limit(rolling_friction, pressure)},
+        turned_motion<V, vector<V>>(node.spin_previous));
+    node.impulse = found.slip.against(node.impulse.n, found.factor);
+    node.moment = found.q;
+    node.moment.n = twisting_moment(turned_spin(node.spin_free.n, node.spin_previous.n), h.j_n,
+                                    friction_limit(twisting_friction, pressure));
+    return found.slides;
   }
 };
 

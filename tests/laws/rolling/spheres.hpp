@@ -1,4 +1,4 @@
-// spheres.hpp - the law rolling on nodes whose H has spins, through the ABI, in the host's axes.
+// spheres.hpp - laws on nodes whose H has spins, through the ABI, in the host's axes.
 #pragma once
 
 #include "support/law_runner.hpp"
@@ -58,7 +58,10 @@ class Spheres {
         h(count),
         gap(count),
         energy(count),
-        status(count) {}
+        state(count * interface_.info().state_size),
+        status(count) {
+    if (!state.empty()) interface_.initialise(batch());
+  }
 
   ilaw_batch batch() {
     ilaw_batch b{};
@@ -76,6 +79,9 @@ class Spheres {
     b.energy = ilaw::output(energy[0].data(), ILAW_ENERGY_COUNT, 1);
     b.status = status.data();
     b.status_stride = 1;
+    const auto size = static_cast<std::int64_t>(interface_.info().state_size);
+    b.state_in = ilaw::input(state.data(), size, 1);
+    b.state_out = ilaw::output(state.data(), size, 1);
     b.spin_free = ilaw::input(spin_free[0].data(), 3, 1);
     b.spin_previous = ilaw::input(spin_previous[0].data(), 3, 1);
     b.moment = ilaw::output(m[0].data(), 3, 1);
@@ -114,6 +120,7 @@ class Spheres {
   std::vector<SpinInertia> h;
   std::vector<double> gap;
   std::vector<std::array<double, ILAW_ENERGY_COUNT>> energy;
+  std::vector<double> state;
   std::vector<std::uint8_t> status;
   ilaw_report report{};
 };

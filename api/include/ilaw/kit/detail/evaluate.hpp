@@ -52,11 +52,10 @@ typename batch_walk<Number>::run_function choose_loop(const instance<Law>& made)
   const bool is_local = made.frame == ILAW_FRAME_LOCAL;
   if constexpr (serves_spins<Law>)
     if (made.has_spins()) {
-      if (is_local) return kernel<Law, loop_number<Law>, Number, local_frame, transverse_spin>::run;
+      if (is_local) return loop_of<Law, Number, local_frame, transverse_spin>(made);
       if constexpr (needs_no_tangents<Law>)
-        if (!made.has_tangent)
-          return kernel<Law, loop_number<Law>, Number, normal_frame, transverse_spin>::run;
-      return kernel<Law, loop_number<Law>, Number, axes_frame, transverse_spin>::run;
+        if (!made.has_tangent) return loop_of<Law, Number, normal_frame, transverse_spin>(made);
+      return loop_of<Law, Number, axes_frame, transverse_spin>(made);
     }
   if constexpr (serves_transverse<Law>)
     if (made.is_transverse()) {

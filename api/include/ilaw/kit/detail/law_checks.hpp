@@ -495,9 +495,9 @@ struct checked_nodes {
       fits_finish, all_nodes<Law>([](auto call) { return call.finish_fits; }),
       "finish must be template <class Node> status_of<V> finish(Node& node, const answer& a) const");
   ILAW_KIT_CHECK(serves_spins_rightly,
-                 !serves_spins<Law> || (reads<Law>(reads_v_previous) && !has_state<Law> &&
-                                        !has_history<Law> && (Law::card.dimensions & ILAW_DIMENSION_3)),
-                 "a law with_spins serves dimension 3, reads_v_previous, and has no state and no history");
+                 !serves_spins<Law> || (reads<Law>(reads_v_previous) && !has_history<Law> &&
+                                        (Law::card.dimensions & ILAW_DIMENSION_3)),
+                 "a law with_spins serves dimension 3, reads_v_previous, and has no history");
   ILAW_KIT_CHECK(decides, all_nodes<Law>([](auto call) { return call.is_decided; }),
                  "step and ask take the same nodes: bool asks() const says which parameters need ask");
   ILAW_KIT_CHECK(

@@ -295,6 +295,8 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
             .delassus = n.delassus,
             .gap = n.gap,
             .area = n.area,
+            .spin_free = n.spin_free,
+            .spin_previous = n.spin_previous,
             .earlier = n.earlier,
             .history = n.history,
             .state = n.state,
@@ -302,6 +304,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
   }
   ILAW_KIT_INLINE static void choose(node_type& a, const node_type& b, mask first) {
     a.impulse = select(first, a.impulse, b.impulse);
+    if constexpr (base::spins) a.moment = select(first, a.moment, b.moment);
 #pragma GCC unroll 32
     for (int k = 0; k < base::states; ++k) {
       V& x = number_in<V>(a.state, k);

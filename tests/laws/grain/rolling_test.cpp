@@ -1,0 +1,156 @@
+// Grains that spin: rolling and twisting resistance against their closed forms, on Mindlin's spring and
+// without.
+#include "laws/rolling/ball.hpp"
+
+namespace ilaw::testing {
+namespace {
+
+// Three steps that share no factor.
+constexpr double steps[] = {2.3e-4, 3.7e-4, 7.3e-4};
+constexpr double rho = 0.002, tau = 0.001, pi = 3.14159265358979323846;
+
+Parameters soft(double friction, double rolling, double twisting, double adhesion = 0.0) {
+  return {{{"radius", Ball::radius},
+           {"modulus", 1e7},
+           {"adhesion_energy", adhesion},
+           {"viscous_time", 5e-3},
+           {"friction", friction},
+           {"shear_modulus", 8e6},
+           {"rolling_friction", rolling},
+           {"twisting_friction", twisting}},
+          {}};
+}
+Ball at_rest(const Parameters& parameters, double h, double slope = 0.0) {
+  Ball ball(parameters, h, slope, "grain");
+  ball.run(0.3);
+  ball.x = {};
+  ball.dissipated = 0.0;
+  return ball;
+}
+
+// As rolling: (7/5) v0^2 R/(2 rho g), and h v0/2 less. Mindlin's spring moves it by its own strain, F/k with
+// F = (5/7) M g rho/R.
+TEST(RollingGrain, RollsOutOnMindlinsSpring) {
+  constexpr double v0 = 1.0, closed = 1.4 * v0 * v0 * Ball::radius / (2.0 * rho * Ball::gravity);
+  for (const double h : steps) {
+    Ball ball = at_rest(soft(0.5, rho, tau), h);
+    ball.v = ball.v + Vector{v0, 0.0, 0.0};
+    ball.w = {0.0, v0 / Ball::radius, 0.0};
+    const double before = ball.kinetic_energy() + ball.stored_energy();
+    ball.run(6.0);
+    EXPECT_NEAR(ball.x[0], closed - 0.5 * h * v0, 2e-6) << "h " << h;
+    EXPECT_LE(length(ball.v) + Ball::radius * length(ball.w), 1e-3);
+    EXPECT_NEAR(ball.dissipated + ball.stored_energy() + ball.kinetic_energy(), before, 1e-6 * before);
+  }
+}
+
+// Without friction the ball slides on, and its spin about any axis stops by itself: after I w0/(rho N) and I
+// w0/(tau N), N = M g. With adhesion the limits are those of N + 2 F_p, F_p = 3/2 pi w R.
+TEST(RollingGrain, SpinsDownWithoutFriction) {
+  constexpr double w0 = 30.0;
+  for (const double adhesion : {0.0, 5.0})
+    for (const double h : steps) {
+      const double force = Ball::mass * Ball::gravity + 3.0 * pi * adhesion * Ball::radius;
+      Ball ball = at_rest(soft(0.0, rho, tau, adhesion), h);
+      ball.v = ball.v + Vector{0.5, 0.0, 0.0};
+      ball.w = {0.0, w0, w0};
+      for (int k = 0; k < std::lround(0.5 / h); ++k) {
+        ball.step();
+        const double time = (k + 1) * h;
+        ASSERT_NEAR(ball.w[1], std::max(0.0, w0 - rho * force * time / Ball::inertia), 1e-6 * w0) << time;
+        ASSERT_NEAR(ball.w[2], std::max(0.0, w0 - tau * force * time / Ball::inertia), 1e-6 * w0) << time;
+      }
+      EXPECT_NEAR(ball.v[0], 0.5, 1e-15);
+    }
+}
+
+// The top stands on Mindlin's spring as it does without.
+TEST(RollingGrain, TopStopsOnMindlinsSpring) {
+  constexpr double w0 = 30.0;
+  for (const double adhesion : {0.0, 5.0})
+    for (const double h : steps) {
+      const double force = Ball::mass * Ball::gravity + 3.0 * pi * adhesion * Ball::radius;
+      Ball ball = at_rest(soft(0.5, rho, tau, adhesion), h);
+      ball.w = {0.0, 0.0, w0};
+      const double closed = Ball::inertia * w0 / (tau * force);
+      ball.run(0.7 * closed);
+      const double time = h * static_cast<double>(std::lround(0.7 * closed / h));
+      EXPECT_NEAR(ball.w[2], w0 * (1.0 - time / closed), 1e-6 * w0) << "h " << h;
+      ball.run(0.31 * closed);
+      EXPECT_EQ(ball.w[2], 0.0);
+    }
+}
+
+// rho N holds R M g sin; above, 7/5 a = g sin - rho N/(M R), N = M g cos and with adhesion 2 F_p more. The
+// ball swings on the spring at first, and may roll by its strain.
+TEST(RollingGrain, StaysOnASlopeBelowTheLimit) {
+  for (const double adhesion : {0.0, 5.0})
+    for (const double h : steps) {
+      const double pull = 3.0 * pi * adhesion * Ball::radius / (Ball::mass * Ball::gravity);
+      const auto excess = [&](double angle) {
+        return std::sin(angle) - rho / Ball::radius * (std::cos(angle) + pull);
+      };
+      const double limit = std::atan(rho / Ball::radius) * (1.0 + pull);  // nearly
+      Ball below = at_rest(soft(0.5, rho, 0.0, adhesion), h, 0.98 * limit);
+      below.run(1.0);
+      EXPECT_LT(std::abs(below.x[0]), 1e-7) << "h " << h;
+      const double angle = 1.05 * limit, expected = Ball::gravity / 1.4 * excess(angle);
+      Ball above = at_rest(soft(0.5, rho, 0.0, adhesion), h, angle);
+      const double start = above.v[0];
+      above.run(1.0);
+      const double time = h * static_cast<double>(std::lround(1.0 / h));
+      EXPECT_NEAR(above.v[0] - start, expected * time, 0.02 * expected) << "h " << h;
+    }
+}
+
+// Any motion before the step, also one that turns round within it, over a few steps of the same nodes.
+TEST(RollingGrain, AddsNoEnergyAndTellsWhereItWent) {
+  constexpr std::size_t count = 4000;
+  Parameters parameters = {{{"radius", 0.05},
+                            {"modulus", 1e7},
+                            {"adhesion_energy", 2.0},
+                            {"friction", 0.4},
+                            {"shear_modulus", 6e6},
+                            {"rolling_friction", 0.3},
+                            {"twisting_friction", 0.2}},
+                           {}};
+  for (const double step : {1e-3, 1.7e-4, 2.3e-5}) {
+    Spheres nodes(parameters, count, ILAW_FRAME_GLOBAL, "grain");
+    nodes.step = step;
+    std::vector<double> stored(count, 0.0);
+    int resisted = 0, turned = 0;
+    for (unsigned seed = 1; seed < 9; ++seed) {
+      const std::vector<Vector> normal = nodes.normal, tangent = nodes.tangent;
+      const std::vector<SpinInertia> h = nodes.h;
+      nodes.draw(seed, 0.999);
+      if (seed > 1) nodes.normal = normal, nodes.tangent = tangent, nodes.h = h;
+      for (std::size_t i = 0; i < count; ++i) nodes.gap[i] = -1e-5 * static_cast<double>(i % 3);
+      ASSERT_EQ(nodes.evaluate(), ILAW_OK) << nodes.report.reason;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double spun = 0.5 * dot(nodes.m[i], nodes.spin_previous[i] + nodes.w[i]);
+        const double work = 0.5 * dot(nodes.r[i], nodes.v_previous[i] + nodes.v[i]) + spun;
+        const auto& parts = nodes.energy[i];
+        const double lost =
+            parts[ILAW_ENERGY_FRICTION] + parts[ILAW_ENERGY_IMPACT] + parts[ILAW_ENERGY_RUPTURE];
+        const double scale =
+            std::abs(work) + std::abs(stored[i]) + std::abs(parts[ILAW_ENERGY_STORED]) + 1e-9;
+        ASSERT_LE(spun, 1e-14 * scale) << "node " << i;
+        ASSERT_NEAR(work + lost + parts[ILAW_ENERGY_STORED] - stored[i], 0.0, 1e-11 * scale) << "node " << i;
+        stored[i] = parts[ILAW_ENERGY_STORED];
+        resisted += spun < 0.0;
+        turned += spun == 0.0 && length(nodes.m[i]) > 0.0;
+      }
+    }
+    EXPECT_GT(resisted, 1000);
+  }
+}
+
+TEST(RollingGrain, RefusesItsLimitsWithoutSpins) {
+  for (const char* name : {"rolling_friction", "twisting_friction"})
+    EXPECT_NE(refusal_of("grain", {{{"radius", 1.0}, {"modulus", 1.0}, {name, 0.0}}, {}})
+                  .find(std::string("parameter '") + name + "' needs spins"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace ilaw::testing
