@@ -25,7 +25,7 @@ function(ilaw_add_wrong_law name law file from to)
 endfunction()
 
 # Wrong where H is transverse alone.
-ilaw_add_wrong_law(cohesive_transverse cohesive api/include/ilaw/kit/bond.hpp
+ilaw_add_wrong_law(cohesive_transverse cohesive api/include/ilaw/kit/bonded_inertia.hpp
                    "return {m.left_n * d.n, m.left_t * d.t1, m.left_t * d.t2};"
                    "return {m.left_n * d.n, m.left_n * d.t1, m.left_n * d.t2};")
 # Writes its state before its node is solved.
@@ -36,5 +36,5 @@ ilaw_add_wrong_law(cohesive_asks cohesive api/include/ilaw/kit/bond.hpp
 ilaw_add_wrong_law(rccm_step rccm plugins/rccm/rccm.cpp "viscosity / all.step.velocity_step"
                    "viscosity / (all.step.velocity_step > 0.0 ? 0x1p-10 : 0.0)")
 # Does not turn its history with the normal.
-ilaw_add_wrong_law(postit_unturned postit api/include/ilaw/kit/detail/kernel.hpp
+ilaw_add_wrong_law(postit_unturned postit api/include/ilaw/kit/detail/load_node.hpp
                    "f.t1 = transported_tangent(n, t, f.n);" "f.t1 = any_tangent(f.n);")

@@ -112,7 +112,8 @@ const std::vector<std::vector<std::string>> kit_rooms = {
     {"pack", "math", "vector", "symmetric", "roots", "table"},
     {"law", "state", "node"},
     {"contact", "heat", "resolved_impact", "regular_coulomb", "exact_coulomb", "friction",
-     "changing_friction", "bond", "rigid_bond", "window"},
+     "changing_friction", "tangential_spring", "rolling", "rigid_bond", "bonded_inertia", "bond_step", "bond",
+     "window"},
     {"plugin"}};
 
 std::size_t room_of(const std::string& header) {

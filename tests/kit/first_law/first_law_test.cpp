@@ -113,16 +113,16 @@ TEST_F(FirstLaw, IsTheSameAgainstTheBuildTree) {
             std::string::npos);
 }
 
-// Every name that law_checks.hpp knows, on the page and at the top of law.hpp.
+// Every name that law_names.hpp knows, on the page and at the top of law.hpp.
 TEST(FirstLawPage, ListsAllNames) {
   const auto text = [](const char* file) {
     std::ostringstream all;
     all << std::ifstream(file).rdbuf();
     return all.str();
   };
-  const std::string checks = text(ILAW_SOURCE "/api/include/ilaw/kit/detail/law_checks.hpp");
+  const std::string checks = text(ILAW_SOURCE "/api/include/ilaw/kit/detail/law_names.hpp");
   const std::string law = text(ILAW_SOURCE "/api/include/ilaw/kit/law.hpp"), page = text(ILAW_PAGE);
-  const std::regex name("\nILAW_KIT_NAME\\((\\w+)\\);");
+  const std::regex name("ILAW_KIT_NAME\\((?!wrong)(\\w+)\\);");
   int names = 0;
   for (std::sregex_iterator it(checks.begin(), checks.end(), name), end; it != end; ++it, ++names) {
     EXPECT_NE(page.find("`" + (*it)[1].str() + "`"), std::string::npos) << (*it)[1];

@@ -7,12 +7,6 @@
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
 
-// An array of the setup's numbers is there; one of other numbers is as none.
-template <class Array>
-bool is_absent(const instance_base& made, const Array& a) {
-  return made.numbers == ILAW_NUMBERS_FLOAT ? !a.floats : !a.values;
-}
-
 // An array of numbers that are not the setup's, or with both pointers.
 template <class Array>
 bool is_of_other_numbers(const instance_base& made, const Array& a) {
@@ -108,14 +102,6 @@ inline const char* missing_spins(const instance_base& made, const ilaw_batch& b,
   if (is_absent(made, b.moment)) return "moment is null";
   if ((needed & ILAW_INPUT_V_PREVIOUS) && is_absent(made, b.spin_previous)) return "spin_previous is null";
   return nullptr;
-}
-
-// Whether energy or an amount is asked for.
-inline bool wants_balance(const instance_base& made, const ilaw_batch& b) {
-  if (!is_absent(made, b.energy)) return true;
-  for (std::uint32_t k = 0; b.amounts && k < made.amount_count; ++k)
-    if (!is_absent(made, b.amounts[k])) return true;
-  return false;
 }
 
 inline const char* wrong_batch(const instance_base& made, const ilaw_batch& b, bool list_is_here = true) {

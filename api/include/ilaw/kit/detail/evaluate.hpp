@@ -138,56 +138,38 @@ const char* wrong_parameters(const instance<Law>& made, const ilaw_batch& batch,
   return nullptr;
 }
 
+// In the order of reason.
+inline constexpr const char* reason_texts[] = {
+    nullptr,
+    "a per-node parameter is out of range, or several do not go together",
+    "the normal is not a unit vector",
+    "the tangent is not a unit vector orthogonal to the normal",
+    "v_free is not finite",
+    "H is not finite and positive definite",
+    "the gap is not finite",
+    "v_previous is not finite",
+    "spin_free or spin_previous is not finite",
+    "the area is not a finite number >= 0",
+    "the state holds no frame: it is not one that the law can have written",
+    "the state is not finite",
+    "the law's equations have several solutions for this H and step: a smaller step is needed",
+    "the law's equations have no solution for this H",
+    "the state is not one that the law can have written",
+    "the time lies before what the state remembers",
+    "H couples directions, or differs along the tangents, which these parameters do not serve",
+    "the law gave an impulse that is not a number",
+    "the impulse or the state overflows",
+    "the law pulled, which needs can_adhere in its card",
+    "the law acted out of reach, which may_skip_fresh of its card excludes"};
+static_assert(std::size(reason_texts) == reason_reach + 1);
+
 template <class Law>
 const char* reason_text(int code) {
   if constexpr (has_state<Law>)
     if (code >= reason_of_first_variable)
       return text_of_variable<Law>(code - reason_of_first_variable,
                                    std::make_index_sequence<std::size(Law::state_variables)>{});
-  switch (code) {
-    case reason_parameter:
-      return "a per-node parameter is out of range, or several do not go together";
-    case reason_normal:
-      return "the normal is not a unit vector";
-    case reason_tangent:
-      return "the tangent is not a unit vector orthogonal to the normal";
-    case reason_v_free:
-      return "v_free is not finite";
-    case reason_delassus:
-      return "H is not finite and positive definite";
-    case reason_gap:
-      return "the gap is not finite";
-    case reason_v_previous:
-      return "v_previous is not finite";
-    case reason_spin:
-      return "spin_free or spin_previous is not finite";
-    case reason_area:
-      return "the area is not a finite number >= 0";
-    case reason_frame:
-      return "the state holds no frame: it is not one that the law can have written";
-    case reason_state:
-      return "the state is not finite";
-    case reason_several_solutions:
-      return "the law's equations have several solutions for this H and step: a smaller step is needed";
-    case reason_no_solution:
-      return "the law's equations have no solution for this H";
-    case reason_impossible_state:
-      return "the state is not one that the law can have written";
-    case reason_time_before_history:
-      return "the time lies before what the state remembers";
-    case reason_unserved_delassus:
-      return "H couples directions, or differs along the tangents, which these parameters do not serve";
-    case reason_not_a_number:
-      return "the law gave an impulse that is not a number";
-    case reason_overflow:
-      return "the impulse or the state overflows";
-    case reason_pull:
-      return "the law pulled, which needs can_adhere in its card";
-    case reason_reach:
-      return "the law acted out of reach, which may_skip_fresh of its card excludes";
-    default:
-      return nullptr;
-  }
+  return code <= reason_reach ? reason_texts[code] : nullptr;
 }
 
 template <class Law>

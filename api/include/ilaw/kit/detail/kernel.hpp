@@ -8,197 +8,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ilaw/kit/detail/frame.hpp>
-#include <ilaw/kit/detail/parameter_range.hpp>
-#include <ilaw/kit/heat.hpp>
+#include <ilaw/kit/detail/law_on_packs.hpp>
+#include <ilaw/kit/detail/load_node.hpp>
+#include <ilaw/kit/detail/node_state.hpp>
+#include <ilaw/kit/detail/stable_step.hpp>
+#include <ilaw/kit/detail/store_heat.hpp>
 #include <ilaw/kit/node.hpp>
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
-
-// ---- checks
-
-// Finds bad lanes: a product of all numbers that must be finite, zero where they are. Careful: and why.
-template <class V, bool Careful>
-struct checks {
-  V found = 0.0;
-
-  ILAW_KIT_INLINE void finite(V x, reason) { found = found * x; }
-  template <class Vector>
-  ILAW_KIT_INLINE void finite_vector(Vector a, reason, bool /*of_frame*/ = false) {
-    found = residual(a, found);
-  }
-  ILAW_KIT_INLINE void require(mask_of<V> good, reason) { found = nan_unless(good, found); }
-  ILAW_KIT_INLINE void frame(mask_of<V>) {}
-  ILAW_KIT_INLINE mask_of<V> bad() const { return !(found == 0.0); }
-};
-template <class V>
-struct checks<V, true> {
-  V code = 0.0;
-  mask_of<V> framed = V(0.0) == V(0.0);
-
-  ILAW_KIT_INLINE void require(mask_of<V> good, reason why) {
-    code = select((code == 0.0) & (!good), V(static_cast<double>(why)), code);
-  }
-  ILAW_KIT_INLINE void finite(V x, reason why) { require(0.0 * x == 0.0, why); }
-  // A vector that was turned by a frame that is none says nothing.
-  template <class Vector>
-  ILAW_KIT_INLINE void finite_vector(Vector a, reason why, bool of_frame = false) {
-    const auto good = residual(a, V(0.0)) == 0.0;
-    require(of_frame ? good | !framed : good, why);
-  }
-  ILAW_KIT_INLINE void frame(mask_of<V> good) { framed = good; }
-  ILAW_KIT_INLINE mask_of<V> bad() const { return code != 0.0; }
-};
-
-// ---- parameters
-
-template <class Law, class V>
-struct law_on;
-template <template <class> class L, class Old, class V>
-struct law_on<L<Old>, V> {
-  using type = L<V>;
-};
-template <class Law, class V>
-using law_on_t = typename law_on<Law, V>::type;
-
-// The law with the same values in all lanes.
-template <class V, class Law, std::size_t... K>
-ILAW_KIT_INLINE law_on_t<Law, V> broadcast(const Law& law, std::index_sequence<K...>) {
-  using Wide = law_on_t<Law, V>;
-  Wide wide;
-  (Wide::parameters[K].member.copy(wide, Law::parameters[K].member, law), ...);
-  return wide;
-}
-template <class V, class Law>
-ILAW_KIT_INLINE law_on_t<Law, V> broadcast(const Law& law) {
-  if constexpr (std::is_same_v<V, double>)
-    return law;
-  else
-    return broadcast<V>(law, std::make_index_sequence<static_cast<std::size_t>(parameter_count<Law>)>{});
-}
-
-template <class Law>
-constexpr parameter_range range_of(const parameter<Law>& p) {
-  return parameter_range(p.minimum, p.minimum_excluded, p.maximum, p.infinity_allowed);
-}
-
-// Tables over fields, lane by lane.
-template <class Wide, class Number>
-[[gnu::noinline]] void look_up(Wide& own, const view<Number>& b) {
-  using V = typename number_of_law<Wide>::type;
-  for (int k = 0; k < parameter_count<Wide>; ++k) {
-    const table& t = b.tables[k];
-    if (!t.per_node || !Wide::parameters[k].member.may_vary()) continue;
-    double found[lanes_of<V>];
-    for (int lane = 0; lane < lanes_of<V>; ++lane) {
-      double place[3] = {};
-      for (int a = 0; a < t.axis_count; ++a)
-        place[a] = t.source[a] == table::time
-                       ? b.step.time
-                       : lane_of(Wide::parameters[t.source[a]].member.varying_in(own), lane);
-      found[lane] = t.at(place);
-    }
-    __builtin_memcpy(static_cast<void*>(&Wide::parameters[k].member.varying_in(own)), found, sizeof found);
-  }
-}
-
-// The parameters of the nodes of a pack. Where one is out of range or several do not go together, the law
-// stays as it was, so that no step need stand it; returns which nodes are good.
-template <class Wide, class Law, class Number>
-[[gnu::noinline]] auto take_parameters(Wide& own, const Law& law, const view<Number>& b, std::int64_t i) {
-  using V = typename number_of_law<Wide>::type;
-  mask_of<V> good = V(0.0) == V(0.0);
-  for (int k = 0; k < parameter_count<Law>; ++k)
-    if (Wide::parameters[k].member.may_vary() && b.parameters[k]) {
-      const V given = load<V>(b.parameters[k] + i);
-      good = good & range_of(Wide::parameters[k]).has(given);
-      Wide::parameters[k].member.varying_in(own) = given;
-    }
-  if (b.tables) look_up(own, b);
-  if constexpr (requires { law.conflict(); }) {
-    unsigned fit = 0;
-    for (int lane = 0; lane < lanes_of<V>; ++lane) {
-      Law here = law;
-      for (int k = 0; k < parameter_count<Law>; ++k)
-        if (Wide::parameters[k].member.may_vary() && b.varies(k))
-          Law::parameters[k].member.set(here, lane_of(Wide::parameters[k].member.varying_in(own), lane));
-      fit |= here.conflict() ? 0U : 1U << lane;
-    }
-    good = good & mask_from<V>(fit);
-  }
-  if (any(!good))
-    for (int k = 0; k < parameter_count<Law>; ++k)
-      if (Wide::parameters[k].member.may_vary() && b.varies(k)) {
-        V& value = Wide::parameters[k].member.varying_in(own);
-        value = select(good, value, V(Law::parameters[k].member.get(law)));
-      }
-  return good;
-}
-
-// ---- H of any form
-
-// Diagonal with three entries, or full with six; of copies always all six.
-template <class V, class Array>
-ILAW_KIT_INLINE void load_symmetric(full<V>& h, const Array& a, std::int64_t i) {
-  if (a.count == 6) {
-    if (a.rows) {
-      V c[6], unused = 0.0;
-      load_rows(c, a.at + 6 * i, unused);
-      h.nn = c[0], h.t11 = c[1], h.t22 = c[2], h.n1 = c[3], h.n2 = c[4], h.t12 = c[5];
-    } else {
-      h.nn = load<V>(a.at + i);
-      h.t11 = load<V>(a.at + a.component + i);
-      h.t22 = load<V>(a.at + 2 * a.component + i);
-      h.n1 = load<V>(a.at + 3 * a.component + i);
-      h.n2 = load<V>(a.at + 4 * a.component + i);
-      h.t12 = load<V>(a.at + 5 * a.component + i);
-    }
-  } else {
-    axis<V> d;
-    V unused = 0.0;
-    load_vector(d, a, i, unused);
-    h.nn = d.x, h.t11 = d.y, h.t22 = d.z;
-    h.n1 = 0.0, h.n2 = 0.0, h.t12 = 0.0;
-  }
-}
-
-// ---- the state of a node, as an array of numbers
-
-template <class V, class State>
-ILAW_KIT_INLINE V& number_in(State& state, int k) {
-  return reinterpret_cast<V*>(&state)[k];
-}
-template <class V, class State>
-ILAW_KIT_INLINE const V& number_in(const State& state, int k) {
-  return reinterpret_cast<const V*>(&state)[k];
-}
-
-// ---- the stable step
-
-template <class V>
-struct step_limit {
-  V least = infinity, most_normal = 0.0, most_tangential = 0.0;
-  bool is_by_node = false;
-};
-
-// ---- heat and wear
-
-// friction is what it dissipated, so that friction/|r_T| is the mean speed of slip. Apart from the loop,
-// which rarely needs it. first: the place of heat among the amounts.
-template <class V, class Vector, class Number>
-ILAW_KIT_APART void store_heat(const view<Number>& b, std::int64_t i, int first, V friction, Vector impulse,
-                               Vector twice_mean, V partition, V coefficient) {
-  const V rubs = impulse.tangential_length(), rest = 1.0 - partition;
-  const V speed = select(rubs > 0.0, friction / rubs, 0.5 * twice_mean.tangential_length());
-  const V area = b.area ? load<V>(b.area + i) : V(0.0);
-  const V depth = coefficient * (impulse.n / area);  // per slip
-  const mask_of<V> wears = (depth > 0.0) & (area > 0.0) & (speed > 0.0);
-  const V amounts[heat_amount_count] = {zero_unless(partition > 0.0, partition * friction),
-                                        zero_unless(rest > 0.0, rest * friction),
-                                        zero_unless(wears, depth * speed)};
-  for (int k = 0; k < heat_amount_count; ++k)
-    if (b.amounts[first + k]) detail::store(amounts[k], b.amounts[first + k] + i);
-}
 
 // ---- a pack from end to end
 
@@ -217,6 +34,7 @@ struct kernel {
   using view_type = view<Number>;
   using mask = mask_of<V>;
   using limit = step_limit<V>;
+  using steps = stable_step<Law, Wide, node_type>;
   static constexpr bool careful = view_type::is_careful;
   using checks_type = checks<V, careful>;
   static constexpr bool is_projected = std::is_same_v<frame_type, normal_frame<V>>;
@@ -238,65 +56,6 @@ struct kernel {
     mask motion_known;  // v_previous, for energies
     node_type node;
   };
-
-  ILAW_KIT_INLINE static void load_frame(frame_type& f, const view_type& b, std::int64_t i, checks_type& c,
-                                         mask& framed) {
-    if constexpr (requires { f.is_local; }) {
-      f.is_local = !b.normal.at;
-      if (f.is_local) return;
-    }
-    if constexpr (frame_type::has_normal) {
-      V unused = 0.0;
-      load_vector(f.n, b.normal, i, unused);
-      c.require(is_unit(f.n), reason_normal);
-    }
-    if constexpr (frame_type::has_axes) {
-      if (b.tangents_from == tangents::of_plane) {
-        f.turn_in_plane(b.dimension);
-      } else if (b.tangents_from == tangents::chosen) {
-        f.t1 = any_tangent(f.n);
-      } else if (b.tangents_from == tangents::given) {
-        V unused = 0.0;
-        load_vector(f.t1, b.tangent, i, unused);
-        framed = is_unit(f.t1) & are_orthogonal(f.n, f.t1);
-        c.require(framed, reason_tangent);
-      } else {
-        V before[6];
-        load_numbers(before, b.frame_in, i);
-        const axis<V> n{before[0], before[1], before[2]}, t{before[3], before[4], before[5]};
-        framed = is_unit(n) & is_unit(t) & are_orthogonal(n, t);
-        f.t1 = transported_tangent(n, t, f.n);
-      }
-      f.t2 = cross(f.n, f.t1);
-    }
-  }
-
-  ILAW_KIT_INLINE static void load_delassus(transverse<V>& h, const view_type& b, std::int64_t i) {
-    const auto& a = b.delassus;
-    if (b.is_scalar) {
-      h.n = load<V>(a.at + i);
-      h.t = h.n;
-    } else if (a.rows) {
-      V c[2], unused = 0.0;
-      load_rows(c, a.at + 2 * i, unused);
-      h.n = c[0];
-      h.t = c[1];
-    } else {
-      h.n = load<V>(a.at + i);
-      h.t = load<V>(a.at + a.component + i);
-    }
-  }
-  ILAW_KIT_INLINE static void load_delassus(full<V>& h, const view_type& b, std::int64_t i) {
-    load_symmetric(h, b.delassus, i);
-  }
-  ILAW_KIT_INLINE static void load_delassus(transverse_spin<V>& h, const view_type& b, std::int64_t i) {
-    const auto& a = b.delassus;
-    h.n = load<V>(a.at + i);
-    h.t = load<V>(a.at + a.component + i);
-    h.k = load<V>(a.at + 2 * a.component + i);
-    h.j_n = load<V>(a.at + 3 * a.component + i);
-    h.j_t = load<V>(a.at + 4 * a.component + i);
-  }
 
   // Where the law reads no v_previous it is there for energies alone: finite always, turned or not.
   template <class Array, class Turn>
@@ -408,21 +167,9 @@ struct kernel {
     if constexpr (states > 0) {
       V entries[states];
       load_numbers(entries, b.state_in, i);
-      to_struct(state, entries, std::make_index_sequence<static_cast<std::size_t>(states)>{});
+      to_struct<Law>(state, entries, std::make_index_sequence<static_cast<std::size_t>(states)>{});
     }
   }
-  // In space; the walk brings states of fewer dimensions to the same order, with zeros.
-  template <std::size_t... K>
-  ILAW_KIT_INLINE static void to_struct(state_type& state, const V (&entries)[states + (states == 0)],
-                                        std::index_sequence<K...>) {
-    ((number_in<V>(state, static_cast<int>(K)) = entries[state_entry<Law>(static_cast<int>(K), 3)]), ...);
-  }
-  template <std::size_t... K>
-  ILAW_KIT_INLINE static void from_struct(V (&entries)[states + (states == 0)], const state_type& state,
-                                          std::index_sequence<K...>) {
-    ((entries[state_entry<Law>(static_cast<int>(K), 3)] = number_in<V>(state, static_cast<int>(K))), ...);
-  }
-
   template <std::size_t Variable>
   ILAW_KIT_INLINE static void check_range(const state_type& state, checks_type& c) {
     constexpr const auto& v = Law::state_variables[Variable];
@@ -540,7 +287,7 @@ struct kernel {
                                           mask accepted) {
     if constexpr (states > 0) {
       V entries[states];
-      from_struct(entries, n.state, std::make_index_sequence<static_cast<std::size_t>(states)>{});
+      from_struct<Law>(entries, n.state, std::make_index_sequence<static_cast<std::size_t>(states)>{});
       if constexpr (careful) {
         V before[states];
         load_numbers(before, b.state_in, i);
@@ -646,53 +393,6 @@ struct kernel {
     store_state(n, b, i, accepted);
   }
 
-  // ---- the stable step
-
-  // Where it depends on H alone and falls with either entry, the largest entries of all nodes decide.
-  static constexpr bool by_delassus = requires(const Law& law) { law.stable_velocity_step(1.0, 1.0); };
-  static constexpr bool by_node = requires(const Wide& law, const node_type& n) {
-    law.stable_velocity_step(n);
-  };
-  // Where both forms are given, the one of the node counts where the other gives NaN, and for parameters per
-  // node.
-  ILAW_KIT_INLINE static void add_limit(limit& found, const Wide& law, const node_type& n, const view_type& b,
-                                        mask good) {
-    if constexpr (by_node)
-      if (!by_delassus || found.is_by_node) {
-        found.least = smaller(select(good, law.stable_velocity_step(n), V(infinity)), found.least);
-        return;
-      }
-    if constexpr (by_delassus) {
-      const V normal = n.delassus.normal(), tangential = n.delassus.largest_tangential();
-      if (b.varying) {
-        found.least =
-            smaller(select(good, law.stable_velocity_step(normal, tangential), V(infinity)), found.least);
-      } else {
-        found.most_normal = larger(zero_unless(good, normal), found.most_normal);
-        found.most_tangential = larger(zero_unless(good, tangential), found.most_tangential);
-      }
-    }
-  }
-  static limit limit_of(const Law& law, const view_type& b) {
-    limit made;
-    if constexpr (by_delassus && by_node) {
-      const double step = law.stable_velocity_step(1.0, 1.0);
-      made.is_by_node = b.varying || step != step;
-    }
-    return made;
-  }
-  static void give_limit(const limit& found, const Law& law, tally& all) {
-    double least = infinity, normal = 0.0, tangential = 0.0;
-    for (int k = 0; k < width; ++k) {
-      least = smaller(lane_of(found.least, k), least);
-      normal = larger(lane_of(found.most_normal, k), normal);
-      tangential = larger(lane_of(found.most_tangential, k), tangential);
-    }
-    if constexpr (by_delassus)
-      if (normal > 0.0) least = smaller(law.stable_velocity_step(normal, tangential), least);
-    all.stable_velocity_step = smaller(least, all.stable_velocity_step);
-  }
-
   // ---- bad nodes
 
   // Lanes that are nodes.
@@ -728,7 +428,7 @@ struct kernel {
       if (any(bad)) [[unlikely]]
         return false;
     store_pack(law, p, b, i, status, !bad);
-    add_limit(limits, law, p.node, b, nodes_of(b) & !bad);
+    steps::add(limits, law, p.node, b.varying, nodes_of(b) & !bad);
     if constexpr (careful) add_bad(found, c, nodes_of(b), node);
     return true;
   }
@@ -764,12 +464,12 @@ struct kernel {
   [[gnu::noinline, gnu::flatten]] static void run(const void* opaque, const view_type& all, tally& found) {
     const Law& given = *static_cast<const Law*>(opaque);
     const view_type b = all;
-    limit limits = limit_of(given, b);
+    limit limits = steps::start(given, b.varying);
     std::int64_t i = 0;
     if constexpr (!ILAW_KIT_IS_SPARE) run_fast(given, b, i, found, limits);
     for (; i < b.count; i += width) run_carefully(given, b, i, found, limits);
     if constexpr (width == 1) found.by_scalar_fallback += b.count;
-    give_limit(limits, given, found);
+    steps::give(limits, given, found);
   }
   // Asks for the arrays of a later pack where no cache holds them, and reads the parameters of this one,
   // apart from the law that the loop has in registers. False: some node's are bad.

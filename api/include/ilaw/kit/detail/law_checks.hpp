@@ -4,110 +4,12 @@
 #pragma once
 
 #include <ilaw/kit/detail/evaluate.hpp>
+#include <ilaw/kit/detail/law_names.hpp>
 
 // A path through a law's step that returns no status: an error in whatever follows this header.
 #pragma GCC diagnostic error "-Wreturn-type"
 
 namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
-
-// ---- names
-
-// names_x<Law>: whether a law has a member x of any kind; two of a name are ambiguous.
-#define ILAW_KIT_NAME(name)                        \
-  struct other_##name {                            \
-    int name;                                      \
-  };                                               \
-  template <class Law>                             \
-  struct with_##name : Law, other_##name {};       \
-  template <class Law>                             \
-  inline constexpr bool names_##name = !requires { \
-    &with_##name<Law>::name;                       \
-  }
-// And a name that the kit does not know, written for one that it does.
-#define ILAW_KIT_SPELLING(wrong, right)                                     \
-  ILAW_KIT_NAME(wrong);                                                     \
-  template <class Law>                                                      \
-  constexpr bool spells_##wrong() {                                         \
-    constexpr bool is_right = !names_##wrong<Law>;                          \
-    static_assert(is_right, "the kit calls no '" #wrong "': write " right); \
-    return is_right;                                                        \
-  }
-
-// Every name that a law may define (law.hpp says what for), and how often it is missed.
-ILAW_KIT_NAME(card);
-ILAW_KIT_NAME(references);
-ILAW_KIT_NAME(parameters);
-ILAW_KIT_NAME(state);
-ILAW_KIT_NAME(state_variables);
-ILAW_KIT_NAME(history);
-ILAW_KIT_NAME(amounts);
-ILAW_KIT_NAME(step);
-ILAW_KIT_NAME(problem);
-ILAW_KIT_NAME(answer);
-ILAW_KIT_NAME(ask);
-ILAW_KIT_NAME(solve);
-ILAW_KIT_NAME(solve_scalar);
-ILAW_KIT_NAME(finish);
-ILAW_KIT_NAME(asks);
-ILAW_KIT_NAME(remembers);
-ILAW_KIT_NAME(prepare);
-ILAW_KIT_NAME(initialise);
-ILAW_KIT_NAME(conflict);
-ILAW_KIT_NAME(inputs);
-ILAW_KIT_NAME(capabilities);
-ILAW_KIT_NAME(permissions);
-ILAW_KIT_NAME(tells_tangents_apart);
-ILAW_KIT_NAME(stable_velocity_step);
-ILAW_KIT_NAME(history_size);
-ILAW_KIT_NAME(record);
-ILAW_KIT_NAME(window);
-ILAW_KIT_NAME(adds_to_window);
-ILAW_KIT_NAME(clears_window);
-ILAW_KIT_NAME(extension);
-
-#define ILAW_KIT_SPELLINGS(spelling)                                                                        \
-  spelling(reference, "'references'") spelling(params, "'parameters'") spelling(states, "'state'")          \
-      spelling(state_variable, "'state_variables'") spelling(variables, "'state_variables'") spelling(      \
-          history_variable, "'history'") spelling(histories, "'history'") spelling(amount, "'amounts'")     \
-          spelling(steps, "'step'") spelling(do_step, "'step'") spelling(                                   \
-              try_step, "'step': it has branches that all nodes of a batch share, and any(mask)")           \
-              spelling(in_form, "'step': it has branches that all nodes of a batch share") spelling(        \
-                  problems, "'problem'") spelling(answers, "'answer'") spelling(answered, "'finish'")       \
-                  spelling(solves, "'solve'") spelling(solve_alone, "'solve_scalar'") spelling(             \
-                      solve_one, "'solve_scalar'") spelling(finished, "'finish'")                           \
-                      spelling(finishes, "'finish'") spelling(needs_solver, "'asks'") spelling(             \
-                          prepared, "'prepare'") spelling(prepares, "'prepare'")                            \
-                          spelling(initialize, "'initialise'") spelling(init, "'initialise'") spelling(     \
-                              initialises, "'initialise'") spelling(conflicts, "'conflict'")                \
-                              spelling(input, "'inputs'") spelling(capabilites, "'capabilities'") spelling( \
-                                  capability, "'capabilities'") spelling(permission, "'permissions'")       \
-                                  spelling(permisions, "'permissions'") spelling(tell_tangents_apart,       \
-                                                                                 "'tells_tangents_apart'")  \
-                                      spelling(tells_tangents, "'tells_tangents_apart'") spelling(          \
-                                          stable_step, "'stable_velocity_step'")                            \
-                                          spelling(stable_time_step, "'stable_velocity_step'") spelling(    \
-                                              records, "'record'") spelling(windows, "'window'")            \
-                                              spelling(window_in, "'window'") spelling(                     \
-                                                  add_to_window,                                            \
-                                                  "'adds_to_window'") spelling(clear_window,                \
-                                                                               "'clears_window'")           \
-                                                  spelling(extensions, "'extension'") spelling(             \
-                                                      is_isotropic, ".is_isotropic = true in the card")     \
-                                                      spelling(names_tangents, ".is_isotropic in the card") \
-                                                          spelling(dimensions, ".dimensions in the card")   \
-                                                              spelling(delassus_forms,                      \
-                                                                       ".delassus_forms in the card")       \
-                                                                  spelling(state_version,                   \
-                                                                           ".state_version in the card")
-ILAW_KIT_SPELLINGS(ILAW_KIT_SPELLING)
-
-// All of them, whatever the first one says.
-template <class Law>
-constexpr bool spells_rightly() {
-#define ILAW_KIT_SPELLED(wrong, right) &spells_##wrong<Law>()
-  return true ILAW_KIT_SPELLINGS(ILAW_KIT_SPELLED);
-#undef ILAW_KIT_SPELLED
-}
 
 // ---- what the names stand for
 
@@ -302,7 +204,7 @@ constexpr bool solves_rightly() {
 template <class Law>
 inline constexpr bool limits_step_rightly =
     !names_stable_velocity_step<Law> ||
-    kernel<Law, loop_number<Law>, double, local_frame, transverse>::by_delassus ||
+    kernel<Law, loop_number<Law>, double, local_frame, transverse>::steps::by_delassus ||
     any_node<Law>([](auto call) {
       using W = typename decltype(call)::Wide;
       return requires(const W& law, const typename decltype(call)::node_type& n) {
@@ -351,13 +253,15 @@ constexpr bool has_amounts_rightly() {
 
 // ---- the checks
 
-#define ILAW_KIT_CHECK(what, condition, text) \
-  static constexpr bool what = (condition);   \
-  static_assert(what, text)
+#define ILAW_KIT_CHECK(condition, text)    \
+  {                                        \
+    constexpr bool is_right = (condition); \
+    static_assert(is_right, text);         \
+    passes = passes && is_right;           \
+  }
 // A function that a law need not have, but that must be what it is called as.
 #define ILAW_KIT_FUNCTION(name, result, declaration) \
   ILAW_KIT_CHECK(                                    \
-      has_right_##name,                              \
       !names_##name<Law> ||                          \
           requires(const Law& law) {                 \
             { law.name() } -> std::same_as<result>;  \
@@ -365,77 +269,68 @@ constexpr bool has_amounts_rightly() {
       #name " must be " declaration)
 
 template <class Law>
-struct checked_names {
-  ILAW_KIT_CHECK(has_own_card, has_card<Law>(),
-                 "a law needs static constexpr law_card card{.id = ..., .title = ..., .doc = ...}");
+constexpr bool passes_names() {
+  bool passes = true;
+  ILAW_KIT_CHECK(has_card<Law>(),
+                 "a law needs static constexpr law_card card{.id = ..., .title = ..., .doc = ...}")
   ILAW_KIT_CHECK(
-      has_references, names_references<Law>,
-      "a law needs static constexpr const char* references[] = {...}: where its equations are from");
-  ILAW_KIT_CHECK(has_parameters, names_parameters<Law>,
-                 "a law needs static constexpr parameter<Law> parameters[] = {{.member = &Law::name, ...}}");
-  ILAW_KIT_CHECK(has_step, names_step<Law> || names_ask<Law>,
-                 "a law needs template <class Node> status_of<V> step(Node& node) const");
-  ILAW_KIT_CHECK(has_both_of_state, names_state<Law> == names_state_variables<Law>,
-                 "a memory is struct state and static constexpr state_variable<state> state_variables[]");
-  ILAW_KIT_CHECK(remembers_something, !names_remembers<Law> || names_state<Law>,
-                 "remembers says which parameters need the state: the law has no struct state");
-  ILAW_KIT_CHECK(has_solver, has_whole_solver<Law>(),
-                 "a solver is problem, answer, ask, solve, solve_scalar and finish: one of them is missing");
-  ILAW_KIT_CHECK(needs_asks, !names_asks<Law> || (names_step<Law> && names_ask<Law>),
-                 "asks chooses between step and ask: the law has one of them alone");
-
-  static constexpr bool passes = has_own_card && has_references && has_parameters && has_step &&
-                                 has_both_of_state && remembers_something && has_solver && needs_asks;
-};
+      names_references<Law>,
+      "a law needs static constexpr const char* references[] = {...}: where its equations are from")
+  ILAW_KIT_CHECK(names_parameters<Law>,
+                 "a law needs static constexpr parameter<Law> parameters[] = {{.member = &Law::name, ...}}")
+  ILAW_KIT_CHECK(names_step<Law> || names_ask<Law>,
+                 "a law needs template <class Node> status_of<V> step(Node& node) const")
+  ILAW_KIT_CHECK(names_state<Law> == names_state_variables<Law>,
+                 "a memory is struct state and static constexpr state_variable<state> state_variables[]")
+  ILAW_KIT_CHECK(!names_remembers<Law> || names_state<Law>,
+                 "remembers says which parameters need the state: the law has no struct state")
+  ILAW_KIT_CHECK(has_whole_solver<Law>(),
+                 "a solver is problem, answer, ask, solve, solve_scalar and finish: one of them is missing")
+  ILAW_KIT_CHECK(!names_asks<Law> || (names_step<Law> && names_ask<Law>),
+                 "asks chooses between step and ask: the law has one of them alone")
+  return passes;
+}
 
 // Law: L<double>.
 template <class Law>
-struct checked_members {
+constexpr bool passes_members() {
+  bool passes = true;
   using Wide = law_on_t<Law, pack>;
-  static constexpr std::uint32_t inputs = reads_gap | reads_v_previous | reads_area;
+  constexpr std::uint32_t inputs = reads_gap | reads_v_previous | reads_area;
 
-  ILAW_KIT_CHECK(has_texts, Law::card.id&& Law::card.title&& Law::card.doc,
-                 "the card of a law needs .id, .title and .doc");
-  ILAW_KIT_CHECK(reads_known_inputs, (Law::card.inputs & ~inputs) == 0,
-                 ".inputs of the card are reads_gap, reads_v_previous and reads_area, joined by |");
-  ILAW_KIT_CHECK(serves_something, Law::card.dimensions != 0 && Law::card.delassus_forms != 0,
-                 "the card of a law serves at least one dimension and one form of H");
-  ILAW_KIT_CHECK(serves_turned,
-                 !(Law::card.delassus_forms & ILAW_DELASSUS_DIAGONAL) ||
-                     (Law::card.delassus_forms & ILAW_DELASSUS_FULL),
-                 "a card that serves a diagonal H serves a full one, too: in the host's axes it is full");
-  ILAW_KIT_CHECK(gives_members,
-                 all_parameters<Law>([](const auto& p) { return p.member.is_given() && p.name; }),
-                 "a parameter needs .member = &Law::name and .name = \"name\"");
-  ILAW_KIT_CHECK(has_one_each, members_differ<Wide>(),
-                 "two parameters have the same .member: each needs one of its own");
+  ILAW_KIT_CHECK(Law::card.id && Law::card.title && Law::card.doc,
+                 "the card of a law needs .id, .title and .doc")
+  ILAW_KIT_CHECK((Law::card.inputs & ~inputs) == 0,
+                 ".inputs of the card are reads_gap, reads_v_previous and reads_area, joined by |")
+  ILAW_KIT_CHECK(Law::card.dimensions != 0 && Law::card.delassus_forms != 0,
+                 "the card of a law serves at least one dimension and one form of H")
   ILAW_KIT_CHECK(
-      describes_all, sizeof(Law) == sizeof(double) * std::size(Law::parameters),
-      "a law's members are its parameters, V, double or grid: each needs an entry of parameters[]");
-  ILAW_KIT_CHECK(has_few, parameter_count<Law> <= most_parameters, "a law has at most 32 parameters");
-  ILAW_KIT_CHECK(chooses_once, all_parameters<Wide>([](const auto& p) {
-                   return !(p.choices.count > 0 || p.whole) || !p.member.may_vary();
-                 }),
-                 "a choice or whole number is the same at all nodes: its member is a double, not a V");
-  ILAW_KIT_CHECK(has_fields,
-                 all_parameters<Wide>([](const auto& p) { return !p.is_field || p.member.may_vary(); }),
-                 "a field differs from node to node: its member is a V");
-  ILAW_KIT_CHECK(has_axes, axes_are_known<Law>(),
-                 "a table is over \"time\" or a field, a parameter with .is_field = true");
-  ILAW_KIT_CHECK(has_state_of_V, state_is_of_V<Law>(),
-                 "the members of struct state must be V, vector<V> or tangential_vector<V>");
-  ILAW_KIT_CHECK(gives_state_members, state_is_given<Law>(),
-                 "a state variable needs .member = &state::name and .name = \"name\"");
-  ILAW_KIT_CHECK(describes_state, !has_state_of_V || state_is_covered<Law>(),
-                 "every member of struct state needs an entry of state_variables[]");
-  ILAW_KIT_CHECK(has_problems_of_V, problems_are_of_V<Law>(),
-                 "the members of problem and answer must all be of type V");
+      !(Law::card.delassus_forms & ILAW_DELASSUS_DIAGONAL) || (Law::card.delassus_forms & ILAW_DELASSUS_FULL),
+      "a card that serves a diagonal H serves a full one, too: in the host's axes it is full")
+  ILAW_KIT_CHECK(all_parameters<Law>([](const auto& p) { return p.member.is_given() && p.name; }),
+                 "a parameter needs .member = &Law::name and .name = \"name\"")
+  ILAW_KIT_CHECK(members_differ<Wide>(), "two parameters have the same .member: each needs one of its own")
+  ILAW_KIT_CHECK(sizeof(Law) == sizeof(double) * std::size(Law::parameters),
+                 "a law's members are its parameters, V, double or grid: each needs an entry of parameters[]")
+  ILAW_KIT_CHECK(parameter_count<Law> <= most_parameters, "a law has at most 32 parameters")
+  ILAW_KIT_CHECK(all_parameters<Wide>(
+                     [](const auto& p) { return !(p.choices.count > 0 || p.whole) || !p.member.may_vary(); }),
+                 "a choice or whole number is the same at all nodes: its member is a double, not a V")
+  ILAW_KIT_CHECK(all_parameters<Wide>([](const auto& p) { return !p.is_field || p.member.may_vary(); }),
+                 "a field differs from node to node: its member is a V")
+  ILAW_KIT_CHECK(axes_are_known<Law>(),
+                 "a table is over \"time\" or a field, a parameter with .is_field = true")
+  ILAW_KIT_CHECK(state_is_of_V<Law>(),
+                 "the members of struct state must be V, vector<V> or tangential_vector<V>")
+  ILAW_KIT_CHECK(state_is_given<Law>(), "a state variable needs .member = &state::name and .name = \"name\"")
+  ILAW_KIT_CHECK(!state_is_of_V<Law>() || state_is_covered<Law>(),
+                 "every member of struct state needs an entry of state_variables[]")
+  ILAW_KIT_CHECK(problems_are_of_V<Law>(), "the members of problem and answer must all be of type V")
   ILAW_KIT_CHECK(
-      has_solve, solves_rightly<Law>(),
+      solves_rightly<Law>(),
       "solve must be mask_of<V> solve(const problem& p, answer& a) const, and solve_scalar the same without "
-      "result; both may take what prepare gave as well");
+      "result; both may take what prepare gave as well")
   ILAW_KIT_CHECK(
-      has_right_asks,
       !names_asks<Law> ||
           requires(const Law& law) {
             { law.asks() } -> std::same_as<bool>;
@@ -443,86 +338,72 @@ struct checked_members {
           requires(const Law& law) {
             { law.asks(true) } -> std::same_as<bool>;
           },
-      "asks must be bool asks() const or bool asks(bool is_transverse) const");
-  ILAW_KIT_FUNCTION(remembers, bool, "bool remembers() const");
-  ILAW_KIT_FUNCTION(conflict, const char*, "const char* conflict() const");
-  ILAW_KIT_FUNCTION(inputs, std::uint32_t, "std::uint32_t inputs() const");
-  ILAW_KIT_FUNCTION(capabilities, std::uint32_t, "std::uint32_t capabilities() const");
-  ILAW_KIT_FUNCTION(permissions, std::uint32_t, "std::uint32_t permissions() const");
-  ILAW_KIT_FUNCTION(tells_tangents_apart, bool, "bool tells_tangents_apart() const");
+      "asks must be bool asks() const or bool asks(bool is_transverse) const")
+  ILAW_KIT_FUNCTION(remembers, bool, "bool remembers() const")
+  ILAW_KIT_FUNCTION(conflict, const char*, "const char* conflict() const")
+  ILAW_KIT_FUNCTION(inputs, std::uint32_t, "std::uint32_t inputs() const")
+  ILAW_KIT_FUNCTION(capabilities, std::uint32_t, "std::uint32_t capabilities() const")
+  ILAW_KIT_FUNCTION(permissions, std::uint32_t, "std::uint32_t permissions() const")
+  ILAW_KIT_FUNCTION(tells_tangents_apart, bool, "bool tells_tangents_apart() const")
   ILAW_KIT_CHECK(
-      has_prepare, !names_prepare<Law> || requires(const Law& law, const step_sizes& s) { law.prepare(s); },
-      "prepare must be auto prepare(const step_sizes& step) const");
+      !names_prepare<Law> || requires(const Law& law, const step_sizes& s) { law.prepare(s); },
+      "prepare must be auto prepare(const step_sizes& step) const")
   ILAW_KIT_CHECK(
-      has_initialise,
       !names_initialise<Law> || requires(const Law& law, initial_node<Law>& n) { law.initialise(n); },
-      "initialise must be template <class Node> void initialise(Node& node) const");
+      "initialise must be template <class Node> void initialise(Node& node) const")
   ILAW_KIT_CHECK(
-      has_extension,
       !names_extension<Law> ||
           requires(const char* s) {
             { Law::extension(s) } -> std::same_as<const void*>;
           },
-      "extension must be static const void* extension(const char* name)");
-  ILAW_KIT_CHECK(has_amounts, has_amounts_rightly<Law>(),
-                 "amounts must be static constexpr amount_card amounts[], at most eight");
+      "extension must be static const void* extension(const char* name)")
+  ILAW_KIT_CHECK(has_amounts_rightly<Law>(),
+                 "amounts must be static constexpr amount_card amounts[], at most eight")
   ILAW_KIT_CHECK(
-      has_history, has_history_rightly<Law>(),
+      has_history_rightly<Law>(),
       "a history is static constexpr history_card history and either std::int64_t history_size() const with "
-      "record, or window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)");
-
-  static constexpr bool passes =
-      has_texts && reads_known_inputs && serves_something && serves_turned && gives_members && has_one_each &&
-      describes_all && has_few && chooses_once && has_fields && has_axes && has_state_of_V &&
-      gives_state_members && describes_state && has_problems_of_V && has_solve && has_right_asks &&
-      has_right_remembers && has_right_conflict && has_right_inputs && has_right_capabilities &&
-      has_right_permissions && has_right_tells_tangents_apart && has_prepare && has_initialise &&
-      has_extension && has_amounts && has_history;
-};
+      "record, or window() const with static bool adds_to_window(ilaw_status) and clears_window(ilaw_status)")
+  return passes;
+}
 
 // What needs all of them: nodes.
 template <class Law>
-struct checked_nodes {
-  ILAW_KIT_CHECK(has_state_apart, state_is_apart<Law>(),
-                 "two state variables have the same .member: each needs one of its own");
-  ILAW_KIT_CHECK(serves_nodes, all_nodes<Law>([](auto call) { return call.is_served; }),
-                 "no step or ask takes the nodes of a form of H that .delassus_forms of the card names");
-  ILAW_KIT_CHECK(steps, all_nodes<Law>([](auto call) { return !call.steps_somehow || call.steps; }),
-                 "step must be template <class Node> status_of<V> step(Node& node) const");
-  ILAW_KIT_CHECK(fits_ask, all_nodes<Law>([](auto call) { return call.ask_fits; }),
-                 "ask must be template <class Node> asked<V> ask(Node& node, problem& open) const");
+constexpr bool passes_nodes() {
+  bool passes = true;
+  ILAW_KIT_CHECK(state_is_apart<Law>(),
+                 "two state variables have the same .member: each needs one of its own")
+  ILAW_KIT_CHECK(all_nodes<Law>([](auto call) { return call.is_served; }),
+                 "no step or ask takes the nodes of a form of H that .delassus_forms of the card names")
+  ILAW_KIT_CHECK(all_nodes<Law>([](auto call) { return !call.steps_somehow || call.steps; }),
+                 "step must be template <class Node> status_of<V> step(Node& node) const")
+  ILAW_KIT_CHECK(all_nodes<Law>([](auto call) { return call.ask_fits; }),
+                 "ask must be template <class Node> asked<V> ask(Node& node, problem& open) const")
   ILAW_KIT_CHECK(
-      fits_finish, all_nodes<Law>([](auto call) { return call.finish_fits; }),
-      "finish must be template <class Node> status_of<V> finish(Node& node, const answer& a) const");
-  ILAW_KIT_CHECK(serves_spins_rightly,
-                 !serves_spins<Law> || (reads<Law>(reads_v_previous) && !has_history<Law> &&
+      all_nodes<Law>([](auto call) { return call.finish_fits; }),
+      "finish must be template <class Node> status_of<V> finish(Node& node, const answer& a) const")
+  ILAW_KIT_CHECK(!serves_spins<Law> || (reads<Law>(reads_v_previous) && !has_history<Law> &&
                                         (Law::card.dimensions & ILAW_DIMENSION_3)),
-                 "a law with_spins serves dimension 3, reads_v_previous, and has no history");
-  ILAW_KIT_CHECK(decides, all_nodes<Law>([](auto call) { return call.is_decided; }),
-                 "step and ask take the same nodes: bool asks() const says which parameters need ask");
+                 "a law with_spins serves dimension 3, reads_v_previous, and has no history")
+  ILAW_KIT_CHECK(all_nodes<Law>([](auto call) { return call.is_decided; }),
+                 "step and ask take the same nodes: bool asks() const says which parameters need ask")
   ILAW_KIT_CHECK(
-      limits_step, limits_step_rightly<Law>,
+      limits_step_rightly<Law>,
       "stable_velocity_step must be V stable_velocity_step(V h_n, V h_t) const, or template <class Node> V "
-      "stable_velocity_step(const Node& node) const");
+      "stable_velocity_step(const Node& node) const")
   ILAW_KIT_CHECK(
-      records, records_rightly<Law>(),
-      "record must be template <class Node> void record(const Node& node, history_values own) const");
-
-  static constexpr bool passes = has_state_apart && serves_nodes && steps && fits_ask && fits_finish &&
-                                 serves_spins_rightly && decides && limits_step && records;
+      records_rightly<Law>(),
+      "record must be template <class Node> void record(const Node& node, history_values own) const")
+  return passes;
+}
 #undef ILAW_KIT_CHECK
 #undef ILAW_KIT_FUNCTION
-#undef ILAW_KIT_NAME
-#undef ILAW_KIT_SPELLING
-#undef ILAW_KIT_SPELLINGS
-};
 
 // Whether a struct is a law; an error of one line where it is not.
 template <template <class> class L>
 constexpr bool checked() {
   using Law = L<double>;
-  if constexpr (spells_rightly<Law>() && checked_names<Law>::passes)
-    if constexpr (checked_members<Law>::passes) return checked_nodes<Law>::passes;
+  if constexpr (spells_rightly<Law>() && passes_names<Law>())
+    if constexpr (passes_members<Law>()) return passes_nodes<Law>();
   return false;
 }
 

@@ -103,6 +103,25 @@ struct pass {
   int k = 0, first = 0;
 };
 
+// The law's solvers, which may take what prepare gave as well: lanes side by side, and one node.
+template <class Law, class Prepared>
+ILAW_KIT_INLINE auto solve_lanes(const Law& law, const typename Law::problem& p, typename Law::answer& a,
+                                 const Prepared& prepared) {
+  if constexpr (requires { law.solve(p, a, prepared); })
+    return law.solve(p, a, prepared);
+  else
+    return law.solve(p, a);
+}
+template <class Law>
+ILAW_KIT_INLINE void solve_one(const Law& law, const step_sizes& step, const typename Law::problem& p,
+                               typename Law::answer& a) {
+  const auto prepared = kit::prepared(law, step);
+  if constexpr (requires { law.solve_scalar(p, a, prepared); })
+    law.solve_scalar(p, a, prepared);
+  else
+    law.solve_scalar(p, a);
+}
+
 template <class Law>
 struct open_problems {
   using solver = law_on_t<Law, solver_pack>;
@@ -139,7 +158,7 @@ struct open_problems {
         __builtin_memcpy(place_in<solver_pack>(p, c), problem[c] + first, sizeof(solver_pack));
       }
       for (int c = 0; c < answers; ++c) __builtin_memset(place_in<solver_pack>(a, c), 0, sizeof(solver_pack));
-      const mask_of<solver_pack> left = solve_one(law, p, a, prepared);
+      const mask_of<solver_pack> left = solve_lanes(law, p, a, prepared);
       for (int c = 0; c < answers; ++c)
         __builtin_memcpy(answer[c] + first, place_in<solver_pack>(a, c), sizeof(solver_pack));
       if (const unsigned lanes = mask_bits(left)) [[unlikely]]
@@ -153,14 +172,6 @@ struct open_problems {
   }
 
  private:
-  template <class Prepared>
-  static mask_of<solver_pack> solve_one(const solver& law, const typename solver::problem& p,
-                                        typename solver::answer& a, const Prepared& prepared) {
-    if constexpr (requires { law.solve(p, a, prepared); })
-      return law.solve(p, a, prepared);
-    else
-      return law.solve(p, a);
-  }
   void take_parameters(solver& law, int first, int filled) {
     for (int c = 0; c < parameter_count<Law>; ++c)
       if (varying >> c & 1) {
@@ -178,11 +189,7 @@ struct open_problems {
     typename scalar::answer a{};
     for (int c = 0; c < problems; ++c)
       __builtin_memcpy(place_in<double>(p, c), problem[c] + k, sizeof(double));
-    const auto prepared = kit::prepared(law, step);
-    if constexpr (requires { law.solve_scalar(p, a, prepared); })
-      law.solve_scalar(p, a, prepared);
-    else
-      law.solve_scalar(p, a);
+    solve_one(law, step, p, a);
     for (int c = 0; c < answers; ++c) __builtin_memcpy(answer[c] + k, place_in<double>(a, c), sizeof(double));
   }
 };
@@ -278,7 +285,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
       all.state[at.k] = pack_state::stored;
     }
     base::store_pack(law, p, b, i, status, !bad);
-    base::add_limit(limits, law, p.node, b, nodes & !bad);
+    base::steps::add(limits, law, p.node, b.varying, nodes & !bad);
     if constexpr (careful) base::add_bad(found, c, nodes, node);
     return true;
   }
@@ -341,7 +348,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
     const view_type b = whole;
     [[maybe_unused]] Wide law = broadcast<V>(given);
     [[maybe_unused]] auto prepared = kit::prepared(law, b.step);
-    limit limits = base::limit_of(given, b);
+    limit limits = base::steps::start(given, b.varying);
     problems_type all;
     for (int c = 0; c < parameter_count<Law>; ++c)
       if (b.varies(c)) all.varying |= std::uint64_t{1} << c;
@@ -366,7 +373,7 @@ struct solver_kernel : kernel<Law, V, Number, Frame, Delassus, Remembers> {
         if (all.count > 0) found.by_scalar_fallback += all.solve(given, b.step);
       }
     }
-    base::give_limit(limits, given, found);
+    base::steps::give(limits, given, found);
   }
 };
 

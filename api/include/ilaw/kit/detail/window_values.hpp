@@ -15,12 +15,7 @@ struct window_columns {
   double* first;
   std::int64_t stride;
 
-  ILAW_KIT_INLINE V number_at(std::int64_t k) const {
-    if constexpr (lanes_of<V> == 1)
-      return first[k * stride];
-    else
-      return V::each([&](int r) ILAW_KIT_LAMBDA { return one_at(first + k * stride + r * register_lanes); });
-  }
+  ILAW_KIT_INLINE V number_at(std::int64_t k) const { return load<V>(first + k * stride); }
   ILAW_KIT_INLINE vector<V> vector_at(std::int64_t k) const {
     return {number_at(k), number_at(k + 1), number_at(k + 2)};
   }
@@ -35,15 +30,8 @@ struct window_columns {
     return f(values{*this});
   }
 
-  ILAW_KIT_INLINE void store(std::int64_t k, V x) const {
-    if constexpr (lanes_of<V> == 1)
-      first[k * stride] = x;
-    else
-      for (int r = 0; r < V::size / register_lanes; ++r)
-        put_one(x.v[r], first + k * stride + r * register_lanes);
-  }
   ILAW_KIT_INLINE void put_number(mask_of<V> where, std::int64_t k, V x) const {
-    store(k, select(where, x, number_at(k)));
+    store(select(where, x, number_at(k)), first + k * stride);
   }
   ILAW_KIT_INLINE void put(mask_of<V> where, std::int64_t k, vector<V> a) const {
     put_number(where, k, a.n);

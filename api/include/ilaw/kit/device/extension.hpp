@@ -207,8 +207,8 @@ struct device_functions {
     const float_environment own;
     using loop = typename device_loop<Law, any_variant<Law>>::template kernel_on<double>;
     tally found;
-    loop::give_limit({totals->limits[0], totals->limits[1], totals->limits[2]},
-                     of<Law>(opaque).at(totals->time), found);
+    loop::steps::give({totals->limits[0], totals->limits[1], totals->limits[2]},
+                      of<Law>(opaque).at(totals->time), found);
     sized::write(report, {.struct_size = 0,
                           .reserved = 0,
                           .bad_count = totals->bad_count,

@@ -161,28 +161,17 @@ ILAW_KIT_INLINE void step_node(const Law& law, const View& b, typename Kernel::c
                                typename Kernel::limit& limits) {
   Kernel::run_pack(law, kit::prepared(law, b.step), b, 0, c, found, limits, 0);
 }
-template <class Law, class Problem, class Answer, class Prepared>
-ILAW_KIT_INLINE auto solve_with(const Law& law, const Problem& p, Answer& a, const Prepared& prepared) {
-  if constexpr (requires { law.solve(p, a, prepared); })
-    return law.solve(p, a, prepared);
-  else
-    return law.solve(p, a);
-}
 // Wide: the law on packs, whose solver may leave a node to the scalar fallback.
 template <class Law, class Wide, class Prepared>
 ILAW_KIT_INLINE void solve_node(const Law& law, const Wide& wide, const step_sizes& step,
                                 const typename Wide::problem& p, typename Wide::answer& a,
                                 const Prepared& prepared) {
-  if (!any(solve_with(wide, p, a, prepared))) return;
+  if (!any(solve_lanes(wide, p, a, prepared))) return;
   typename Law::problem one;
   typename Law::answer answer{};
   static_assert(sizeof one == sizeof p && sizeof answer == sizeof a);
   __builtin_memcpy(static_cast<void*>(&one), &p, sizeof one);
-  const auto own = kit::prepared(law, step);
-  if constexpr (requires { law.solve_scalar(one, answer, own); })
-    law.solve_scalar(one, answer, own);
-  else
-    law.solve_scalar(one, answer);
+  solve_one(law, step, one, answer);
   __builtin_memcpy(static_cast<void*>(&a), &answer, sizeof a);
 }
 template <class Solver, class Law, class Wide, class View>
@@ -205,7 +194,7 @@ ILAW_KIT_INLINE void solve_and_step_node(const Law& law, const Wide& wide, const
   Solver::choose(p.node, closed, is_open);
   Solver::check_result(p.node, b, c);
   Solver::store_pack(wide, p, b, 0, status, !c.bad());
-  Solver::add_limit(limits, wide, p.node, b, !c.bad());
+  Solver::steps::add(limits, wide, p.node, b.varying, !c.bad());
   Solver::add_bad(found, c, {true}, 0);
 }
 
@@ -226,7 +215,7 @@ ILAW_KIT_INLINE void run_node(const device_arguments<Law>& a, std::int64_t k) {
               reason_parameter);
   const auto wide = broadcast<device_number>(law);
   tally found;
-  typename loop::limit limits = loop::limit_of(a.law, b);
+  typename loop::limit limits = loop::steps::start(a.law, b.varying);
   if constexpr (variant::solves)
     solve_and_step_node<typename variant::template solver_kernel_on<at_node<Law, Number>, device_number>>(
         law, wide, b, c, found, limits);

@@ -1,0 +1,116 @@
+// block_copies.hpp - arrays of a host, copied to columns of a block of nodes and back.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ilaw/kit/detail/load_store.hpp>
+
+#include <ilaw/ilaw.h>
+
+namespace ilaw::kit::inline ILAW_KIT_LEVEL::detail {
+
+// The nodes of a part of a batch.
+inline constexpr int block_nodes = 128;  // at most
+struct node_range {
+  std::int64_t first, count;
+  bool listed;
+  std::int64_t where[block_nodes];
+
+  node_range(const ilaw_batch& b, std::int64_t start, std::int64_t n)
+      : first(start), count(n), listed(b.index || b.index64) {
+    if (b.index64)
+      for (std::int64_t i = 0; i < n; ++i) where[i] = b.index64[start + i] - b.index_base;
+    else if (b.index)
+      for (std::int64_t i = 0; i < n; ++i) where[i] = std::int64_t{b.index[start + i]} - b.index_base;
+  }
+  std::int64_t operator()(std::int64_t i) const { return listed ? where[i] : first + i; }
+};
+
+template <class T, class From>
+[[gnu::noinline]] inline void gather_column(const From* values, std::int64_t stride, const node_range& n,
+                                            T* to) {
+  if (n.listed)
+    for (std::int64_t i = 0; i < n.count; ++i) to[i] = static_cast<T>(values[n.where[i] * stride]);
+  else
+    for (std::int64_t i = 0; i < n.count; ++i) to[i] = static_cast<T>(values[(n.first + i) * stride]);
+}
+template <class T, class From>
+[[gnu::noinline]] inline void scatter_column(T* values, std::int64_t stride, const node_range& n,
+                                             const From* from) {
+  if (n.listed)
+    for (std::int64_t i = 0; i < n.count; ++i) values[n.where[i] * stride] = static_cast<T>(from[i]);
+  else
+    for (std::int64_t i = 0; i < n.count; ++i) values[(n.first + i) * stride] = static_cast<T>(from[i]);
+}
+// Rows of four numbers or more, four nodes by four numbers at a time; the last four may overlap the others.
+using four = double __attribute__((vector_size(32)));
+ILAW_KIT_INLINE void transpose(four (&m)[4]) {
+  const four a = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6),
+             b = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7),
+             c = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6),
+             d = __builtin_shufflevector(m[2], m[3], 1, 5, 3, 7);
+  m[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  m[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  m[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  m[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+[[gnu::noinline]] inline void gather_rows(const double* values, std::int64_t stride, int count,
+                                          const node_range& n, double* to) {
+  std::int64_t i = 0;
+  for (; i + 4 <= n.count; i += 4) {
+    const double* const at[4] = {values + n(i) * stride, values + n(i + 1) * stride,
+                                 values + n(i + 2) * stride, values + n(i + 3) * stride};
+    for (int c = 0; c < count; c += 4) {
+      const int first = c + 4 <= count ? c : count - 4;
+      four m[4];
+#pragma GCC unroll 4
+      for (int k = 0; k < 4; ++k) __builtin_memcpy(&m[k], at[k] + first, sizeof(four));
+      transpose(m);
+#pragma GCC unroll 4
+      for (int k = 0; k < 4; ++k) __builtin_memcpy(to + (first + k) * block_nodes + i, &m[k], sizeof(four));
+    }
+  }
+  for (; i < n.count; ++i)
+    for (int c = 0; c < count; ++c) to[c * block_nodes + i] = values[n(i) * stride + c];
+}
+[[gnu::noinline]] inline void scatter_rows(double* values, std::int64_t stride, int count,
+                                           const node_range& n, const double* from) {
+  std::int64_t i = 0;
+  for (; i + 4 <= n.count; i += 4) {
+    double* const at[4] = {values + n(i) * stride, values + n(i + 1) * stride, values + n(i + 2) * stride,
+                           values + n(i + 3) * stride};
+    for (int c = 0; c < count; c += 4) {
+      const int first = c + 4 <= count ? c : count - 4;
+      four m[4];
+#pragma GCC unroll 4
+      for (int k = 0; k < 4; ++k) __builtin_memcpy(&m[k], from + (first + k) * block_nodes + i, sizeof(four));
+      transpose(m);
+#pragma GCC unroll 4
+      for (int k = 0; k < 4; ++k) __builtin_memcpy(at[k] + first, &m[k], sizeof(four));
+    }
+  }
+  for (; i < n.count; ++i)
+    for (int c = 0; c < count; ++c) values[n(i) * stride + c] = from[c * block_nodes + i];
+}
+// Components that lie in other lines of memory: node by node.
+template <class T, class From>
+[[gnu::noinline]] inline void gather_three(const From* values, std::int64_t stride, std::int64_t component,
+                                           const node_range& n, T* to) {
+  for (std::int64_t i = 0; i < n.count; ++i) {
+    const From* const at = values + n(i) * stride;
+    to[i] = static_cast<T>(at[0]);
+    to[block_nodes + i] = static_cast<T>(at[component]);
+    to[2 * block_nodes + i] = static_cast<T>(at[2 * component]);
+  }
+}
+template <class T, class From>
+[[gnu::noinline]] inline void scatter_three(T* values, std::int64_t stride, std::int64_t component,
+                                            const node_range& n, const From* from) {
+  for (std::int64_t i = 0; i < n.count; ++i) {
+    T* const at = values + n(i) * stride;
+    at[0] = static_cast<T>(from[i]);
+    at[component] = static_cast<T>(from[block_nodes + i]);
+    at[2 * component] = static_cast<T>(from[2 * block_nodes + i]);
+  }
+}
+
+}  // namespace ilaw::kit::detail
