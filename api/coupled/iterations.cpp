@@ -139,7 +139,7 @@ void Iterations::read_scaled(const Blocks& blocks) {
     if (block.asleep) continue;
     const Layout& layout = *block.layout;
     for (std::size_t q = 0; q < block.count; ++q)
-      for (int c = 0; c < 3; ++c, ++i) {
+      for (int c = 0; c < layout.width; ++c, ++i) {
         image_[i] = scales_[i / 3] * block.column(layout.impulse + c)[q];
         step_[i] = scales_[i / 3] * block.column(layout.change + c)[q];
       }
@@ -258,8 +258,7 @@ bool Iterations::splitting(Blocks& blocks, std::uint32_t most, std::size_t depth
 std::size_t Iterations::scales_of(const Blocks& blocks) {
   scales_.clear();
   for (const Block& block : blocks.list())
-    for (std::size_t q = 0; q < block.count && !block.asleep; ++q)
-      scales_.push_back(std::sqrt(mean_delassus(block, q)));
+    for (std::size_t q = 0; q < block.count && !block.asleep; ++q) push_scales(block, q, scales_);
   return scales_.size();
 }
 
@@ -289,7 +288,7 @@ void Iterations::read_impulses(const Blocks& blocks, std::vector<double>& impuls
     if (block.asleep) continue;
     const int impulse = block.layout->impulse;
     for (std::size_t q = 0; q < block.count; ++q)
-      for (int c = 0; c < 3; ++c) impulses.push_back(block.column(impulse + c)[q]);
+      for (int c = 0; c < block.layout->width; ++c) impulses.push_back(block.column(impulse + c)[q]);
   }
 }
 
@@ -328,7 +327,7 @@ void Iterations::solve_islands(Blocks& blocks) {
 }
 
 void Iterations::find_island_residuals(const Blocks& blocks, std::vector<double>& residuals) {
-  std::array<double, 3 * max_stride> response{};
+  Columns response{};
   std::size_t k = 0;
   for (const Block& block : blocks.list()) {
     if (block.asleep) {
@@ -338,9 +337,10 @@ void Iterations::find_island_residuals(const Blocks& blocks, std::vector<double>
     const Layout& layout = *block.layout;
     sweep_.respond(block, block.column(layout.change), block.stride, response.data());
     for (std::size_t q = 0; q < block.count; ++q, ++k)
-      for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c) {
         double& most = residuals[static_cast<std::size_t>(islands_.labels()[k])];
-        const double change = std::fabs(response[c * max_stride + q]);
+        const double length = c < 3 ? 1.0 : block.column(layout.length)[q];
+        const double change = std::fabs(length * response[c * max_stride + q]);
         most = std::max(most, change);
         if (!std::isfinite(change)) most = infinity;
       }

@@ -74,6 +74,7 @@ class Iterations {
   bool newton(Blocks& blocks);
   bool splitting(Blocks& blocks, std::uint32_t most, std::size_t depth);
   bool move(Blocks& blocks, const std::vector<double>& changes);
+  // Scales of impulses, and of moments, three components each. Returns their number.
   std::size_t scales_of(const Blocks& blocks);
   void keep_best(Blocks& blocks);
   void note_best(const Blocks& blocks);

@@ -14,7 +14,7 @@ namespace ilaw::coupled {
 // block at once, since a law sees its own contact alone.
 bool Newton::linearize(const Blocks& blocks, const Problem& problem, const Sweep& sweep) {
   constexpr double small = 0x1p-20;
-  std::array<double, 3 * max_stride> v_free{}, made{}, moved{}, answer{}, other{};
+  Columns v_free{}, made{}, moved{}, answer{}, other{};
   std::array<std::uint8_t, max_stride> status{};
   difference_.clear();
   tangents_.clear();
@@ -90,7 +90,7 @@ Newton::Newton() : system_(std::make_unique<System>()) {}
 Newton::~Newton() = default;
 
 void Newton::read_delassus(const Blocks& blocks, const Sweep& sweep) {
-  std::array<double, 3 * max_stride> unit{}, made{};
+  Columns unit{}, made{};
   std::vector<Eigen::Matrix3d>& h = system_->h;
   h.clear();
   for (const Block& block : blocks.list()) {
@@ -156,6 +156,8 @@ void Newton::assemble(double delta) {
 
 bool Newton::step(const Blocks& blocks, const Problem& problem, const Sweep& sweep, double delta,
                   std::vector<double>& changes) {
+  for (const Block& block : blocks.list())
+    if (!block.asleep && block.layout->width > 3) return false;
   if (!linearize(blocks, problem, sweep)) return false;
   equations_.read(blocks, problem);
   read_delassus(blocks, sweep);

@@ -22,7 +22,7 @@ class Newton {
   ~Newton();
 
   // Changes of impulses from the present ones to the solution of the linearized equations, by contact. False
-  // where a law refuses, or the system is too large or has no finite solution.
+  // where a law refuses, a contact has a moment, or the system is too large or has no finite solution.
   bool step(const Blocks& blocks, const Problem& problem, const Sweep& sweep, double delta,
             std::vector<double>& changes);
 

@@ -47,7 +47,7 @@ TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
       {"a batch is missing, or its struct_size is wrong", [](Call& c) { c.contacts.batch = nullptr; }},
       {"law or instance is null", [](Call& c) { c.contacts.law = nullptr; }},
       {"law or instance is null", [](Call& c) { c.contacts.instance = nullptr; }},
-      {"delassus_form is neither scalar, transverse nor full",
+      {"delassus_form is neither scalar, transverse, transverse_spin nor full",
        [](Call& c) { c.contacts.delassus_form = ILAW_DELASSUS_DIAGONAL; }},
       {"node_count is negative", [](Call& c) { c.batch.node_count = -1; }},
       {"node_count is above 2^31 - 2", [](Call& c) { c.batch.node_count = std::int64_t{1} << 60; }},
@@ -75,9 +75,14 @@ TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
          c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
          c.bodies.inverse_inertia = ilaw::input(six, 0, 1);
        }},
-      {"delassus_form is transverse, and the normal is missing", [](Call& c) {
+      {"delassus_form is transverse, and the normal is missing",
+       [](Call& c) {
          c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
          c.batch.normal = {};
+       }},
+      {"delassus_form has spins, which the law does not serve", [](Call& c) {
+         c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE_SPIN;
+         c.batch.moment = c.batch.impulse;
        }}};
   Scene scene = cube(tie(), 1);
   const std::vector<double> before = scene.v;
