@@ -65,8 +65,8 @@ void ContactSet::clear(double velocity_step) {
   contacts_.clear();
   new_.clear();
   for (auto* list : {&body_, &counterpart_}) list->clear();
-  for (auto* values : {&gap_, &area_, &normal_, &arm_, &counterpart_arm_, &wall_, &wall_spin_, &response_,
-                       &state_, &energy_})
+  for (auto* values : {&gap_, &area_, &normal_, &arm_, &counterpart_arm_, &wall_, &wall_previous_,
+                       &wall_spin_, &response_, &state_, &energy_})
     values->clear();
 }
 
@@ -82,6 +82,7 @@ void ContactSet::add(const Contact& contact, const Row& row) {
     arm_.push_back(-contact.arm * contact.normal[c]);
     counterpart_arm_.push_back(contact.counterpart_arm * contact.normal[c]);
     wall_.push_back(contact.wall_velocity[c]);
+    wall_previous_.push_back(contact.wall_previous[c]);
     wall_spin_.push_back(contact.wall_spin[c]);
   }
   response_.resize(response_size_ * (k + 1));
@@ -131,6 +132,7 @@ const ilaw_contacts* ContactSet::describe(double time, double position_step) {
   described_.arm = ilaw::input(arm_.data(), 3, 1);
   described_.counterpart_arm = ilaw::input(counterpart_arm_.data(), 3, 1);
   described_.wall_velocity = ilaw::input(wall_.data(), 3, 1);
+  described_.wall_previous = ilaw::input(wall_previous_.data(), 3, 1);
   if (has_spins()) described_.wall_spin = ilaw::input(wall_spin_.data(), 3, 1);
   return &described_;
 }

@@ -35,7 +35,7 @@ class ContactSet {
   struct Contact {
     int body, counterpart;  // counterpart below 0: a wall
     double partner;
-    Vector normal, wall_velocity, wall_spin;
+    Vector normal, wall_velocity, wall_previous, wall_spin;
     double gap, arm, counterpart_arm, area;
   };
   // row: of the atom that keeps the contact.
@@ -62,7 +62,7 @@ class ContactSet {
   double velocity_step_ = 0.0;
   std::vector<Contact> contacts_;
   std::vector<std::int32_t> body_, counterpart_, new_;
-  std::vector<double> gap_, area_, normal_, arm_, counterpart_arm_, wall_, wall_spin_;
+  std::vector<double> gap_, area_, normal_, arm_, counterpart_arm_, wall_, wall_previous_, wall_spin_;
   std::vector<double> response_, state_, energy_;
   std::vector<std::uint8_t> status_;
   ilaw_batch batch_{};

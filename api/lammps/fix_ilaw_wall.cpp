@@ -2,6 +2,7 @@
 #include "fix_ilaw_wall.hpp"
 
 #include <atom.h>
+#include <update.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,10 +95,13 @@ double FixIlawWall::distance(const Wall& wall, const double* x, Vector& normal) 
   return sense * (length - wall.radius);
 }
 
-// At the point of the wall that is nearest to x.
-Vector FixIlawWall::velocity(const Wall& wall, const double* x, double distance, const Vector& normal) const {
+// At the point of the wall that is nearest to an atom, where both are ahead by a time. Half a step ahead it
+// is the mean over the step to O(h^2): the two-step method of Adams and Bashforth for a grain that sticks.
+Vector FixIlawWall::velocity(const Wall& wall, int i, double distance, const Vector& normal,
+                             double ahead) const {
   Vector from = centre(wall);
-  for (std::size_t c = 0; c < 3; ++c) from[c] = x[c] - distance * normal[c] - from[c];
+  for (std::size_t c = 0; c < 3; ++c)
+    from[c] = atom->x[i][c] - distance * normal[c] - from[c] + ahead * (atom->v[i][c] - wall.velocity[c]);
   Vector now = cross(wall.spin, from);
   for (std::size_t c = 0; c < 3; ++c) now[c] += wall.velocity[c];
   return now;
@@ -115,7 +119,8 @@ void FixIlawWall::find() {
       contact.body = i;
       contact.counterpart = -1;
       contact.partner = -1.0 - static_cast<double>(w);
-      contact.wall_velocity = velocity(walls_[w], atom->x[i], apart, contact.normal);
+      contact.wall_velocity = velocity(walls_[w], i, apart, contact.normal, 0.5 * update->dt);
+      contact.wall_previous = velocity(walls_[w], i, apart, contact.normal, -0.5 * update->dt);
       contact.wall_spin = walls_[w].spin;
       contact.area = area_ > 0.0 ? area_ : M_PI * contact.arm * contact.arm;
       contacts_->add(contact, row(i));

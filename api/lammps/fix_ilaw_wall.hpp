@@ -31,7 +31,7 @@ class FixIlawWall : public FixIlaw {
   Vector centre(const Wall& wall) const;
   // From the wall to a point, and the normal there.
   double distance(const Wall& wall, const double* x, Vector& normal) const;
-  Vector velocity(const Wall& wall, const double* x, double distance, const Vector& normal) const;
+  Vector velocity(const Wall& wall, int i, double distance, const Vector& normal, double ahead) const;
 
   std::vector<Wall> walls_;
 };

@@ -70,7 +70,7 @@ class Contacts:
         h = O.dt
         free, previous = self._velocities(h)
         places = np.array([state.pos for state in self._states]).reshape(-1, 3)
-        geometry = self._geometry(places)
+        geometry = self._geometry(places, previous["v"], h)
         bodies = Bodies(
             v_free=free["v"], spin_free=free["w"], v_previous=previous["v"], spin_previous=previous["w"],
             inverse_mass=self._inverse_mass, inverse_inertia=self._inverse_inertia,
@@ -140,10 +140,10 @@ class Contacts:
         inverse = np.append(self._inverse_mass, 0.0)
         return pairs[(inverse[self._row[pairs]] > 0).any(axis=1)]
 
-    def _geometry(self, places):
+    def _geometry(self, places, v, h):
         pairs = self._candidates()
         body, counterpart = self._row[pairs[:, 0]], self._row[pairs[:, 1]]
-        other, wall_velocity, wall_spin = np.zeros((3, len(pairs), 3))
+        other, wall_velocity, wall_previous, wall_spin = np.zeros((4, len(pairs), 3))
         radius = np.where(counterpart < 0, 0.0, self._radius[counterpart])
         other[counterpart >= 0] = places[counterpart[counterpart >= 0]]
         for number, wall in self._walls.items():
@@ -154,9 +154,10 @@ class Contacts:
             # A point behind the wall, so that a centre which has sunk into it still finds its way out.
             other[at, axis] = place - side * radius[at]
             wall_spin[at] = self._spin(wall)
-            wall_velocity[at] = wall.state.vel
-            if wall_spin[at].any():
-                wall_velocity[at] += np.cross(wall_spin[at], other[at] - np.array(wall.state.pos))
+            # In the middle of the step, where the mean of a turning wall's velocity is found to O(h^2).
+            from_axis, drift = places[body[at]] - np.array(wall.state.pos), v[body[at]] - np.array(wall.state.vel)
+            for velocity, ahead in ((wall_velocity, 0.5 * h), (wall_previous, -0.5 * h)):
+                velocity[at] = np.array(wall.state.vel) + np.cross(wall_spin[at], from_axis + ahead * drift)
         apart = places[body] - other
         length = np.linalg.norm(apart, axis=1)
         return {
@@ -167,6 +168,7 @@ class Contacts:
             "gap": length - self._radius[body] - radius,
             "radius": np.column_stack([self._radius[body], radius]),
             "wall_velocity": wall_velocity,
+            "wall_previous": wall_previous,
             "wall_spin": wall_spin,
         }
 
@@ -194,7 +196,7 @@ class Contacts:
         group = Group(
             self.law, body=geometry["body"], counterpart=geometry["counterpart"], normal=normal, gap=geometry["gap"],
             area=area, arm=-radius[:, :1] * normal, counterpart_arm=radius[:, 1:] * normal,
-            wall_velocity=geometry["wall_velocity"], wall_spin=geometry["wall_spin"], energy=True, **begin,
+            **{name: geometry[name] for name in ("wall_velocity", "wall_previous", "wall_spin")}, energy=True, **begin,
         )  # fmt: skip
         group.initialise(~old, time=O.time)
         self.pairs = pairs
