@@ -310,18 +310,18 @@ def test_a_top_spins_down(tmp_path, dt):
 # rho F or tau F of its spin's moment, the other grain's being the opposite.
 @pytest.mark.parametrize("dt, ranks", zip(STEPS_OF_BALLS, (1, 2, 4)))
 def test_moments_act_on_both_grains_of_a_pair(tmp_path, dt, ranks):
-    force, spin = 2.0, 20.0
+    force, spin = 2.0, 10.0
     inertia = 0.4 * MASS_OF_BALL * RADIUS**2
+    steps = steps_until(0.5 * inertia * spin / (RHO * force), dt)
     begin, _ = balls(dt, (0.95, -0.5), (1.05, -0.5), (0.95, 0.5), (1.05, 0.5))
     text = (f"processors {min(ranks, 2)} * 1\n" + begin + f"set atom 1 omega 0 0 {spin}\nset atom 2 omega 0 0 -{spin}\n"
             + f"set atom 3 omega {spin} 0 0\nset atom 4 omega -{spin} 0 0\n"
             + f"group left id 1 3\ngroup right id 2 4\nfix l left addforce {force} 0 0\nfix r right addforce -{force} 0 0\n"
-            + f"fix p all ilaw/pair {ROLLING}\nrun {steps_until(0.5 * inertia * spin / (RHO * force), dt)}\n" + state("half")
-            + f"run {steps_until(2 * inertia * spin / (TAU * force), dt)}\n" + state("end")
+            + f"fix p all ilaw/pair {ROLLING}\nrun {steps}\n" + state("half")
+            + f"run {steps_until(inertia * spin / (TAU * force), dt)}\n" + state("end")
             + "variable lost equal f_p[6]\nprint \"$(v_lost:%.17g)\" file lost\n")
     lammps(tmp_path, text, ranks)
-    time = steps_until(0.5 * inertia * spin / (RHO * force), dt) * float(dt)
-    rolls, twists = (spin - moment * force * time / inertia for moment in (RHO, TAU))
+    rolls, twists = (spin - moment * force * steps * float(dt) / inertia for moment in (RHO, TAU))
     half = read(tmp_path, "half")
     expected = [(0, 0, rolls), (0, 0, -rolls), (twists, 0, 0), (-twists, 0, 0)]
     for row, spins in zip(half, expected):
@@ -340,6 +340,13 @@ def test_ranks_agree_on_moments_to_the_tolerance(tmp_path):
     assert max(abs(row[7]) for row in alone) > 1, "nothing spins"
     for ranks in (2, 4):
         assert difference(alone, read(tmp_path, f"on{ranks}")) < 1e-7
+
+
+# A step begins with the moments of the last: 7 iterations, and 19 without.
+def test_a_pile_at_rest_needs_few_iterations(tmp_path):
+    text = pile(sweeps="sweeps 2000 tol 1e-8").replace(*RESISTING)
+    rows = thermo(lammps(tmp_path, text + "thermo_style custom step f_p[1] f_p[2]\nthermo 600\nrun 600\n"))
+    assert rows[-1][1] > 10 and rows[-1][2] < 12
 
 
 # Grains collide and fly apart: without other forces what they lose is what friction, rolling and twisting take.
