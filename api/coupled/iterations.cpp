@@ -11,20 +11,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Part of the changes, at most 1, after which the first impulse of a contact has vanished.
-double part_to_first_opening(const std::vector<double>& impulses, const std::vector<double>& changes) {
-  double part = 1.0;
-  for (std::size_t i = 0; i < impulses.size(); i += 3) {
-    double square = 0.0, product = 0.0;
-    for (std::size_t c = i; c < i + 3; ++c) {
-      square += impulses[c] * impulses[c];
-      product += impulses[c] * changes[c];
-    }
-    if (-product * part > square && square > 0.0) part = square / -product;
-  }
-  return part;
-}
-
 }  // namespace
 
 void Iterations::begin(std::uint32_t most, double tolerance, double speed, double rounding) {
@@ -133,6 +119,34 @@ void Iterations::extrapolate_bodies(double beta) {
   }
 }
 
+// Part of the corrections, at most 1, after which the first impulse of a contact has vanished. A moment may.
+double Iterations::part_to_first_opening(const Blocks& blocks) const {
+  double part = 1.0;
+  const double* change = correction_.data();
+  for (const Block& block : blocks.list())
+    for (std::size_t q = 0; q < block.count && !block.asleep; ++q, change += block.layout->width) {
+      const Vector r = block.at(block.layout->impulse, q), by = columns_at<3>(change, 1);
+      const double square = dot(r, r), product = dot(r, by);
+      if (-product * part > square && square > 0.0) part = square / -product;
+    }
+  return part;
+}
+
+// Takes this part of the corrections. Returns the largest velocity that they make.
+double Iterations::shorten(const Blocks& blocks, double part) {
+  double most = 0.0;
+  std::size_t i = 0;
+  for (const Block& block : blocks.list())
+    for (std::size_t q = 0; q < block.count && !block.asleep; ++q) {
+      const double speed = scales_[i / 3];
+      for (int c = 0; c < block.layout->width; ++c, ++i) {
+        correction_[i] *= part;
+        most = std::max(most, speed * scales_[i / 3] * std::fabs(correction_[i]));
+      }
+    }
+  return most;
+}
+
 void Iterations::read_scaled(const Blocks& blocks) {
   std::size_t i = 0;
   for (const Block& block : blocks.list()) {
@@ -221,14 +235,7 @@ bool Iterations::newton(Blocks& blocks) {
     const double delta = std::clamp(residual_, 1e-12, 1e-10);
     if (!newton_.step(blocks, problem_, sweep_, delta, correction_)) return false;
     method_ = ILAW_METHOD_NEWTON;
-    read_impulses(blocks, image_);
-    const double part = part_to_first_opening(image_, correction_);
-    double largest = 0.0;
-    for (std::size_t i = 0; i < correction_.size(); ++i) {
-      correction_[i] *= part;
-      largest = std::max(largest, scales_[i / 3] * scales_[i / 3] * std::fabs(correction_[i]));
-    }
-    if (largest > max_newton_growth * first_size_) return false;
+    if (shorten(blocks, part_to_first_opening(blocks)) > max_newton_growth * first_size_) return false;
     if (move(blocks, correction_)) return true;
     if (change_ <= rounding_ && square_ > much_less * least) return true;
     failures = square_ < least ? 0 : failures + 1;
