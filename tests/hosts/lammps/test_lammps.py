@@ -448,6 +448,25 @@ def test_grazing_impacts_lose_what_friction_takes(tmp_path, dt):
         assert energy == pytest.approx(after, abs=1e-12), degrees
 
 
+def last_row(tmp_path, name, example, **variables):
+    text = f"variable ilaw string {STYLES}\n" + "".join(f"variable {k} index {v}\n" for k, v in variables.items())
+    lammps(tmp_path, text + (EXAMPLES[0].parent / example).read_text())
+    return list(map(float, (tmp_path / name).read_text().splitlines()[-1].split()))
+
+
+def test_the_example_of_a_ball_has_the_figures_of_its_page(tmp_path):
+    assert last_row(tmp_path, "roll.txt", "in.roll")[1:] == pytest.approx([1.783894, 0, 0], abs=1e-6)
+    _, x, _, spin = last_row(tmp_path, "roll.txt", "in.roll", model="sds", dt="1e-4")
+    assert x == pytest.approx(1.7788, abs=1e-4) and spin > 0.05
+
+
+def test_a_heap_stays_with_rolling_resistance_and_flattens_without(tmp_path):
+    _, _, height, away, _ = last_row(tmp_path, "heap.txt", "in.heap", end=1)
+    assert height > 4 and away < 5
+    _, _, height, away, _ = last_row(tmp_path, "heap.txt", "in.heap", end=1, resistance=0)
+    assert height < 2 and away > 12
+
+
 @pytest.mark.parametrize("dt", ["3e-7", "7.3e-8", "1e-8"])
 def test_adhesive_grains_leave_with_what_their_neck_leaves_them(tmp_path, dt):
     text = (EXAMPLES[0].parent / "in.stick").read_text()
