@@ -202,6 +202,29 @@ def test_bad_contacts_are_named():
     assert contacts.status[2] == ilaw.Status.BAD_INPUT and not contacts.impulse[2].any()
 
 
+def test_moments_resist_rolling_and_take_the_spin_of_a_wall():
+    """7/5 a = -rho g/R while it rolls, and a moment tau m g towards the wall's spin; a step begins with both."""
+    m, radius, rho, tau = 0.3, 0.05, 2e-3, 1e-3
+    inertia = 0.4 * m * radius**2
+    v, w = np.array([[1.0, 0.0, -G * H]]), np.array([[0.0, 1 / radius, 0.0]])
+    bodies = Bodies(v_free=v, v_previous=np.array([[1.0, 0.0, 0.0]]), spin_free=w, spin_previous=w.copy(),
+                    inverse_mass=1 / m, inverse_inertia=1 / inertia, velocity=v, spin=w, angular_impulse=True)  # fmt: skip
+    resist = law("rolling", delassus="transverse_spin", friction=0.5, rolling_friction=rho, twisting_friction=tau)
+    contact = Contacts(resist, body=[0], counterpart=[-1], gap=0.0, normal=UP, arm=[0, 0, -radius],
+                       counterpart_arm=[0, 0, 0], wall_spin=[0, 0, 5], energy=True)  # fmt: skip
+    contact.initialise()
+    Solver().solve(bodies, [contact], time=H)
+    np.testing.assert_allclose(contact.moment, [[0, -rho * m * G * H, tau * m * G * H]], rtol=1e-10, atol=1e-18)
+    np.testing.assert_allclose(v, [[1 - rho * G * H / (1.4 * radius), 0, 0]], atol=1e-14)
+    np.testing.assert_allclose(w, [[0, v[0, 0] / radius, tau * m * G * H / inertia]], atol=1e-11)
+    v[:], w[:] = [[1, 0, -G * H]], [[0, 1 / radius, 0]]
+    assert Solver().solve(bodies, [contact], time=2 * H).sweeps <= 2
+
+
+def test_contacts_without_spins_have_no_moment():
+    assert Contacts(law(), body=[0], counterpart=[1], gap=0.0, normal=UP).moment is None
+
+
 V = np.zeros((2, 3))
 
 
