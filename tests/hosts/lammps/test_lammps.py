@@ -247,7 +247,8 @@ STEPS_OF_BALLS = ["1e-4", "3.7e-4", "7.3e-4"]
 
 def balls(dt, *places, law=ROLLING, wall="plane 0 0 0 0 0 1"):
     """Balls at rest on a wall, without forces."""
-    return (BEGIN.replace("1.2", "0.12").replace("neighbor 0.3", "neighbor 0.03").replace("timestep 1e-3", f"timestep {dt}")
+    begin = BEGIN.replace("1.2", "0.12").replace("neighbor 0.3", "neighbor 0.03")
+    return (begin.replace("timestep 1e-3", f"timestep {dt}")
             + "region box block -1 3 -1 1 -0.2 0.3 units box\ncreate_box 1 box\n"
             + "".join(f"create_atoms 1 single {x} {y} {RADIUS} units box\n" for x, y in places)
             + f"set type 1 diameter {2 * RADIUS} density {MASS_OF_BALL / (4 / 3 * math.pi * RADIUS**3)!r}\n"
@@ -316,7 +317,8 @@ def test_moments_act_on_both_grains_of_a_pair(tmp_path, dt, ranks):
     begin, _ = balls(dt, (0.95, -0.5), (1.05, -0.5), (0.95, 0.5), (1.05, 0.5))
     text = (f"processors {min(ranks, 2)} * 1\n" + begin + f"set atom 1 omega 0 0 {spin}\nset atom 2 omega 0 0 -{spin}\n"
             + f"set atom 3 omega {spin} 0 0\nset atom 4 omega -{spin} 0 0\n"
-            + f"group left id 1 3\ngroup right id 2 4\nfix l left addforce {force} 0 0\nfix r right addforce -{force} 0 0\n"
+            + "group left id 1 3\ngroup right id 2 4\n"
+            + f"fix l left addforce {force} 0 0\nfix r right addforce -{force} 0 0\n"
             + f"fix p all ilaw/pair {ROLLING}\nrun {steps}\n" + state("half")
             + f"run {steps_until(inertia * spin / (TAU * force), dt)}\n" + state("end")
             + "variable lost equal f_p[6]\nprint \"$(v_lost:%.17g)\" file lost\n")
@@ -352,12 +354,13 @@ def test_a_pile_at_rest_needs_few_iterations(tmp_path):
 # Grains collide and fly apart: without other forces what they lose is what friction, rolling and twisting take.
 @pytest.mark.parametrize("dt", ["1e-3", "7.3e-4", "3.1e-4"])
 def test_moments_dissipate_what_the_grains_lose(tmp_path, dt):
-    text = (BEGIN.replace("timestep 1e-3", f"timestep {dt}") + "region box block -20 20 -20 20 -20 20\ncreate_box 1 box\n"
-            + grains(1.2) + MASS + "pair_coeff * *\nfix nve all nve/sphere\n"
+    text = (BEGIN.replace("timestep 1e-3", f"timestep {dt}")
+            + "region box block -20 20 -20 20 -20 20\ncreate_box 1 box\n" + grains(1.2) + MASS + "pair_coeff * *\nfix nve all nve/sphere\n"
             + "variable inward atom 1.7-x\nvelocity all set v_inward 1 0.5\n"
             + "variable spin atom 5*sin(id)\nset group all omega v_spin v_spin v_inward\n"
             + "compute spins all erotate/sphere\ncompute flight all ke\nvariable energy equal c_flight+c_spins\n"
-            + f"fix p all ilaw/pair {RESISTING[1]} restitution 0.5 sweeps 2000 tol 1e-12\nthermo_style custom step v_energy f_p[1] f_p[6] f_p[7]\n"
+            + f"fix p all ilaw/pair {RESISTING[1]} restitution 0.5 sweeps 2000 tol 1e-12\n"
+            + "thermo_style custom step v_energy f_p[1] f_p[6] f_p[7]\n"
             + f"thermo_modify format float %.15g\nthermo {steps_until(3, dt)}\nrun {steps_until(3, dt)}\n")
     first, last = thermo(lammps(tmp_path, text))
     assert last[2] == 0, "they still touch"

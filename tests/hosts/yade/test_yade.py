@@ -127,7 +127,8 @@ def test_the_example_settles_beside_yades_own_law(tmp_path):
 
 def test_the_example_rolls_out(tmp_path):
     said = yade(tmp_path, YADE / "examples/roll.py", 2e-3)
-    rolled, closed, spin = map(float, re.search(r"^rolled (\S+) m, closed form (\S+) m, spin left (\S+)", said, re.M).groups())
+    found = re.search(r"^rolled (\S+) m, closed form (\S+) m, spin left (\S+)", said, re.M)
+    rolled, closed, spin = map(float, found.groups())
     assert rolled == pytest.approx(closed, abs=2e-6) and spin < 1e-12
 
 
