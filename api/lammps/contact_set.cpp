@@ -62,17 +62,16 @@ ContactSet::ContactSet(const std::string& law, const std::vector<std::array<std:
 
 void ContactSet::clear(double velocity_step) {
   velocity_step_ = velocity_step;
-  contacts_.clear();
   new_.clear();
   for (auto* list : {&body_, &counterpart_}) list->clear();
-  for (auto* values : {&gap_, &area_, &normal_, &arm_, &counterpart_arm_, &wall_, &wall_previous_,
+  for (auto* values : {&partner_, &gap_, &area_, &normal_, &arm_, &counterpart_arm_, &wall_, &wall_previous_,
                        &wall_spin_, &response_, &state_, &energy_})
     values->clear();
 }
 
 void ContactSet::add(const Contact& contact, const Row& row) {
-  const std::size_t k = contacts_.size();
-  contacts_.push_back(contact);
+  const std::size_t k = size();
+  partner_.push_back(contact.partner);
   body_.push_back(contact.body);
   counterpart_.push_back(contact.counterpart);
   gap_.push_back(contact.gap);
@@ -83,7 +82,7 @@ void ContactSet::add(const Contact& contact, const Row& row) {
     counterpart_arm_.push_back(contact.counterpart_arm * contact.normal[c]);
     wall_.push_back(contact.wall_velocity[c]);
     wall_previous_.push_back(contact.wall_previous[c]);
-    wall_spin_.push_back(contact.wall_spin[c]);
+    if (has_spins()) wall_spin_.push_back(contact.wall_spin[c]);
   }
   response_.resize(response_size_ * (k + 1));
   state_.resize(state_size_ * (k + 1));
@@ -145,8 +144,8 @@ void ContactSet::initialise_new(const ilaw_batch& batch) {
   interface_->initialise(part);  // what is bad is found, and named, by evaluate
 }
 
-void ContactSet::keep(std::size_t k, double partner, Row& row) const {
-  row.push_back(partner);
+void ContactSet::keep(std::size_t k, Row& row) const {
+  row.push_back(partner_[k]);
   for (std::size_t c = 0; c < response_size_; ++c)
     row.push_back(response_[response_size_ * k + c] / velocity_step_);
   const auto state = state_.begin() + static_cast<std::ptrdiff_t>(k * state_size_);

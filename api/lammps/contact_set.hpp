@@ -44,12 +44,16 @@ class ContactSet {
   // Arrays in, once all contacts are there. The pointers live until the next clear.
   const ilaw_contacts* describe(double time, double position_step);
 
-  std::size_t size() const { return contacts_.size(); }
-  const Contact& operator[](std::size_t k) const { return contacts_[k]; }
+  std::size_t size() const { return body_.size(); }
+  int body(std::size_t k) const { return body_[k]; }
+  int counterpart(std::size_t k) const { return counterpart_[k]; }
+  double gap(std::size_t k) const { return gap_[k]; }
+  const double* normal(std::size_t k) const { return &normal_[3 * k]; }
+  const double* wall_velocity(std::size_t k) const { return &wall_[3 * k]; }
   std::uint8_t status(std::size_t k) const { return status_[k]; }
   const double* energy(std::size_t k) const { return &energy_[k * ILAW_ENERGY_COUNT]; }
   // Appends what the contact leaves.
-  void keep(std::size_t k, double partner, Row& row) const;
+  void keep(std::size_t k, Row& row) const;
 
  private:
   bool has_spins() const { return delassus_form_ == ILAW_DELASSUS_TRANSVERSE_SPIN; }
@@ -60,9 +64,9 @@ class ContactSet {
   std::size_t response_size_ = 3;  // impulse, and moment where the form of H has spins
   std::uint32_t delassus_form_ = ILAW_DELASSUS_FULL;
   double velocity_step_ = 0.0;
-  std::vector<Contact> contacts_;
   std::vector<std::int32_t> body_, counterpart_, new_;
-  std::vector<double> gap_, area_, normal_, arm_, counterpart_arm_, wall_, wall_previous_, wall_spin_;
+  std::vector<double> partner_, gap_, area_, normal_, arm_, counterpart_arm_, wall_, wall_previous_,
+      wall_spin_;
   std::vector<double> response_, state_, energy_;
   std::vector<std::uint8_t> status_;
   ilaw_batch batch_{};
