@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""fix ilaw/pair and fix ilaw/wall in the system's lmp, on one and two ranks: closed forms, runs that go on, restarts."""
+"""fix ilaw/pair and fix ilaw/wall in the system's lmp, on one to four ranks: closed forms, runs that go on, restarts."""
 import math
 import os
 import pathlib
@@ -390,6 +390,16 @@ def test_a_wall_that_spins_takes_balls_along(tmp_path, dt):
     angle = 2 / 7 * turns * steps * float(dt)
     (_, x, y, *_), = read(tmp_path, "half")
     assert (x, y) == pytest.approx((-0.5 * math.sin(angle), 0.5 * math.cos(angle)), abs=20 * float(dt) ** 2)
+
+
+# A ball at the bottom of a drum that rolls on it as fast as the drum turns stays where it is.
+@pytest.mark.parametrize("shape", ["cylinder 0 0 0.2 1 0 0", "sphere 0 0 0.2"])
+def test_a_ball_rolls_in_place_in_a_drum(tmp_path, shape):
+    turns = 3.0
+    begin, wall = balls("1e-3", (0, 0), law="rolling friction 0.5", wall=f"{shape} 0.2 inside spin {turns} 0 0")
+    lammps(tmp_path, begin + pull(1) + f"set atom 1 omega {turns * 0.2 / RADIUS} 0 0\n" + wall + "run 1000\n"
+           + state("end"))
+    assert read(tmp_path, "end")[0][1:] == pytest.approx([0, 0, RADIUS, 0, 0, 0, turns * 0.2 / RADIUS, 0, 0], abs=1e-12)
 
 
 @pytest.mark.parametrize("wall, lowest", [("cylinder 1.6 1.6 1.6 1 0 0 1.5 inside", 0.6),
