@@ -87,9 +87,8 @@ void Blocks::give_back(Blocks& to) const {
     for (std::size_t lane = 0; lane < block.count; ++lane, ++origin) {
       Block& target = to.blocks_[static_cast<std::size_t>(origin->block)];
       const auto at = static_cast<std::size_t>(origin->lane);
-      target.put(layout.impulse, at, block.at(layout.impulse, lane));
-      target.put(layout.change, at, block.at(layout.change, lane));
-      target.put(layout.asked, at, block.at(layout.asked, lane));
+      for (const int first : {layout.impulse, layout.change, layout.asked})
+        for (int c = first; c < first + layout.width; ++c) target.column(c)[at] = block.column(c)[lane];
       for (int c = 0; c < layout.state_size; ++c)
         target.column(layout.state_out + c)[at] = block.column(layout.state_out + c)[lane];
       target.status[at] = block.status[lane];

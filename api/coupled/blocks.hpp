@@ -5,6 +5,7 @@
 
 #include "vector.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,11 +18,19 @@ inline constexpr std::size_t max_lanes = 128;
 // distances of 1024 bytes would evict each other.
 inline constexpr std::size_t max_stride = max_lanes + 8;
 
+// Columns of all components of a block's contacts, at distances of max_stride.
+inline constexpr std::size_t max_width = 6;
+using Columns = std::array<double, max_width * max_stride>;
+
 // First column of each quantity of a contact; -1 where a group does not have it.
 struct Layout {
-  int normal = 0, impulse = 3, direction = 6, change = 9;
-  int asked = 12;  // v_free of the last evaluation
-  int delassus = 15;
+  explicit Layout(int components = 3) : width(components) {}
+
+  int width;  // 3, or 6 where contacts have moments: impulse then moment, velocity then spin
+  int normal = 0, impulse = 3, direction = 3 + width, change = 3 + 2 * width;
+  int asked = 3 + 3 * width;  // v_free of the last evaluation
+  int delassus = 3 + 4 * width;
+  int length = -1;  // with moments: a spin times it is compared with velocities
   int arm = -1, counterpart_arm = -1, weight = -1, wall = -1;
   int gap = -1, gap_offset = -1, area = -1, v_previous = -1, tangent = -1, parameters = -1;
   int state_in = -1, state_out = -1;
@@ -56,6 +65,13 @@ struct Block {
     double* first = column(c) + lane;
     first[0] = v[0], first[stride] = v[1], first[2 * stride] = v[2];
   }
+  // Whether impulse and moment are zero.
+  bool is_free(std::size_t lane) const {
+    const double* first = column(layout->impulse) + lane;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(layout->width); ++c)
+      if (first[c * stride] != 0.0) return false;
+    return true;
+  }
 };
 
 // Mean of the diagonal of H. Its root is the scale of a contact's impulse.
@@ -66,12 +82,35 @@ inline double mean_delassus(const Block& block, std::size_t q) {
     case 1:
       return h[0];
     case 2:
+    case 5:
       return (h[0] + 2.0 * h[s]) / 3.0;
     case 3:
       return 0.5 * (h[0] + h[s]);
     default:
       return (h[0] + h[s] + h[2 * s]) / 3.0;
   }
+}
+
+// The same of J, the response of the spin to a moment.
+inline double mean_spin_delassus(const Block& block, std::size_t q) {
+  const double* j = block.column(block.layout->delassus + 3) + q;
+  return (j[0] + 2.0 * j[block.stride]) / 3.0;
+}
+
+// Appends the scales of a contact's impulse and, where it has one, moment, three components each.
+inline void push_scales(const Block& block, std::size_t q, std::vector<double>& scales) {
+  scales.push_back(std::sqrt(mean_delassus(block, q)));
+  if (block.layout->width > 3) scales.push_back(std::sqrt(mean_spin_delassus(block, q)));
+}
+
+// Largest component of a contact's velocity and spin, given in columns at distances of max_stride. A spin is
+// compared with velocities by the energies of both, v^2/h and w^2/j: it counts times the root of h/j, which
+// is about the radius of a sphere.
+inline double size_at(const Block& block, const double* columns, std::size_t q) {
+  const double velocity = largest(columns_at<3>(columns + q, max_stride));
+  if (block.layout->length < 0) return velocity;
+  const double spin = largest(columns_at<3>(columns + 3 * max_stride + q, max_stride));
+  return std::fmax(velocity, block.column(block.layout->length)[q] * spin);
 }
 
 // Place of a contact.

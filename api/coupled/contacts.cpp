@@ -60,12 +60,13 @@ const char* Contacts::open(const ilaw_contacts& given, const Bodies& bodies) {
 
 const char* Contacts::complaint() const {
   if (!given_.law || !given_.instance) return "law or instance is null";
-  if (given_.delassus_form != ILAW_DELASSUS_SCALAR && given_.delassus_form != ILAW_DELASSUS_TRANSVERSE &&
-      given_.delassus_form != ILAW_DELASSUS_FULL)
-    return "delassus_form is neither scalar, transverse nor full";
+  if (given_.delassus_form != ILAW_DELASSUS_SCALAR && given_.delassus_form != ILAW_DELASSUS_FULL &&
+      !is_transverse())
+    return "delassus_form is neither scalar, transverse, transverse_spin nor full";
   if (theirs_.node_count < 0) return "node_count is negative";
   if (theirs_.node_count >= INT32_MAX) return "node_count is above 2^31 - 2";
-  if (theirs_.impulse.floats || theirs_.energy.floats || theirs_.state_in.floats || theirs_.state_out.floats)
+  if (theirs_.impulse.floats || theirs_.energy.floats || theirs_.state_in.floats ||
+      theirs_.state_out.floats || theirs_.moment.floats)
     return "an array of a batch has floats; expected doubles";
   if (theirs_.index || theirs_.index64) return "contacts have no list of nodes";
   if (given_.weight_size > 1 && given_.weight_size != dimension_ * dimension_)
@@ -79,6 +80,11 @@ const char* Contacts::complaint() const {
     return "several bodies on a side, and their weights are missing";
   if (!theirs_.impulse.values) return "impulse is missing";
   if (collides(theirs_.impulse, theirs_.node_count, dimension_)) return "impulse has a stride of 0";
+  if (has_spins()) {
+    if (!theirs_.moment.values) return "delassus_form has spins, and moment is missing";
+    if (collides(theirs_.moment, theirs_.node_count, 3)) return "moment has a stride of 0";
+    if (is_weighted()) return "delassus_form has spins; expected one body on either side, without weights";
+  }
   if (collides(theirs_.energy, theirs_.node_count, ILAW_ENERGY_COUNT)) return "energy has a stride of 0";
   return theirs_.status && theirs_.node_count > 1 && theirs_.status_stride == 0 ? "status_stride is 0"
                                                                                 : nullptr;
@@ -86,6 +92,8 @@ const char* Contacts::complaint() const {
 
 const char* Contacts::complaint_of_law(const Bodies& bodies) {
   if (!given_.law || !given_.instance) return nullptr;  // complaint() names it
+  if (has_spins() && !(given_.law->delassus_forms & ILAW_DELASSUS_TRANSVERSE_SPIN))
+    return "delassus_form has spins, which the law does not serve";
   info_ = {};
   info_.struct_size = sizeof info_;
   if (given_.law->info(given_.instance, &info_) != ILAW_OK) return "info refuses the instance";
@@ -116,8 +124,10 @@ const char* Contacts::complaint_of_bodies(const Bodies& bodies) const {
     if (given_.delassus_form == ILAW_DELASSUS_SCALAR)
       return "bodies rotate, so delassus_form has to be transverse or full";
     if (!given_.arm.values || !given_.counterpart_arm.values) return "bodies rotate, and an arm is missing";
+  } else if (has_spins()) {
+    return "delassus_form has spins, and bodies do not rotate: inverse_inertia is missing";
   }
-  if (given_.delassus_form != ILAW_DELASSUS_TRANSVERSE) return nullptr;
+  if (!is_transverse()) return nullptr;
   if (bodies.rotate() && !bodies.are_spheres())
     return "delassus_form is transverse, and bodies are no spheres";
   if (!bodies.are_isotropic()) return "delassus_form is transverse, and bodies have masses per axis";
@@ -146,18 +156,24 @@ std::int32_t Contacts::end(std::int64_t k, std::uint32_t e, const Bodies& bodies
   return index >= bodies.count() ? bodies.wall() + 1 : static_cast<std::int32_t>(index);
 }
 
+bool Contacts::is_weighted() const {
+  return body_count_ > 1 || counterpart_count_ > 1 || given_.body_weight.values ||
+         given_.counterpart_weight.values;
+}
+
 void Contacts::lay_out(const Bodies& bodies) {
-  layout_ = {};
+  layout_ = Layout(has_spins() ? 6 : 3);
   layout_.ends = static_cast<int>(body_count_ + counterpart_count_);
   layout_.weight_size = static_cast<int>(std::max(1U, given_.weight_size));
   if (layout_.weight_size > 1) layout_.weight_size = 9;
   layout_.state_size = static_cast<int>(info_.state_size);
-  layout_.delassus_size = given_.delassus_form == ILAW_DELASSUS_SCALAR ? 1
-                          : given_.delassus_form == ILAW_DELASSUS_TRANSVERSE
-                              ? 2
-                              : static_cast<int>(dimension_ * (dimension_ + 1) / 2);
-  const bool weighted = layout_.ends > 2 || given_.body_weight.values || given_.counterpart_weight.values;
-  kind_ = weighted                                           ? Kind::weighted
+  layout_.delassus_size = given_.delassus_form == ILAW_DELASSUS_SCALAR       ? 1
+                          : given_.delassus_form == ILAW_DELASSUS_TRANSVERSE ? 2
+                          : has_spins()                                      ? 5
+                                        : static_cast<int>(dimension_ * (dimension_ + 1) / 2);
+  const bool weighted = is_weighted();
+  kind_ = has_spins()                                        ? Kind::spin
+          : weighted                                         ? Kind::weighted
           : !bodies.are_isotropic()                          ? Kind::rigid
           : !bodies.rotate()                                 ? Kind::point
           : given_.delassus_form == ILAW_DELASSUS_TRANSVERSE ? Kind::sphere
@@ -170,14 +186,16 @@ void Contacts::lay_out(const Bodies& bodies) {
   };
   const std::uint32_t read = info_.inputs | (asks_balance() ? info_.balance_inputs : 0U);
   const bool has_arms = kind_ == Kind::rigid || (kind_ == Kind::weighted && bodies.rotate());
-  layout_.arm = take(has_arms || kind_ == Kind::sphere, has_arms ? 3 : 1);
-  layout_.counterpart_arm = take(has_arms || kind_ == Kind::sphere, has_arms ? 3 : 1);
+  const bool has_lengths = kind_ == Kind::sphere || kind_ == Kind::spin;
+  layout_.arm = take(has_arms || has_lengths, has_arms ? 3 : 1);
+  layout_.counterpart_arm = take(has_arms || has_lengths, has_arms ? 3 : 1);
+  layout_.length = take(has_spins(), 1);
   layout_.weight = take(weighted, layout_.ends * layout_.weight_size);
-  layout_.wall = take(given_.wall_velocity.values != nullptr, 3);
+  layout_.wall = take(given_.wall_velocity.values || (has_spins() && given_.wall_spin.values), layout_.width);
   layout_.gap = take(theirs_.gap.values != nullptr && (read & ILAW_INPUT_GAP), 1);
   layout_.gap_offset = take(theirs_.gap_offset.values != nullptr && (read & ILAW_INPUT_GAP), 1);
   layout_.area = take(theirs_.area.values != nullptr && (read & ILAW_INPUT_AREA), 1);
-  layout_.v_previous = take(read & ILAW_INPUT_V_PREVIOUS, 3);
+  layout_.v_previous = take(read & ILAW_INPUT_V_PREVIOUS, layout_.width);
   layout_.tangent = take(theirs_.tangent.values != nullptr, 3);
   layout_.parameters = take(theirs_.per_node_parameters && info_.per_node_parameter_count > 0,
                             static_cast<int>(info_.per_node_parameter_count));
@@ -186,8 +204,8 @@ void Contacts::lay_out(const Bodies& bodies) {
   layout_.columns = next;
 }
 
-Vector Contacts::start_impulse(std::int64_t k) const {
-  const ilaw_output& a = theirs_.impulse;
+// The value that iterations begin with, of impulse or moment.
+Vector Contacts::start(const ilaw_output& a, std::int64_t k) const {
   const Vector start = vector(ilaw::input(a.values, a.node_stride, a.component_stride), k, dimension_);
   return std::isfinite(dot(start, start)) ? start : Vector{};
 }
@@ -207,7 +225,8 @@ bool Contacts::is_out_of_reach(std::int64_t k, const Bodies& bodies) const {
   if (!(info_.permissions & ILAW_MAY_SKIP_FREE) || kind_ == Kind::weighted || !theirs_.gap.values)
     return false;
   const double gap = value(theirs_.gap, k) - value(theirs_.gap_offset, k);
-  if (!(gap > 0.0) || !is_zero(start_impulse(k))) return false;
+  if (!(gap > 0.0) || !is_zero(start(theirs_.impulse, k))) return false;
+  if (has_spins() && !is_zero(start(theirs_.moment, k))) return false;
   return gap + theirs_.position_step * dot(vector(theirs_.normal, k, dimension_), relative(k, bodies)) > 0.0;
 }
 
@@ -224,17 +243,16 @@ bool Contacts::fill(Block& block, std::size_t lane, std::int64_t k, const Bodies
   block.contact[lane] = static_cast<std::int32_t>(k);
   const Vector normal = vector(theirs_.normal, k, dimension_);
   block.put(layout_.normal, lane, normal);
-  block.put(layout_.impulse, lane, start_impulse(k));
-  block.put(layout_.direction, lane, {});
-  block.put(layout_.change, lane, {});
+  block.put(layout_.impulse, lane, start(theirs_.impulse, k));
+  if (has_spins()) block.put(layout_.impulse + 3, lane, start(theirs_.moment, k));
+  for (int c = 0; c < layout_.width; ++c)
+    block.column(layout_.direction + c)[lane] = block.column(layout_.change + c)[lane] = 0.0;
   if (layout_.arm >= 0) {
     const bool is_wall = kind_ != Kind::weighted && end(k, 1, bodies) == bodies.wall();
     const Vector arm = vector(given_.arm, k, 3);
     const Vector other = is_wall ? Vector{} : vector(given_.counterpart_arm, k, 3);
-    if (given_.delassus_form == ILAW_DELASSUS_TRANSVERSE &&
-        (leads_aside(arm, normal) || leads_aside(other, normal)))
-      return false;
-    if (kind_ == Kind::sphere) {
+    if (is_transverse() && (leads_aside(arm, normal) || leads_aside(other, normal))) return false;
+    if (kind_ == Kind::sphere || kind_ == Kind::spin) {
       block.column(layout_.arm)[lane] = dot(arm, normal);
       block.column(layout_.counterpart_arm)[lane] = dot(other, normal);
     } else {
@@ -245,11 +263,14 @@ bool Contacts::fill(Block& block, std::size_t lane, std::int64_t k, const Bodies
   if (layout_.weight >= 0) fill_weights(block, lane, k);
   fill_delassus(block, lane, bodies);
   if (layout_.wall >= 0) block.put(layout_.wall, lane, vector(given_.wall_velocity, k, dimension_));
+  if (layout_.wall >= 0 && has_spins()) block.put(layout_.wall + 3, lane, vector(given_.wall_spin, k, 3));
   if (layout_.gap >= 0) block.column(layout_.gap)[lane] = value(theirs_.gap, k);
   if (layout_.gap_offset >= 0) block.column(layout_.gap_offset)[lane] = value(theirs_.gap_offset, k);
   if (layout_.area >= 0) block.column(layout_.area)[lane] = value(theirs_.area, k);
   if (layout_.tangent >= 0) block.put(layout_.tangent, lane, vector(theirs_.tangent, k, dimension_));
   if (layout_.v_previous >= 0) block.put(layout_.v_previous, lane, previous(block, lane, k, bodies));
+  if (layout_.v_previous >= 0 && has_spins())
+    block.put(layout_.v_previous + 3, lane, previous_spin(block, lane, k, bodies));
   for (std::uint32_t p = 0; layout_.parameters >= 0 && p < info_.per_node_parameter_count; ++p)
     block.column(layout_.parameters + static_cast<int>(p))[lane] = value(theirs_.per_node_parameters[p], k);
   for (int c = 0; c < layout_.state_size; ++c)
@@ -289,14 +310,15 @@ void Contacts::fill_weights(Block& block, std::size_t lane, std::int64_t k) cons
 
 // The sum of B M^-1 B' over the bodies of a contact, by the velocity that a unit impulse makes at each.
 void Contacts::fill_delassus(Block& block, std::size_t lane, const Bodies& bodies) const {
-  if (kind_ == Kind::point || kind_ == Kind::sphere) {
+  if (kind_ == Kind::point || kind_ == Kind::sphere || kind_ == Kind::spin) {
     const Body& x = bodies.now()[block.ends[lane]];
     const Body& y = bodies.now()[block.ends[block.stride + lane]];
     const double h = x.inverse_mass + y.inverse_mass;
     block.column(layout_.delassus)[lane] = h;
-    if (kind_ == Kind::sphere) {
+    if (kind_ != Kind::point) {
       const double a = block.column(layout_.arm)[lane], b = block.column(layout_.counterpart_arm)[lane];
       block.column(layout_.delassus + 1)[lane] = h + x.inverse_inertia * a * a + y.inverse_inertia * b * b;
+      if (has_spins()) fill_spin_delassus(block, lane, x.inverse_inertia, y.inverse_inertia);
       return;
     }
     if (layout_.delassus_size == 1) return;
@@ -309,6 +331,16 @@ void Contacts::fill_delassus(Block& block, std::size_t lane, const Bodies& bodie
   const double most = std::max({h[0], h[1], h[2]});
   for (std::uint32_t c = 0; c < dimension_; ++c) h[c] = std::max(h[c], driven_delassus * most);
   write_form(block, lane, layout_, h, given_.delassus_form, dimension_, block.at(layout_.normal, lane));
+}
+
+// With arms a n and b n a moment m turns the bodies by j_x m and -j_y m, which moves the contact by
+// -(a j_x + b j_y) n x m.
+void Contacts::fill_spin_delassus(Block& block, std::size_t lane, double j_x, double j_y) const {
+  const double a = block.column(layout_.arm)[lane], b = block.column(layout_.counterpart_arm)[lane];
+  block.column(layout_.delassus + 2)[lane] = -(a * j_x + b * j_y);
+  block.column(layout_.delassus + 3)[lane] = block.column(layout_.delassus + 4)[lane] = j_x + j_y;
+  const double j = mean_spin_delassus(block, lane);
+  block.column(layout_.length)[lane] = j > 0.0 ? std::sqrt(mean_delassus(block, lane) / j) : 0.0;
 }
 
 // For bodies without rotation, and weights that are numbers.
@@ -327,15 +359,16 @@ Symmetric Contacts::diagonal_delassus(const Block& block, std::size_t lane, cons
 Symmetric Contacts::coupled_delassus(const Block& block, std::size_t lane, const Bodies& bodies) const {
   std::array<Vector, 3> rows{};
   with_kernel(kind_, block, body_count_, [&](const auto& kernel) {
+    using Impulse = std::array<double, width_of<decltype(kernel)>>;
     for (std::size_t c = 0; c < 3; ++c) {
-      Vector unit{};
+      Impulse unit{};
       unit[c] = 1.0;
       kernel.apply(lane, unit, [&](std::int32_t body, const Vector& impulse, const Vector& moment) {
         if (body == bodies.wall()) return;
         const Inertia inertia = bodies.inertia_of(body);
         const Vector v = scaled(inertia.inverse_mass, impulse), w = inertia.inverse_inertia * moment;
         for (std::size_t row = 0; row < 3; ++row) {
-          Vector axis{};
+          Impulse axis{};
           axis[row] = 1.0;
           kernel.apply(lane, axis, [&](std::int32_t other, const Vector& i, const Vector& m) {
             if (other == body) rows[row][c] += dot(i, v) + dot(m, w);
@@ -371,6 +404,13 @@ Vector Contacts::previous(const Block& block, std::size_t lane, std::int64_t k, 
     });
   }
   return velocity;
+}
+
+Vector Contacts::previous_spin(const Block& block, std::size_t lane, std::int64_t k,
+                               const Bodies& bodies) const {
+  const ilaw_input& wall = given_.wall_spin_previous.values ? given_.wall_spin_previous : given_.wall_spin;
+  return bodies.previous(block.end(0, lane)).spin - bodies.previous(block.end(1, lane)).spin -
+         vector(wall, k, 3);
 }
 
 std::int32_t Contacts::evaluate(const Block& block, const Call& call, ilaw_report& report) const {
@@ -410,6 +450,11 @@ std::int32_t Contacts::evaluate(const Block& block, const Call& call, ilaw_repor
     batch.state_out = ilaw::output(
         call.state_out ? call.state_out : const_cast<double*>(block.column(layout_.state_out)), 1, stride);
   batch.impulse = ilaw::output(call.impulse, 1, max_stride);
+  if (has_spins()) {
+    batch.spin_free = ilaw::input(call.v_free + 3 * max_stride, 1, max_stride);
+    batch.spin_previous = input(layout_.v_previous < 0 ? -1 : layout_.v_previous + 3);
+    batch.moment = ilaw::output(call.impulse + 3 * max_stride, 1, max_stride);
+  }
   if (call.energy) batch.energy = ilaw::output(call.energy, 1, max_stride);
   std::vector<ilaw_output> amounts;
   for (std::uint32_t a = 0; call.amounts && a < info_.amount_count; ++a)
@@ -422,14 +467,20 @@ std::int32_t Contacts::evaluate(const Block& block, const Call& call, ilaw_repor
   return given_.law->evaluate(given_.instance, &batch, &report);
 }
 
-double Contacts::wall_work(std::int64_t k, const Vector& impulse) const {
-  const ilaw_input& before = given_.wall_previous.values ? given_.wall_previous : given_.wall_velocity;
-  return dot(impulse, vector(before, k, dimension_) + vector(given_.wall_velocity, k, dimension_));
+double Contacts::wall_work(const Block& block, std::size_t lane) const {
+  const std::int64_t k = block.contact[lane];
+  const auto of = [&](int column, const ilaw_input& now, const ilaw_input& before) {
+    return dot(block.at(column, lane),
+               vector(before.values ? before : now, k, dimension_) + vector(now, k, dimension_));
+  };
+  const double work = of(layout_.impulse, given_.wall_velocity, given_.wall_previous);
+  return has_spins() ? work + of(layout_.impulse + 3, given_.wall_spin, given_.wall_spin_previous) : work;
 }
 
 void Contacts::write(const Block& block, std::size_t lane) const {
   const std::int64_t k = block.contact[lane];
   store(theirs_.impulse, k, dimension_, block.at(layout_.impulse, lane));
+  if (has_spins()) store(theirs_.moment, k, 3, block.at(layout_.impulse + 3, lane));
   if (theirs_.status) theirs_.status[k * theirs_.status_stride] = block.status[lane];
   if (layout_.state_size == 0) return;
   double* state = theirs_.state_out.values + k * theirs_.state_out.node_stride;

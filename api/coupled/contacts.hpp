@@ -39,6 +39,7 @@ class Contacts {
   bool fill(Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const;
   bool is_in_reach(const Block& block, std::size_t lane, const Vector& velocity) const;
 
+  // With moments v_free is followed by spins and impulse by moments.
   struct Call {
     const double* v_free;    // columns at distances of max_stride
     const double* delassus;  // columns at distances of delassus_stride
@@ -51,8 +52,8 @@ class Contacts {
   };
   std::int32_t evaluate(const Block& block, const Call& call, ilaw_report& report) const;
 
-  // r.(wall_previous + wall_velocity): twice the work that impulse r does at the wall.
-  double wall_work(std::int64_t k, const Vector& impulse) const;
+  // r.(wall_previous + wall_velocity) and the same of the moment: twice the work at the wall.
+  double wall_work(const Block& block, std::size_t lane) const;
   // Outputs of contact k that a lane of a block has.
   void write(const Block& block, std::size_t lane) const;
   void write_balance(const Block& block, std::size_t lane, const double* energy, const double* amounts,
@@ -67,11 +68,16 @@ class Contacts {
   void lay_out(const Bodies& bodies);
   void fill_weights(Block& block, std::size_t lane, std::int64_t k) const;
   void fill_delassus(Block& block, std::size_t lane, const Bodies& bodies) const;
+  void fill_spin_delassus(Block& block, std::size_t lane, double j_x, double j_y) const;
   Symmetric diagonal_delassus(const Block& block, std::size_t lane, const Bodies& bodies) const;
   Symmetric coupled_delassus(const Block& block, std::size_t lane, const Bodies& bodies) const;
+  bool has_spins() const { return given_.delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN; }
+  bool is_transverse() const { return has_spins() || given_.delassus_form == ILAW_DELASSUS_TRANSVERSE; }
+  bool is_weighted() const;
   Vector previous(const Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const;
+  Vector previous_spin(const Block& block, std::size_t lane, std::int64_t k, const Bodies& bodies) const;
   Vector relative(std::int64_t k, const Bodies& bodies) const;
-  Vector start_impulse(std::int64_t k) const;
+  Vector start(const ilaw_output& values, std::int64_t k) const;
 
   ilaw_contacts given_{};
   ilaw_batch theirs_{};

@@ -28,6 +28,7 @@ void Equations::read(const Blocks& blocks, const Problem& problem) {
   rows_ = 0;
   entries_.clear();
   scales_.clear();
+  speeds_.clear();
   roots_.clear();
   numbers_.assign(static_cast<std::size_t>(problem.bodies.count()) + 1, -1);
   const auto add = [&](std::int32_t body, const Vector& impulse, const Vector& moment) {
@@ -49,9 +50,10 @@ void Equations::read(const Blocks& blocks, const Problem& problem) {
     const Contacts& group = problem.group(block);
     with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
       for (std::size_t q = 0; q < block.count; ++q) {
-        scales_.push_back(std::sqrt(mean_delassus(block, q)));
-        for (std::size_t c = 0; c < 3; ++c, ++rows_) {
-          Vector unit{};
+        push_scales(block, q, scales_);
+        speeds_.resize(scales_.size(), std::sqrt(mean_delassus(block, q)));
+        for (std::size_t c = 0; c < width_of<decltype(kernel)>; ++c, ++rows_) {
+          std::array<double, width_of<decltype(kernel)>> unit{};
           unit[c] = 1.0;
           kernel.apply(q, unit, add);
         }

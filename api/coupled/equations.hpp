@@ -19,13 +19,16 @@ struct RowEntry {
 
 class Equations {
  public:
-  // Rows 3 * contact + component over the contacts of awake blocks, columns 6 * body + component.
+  // Rows: components of velocity, then of spin where there is a moment, over the contacts of awake blocks.
+  // Columns 6 * body + component.
   void read(const Blocks& blocks, const Problem& problem);
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return 6 * roots_.size(); }
   const std::vector<RowEntry>& entries() const { return entries_; }
-  // Root of the mean of the diagonal of H, per contact.
+  // Root of the mean of the diagonal of H, or of J, per three rows; and that of H, which makes velocities of
+  // scaled impulses and moments.
   const std::vector<double>& scales() const { return scales_; }
+  const std::vector<double>& speeds() const { return speeds_; }
 
  private:
   struct Root {
@@ -36,7 +39,7 @@ class Equations {
 
   std::size_t rows_ = 0;
   std::vector<RowEntry> entries_;
-  std::vector<double> scales_;
+  std::vector<double> scales_, speeds_;
   std::vector<Root> roots_;            // of the bodies in the columns
   std::vector<std::int32_t> numbers_;  // of a body among them; -1: none
 };

@@ -11,20 +11,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Part of the changes, at most 1, after which the first impulse of a contact has vanished.
-double part_to_first_opening(const std::vector<double>& impulses, const std::vector<double>& changes) {
-  double part = 1.0;
-  for (std::size_t i = 0; i < impulses.size(); i += 3) {
-    double square = 0.0, product = 0.0;
-    for (std::size_t c = i; c < i + 3; ++c) {
-      square += impulses[c] * impulses[c];
-      product += impulses[c] * changes[c];
-    }
-    if (-product * part > square && square > 0.0) part = square / -product;
-  }
-  return part;
-}
-
 }  // namespace
 
 void Iterations::begin(std::uint32_t most, double tolerance, double speed, double rounding) {
@@ -133,13 +119,41 @@ void Iterations::extrapolate_bodies(double beta) {
   }
 }
 
+// Part of the corrections, at most 1, after which the first impulse of a contact has vanished. A moment may.
+double Iterations::part_to_first_opening(const Blocks& blocks) const {
+  double part = 1.0;
+  const double* change = correction_.data();
+  for (const Block& block : blocks.list())
+    for (std::size_t q = 0; q < block.count && !block.asleep; ++q, change += block.layout->width) {
+      const Vector r = block.at(block.layout->impulse, q), by = columns_at<3>(change, 1);
+      const double square = dot(r, r), product = dot(r, by);
+      if (-product * part > square && square > 0.0) part = square / -product;
+    }
+  return part;
+}
+
+// Takes this part of the corrections. Returns the largest velocity that they make.
+double Iterations::shorten(const Blocks& blocks, double part) {
+  double most = 0.0;
+  std::size_t i = 0;
+  for (const Block& block : blocks.list())
+    for (std::size_t q = 0; q < block.count && !block.asleep; ++q) {
+      const double speed = scales_[i / 3];
+      for (int c = 0; c < block.layout->width; ++c, ++i) {
+        correction_[i] *= part;
+        most = std::max(most, speed * scales_[i / 3] * std::fabs(correction_[i]));
+      }
+    }
+  return most;
+}
+
 void Iterations::read_scaled(const Blocks& blocks) {
   std::size_t i = 0;
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
     const Layout& layout = *block.layout;
     for (std::size_t q = 0; q < block.count; ++q)
-      for (int c = 0; c < 3; ++c, ++i) {
+      for (int c = 0; c < layout.width; ++c, ++i) {
         image_[i] = scales_[i / 3] * block.column(layout.impulse + c)[q];
         step_[i] = scales_[i / 3] * block.column(layout.change + c)[q];
       }
@@ -221,14 +235,7 @@ bool Iterations::newton(Blocks& blocks) {
     const double delta = std::clamp(residual_, 1e-12, 1e-10);
     if (!newton_.step(blocks, problem_, sweep_, delta, correction_)) return false;
     method_ = ILAW_METHOD_NEWTON;
-    read_impulses(blocks, image_);
-    const double part = part_to_first_opening(image_, correction_);
-    double largest = 0.0;
-    for (std::size_t i = 0; i < correction_.size(); ++i) {
-      correction_[i] *= part;
-      largest = std::max(largest, scales_[i / 3] * scales_[i / 3] * std::fabs(correction_[i]));
-    }
-    if (largest > max_newton_growth * first_size_) return false;
+    if (shorten(blocks, part_to_first_opening(blocks)) > max_newton_growth * first_size_) return false;
     if (move(blocks, correction_)) return true;
     if (change_ <= rounding_ && square_ > much_less * least) return true;
     failures = square_ < least ? 0 : failures + 1;
@@ -258,8 +265,7 @@ bool Iterations::splitting(Blocks& blocks, std::uint32_t most, std::size_t depth
 std::size_t Iterations::scales_of(const Blocks& blocks) {
   scales_.clear();
   for (const Block& block : blocks.list())
-    for (std::size_t q = 0; q < block.count && !block.asleep; ++q)
-      scales_.push_back(std::sqrt(mean_delassus(block, q)));
+    for (std::size_t q = 0; q < block.count && !block.asleep; ++q) push_scales(block, q, scales_);
   return scales_.size();
 }
 
@@ -289,7 +295,7 @@ void Iterations::read_impulses(const Blocks& blocks, std::vector<double>& impuls
     if (block.asleep) continue;
     const int impulse = block.layout->impulse;
     for (std::size_t q = 0; q < block.count; ++q)
-      for (int c = 0; c < 3; ++c) impulses.push_back(block.column(impulse + c)[q]);
+      for (int c = 0; c < block.layout->width; ++c) impulses.push_back(block.column(impulse + c)[q]);
   }
 }
 
@@ -328,7 +334,7 @@ void Iterations::solve_islands(Blocks& blocks) {
 }
 
 void Iterations::find_island_residuals(const Blocks& blocks, std::vector<double>& residuals) {
-  std::array<double, 3 * max_stride> response{};
+  Columns response{};
   std::size_t k = 0;
   for (const Block& block : blocks.list()) {
     if (block.asleep) {
@@ -338,9 +344,10 @@ void Iterations::find_island_residuals(const Blocks& blocks, std::vector<double>
     const Layout& layout = *block.layout;
     sweep_.respond(block, block.column(layout.change), block.stride, response.data());
     for (std::size_t q = 0; q < block.count; ++q, ++k)
-      for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c) {
         double& most = residuals[static_cast<std::size_t>(islands_.labels()[k])];
-        const double change = std::fabs(response[c * max_stride + q]);
+        const double length = c < 3 ? 1.0 : block.column(layout.length)[q];
+        const double change = std::fabs(length * response[c * max_stride + q]);
         most = std::max(most, change);
         if (!std::isfinite(change)) most = infinity;
       }

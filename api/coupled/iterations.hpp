@@ -72,8 +72,11 @@ class Iterations {
   bool anderson(Blocks& blocks, std::uint32_t most);
   bool take_turns(Blocks& blocks);
   bool newton(Blocks& blocks);
+  double part_to_first_opening(const Blocks& blocks) const;
+  double shorten(const Blocks& blocks, double part);
   bool splitting(Blocks& blocks, std::uint32_t most, std::size_t depth);
   bool move(Blocks& blocks, const std::vector<double>& changes);
+  // Scales of impulses, and of moments, three components each. Returns their number.
   std::size_t scales_of(const Blocks& blocks);
   void keep_best(Blocks& blocks);
   void note_best(const Blocks& blocks);

@@ -8,12 +8,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace ilaw::coupled {
 
 enum class Kind {
   point,     // bodies with one mass each that do not rotate
   sphere,    // arms along the normal, one mass and one moment of inertia
+  spin,      // the same, with a moment at the contact
   rigid,     // any arms, tensors, masses per axis
   weighted,  // weighted sets of bodies on either side
 };
@@ -23,9 +25,11 @@ inline Vector velocity_at(const Body& body, const Vector& arm) {
   return body.velocity + cross(body.spin, arm);
 }
 
-// Each kernel has relative(bodies, lane), and apply(lane, r, add), which calls add(body, impulse, moment).
+// Each kernel has relative(bodies, lane), and apply(lane, r, add), which calls add(body, impulse, moment),
+// both with `width` components.
 class PointKernel {
  public:
+  static constexpr std::size_t width = 3;
   explicit PointKernel(const Block& block) : body_(block.ends), other_(block.ends + block.stride) {}
   Vector relative(const Body* bodies, std::size_t q) const {
     return bodies[body_[q]].velocity - bodies[other_[q]].velocity;
@@ -42,6 +46,7 @@ class PointKernel {
 
 class SphereKernel {
  public:
+  static constexpr std::size_t width = 3;
   explicit SphereKernel(const Block& block)
       : body_(block.ends),
         other_(block.ends + block.stride),
@@ -60,15 +65,34 @@ class SphereKernel {
     add(other_[q], -1.0 * r, -other_arm_[q] * moment);
   }
 
- private:
+ protected:
   Vector normal(std::size_t q) const { return {normal_[q], normal_[stride_ + q], normal_[2 * stride_ + q]}; }
   const std::int32_t *body_, *other_;
   const double *normal_, *arm_, *other_arm_;
   std::size_t stride_;
 };
 
+// The moment m of a contact acts at the body, -m at the counterpart.
+class SpinKernel : public SphereKernel {
+ public:
+  static constexpr std::size_t width = 6;
+  explicit SpinKernel(const Block& block) : SphereKernel(block) {}
+  Wrench relative(const Body* bodies, std::size_t q) const {
+    const Vector v = SphereKernel::relative(bodies, q);
+    const Vector w = bodies[body_[q]].spin - bodies[other_[q]].spin;
+    return {v[0], v[1], v[2], w[0], w[1], w[2]};
+  }
+  template <class Add>
+  void apply(std::size_t q, const Wrench& by, Add&& add) const {
+    const Vector r{by[0], by[1], by[2]}, m{by[3], by[4], by[5]}, moment = cross(normal(q), r);
+    add(body_[q], r, arm_[q] * moment + m);
+    add(other_[q], -1.0 * r, -other_arm_[q] * moment - m);
+  }
+};
+
 class RigidKernel {
  public:
+  static constexpr std::size_t width = 3;
   explicit RigidKernel(const Block& block) : block_(block), layout_(*block.layout) {}
   Vector relative(const Body* bodies, std::size_t q) const {
     return velocity_at(bodies[block_.end(0, q)], block_.at(layout_.arm, q)) -
@@ -88,6 +112,7 @@ class RigidKernel {
 // Weights of the counterpart's bodies are stored with a minus sign.
 class WeightedKernel {
  public:
+  static constexpr std::size_t width = 3;
   WeightedKernel(const Block& block, std::uint32_t body_count)
       : block_(block), layout_(*block.layout), body_count_(static_cast<int>(body_count)) {}
   Vector relative(const Body* bodies, std::size_t q) const {
@@ -125,6 +150,9 @@ class WeightedKernel {
   int body_count_;
 };
 
+template <class Kernel>
+inline constexpr std::size_t width_of = std::remove_cvref_t<Kernel>::width;
+
 // Calls visit with the kernel of a block.
 template <class Visit>
 void with_kernel(Kind kind, const Block& block, std::uint32_t body_count, Visit&& visit) {
@@ -133,6 +161,8 @@ void with_kernel(Kind kind, const Block& block, std::uint32_t body_count, Visit&
       return visit(PointKernel(block));
     case Kind::sphere:
       return visit(SphereKernel(block));
+    case Kind::spin:
+      return visit(SpinKernel(block));
     case Kind::rigid:
       return visit(RigidKernel(block));
     case Kind::weighted:

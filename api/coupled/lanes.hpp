@@ -30,6 +30,29 @@ inline LanesVector operator-(const LanesVector& a, const LanesVector& b) {
 }
 inline Lanes dot(const LanesVector& a, const LanesVector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
+inline LanesVector cross(const LanesVector& a, const LanesVector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+// a + s b
+inline LanesVector added(const LanesVector& a, const Lanes& s, const LanesVector& b) {
+  return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+// Impulse and moment, or velocity and spin.
+struct LanesWrench {
+  LanesVector linear, angular;
+};
+inline void put(const LanesWrench& v, double* first, std::size_t stride) {
+  put(v.linear, first, stride);
+  put(v.angular, first + 3 * stride, stride);
+}
+inline LanesWrench operator-(const LanesWrench& a, const LanesWrench& b) {
+  return {a.linear - b.linear, a.angular - b.angular};
+}
+inline Lanes dot(const LanesWrench& a, const LanesWrench& b) {
+  return dot(a.linear, b.linear) + dot(a.angular, b.angular);
+}
+
 // The second where one of them is not a number.
 inline Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 inline Lanes magnitude(const Lanes& a) { return larger(a, -a); }
@@ -74,5 +97,33 @@ struct FullForm {
             xz * x.x + yz * x.y + lanes(h + 2 * stride + q) * x.z};
   }
 };
+// The form with spins of ilaw.h; length as that of Layout.
+struct SpinForm {
+  const double *h, *normal, *length;
+  std::size_t stride;
+  LanesWrench operator()(std::size_t q, const LanesWrench& x) const {
+    const TransverseForm by_impulse{h, normal, stride}, by_moment{h + 3 * stride, normal, stride};
+    const LanesVector n = lanes(normal + q, stride);
+    const Lanes k = lanes(h + 2 * stride + q);
+    return {added(by_impulse(q, x.linear), k, cross(n, x.angular)),
+            added(by_moment(q, x.angular), -k, cross(n, x.linear))};
+  }
+};
+
+// Columns as a form takes them, and their largest component as a velocity.
+template <class Form>
+LanesVector read(const Form&, const double* first, std::size_t stride) {
+  return lanes(first, stride);
+}
+template <class Form>
+Lanes size(const Form&, std::size_t, const LanesVector& x) {
+  return largest(x);
+}
+inline LanesWrench read(const SpinForm&, const double* first, std::size_t stride) {
+  return {lanes(first, stride), lanes(first + 3 * stride, stride)};
+}
+inline Lanes size(const SpinForm& form, std::size_t q, const LanesWrench& x) {
+  return larger(largest(x.linear), lanes(form.length + q) * largest(x.angular));
+}
 
 }  // namespace ilaw::coupled

@@ -14,7 +14,7 @@ namespace ilaw::coupled {
 // block at once, since a law sees its own contact alone.
 bool Newton::linearize(const Blocks& blocks, const Problem& problem, const Sweep& sweep) {
   constexpr double small = 0x1p-20;
-  std::array<double, 3 * max_stride> v_free{}, made{}, moved{}, answer{}, other{};
+  Columns v_free{}, made{}, moved{}, answer{}, other{};
   std::array<std::uint8_t, max_stride> status{};
   difference_.clear();
   tangents_.clear();
@@ -34,53 +34,88 @@ bool Newton::linearize(const Blocks& blocks, const Problem& problem, const Sweep
                             report) >= 0;
     };
     if (!call(v_free.data(), answer.data())) return false;
-    for (std::size_t i = 0; i < 3 * max_stride; ++i) moved[i] = v_free[i];
+    moved = v_free;
     std::array<double, max_stride> by{};
     for (std::size_t q = 0; q < block.count; ++q)
-      by[q] = small * (largest({v_free[q], v_free[max_stride + q], v_free[2 * max_stride + q]}) +
-                       largest({made[q], made[max_stride + q], made[2 * max_stride + q]}));
+      by[q] = small * (size_at(block, v_free.data(), q) + size_at(block, made.data(), q));
+    const auto width = static_cast<std::size_t>(layout.width);
     const std::size_t first = tangents_.size();
-    tangents_.resize(first + 9 * block.count, 0.0);
-    for (std::size_t c = 0; c < problem.bodies.dimension(); ++c) {
-      for (std::size_t q = 0; q < block.count; ++q) moved[c * max_stride + q] += by[q];
+    tangents_.resize(first + width * width * block.count, 0.0);
+    for (std::size_t c = 0; c < (width == 3 ? problem.bodies.dimension() : width); ++c) {
+      for (std::size_t q = 0; q < block.count; ++q)
+        moved[c * max_stride + q] += c < 3 ? by[q] : by[q] / block.column(layout.length)[q];
       if (!call(moved.data(), other.data())) return false;
       for (std::size_t q = 0; q < block.count; ++q) {
         const double step = moved[c * max_stride + q] - v_free[c * max_stride + q];
-        for (std::size_t row = 0; row < 3 && step > 0.0; ++row)
-          tangents_[first + 9 * q + 3 * c + row] =
+        for (std::size_t row = 0; row < width && step > 0.0 && std::isfinite(step); ++row)
+          tangents_[first + width * (width * q + c) + row] =
               (other[row * max_stride + q] - answer[row * max_stride + q]) / step;
         moved[c * max_stride + q] = v_free[c * max_stride + q];
       }
     }
     for (std::size_t q = 0; q < block.count; ++q)
-      for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t c = 0; c < width; ++c)
         difference_.push_back(answer[c * max_stride + q] -
                               block.column(layout.impulse + static_cast<int>(c))[q]);
   }
   return true;
 }
 
-// A tangent t of a contact as t = p q', with as many columns as its rank: none at an open contact, one
-// without friction.
-struct Newton::Factors {
-  Eigen::Matrix3d p, q;
-  Eigen::Index rank = 0;
+namespace {
 
-  Factors(const Eigen::Matrix3d& tangent, double delassus) {
+template <int width>
+using Square = Eigen::Matrix<double, width, width>;
+
+}  // namespace
+
+// The equations of a contact with `width` components from row `row` on. Matrices by columns, in arrays of
+// which they take the front. The tangent is p q', with as many columns as its rank: none at an open contact,
+// one without friction.
+struct Newton::Contact {
+  int width = 3;
+  std::size_t row = 0;
+  Eigen::Index rank = 0, first = 0;  // its factors are rows first to first + rank of the system
+  std::array<double, 36> h{}, p{}, q{};
+  std::array<double, 6> right{};
+
+  // scales: of impulse and moment. Tangents with moments are made free of units by them.
+  template <int w>
+  void factorize(const double* tangent, const double* difference, const double* scales) {
     constexpr double noise = 1e-7;  // of differences, relative to the tangent of a rigid contact
-    const Eigen::ColPivHouseholderQR<Eigen::Matrix3d> qr(tangent);
-    const Eigen::Matrix3d r = qr.matrixQR().triangularView<Eigen::Upper>();
-    while (rank < 3 && std::fabs(r(rank, rank)) * delassus > noise) ++rank;
-    p = qr.householderQ();
-    q = (r * qr.colsPermutation().transpose()).transpose();
+    Square<w> t = Eigen::Map<const Square<w>>(tangent);
+    Eigen::Matrix<double, w, 1> scale = Eigen::Matrix<double, w, 1>::Ones();
+    if constexpr (w == 6) {
+      scale << scales[0], scales[0], scales[0], scales[1], scales[1], scales[1];
+      t = scale.asDiagonal() * t * scale.asDiagonal();
+    }
+    const double delassus = w == 6 ? 1.0 : scales[0] * scales[0];
+    const Eigen::ColPivHouseholderQR<Square<w>> qr(t);
+    const Square<w> r = qr.matrixQR().template triangularView<Eigen::Upper>();
+    while (rank < w && std::fabs(r(rank, rank)) * delassus > noise) ++rank;
+    Square<w> of_p = qr.householderQ(), of_q = (r * qr.colsPermutation().transpose()).transpose();
+    if constexpr (w == 6) {
+      of_p = scale.cwiseInverse().asDiagonal() * of_p;
+      of_q = scale.cwiseInverse().asDiagonal() * of_q;
+    }
+    const Square<w> of_h = Eigen::Map<const Square<w>>(h.data()), own = of_q.transpose() * of_h * of_p;
+    const Eigen::Map<const Eigen::Matrix<double, w, 1>> by(difference);
+    Eigen::Map<Eigen::Matrix<double, w, 1>>(right.data()) = -(of_q.transpose() * (of_h * by));
+    Eigen::Map<Square<w>>(p.data()) = of_p;
+    Eigen::Map<Square<w>>(q.data()) = of_q;
+    Eigen::Map<Square<w>>(h.data()) = own;  // q' H p takes its place
+  }
+  template <int w>
+  void add_solution(const Eigen::VectorXd& solution, double* changes) const {
+    const Square<w> of_p = Eigen::Map<const Square<w>>(p.data());
+    Eigen::Map<Eigen::Matrix<double, w, 1>>(changes + row) +=
+        of_p.leftCols(rank) * solution.segment(first, rank);
   }
 };
 
 struct Newton::System {
-  std::vector<Factors> factors;      // by contact
-  std::vector<Eigen::Index> first;   // row of a contact's factors, and their end
-  std::vector<Eigen::Matrix3d> h;    // of the contacts
-  std::vector<Eigen::Index> column;  // of a component of x; -1: in no equation of y
+  std::vector<Contact> contacts;
+  std::vector<std::size_t> contact_of;  // of three rows
+  std::vector<Eigen::Index> column;     // of a component of x; -1: in no equation of y
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> factor;
@@ -90,22 +125,46 @@ Newton::Newton() : system_(std::make_unique<System>()) {}
 Newton::~Newton() = default;
 
 void Newton::read_delassus(const Blocks& blocks, const Sweep& sweep) {
-  std::array<double, 3 * max_stride> unit{}, made{};
-  std::vector<Eigen::Matrix3d>& h = system_->h;
-  h.clear();
+  Columns unit{}, made{};
+  std::vector<Contact>& contacts = system_->contacts;
+  contacts.clear();
+  std::size_t row = 0;
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
-    const std::size_t first = h.size();
-    h.resize(first + block.count);
-    for (std::size_t c = 0; c < 3; ++c) {
+    const auto width = static_cast<std::size_t>(block.layout->width);
+    const std::size_t first = contacts.size();
+    contacts.resize(first + block.count);
+    for (std::size_t q = 0; q < block.count; ++q, row += width) {
+      contacts[first + q].width = block.layout->width;
+      contacts[first + q].row = row;
+    }
+    for (std::size_t c = 0; c < width; ++c) {
       unit.fill(0.0);
       std::fill_n(unit.begin() + static_cast<std::ptrdiff_t>(c * max_stride), max_stride, 1.0);
       sweep.respond(block, unit.data(), max_stride, made.data());
       for (std::size_t q = 0; q < block.count; ++q)
-        for (std::size_t row = 0; row < 3; ++row)
-          h[first + q](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c)) =
-              made[row * max_stride + q];
+        for (std::size_t i = 0; i < width; ++i)
+          contacts[first + q].h[width * c + i] = made[i * max_stride + q];
     }
+  }
+}
+
+// The rows of each contact in the system, from its tangent.
+void Newton::factorize() {
+  system_->contact_of.clear();
+  const double* tangent = tangents_.data();
+  Eigen::Index first = 0;
+  for (std::size_t k = 0; k < system_->contacts.size(); ++k) {
+    Contact& contact = system_->contacts[k];
+    const double *difference = &difference_[contact.row], *scales = &equations_.scales()[contact.row / 3];
+    if (contact.width == 3)
+      contact.factorize<3>(tangent, difference, scales);
+    else
+      contact.factorize<6>(tangent, difference, scales);
+    contact.first = first;
+    first += contact.rank;
+    tangent += contact.width * contact.width;
+    system_->contact_of.resize(system_->contact_of.size() + static_cast<std::size_t>(contact.width / 3), k);
   }
 }
 
@@ -114,44 +173,36 @@ void Newton::read_delassus(const Blocks& blocks, const Sweep& sweep) {
 //   x - B' p y = B' (f - r),   (1 + delta) y + q' H p y - q' B x = -q' H (f - r).
 // delta makes redundant contacts solvable: a step of the proximal point method (Rockafellar 1976).
 void Newton::assemble(double delta) {
-  auto& [factors, first, h, column, entries, right, factor] = *system_;
-  factors.clear();
-  first.assign(1, 0);
-  for (std::size_t k = 0; k < h.size(); ++k) {
-    const double scale = equations_.scales()[k];
-    factors.emplace_back(Eigen::Map<const Eigen::Matrix3d>(&tangents_[9 * k]), scale * scale);
-    first.push_back(first.back() + factors.back().rank);
-  }
+  auto& [contacts, contact_of, column, entries, right, factor] = *system_;
   const auto add = [&list = entries](Eigen::Index row, Eigen::Index of, double value) {
     if (value != 0.0) list.emplace_back(static_cast<int>(row), static_cast<int>(of), value);
   };
   entries.clear();
   column.assign(equations_.columns(), -1);
-  Eigen::Index size = first.back();
+  Eigen::Index size = contacts.empty() ? 0 : contacts.back().first + contacts.back().rank;
   for (const RowEntry& entry : equations_.entries()) {
-    const auto k = static_cast<std::size_t>(entry.row / 3);
+    const auto row = static_cast<std::size_t>(entry.row);
+    const Contact& contact = contacts[contact_of[row / 3]];
     Eigen::Index& x = column[static_cast<std::size_t>(entry.column)];
-    for (Eigen::Index i = 0; i < factors[k].rank; ++i) {
-      const double p = entry.value * factors[k].p(entry.row % 3, i),
-                   q = entry.value * factors[k].q(entry.row % 3, i);
+    for (Eigen::Index i = 0; i < contact.rank; ++i) {
+      const std::size_t at = static_cast<std::size_t>(contact.width * i) + row - contact.row;
+      const double p = entry.value * contact.p[at], q = entry.value * contact.q[at];
       if (x < 0 && (p != 0.0 || q != 0.0)) add(size, size, 1.0), x = size++;
-      add(x, first[k] + i, -p);
-      add(first[k] + i, x, -q);
+      add(x, contact.first + i, -p);
+      add(contact.first + i, x, -q);
     }
   }
   right = Eigen::VectorXd::Zero(size);
   for (const RowEntry& entry : equations_.entries())
     if (const Eigen::Index x = column[static_cast<std::size_t>(entry.column)]; x >= 0)
       right[x] += entry.value * difference_[static_cast<std::size_t>(entry.row)];
-  for (std::size_t k = 0; k < h.size(); ++k) {
-    const Eigen::Index rank = factors[k].rank;
-    const Eigen::Map<const Eigen::Vector3d> difference(&difference_[3 * k]);
-    const Eigen::Matrix3d own = factors[k].q.transpose() * h[k] * factors[k].p;
-    right.segment(first[k], rank) = -(factors[k].q.transpose() * (h[k] * difference)).head(rank);
-    for (Eigen::Index i = 0; i < rank; ++i)
-      for (Eigen::Index j = 0; j < rank; ++j)
-        add(first[k] + i, first[k] + j, own(i, j) + (i == j ? 1.0 + delta : 0.0));
-  }
+  for (const Contact& contact : contacts)
+    for (Eigen::Index i = 0; i < contact.rank; ++i) {
+      right[contact.first + i] = contact.right[static_cast<std::size_t>(i)];
+      for (Eigen::Index j = 0; j < contact.rank; ++j)
+        add(contact.first + i, contact.first + j,
+            contact.h[static_cast<std::size_t>(contact.width * j + i)] + (i == j ? 1.0 + delta : 0.0));
+    }
 }
 
 bool Newton::step(const Blocks& blocks, const Problem& problem, const Sweep& sweep, double delta,
@@ -159,8 +210,9 @@ bool Newton::step(const Blocks& blocks, const Problem& problem, const Sweep& swe
   if (!linearize(blocks, problem, sweep)) return false;
   equations_.read(blocks, problem);
   read_delassus(blocks, sweep);
+  factorize();
   assemble(delta);
-  auto& [factors, first, h, column, entries, right, factor] = *system_;
+  auto& [contacts, contact_of, column, entries, right, factor] = *system_;
   if (right.size() > static_cast<Eigen::Index>(max_unknowns)) return false;
   changes = difference_;
   if (right.size() == 0) return true;
@@ -170,11 +222,11 @@ bool Newton::step(const Blocks& blocks, const Problem& problem, const Sweep& swe
   if (factor.info() != Eigen::Success) return false;
   const Eigen::VectorXd solution = factor.solve(right);
   if (!solution.allFinite()) return false;
-  for (std::size_t k = 0; k < factors.size(); ++k) {
-    const Eigen::Index rank = factors[k].rank;
-    Eigen::Map<Eigen::Vector3d>(&changes[3 * k]) +=
-        factors[k].p.leftCols(rank) * solution.segment(first[k], rank);
-  }
+  for (const Contact& contact : contacts)
+    if (contact.width == 3)
+      contact.add_solution<3>(solution, changes.data());
+    else
+      contact.add_solution<6>(solution, changes.data());
   return true;
 }
 

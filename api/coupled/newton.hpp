@@ -27,17 +27,19 @@ class Newton {
             std::vector<double>& changes);
 
  private:
-  struct Factors;
+  struct Contact;
   struct System;
 
   bool linearize(const Blocks& blocks, const Problem& problem, const Sweep& sweep);
   void read_delassus(const Blocks& blocks, const Sweep& sweep);
+  void factorize();
   void assemble(double delta);
 
   std::unique_ptr<System> system_;
   Equations equations_;
   std::vector<double> difference_;  // law's impulse less the present one
-  std::vector<double> tangents_;    // 3 x 3 by columns per contact: of the law's impulse by v_free
+  std::vector<double> tangents_;    // by columns per contact, 3 x 3, with moments 6 x 6: of the law's impulse
+                                    // by v_free
   std::vector<double> state_;
 };
 

@@ -19,10 +19,6 @@ constexpr double runaway_growth = 1e6;
 // The same where the residual is within the tolerance: it is rounding of such impulses.
 constexpr double rounded_growth = 1e9;
 
-Vector at(const std::array<double, 3 * max_stride>& columns, std::size_t lane) {
-  return {columns[lane], columns[max_stride + lane], columns[2 * max_stride + lane]};
-}
-
 }  // namespace
 
 std::int32_t Solver::solve(const ilaw_bodies* bodies, const ilaw_contacts* const* groups,
@@ -143,7 +139,7 @@ double Solver::set_velocities() {
 bool Solver::begins_with_impulses() const {
   for (const Block& block : blocks_.list())
     for (std::size_t lane = 0; lane < block.count; ++lane)
-      if (!is_zero(block.at(block.layout->impulse, lane))) return true;
+      if (!block.is_free(lane)) return true;
   return false;
 }
 
@@ -151,11 +147,12 @@ bool Solver::begins_with_impulses() const {
 double Solver::free_size() {
   here_.assign(static_cast<std::size_t>(problem_.bodies.count()), {});
   problem_.bodies.set(here_);
-  std::array<double, 3 * max_stride> velocity{};
+  Columns velocity{};
   double most = 0.0;
   for (const Block& block : blocks_.list()) {
     sweep_.gather(block, velocity.data());
-    for (std::size_t lane = 0; lane < block.count; ++lane) most = std::max(most, largest(at(velocity, lane)));
+    for (std::size_t lane = 0; lane < block.count; ++lane)
+      most = std::max(most, size_at(block, velocity.data(), lane));
   }
   ranks_.largest(&most, 1);
   return most;
@@ -187,21 +184,14 @@ void Solver::find_stable_step(ilaw_coupled_report& report) {
   const bool has_limit = std::isfinite(sweep_.stable_step());
   if (!ranks_.any_rank(has_limit)) return;
   counts_.assign(static_cast<std::size_t>(problem_.bodies.count()) + 1, 0.0);
-  const auto for_each_end = [&](const auto& visit) {
-    for (Block& block : blocks_.list()) {
-      const Layout& layout = *block.layout;
-      for (std::size_t q = 0; q < block.count; ++q)
-        for (int e = 0; e < layout.ends; ++e)
-          visit(block, layout, q, static_cast<std::size_t>(block.end(e, q)));
-    }
-  };
-  for_each_end([&](const Block& block, const Layout& layout, std::size_t q, std::size_t body) {
-    if (!is_zero(block.at(layout.impulse, q))) counts_[body] += 1.0;
-  });
+  for (const Block& block : blocks_.list())
+    for (std::size_t q = 0; q < block.count; ++q)
+      for (int e = 0; e < block.layout->ends; ++e)
+        if (!block.is_free(q)) counts_[static_cast<std::size_t>(block.end(e, q))] += 1.0;
   counts_.pop_back();
   ranks_.sum_bodies(counts_);
   counts_.push_back(1.0);
-  std::array<double, 3 * max_stride> v_free{}, answer{};
+  Columns v_free{}, answer{};
   std::array<double, 6 * max_stride> delassus{};
   std::array<std::uint8_t, max_stride> status{};
   std::vector<double> state;
@@ -230,16 +220,22 @@ void Solver::find_stable_step(ilaw_coupled_report& report) {
 // Contacts have moved on from the velocities of their last evaluation by the impulses of later ones. The
 // energies of a law belong to that evaluation: an impulse r at a contact that is off by s works r.s/2 more.
 double Solver::energy_error() const {
-  std::array<double, 3 * max_stride> made{}, velocity{};
+  Columns made{}, velocity{};
   double error = 0.0;
   for (const Block& block : blocks_.list()) {
     if (block.asleep) continue;
     const Layout& layout = *block.layout;
     sweep_.gather(block, velocity.data());
     sweep_.respond(block, block.column(layout.impulse), block.stride, made.data());
-    for (std::size_t q = 0; q < block.count; ++q)
-      if (const Vector r = block.at(layout.impulse, q); !is_zero(r))
-        error += 0.5 * std::fabs(dot(r, at(velocity, q) - at(made, q) - block.at(layout.asked, q)));
+    for (std::size_t q = 0; q < block.count; ++q) {
+      double work = 0.0;
+      for (int c = 0; c < layout.width; ++c) {
+        const std::size_t i = static_cast<std::size_t>(c) * max_stride + q;
+        const double off = velocity[i] - made[i] - block.column(layout.asked + c)[q];
+        if (const double r = block.column(layout.impulse + c)[q]; r != 0.0) work += r * off;
+      }
+      error += 0.5 * std::fabs(work);
+    }
   }
   return error;
 }
@@ -247,7 +243,7 @@ double Solver::energy_error() const {
 void Solver::find_worst_contact(ilaw_coupled_report& report) {
   const bool has_grown = report.speed > rounded_growth * report.first_speed;
   if (iterations_.is_solved() && !has_grown) return;
-  std::array<double, 3 * max_stride> response{};
+  Columns response{};
   double most = -1.0;
   const Block* worst = nullptr;
   std::size_t worst_lane = 0;
@@ -255,7 +251,7 @@ void Solver::find_worst_contact(ilaw_coupled_report& report) {
     if (block.asleep) continue;
     sweep_.respond(block, block.column(block.layout->change), block.stride, response.data());
     for (std::size_t q = 0; q < block.count; ++q) {
-      const double change = largest(at(response, q));
+      const double change = size_at(block, response.data(), q);
       if (!(change > most)) continue;
       most = change;
       worst = &block;
@@ -334,16 +330,16 @@ void Solver::find_incompatible_laws(const Block& worst, std::size_t lane, ilaw_c
 // Energies and amounts of the last evaluation of each contact, kept until no call can be refused any more.
 std::int32_t Solver::evaluate_balance(ilaw_coupled_report& report) {
   balance_.clear();
-  std::array<double, 3 * max_stride> v_free{}, answer{};
+  Columns v_free{}, answer{};
   std::array<std::uint8_t, max_stride> status{};
   std::vector<double> state;
   for (Block& block : blocks_.list()) {
     const Contacts& group = problem_.group(block);
     if (!group.asks_balance()) continue;
     const Layout& layout = *block.layout;
-    for (std::size_t c = 0; c < 3; ++c)
-      std::copy_n(block.column(layout.asked + static_cast<int>(c)), block.stride,
-                  v_free.data() + c * max_stride);
+    for (int c = 0; c < layout.width; ++c)
+      std::copy_n(block.column(layout.asked + c), block.stride,
+                  v_free.data() + static_cast<std::size_t>(c) * max_stride);
     const std::size_t columns = ILAW_ENERGY_COUNT + group.amount_count(), at = balance_.size();
     balance_.resize(at + columns * max_stride);
     state.resize(block.stride * static_cast<std::size_t>(layout.state_size) + 1);
@@ -373,8 +369,7 @@ void Solver::write(ilaw_coupled_report& report) {
     const Contacts& group = problem_.group(block);
     for (std::size_t lane = 0; lane < block.count; ++lane) {
       group.write(block, lane);
-      if (group.has_wall())
-        twice_wall_work += group.wall_work(block.contact[lane], block.at(block.layout->impulse, lane));
+      if (group.has_wall()) twice_wall_work += group.wall_work(block, lane);
       if (group.asks_balance())
         group.write_balance(block, lane, balance, balance + ILAW_ENERGY_COUNT * max_stride, report.energy);
     }

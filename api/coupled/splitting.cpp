@@ -76,16 +76,16 @@ bool Splitting::open(const Blocks& blocks, const Problem& problem, const Sweep& 
   factor_->assemble(equations_);
   factor_->factorize(rho_);
 
-  std::array<double, 3 * max_stride> velocity{};
+  Columns velocity{};
   std::size_t i = 0;
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
     sweep.gather(block, velocity.data());
     for (std::size_t q = 0; q < block.count; ++q)
-      for (std::size_t c = 0; c < 3; ++c, ++i) {
+      for (int c = 0; c < block.layout->width; ++c, ++i) {
         const double scale = equations_.scales()[i / 3];
-        law_[i] = scale * block.column(static_cast<int>(c) + Layout{}.impulse)[q];
-        free_[i] = velocity[c * max_stride + q] / scale;
+        law_[i] = scale * block.column(block.layout->impulse + c)[q];
+        free_[i] = velocity[static_cast<std::size_t>(c) * max_stride + q] / scale;
         state_[i] = law_[i] - free_[i] / rho_;
       }
   }
@@ -102,23 +102,32 @@ bool Splitting::open(const Blocks& blocks, const Problem& problem, const Sweep& 
   return true;
 }
 
+// H = rho D of a contact whose scales are given, in its form, at distances of max_stride.
+void Splitting::write_delassus(const Layout& layout, const double* scales, double* h) const {
+  const double by_impulse = rho_ * scales[0] * scales[0];
+  const std::size_t diagonal = layout.delassus_size == 6 ? 3 : std::min(2, layout.delassus_size);
+  for (std::size_t c = 0; c < diagonal; ++c) h[c * max_stride] = by_impulse;
+  if (layout.width == 3) return;
+  for (const std::size_t c : {3, 4}) h[c * max_stride] = rho_ * scales[1] * scales[1];
+}
+
 // Impulses of the laws at v_free = -rho D state and H = rho D.
 bool Splitting::answer(const Blocks& blocks, const Problem& problem) {
-  std::array<double, 3 * max_stride> v_free{}, impulse{};
-  std::array<double, 6 * max_stride> delassus{};
+  Columns v_free{}, impulse{}, delassus{};
   std::array<std::uint8_t, max_stride> status{};
-  std::size_t first = 0;
+  std::size_t first = 0;  // row of a block
   for (const Block& block : blocks.list()) {
     if (block.asleep) continue;
     const Layout& layout = *block.layout;
+    const auto width = static_cast<std::size_t>(layout.width);
     law_state_.resize(block.stride * static_cast<std::size_t>(layout.state_size) + 1);
-    const std::size_t diagonal = layout.delassus_size == 6 ? 3 : std::min(2, layout.delassus_size);
     delassus.fill(0.0);
     for (std::size_t q = 0; q < block.count; ++q) {
-      const double scale = equations_.scales()[first + q];
-      for (std::size_t c = 0; c < diagonal; ++c) delassus[c * max_stride + q] = rho_ * scale * scale;
-      for (std::size_t c = 0; c < 3; ++c)
-        v_free[c * max_stride + q] = -rho_ * scale * state_[3 * (first + q) + c];
+      const std::size_t row = first + width * q;
+      const double* scales = &equations_.scales()[row / 3];
+      write_delassus(layout, scales, delassus.data() + q);
+      for (std::size_t c = 0; c < width; ++c)
+        v_free[c * max_stride + q] = -rho_ * scales[c / 3] * state_[row + c];
     }
     ilaw_report report{};
     if (problem.group(block).evaluate(
@@ -126,10 +135,13 @@ bool Splitting::answer(const Blocks& blocks, const Problem& problem) {
             {v_free.data(), delassus.data(), max_stride, impulse.data(), law_state_.data(), status.data()},
             report) < 0)
       return false;
+    const std::size_t components = width == 3 ? problem.bodies.dimension() : width;
     for (std::size_t q = 0; q < block.count; ++q)
-      for (std::size_t c = 0; c < problem.bodies.dimension(); ++c)
-        law_[3 * (first + q) + c] = equations_.scales()[first + q] * impulse[c * max_stride + q];
-    first += block.count;
+      for (std::size_t c = 0; c < components; ++c) {
+        const std::size_t row = first + width * q + c;
+        law_[row] = equations_.scales()[row / 3] * impulse[c * max_stride + q];
+      }
+    first += width * block.count;
   }
   return true;
 }
@@ -154,7 +166,7 @@ bool Splitting::iterate(const Blocks& blocks, const Problem& problem) {
   for (std::size_t i = 0; i < law_.size(); ++i) {
     next_[i] = state_[i] + relaxation * (linear_[i] - law_[i]);
     const double by = std::max(std::fabs(linear_[i] - law_[i]), std::fabs(law_[i] - law_before_[i]));
-    difference_ = std::max(difference_, rho_ * equations_.scales()[i / 3] * by);
+    difference_ = std::max(difference_, rho_ * equations_.speeds()[i / 3] * by);
     if (!std::isfinite(next_[i])) return false;
   }
   const double primal = distance(linear_, law_) / (std::max(norm(linear_), norm(law_)) + 1e-300);
@@ -199,7 +211,7 @@ void Splitting::changes(const Blocks& blocks, std::vector<double>& changes) cons
     if (block.asleep) continue;
     const int impulse = block.layout->impulse;
     for (std::size_t q = 0; q < block.count; ++q)
-      for (int c = 0; c < 3; ++c, ++i)
+      for (int c = 0; c < block.layout->width; ++c, ++i)
         changes[i] = law_[i] / equations_.scales()[i / 3] - block.column(impulse + c)[q];
   }
 }

@@ -39,6 +39,7 @@ class Splitting {
   struct Factor;
 
   bool answer(const Blocks& blocks, const Problem& problem);
+  void write_delassus(const Layout& layout, const double* scales, double* h) const;
   void solve_linear();
   void adapt(double primal, double dual);
   void accelerate();
@@ -49,7 +50,7 @@ class Splitting {
   std::size_t depth_ = 0, iterations_ = 0, last_adapted_ = 0, adaptations_ = 0;
   double rho_ = 1.0, difference_ = 0.0;
   bool adapted_ = false;
-  // In the scales of the contacts' impulses, three per contact.
+  // In the scales of the contacts' impulses and moments, three components of each.
   std::vector<double> free_;              // velocities without impulses
   std::vector<double> state_, next_;      // the iterated vector, and its image
   std::vector<double> law_, law_before_;  // impulses of the laws

@@ -32,6 +32,8 @@ void with_form(const Block& block, Visit&& visit) {
       return visit(TransverseForm{h, block.column(layout.normal), block.stride});
     case 3:
       return visit(PlaneForm{h, block.stride});
+    case 5:
+      return visit(SpinForm{h, block.column(layout.normal), block.column(layout.length), block.stride});
     default:
       return visit(FullForm{h, block.stride});
   }
@@ -40,7 +42,7 @@ void with_form(const Block& block, Visit&& visit) {
 // Whether the last evaluation of a contact left no trace.
 bool has_not_acted(const Block& block, std::size_t lane) {
   const Layout& layout = *block.layout;
-  if (!is_zero(block.at(layout.impulse, lane)) || block.status[lane] != ILAW_FREE) return false;
+  if (!block.is_free(lane) || block.status[lane] != ILAW_FREE) return false;
   for (int c = 0; c < layout.state_size; ++c)
     if (block.column(layout.state_out + c)[lane] != block.column(layout.state_in + c)[lane]) return false;
   return true;
@@ -57,7 +59,7 @@ void Sweep::reset() {
 void Sweep::respond(const Block& block, const double* x, std::size_t xs, double* y) const {
   with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < padded(block.count); q += lane_count)
-      put(form(q, lanes(x + q, xs)), y + q, max_stride);
+      put(form(q, read(form, x + q, xs)), y + q, max_stride);
   });
 }
 
@@ -68,14 +70,15 @@ void Sweep::gather(const Block& block, double* velocity) const {
   const std::size_t n = padded(block.count);
   with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
     for (std::size_t q = 0; q < block.count; ++q) {
-      const Vector u = kernel.relative(bodies, q);
-      velocity[q] = u[0], velocity[max_stride + q] = u[1], velocity[2 * max_stride + q] = u[2];
+      const auto u = kernel.relative(bodies, q);
+      for (std::size_t c = 0; c < u.size(); ++c) velocity[c * max_stride + q] = u[c];
     }
   });
-  for (std::size_t c = 0; c < 3; ++c)
+  const auto width = static_cast<std::size_t>(layout.width);
+  for (std::size_t c = 0; c < width; ++c)
     for (std::size_t q = block.count; q < n; ++q) velocity[c * max_stride + q] = 0.0;
   if (layout.wall < 0) return;
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (std::size_t c = 0; c < width; ++c) {
     const double* wall = block.column(layout.wall + static_cast<int>(c));
     for (std::size_t q = 0; q < n; ++q) velocity[c * max_stride + q] -= wall[q];
   }
@@ -106,7 +109,7 @@ ILAW_COUPLED_VERSIONS void Sweep::extrapolate(Block& block, double beta) const {
   const Layout& layout = *block.layout;
   double *r = block.column(layout.impulse), *direction = block.column(layout.direction);
   const double* last = block.column(layout.change);
-  for (std::size_t c = 0; c < 3; ++c)
+  for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c)
     for (std::size_t q = c * block.stride; q < c * block.stride + padded(block.count); q += lane_count) {
       const Lanes step = beta * lanes(direction + q);
       lanes(r + q) += step;
@@ -123,11 +126,11 @@ ILAW_COUPLED_VERSIONS double Sweep::prepare(Block& block) {
   Lanes most{};
   with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < padded(block.count); q += lane_count) {
-      const LanesVector made = form(q, lanes(r + q, block.stride));
-      const LanesVector v = lanes(v_free_.data() + q, max_stride) - made;
+      const auto made = form(q, read(form, r + q, block.stride));
+      const auto v = read(form, v_free_.data() + q, max_stride) - made;
       put(v, v_free_.data() + q, max_stride);
       put(v, asked + q, block.stride);
-      most = larger(larger(largest(v), largest(made)), most);
+      most = larger(larger(size(form, q, v), size(form, q, made)), most);
     }
   });
   return largest(most);
@@ -159,16 +162,16 @@ ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
   const Layout& layout = *block.layout;
   const std::size_t n = padded(block.count), s = block.stride;
   double *r = block.column(layout.impulse), *dr = block.column(layout.change);
-  for (std::size_t c = 0; c < 3; ++c)
+  for (std::size_t c = 0; c < static_cast<std::size_t>(layout.width); ++c)
     for (std::size_t q = block.count; q < n; ++q) answer_[c * max_stride + q] = 0.0;
   Lanes most{}, square{};
   with_form(block, [&](const auto& form) {
     for (std::size_t q = 0; q < n; q += lane_count) {
-      const LanesVector answer = lanes(answer_.data() + q, max_stride), by = answer - lanes(r + q, s);
+      const auto answer = read(form, answer_.data() + q, max_stride), by = answer - read(form, r + q, s);
       put(answer, r + q, s);
       put(by, dr + q, s);
-      const LanesVector made = form(q, by);
-      most = larger(largest(made), most);
+      const auto made = form(q, by);
+      most = larger(size(form, q, made), most);
       square += dot(by, made);
     }
   });
@@ -177,7 +180,8 @@ ILAW_COUPLED_VERSIONS void Sweep::scatter(Block& block, Change& change) {
   const Contacts& group = problem_.group(block);
   with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
     with_velocities(problem_.bodies, group.kind(), [&](const auto& add) {
-      for (std::size_t q = 0; q < block.count; ++q) kernel.apply(q, {dr[q], dr[s + q], dr[2 * s + q]}, add);
+      for (std::size_t q = 0; q < block.count; ++q)
+        kernel.apply(q, columns_at<width_of<decltype(kernel)>>(dr + q, s), add);
     });
   });
 }
@@ -206,7 +210,9 @@ void Sweep::add_impulses(const Blocks& blocks, std::vector<Motion>& sums) const 
     if (block.asleep) continue;
     const Contacts& group = problem_.group(block);
     with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
-      for (std::size_t q = 0; q < block.count; ++q) kernel.apply(q, block.at(block.layout->impulse, q), add);
+      const double* r = block.column(block.layout->impulse);
+      for (std::size_t q = 0; q < block.count; ++q)
+        kernel.apply(q, columns_at<width_of<decltype(kernel)>>(r + q, block.stride), add);
     });
   }
 }
@@ -218,9 +224,10 @@ void Sweep::add_changes(Blocks& blocks, const double* changes) {
     const Layout& layout = *block.layout;
     with_kernel(group.kind(), block, group.body_count(), [&](const auto& kernel) {
       with_velocities(problem_.bodies, group.kind(), [&](const auto& add) {
-        for (std::size_t q = 0; q < block.count; ++q, changes += 3) {
-          const Vector by{changes[0], changes[1], changes[2]};
-          block.put(layout.impulse, q, block.at(layout.impulse, q) + by);
+        for (std::size_t q = 0; q < block.count; ++q, changes += width_of<decltype(kernel)>) {
+          const auto by = columns_at<width_of<decltype(kernel)>>(changes, 1);
+          for (std::size_t c = 0; c < by.size(); ++c)
+            block.column(layout.impulse)[c * block.stride + q] += by[c];
           kernel.apply(q, by, add);
         }
       });

@@ -48,9 +48,9 @@ class Sweep {
 
   // Wakes blocks with a contact within reach. True if there was one.
   bool wake(Blocks& blocks);
-  // Velocity of each lane into `velocity`, columns at distances of max_stride.
+  // Velocity of each lane, and spin where it has a moment, into columns at distances of max_stride.
   void gather(const Block& block, double* velocity) const;
-  // H of the law times columns x, into y.
+  // H of the law times columns x, into y: columns at distances of max_stride.
   void respond(const Block& block, const double* x, std::size_t x_stride, double* y) const;
   // Adds impulses of all contacts and their moments to the sums per body.
   void add_impulses(const Blocks& blocks, std::vector<Motion>& sums) const;
@@ -63,8 +63,6 @@ class Sweep {
   void reset();
 
  private:
-  using Columns = std::array<double, 3 * max_stride>;
-
   void extrapolate(Block& block, double beta) const;
   double prepare(Block& block);
   bool evaluate(Block& block, Change& change);

@@ -10,6 +10,15 @@ namespace ilaw::coupled {
 
 using Vector = std::array<double, 3>;
 using Symmetric = std::array<double, 6>;
+using Wrench = std::array<double, 6>;  // impulse and moment, or velocity and spin
+
+// Numbers at distances of stride.
+template <std::size_t width>
+std::array<double, width> columns_at(const double* first, std::size_t stride) {
+  std::array<double, width> read;
+  for (std::size_t c = 0; c < width; ++c) read[c] = first[c * stride];
+  return read;
+}
 
 inline Vector operator+(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Vector operator-(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }

@@ -35,7 +35,7 @@ module ilaw_coupled_abi
   end type
 
   type, bind(c) :: ilaw_contacts
-    integer(c_int32_t) :: struct_size = 256
+    integer(c_int32_t) :: struct_size = 320
     integer(c_int32_t) :: delassus_form = 0
     type(c_ptr) :: law = c_null_ptr
     type(c_ptr) :: instance = c_null_ptr
@@ -52,6 +52,8 @@ module ilaw_coupled_abi
     type(ilaw_input) :: counterpart_weight
     integer(c_int32_t) :: weight_size = 0
     integer(c_int32_t) :: reserved = 0
+    type(ilaw_input) :: wall_spin
+    type(ilaw_input) :: wall_spin_previous
   end type
 
   type, bind(c) :: ilaw_exchange

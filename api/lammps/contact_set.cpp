@@ -25,6 +25,14 @@ double number(const std::string& name, const std::string& text) {
   return value;
 }
 
+// Spheres have arms along the normal. A law that serves spins may give moments; a law that knows neither form
+// is given the matrix.
+ilaw_delassus_forms form_of(const ilaw_law& law) {
+  for (const std::uint32_t form : {ILAW_DELASSUS_TRANSVERSE_SPIN, ILAW_DELASSUS_TRANSVERSE})
+    if ((law.delassus_forms & form) != 0) return form;
+  return ILAW_DELASSUS_FULL;
+}
+
 }  // namespace
 
 ContactSet::ContactSet(const std::string& law, const std::vector<std::array<std::string, 2>>& parameters) {
@@ -42,11 +50,9 @@ ContactSet::ContactSet(const std::string& law, const std::vector<std::array<std:
   ilaw_setup setup{};
   setup.struct_size = sizeof setup;
   setup.dimension = 3;
-  // Spheres that touch: arms along the normal. A library that does not know this form is given the matrix.
-  setup.delassus_form = (description.delassus_forms & ILAW_DELASSUS_TRANSVERSE) != 0
-                            ? ilaw_delassus_forms{ILAW_DELASSUS_TRANSVERSE}
-                            : ilaw_delassus_forms{ILAW_DELASSUS_FULL};
-  delassus_form_ = setup.delassus_form;
+  setup.delassus_form = delassus_form_ = form_of(description);
+  if (has_spins()) response_size_ = 6;
+  response_.reserve(response_size_);  // a null pointer would say that the array is absent
   setup.frame = ILAW_FRAME_GLOBAL;
   setup.numbers = ILAW_NUMBERS_DOUBLE;
   given.give(setup);
@@ -56,17 +62,16 @@ ContactSet::ContactSet(const std::string& law, const std::vector<std::array<std:
 
 void ContactSet::clear(double velocity_step) {
   velocity_step_ = velocity_step;
-  contacts_.clear();
   new_.clear();
   for (auto* list : {&body_, &counterpart_}) list->clear();
-  for (auto* values :
-       {&gap_, &area_, &normal_, &arm_, &counterpart_arm_, &wall_, &impulse_, &state_, &energy_})
+  for (auto* values : {&partner_, &gap_, &area_, &normal_, &arm_, &counterpart_arm_, &wall_, &wall_previous_,
+                       &wall_spin_, &response_, &state_, &energy_})
     values->clear();
 }
 
 void ContactSet::add(const Contact& contact, const Row& row) {
-  const std::size_t k = contacts_.size();
-  contacts_.push_back(contact);
+  const std::size_t k = size();
+  partner_.push_back(contact.partner);
   body_.push_back(contact.body);
   counterpart_.push_back(contact.counterpart);
   gap_.push_back(contact.gap);
@@ -76,16 +81,18 @@ void ContactSet::add(const Contact& contact, const Row& row) {
     arm_.push_back(-contact.arm * contact.normal[c]);
     counterpart_arm_.push_back(contact.counterpart_arm * contact.normal[c]);
     wall_.push_back(contact.wall_velocity[c]);
+    wall_previous_.push_back(contact.wall_previous[c]);
+    if (has_spins()) wall_spin_.push_back(contact.wall_spin[c]);
   }
-  impulse_.resize(3 * (k + 1));
+  response_.resize(response_size_ * (k + 1));
   state_.resize(state_size_ * (k + 1));
   for (std::size_t at = 0; at < row.size(); at += entry_size())
     if (row[at] == contact.partner) {
-      const auto entry = row.begin() + static_cast<std::ptrdiff_t>(at);
-      for (std::ptrdiff_t c = 0; c < 3; ++c)
-        impulse_[3 * k + static_cast<std::size_t>(c)] = velocity_step_ * entry[1 + c];
-      std::copy(entry + 4, entry + static_cast<std::ptrdiff_t>(entry_size()),
-                state_.end() - static_cast<std::ptrdiff_t>(state_size_));
+      const double* entry = &row[at] + 1;
+      for (std::size_t c = 0; c < response_size_; ++c)
+        response_[response_size_ * k + c] = velocity_step_ * entry[c];
+      std::copy_n(entry + response_size_, state_size_,
+                  state_.end() - static_cast<std::ptrdiff_t>(state_size_));
       return;
     }
   new_.push_back(static_cast<std::int32_t>(k));
@@ -106,7 +113,9 @@ const ilaw_contacts* ContactSet::describe(double time, double position_step) {
   batch_.normal = ilaw::input(normal_.data(), 3, 1);
   batch_.state_in = ilaw::input(state_.data(), state_size, 1);
   batch_.state_out = ilaw::output(state_.data(), state_size, 1);
-  batch_.impulse = ilaw::output(impulse_.data(), 3, 1);
+  const auto width = static_cast<std::int64_t>(response_size_);
+  batch_.impulse = ilaw::output(response_.data(), width, 1);
+  if (has_spins()) batch_.moment = ilaw::output(response_.data() + 3, width, 1);
   batch_.energy = ilaw::output(energy_.data(), ILAW_ENERGY_COUNT, 1);
   batch_.status = status_.data();
   batch_.status_stride = 1;
@@ -122,6 +131,8 @@ const ilaw_contacts* ContactSet::describe(double time, double position_step) {
   described_.arm = ilaw::input(arm_.data(), 3, 1);
   described_.counterpart_arm = ilaw::input(counterpart_arm_.data(), 3, 1);
   described_.wall_velocity = ilaw::input(wall_.data(), 3, 1);
+  described_.wall_previous = ilaw::input(wall_previous_.data(), 3, 1);
+  if (has_spins()) described_.wall_spin = ilaw::input(wall_spin_.data(), 3, 1);
   return &described_;
 }
 
@@ -133,9 +144,10 @@ void ContactSet::initialise_new(const ilaw_batch& batch) {
   interface_->initialise(part);  // what is bad is found, and named, by evaluate
 }
 
-void ContactSet::keep(std::size_t k, double partner, Row& row) const {
-  row.push_back(partner);
-  for (std::size_t c = 0; c < 3; ++c) row.push_back(impulse_[3 * k + c] / velocity_step_);
+void ContactSet::keep(std::size_t k, Row& row) const {
+  row.push_back(partner_[k]);
+  for (std::size_t c = 0; c < response_size_; ++c)
+    row.push_back(response_[response_size_ * k + c] / velocity_step_);
   const auto state = state_.begin() + static_cast<std::ptrdiff_t>(k * state_size_);
   row.insert(row.end(), state, state + static_cast<std::ptrdiff_t>(state_size_));
 }

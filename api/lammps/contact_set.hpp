@@ -16,7 +16,8 @@ namespace ilaw::lammps {
 
 using Vector = std::array<double, 3>;
 
-// Contacts of an atom, one after the other: tag of the partner, force (3), state.
+// Contacts of an atom, one after the other: tag of the partner, force (3), moment (3) of laws that serve
+// spins, state.
 using Row = std::vector<double>;
 
 class ContactSet {
@@ -24,8 +25,7 @@ class ContactSet {
   // The law by name or path, its parameters as pairs of texts. Throws ilaw::error.
   ContactSet(const std::string& law, const std::vector<std::array<std::string, 2>>& parameters);
 
-  std::size_t entry_size() const { return 4 + state_size_; }
-  std::uint64_t state_size() const { return state_size_; }
+  std::size_t entry_size() const { return 1 + response_size_ + state_size_; }
   std::uint32_t state_version() const { return interface_->info().state_version; }
 
   // Begins a step, in which a force makes an impulse over velocity_step.
@@ -35,7 +35,7 @@ class ContactSet {
   struct Contact {
     int body, counterpart;  // counterpart below 0: a wall
     double partner;
-    Vector normal, wall_velocity;
+    Vector normal, wall_velocity, wall_previous, wall_spin;
     double gap, arm, counterpart_arm, area;
   };
   // row: of the atom that keeps the contact.
@@ -44,23 +44,30 @@ class ContactSet {
   // Arrays in, once all contacts are there. The pointers live until the next clear.
   const ilaw_contacts* describe(double time, double position_step);
 
-  std::size_t size() const { return contacts_.size(); }
-  const Contact& operator[](std::size_t k) const { return contacts_[k]; }
+  std::size_t size() const { return body_.size(); }
+  int body(std::size_t k) const { return body_[k]; }
+  int counterpart(std::size_t k) const { return counterpart_[k]; }
+  double gap(std::size_t k) const { return gap_[k]; }
+  const double* normal(std::size_t k) const { return &normal_[3 * k]; }
+  const double* wall_velocity(std::size_t k) const { return &wall_[3 * k]; }
   std::uint8_t status(std::size_t k) const { return status_[k]; }
   const double* energy(std::size_t k) const { return &energy_[k * ILAW_ENERGY_COUNT]; }
   // Appends what the contact leaves.
-  void keep(std::size_t k, double partner, Row& row) const;
+  void keep(std::size_t k, Row& row) const;
 
  private:
+  bool has_spins() const { return delassus_form_ == ILAW_DELASSUS_TRANSVERSE_SPIN; }
   void initialise_new(const ilaw_batch& batch);
 
   std::unique_ptr<ilaw::interface> interface_;
   std::uint64_t state_size_ = 0;
+  std::size_t response_size_ = 3;  // impulse, and moment where the form of H has spins
   std::uint32_t delassus_form_ = ILAW_DELASSUS_FULL;
   double velocity_step_ = 0.0;
-  std::vector<Contact> contacts_;
   std::vector<std::int32_t> body_, counterpart_, new_;
-  std::vector<double> gap_, area_, normal_, arm_, counterpart_arm_, wall_, impulse_, state_, energy_;
+  std::vector<double> partner_, gap_, area_, normal_, arm_, counterpart_arm_, wall_, wall_previous_,
+      wall_spin_;
+  std::vector<double> response_, state_, energy_;
   std::vector<std::uint8_t> status_;
   ilaw_batch batch_{};
   ilaw_contacts described_{};

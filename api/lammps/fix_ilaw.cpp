@@ -262,7 +262,7 @@ void FixIlaw::solve() {
   if (!why.empty()) refuse(why);
   if (report_.bad_count > 0) {
     const auto& contacts = *all_[static_cast<std::size_t>(report_.bad_group)]->contacts_;
-    const int body = contacts[static_cast<std::size_t>(report_.bad_contact)].body;
+    const int body = contacts.body(static_cast<std::size_t>(report_.bad_contact));
     error->one(FLERR, "Fix " + std::string(style) + ": contact of atom " + std::to_string(atom->tag[body]) +
                           ": " + report_.reason);
   }
@@ -288,11 +288,8 @@ void FixIlaw::store() {
     for (int i = 0; i < here; ++i) fix->rows_[static_cast<std::size_t>(i)].clear();
     const auto& contacts = *fix->contacts_;
     for (std::size_t k = 0; k < contacts.size(); ++k) {
-      const auto& contact = contacts[k];
-      if (contact.counterpart < 0)
-        contacts.keep(k, contact.partner, fix->rows_[static_cast<std::size_t>(contact.body)]);
-      else
-        contacts.keep(k, contact.partner, fix->rows_[static_cast<std::size_t>(contact.counterpart)]);
+      const int keeper = contacts.counterpart(k) < 0 ? contacts.body(k) : contacts.counterpart(k);
+      contacts.keep(k, fix->rows_[static_cast<std::size_t>(keeper)]);
     }
     fix->maxexchange = fix->most_packed();
   }
@@ -304,19 +301,16 @@ void FixIlaw::tally() {
   contacts_closed_ = overlap_ = stored_ = 0.0;
   approach_ = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < contacts_->size(); ++k) {
-    const auto& contact = (*contacts_)[k];
-    overlap_ = std::max(overlap_, -contact.gap);
+    overlap_ = std::max(overlap_, -contacts_->gap(k));
     for (std::size_t part = 0; part < 3; ++part) dissipated_[part] += contacts_->energy(k)[part];
     stored_ += contacts_->energy(k)[ILAW_ENERGY_STORED];
     if (contacts_->status(k) == ILAW_FREE) continue;
     contacts_closed_ += 1.0;
+    const int counterpart = contacts_->counterpart(k);
+    const double* other = counterpart < 0 ? contacts_->wall_velocity(k) : leader.velocity_after(counterpart);
+    const double* own = leader.velocity_after(contacts_->body(k));
     double opening = 0.0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double other = contact.counterpart < 0
-                               ? contact.wall_velocity[c]
-                               : leader.after_[6 * static_cast<std::size_t>(contact.counterpart) + c];
-      opening += contact.normal[c] * (leader.after_[6 * static_cast<std::size_t>(contact.body) + c] - other);
-    }
+    for (std::size_t c = 0; c < 3; ++c) opening += contacts_->normal(k)[c] * (own[c] - other[c]);
     approach_ = std::max(approach_, -opening);
   }
 }

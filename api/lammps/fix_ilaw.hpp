@@ -74,6 +74,7 @@ class FixIlaw : public Fix {
   void add_forces(double velocity_step);
   void store();
   void tally();
+  const double* velocity_after(int body) const { return &after_[6 * static_cast<std::size_t>(body)]; }
   void forward(double* values, int width);
   void reverse(double* values, int width);
   int pack(int index, double* buffer) const;

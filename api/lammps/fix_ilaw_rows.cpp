@@ -12,7 +12,7 @@ namespace LAMMPS_NS {
 namespace {
 
 constexpr std::size_t head = 7;  // length, force, torque
-// Of a restart file: state version and size, clocks, whether evaluated, energies.
+// In a restart file: state version, size of a contact's entry, clocks, whether evaluated, energies.
 enum { VERSION, SIZE, CLOCK, MOVED, EVALUATED, DISSIPATED, GLOBALS = DISSIPATED + 3 };
 
 }  // namespace
@@ -71,7 +71,7 @@ void FixIlaw::unpack_restart(int index, int nth) {
 
 void FixIlaw::write_restart(FILE* file) {
   double values[GLOBALS] = {static_cast<double>(contacts_->state_version()),
-                            static_cast<double>(contacts_->state_size()), clock_, moved_time_,
+                            static_cast<double>(contacts_->entry_size()), clock_, moved_time_,
                             evaluated_ ? 1.0 : 0.0};
   MPI_Reduce(dissipated_.data(), values + DISSIPATED, 3, MPI_DOUBLE, MPI_SUM, 0, world);
   int rank = 0;
@@ -85,7 +85,7 @@ void FixIlaw::write_restart(FILE* file) {
 void FixIlaw::restart(char* buffer) {
   const auto* values = reinterpret_cast<const double*>(buffer);
   if (values[VERSION] != contacts_->state_version() ||
-      values[SIZE] != static_cast<double>(contacts_->state_size()))
+      values[SIZE] != static_cast<double>(contacts_->entry_size()))
     refuse("the restart file has states of another law, version or memory");
   clock_ = values[CLOCK];
   moved_time_ = values[MOVED];

@@ -2,6 +2,7 @@
 #include "fix_ilaw_wall.hpp"
 
 #include <atom.h>
+#include <update.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,10 @@ namespace {
 using ilaw::lammps::Vector;
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+constexpr double parallel_tolerance = 1e-12;  // of the sine of an angle
 
 }  // namespace
 
@@ -24,11 +29,26 @@ Vector FixIlawWall::read_vector(const std::vector<std::string>& words, std::size
   return {number(words, at), number(words, at + 1), number(words, at + 2)};
 }
 
+FixIlawWall::Wall& FixIlawWall::last_wall(const std::string& word) {
+  if (walls_.empty()) refuse(word + " has to follow a wall");
+  return walls_.back();
+}
+
+void FixIlawWall::set_spin(Wall& wall, const Vector& spin) {
+  const Vector off = cross(spin, wall.direction);
+  if (dot(off, off) > parallel_tolerance * parallel_tolerance * dot(spin, spin))
+    refuse("the spin of a plane must be along its normal, that of a cylinder along its axis");
+  wall.spin = spin;
+}
+
 int FixIlawWall::read_own(const std::vector<std::string>& words, std::size_t at) {
   const std::string& word = words[at];
   if (word == "velocity") {
-    if (walls_.empty()) refuse("velocity has to follow a wall");
-    walls_.back().velocity = read_vector(words, at + 1);
+    last_wall(word).velocity = read_vector(words, at + 1);
+    return 4;
+  }
+  if (word == "spin") {
+    set_spin(last_wall(word), read_vector(words, at + 1));
     return 4;
   }
   if (word != "plane" && word != "sphere" && word != "cylinder") return 0;
@@ -54,9 +74,15 @@ int FixIlawWall::read_own(const std::vector<std::string>& words, std::size_t at)
   return static_cast<int>(next - at);
 }
 
+Vector FixIlawWall::centre(const Wall& wall) const {
+  Vector now = wall.point;
+  for (std::size_t c = 0; c < 3; ++c) now[c] += moved_time_ * wall.velocity[c];
+  return now;
+}
+
 double FixIlawWall::distance(const Wall& wall, const double* x, Vector& normal) const {
-  Vector from;
-  for (std::size_t c = 0; c < 3; ++c) from[c] = x[c] - (wall.point[c] + moved_time_ * wall.velocity[c]);
+  Vector from = centre(wall);
+  for (std::size_t c = 0; c < 3; ++c) from[c] = x[c] - from[c];
   const double along = dot(from, wall.direction);
   if (wall.shape == Shape::plane) {
     normal = wall.direction;
@@ -69,18 +95,33 @@ double FixIlawWall::distance(const Wall& wall, const double* x, Vector& normal) 
   return sense * (length - wall.radius);
 }
 
+// At the point of the wall that is nearest to an atom, where both are ahead by a time. Half a step ahead it
+// is the mean over the step to O(h^2): the two-step method of Adams and Bashforth for a grain that sticks.
+Vector FixIlawWall::velocity(const Wall& wall, int i, double distance, const Vector& normal,
+                             double ahead) const {
+  Vector from = centre(wall);
+  for (std::size_t c = 0; c < 3; ++c)
+    from[c] = atom->x[i][c] - distance * normal[c] - from[c] + ahead * (atom->v[i][c] - wall.velocity[c]);
+  Vector now = cross(wall.spin, from);
+  for (std::size_t c = 0; c < 3; ++c) now[c] += wall.velocity[c];
+  return now;
+}
+
 void FixIlawWall::find() {
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & groupbit)) continue;
     for (std::size_t w = 0; w < walls_.size(); ++w) {
       ilaw::lammps::ContactSet::Contact contact{};
       contact.arm = atom->radius[i];
-      contact.gap = distance(walls_[w], atom->x[i], contact.normal) - contact.arm;
+      const double apart = distance(walls_[w], atom->x[i], contact.normal);
+      contact.gap = apart - contact.arm;
       if (contact.gap >= contact.arm) continue;  // a wall's contacts begin one radius away
       contact.body = i;
       contact.counterpart = -1;
       contact.partner = -1.0 - static_cast<double>(w);
-      contact.wall_velocity = walls_[w].velocity;
+      contact.wall_velocity = velocity(walls_[w], i, apart, contact.normal, 0.5 * update->dt);
+      contact.wall_previous = velocity(walls_[w], i, apart, contact.normal, -0.5 * update->dt);
+      contact.wall_spin = walls_[w].spin;
       contact.area = area_ > 0.0 ? area_ : M_PI * contact.arm * contact.arm;
       contacts_->add(contact, row(i));
     }

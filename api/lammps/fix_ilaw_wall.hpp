@@ -20,13 +20,18 @@ class FixIlawWall : public FixIlaw {
     double radius;
     bool inside;  // grains are inside of it
     Vector velocity;
+    Vector spin;  // about the point; leaves the shape where it is
   };
 
   int read_own(const std::vector<std::string>& words, std::size_t at) override;
+  Wall& last_wall(const std::string& word);
+  void set_spin(Wall& wall, const Vector& spin);
   Vector read_vector(const std::vector<std::string>& words, std::size_t at);
   void find() override;
+  Vector centre(const Wall& wall) const;
   // From the wall to a point, and the normal there.
   double distance(const Wall& wall, const double* x, Vector& normal) const;
+  Vector velocity(const Wall& wall, int i, double distance, const Vector& normal, double ahead) const;
 
   std::vector<Wall> walls_;
 };

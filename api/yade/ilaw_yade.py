@@ -31,28 +31,38 @@ class Contacts:
     section of the smaller sphere.
 
     After a step: `residual` and `sweeps` of its solve, `contact_count` (closed, bonded, ...), `overlap` [m], the
-    largest, `impulse` (k, 3) [N.s], `status` (k,) and `pairs` (k, 2) of the candidates; since the start `energy`
-    (4,) [J], the columns `ilaw.Energy`. `memory()` is what a run that goes on needs, `recall(memory)` takes it.
+    largest, `impulse` (k, 3) [N.s], `moment` (k, 3) [N.m.s] of laws that serve spins, else None, `status` (k,) and
+    `pairs` (k, 2) of the candidates; since the start `energy` (4,) [J], the columns `ilaw.Energy`. `memory()` is what
+    a run that goes on needs, `recall(memory)` takes it.
     """
 
     def __init__(self, law="coulomb", *, sweeps=50, tolerance=1e-8, area=None, **parameters):
-        self.law = ilaw.Interface(law, delassus="full", parameters=parameters)
+        has_spins = "transverse_spin" in ilaw.describe(law).delassus
+        self.law = ilaw.Interface(law, delassus="transverse_spin" if has_spins else "full", parameters=parameters)
         self.most_sweeps, self.tolerance, self.area = sweeps, tolerance, area
         self.solver = Solver()
         self.pairs = np.zeros((0, 2), np.int64)
-        self.impulse, self.state = np.zeros((0, 3)), np.zeros((0, self.law.state_size))
+        self._widths = {"impulse": 3, "state": self.law.state_size, **({"moment": 3} if has_spins else {})}
+        self.moment = None
+        self._take({name: np.zeros((0, width)) for name, width in self._widths.items()})
         self.status = np.zeros(0, np.uint8)
         self.residual, self.sweeps, self.contact_count, self.overlap = 0.0, 0, 0, 0.0
         self.energy = np.zeros(4)
         self._known = -1
 
+    def _take(self, arrays):
+        for name in self._widths:
+            setattr(self, name, arrays[name])
+
     def memory(self):
-        return {"pairs": self.pairs, "impulse": self.impulse, "state": self.state, "version": self.law.state_version}
+        kept = {name: getattr(self, name) for name in self._widths}
+        return {"pairs": self.pairs, **kept, "version": self.law.state_version}
 
     def recall(self, memory):
         if memory["version"] != self.law.state_version:
             raise ValueError("the memory is of another version of the law")
-        self.pairs, self.impulse, self.state = (memory[name].copy() for name in ("pairs", "impulse", "state"))
+        self.pairs = memory["pairs"].copy()
+        self._take({name: memory[name].copy() for name in self._widths})
 
     def __call__(self):
         """Adds the forces of the contacts; to be called last before NewtonIntegrator."""
@@ -60,7 +70,7 @@ class Contacts:
         h = O.dt
         free, previous = self._velocities(h)
         places = np.array([state.pos for state in self._states]).reshape(-1, 3)
-        geometry = self._geometry(places)
+        geometry = self._geometry(places, previous["v"], h)
         bodies = Bodies(
             v_free=free["v"], spin_free=free["w"], v_previous=previous["v"], spin_previous=previous["w"],
             inverse_mass=self._inverse_mass, inverse_inertia=self._inverse_inertia,
@@ -71,7 +81,8 @@ class Contacts:
             bodies, [group], time=O.time, velocity_step=h, most_sweeps=self.most_sweeps, tolerance=self.tolerance
         )
         self._add_forces(bodies, h)
-        self.impulse, self.state, self.status = group.impulse, group.state, group.status
+        self._take(vars(group))
+        self.status = group.status
         self.residual, self.sweeps = report.residual, report.sweeps
         self.energy += report.energy
         self.contact_count = int(np.count_nonzero(group.status))
@@ -129,10 +140,10 @@ class Contacts:
         inverse = np.append(self._inverse_mass, 0.0)
         return pairs[(inverse[self._row[pairs]] > 0).any(axis=1)]
 
-    def _geometry(self, places):
+    def _geometry(self, places, v, h):
         pairs = self._candidates()
         body, counterpart = self._row[pairs[:, 0]], self._row[pairs[:, 1]]
-        other, wall_velocity = np.zeros((len(pairs), 3)), np.zeros((len(pairs), 3))
+        other, wall_velocity, wall_previous, wall_spin = np.zeros((4, len(pairs), 3))
         radius = np.where(counterpart < 0, 0.0, self._radius[counterpart])
         other[counterpart >= 0] = places[counterpart[counterpart >= 0]]
         for number, wall in self._walls.items():
@@ -142,7 +153,11 @@ class Contacts:
             side = np.sign(wall.shape.sense) or np.where(other[at, axis] >= place, 1.0, -1.0)
             # A point behind the wall, so that a centre which has sunk into it still finds its way out.
             other[at, axis] = place - side * radius[at]
-            wall_velocity[at] = wall.state.vel
+            wall_spin[at] = self._spin(wall)
+            # In the middle of the step, where the mean of a turning wall's velocity is found to O(h^2).
+            from_axis, drift = places[body[at]] - np.array(wall.state.pos), v[body[at]] - np.array(wall.state.vel)
+            for velocity, ahead in ((wall_velocity, 0.5 * h), (wall_previous, -0.5 * h)):
+                velocity[at] = np.array(wall.state.vel) + np.cross(wall_spin[at], from_axis + ahead * drift)
         apart = places[body] - other
         length = np.linalg.norm(apart, axis=1)
         return {
@@ -153,7 +168,17 @@ class Contacts:
             "gap": length - self._radius[body] - radius,
             "radius": np.column_stack([self._radius[body], radius]),
             "wall_velocity": wall_velocity,
+            "wall_previous": wall_previous,
+            "wall_spin": wall_spin,
         }
+
+    @staticmethod
+    def _spin(wall):
+        spin = np.array(wall.state.angVel)
+        if np.delete(spin, wall.shape.axis).any():
+            found = f"angVel {tuple(spin.tolist())}"
+            raise NotImplementedError(f"ilaw: body {wall.id}: {found}, expected a spin about the wall's normal")
+        return spin
 
     def _group(self, geometry):
         """The contacts with what is remembered of them; new ones get the law's first state."""
@@ -164,13 +189,14 @@ class Contacts:
         old = np.zeros(len(keys), bool)
         inside = where < len(known)
         old[inside] = known[where[inside]] == keys[inside]
-        impulse, state = np.zeros((len(keys), 3)), np.zeros((len(keys), self.law.state_size))
-        impulse[old], state[old] = self.impulse[where[old]], self.state[where[old]]
+        begin = {name: np.zeros((len(keys), width)) for name, width in self._widths.items()}
+        for name, array in begin.items():
+            array[old] = getattr(self, name)[where[old]]
         area = np.pi * radius.min(axis=1) ** 2 if self.area is None else self.area
         group = Group(
             self.law, body=geometry["body"], counterpart=geometry["counterpart"], normal=normal, gap=geometry["gap"],
             area=area, arm=-radius[:, :1] * normal, counterpart_arm=radius[:, 1:] * normal,
-            wall_velocity=geometry["wall_velocity"], impulse=impulse, state=state, energy=True,
+            **{name: geometry[name] for name in ("wall_velocity", "wall_previous", "wall_spin")}, energy=True, **begin,
         )  # fmt: skip
         group.initialise(~old, time=O.time)
         self.pairs = pairs

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <vector>
 
 namespace {
@@ -21,67 +22,14 @@ struct Call {
   ilaw_batch batch;
 };
 
-TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
-  static const double six[6] = {1, 1, 1, 0, 0, 0};
-  static float single = 0.0F;
-  static std::uint8_t one_status = 0;
-  static const std::int32_t list[1] = {0};
-  const struct {
-    const char* said;
-    void (*spoil)(Call&);
-  } mistakes[] = {
-      {"bodies are missing, or their struct_size is wrong", [](Call& c) { c.bodies.struct_size = 8; }},
-      {"dimension is not 1, 2 or 3", [](Call& c) { c.bodies.dimension = 0; }},
-      {"dimension is not 1, 2 or 3", [](Call& c) { c.bodies.dimension = 4; }},
-      {"counts of bodies are wrong", [](Call& c) { c.bodies.owned_count = -1; }},
-      {"counts of bodies are wrong", [](Call& c) { c.bodies.count = c.bodies.owned_count - 1; }},
-      {"count is above 2^31 - 2", [](Call& c) { c.bodies.count = std::int64_t{1} << 60; }},
-      {"an output of bodies has floats or a stride of 0", [](Call& c) { c.bodies.velocity.node_stride = 0; }},
-      {"an output of bodies has floats or a stride of 0", [](Call& c) { c.bodies.impulse.floats = &single; }},
-      {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.inverse_mass = {}; }},
-      {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.v_free = {}; }},
-      {"bodies rotate in dimension 3 alone", [](Call& c) { c.bodies.dimension = 2; }},
-      {"spin_free is missing", [](Call& c) { c.bodies.spin_free = {}; }},
-      {"spin_previous is missing", [](Call& c) { c.bodies.spin_previous = {}; }},
-      {"the struct_size of contacts is not that of any version", [](Call& c) { c.contacts.struct_size = 8; }},
-      {"a batch is missing, or its struct_size is wrong", [](Call& c) { c.contacts.batch = nullptr; }},
-      {"law or instance is null", [](Call& c) { c.contacts.law = nullptr; }},
-      {"law or instance is null", [](Call& c) { c.contacts.instance = nullptr; }},
-      {"delassus_form is neither scalar, transverse nor full",
-       [](Call& c) { c.contacts.delassus_form = ILAW_DELASSUS_DIAGONAL; }},
-      {"node_count is negative", [](Call& c) { c.batch.node_count = -1; }},
-      {"node_count is above 2^31 - 2", [](Call& c) { c.batch.node_count = std::int64_t{1} << 60; }},
-      {"impulse has a stride of 0", [](Call& c) { c.batch.impulse.node_stride = 0; }},
-      {"energy has a stride of 0", [](Call& c) { c.batch.energy.component_stride = 0; }},
-      {"state_out has a stride of 0", [](Call& c) { c.batch.state_out.node_stride = 0; }},
-      {"status_stride is 0",
-       [](Call& c) {
-         c.batch.status = &one_status;
-         c.batch.status_stride = 0;
-       }},
-      {"contacts have no list of nodes", [](Call& c) { c.batch.index = list; }},
-      {"body or counterpart is missing", [](Call& c) { c.contacts.body = nullptr; }},
-      {"body or counterpart is missing", [](Call& c) { c.contacts.counterpart = nullptr; }},
-      {"impulse is missing", [](Call& c) { c.batch.impulse = {}; }},
-      {"state_in or state_out is missing", [](Call& c) { c.batch.state_in = {}; }},
-      {"state_in or state_out is missing", [](Call& c) { c.batch.state_out = {}; }},
-      {"the law reads v_previous, which the bodies do not have", [](Call& c) { c.bodies.v_previous = {}; }},
-      {"bodies rotate, so delassus_form has to be transverse or full",
-       [](Call& c) { c.contacts.delassus_form = ILAW_DELASSUS_SCALAR; }},
-      {"bodies rotate, and an arm is missing", [](Call& c) { c.contacts.arm = {}; }},
-      {"bodies rotate, and an arm is missing", [](Call& c) { c.contacts.counterpart_arm = {}; }},
-      {"delassus_form is transverse, and bodies are no spheres",
-       [](Call& c) {
-         c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
-         c.bodies.inverse_inertia = ilaw::input(six, 0, 1);
-       }},
-      {"delassus_form is transverse, and the normal is missing", [](Call& c) {
-         c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
-         c.batch.normal = {};
-       }}};
-  Scene scene = cube(tie(), 1);
+struct Mistake {
+  const char* said;
+  void (*spoil)(Call&);
+};
+
+void expect_refused(Scene& scene, std::initializer_list<Mistake> mistakes) {
   const std::vector<double> before = scene.v;
-  for (const auto& mistake : mistakes) {
+  for (const Mistake& mistake : mistakes) {
     Call call{scene.bodies(), {}, scene.batch()};
     call.contacts = scene.contacts(call.batch);
     mistake.spoil(call);
@@ -95,6 +43,94 @@ TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
     ilaw_coupled_destroy(solver);
   }
   EXPECT_EQ(scene.v, before);
+}
+
+TEST(Coupled, SaysWhatIsWrongWithSpins) {
+  static const double six[6] = {1, 1, 1, 0, 0, 0};
+  Scene scene = cube(rolling(), 1, ILAW_DELASSUS_TRANSVERSE_SPIN);
+  scene.arm[1] += 1e-3;
+  expect_refused(scene, {{"delassus_form is transverse, and an arm is not along the normal", [](Call&) {}}});
+  scene.arm[1] -= 1e-3;
+  expect_refused(scene,
+                 {{"delassus_form has spins, and moment is missing", [](Call& c) { c.batch.moment = {}; }},
+                  {"delassus_form has spins, and moment is missing",
+                   [](Call& c) { c.batch.struct_size = ILAW_BATCH_SIZE_1_0; }},
+                  {"moment has a stride of 0", [](Call& c) { c.batch.moment.node_stride = 0; }},
+                  {"delassus_form has spins; expected one body on either side, without weights",
+                   [](Call& c) { c.contacts.body_weight = ilaw::input(six, 0, 0); }},
+                  {"delassus_form has spins, and bodies do not rotate: inverse_inertia is missing",
+                   [](Call& c) { c.bodies.inverse_inertia = {}; }},
+                  {"delassus_form is transverse, and bodies are no spheres",
+                   [](Call& c) { c.bodies.inverse_inertia = ilaw::input(six, 0, 1); }},
+                  {"delassus_form is transverse, and bodies have masses per axis",
+                   [](Call& c) { c.bodies.inverse_mass = ilaw::input(six, 0, 1); }}});
+}
+
+TEST(Coupled, SaysWhatIsWrongWithWhatItWasGiven) {
+  static const double six[6] = {1, 1, 1, 0, 0, 0};
+  static float single = 0.0F;
+  static std::uint8_t one_status = 0;
+  static const std::int32_t list[1] = {0};
+  Scene scene = cube(tie(), 1);
+  expect_refused(
+      scene,
+      {{"bodies are missing, or their struct_size is wrong", [](Call& c) { c.bodies.struct_size = 8; }},
+       {"dimension is not 1, 2 or 3", [](Call& c) { c.bodies.dimension = 0; }},
+       {"dimension is not 1, 2 or 3", [](Call& c) { c.bodies.dimension = 4; }},
+       {"counts of bodies are wrong", [](Call& c) { c.bodies.owned_count = -1; }},
+       {"counts of bodies are wrong", [](Call& c) { c.bodies.count = c.bodies.owned_count - 1; }},
+       {"count is above 2^31 - 2", [](Call& c) { c.bodies.count = std::int64_t{1} << 60; }},
+       {"an output of bodies has floats or a stride of 0",
+        [](Call& c) { c.bodies.velocity.node_stride = 0; }},
+       {"an output of bodies has floats or a stride of 0",
+        [](Call& c) { c.bodies.impulse.floats = &single; }},
+       {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.inverse_mass = {}; }},
+       {"inverse_mass or v_free is missing", [](Call& c) { c.bodies.v_free = {}; }},
+       {"bodies rotate in dimension 3 alone", [](Call& c) { c.bodies.dimension = 2; }},
+       {"spin_free is missing", [](Call& c) { c.bodies.spin_free = {}; }},
+       {"spin_previous is missing", [](Call& c) { c.bodies.spin_previous = {}; }},
+       {"the struct_size of contacts is not that of any version",
+        [](Call& c) { c.contacts.struct_size = 8; }},
+       {"a batch is missing, or its struct_size is wrong", [](Call& c) { c.contacts.batch = nullptr; }},
+       {"law or instance is null", [](Call& c) { c.contacts.law = nullptr; }},
+       {"law or instance is null", [](Call& c) { c.contacts.instance = nullptr; }},
+       {"delassus_form is neither scalar, transverse, transverse_spin nor full",
+        [](Call& c) { c.contacts.delassus_form = ILAW_DELASSUS_DIAGONAL; }},
+       {"node_count is negative", [](Call& c) { c.batch.node_count = -1; }},
+       {"node_count is above 2^31 - 2", [](Call& c) { c.batch.node_count = std::int64_t{1} << 60; }},
+       {"impulse has a stride of 0", [](Call& c) { c.batch.impulse.node_stride = 0; }},
+       {"energy has a stride of 0", [](Call& c) { c.batch.energy.component_stride = 0; }},
+       {"state_out has a stride of 0", [](Call& c) { c.batch.state_out.node_stride = 0; }},
+       {"status_stride is 0",
+        [](Call& c) {
+          c.batch.status = &one_status;
+          c.batch.status_stride = 0;
+        }},
+       {"contacts have no list of nodes", [](Call& c) { c.batch.index = list; }},
+       {"body or counterpart is missing", [](Call& c) { c.contacts.body = nullptr; }},
+       {"body or counterpart is missing", [](Call& c) { c.contacts.counterpart = nullptr; }},
+       {"impulse is missing", [](Call& c) { c.batch.impulse = {}; }},
+       {"state_in or state_out is missing", [](Call& c) { c.batch.state_in = {}; }},
+       {"state_in or state_out is missing", [](Call& c) { c.batch.state_out = {}; }},
+       {"the law reads v_previous, which the bodies do not have", [](Call& c) { c.bodies.v_previous = {}; }},
+       {"bodies rotate, so delassus_form has to be transverse or full",
+        [](Call& c) { c.contacts.delassus_form = ILAW_DELASSUS_SCALAR; }},
+       {"bodies rotate, and an arm is missing", [](Call& c) { c.contacts.arm = {}; }},
+       {"bodies rotate, and an arm is missing", [](Call& c) { c.contacts.counterpart_arm = {}; }},
+       {"delassus_form is transverse, and bodies are no spheres",
+        [](Call& c) {
+          c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
+          c.bodies.inverse_inertia = ilaw::input(six, 0, 1);
+        }},
+       {"delassus_form is transverse, and the normal is missing",
+        [](Call& c) {
+          c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE;
+          c.batch.normal = {};
+        }},
+       {"delassus_form has spins, which the law does not serve", [](Call& c) {
+          c.contacts.delassus_form = ILAW_DELASSUS_TRANSVERSE_SPIN;
+          c.batch.moment = c.batch.impulse;
+        }}});
 }
 
 TEST(Coupled, AnswersCallsOfNothing) {

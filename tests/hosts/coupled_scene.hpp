@@ -54,6 +54,7 @@ struct Scene {
       other_arm.push_back(radius * component);
     }
     impulse.resize(3 * body.size());
+    moment.resize(3 * body.size());
     energy.resize(4 * body.size());
   }
 
@@ -75,6 +76,7 @@ struct Scene {
     b.state_in = ilaw::input(state.data(), size, 1);
     b.state_out = ilaw::output(state.data(), size, 1);
     b.impulse = ilaw::output(impulse.data(), 3, 1);
+    if (form == ILAW_DELASSUS_TRANSVERSE_SPIN) b.moment = ilaw::output(moment.data(), 3, 1);
     b.energy = ilaw::output(energy.data(), 4, 1);
     return b;
   }
@@ -146,18 +148,25 @@ struct Scene {
   ilaw::coupled solver;
   std::vector<double> v, w, v_before, w_before;
   std::vector<std::int32_t> body, counterpart;
-  std::vector<double> gap, normal, arm, other_arm, impulse, state, energy;
+  std::vector<double> gap, normal, arm, other_arm, impulse, moment, state, energy;
   double inverse_mass = 0.5, inverse_inertia = 2.5 * inverse_mass / (radius * radius), area = 1.0, time = 0.0;
 };
 
 inline ilaw::interface friction(double mu) {
   return create("coulomb", ILAW_DELASSUS_FULL, {{"friction", mu}});
 }
+// Of spheres whose contacts have moments.
+inline ilaw::interface rolling() {
+  return create(
+      "rolling", ILAW_DELASSUS_TRANSVERSE_SPIN,
+      {{"friction", 0.4}, {"rolling_friction", 0.05 * radius}, {"twisting_friction", 0.02 * radius}});
+}
 inline ilaw::interface tie() { return create("tie", ILAW_DELASSUS_FULL); }
 
 // 27 spheres in a cube, one against the next along the axes; `law` between them.
-inline Scene cube(ilaw::interface law, unsigned seed) {
+inline Scene cube(ilaw::interface law, unsigned seed, std::uint32_t form = ILAW_DELASSUS_FULL) {
   Scene scene(std::move(law), 27);
+  scene.form = form;
   for (int i = 0; i < 27; ++i) {
     const int at[3] = {i % 3, i / 3 % 3, i / 9};
     const int stride[3] = {1, 3, 9};

@@ -159,14 +159,15 @@ ilaw_exchange exchange_of(Rank& rank) {
 }
 
 // The rank's share of a scene: its own bodies first, the contacts whose body it owns.
-void run_rank(Ranks& ranks, int number, const Scene& whole, std::vector<double>& velocities,
-              ilaw_coupled_report& report) {
+void run_rank(Ranks& ranks, int number, const Scene& whole, ilaw::interface (*law)(),
+              std::vector<double>& velocities, ilaw_coupled_report& report) {
   const std::int32_t count = static_cast<std::int32_t>(whole.v.size() / 3), half = 11;
   Rank rank{&ranks, number, {}};
   const std::int32_t owned = number == 0 ? half : count - half;
   for (std::int32_t i = 0; i < count; ++i)
     rank.local_of.push_back(number == 0 ? i : i < half ? owned + i : i - half);
-  Scene part(friction(0.4), static_cast<std::size_t>(count));
+  Scene part(law(), static_cast<std::size_t>(count));
+  part.form = whole.form;
   for (std::int32_t i = 0; i < count; ++i)
     for (std::size_t c = 0; c < 3; ++c) {
       const auto to = static_cast<std::size_t>(3 * rank.local_of[static_cast<std::size_t>(i)]) + c;
@@ -189,30 +190,39 @@ void run_rank(Ranks& ranks, int number, const Scene& whole, std::vector<double>&
   ilaw_bodies bodies = part.bodies();
   bodies.owned_count = owned;
   report = part.solver.solve(bodies, groups, options);
-  velocities.resize(whole.v.size());
-  for (std::size_t i = 0; i < rank.local_of.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      velocities[3 * i + c] = part.v[3 * static_cast<std::size_t>(rank.local_of[i]) + c];
+  velocities.clear();
+  for (const std::vector<double>* of : {&part.v, &part.w})
+    for (const std::int32_t local : rank.local_of)
+      for (std::size_t c = 0; c < 3; ++c)
+        velocities.push_back((*of)[3 * static_cast<std::size_t>(local) + c]);
 }
 
-TEST(Coupled, RanksAgreeToTheTolerance) {
-  Scene whole = cube(friction(0.4), 11);
-  const Scene start = cube(friction(0.4), 11);
+void expect_ranks_agree(ilaw::interface (*law)(), std::uint32_t form) {
+  Scene whole = cube(law(), 11, form);
+  const Scene start = cube(law(), 11, form);
   const ilaw_coupled_report alone = whole.step(0.0, 1e-11);
   Ranks ranks;
   std::vector<double> found[2];
   ilaw_coupled_report reports[2];
-  std::thread second(run_rank, std::ref(ranks), 1, std::cref(start), std::ref(found[1]),
+  std::thread second(run_rank, std::ref(ranks), 1, std::cref(start), law, std::ref(found[1]),
                      std::ref(reports[1]));
-  run_rank(ranks, 0, start, found[0], reports[0]);
+  run_rank(ranks, 0, start, law, found[0], reports[0]);
   second.join();
+  std::vector<double> motion = whole.v;
+  motion.insert(motion.end(), whole.w.begin(), whole.w.end());
   EXPECT_EQ(found[0], found[1]) << "copies differ from what their owners have";
-  EXPECT_LE(largest_difference(found[0], whole.v), 1e-9);
+  EXPECT_LE(largest_difference(found[0], motion), 1e-9);
   EXPECT_LE(alone.residual, 1e-11);
   EXPECT_LE(reports[0].residual, 1e-11);
   EXPECT_EQ(reports[0].sweeps, reports[1].sweeps);
   EXPECT_EQ(reports[0].residual, reports[1].residual);
   EXPECT_NEAR(reports[0].work + reports[1].work, alone.work, 1e-9 * std::fabs(alone.work));
+}
+
+TEST(Coupled, RanksAgreeToTheTolerance) {
+  expect_ranks_agree(
+      +[] { return friction(0.4); }, ILAW_DELASSUS_FULL);
+  expect_ranks_agree(rolling, ILAW_DELASSUS_TRANSVERSE_SPIN);
 }
 
 TEST(Coupled, RefusesWhatItCannotSolve) {

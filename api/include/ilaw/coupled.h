@@ -45,7 +45,7 @@ typedef struct ilaw_bodies {
   ilaw_output velocity;        /* d, optional: v_free with all impulses; may be the array of v_free */
   ilaw_output spin;            /* 3, optional: may be the array of spin_free */
   ilaw_output impulse;         /* d, optional: sum of the impulses at the body [N.s] */
-  ilaw_output angular_impulse; /* 3, optional: their moment about its centre [N.m.s] */
+  ilaw_output angular_impulse; /* 3, optional: their moment about its centre, with the moments [N.m.s] */
 } ilaw_bodies;
 
 /* The contacts that have one law. A contact has one body on either side, or a weighted set of bodies, such as
@@ -55,12 +55,15 @@ typedef struct ilaw_contacts {
   uint32_t struct_size;
   ilaw_delassus_forms delassus_form; /* the instance was created with: ILAW_DELASSUS_SCALAR where nothing
                                     rotates, ILAW_DELASSUS_TRANSVERSE for spheres with arms along the normal,
-                                    else ILAW_DELASSUS_FULL */
+                                    ILAW_DELASSUS_TRANSVERSE_SPIN for the same with moments (1.1; one body on
+                                    either side, no weights), else ILAW_DELASSUS_FULL */
   const ilaw_law* law;           /* ilaw_interface_law, ilaw_interface_instance of an interface that was */
   const ilaw_instance* instance; /* created for ILAW_FRAME_GLOBAL and ILAW_NUMBERS_DOUBLE */
-  /* As for evaluate, but without v_free, delassus, v_previous, velocity and lists of nodes: contacts 0 to
-   * node_count - 1. impulse is read, too: the iterations begin with it. Leave there what the last step left
-   * (times the new step over the old one, where it changes), and zero at contacts that are new. */
+  /* As for evaluate, but without v_free, delassus, v_previous, velocity, spin_free, spin_previous, spin and
+   * lists of nodes: contacts 0 to node_count - 1. impulse is read, too, and moment where the form has spins:
+   * the iterations begin with them. Leave there what the last step left (times the new step over the old
+   * one, where it changes), and zero at contacts that are new. The moment acts at the body, its opposite at
+   * the counterpart. */
   const ilaw_batch* batch;
   const int32_t* body;        /* per contact the body into which the normal points, from index_base of the
                                  batch on; with body_count b, b entries per contact */
@@ -79,7 +82,10 @@ typedef struct ilaw_contacts {
   ilaw_input body_weight;
   ilaw_input counterpart_weight;
   uint32_t weight_size;
-  uint32_t reserved; /* 0 */
+  uint32_t reserved;    /* 0 */
+  ilaw_input wall_spin; /* 3, optional (1.1), read where the form has spins: subtracted from the relative spin
+                           of the contact, which is the body's less the counterpart's, as wall_velocity is */
+  ilaw_input wall_spin_previous; /* 3, optional (1.1): of the step before; absent: as wall_spin */
 } ilaw_contacts;
 
 /* Callbacks of the host, in exchange. */
@@ -129,8 +135,9 @@ typedef struct ilaw_coupled_report {
   uint32_t struct_size;
   uint32_t sweeps;                  /* iterations */
   double residual;                  /* largest |H dr| over the contacts in the last iteration, relative to the
-                                       largest velocity of a contact, before or by an impulse */
-  double work;                      /* of all impulses over the step, with the final velocities [J] */
+                                       largest velocity of a contact, before or by an impulse. A spin counts
+                                       as a velocity, times the root of h/j: the means of H and J */
+  double work;                      /* of all impulses and moments, with the final velocities [J] */
   double energy[ILAW_ENERGY_COUNT]; /* sums over contacts, 0 where a batch has no energy array */
   int64_t bad_count;                /* contacts with bad input */
   int64_t bad_group;                /* of the first of them, or of the group that was refused; -1: none */

@@ -62,6 +62,8 @@ class contacts(ctypes.Structure):
         ("counterpart_weight", _abi.input),
         ("weight_size", c_uint32),
         ("reserved", c_uint32),
+        ("wall_spin", _abi.input),
+        ("wall_spin_previous", _abi.input),
     ]
 
 

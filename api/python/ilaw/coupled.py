@@ -123,7 +123,8 @@ class Bodies(NotCopied):
       owned                           number of bodies, the first ones, that this rank owns; all without ranks
       id (n,)                         global numbers of the bodies, in whose order contacts are visited
     Outputs, made here or given: velocity (n, d) and spin (n, 3), which may be the arrays of v_free and spin_free;
-    impulse (n, d) [N.s] and angular_impulse (n, 3) [N.m.s], sums over contacts: True or an array to have them.
+    impulse (n, d) [N.s] and angular_impulse (n, 3) [N.m.s], sums over contacts: True or an array to have them. The
+    moments of contacts are part of angular_impulse.
     """
 
     def __init__(
@@ -199,18 +200,22 @@ def _entries(bodies: Any) -> int:
 class Contacts(NotCopied):
     """The contacts that have one law. k is their number, d the dimension.
 
-    law: an `Interface` for the global frame, with delassus "full" where bodies rotate, else "scalar".
+    law: an `Interface` for the global frame, with delassus "full" where bodies rotate, "transverse" for spheres whose
+                                    arms are along the normal, "transverse_spin" for these with moments, else "scalar"
     body (k,), counterpart (k,)     numbers of bodies: the normal points from the counterpart into the body; a
                                     counterpart -1 is a wall. int32 is taken where it is
     gap (k,) [m], normal (k, d), gap_offset, area, tangent: as of `ilaw.Batch`
     arm, counterpart_arm (k, 3) [m] from the centre of each of the two to the contact, where bodies rotate
     wall_velocity, wall_previous (k, d) [m/s]   subtracted from the contact's velocity: of walls and belts, the mean
                                     over this step and the one before
+    wall_spin, wall_spin_previous (k, 3) [1/s]  where H has spins: subtracted from the contact's spin, which is that
+                                    of the body less that of the counterpart
     body (k, b), counterpart (k, c) with body_weight (k, b), counterpart_weight (k, c): weighted sets of bodies, such
                                     as facets; -1: no body
     Outputs, made here or given: impulse (k, d) [N.s], which the sweeps also begin with: leave there what the last
-    step left, and zero at new contacts; state (k, state_size); energy (k, 4) [J]: True or an array to have it;
-    status (k,), uint8.
+    step left, and zero at new contacts; moment (k, 3) [N.m.s] likewise, where H has spins: it acts on the body, its
+    opposite on the counterpart; state (k, state_size); energy (k, 4) [J]: True or an array to have it; status (k,),
+    uint8.
     """
 
     def __init__(
@@ -228,9 +233,12 @@ class Contacts(NotCopied):
         counterpart_arm: Any = None,
         wall_velocity: Any = None,
         wall_previous: Any = None,
+        wall_spin: Any = None,
+        wall_spin_previous: Any = None,
         body_weight: Any = None,
         counterpart_weight: Any = None,
         impulse: NDArray[np.float64] | None = None,
+        moment: NDArray[np.float64] | None = None,
         state: NDArray[np.float64] | None = None,
         energy: NDArray[np.float64] | bool = False,
     ) -> None:
@@ -263,7 +271,11 @@ class Contacts(NotCopied):
             made.read(name, value, entries, self._struct)
         for name, value in {"wall_velocity": wall_velocity, "wall_previous": wall_previous}.items():
             made.read(name, value, d, self._struct)
+        for name, value in {"wall_spin": wall_spin, "wall_spin_previous": wall_spin_previous}.items():
+            made.read(name, value, 3, self._struct)
         self.impulse = made.write("impulse", impulse, d)
+        has_spins = law.delassus.lower() == "transverse_spin"
+        self.moment = made.write("moment", moment, 3) if has_spins else None
         self.state = made.write("state", state, law.state_size, "state_out")
         self._batch.state_in = arrays.read("state", self.state, count, law.state_size)
         self.energy = made.write("energy", energy, _abi.ENERGY_COUNT)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""fix ilaw/pair and fix ilaw/wall in the system's lmp, on one and two ranks: closed forms, runs that go on, restarts."""
+"""fix ilaw/pair and fix ilaw/wall in the system's lmp, on one to four ranks: closed forms, runs that go on, restarts."""
 import math
 import os
 import pathlib
@@ -168,6 +168,13 @@ def test_a_bond_goes_with_its_grains_to_another_rank(tmp_path, ranks):
     assert_bonded(read(tmp_path, "bonded"))
 
 
+RESISTING = "coulomb friction 0.3", "rolling friction 0.3 rolling_friction 0.02 twisting_friction 0.01"
+# Two sweeps of a step do not find the moments anew.
+RESISTING_PAIRS = f"fix p all ilaw/pair {RESISTING[1]} sweeps 2\n"
+SPUN = ("variable s atom 20*sin(id)\nvariable c atom 20*cos(2*id)\nset group all omega v_s v_c v_s\n"
+        "velocity all set 0 0 -1\n")
+
+
 def restarted(step=100):
     return BEGIN.replace("atom_style sphere\n", "").replace("boundary f f f\n", "").replace(
         "newton off\natom_modify map array", f"newton off\nread_restart half.{step}")
@@ -175,13 +182,21 @@ def restarted(step=100):
 
 @pytest.mark.parametrize("begin, fixes, steps", [
     (BEGIN + BOX + grains(1.05) + MASS, INTEGRATE + WALLS + "fix p all ilaw/pair coulomb friction 0.3\n", 200),
-    (PAIR, FLIGHT, 500)], ids=["pile", "bond"])
+    (BEGIN + BOX + grains(1.05) + MASS + SPUN, INTEGRATE + WALLS.replace(*RESISTING) + RESISTING_PAIRS, 200),
+    (PAIR, FLIGHT, 500)], ids=["pile", "moments", "bond"])
 def test_a_restart_goes_on_as_if_nothing_had_been(tmp_path, begin, fixes, steps):
     lammps(tmp_path, begin + fixes + f"restart 100 half\nrun {steps}\n" + state("on"))
     lammps(tmp_path, restarted() + fixes + f"run {steps - 100}\n" + state("again"))
     assert difference(read(tmp_path, "on"), read(tmp_path, "again")) < 1e-12
     if steps == 500:
         assert_bonded(read(tmp_path, "again"))
+
+
+def test_a_restart_does_not_give_moments_to_a_law_without(tmp_path):
+    begin, pairs = BEGIN + BOX + grains(1.05) + MASS + INTEGRATE, "fix p all ilaw/pair {}\n"
+    lammps(tmp_path, begin + pairs.format(RESISTING[1]) + "restart 100 half\nrun 100\n")
+    with pytest.raises(RuntimeError, match="states of another law, version or memory"):
+        lammps(tmp_path, restarted() + INTEGRATE + pairs.format(RESISTING[0]) + "run 1\n")
 
 
 def last_whole_restart(tmp_path, running):
@@ -224,6 +239,169 @@ def test_tied_grains_move_as_one(tmp_path):
     assert rows[-1][2] < 5e-3, "residual"
 
 
+# A solid ball of 0.3 kg and 5 cm on a plane, as in tests/laws/rolling: closed forms of rolling and twisting resistance.
+RADIUS, MASS_OF_BALL, GRAVITY, RHO, TAU = 0.05, 0.3, 9.81, 0.002, 0.001
+ROLLING = f"rolling friction 0.5 rolling_friction {RHO} twisting_friction {TAU}"
+STEPS_OF_BALLS = ["1e-4", "3.7e-4", "7.3e-4"]
+
+
+def balls(dt, *places, law=ROLLING, wall="plane 0 0 0 0 0 1"):
+    """Balls at rest on a wall, without forces."""
+    begin = BEGIN.replace("1.2", "0.12").replace("neighbor 0.3", "neighbor 0.03")
+    return (begin.replace("timestep 1e-3", f"timestep {dt}")
+            + "region box block -1 3 -1 1 -0.2 0.3 units box\ncreate_box 1 box\n"
+            + "".join(f"create_atoms 1 single {x} {y} {RADIUS} units box\n" for x, y in places)
+            + f"set type 1 diameter {2 * RADIUS} density {MASS_OF_BALL / (4 / 3 * math.pi * RADIUS**3)!r}\n"
+            + "".join(f"group ball{k} id {k}\n" for k in range(1, len(places) + 1))
+            + "pair_coeff * *\nfix nve all nve/sphere\nthermo_modify norm no\n", f"fix w all ilaw/wall {law} {wall}\n")
+
+
+def pull(ball, slope=0.0):
+    """Gravity on a plane that falls by this angle along x."""
+    return f"fix g{ball} ball{ball} gravity {GRAVITY} vector {math.sin(slope)!r} 0 {-math.cos(slope)!r}\n"
+
+
+def steps_until(time, dt):
+    return round(time / float(dt))
+
+
+# While it rolls 7/5 a = -rho g/R. The velocity of each step is that of its middle: the sum errs by a h^2/8 at most.
+@pytest.mark.parametrize("dt", STEPS_OF_BALLS)
+def test_a_ball_rolls_out(tmp_path, dt):
+    begin, wall = balls(dt, (0, 0))
+    lammps(tmp_path, begin + pull(1) + f"velocity all set 1 0 0\nset atom 1 omega 0 {1 / RADIUS} 0\n" + wall
+           + f"run {steps_until(4, dt)}\n" + state("end") + "variable lost equal f_w[6]+f_w[7]\n"
+           + "print \"$(v_lost:%.17g)\" file lost\n")
+    (_, x, y, z, *motion), = read(tmp_path, "end")
+    a = RHO * GRAVITY / (1.4 * RADIUS)
+    assert 0.5 / a == pytest.approx(1.783894, abs=1e-6)
+    assert x == pytest.approx(0.5 / a, abs=a * float(dt) ** 2 / 8 + 1e-10)
+    assert max(map(abs, [y, z - RADIUS, *motion])) < 1e-13
+    assert float((tmp_path / "lost").read_text()) == pytest.approx(0.7 * MASS_OF_BALL, rel=1e-11)
+
+
+# rho m g cos holds R m g sin; above that 7/5 a = g (sin - rho/R cos).
+@pytest.mark.parametrize("dt", STEPS_OF_BALLS)
+def test_rolling_resistance_holds_a_ball_on_a_slope_up_to_a_limit(tmp_path, dt):
+    begin, wall = balls(dt, (0, -0.5), (0, 0.5))
+    limit, steps = math.atan(RHO / RADIUS), steps_until(1, dt)
+    lammps(tmp_path, begin + pull(1, 0.98 * limit) + pull(2, 1.02 * limit) + wall + f"run {steps}\n" + state("end"))
+    below, above = read(tmp_path, "end")
+    assert max(map(abs, [below[1], *below[4:]])) < 1e-14
+    a = GRAVITY / 1.4 * (math.sin(1.02 * limit) - RHO / RADIUS * math.cos(1.02 * limit))
+    time = steps * float(dt)
+    assert above[4] == pytest.approx(a * time, rel=1e-9)
+    assert above[1] == pytest.approx(a * time**2 / 2, rel=1e-9)
+    assert RADIUS * above[8] == pytest.approx(a * time, rel=1e-9)
+
+
+# I dw/dt = -tau m g stops it after (2/5) R^2 w0/(tau g).
+@pytest.mark.parametrize("dt", STEPS_OF_BALLS)
+def test_a_top_spins_down(tmp_path, dt):
+    begin, wall = balls(dt, (0, 0))
+    stops = 0.4 * RADIUS**2 * 30 / (TAU * GRAVITY)
+    early = steps_until(0.7 * stops, dt)
+    lammps(tmp_path, begin + pull(1) + "set atom 1 omega 0 0 30\n" + wall + f"run {early}\n" + state("early")
+           + f"run {steps_until(stops, dt) + 2 - early}\n" + state("end"))
+    assert read(tmp_path, "early")[0][9] == pytest.approx(30 * (1 - early * float(dt) / stops), rel=1e-10)
+    assert max(map(abs, read(tmp_path, "end")[0][4:])) < 1e-12
+
+
+# Pressed together by F: one pair turns like two gears, the other about the line of its centres. Each grain loses
+# rho F or tau F of its spin's moment, the other grain's being the opposite.
+@pytest.mark.parametrize("dt, ranks", zip(STEPS_OF_BALLS, (1, 2, 4)))
+def test_moments_act_on_both_grains_of_a_pair(tmp_path, dt, ranks):
+    force, spin = 2.0, 10.0
+    inertia = 0.4 * MASS_OF_BALL * RADIUS**2
+    steps = steps_until(0.5 * inertia * spin / (RHO * force), dt)
+    begin, _ = balls(dt, (0.95, -0.5), (1.05, -0.5), (0.95, 0.5), (1.05, 0.5))
+    text = (f"processors {min(ranks, 2)} * 1\n" + begin + f"set atom 1 omega 0 0 {spin}\nset atom 2 omega 0 0 -{spin}\n"
+            + f"set atom 3 omega {spin} 0 0\nset atom 4 omega -{spin} 0 0\n"
+            + "group left id 1 3\ngroup right id 2 4\n"
+            + f"fix l left addforce {force} 0 0\nfix r right addforce -{force} 0 0\n"
+            + f"fix p all ilaw/pair {ROLLING}\nrun {steps}\n" + state("half")
+            + f"run {steps_until(inertia * spin / (TAU * force), dt)}\n" + state("end")
+            + "variable lost equal f_p[6]\nprint \"$(v_lost:%.17g)\" file lost\n")
+    lammps(tmp_path, text, ranks)
+    rolls, twists = (spin - moment * force * steps * float(dt) / inertia for moment in (RHO, TAU))
+    half = read(tmp_path, "half")
+    expected = [(0, 0, rolls), (0, 0, -rolls), (twists, 0, 0), (-twists, 0, 0)]
+    for row, spins in zip(half, expected):
+        assert row[7:] == pytest.approx(spins, abs=1e-9)
+        assert max(map(abs, row[4:7])) < 1e-12
+    assert max(abs(number) for row in read(tmp_path, "end") for number in row[4:]) < 1e-11
+    assert float((tmp_path / "lost").read_text()) == pytest.approx(4 * 0.5 * inertia * spin**2, rel=1e-10)
+
+
+def test_ranks_agree_on_moments_to_the_tolerance(tmp_path):
+    for ranks in (1, 2, 4):
+        processors = f"processors {min(ranks, 2)} * 1\n"
+        lammps(tmp_path, processors + pile(sweeps="sweeps 2000 tol 1e-12").replace(*RESISTING) + SPUN
+               + "run 150\n" + state(f"on{ranks}"), ranks)
+    alone = read(tmp_path, "on1")
+    assert max(abs(row[7]) for row in alone) > 1, "nothing spins"
+    for ranks in (2, 4):
+        assert difference(alone, read(tmp_path, f"on{ranks}")) < 1e-7
+
+
+# A step begins with the moments of the last: 7 iterations, and 19 without.
+def test_a_pile_at_rest_needs_few_iterations(tmp_path):
+    text = pile(sweeps="sweeps 2000 tol 1e-8").replace(*RESISTING)
+    rows = thermo(lammps(tmp_path, text + "thermo_style custom step f_p[1] f_p[2]\nthermo 600\nrun 600\n"))
+    assert rows[-1][1] > 10 and rows[-1][2] < 12
+
+
+# Grains collide and fly apart: without other forces what they lose is what friction, rolling and twisting take.
+@pytest.mark.parametrize("dt", ["1e-3", "7.3e-4", "3.1e-4"])
+def test_moments_dissipate_what_the_grains_lose(tmp_path, dt):
+    text = (BEGIN.replace("timestep 1e-3", f"timestep {dt}")
+            + "region box block -20 20 -20 20 -20 20\ncreate_box 1 box\n" + grains(1.2) + MASS + "pair_coeff * *\nfix nve all nve/sphere\n"
+            + "variable inward atom 1.7-x\nvelocity all set v_inward 1 0.5\n"
+            + "variable spin atom 5*sin(id)\nset group all omega v_spin v_spin v_inward\n"
+            + "compute spins all erotate/sphere\ncompute flight all ke\nvariable energy equal c_flight+c_spins\n"
+            + f"fix p all ilaw/pair {RESISTING[1]} restitution 0.5 sweeps 2000 tol 1e-12\n"
+            + "thermo_style custom step v_energy f_p[1] f_p[6] f_p[7]\n"
+            + f"thermo_modify format float %.15g\nthermo {steps_until(3, dt)}\nrun {steps_until(3, dt)}\n")
+    first, last = thermo(lammps(tmp_path, text))
+    assert last[2] == 0, "they still touch"
+    assert last[3] > 0.1 and last[1] + last[3] + last[4] == pytest.approx(first[1], rel=1e-9)
+
+
+# A ball that rolls on a turntable moves on a circle at 2/7 of its angular velocity (Burns 1981); a ball at its axis
+# is spun up by twisting friction, I dw/dt = tau m g.
+@pytest.mark.parametrize("dt", STEPS_OF_BALLS)
+def test_a_wall_that_spins_takes_balls_along(tmp_path, dt):
+    turns = 7.0
+    begin, wall = balls(dt, (0, 0), law=f"rolling friction 0.5 twisting_friction {TAU}",
+                        wall=f"plane 0 0 0 0 0 1 spin 0 0 {turns}")
+    steps = steps_until(0.5 * 0.4 * RADIUS**2 * turns / (TAU * GRAVITY), dt)
+    lammps(tmp_path, begin + pull(1) + wall + f"run {steps}\n" + state("up") + f"run {2 * steps}\n" + state("top"))
+    assert read(tmp_path, "up")[0][9] == pytest.approx(TAU * GRAVITY * steps * float(dt) / (0.4 * RADIUS**2), rel=1e-10)
+    assert read(tmp_path, "top")[0][9] == pytest.approx(turns, rel=1e-12)
+    assert max(map(abs, read(tmp_path, "top")[0][4:9])) < 1e-12
+
+    begin, wall = balls(dt, (0, 0.5), law="rolling friction 0.5", wall=f"plane 0 0 0 0 0 1 spin 0 0 {turns}")
+    # From rest it would slip: it begins with 2/7 of the table's velocity and rolls on it.
+    rolls = -turns * 0.5 * 2 / 7
+    spin = (rolls + turns * 0.5) / RADIUS
+    steps = steps_until(math.pi / (2 / 7 * turns), dt)
+    lammps(tmp_path, begin + pull(1) + f"velocity all set {rolls!r} 0 0\nset atom 1 omega 0 {spin!r} 0\n" + wall
+           + f"run {steps}\n" + state("half"))
+    angle = 2 / 7 * turns * steps * float(dt)
+    (_, x, y, *_), = read(tmp_path, "half")
+    assert (x, y) == pytest.approx((-0.5 * math.sin(angle), 0.5 * math.cos(angle)), abs=20 * float(dt) ** 2)
+
+
+# A ball at the bottom of a drum that rolls on it as fast as the drum turns stays where it is.
+@pytest.mark.parametrize("shape", ["cylinder 0 0 0.2 1 0 0", "sphere 0 0 0.2"])
+def test_a_ball_rolls_in_place_in_a_drum(tmp_path, shape):
+    turns = 3.0
+    begin, wall = balls("1e-3", (0, 0), law="rolling friction 0.5", wall=f"{shape} 0.2 inside spin {turns} 0 0")
+    lammps(tmp_path, begin + pull(1) + f"set atom 1 omega {turns * 0.2 / RADIUS} 0 0\n" + wall + "run 1000\n"
+           + state("end"))
+    assert read(tmp_path, "end")[0][1:] == pytest.approx([0, 0, RADIUS, 0, 0, 0, turns * 0.2 / RADIUS, 0, 0], abs=1e-12)
+
+
 @pytest.mark.parametrize("wall, lowest", [("cylinder 1.6 1.6 1.6 1 0 0 1.5 inside", 0.6),
                                           ("sphere 1.6 1.6 1.6 1.5 inside", 0.6),
                                           ("sphere 1.6 1.6 -1 1.2 outside", 0.7),
@@ -247,6 +425,9 @@ def test_walls_hold_where_they_are(tmp_path, wall, lowest):
     (("tol 1e-10", "area nan tol 1e-10"), "area is nan; expected a finite number, 0 or above"),
     (("tol 1e-10", "area -1 tol 1e-10"), "area is -1"),
     (("fix nve all nve/sphere", "fix nve all nve"), "that fix nve/sphere moves, but fix nve does not rotate them"),
+    (("plane 0 0 0 0 0 1 ", "plane 0 0 0 0 0 1 spin 0 1 1 "), "the spin of a plane must be along its normal"),
+    (("friction 0.3 plane 0 0 0 0 0 1 ", "friction 0.3 spin 0 0 1 plane 0 0 0 0 0 1 "), "spin has to follow a wall"),
+    (("coulomb friction 0.3 sweeps", "coulomb friction 0.3 rolling_friction 0.1 sweeps"), "rolling_friction"),
     (("tol 1e-10\n", "tol 1e-10\nfix late all gravity 1 vector 1 0 0\n"), "fix late comes later"),
 ])
 def test_says_what_it_refuses(tmp_path, change, message):
@@ -278,6 +459,25 @@ def test_grazing_impacts_lose_what_friction_takes(tmp_path, dt):
         assert speed == pytest.approx((sine - cosine) / sine if slides else 5 / 7, abs=1e-12), degrees
         after = (sine - cosine) ** 2 + 3.5 * cosine**2 if slides else cosine**2 + 5 / 7 * sine**2
         assert energy == pytest.approx(after, abs=1e-12), degrees
+
+
+def last_row(tmp_path, name, example, **variables):
+    text = f"variable ilaw string {STYLES}\n" + "".join(f"variable {k} index {v}\n" for k, v in variables.items())
+    lammps(tmp_path, text + (EXAMPLES[0].parent / example).read_text())
+    return list(map(float, (tmp_path / name).read_text().splitlines()[-1].split()))
+
+
+def test_the_example_of_a_ball_has_the_figures_of_its_page(tmp_path):
+    assert last_row(tmp_path, "roll.txt", "in.roll")[1:] == pytest.approx([1.783894, 0, 0], abs=1e-6)
+    _, x, _, spin = last_row(tmp_path, "roll.txt", "in.roll", model="sds", dt="1e-4")
+    assert x == pytest.approx(1.7788, abs=1e-4) and spin > 0.05
+
+
+def test_a_heap_stays_with_rolling_resistance_and_flattens_without(tmp_path):
+    _, _, height, away, _ = last_row(tmp_path, "heap.txt", "in.heap", end=1)
+    assert height > 4 and away < 5
+    _, _, height, away, _ = last_row(tmp_path, "heap.txt", "in.heap", end=1, resistance=0)
+    assert height < 2 and away > 12
 
 
 @pytest.mark.parametrize("dt", ["3e-7", "7.3e-8", "1e-8"])

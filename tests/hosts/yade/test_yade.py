@@ -57,18 +57,59 @@ def test_a_slope_is_rolled_or_slid_down(figures):
     assert slid["a"] == pytest.approx(slid["g"] * (np.sin(slid["angle"]) - 0.1 * np.cos(slid["angle"])), rel=1e-9)
 
 
+# While it rolls 7/5 a = -rho g/R. Velocities lie half a step before places: the distance is h v0/2 less.
+def test_a_ball_rolls_out(figures):
+    a = 0.002 * 9.81 / (1.4 * 0.05)
+    for dt, found in figures["roll out"].items():
+        assert found["x"] == pytest.approx(0.125 / a - float(dt) / 4, abs=0.2 * float(dt) ** 2), dt
+        np.testing.assert_allclose(found["left"], 0, atol=1e-13, err_msg=dt)
+        assert found["lost"] == pytest.approx(1, abs=1e-11), dt
+
+
+def test_rolling_resistance_holds_a_ball_on_a_slope_up_to_a_limit(figures):
+    above_limit = 1.02 * np.arctan(0.04)
+    a = 9.81 / 1.4 * (np.sin(above_limit) - 0.04 * np.cos(above_limit))
+    for dt, (below, above) in figures["resisted slopes"].items():
+        assert max(map(abs, [below["x"], *below["motion"]])) < 1e-14, dt
+        speed = a * above["time"]
+        np.testing.assert_allclose(above["motion"], [speed, 0, 0, 0, speed, 0], atol=1e-11, err_msg=dt)
+
+
+def test_a_top_takes_the_spin_of_its_wall(figures):
+    for dt, found in figures["tops"].items():
+        assert found["spin"] == pytest.approx(found["expected"], rel=1e-10), dt
+        np.testing.assert_allclose(found["end"], [0, 0, 0, 0, 0, 0.05 * -5], atol=1e-12, err_msg=dt)
+
+
+def test_moments_act_on_both_spheres(figures):
+    for dt, found in figures["gears"].items():
+        expected = [[0, 0, found["expected"]], [0, 0, -found["expected"]]]
+        np.testing.assert_allclose(found["spins"], expected, atol=1e-10, err_msg=dt)
+        np.testing.assert_allclose(found["v"], 0, atol=1e-12, err_msg=dt)
+        assert found["lost"] == pytest.approx(1, abs=1e-9), dt
+
+
+# It moves on a circle, at 2/7 of the table's angular velocity (Burns 1981).
+def test_a_wall_that_spins_takes_a_ball_along(figures):
+    for dt, found in figures["turntables"].items():
+        circle = [-0.5 * np.sin(found["angle"]), 0.5 * np.cos(found["angle"])]
+        np.testing.assert_allclose(found["place"], circle, atol=float(dt), err_msg=dt)
+
+
 def test_a_column_stays(figures):
     found = figures["column"]
     assert found["moved"] < 1e-13
     assert found["carried"] == pytest.approx(5.0, rel=1e-10)
 
 
-def test_memory_goes_on_to_the_same_bits(figures):
-    whole, parts = figures["goes on"]
+@pytest.mark.parametrize("name", ["goes on", "goes on with moments"])
+def test_memory_goes_on_to_the_same_bits(figures, name):
+    whole, parts = figures[name]
     assert whole == parts and np.abs(whole).max() > 0.01
 
 
-@pytest.mark.parametrize("k, reason", enumerate(["damping=0", "body 1: single spheres and walls", "blockedDOFs 'z'"]))
+@pytest.mark.parametrize("k, reason", enumerate([
+    "damping=0", "body 1: single spheres and walls", "blockedDOFs 'z'", "body 1: angVel (1.0, 0.0, 0.0)"]))
 def test_what_is_not_served_is_refused(figures, k, reason):
     assert reason in figures["refused"][k]
 
@@ -82,6 +123,13 @@ def test_the_example_settles_beside_yades_own_law(tmp_path):
     assert [float(row[1]) for row in rows] == [2, 3, 0.08]
     assert 0 < float(rows[1][3].strip(" %")) < 5, rows
     assert all(float(row[5].strip(" %")) < bound for row, bound in zip(rows, (0.1, 0.1, 1))), rows
+
+
+def test_the_example_rolls_out(tmp_path):
+    said = yade(tmp_path, YADE / "examples/roll.py", 2e-3)
+    found = re.search(r"^rolled (\S+) m, closed form (\S+) m, spin left (\S+)", said, re.M)
+    rolled, closed, spin = map(float, found.groups())
+    assert rolled == pytest.approx(closed, abs=2e-6) and spin < 1e-12
 
 
 def test_the_memory_of_a_contact_is_measured(tmp_path):

@@ -1,0 +1,220 @@
+// Spins and moments of coupled contacts (ilaw/coupled.h) where they have closed forms: a ball on a plane,
+// walls that spin, two balls.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coupled_grains.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace {
+
+using namespace coupled_grains;
+
+constexpr double mass = 0.3, radius = 0.05, gravity = 9.81, inertia = 0.4 * mass * radius * radius;
+
+// A ball on a floor, with gravity along a slope of this angle, downwards along x.
+Grains ball(const Parameters& parameters, double h, double slope = 0.0) {
+  Grains made(parameters, h);
+  made.grains.push_back({mass, radius, {0.0, 0.0, radius}});
+  made.walls.push_back({});
+  made.pull = {gravity * std::sin(slope), 0.0, -gravity * std::cos(slope)};
+  return made;
+}
+
+// Any motion of a ball over a wall and of two balls of different size: the impulse and moment that the law
+// gives for v, w and H of the contact, which here come from their definition.
+TEST(CoupledRolling, OneContactIsOneNodeOfTheLaw) {
+  std::mt19937 bits(5);
+  const auto within = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(bits);
+  };
+  const auto any = [&] { return Vector{within(-1.0, 1.0), within(-1.0, 1.0), within(-1.0, 1.0)}; };
+  const Parameters parameters = resistance(0.3, 0.1, 0.05);
+  int pressed = 0;
+  for (int k = 0; k < 300; ++k) {
+    Grains all(parameters, steps[k % 3]);
+    all.pull = {};
+    Vector n = any();
+    n = (1.0 / length(n)) * n;
+    const Grain a{within(0.5, 2.0), within(0.5, 2.0), {}, any(), any()};
+    Grain b{within(0.5, 2.0), within(0.5, 2.0), {}, any(), any()};
+    b.x = -(a.radius + b.radius) * n;
+    const bool at_wall = k % 2 == 0;
+    all.grains = at_wall ? std::vector{a} : std::vector{b, a};
+    if (at_wall) all.walls.push_back({n, -a.radius, {}, {}});
+    all.reach = 1e-9;
+    const ilaw_coupled_report report = all.step();
+    ASSERT_EQ(all.body.size(), 1U);
+
+    Spheres node(parameters, 1);
+    node.step = all.h;
+    const double by_b = at_wall ? 0.0 : 1.0, m = 1.0 / a.mass + by_b / b.mass;
+    const double j_a = 1.0 / a.inertia(), j_b = by_b / b.inertia();
+    node.h[0] = {m, m + a.radius * a.radius * j_a + b.radius * b.radius * j_b,
+                 a.radius * j_a - b.radius * j_b, j_a + j_b, j_a + j_b};
+    node.normal[0] = n;
+    node.v_free[0] = node.v_previous[0] =
+        a.v + cross(a.w, -a.radius * n) - by_b * (b.v + cross(b.w, b.radius * n));
+    node.spin_free[0] = node.spin_previous[0] = a.w - by_b * b.w;
+    node.gap[0] = all.gap[0];
+    ASSERT_EQ(node.evaluate(), ILAW_OK);
+    ASSERT_LE(length(all.impulse[0] - node.r[0]), 1e-14 * (1.0 + length(node.r[0]))) << k;
+    ASSERT_LE(length(all.moment[0] - node.m[0]), 1e-14 * (1.0 + length(node.m[0]))) << k;
+    ASSERT_LE(report.residual, 1e-14);
+    pressed += node.r[0] != Vector{};
+  }
+  EXPECT_GT(pressed, 100);
+}
+
+// The first iteration evaluates the law at the velocities without contact: the same bits.
+TEST(CoupledRolling, FirstIterationHasTheBitsOfEvaluate) {
+  for (const double h : steps) {
+    const Parameters parameters = resistance(0.3, 0.002, 0.001);
+    Grains one = ball(parameters, h);
+    one.grains[0].v = {1.0, -0.3, 0.0}, one.grains[0].w = {3.0, 5.0, -2.0};
+    one.options.most_sweeps = 1;
+    Spheres node(parameters, 1);
+    const Vector arm{0.0, 0.0, -radius};
+    node.step = h;
+    node.h[0] = {1.0 / mass, 1.0 / mass + (1.0 / inertia) * radius * radius, radius * (1.0 / inertia),
+                 1.0 / inertia, 1.0 / inertia};
+    node.v_previous[0] = one.grains[0].v + cross(one.grains[0].w, arm);
+    node.v_free[0] = one.grains[0].v + h * one.pull + cross(one.grains[0].w, arm);
+    node.spin_free[0] = node.spin_previous[0] = one.grains[0].w;
+    one.step();
+    ASSERT_EQ(node.evaluate(), ILAW_OK);
+    EXPECT_EQ(one.impulse[0], node.r[0]) << h;
+    EXPECT_EQ(one.moment[0], node.m[0]) << h;
+  }
+}
+
+// While it rolls 7/5 a = -rho g/R. In steps the position is a sum of the velocities after them: h v0/2 less.
+TEST(CoupledRolling, BallRollsOut) {
+  constexpr double rho = 0.002, v0 = 1.0, closed = 1.4 * v0 * v0 * radius / (2.0 * rho * gravity);
+  static_assert(closed > 1.7838939 && closed < 1.7838941);
+  for (const double h : steps) {
+    Grains one = ball(resistance(0.5, rho, 0.001), h);
+    one.grains[0].v = {v0, 0.0, 0.0}, one.grains[0].w = {0.0, v0 / radius, 0.0};
+    const double at_start = one.kinetic();
+    one.run(6.0);
+    const Grain& grain = one.grains[0];
+    EXPECT_NEAR(grain.x[0], closed - 0.5 * h * v0, 0.2 * h * h) << "h " << h;
+    EXPECT_LE(length(grain.v) + radius * length(grain.w), 1e-14);
+    EXPECT_NEAR(one.dissipated, at_start, 1e-12 * at_start);
+    EXPECT_NEAR(one.work, -at_start, 1e-12 * at_start);
+  }
+}
+
+// Friction turns 2/7 of the momentum into spin (Euler 1758).
+TEST(CoupledRolling, BallSlidesIntoRolling) {
+  for (const double h : steps) {
+    Grains one = ball(resistance(0.3, 0.0, 0.0), h);
+    one.grains[0].v = {1.0, 0.0, 0.0};
+    one.run(1.0);
+    EXPECT_NEAR(one.grains[0].v[0], 5.0 / 7.0, 1e-12) << "h " << h;
+    EXPECT_NEAR(radius * one.grains[0].w[1], 5.0 / 7.0, 1e-12) << "h " << h;
+  }
+}
+
+// rho M g cos holds R M g sin; above, 7/5 a = g (sin - rho/R cos).
+TEST(CoupledRolling, BallStaysOnASlopeBelowTheLimit) {
+  constexpr double rho = 0.002;
+  const double limit = std::atan(rho / radius);
+  for (const double h : steps) {
+    Grains below = ball(resistance(0.5, rho, 0.0), h, 0.98 * limit);
+    Grains above = ball(resistance(0.5, rho, 0.0), h, 1.02 * limit);
+    below.run(1.0);
+    above.run(1.0);
+    EXPECT_NEAR(below.grains[0].x[0], 0.0, 1e-16) << "h " << h;
+    const double a = 1.02 * limit, time = h * static_cast<double>(std::lround(1.0 / h));
+    const double expected = (gravity / 1.4) * (std::sin(a) - std::cos(a) * rho / radius);
+    EXPECT_NEAR(above.grains[0].v[0], expected * time, 1e-11) << "h " << h;
+  }
+}
+
+// I dw/dt = -tau M g: it stops after I w0/(tau M g).
+TEST(CoupledRolling, TopStopsAtItsTime) {
+  constexpr double tau = 0.001, w0 = 30.0, closed = inertia * w0 / (tau * mass * gravity);
+  for (const double h : steps) {
+    Grains one = ball(resistance(0.5, 0.002, tau), h);
+    one.grains[0].w = {0.0, 0.0, w0};
+    int count = 0;
+    for (; one.grains[0].w[2] > 1e-12 && count < 100000; ++count) {
+      one.step();
+      ASSERT_NEAR(one.grains[0].w[2], std::max(0.0, w0 * (1.0 - (count + 1) * h / closed)), 1e-10)
+          << "h " << h;
+    }
+    EXPECT_NEAR(count * h, closed, h);
+    EXPECT_LE(length(one.grains[0].v), 1e-15);
+  }
+}
+
+// A plate that spins about the normal takes the ball with it: I dw/dt = tau M g up to the spin of the plate.
+TEST(CoupledRolling, PlateThatSpinsTurnsTheBall) {
+  constexpr double tau = 0.001, plate = 20.0, rate = tau * mass * gravity / inertia;
+  for (const double h : steps) {
+    Grains one = ball(resistance(0.5, 0.002, tau), h);
+    one.walls_spin = true;
+    one.walls[0].spin = one.walls[0].spin_previous = {0.0, 0.0, plate};
+    for (int k = 0; (k - 10) * h * rate < plate; ++k) {
+      one.step();
+      ASSERT_NEAR(one.grains[0].w[2], std::min(plate, (k + 1) * h * rate), 1e-11) << "h " << h;
+    }
+    EXPECT_EQ(one.grains[0].w[0], 0.0);
+  }
+}
+
+// A roller below the ball that spins ever faster, by alpha t about y: the rolling moment rho M g drives the
+// ball with 7/5 a = rho g/R. The roller gives rho M g times its angle, of which the ball keeps its kinetic
+// energy.
+TEST(CoupledRolling, RollerDrivesTheBall) {
+  constexpr double rho = 0.002, alpha = 40.0, a = rho * gravity / (1.4 * radius);
+  static_assert(alpha > 2.0 * a / radius);
+  for (const double h : steps) {
+    Grains one = ball(resistance(0.5, rho, 0.0), h);
+    one.walls_spin = true;
+    const auto count = std::lround(0.5 / h);
+    for (long k = 1; k <= count; ++k) {
+      one.walls[0].spin_previous = one.walls[0].spin;
+      one.walls[0].spin = {0.0, alpha * static_cast<double>(k) * h, 0.0};
+      one.step();
+    }
+    const double time = h * static_cast<double>(count),
+                 given = rho * mass * gravity * 0.5 * alpha * time * time;
+    EXPECT_NEAR(one.grains[0].v[0], a * time, 1e-11) << "h " << h;
+    EXPECT_NEAR(one.grains[0].w[1], a * time / radius, 1e-10) << "h " << h;
+    EXPECT_NEAR(one.dissipated, given - one.kinetic(), 1e-12 * given) << "h " << h;
+    EXPECT_NEAR(one.work, one.kinetic() - given, 1e-12 * given) << "h " << h;
+  }
+}
+
+TEST(CoupledRolling, TwoBallsKeepTheirMomenta) {
+  for (const double h : steps) {
+    Grains two(resistance(0.3, 0.02, 0.01), h);
+    two.pull = {};
+    two.reach = 1e-9;
+    const Vector n{0.6, 0.0, 0.8};
+    two.grains = {{0.7, 0.2, {}, {0.3, -0.2, 0.9}, {3.0, -1.0, 2.0}},
+                  {0.4, 0.5, 0.7 * n, {-0.5, 0.4, -0.6}, {-2.0, 5.0, 4.0}}};
+    const auto momentum = [&] {
+      return two.grains[0].mass * two.grains[0].v + two.grains[1].mass * two.grains[1].v;
+    };
+    const auto angular = [&](const Vector& x_0, const Vector& x_1) {
+      const Grain &a = two.grains[0], &b = two.grains[1];
+      return cross(x_0, a.mass * a.v) + cross(x_1, b.mass * b.v) + a.inertia() * a.w + b.inertia() * b.w;
+    };
+    const Vector x_0 = two.grains[0].x, x_1 = two.grains[1].x, p = momentum(), l = angular(x_0, x_1);
+    const double before = two.kinetic();
+    two.step();
+    ASSERT_GT(length(two.moment[0]), 1e-3);
+    EXPECT_LE(length(momentum() - p), 1e-15);
+    EXPECT_LE(length(angular(x_0, x_1) - l), 1e-15);
+    EXPECT_NEAR(two.kinetic() - before, two.work, 1e-15);
+    EXPECT_NEAR(two.work, -two.dissipated, 1e-15);
+    EXPECT_LT(two.work, 0.0);
+  }
+}
+
+}  // namespace
