@@ -26,11 +26,12 @@ SECTIONS = [
     ("The scene", [("", "")]),
     ("Time", [("time", "`time`")]),
     ("Models", [("model", "`model`, common to all types")]),
-    ("Points", [("model_points", "`model` of type `points`"), ("point", "entries of `points`")]),
+    ("Points", [("model_points", "`model` of type `points`"), ("point", "entries of `points`"),
+                ("thermal_point", "`thermal` of a point")]),
     ("Rotating spring", [("model_rotating_spring", "`model` of type `rotating_spring`")]),
     ("Bars", [("model_bars", "`model` of type `bars`"), ("bar", "entries of `bars`")]),
     ("Blocks", [("model_blocks", "`model` of type `blocks`"), ("block", "entries of `blocks`"),
-                ("material", "`material`")]),
+                ("material", "`material`"), ("thermal", "`thermal`")]),
     ("Solids", [("model_solids", "`model` of type `solids`"), ("mesh", "entries of `meshes`")]),
     ("Nodes", [("near", "nodes near places"), ("box", "nodes in a box")]),
     ("Initial displacements", [("initial", "entries of `initial`")]),
@@ -43,6 +44,8 @@ SECTIONS = [
     ("Pressure", [("load_pressure", "load of type `pressure`")]),
     ("Motion", [("load_motion", "load of type `motion`")]),
     ("Damping", [("load_damping", "load of type `damping`")]),
+    ("Temperature", [("load_temperature", "load of type `temperature`")]),
+    ("Heat flux", [("load_heat_flux", "load of type `heat_flux`")]),
     ("Curves over time", [("history_curve", "a curve in place of a list of [time, value]"),
                           ("path_curve", "a curve in place of a list of [time, displacement...]"),
                           ("sine", "`sine`")]),
@@ -62,7 +65,7 @@ VALUES = {
     "vector": "vector", "nodes": "[nodes](#nodes)", "history": "list of [time, value]",
     "path": "list of [time, displacement...]", "places": "vector, or list of vectors",
     "near": "[`near`](#nodes)", "box": "[`box`](#nodes)", "history_rows": "list of [time, value]",
-    "path_rows": "list of [time, displacement...]",
+    "path_rows": "list of [time, displacement...]", "obstacle_temperature": "number, or list of [time, value]",
 }
 
 KEYS_HEAD = """# Reference: keys of a scene

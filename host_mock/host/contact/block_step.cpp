@@ -43,11 +43,13 @@ class BlockWalk {
     contacts_in_row_ = block.in_row;
     nodes_in_row_ = follow_each_other(node_, count_);
     locate();
+    if (step_.heat) give_temperatures();
     const ilaw_batch batch = make_batch();
     if (!evaluate(batch, outcome)) return;
     mark_touched(batch, count_statuses(outcome.sums));
     apply(outcome.sums);
     add_dissipation(outcome.sums);
+    if (step_.heat) take_heat();
     if (show_fault(outcome.sums)) find_fault(outcome.refusal);
     if (!contacts_in_row_) scatter();
   }
@@ -230,6 +232,15 @@ class BlockWalk {
     for (std::size_t k = 0; k < count; ++k)
       amounts_[k] = ilaw::output(amount_room_.data() + k * block_size, 1, 0);
     batch.amounts = amounts_.data();
+  }
+  void give_temperatures() {
+    static const ContactPoint alone;
+    for (std::ptrdiff_t i = 0; i < count_; ++i)
+      step_.heat->give(contact(i), node_[i], Partnered ? at_.point[contact(i)] : alone, at_);
+  }
+  void take_heat() const {
+    for (std::ptrdiff_t i = 0; i < count_; ++i)
+      step_.heat->take(contact(i), [&](std::size_t k) { return amounts_[k].values[i]; });
   }
   void sum_amounts(ContactSums& sums) const {
     for (std::size_t k = 0; k < amounts_.size(); ++k)

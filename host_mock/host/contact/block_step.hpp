@@ -6,6 +6,7 @@
 #pragma once
 
 #include "contact/contact_arrays.hpp"
+#include "contact/contact_heat.hpp"
 #include "contact/contact_search.hpp"
 #include "contact/contact_sums.hpp"
 #include "contact/law.hpp"
@@ -25,7 +26,8 @@ struct BlockStep {
   const std::vector<std::size_t>& axes;  // where they begin in the state
   Dofs& v;                               // v_free, then what the impulses make of it
   bool gets_energies;
-  bool is_watched;  // whether the law writes to its inputs
+  bool is_watched;    // whether the law writes to its inputs
+  ContactHeat* heat;  // null: no temperatures
 };
 
 // What became of the contacts of a chunk.

@@ -51,6 +51,8 @@ const ilaw_contacts& CoupledInterface::open(const StepView& step) {
       interface_.find_delassus(k);
     }
     if (is_idle(contact)) continue;
+    if (interface_.heat_)
+      interface_.heat_->give(k, interface_.node_of(contact), interface_.point(contact), contacts);
     const Vector after = obstacle.velocity() + surface.after,
                  before = obstacle.velocity_before() + surface.before;
     group_.add({contact, interface_.node_of(contact), point, after, before}, contacts);
@@ -145,6 +147,7 @@ void CoupledInterface::accept_contact(const StepView& step, const Dofs& v, std::
   sums.relative_work += 0.5 * r.dot(sum - drift);
   sums.add_energy(group_.energy(place));
   for (std::size_t a = 0; a < group_.amount_count(); ++a) sums.add_amount(a, group_.amount(a, place));
+  if (interface_.heat_) interface_.heat_->take(k, [&](std::size_t a) { return group_.amount(a, place); });
   const std::size_t state_size = interface_.info().state_size;
   if (state_size == 0) return;
   bool changed = false;

@@ -44,7 +44,10 @@ Interface::Interface(InterfaceSetup setup, const Model& model)
       contacts_(dimension_, law_.info(), setup_.nodes.size(), !setup_.counterpart->partners().empty()),
       search_(setup_, law_, contacts_),
       obstacle_(setup_, dimension_),
-      amounts_(law_.info().amount_count) {}
+      amounts_(law_.info().amount_count) {
+  if (setup_.heat)
+    heat_.emplace(law_.info(), (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0, setup_.heat->obstacle_temperature);
+}
 
 // With what of the node limits the step, where equations have more than one solution.
 void Interface::check(const Refusal& refusal, double dt) const {
@@ -119,6 +122,7 @@ Vector Interface::velocity_of(int contact_index, const Vector& impulse) const {
 void Interface::choose_active(const StepView& step) {
   obstacle_.follow(step);
   search_.choose(step, obstacle_, [&](int node_index) { return contact_index_of(node_index, step.u); });
+  if (heat_) heat_->open(step.time, contacts_.count(), active());
 }
 
 void Interface::solve(const StepView& step, Dofs& v) {
@@ -127,10 +131,10 @@ void Interface::solve(const StepView& step, Dofs& v) {
     sums_ = {};
     return;
   }
-  const bool energies = asks_energies_ && (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0,
+  const bool energies = (asks_energies_ || heat_) && (law_.outputs() & ILAW_OUTPUT_ENERGY) != 0,
              watched = InputCopy::is_due(step.number);
-  const BlockStep blocks{setup_, model_, inverse_mass_, law_,   contacts_, step, obstacle_,
-                         axes_,  v,      energies,      watched};
+  const BlockStep blocks{setup_, model_, inverse_mass_, law_,    contacts_, step, obstacle_,
+                         axes_,  v,      energies,      watched, heat()};
   const auto step_chunk = steps_plainly_ ? plain_step : solve_chunk;
   outcomes_.resize(static_cast<std::size_t>(search_.chunk_count()));
   const RunningLaw running(setup_.law.c_str(), ilaw_library_path(library().get()), setup_.name.c_str());

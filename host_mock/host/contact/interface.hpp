@@ -8,6 +8,7 @@
 
 #include "contact/block_step.hpp"
 #include "contact/contact_arrays.hpp"
+#include "contact/contact_heat.hpp"
 #include "contact/contact_search.hpp"
 #include "contact/contact_sums.hpp"
 #include "contact/interface_setup.hpp"
@@ -17,6 +18,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +47,10 @@ class Interface {
   // and again when its values change; the array must stay.
   void set_inverse_mass(const double* inverse_mass);
   const double* inverse_mass() const { return inverse_mass_; }
+
+  // Null where its nodes have no temperature.
+  ContactHeat* heat() { return heat_ ? &*heat_ : nullptr; }
+  const ContactHeat* heat() const { return heat_ ? &*heat_ : nullptr; }
 
   // ---- a step where no two contacts share a node ----
   // Contact by contact (plain_step.hpp) instead of in blocks.
@@ -121,6 +127,7 @@ class Interface {
   ContactArrays contacts_;
   ContactSearch search_;
   ObstacleMotion obstacle_;
+  std::optional<ContactHeat> heat_;
   std::vector<ChunkOutcome> outcomes_;  // room that is kept from step to step
   ContactSums sums_;
   std::vector<double> amounts_;

@@ -2,16 +2,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/table.hpp"
 #include "contact/counterpart.hpp"
 #include "contact/law_arguments.hpp"
 
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace ilaw::host {
+
+// Of an interface whose nodes and partners have temperatures.
+struct HeatSetup {
+  std::optional<Table> obstacle_temperature;
+};
 
 struct InterfaceSetup {
   std::string name, law, library;  // library: name or path
@@ -25,6 +32,7 @@ struct InterfaceSetup {
   std::vector<double> own_gap_offsets;  // the same of each node, beside that; empty: none
   bool has_driven_nodes = false;        // motions drive some of its nodes or partners: H differs by axis
   bool keeps_all_active = false;        // also contacts that cannot be reached: same results, more work
+  std::optional<HeatSetup> heat;
 
   double gap_offset(int node_index) const {
     if (own_gap_offsets.empty()) return common_gap_offset;

@@ -59,6 +59,7 @@ void step_contact(const BlockStep& step, std::int32_t contact, int node, ChunkOu
     at.point[k] = point;
     at.delassus[k] = point.delassus(step.inverse_mass, d, node);
   }
+  if (step.heat) step.heat->give(k, node, point, at);
 
   // v_free and v_previous, relative to what the node meets.
   const Vector before = relative_velocity(point, node, d, step.step.v_before);
@@ -68,6 +69,7 @@ void step_contact(const BlockStep& step, std::int32_t contact, int node, ChunkOu
   // The law, and v += H r.
   ContactBatch one(step, contact, point, v_free, v_previous);
   if (!evaluate(step, contact, one, outcome)) return;
+  if (step.heat) step.heat->take(k, [&](std::size_t a) { return one.amounts[a]; });
   const auto r = at.vector(at.impulse, contact);
   if (!r.isZero(0.0)) push(step, point, node, r);
 

@@ -7,6 +7,7 @@
 #include "model/obstacle.hpp"
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -24,6 +25,8 @@ struct StepTimes {
 struct Motions {
   const Dofs &u, &v;
 };
+
+class HeatLoad;
 
 class Load {
  public:
@@ -47,6 +50,8 @@ class Load {
   virtual bool acts_on_driven() const { return true; }
   // Whether it is the same force at all times, and nothing else.
   virtual bool is_steady() const { return false; }
+  // Where it acts on temperatures, and on no motion.
+  virtual const HeatLoad* heat() const { return nullptr; }
   // Nodes whose motion is prescribed, and the axes along which it is.
   virtual const std::vector<int>& prescribed_nodes() const { return none_; }
   virtual const std::vector<int>& prescribed_axes() const { return none_; }
@@ -116,6 +121,26 @@ class Damping : public Load {
   const Model& model_;
   std::vector<int> nodes_;
   double rate_;
+  Table history_;
+};
+
+// Held temperatures, or a heat flux into nodes.
+class HeatLoad : public Load {
+ public:
+  enum class Kind { temperature, flux };
+
+  // history: temperature, or heat per area and time; the areas are those of the nodes.
+  HeatLoad(Kind kind, NodeSet set, Table history)
+      : kind_(kind), set_(std::move(set)), history_(std::move(history)) {}
+  bool is_steady() const override { return true; }  // it is no force
+  const HeatLoad* heat() const override { return this; }
+  bool holds() const { return kind_ == Kind::temperature; }
+  const NodeSet& set() const { return set_; }
+  double at(double time) const { return history_.at(time)[0]; }
+
+ private:
+  Kind kind_;
+  NodeSet set_;
   Table history_;
 };
 

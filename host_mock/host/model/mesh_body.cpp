@@ -69,21 +69,6 @@ void add_point(SolidElement<N, P>& element, std::size_t g, const Eigen::Matrix<d
   element.volume += element.weights[g];
 }
 
-Hexahedron hexahedron_of(const std::array<int, 8>& nodes, const Dofs& position) {
-  Hexahedron element{nodes, {}, {}, 0.0};
-  for (std::size_t g = 0; g < 8; ++g)
-    add_point(element, g, corner_positions<8>(nodes, position), derivatives_at(gauss_point(g)), 1.0);
-  return element;
-}
-
-Tetrahedron tetrahedron_of(const std::array<int, 4>& nodes, const Dofs& position) {
-  Tetrahedron element{nodes, {}, {}, 0.0};
-  Eigen::Matrix<double, 3, 4> derivatives;
-  derivatives << -1.0, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 1.0;
-  add_point(element, 0, corner_positions<4>(nodes, position), derivatives, 1.0 / 6.0);
-  return element;
-}
-
 // The sums of the rows of the consistent mass.
 Eigen::Matrix<double, 1, 8> lumped_volumes(const Hexahedron& element) {
   Eigen::Matrix<double, 1, 8> volumes = Eigen::Matrix<double, 1, 8>::Zero();
@@ -133,6 +118,21 @@ std::array<int, N> shifted(std::array<int, N> nodes, int by) {
 }
 
 }  // namespace
+
+Hexahedron hexahedron_of(const std::array<int, 8>& nodes, const Dofs& position) {
+  Hexahedron element{nodes, {}, {}, 0.0};
+  for (std::size_t g = 0; g < 8; ++g)
+    add_point(element, g, corner_positions<8>(nodes, position), derivatives_at(gauss_point(g)), 1.0);
+  return element;
+}
+
+Tetrahedron tetrahedron_of(const std::array<int, 4>& nodes, const Dofs& position) {
+  Tetrahedron element{nodes, {}, {}, 0.0};
+  Eigen::Matrix<double, 3, 4> derivatives;
+  derivatives << -1.0, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 1.0;
+  add_point(element, 0, corner_positions<4>(nodes, position), derivatives, 1.0 / 6.0);
+  return element;
+}
 
 MeshBody::MeshBody(const MeshTopology& topology, const Dofs& position, int first, const Material& material,
                    Element element)

@@ -29,6 +29,10 @@ struct SolidElement {
 using Hexahedron = SolidElement<8, 8>;
 using Tetrahedron = SolidElement<4, 1>;
 
+// Of nodes in VTK's order. Throws MeshError where an element is inverted.
+Hexahedron hexahedron_of(const std::array<int, 8>& nodes, const Dofs& position);
+Tetrahedron tetrahedron_of(const std::array<int, 4>& nodes, const Dofs& position);
+
 class MeshBody {
  public:
   // position: of the whole model, where the body's nodes begin at first. Throws MeshError.

@@ -8,6 +8,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,6 +42,8 @@ struct Mesh {
   std::vector<int> tetrahedra;  // four nodes each; their numbers follow those of the cells
 };
 
+class ThermalModel;
+
 class Model {
  public:
   explicit Model(Nodes nodes) : nodes_(std::move(nodes)) {
@@ -59,10 +62,13 @@ class Model {
   // Named sets; "all" is always there.
   const std::map<std::string, NodeSet>& sets() const { return nodes_.sets; }
   const Mesh& mesh() const { return mesh_; }
+  // Null where no body has a temperature.
+  const ThermalModel* thermal() const { return thermal_.get(); }
 
-  // Before anything refers to the model: another set, other displacements at the start.
+  // Before anything refers to the model: another set, other displacements at the start, temperatures.
   void add_set(const std::string& name, NodeSet set) { nodes_.sets[name] = std::move(set); }
   void displace(Dofs displacement) { nodes_.displacement = std::move(displacement); }
+  void heat(std::shared_ptr<const ThermalModel> thermal) { thermal_ = std::move(thermal); }
 
   virtual bool has_internal_forces() const { return false; }
   // Adds -f_int(u) to force.
@@ -83,6 +89,9 @@ class Model {
  protected:
   Nodes nodes_;
   Mesh mesh_;
+
+ private:
+  std::shared_ptr<const ThermalModel> thermal_;
 };
 
 }  // namespace ilaw::host

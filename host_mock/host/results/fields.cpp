@@ -237,6 +237,11 @@ void Fields::add_body(vtkUnstructuredGrid& grid, const Integrator& integrator) c
   add_vectors(grid, "u", integrator.displacement(), model.dimension());
   add_vectors(grid, "v", integrator.velocity(), model.dimension());
   add_stresses(grid, model, integrator.displacement());
+  if (!integrator.temperatures()) return;
+  vtkDoubleArray* temperature = add_array(grid, "temperature", model.node_count(), 1, no_value);
+  for (int node = 0; node < model.node_count(); ++node)
+    if (model.thermal()->has_temperature(node))
+      temperature->SetValue(node, integrator.temperatures()->at(node));
 }
 
 // Files with a number, and what is in them.

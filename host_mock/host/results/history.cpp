@@ -86,6 +86,7 @@ void History::write_header() {
       if (quantity == std::string("vm") && !scene_.output.mean_velocity) continue;
       for (int c = 0; c < d; ++c) table_ << node + quantity + std::to_string(c);
     }
+    if (has_temperature(scene_.output.watch[w])) table_ << node + "T";
     for (const Contact& contact : contacts_[w]) {
       table_ << contact.prefix + "gap" << contact.prefix + "status";
       for_each_state(contact.interface->info(),
@@ -100,8 +101,15 @@ void History::write_header() {
       table_ << std::string("balance.") + quantity;
     for (int c = 0; c < (d == 1 ? 0 : d == 2 ? 1 : 3); ++c)
       table_ << "balance.angular_momentum" + std::to_string(c);
+    if (scene_.model->thermal())
+      for (const char* quantity : {"stored", "obstacles", "friction", "supplied", "error"})
+        table_ << std::string("heat.") + quantity;
   }
   table_.end_row();
+}
+
+bool History::has_temperature(int node) const {
+  return scene_.model->thermal() && scene_.model->thermal()->has_temperature(node);
 }
 
 void History::add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse) {
@@ -115,6 +123,8 @@ void History::add_node(std::size_t watched, const Integrator& integrator, const 
   for (int c = 0; scene_.output.mean_velocity && c < d; ++c)
     table_ << 0.5 * (integrator.velocity_before()[node + c] + integrator.velocity()[node + c]);
   add(impulse);
+  if (has_temperature(scene_.output.watch[watched]))
+    table_ << integrator.temperatures()->at(scene_.output.watch[watched]);
   for (const Contact& contact : contacts_[watched]) {
     const Interface& interface = *contact.interface;
     const int contact_index = interface.contact_at(contact.node_index);
@@ -144,6 +154,12 @@ void History::add_row(const Integrator& integrator) {
           energy.by_law[ILAW_ENERGY_RUPTURE], energy.by_law[ILAW_ENERGY_STORED], energy.balance_error})
       table_ << value;
     for (const double component : integrator.angular_momentum()) table_ << component;
+    if (integrator.temperatures()) {
+      const HeatReport heat = integrator.temperatures()->report();
+      for (const double value :
+           {heat.stored, heat.obstacles, heat.friction, heat.supplied, heat.balance_error})
+        table_ << value;
+    }
   }
   table_.end_row();
   file_.check();

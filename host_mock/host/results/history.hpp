@@ -49,6 +49,7 @@ class History {
   void find_contacts();
   void find_motions(Integrator& integrator);
   void write_header();
+  bool has_temperature(int node) const;
   void add_node(std::size_t watched, const Integrator& integrator, const Dofs& impulse);
 
   const Scene& scene_;

@@ -75,6 +75,14 @@ void add_balance(const std::string& name, std::size_t column, std::vector<Panel>
   panel_of(label, panels).curves.push_back({column, legend, legend, ""});
 }
 
+// The balance of heat: its parts in one panel, its error in another.
+constexpr std::string_view heat_prefix = "heat.";
+void add_heat(const std::string& name, std::size_t column, std::vector<Panel>& panels) {
+  const std::string part = name.substr(heat_prefix.size());
+  panel_of(part == "error" ? "heat balance error" : "heat", panels)
+      .curves.push_back({column, part, part, ""});
+}
+
 bool is_motion(const Panel& panel) {
   return panel.quantity == "gap" || panel.quantity == "u" || panel.quantity == "v";
 }
@@ -97,6 +105,11 @@ std::vector<Panel> panels_of(const Columns& columns, int every) {
       if (!columns.all_zero[i]) add_balance(header[i], i + 1, panels);
       continue;
     }
+    if (header[i].starts_with(heat_prefix)) {
+      if (!columns.all_zero[i]) add_heat(header[i], i + 1, panels);
+      continue;
+    }
+    if (is_node(owner) && name == "T") name = "temperature";
     if (is_component(name)) {
       component = name;
       name.resize(1);
@@ -178,9 +191,15 @@ std::string key_entry(const std::string& name, std::size_t dash, const char* col
          in_quotes(colour) + " title " + in_quotes(name);
 }
 
+// With 0, but for temperatures: they are far from it.
+std::string range_of(const Panel& panel) {
+  const bool has_zero = panel.quantity != "temperature";
+  return std::string("set yrange [") + (has_zero ? "*<0:0<*" : "*:*") + "] noextend\nset ytics autofreq\n";
+}
+
 // A colour per node and a dash per component; a colour per component where there is one node.
 void draw_curves(std::ostream& script, const Panel& panel) {
-  script << "set yrange [*<0:0<*] noextend\nset ytics autofreq\n";
+  script << range_of(panel);
   const bool many_nodes = node_count(panel) > 1;
   std::size_t node = 0, within = 0;
   std::string key, key_of_components;
@@ -212,7 +231,7 @@ std::string block_of(const Panel& panel, const std::string& component) {
 
 // A band per component from the least to the largest of all nodes, and the median.
 void draw_envelope(std::ostream& script, const Panel& panel) {
-  script << "set yrange [*<0:0<*] noextend\nset ytics autofreq\n";
+  script << range_of(panel);
   std::set<std::string> components;
   for (const Curve& curve : panel.curves) components.insert(curve.component);
   std::size_t k = 0;

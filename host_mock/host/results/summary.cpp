@@ -52,6 +52,16 @@ json describe_energy(const EnergyReport& energy) {
           {"reaction_work", energy.reaction_work}};
 }
 
+json describe_heat(const HeatReport& heat) {
+  return {{"stored", heat.stored},
+          {"obstacles", heat.obstacles},
+          {"friction", heat.friction},
+          {"supplied", heat.supplied},
+          {"balance_error", heat.balance_error},
+          {"lowest_temperature", heat.lowest},
+          {"highest_temperature", heat.highest}};
+}
+
 // JSON has no infinity: scenes write it as text, too.
 json number_or_inf(double value) { return std::isinf(value) ? json("inf") : json(value); }
 
@@ -114,6 +124,7 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
         {"interfaces", seconds.interfaces},
         {"output", record.seconds_output}}},
       {"execution", describe_execution(scene, tally, record, seconds)}};
+  if (integrator.temperatures()) summary["heat"] = describe_heat(integrator.temperatures()->report());
   if (const auto& found = integrator.prestressed())
     summary["prestress"] = {{"steps", found->steps}, {"residual", found->residual}};
   if (!scene.meshes.empty()) summary["meshes"] = scene.meshes;

@@ -6,6 +6,7 @@
 #include "scene/json_text.hpp"
 #include "scene/read_counterpart.hpp"
 #include "scene/read_pairs.hpp"
+#include "scene/read_thermal.hpp"
 #include "scene/selection.hpp"
 #include "scene/values.hpp"
 
@@ -125,6 +126,7 @@ InterfaceSetup read_setup(const json& interface, std::size_t number, const Scene
                                    pointer + "/parameters");
   read_pairs(interface, scene.source, *scene.model, pointer, setup);
   setup.arguments.fields = read_fields(scene.source, setup.nodes, *scene.model);
+  read_contact_heat(interface, scene, pointer, setup);
   setup.birth = interface.value("birth", setup.birth);
   setup.death = interface.value("death", setup.death);
   if (setup.death <= setup.birth)
@@ -162,7 +164,9 @@ std::unique_ptr<Interface> read_interface(std::size_t number, const Scene& scene
   try {
     InterfaceSetup setup = read_setup(interface, number, scene, own, pointer);
     setup.has_driven_nodes = find_driven(setup, scene, pointer + "/nodes");
-    return std::make_unique<Interface>(std::move(setup), *scene.model);
+    auto made = std::make_unique<Interface>(std::move(setup), *scene.model);
+    check_obstacle_temperature(*made, pointer);
+    return made;
   } catch (const ParameterError& error) {
     const std::string whose =
         error.node_index() ? " (node " + std::to_string(own.nodes[*error.node_index()]) + ")" : "";

@@ -3,6 +3,7 @@
 
 #include "model/pressure.hpp"
 #include "scene/json_text.hpp"
+#include "scene/read_thermal.hpp"
 #include "scene/selection.hpp"
 #include "scene/values.hpp"
 
@@ -59,6 +60,14 @@ std::unique_ptr<Load> read_pressure(const json& load, const Model& model, const 
       read_table(load["history"], 1, pointer + "/history"));
 }
 
+std::unique_ptr<Load> read_heat_load(const json& load, const Model& model, const NodeSet& set,
+                                     const std::string& pointer) {
+  require_temperatures(set.nodes, model, pointer + "/nodes");
+  return std::make_unique<HeatLoad>(
+      load["type"] == "temperature" ? HeatLoad::Kind::temperature : HeatLoad::Kind::flux, set,
+      read_table(load["history"], 1, pointer + "/history"));
+}
+
 }  // namespace
 
 std::unique_ptr<Load> read_load(const json& load, const Model& model, const std::string& pointer) {
@@ -66,6 +75,7 @@ std::unique_ptr<Load> read_load(const json& load, const Model& model, const std:
   const std::string type = load["type"].get<std::string>();
   if (type == "pressure") return read_pressure(load, model, pointer);
   const NodeSet set = select_nodes(load.value("nodes", json("all")), model, pointer + "/nodes");
+  if (type == "temperature" || type == "heat_flux") return read_heat_load(load, model, set, pointer);
   if (type == "gravity")
     return std::make_unique<Gravity>(model, set.nodes,
                                      read_vector(load["acceleration"], d, pointer + "/acceleration"),

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/read_time.hpp"
 
+#include "model/thermal_model.hpp"
 #include "scene/json_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -11,10 +13,18 @@ namespace {
 
 using nlohmann::json;
 
+ThermalModel::StableStep thermal_step(const Model& model) {
+  return model.thermal() ? model.thermal()->stable_step() : ThermalModel::StableStep{};
+}
+
 // A step given as such may be larger than the model can stand.
 void check_step(Scene& scene) {
   const Model& model = *scene.model;
   constexpr double rounding = 1e-14;
+  const auto [thermal, body] = thermal_step(model);
+  if (scene.dt > thermal * (1.0 + rounding))
+    throw mistake("/time/dt", json(scene.dt).dump(),
+                  "at most " + json(thermal).dump() + ", the stable step of conduction in '" + body + "'");
   if (!(scene.dt > model.critical_step() * (1.0 + rounding))) return;
   const std::string found = json(scene.dt).dump(), critical = json(model.critical_step()).dump();
   if (model.critical_step_is_exact())
@@ -29,7 +39,7 @@ void check_step(Scene& scene) {
 void read_time(const json& time, Scene& scene) {
   require_one_of(time, "dt", "cfl", "'dt' and 'cfl'", "/time");
   if (time.contains("cfl")) {
-    const double critical = scene.model->critical_step();
+    const double critical = std::min(scene.model->critical_step(), thermal_step(*scene.model).step);
     if (!std::isfinite(critical))
       throw SceneError("/time/cfl",
                        "this model has no critical time step (no internal forces), expected 'dt'");

@@ -10,6 +10,7 @@
 #include "scene/read_model.hpp"
 #include "scene/read_sets.hpp"
 #include "scene/read_springs.hpp"
+#include "scene/read_thermal.hpp"
 #include "scene/read_time.hpp"
 #include "scene/selection.hpp"
 #include "scene/validation.hpp"
@@ -104,6 +105,7 @@ Scene read_scene(nlohmann::json source, const std::filesystem::path& file) {
   const std::vector<Spring> springs =
       read_springs(scene.source.value("springs", json::array()), *scene.model);
   if (!springs.empty()) scene.model = std::make_unique<Sprung>(std::move(scene.model), springs);
+  scene.model->heat(read_thermal(scene.source["model"], *scene.model));
   read_time(scene.source["time"], scene);
   if (scene.source.contains("prestress")) scene.prestress = read_prestress(scene.source["prestress"]);
   const json loads = scene.source.value("loads", json::array());

@@ -69,13 +69,15 @@ void Integrator::step() {
   check_motion(speed_free, times.after);  // before the laws see it, too: they must not be blamed
   laps.add_to(force_ticks_);
   if (!transmits_steadily_ && !interfaces_.empty()) find_contact_mass(times);
-  // r = law(v_free, H, gap, state), v = v_free + H r
+  if (temperatures_) temperatures_->conduct(times);  // T_free = T + C^-1 h (q - K T)
+  // r = law(v_free, H, gap, state, T_free), v = v_free + H r
   add_reactions({u_, v_before_, times.after, dt_, speed_before_, speed_free, steps_ + 1});
   if (contact_inverse_mass_.size() > 0) add_load_reactions(times);
   laps.add_to(interface_ticks_);
   const WorkAndSpeed external = work_and_speed(external_impulse_, v_before_, v_, model_.dimension());
   speed_before_ = external.speed;
   check_motion(speed_before_, times.after);
+  if (temperatures_) take_heat();  // T = T_free + C^-1 Q
   ++steps_;
   has_begun_step_ = false;
   accounts_.add_step(model_, interfaces_,
@@ -239,6 +241,12 @@ void Integrator::add_coupled_reactions(const StepView& step) {
     if (const std::string why = coupled_->explain(); !why.empty()) throw std::runtime_error(why);
   accounts_.add_solution(solution);
   coupled_->accept(step, v_);
+}
+
+void Integrator::take_heat() {
+  temperatures_->take(interfaces_);
+  if (temperatures_->all_finite()) return;
+  throw Diverged("a temperature is not finite, step " + std::to_string(steps_ + 1));
 }
 
 // An unstable step closes its energy balance, too: what the bodies gain in motion they lose in stored energy.

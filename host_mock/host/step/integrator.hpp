@@ -11,6 +11,7 @@
 #include "step/accounts.hpp"
 #include "step/coupled_step.hpp"
 #include "step/prestress.hpp"
+#include "step/temperatures.hpp"
 
 #include <iosfwd>
 #include <optional>
@@ -64,6 +65,8 @@ class Integrator {
   double interface_work() const { return accounts_.energy().interface_work(); }
   // At the half step after time(); components as in energy.hpp.
   Vector angular_momentum() const { return host::angular_momentum(model_, u_, v_); }
+  // Null where no body has a temperature.
+  const Temperatures* temperatures() const { return temperatures_ ? &*temperatures_ : nullptr; }
   // Where the start has found an equilibrium, or sought one in vain.
   const std::optional<PrestressReport>& prestressed() const { return prestressed_; }
   PhaseSeconds seconds() const {
@@ -109,11 +112,13 @@ class Integrator {
   }
   void check_motion(double speed, double time) const;
   void check_energy() const;
+  void take_heat();
 
   const Model& model_;
   const Loads& loads_;
   Interfaces& interfaces_;
   std::optional<CoupledStep> coupled_;  // where contacts share nodes
+  std::optional<Temperatures> temperatures_;
   double dt_;
   std::optional<PrestressSetup> prestress_;
   std::optional<PrestressReport> prestressed_;

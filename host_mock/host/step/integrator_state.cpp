@@ -49,6 +49,7 @@ Integrator::Integrator(const Model& model, const Loads& loads, Interfaces& inter
       inverse_mass_(model.mass().cwiseInverse()),
       accounts_(interfaces.size()) {
   if (share_nodes(model_, interfaces_)) coupled_.emplace(model_, interfaces_);
+  if (model_.thermal()) temperatures_.emplace(*model_.thermal(), loads_, interfaces_);
   if (loads_are_steady_ && !loads_.empty()) external_impulse_ = dt_ * force_at_start();
   if (forces_are_steady_ && !loads_.empty()) gain_ = external_impulse_.cwiseProduct(inverse_mass_);
   const bool damped =
@@ -99,7 +100,11 @@ void Integrator::start() {
     accounts_.start(model_, u_, u_ + dt_ * v_, v_);
     speed_before_ = largest_speed(v_, model_.dimension());
   }
-  if (interfaces_.empty()) return;
+  if (temperatures_) temperatures_->conduct(start_times());
+  if (interfaces_.empty()) {
+    if (temperatures_) take_heat();
+    return;
+  }
   RunningLaw::set_step(0);
   const Eigen::Index d = model_.dimension();
   const Dofs v_free = v_;
@@ -113,6 +118,7 @@ void Integrator::start() {
   }
   if (contact_inverse_mass_.size() > 0) add_load_reactions(start_times());
   find_contact_mass({0.0, dt_});
+  if (temperatures_) take_heat();
   speed_before_ = largest_speed(v_, d);
   accounts_.start(model_, u_, u_ + dt_ * v_, v_);
   accounts_.add_start(interfaces_, std::max(largest_speed(v_free, d), speed_before_));
@@ -149,6 +155,7 @@ void Integrator::save(std::ostream& out) const {
   accounts_.save(out);
   for (const auto& interface : interfaces_) interface->save(out);
   if (coupled_) coupled_->save(out);
+  if (temperatures_) temperatures_->save(out);
 }
 
 void Integrator::load(std::istream& in) {
@@ -160,6 +167,7 @@ void Integrator::load(std::istream& in) {
   speed_before_ = largest_speed(v_, model_.dimension());
   for (const auto& interface : interfaces_) interface->load(in, u_);
   if (coupled_) coupled_->load(in, u_);
+  if (temperatures_) temperatures_->load(in);
 }
 
 }  // namespace ilaw::host

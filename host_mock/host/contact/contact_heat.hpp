@@ -1,0 +1,60 @@
+// contact_heat.hpp - temperatures that contacts hand to their law, and the heat that they take from it. The
+// host owns both: a law's fields `temperature`, `heat_capacity` and those of the counterpart, and its amounts
+// `heat`, `counterpart_heat` and `conducted_heat` (docs/abi.md).
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "contact/contact_arrays.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace ilaw::host {
+
+class ContactHeat {
+ public:
+  // The fields, in the order of inputs_.
+  static constexpr std::array field_names{"temperature", "counterpart_temperature", "heat_capacity",
+                                          "counterpart_heat_capacity"};
+
+  // gives_amounts: whether the host asks the law for them.
+  ContactHeat(const ilaw_instance_info& info, bool gives_amounts, std::optional<Table> obstacle_temperature);
+
+  // Per node of the model; the arrays must stay.
+  void read(const double* temperature, const double* capacity) {
+    temperature_ = temperature;
+    capacity_ = capacity;
+  }
+  // Before the contacts of a step.
+  void open(double time, std::size_t contact_count, const std::vector<std::int32_t>& active);
+  // Before a law is evaluated.
+  void give(std::size_t contact, int node, const ContactPoint& point, ContactArrays& contacts) const;
+  // Afterwards. amount(k): the k-th of the instance.
+  template <class Amount>
+  void take(std::size_t contact, Amount amount) {
+    const auto given = [&](std::size_t k) {
+      return amounts_[k] < 0 ? 0.0 : amount(std::size_t(amounts_[k]));
+    };
+    const double conducted = given(2);
+    flows_[contact] = {given(0) + conducted, given(1) - conducted};
+  }
+
+  // Heat of the last step into a contact's node, and into its counterpart.
+  struct Flow {
+    double body = 0.0, counterpart = 0.0;
+  };
+  const Flow& flow(std::size_t contact) const { return flows_[contact]; }
+
+ private:
+  std::array<int, 4> inputs_{};   // places in the law's parameters per node; -1: it does not read the field
+  std::array<int, 3> amounts_{};  // heat, counterpart_heat, conducted_heat; -1: it does not give the amount
+  std::optional<Table> obstacle_;
+  double obstacle_temperature_ = 0.0;  // in this step
+  const double *temperature_ = nullptr, *capacity_ = nullptr;
+  std::vector<Flow> flows_;  // by contact_index
+};
+
+}  // namespace ilaw::host

@@ -1,0 +1,449 @@
+// Nodes with a temperature: conduction, contact that conducts, heat of friction, and the balance of heat,
+// against closed forms at steps that share no factor and at the stable step of conduction.
+#include "mesh_writer.hpp"
+#include "run_result.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+namespace ilaw::host::testing {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array step_fractions{1.0, 0.71, 0.43, 0.19};  // of the stable step
+
+// Units in which a bar conducts a few times slower than it vibrates.
+struct Bar {
+  double length = 1.0, density = 1.0, specific_heat = 1.0, conductivity = 1.0, temperature = 300.0;
+  int elements = 5;
+
+  double size() const { return length / elements; }
+  double diffusivity() const { return conductivity / (density * specific_heat); }
+  double effusivity() const { return std::sqrt(conductivity * density * specific_heat); }
+  // Gershgorin's bound for cubes: C/K_ii = 3/8 of the size squared over the diffusivity.
+  double stable_step() const { return 0.375 * size() * size() / diffusivity(); }
+};
+
+// A column of cubes along z from its bottom on.
+json column(const Bar& bar, const std::string& name, double bottom) {
+  return {{"name", name},
+          {"corner", {0, 0, bottom}},
+          {"size", {bar.size(), bar.size(), bar.length}},
+          {"elements", {1, 1, bar.elements}},
+          {"material", {{"type", "linear"}, {"young", 1.0}, {"poisson", 0.0}, {"density", bar.density}}},
+          {"thermal",
+           {{"specific_heat", bar.specific_heat},
+            {"conductivity", bar.conductivity},
+            {"initial_temperature", bar.temperature}}}};
+}
+
+json scene_with(json blocks, double dt, double end) {
+  return {{"model", {{"type", "blocks"}, {"blocks", std::move(blocks)}}},
+          {"time", {{"dt", dt}, {"end", end}}},
+          {"interfaces", json::array()}};
+}
+
+json held(const std::string& nodes, double temperature) {
+  return {{"type", "temperature"}, {"nodes", nodes}, {"history", {{0, temperature}}}};
+}
+
+// Temperatures are at half steps.
+double thermal_time(const Integrator& integrator, double dt) { return integrator.time() + 0.5 * dt; }
+
+void run(Integrator& integrator, std::int64_t steps) {
+  for (std::int64_t n = 0; n < steps; ++n) integrator.step();
+}
+
+// ---- conduction -----------------------------------------------------------------------------------------
+
+TEST(Thermal, ConductsALinearProfile) {
+  const Bar bar{.conductivity = 0.3};
+  for (const double fraction : step_fractions) {
+    json scene = scene_with({column(bar, "bar", 0)}, fraction * bar.stable_step(), 40.0 / bar.conductivity);
+    scene["loads"] = {held("bar.z_min", 400), held("bar.z_max", 280)};
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    run(integrator, read.steps);
+    for (int node = 0; node < read.model->node_count(); ++node)
+      EXPECT_NEAR(integrator.temperatures()->at(node), 400 - 120 * read.model->position()[3 * node + 2],
+                  1e-10);
+    EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-12);
+  }
+}
+
+// A side with a flux of 6 and a conductivity of 0.3 has the slope 20.
+TEST(Thermal, ConductsAFluxThroughABar) {
+  const Bar bar{.conductivity = 0.3};
+  for (const double fraction : step_fractions) {
+    const double dt = fraction * bar.stable_step();
+    json scene = scene_with({column(bar, "bar", 0)}, dt, 200.0 / bar.conductivity);
+    scene["loads"] = {held("bar.z_min", 290),
+                      {{"type", "heat_flux"}, {"nodes", "bar.z_max"}, {"history", {{0, 6}}}}};
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    run(integrator, read.steps);
+    for (int node = 0; node < read.model->node_count(); ++node)
+      EXPECT_NEAR(integrator.temperatures()->at(node), 290 + 20 * read.model->position()[3 * node + 2], 1e-9);
+    EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-11);
+  }
+}
+
+// Carslaw, Jaeger 1959, section 2.9: the surface of a half space under a constant flux is at 2 q sqrt(t/(pi k
+// rho c)).
+TEST(Thermal, HeatsAHalfSpaceBySecondOrder) {
+  constexpr double flux = 3.0, end = 0.02;
+  std::vector<double> sizes, errors;
+  for (const int elements : {10, 17, 31}) {
+    const Bar bar{.specific_heat = 2.0, .conductivity = 1.4, .elements = elements};
+    const double dt = bar.stable_step();
+    json scene = scene_with({column(bar, "bar", 0)}, dt, end);
+    scene["loads"] = {{{"type", "heat_flux"}, {"nodes", "bar.z_max"}, {"history", {{0, flux}}}}};
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    run(integrator, read.steps);
+    const double expected =
+        2 * flux * std::sqrt(thermal_time(integrator, dt) / std::numbers::pi) / bar.effusivity();
+    sizes.push_back(bar.size());
+    errors.push_back(std::abs(integrator.temperatures()->at(read.model->node_count() - 1) - 300 - expected));
+  }
+  EXPECT_GT(order(sizes, errors), 1.8);
+  EXPECT_LT(errors.back(), 2e-3 * 0.3);
+}
+
+// Held on two sides, in elements that are no boxes.
+TEST(Thermal, ConductsALinearProfileThroughAMesh) {
+  for (const bool tetrahedra : {false, true}) {
+    const auto folder = fresh_folder();
+    std::ofstream(folder / "body.vtu")
+        << box_mesh({3, 2, 2}, {1, 0.6, 0.6}, tetrahedra, [](Eigen::Vector3d x) {
+             x[0] += 0.2 * x[0] * (1 - x[0]) * std::sin(4 * x[1] + 3 * x[2]);
+             return x;
+           }).vtu();
+    json scene = {{"model", {{"type", "solids"}}}, {"interfaces", json::array()}};
+    json body = column({.conductivity = 0.3}, "body", 0);
+    for (const char* key : {"corner", "size", "elements"}) body.erase(key);
+    body["file"] = (folder / "body.vtu").string();
+    scene["model"]["meshes"] = {body};
+    scene["loads"] = {held("body.x_min", 400), held("body.x_max", 280)};
+    scene["time"] = {{"dt", 1e-4}, {"end", 200}};
+    const double stable = scene_of(scene.dump()).model->thermal()->stable_step().step;
+    for (const double fraction : step_fractions) {
+      scene["time"]["dt"] = fraction * stable;
+      Scene read = scene_of(scene.dump());
+      Integrator integrator = integrator_of(read);
+      run(integrator, read.steps);
+      for (int node = 0; node < read.model->node_count(); ++node)
+        EXPECT_NEAR(integrator.temperatures()->at(node), 400 - 120 * read.model->position()[3 * node], 1e-9);
+    }
+    std::filesystem::remove_all(folder);
+  }
+}
+
+// ---- contact that conducts ------------------------------------------------------------------------------
+
+// Two masses that are pressed together: their difference decays as exp(-G t (1/C + 1/C_c)), at any step.
+TEST(Thermal, BringsTwoPointsToTheirEquilibrium) {
+  const auto point = [](double mass, double specific_heat, double temperature) {
+    return json{{"mass", mass},
+                {"position", {0}},
+                {"thermal", {{"specific_heat", specific_heat}, {"initial_temperature", temperature}}}};
+  };
+  for (const double dt : {0.13, 0.031, 0.0077}) {
+    json scene = {{"model", {{"type", "points"}, {"dimension", 1}}}, {"time", {{"dt", dt}, {"end", 2.0}}}};
+    scene["model"]["points"] = {point(2, 3, 350), point(5, 0.4, 280)};
+    scene["loads"] = {{{"type", "force"}, {"nodes", {0}}, {"direction", {-1}}, {"history", {{0, 7}}}},
+                      {{"type", "force"}, {"nodes", {1}}, {"direction", {1}}, {"history", {{0, 7}}}}};
+    scene["interfaces"] = {{{"law", "conductance"},
+                            {"parameters", {{"conductance", 0.5}, {"conductance_per_pressure", 0.1}}},
+                            {"nodes", {0}},
+                            {"against", {{"nodes", {1}}, {"normal", {1}}}}}};
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    run(integrator, read.steps);
+    const double decay = std::exp(-(0.5 + 0.1 * 7) * thermal_time(integrator, dt) * (1.0 / 6 + 1.0 / 2));
+    const double mean = (6 * 350.0 + 2 * 280.0) / 8;
+    EXPECT_NEAR(integrator.temperatures()->at(0), mean + 2.0 / 8 * 70 * decay, 1e-11);
+    EXPECT_NEAR(integrator.temperatures()->at(1), mean - 6.0 / 8 * 70 * decay, 1e-11);
+    const HeatReport heat = integrator.temperatures()->report();
+    EXPECT_NEAR(heat.stored, 0.0, 1e-11);
+    EXPECT_EQ(heat.friction, 0.0);
+  }
+}
+
+// Two columns on each other, pressed together by 1e-3 and shortened by as much: in equilibrium.
+json two_columns(const Bar& below, const Bar& above, double dt, double end, const json& interface) {
+  json scene = scene_with({column(below, "below", 0), column(above, "above", below.length)}, dt, end);
+  scene["initial"] = {{{"gradient", {{0, 0, 0}, {0, 0, 0}, {0, 0, -1e-3}}}}};
+  scene["loads"] = {{{"type", "motion"}, {"nodes", "below.z_min"}},
+                    {{"type", "pressure"}, {"surface", "above.z_max"}, {"history", {{0, 1e-3}}}}};
+  scene["interfaces"] = {interface};
+  scene["interfaces"][0]["nodes"] = "above.z_min";
+  scene["interfaces"][0]["against"] = {{"surface", "below.z_max"}};
+  return scene;
+}
+
+// Carslaw, Jaeger 1959, section 2.14: the surfaces of two half spaces that touch are at the mean of their
+// temperatures, weighed by their effusivities. On meshes of size d the error falls as exp(-4 a t/d^2): a
+// lumped half space takes heat by e sqrt(s) sqrt(1 + s d^2/(4a)), so the ratio of two of them is analytic
+// about s = 0.
+TEST(Thermal, HoldsTheTemperatureOfTwoHalfSpaces) {
+  std::vector<double> errors;
+  for (const int elements : {6, 11, 20}) {
+    const Bar below{.specific_heat = 2.0, .conductivity = 1.2, .temperature = 400, .elements = elements};
+    const Bar above{.specific_heat = 1.0, .conductivity = 0.5, .temperature = 300, .elements = elements};
+    const double dt = std::min(below.stable_step(), above.stable_step());
+    const json law = {{"law", "conductance"}, {"parameters", {{"conductance", 1e9}}}};
+    Scene read = scene_of(two_columns(below, above, dt, 0.05, law).dump());
+    Integrator integrator = integrator_of(read);
+    run(integrator, read.steps);
+    const double expected =
+        (below.effusivity() * 400 + above.effusivity() * 300) / (below.effusivity() + above.effusivity());
+    errors.push_back(std::abs(integrator.temperatures()->at(read.interfaces[0]->nodes()[0]) - expected));
+    EXPECT_LT(integrator.temperatures()->report().balance_error, 1e-12);
+  }
+  EXPECT_LT(errors[1], 0.01 * errors[0]);
+  EXPECT_LT(errors[2], 1e-9);
+}
+
+// Conduction and contact at their limits together: no node leaves the range of the start. With both at once,
+// T + C^-1 h (q - K T) + C^-1 Q(T), a disturbance grows by 1.6 per step.
+TEST(Thermal, IsStableWithAnyConductance) {
+  const Bar below{.temperature = 400, .elements = 3}, above{.temperature = 300, .elements = 4};
+  for (const double conductance : {1.0, 1e2, 1e12})
+    for (const double fraction : step_fractions) {
+      const double dt = fraction * above.stable_step();
+      const json law = {{"law", "conductance"}, {"parameters", {{"conductance", conductance}}}};
+      Scene read = scene_of(two_columns(below, above, dt, 200 * dt, law).dump());
+      Integrator integrator = integrator_of(read);
+      for (int n = 0; n < 200; ++n) {
+        integrator.step();
+        const HeatReport heat = integrator.temperatures()->report();
+        ASSERT_GT(heat.lowest, 300 - 1e-9) << conductance << " " << fraction << " step " << n;
+        ASSERT_LT(heat.highest, 400 + 1e-9);
+      }
+    }
+}
+
+// ---- heat of friction -----------------------------------------------------------------------------------
+
+json sliding_point(double dt, double partition) {
+  json scene = {{"model", {{"type", "points"}, {"dimension", 2}}}, {"time", {{"dt", dt}, {"end", 2.0}}}};
+  scene["model"]["points"] = {{{"mass", 2},
+                               {"position", {0, 0}},
+                               {"velocity", {4, 0}},
+                               {"thermal", {{"specific_heat", 5}, {"initial_temperature", 290}}}}};
+  scene["loads"] = {{{"type", "gravity"}, {"acceleration", {0, -10}}}};
+  scene["interfaces"] = {{{"law", "coulomb"},
+                          {"nodes", "all"},
+                          {"parameters", {{"friction", 0.3}, {"heat_partition", partition}}},
+                          {"obstacle", {{"type", "plane"}, {"point", {0, 0}}, {"normal", {0, 1}}}}}};
+  return scene;
+}
+
+// All of the kinetic energy, 16, becomes heat: a part of it in the block of capacity 10.
+TEST(Thermal, StopsABlockByItsHeat) {
+  for (const double dt : {0.013, 0.0031, 0.00071})
+    for (const double partition : {0.0, 0.25, 1.0}) {
+      Scene read = scene_of(sliding_point(dt, partition).dump());
+      Integrator integrator = integrator_of(read);
+      run(integrator, read.steps);
+      EXPECT_NEAR(integrator.temperatures()->at(0), 290 + partition * 1.6, 1e-12);
+      const HeatReport heat = integrator.temperatures()->report();
+      EXPECT_NEAR(heat.stored, partition * 16, 1e-12);
+      EXPECT_NEAR(heat.obstacles, (1 - partition) * 16, 1e-12);
+      EXPECT_NEAR(heat.friction, integrator.energy().by_law[ILAW_ENERGY_FRICTION], 1e-12);
+      EXPECT_LT(heat.balance_error, 1e-13);
+      EXPECT_LT(integrator.energy().balance_error, 1e-13);
+    }
+}
+
+// A block that is held over a belt: mu N v t, from rest of the belt on, in both sides.
+TEST(Thermal, HeatsABlockOverABelt) {
+  for (const double dt : {0.013, 0.0031, 0.00071}) {
+    json scene = sliding_point(dt, 0.25);
+    scene["model"]["points"][0]["velocity"] = {0, 0};
+    scene["loads"].push_back({{"type", "motion"}, {"nodes", "all"}, {"axes", {0}}});
+    scene["interfaces"][0]["obstacle"]["velocity"] = {3, 0};
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    run(integrator, read.steps);
+    const HeatReport heat = integrator.temperatures()->report();
+    // The belt starts within the first half step, whose mean speed is 3/2.
+    const double expected = 0.3 * 20 * 3 * integrator.time();
+    EXPECT_NEAR(heat.friction, expected, 0.3 * 20 * 3 * 0.5 * dt + 1e-12);
+    EXPECT_NEAR(heat.friction, integrator.energy().by_law[ILAW_ENERGY_FRICTION], 1e-11);
+    EXPECT_NEAR(heat.obstacles, 0.75 * heat.friction, 1e-11);
+    EXPECT_NEAR(integrator.temperatures()->at(0), 290 + 0.25 * heat.friction / 10, 1e-11);
+  }
+}
+
+// A block in 3D that slides over another: the law's shares reach both, and conduction spreads them.
+TEST(Thermal, SharesFrictionBetweenTwoBlocks) {
+  const Bar below{.conductivity = 0.4, .temperature = 0.0, .elements = 2},
+      above{.conductivity = 0.7, .temperature = 0.0, .elements = 3};
+  for (const double fraction : step_fractions) {
+    const json law = {{"law", "coulomb"}, {"parameters", {{"friction", 0.4}, {"heat_partition", 0.3}}}};
+    json scene = two_columns(below, above, fraction * above.stable_step(), 1.0, law);
+    scene["loads"].push_back({{"type", "force"},
+                              {"nodes", "above"},
+                              {"direction", {1, 0, 0}},
+                              {"total", true},
+                              {"history", {{0, 0}, {0.01, 3e-4}, {0.4, 3e-4}, {0.41, 0}}}});
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    run(integrator, read.steps);
+    double share = 0.0;
+    for (const int node : read.model->sets().at("above").nodes)
+      share += read.model->thermal()->capacity()[node] * integrator.temperatures()->at(node);
+    const HeatReport heat = integrator.temperatures()->report();
+    ASSERT_GT(heat.friction, 0.0);
+    EXPECT_NEAR(heat.friction / integrator.energy().by_law[ILAW_ENERGY_FRICTION], 1.0, 1e-12);
+    EXPECT_NEAR(heat.stored / heat.friction, 1.0, 1e-12);
+    EXPECT_NEAR(share / heat.friction, 0.3, 1e-12);
+    EXPECT_LT(heat.balance_error, 1e-12);
+    EXPECT_LT(integrator.energy().balance_error, 1e-12);
+  }
+}
+
+// ---- the host -------------------------------------------------------------------------------------------
+
+TEST(Thermal, HasTheSameBitsContactByContact) {
+  std::vector<double> temperatures;
+  for (const bool plainly : {false, true}) {
+    Scene read = scene_of(sliding_point(0.0031, 0.25).dump());
+    Integrator integrator = integrator_of(read);
+    if (plainly) read.interfaces[0]->step_plainly();
+    run(integrator, 100);
+    temperatures.push_back(integrator.temperatures()->at(0));
+  }
+  EXPECT_GT(temperatures[0], 290.1);
+  EXPECT_EQ(temperatures[0], temperatures[1]);
+}
+
+TEST(Thermal, ResumesToTheSameBits) {
+  const Bar below{.conductivity = 0.4, .temperature = 350, .elements = 2}, above{.elements = 3};
+  const json law = {{"law", "conductance"}, {"parameters", {{"conductance", 2}}}};
+  const std::string text = two_columns(below, above, 0.01, 1.0, law).dump();
+  Scene one = scene_of(text), other = scene_of(text);
+  Integrator whole = integrator_of(one), rest = integrator_of(other);
+  run(whole, 40);
+  std::stringstream saved;
+  whole.save(saved);
+  rest.load(saved);
+  run(whole, 30);
+  run(rest, 30);
+  for (int node = 0; node < one.model->node_count(); ++node)
+    EXPECT_EQ(whole.temperatures()->at(node), rest.temperatures()->at(node));
+  EXPECT_EQ(whole.temperatures()->report().balance_error, rest.temperatures()->report().balance_error);
+}
+
+// The block of docs/results/tyre_block.md.
+TEST(Thermal, HeatsTheShippedTyreBlock) {
+  json scene = read_scene_source(scene_files::named("tyre_block.json"));
+  std::vector<double> rises;
+  for (const double cfl : {0.9, 0.57, 0.31}) {
+    scene["time"]["cfl"] = cfl;
+    Scene read = scene_of(scene.dump());
+    Integrator integrator = integrator_of(read);
+    run(integrator, read.steps);
+    const HeatReport heat = integrator.temperatures()->report();
+    EXPECT_NEAR(heat.friction / integrator.energy().by_law[ILAW_ENERGY_FRICTION], 1.0, 1e-12);
+    EXPECT_NEAR(heat.obstacles / heat.friction, 0.66, 1e-12);
+    EXPECT_LT(heat.balance_error, 1e-11);
+    EXPECT_LT(integrator.energy().balance_error, 1e-11);
+    // The surface of a half space under the mean flux; friction changes by a few percent as it heats.
+    const double flux = heat.stored / 4e-4 / integrator.time();
+    double rise = 0.0;
+    for (const int node : read.interfaces[0]->nodes())
+      rise += 0.25 * (integrator.temperatures()->at(node) - 293.0);
+    EXPECT_NEAR(rise / (2 * flux * std::sqrt(integrator.time() / (std::numbers::pi * 0.25 * 1150 * 1800))),
+                1.0, 0.05);
+    rises.push_back(rise);
+  }
+  EXPECT_NEAR(rises[0] / rises[2], 1.0, 0.01);
+  EXPECT_NEAR(rises[1] / rises[2], 1.0, 0.01);
+}
+
+TEST(Thermal, WritesTemperaturesAndHeat) {
+  json scene = sliding_point(0.01, 0.25);
+  scene["output"] = {{"watch", {0}}, {"balance", true}};
+  const Ran result = ran(scene);
+  EXPECT_NEAR(result.last("n0.T"), 290.4, 1e-12);
+  EXPECT_NEAR(result.last("heat.stored"), 4.0, 1e-12);
+  EXPECT_NEAR(result.last("heat.obstacles"), 12.0, 1e-12);
+  EXPECT_NEAR(result.summary["heat"]["friction"].get<double>(), 16.0, 1e-12);
+  EXPECT_NEAR(result.summary["heat"]["highest_temperature"].get<double>(), 290.4, 1e-12);
+}
+
+TEST(Thermal, WritesTemperaturesToFields) {
+  const auto folder = fresh_folder();
+  json scene = sliding_point(0.01, 0.25);
+  scene["output"] = {{"fields", 100}};
+  std::ofstream(folder / "scene.json") << scene.dump();
+  const Outcome outcome =
+      run_program("run " + (folder / "scene.json").string() + " --out " + folder.string());
+  EXPECT_EQ(outcome.code, 0) << outcome.output;
+  EXPECT_NE(text_of(folder / "fields_000001.vtu").find("Name=\"temperature\""), std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Thermal, WritesNothingWithoutTemperatures) {
+  json scene = sliding_point(0.01, 0.25);
+  scene["model"]["points"][0].erase("thermal");
+  scene["output"] = {{"watch", {0}}, {"balance", true}};
+  const Ran result = ran(scene);
+  EXPECT_FALSE(result.history.contains("n0.T"));
+  EXPECT_FALSE(result.history.contains("heat.stored"));
+  EXPECT_FALSE(result.summary.contains("heat"));
+}
+
+TEST(Thermal, RefusesAStepAboveThatOfConduction) {
+  const Bar bar{.elements = 5};
+  const double stable = bar.stable_step();
+  EXPECT_NO_THROW(scene_of(scene_with({column(bar, "tread", 0)}, stable, 1.0).dump()));
+  const std::string said = refusal_of_scene(scene_with({column(bar, "tread", 0)}, 1.001 * stable, 1.0));
+  EXPECT_NE(said.find("the stable step of conduction in 'tread'"), std::string::npos) << said;
+  json scene = scene_with({column(bar, "tread", 0)}, stable, 1.0);
+  scene["time"] = {{"cfl", 0.5}, {"end", 1.0}};
+  EXPECT_NEAR(scene_of(scene.dump()).dt, 0.5 * stable, 1e-15);
+}
+
+TEST(Thermal, RefusesTwoTemperaturesOfANode) {
+  json scene = sliding_point(0.01, 0.5);
+  scene["interfaces"][0]["law"] = "conductance";
+  scene["interfaces"][0]["parameters"] = {{"conductance", 1}};
+  EXPECT_NE(refusal_of_scene(scene).find("/interfaces/0/obstacle: key 'temperature' is missing"),
+            std::string::npos);
+  scene["interfaces"][0]["obstacle"]["temperature"] = {{0, 300}, {1, 320}};
+  EXPECT_EQ(refusal_of_scene(scene), "not refused");
+  scene["fields"] = {{"temperature", 300}};
+  EXPECT_NE(refusal_of_scene(scene).find("/fields/temperature: found a value, expected none"),
+            std::string::npos);
+  scene.erase("fields");
+  scene["interfaces"][0]["parameters"]["temperature"] = 300;
+  EXPECT_NE(refusal_of_scene(scene).find("/interfaces/0/parameters/temperature: found a value"),
+            std::string::npos);
+}
+
+TEST(Thermal, RefusesContactWithABodyWithoutTemperature) {
+  const Bar bar;
+  const json law = {{"law", "coulomb"}, {"parameters", {{"friction", 0.3}}}};
+  json scene = two_columns(bar, bar, 0.001, 1.0, law);
+  scene["model"]["blocks"][0].erase("thermal");
+  EXPECT_NE(refusal_of_scene(scene).find("/interfaces/0/against: found node 20, which has no temperature"),
+            std::string::npos)
+      << refusal_of_scene(scene);
+  scene = sliding_point(0.01, 0.5);
+  scene["model"]["points"][0].erase("thermal");
+  scene["interfaces"][0]["obstacle"]["temperature"] = 300;
+  EXPECT_NE(refusal_of_scene(scene).find("/interfaces/0/nodes: found node 0, which has no temperature"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace ilaw::host::testing
