@@ -74,14 +74,14 @@ int FixIlawWall::read_own(const std::vector<std::string>& words, std::size_t at)
   return static_cast<int>(next - at);
 }
 
-Vector FixIlawWall::centre(const Wall& wall) const {
+Vector FixIlawWall::center(const Wall& wall) const {
   Vector now = wall.point;
   for (std::size_t c = 0; c < 3; ++c) now[c] += moved_time_ * wall.velocity[c];
   return now;
 }
 
 double FixIlawWall::distance(const Wall& wall, const double* x, Vector& normal) const {
-  Vector from = centre(wall);
+  Vector from = center(wall);
   for (std::size_t c = 0; c < 3; ++c) from[c] = x[c] - from[c];
   const double along = dot(from, wall.direction);
   if (wall.shape == Shape::plane) {
@@ -99,7 +99,7 @@ double FixIlawWall::distance(const Wall& wall, const double* x, Vector& normal) 
 // is the mean over the step to O(h^2): the two-step method of Adams and Bashforth for a grain that sticks.
 Vector FixIlawWall::velocity(const Wall& wall, int i, double distance, const Vector& normal,
                              double ahead) const {
-  Vector from = centre(wall);
+  Vector from = center(wall);
   for (std::size_t c = 0; c < 3; ++c)
     from[c] = atom->x[i][c] - distance * normal[c] - from[c] + ahead * (atom->v[i][c] - wall.velocity[c]);
   Vector now = cross(wall.spin, from);

@@ -28,7 +28,7 @@ class FixIlawWall : public FixIlaw {
   void set_spin(Wall& wall, const Vector& spin);
   Vector read_vector(const std::vector<std::string>& words, std::size_t at);
   void find() override;
-  Vector centre(const Wall& wall) const;
+  Vector center(const Wall& wall) const;
   // From the wall to a point, and the normal there.
   double distance(const Wall& wall, const double* x, Vector& normal) const;
   Vector velocity(const Wall& wall, int i, double distance, const Vector& normal, double ahead) const;

@@ -59,8 +59,8 @@ class Contacts:
         return {"pairs": self.pairs, **kept, "version": self.law.state_version}
 
     def recall(self, memory):
-        if memory["version"] != self.law.state_version:
-            raise ValueError("the memory is of another version of the law")
+        if memory["version"] != self.law.state_version or not self._widths.keys() <= memory.keys():
+            raise ValueError("the memory is of another law or version")
         self.pairs = memory["pairs"].copy()
         self._take({name: memory[name].copy() for name in self._widths})
 
