@@ -94,7 +94,7 @@ class Grains {
   };
   static ilaw_coupled_options default_options() {
     ilaw_coupled_options made{};
-    made.most_sweeps = 20000;
+    made.most_sweeps = 1000;
     made.tolerance = 1e-14;
     return made;
   }

@@ -31,7 +31,6 @@ Grains heap(double h, double unit = 1.0, const Map& map = {}) {
   const double size = unit * diameter;
   Grains made(resistance(0.3, 0.02 * size, 0.02 * size), h);
   made.options.tolerance = tolerance;
-  made.options.most_sweeps = 1000;
   made.pull = unit * map(pull);
   made.reach = 0.1 * size;
   std::mt19937 bits(7);
@@ -131,7 +130,6 @@ TEST(CoupledHeap, TurnsWithTheFrameAndItsMirror) {
 Grains stump(double h) {
   Grains made(resistance(0.8, 0.02 * diameter, 0.02 * diameter), h);
   made.options.tolerance = tolerance;
-  made.options.most_sweeps = 1000;
   made.reach = 0.1 * diameter;
   made.walls.push_back({});
   for (int layer = 0; layer < 2; ++layer)
@@ -160,6 +158,28 @@ TEST(CoupledHeap, WarmStartSavesIterations) {
     EXPECT_LE(warm, 5U) << "h " << h;
     EXPECT_GT(half, 4 * warm) << "h " << h;
     EXPECT_GT(cold, 4 * warm) << "h " << h;
+  }
+}
+
+// Spheres on each other below one of 10,000 times their mass: without Newton steps two to six times the
+// iterations.
+TEST(CoupledHeap, ColumnUnderAWeightTakesNewtonSteps) {
+  for (const double h : heap_steps) {
+    Grains all(resistance(0.4, 0.02, 0.02), h);
+    all.options.tolerance = 1e-10;
+    all.reach = 0.01;
+    all.walls.push_back({});
+    for (int i = 0; i < 10; ++i)
+      all.grains.push_back({i == 9 ? 1e4 : 1.0,
+                            0.5,
+                            {0.01 * (i % 2), 0.0, 0.5 + i * std::sqrt(1.0 - 1e-4)},
+                            {},
+                            {0.01 * i, 0.02 * (i % 3), 0.05 * (i % 5)}});
+    for (int k = 0; k < 3; ++k) {
+      const ilaw_coupled_report report = all.step();
+      EXPECT_LE(report.residual, 1e-10) << "h " << h << ", step " << k;
+      EXPECT_EQ(report.method, ILAW_METHOD_NEWTON) << "h " << h << ", step " << k;
+    }
   }
 }
 
