@@ -52,6 +52,7 @@ SCENES = {
     "dcb_peel": ("time", "time", "damage along the bond", [("n80.damage", "first"), ("n60.damage", "later")]),
     "postit_3d": ("time", "time", "gap of the strip", [("n82.gap", "free end"), ("n92.gap", "at the tab")]),
     "block_impact": ("time", "time", "velocity of a corner", [("n0.v0", "x"), ("n0.v2", "z")]),
+    "tyre_block": ("time", "time", "temperature of the tread", ["n0.T"]),
     "two_blocks": ("time", "time", "gap of a node", [("n405.gap", "edge"), ("n440.gap", "middle")]),
     "tilting_plane": ("time", "time", "displacement of the block", [("n4.u0", "x"), ("n4.u2", "z")]),
     "patch_test": ("time", "time", "impulse of a node", [("n37.r2", "both sides"), ("n193.r2", "one side")]),

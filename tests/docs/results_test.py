@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The cases of docs/results/fault.py and calculix.py, at their coarsest: figures of the pages, and closed forms."""
+"""The cases of docs/results/fault.py, tyre_block.py and calculix.py: figures of the pages, and closed forms."""
 # SPDX-License-Identifier: BSD-3-Clause
 import importlib.util
 import os
@@ -45,6 +45,23 @@ class Fault(unittest.TestCase):
         shear = sum(load["direction"][0] * (1 if load.get("total") else len(load["nodes"])) for load in upper)
         expected = 300 * (fault.SHEAR * fault.LENGTH + (fault.NUCLEATION_SHEAR - fault.SHEAR) * 2 * fault.NUCLEATION)
         self.assertAlmostEqual(shear / expected, 1, places=12)
+
+
+class TyreBlock(unittest.TestCase):
+    def test_block_rubs_heats_and_wears_as_on_the_page(self):
+        tyre_block = load("tyre_block")
+        for temperature in (313.0, 293.0, 273.0):
+            found, summary = tyre_block.run(PROGRAM, temperature, tyre_block.TABLE_SPEED)
+            coldest, friction, off, heat, stored, wear = row("tyre_block", f"{temperature:g}")
+            self.assertAlmostEqual(found["temperature"][-1].min(), coldest, delta=0.06)
+            self.assertAlmostEqual(found["mu"][-1], friction, delta=1e-4)
+            self.assertLess(tyre_block.off_the_page(found), off + 6e-5)
+            self.assertAlmostEqual(summary["heat"]["friction"], heat, delta=6e-4)
+            self.assertAlmostEqual(summary["heat"]["stored"], stored, delta=6e-4)
+            self.assertAlmostEqual(summary["interfaces"][0]["amounts"]["wear"] / 4 * 1e9, wear, delta=0.06)
+            self.assertAlmostEqual(summary["heat"]["friction"] / summary["energy"]["dissipated_friction"], 1, places=12)
+            self.assertLess(summary["heat"]["balance_error"], 1e-13)
+            self.assertLess(summary["energy"]["balance_error"], 1e-13)
 
 
 class Calculix(unittest.TestCase):
