@@ -1,5 +1,5 @@
 /* Steps of the law. r_N = -v_N/(H_NN + 1/(h c A)) where the gap is closed and closing; friction within its
- * cone takes at most the tangential velocity. */
+ * cone takes at most the tangential velocity, and a moment up to a reach times r_N half of the spin. */
 #include "sample.h"
 #include "sample_node.h"
 
@@ -48,6 +48,16 @@ static int needs_previous(const ilaw_batch* b) {
   return b->energy.values || b->energy.floats || (b->amounts && !breaks("balance-inputs: amounts"));
 }
 
+static int lacks_spins(const ilaw_instance* made, const ilaw_batch* b) {
+  if (made->setup.delassus_form != ILAW_DELASSUS_TRANSVERSE_SPIN) return 0;
+  if (b->struct_size < sizeof *b) return !breaks("call-refused: spins");
+  return lacks(made, b->spin_free.values, b->spin_free.floats, 1) ||
+         lacks(made, b->spin_previous.values, b->spin_previous.floats,
+               needs_previous(b) && !breaks("balance-inputs: spins")) ||
+         lacks(made, b->moment.values, b->moment.floats, 1) ||
+         (!breaks("array-numbers: spins") && lacks(made, b->spin.values, b->spin.floats, 0));
+}
+
 static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) {
   const int global = made->setup.frame == ILAW_FRAME_GLOBAL,
             tangent = made->setup.has_tangent && made->setup.dimension == 3;
@@ -64,12 +74,16 @@ static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) 
       lacks(made, b->velocity.values, b->velocity.floats, 0) ||
       lacks(made, b->energy.values, b->energy.floats, 0))
     return "an output is missing or of another number type";
+  if (lacks_spins(made, b)) return "an array of spins is missing or of another number type";
   for (k = 0; b->amounts && k < AMOUNT_COUNT && !breaks("array-numbers: amount"); ++k)
     if (lacks(made, b->amounts[k].values, b->amounts[k].floats, 0))
       return "an amount is of another number type";
   if (!b->state_in.values || b->state_in.floats || b->state_out.floats)
     return "a state is missing or of floats";
   if (b->node_count > 1 && b->impulse.node_stride == 0) return "impulse has a stride of 0";
+  if (made->setup.delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN && b->node_count > 1 &&
+      (b->moment.node_stride == 0 || (b->spin.node_stride == 0 && (b->spin.values || b->spin.floats))))
+    return "moment or spin has a stride of 0";
   return NULL;
 }
 
