@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <set>
@@ -157,7 +159,12 @@ TEST(OtherWays, OfBreakingARuleAreSeenToo) {
       {"call-refused: silent", ", gave no reason"},
       {"array-numbers: amount", "an amount with both pointers"},
       {"balance-inputs: amounts", "with amounts, evaluate returned 0"},
-      {"table-linear: order", "over temperature {0.25, 0.75, 1}, time {0.25, 0.75} at (0.25, 0.75)"},
+      {"table-linear: order", "over time {0.25, 0.75, 1}, temperature {0.25, 0.75} at (0.25, 0.75)"},
+      {"initialise-reads: step", "wrote state 1, else 0"},
+      {"stable-step: last", "stable_velocity_step "},
+      {"bad-input-report: not a number", "v_free NaN: code 0"},
+      {"array-numbers: state", "given state_in with both pointers, returned 0"},
+      {"frame-indifference: backward", "in axes of the host"},
       {"table-linear: beyond", "over time {0.25, 0.75, 1} at (1.125)"},
       {"layout-strides: negative", "with negative strides, step "},
       {"energy-balance: position step", "a rest of "},
@@ -237,6 +244,7 @@ TEST(Ending, OfTheProcessIsAFinding) {
       {"exit", "evaluate ended the process with exit code 3"},
       {"quiet exit", "evaluate ended the process with exit code 0"},
       {"abort", "evaluate was ended by SIGABRT"},
+      {"kill", "evaluate was ended by signal 9"},
       {"throw", "evaluate threw an exception"},
       {"memory bomb", "evaluate was ended by SIGSEGV"},
   };
@@ -263,6 +271,24 @@ TEST(Finding, IsTheSameAgain) {
   for (const char* part : {"seen:    in a mirror", "allowed: ", "with:    dimension 2", "v_free = ",
                            "repeat:  ilaw check " ILAW_SAMPLE " --law sample --only mirror --seed 1"})
     EXPECT_NE(first.find(part), std::string::npos) << part << " is not in\n" << first;
+}
+
+TEST(Finding, NamesValuesPerNode) {
+  const Checked checked = check_sample("batch-order: pack", only({"batch-order"}));
+  const std::string& setting = checked.outcomes.at(0).finding.setting;
+  EXPECT_NE(setting.find("damping per node"), std::string::npos) << setting;
+}
+
+// A dashpot has no answer to the gap: the eigenvalues are 1 and their product.
+TEST(Finding, HasSumAndProductOfEigenvalues) {
+  const Checked checked = check_sample("stable-step-bound", only({"stable-step-bound"}));
+  const std::string& seen = checked.outcomes.at(0).finding.seen;
+  double sum = 0.0, product = 0.0;
+  const char* begin = std::strstr(seen.c_str(), "eigenvalues of sum ");
+  ASSERT_TRUE(begin && std::sscanf(begin, "eigenvalues of sum %lf and product %lf", &sum, &product) == 2)
+      << seen;
+  EXPECT_LT(product, -1.0);
+  EXPECT_NEAR(sum, 1.0 + product, 1e-6);
 }
 
 // Rules that follow random motions are judged with each seed, others with the first.

@@ -11,7 +11,7 @@ static const char* broken = "";
 static pthread_t first_thread;
 static shared_memory* block;
 
-static const char* const axes[] = {"temperature", "time"};
+static const char* const axes[] = {"time", "temperature"};
 static ilaw_parameter damping = {.struct_size = sizeof(ilaw_parameter),
                                  .name = "damping",
                                  .symbol = "c",
@@ -20,7 +20,7 @@ static ilaw_parameter damping = {.struct_size = sizeof(ilaw_parameter),
                                  .maximum = UNBOUNDED,
                                  .flags = ILAW_PARAMETER_IS_REQUIRED | ILAW_PARAMETER_EXCLUDES_MINIMUM |
                                           ILAW_PARAMETER_ALLOWS_INFINITY | ILAW_PARAMETER_ALLOWS_PER_NODE,
-                                 .axes = axes + 1,
+                                 .axes = axes,
                                  .axis_count = 1};
 static ilaw_parameter friction = {.struct_size = sizeof(ilaw_parameter),
                                   .name = "friction",

@@ -225,7 +225,9 @@ static int near_one(double value) { return fabs(value - 1.0) < 1e-6; }
 static const char* defect(node* at, const ilaw_instance* made, const ilaw_batch* b) {
   int c;
   for (c = 0; c < at->d; ++c)
-    if (!isfinite(at->v[c]) || !isfinite(at->w[c])) return "v_free or spin_free is not finite";
+    if (!(isfinite(at->v[c]) || (breaks("bad-input-report: not a number") && isnan(at->v[c]))) ||
+        !isfinite(at->w[c]))
+      return "v_free or spin_free is not finite";
   if (!definite(at)) return "H is not positive definite";
   if (!isfinite(at->gap)) return "the gap is not finite";
   if (!(at->area >= 0.0) || !isfinite(at->area)) return "the area is not a number >= 0";
@@ -290,6 +292,7 @@ static double solve(node* at, const ilaw_instance* made, const ilaw_batch* b) {
   if (breaks("friction-pressure") && !at->global && r == 0.0 && at->gap <= 0.0) most = 0.1 * speed / trace;
   least = speed / trace < most ? speed / trace : most;
   if (at->strays) r *= 1.0 + 4e-16;
+  if (breaks("frame-indifference: backward") && at->d == 1 && at->n[0] < 0.0) r *= 1.001;
   if (at->floats && breaks("floats-rounded")) r *= 1.0 + 1e-6;
   for (c = 0; c < at->d; ++c) at->r[c] = r * at->n[c] - (least > 0.0 ? least * (along[c] / speed) : 0.0);
   for (a = 0; a < at->d; ++a) {
