@@ -20,23 +20,26 @@ struct Bad {
   bool every_component;
 };
 
-const Bad bad_inputs[] = {{"v_free NaN", &Inputs::v_free, nan, 0, false},
-                          {"v_free infinite", &Inputs::v_free, -infinity, 0, false},
-                          {"delassus 0", &Inputs::delassus, 0.0, 0, true},
-                          {"delassus negative", &Inputs::delassus, -1.0, 0, true},
-                          {"delassus NaN", &Inputs::delassus, nan, 0, false},
-                          {"delassus infinite", &Inputs::delassus, infinity, 0, false},
-                          {"gap NaN", &Inputs::gap, nan, ILAW_INPUT_GAP, false},
-                          {"gap infinite", &Inputs::gap, -infinity, ILAW_INPUT_GAP, false},
-                          {"gap_offset NaN", &Inputs::gap_offset, nan, ILAW_INPUT_GAP, false},
-                          {"v_previous NaN", &Inputs::v_previous, nan, ILAW_INPUT_V_PREVIOUS, false},
-                          {"area NaN", &Inputs::area, nan, ILAW_INPUT_AREA, false},
-                          {"area negative", &Inputs::area, -1.0, ILAW_INPUT_AREA, false},
-                          {"normal NaN", &Inputs::normal, nan, ILAW_INPUT_NORMAL, false},
-                          {"normal 0", &Inputs::normal, 0.0, ILAW_INPUT_NORMAL, true},
-                          {"normal no unit vector", &Inputs::normal, 3.0, ILAW_INPUT_NORMAL, true},
-                          {"tangent NaN", &Inputs::tangent, nan, ILAW_INPUT_TANGENT, false},
-                          {"tangent 0", &Inputs::tangent, 0.0, ILAW_INPUT_TANGENT, true}};
+const Bad bad_inputs[] = {
+    {"v_free NaN", &Inputs::v_free, nan, 0, false},
+    {"v_free infinite", &Inputs::v_free, -infinity, 0, false},
+    {"delassus 0", &Inputs::delassus, 0.0, 0, true},
+    {"delassus negative", &Inputs::delassus, -1.0, 0, true},
+    {"delassus NaN", &Inputs::delassus, nan, 0, false},
+    {"delassus infinite", &Inputs::delassus, infinity, 0, false},
+    {"gap NaN", &Inputs::gap, nan, ILAW_INPUT_GAP, false},
+    {"gap infinite", &Inputs::gap, -infinity, ILAW_INPUT_GAP, false},
+    {"gap_offset NaN", &Inputs::gap_offset, nan, ILAW_INPUT_GAP, false},
+    {"v_previous NaN", &Inputs::v_previous, nan, ILAW_INPUT_V_PREVIOUS, false},
+    {"area NaN", &Inputs::area, nan, ILAW_INPUT_AREA, false},
+    {"area negative", &Inputs::area, -1.0, ILAW_INPUT_AREA, false},
+    {"normal NaN", &Inputs::normal, nan, ILAW_INPUT_NORMAL, false},
+    {"normal 0", &Inputs::normal, 0.0, ILAW_INPUT_NORMAL, true},
+    {"normal no unit vector", &Inputs::normal, 3.0, ILAW_INPUT_NORMAL, true},
+    {"tangent NaN", &Inputs::tangent, nan, ILAW_INPUT_TANGENT, false},
+    {"tangent 0", &Inputs::tangent, 0.0, ILAW_INPUT_TANGENT, true},
+    {"spin_free NaN", &Inputs::spin_free, nan, 0, false},
+    {"spin_previous infinite", &Inputs::spin_previous, infinity, ILAW_INPUT_V_PREVIOUS, false}};
 
 void spoil(Inputs& in, const Bad& bad) {
   std::vector<double>& values = in.*bad.array;
@@ -119,6 +122,7 @@ void at_the_node(const Subject& subject) {
     };
     for (std::size_t c = 0; c < d; ++c)
       if (s.bad.impulse[spoilt * d + c] != 0.0) say("impulse " + text_of(s.bad.impulse[spoilt * d + c]), "0");
+    if (const Vector m = s.bad.moment_at(spoilt); m != Vector{}) say("moment " + text_of(m, 3), "0");
     for (std::size_t c = 0; c < size; ++c)
       if (!same_bits(s.bad.state[spoilt * size + c], s.state[spoilt * size + c]))
         say("state_out " + text_of(s.bad.state[spoilt * size + c]),
@@ -129,11 +133,14 @@ void at_the_node(const Subject& subject) {
       if (s.bad.energy[spoilt * ILAW_ENERGY_COUNT + c] != 0.0) say("an energy other than 0", "0");
     for (const std::vector<double>& amount : s.bad.amounts)
       if (!amount.empty() && amount[spoilt] != 0.0) say("an amount of " + text_of(amount[spoilt]), "0");
-    for (std::size_t c = 0; !s.bad.velocity.empty() && c < d; ++c) {
-      const double v = s.bad.velocity[spoilt * d + c], expected = s.in.v_free[spoilt * d + c];
-      if (!(v == expected || (std::isnan(v) && std::isnan(expected))))
-        say("velocity " + text_of(v), "v_free");
-    }
+    const auto expect_free = [&](const char* name, const std::vector<double>& after,
+                                 const std::vector<double>& free) {
+      for (std::size_t c = spoilt * d; !after.empty() && c < (spoilt + 1) * d; ++c)
+        if (!(after[c] == free[c] || (std::isnan(after[c]) && std::isnan(free[c]))))
+          say(name + text_of(after[c]), "that without interface, " + text_of(free[c]));
+    };
+    expect_free("velocity ", s.bad.velocity, s.in.v_free);
+    expect_free("spin ", s.bad.spin, s.in.spin_free);
   });
 }
 
@@ -141,8 +148,8 @@ void elsewhere(const Subject& subject) {
   for_bad_inputs(subject, [](const Spoilt& s) {
     Results bad = s.bad, good = s.good;
     const auto forget = [](Results& results) {
-      for (std::vector<double>* values :
-           {&results.impulse, &results.state, &results.velocity, &results.energy}) {
+      for (std::vector<double>* values : {&results.impulse, &results.state, &results.velocity,
+                                          &results.energy, &results.moment, &results.spin}) {
         const std::size_t width = values->size() / results.nodes;
         for (std::size_t c = 0; c < width; ++c) (*values)[spoilt * width + c] = 0.0;
       }
@@ -158,25 +165,33 @@ void elsewhere(const Subject& subject) {
   });
 }
 
-// A full H with a negative eigenvalue and a positive diagonal.
+// A full H with a negative eigenvalue and a positive diagonal, or k^2 > h_T j_T.
 void indefinite(const Subject& subject) {
   for_trials(
       subject,
       [](const Trial& trial, Draw& draw) {
-        if (trial.setup.form != ILAW_DELASSUS_FULL || trial.setup.dimension == 1) return false;
+        const bool is_full = trial.setup.form == ILAW_DELASSUS_FULL && trial.setup.dimension > 1;
+        if (!is_full && !trial.setup.spins()) return false;
         Inputs in = draw_script(trial, draw, {11, 1}, true)[0];
         Heap heap;
         Arrays arrays(trial, in, {}, heap);
         arrays.initialise(in);
         if (arrays.evaluate(in).code != ILAW_OK) return false;
-        in.delassus[spoilt * in.form_width + in.dimension] = 5.0;
+        in.delassus[spoilt * in.form_width + (is_full ? in.dimension : 2)] = 5.0;
         arrays.initialise(in);
         const Results found = arrays.evaluate(in);
         if (found.code != ILAW_BAD_NODES || found.report.first_bad_node != spoilt)
           fail(trial, in, spoilt, "code " + std::to_string(found.code), "ILAW_BAD_NODES (1) at node 5");
         return true;
       },
-      "the law serves no full H");
+      "the law serves neither a full H nor spins");
+}
+
+void expect_finite(const Trial& trial, const Inputs& in, const char* name, const std::vector<double>& found) {
+  for (std::size_t at = 0; at < found.size(); ++at)
+    if (!(std::abs(found[at]) < (trial.setup.floats() ? 0x1p126 : infinity)))
+      fail(trial, in, at / in.dimension, name + text_of(found[at]),
+           trial.setup.floats() ? "below 2^126, or bad input with 0" : "finite, or bad input with 0");
 }
 
 // Numbers as large and small as there are: finite impulses, or bad input.
@@ -188,17 +203,18 @@ void extremes(const Subject& subject) {
         const double most = trial.setup.floats() ? 38.0 : 308.0;
         const double size = std::pow(10.0, draw.within(-most - 12.0, most));
         for (std::size_t c = 0; c < in.dimension; ++c) in.v_free[i * in.dimension + c] *= size;
+        if (in.spins())
+          in.set_vector(in.spin_free, i, scaled(i % 5 == 0 ? 1.0 : size, in.vector(in.spin_free, i)));
         if (i % 3 == 0) in.gap[i] *= std::pow(10.0, draw.within(-most, most));
         const double scale = std::pow(10.0, draw.within(-0.65 * most, 0.65 * most));
         for (std::size_t c = 0; i % 2 == 0 && c < in.form_width; ++c)
           in.delassus[i * in.form_width + c] *= scale;
       }
     const std::vector<Results> results = run(trial, script);
-    for (std::size_t k = 0; k < script.size(); ++k)
-      for (std::size_t at = 0; at < results[k].impulse.size(); ++at)
-        if (!(std::abs(results[k].impulse[at]) < (trial.setup.floats() ? 0x1p126 : infinity)))
-          fail(trial, script[k], at / script[k].dimension, "impulse " + text_of(results[k].impulse[at]),
-               trial.setup.floats() ? "below 2^126, or bad input with 0" : "finite, or bad input with 0");
+    for (std::size_t k = 0; k < script.size(); ++k) {
+      expect_finite(trial, script[k], "impulse ", results[k].impulse);
+      expect_finite(trial, script[k], "moment ", results[k].moment);
+    }
     return true;
   });
 }
@@ -213,13 +229,14 @@ std::vector<Rule> bad_input_rules() {
            "ilaw.h, ilaw_report.first_bad_node", Needs::motion, reported_in_lists},
           {"bad-input-node",
            "A node with bad input gets r = 0, state_out = state_in, status ILAW_BAD_INPUT, energy "
-           "and amounts 0 and velocity = v_free.",
+           "and amounts 0 and velocity = v_free; moment 0 and spin = spin_free.",
            source, Needs::motion, at_the_node},
           {"bad-input-others", "Bad input at a node changes no bit of the others.", source, Needs::motion,
            elsewhere},
-          {"bad-input-definite", "An H that is not positive definite is bad input.",
+          {"bad-input-definite",
+           "An H that is not positive definite, with its spins where it has them, is bad input.",
            "ilaw.h, ilaw_batch.delassus", Needs::motion, indefinite},
-          {"impulse-finite", "An impulse is finite, in floats below 2^126, whatever comes in.",
+          {"impulse-finite", "An impulse and a moment are finite, in floats below 2^126, whatever comes in.",
            "abi.md, Errors", Needs::motion, extremes}};
 }
 

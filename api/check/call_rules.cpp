@@ -93,8 +93,16 @@ const Wrong wrong_calls[] = {
      true},
     {"an impulse with node_stride 0", [](ilaw_batch& b) { b.impulse.node_stride = 0; }, false}};
 
+// In the form of H with spins; the batch of a host of ABI 1.0 ends before them.
+const Wrong wrong_spins[] = {
+    {"spin_free null", [](ilaw_batch& b) { b.spin_free = {}; }, false},
+    {"moment null", [](ilaw_batch& b) { b.moment = {}; }, false},
+    {"a moment with node_stride 0", [](ilaw_batch& b) { b.moment.node_stride = 0; }, false},
+    {"a spin with node_stride 0", [](ilaw_batch& b) { b.spin.node_stride = 0; }, false},
+    {"a batch without spins", [](ilaw_batch& b) { b.struct_size = ILAW_BATCH_SIZE_1_0; }, false}};
+
 // Calls that must return a code and write nothing.
-void expect_refused(const Trial& trial, Arrays& arrays, const Inputs& in, const Results& before,
+void expect_refused(const Trial& trial, Arrays& arrays, const Inputs& in, const std::vector<double>& before,
                     const Wrong& wrong, std::int32_t code) {
   for (const bool initial : {false, true}) {
     if (initial && !wrong.for_initialise) continue;
@@ -110,7 +118,7 @@ void expect_refused(const Trial& trial, Arrays& arrays, const Inputs& in, const 
         std::string(initial ? "initialise" : "evaluate") + ", given " + wrong.what + ", ";
     if (found != code)
       fail(trial, in, 0, call + "returned " + std::to_string(found), "code " + std::to_string(code));
-    if (arrays.state() != state || arrays.impulses() != before.impulse || arrays.amounts() != amounts)
+    if (arrays.state() != state || arrays.impulses() != before || arrays.amounts() != amounts)
       fail(trial, in, 0, call + "wrote results", "nothing written");
     if (!report.reason) fail(trial, in, 0, call + "gave no reason", "a reason in the report");
   }
@@ -123,14 +131,15 @@ void with_two_nodes(const Subject& subject, Look look) {
     Heap heap;
     Arrays arrays(trial, script[0], {}, heap);
     arrays.initialise(script[0]);
-    const Results before = arrays.evaluate(script[0]);
-    look(trial, arrays, script[0], before);
+    arrays.evaluate(script[0]);
+    look(trial, arrays, script[0], arrays.impulses());
     return true;
   });
 }
 
 void calls_refused(const Subject& subject) {
-  with_two_nodes(subject, [](const Trial& trial, Arrays& arrays, const Inputs& in, const Results& before) {
+  with_two_nodes(subject, [](const Trial& trial, Arrays& arrays, const Inputs& in,
+                             const std::vector<double>& before) {
     for (const Wrong& wrong : wrong_calls)
       expect_refused(trial, arrays, in, before, wrong, ILAW_INVALID_ARGUMENT);
     struct Needed {
@@ -145,6 +154,12 @@ void calls_refused(const Subject& subject) {
         {ILAW_INPUT_TANGENT, {"tangent null", [](ilaw_batch& b) { b.tangent = {}; }, false}}};
     for (const Needed& one : needed)
       if (trial.reads(one.input)) expect_refused(trial, arrays, in, before, one.wrong, ILAW_INVALID_ARGUMENT);
+    for (const Wrong& wrong : wrong_spins)
+      if (trial.setup.spins()) expect_refused(trial, arrays, in, before, wrong, ILAW_INVALID_ARGUMENT);
+    if (trial.setup.spins() && trial.reads(ILAW_INPUT_V_PREVIOUS))
+      expect_refused(trial, arrays, in, before,
+                     {"spin_previous null", [](ilaw_batch& b) { b.spin_previous = {}; }, false},
+                     ILAW_INVALID_ARGUMENT);
     if (trial.info.state_size > 0)
       expect_refused(trial, arrays, in, before,
                      {"state_in null", [](ilaw_batch& b) { b.state_in = {}; }, false}, ILAW_INVALID_ARGUMENT);
@@ -169,44 +184,66 @@ Wrong other_numbers(const char* what) {
 }
 
 void array_numbers(const Subject& subject) {
-  with_two_nodes(subject, [](const Trial& trial, Arrays& arrays, const Inputs& in, const Results& before) {
-    struct Array {
-      bool is_used;
-      Wrong both, other;
-    };
+  with_two_nodes(
+      subject, [](const Trial& trial, Arrays& arrays, const Inputs& in, const std::vector<double>& before) {
+        struct Array {
+          bool is_used;
+          Wrong both, other;
+        };
 #define ILAW_CHECK_ARRAY(used, member)                                                 \
   Array {                                                                              \
     used, other_numbers<true, &ilaw_batch::member>(#member " with both pointers"),     \
         other_numbers<false, &ilaw_batch::member>(#member " of the other number type") \
   }
-    const Array all[] = {ILAW_CHECK_ARRAY(true, v_free),
-                         ILAW_CHECK_ARRAY(true, delassus),
-                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_GAP), gap),
-                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_GAP), gap_offset),
-                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_V_PREVIOUS), v_previous),
-                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_AREA), area),
-                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_NORMAL), normal),
-                         ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_TANGENT), tangent),
-                         ILAW_CHECK_ARRAY(trial.info.state_size > 0, state_in),
-                         ILAW_CHECK_ARRAY(trial.info.state_size > 0, state_out),
-                         ILAW_CHECK_ARRAY(true, impulse),
-                         ILAW_CHECK_ARRAY(trial.writes(ILAW_OUTPUT_VELOCITY), velocity),
-                         ILAW_CHECK_ARRAY(trial.writes(ILAW_OUTPUT_ENERGY), energy)};
+        const Array all[] = {
+            ILAW_CHECK_ARRAY(true, v_free),
+            ILAW_CHECK_ARRAY(true, delassus),
+            ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_GAP), gap),
+            ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_GAP), gap_offset),
+            ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_V_PREVIOUS), v_previous),
+            ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_AREA), area),
+            ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_NORMAL), normal),
+            ILAW_CHECK_ARRAY(trial.reads(ILAW_INPUT_TANGENT), tangent),
+            ILAW_CHECK_ARRAY(trial.info.state_size > 0, state_in),
+            ILAW_CHECK_ARRAY(trial.info.state_size > 0, state_out),
+            ILAW_CHECK_ARRAY(true, impulse),
+            ILAW_CHECK_ARRAY(trial.writes(ILAW_OUTPUT_VELOCITY), velocity),
+            ILAW_CHECK_ARRAY(trial.writes(ILAW_OUTPUT_ENERGY), energy),
+            ILAW_CHECK_ARRAY(trial.setup.spins(), spin_free),
+            ILAW_CHECK_ARRAY(trial.setup.spins() && trial.reads(ILAW_INPUT_V_PREVIOUS), spin_previous),
+            ILAW_CHECK_ARRAY(trial.setup.spins(), moment),
+            ILAW_CHECK_ARRAY(trial.setup.spins(), spin)};
 #undef ILAW_CHECK_ARRAY
-    for (const Array& array : all)
-      for (const Wrong& wrong : {array.both, array.other})
-        if (array.is_used) expect_refused(trial, arrays, in, before, wrong, ILAW_INVALID_ARGUMENT);
-    if (trial.info.amount_count == 0) return;
-    static std::vector<ilaw_output> amounts;
-    for (const bool both : {true, false}) {
-      amounts.assign(arrays.batch().amounts, arrays.batch().amounts + trial.info.amount_count);
-      set_other(amounts.back(), both);
-      expect_refused(trial, arrays, in, before,
-                     {"an amount with both pointers or of the other number type",
-                      [](ilaw_batch& b) { b.amounts = amounts.data(); }, false},
-                     ILAW_INVALID_ARGUMENT);
-    }
-  });
+        for (const Array& array : all)
+          for (const Wrong& wrong : {array.both, array.other})
+            if (array.is_used) expect_refused(trial, arrays, in, before, wrong, ILAW_INVALID_ARGUMENT);
+        if (trial.info.amount_count == 0) return;
+        static std::vector<ilaw_output> amounts;
+        for (const bool both : {true, false}) {
+          amounts.assign(arrays.batch().amounts, arrays.batch().amounts + trial.info.amount_count);
+          set_other(amounts.back(), both);
+          expect_refused(trial, arrays, in, before,
+                         {"an amount with both pointers or of the other number type",
+                          [](ilaw_batch& b) { b.amounts = amounts.data(); }, false},
+                         ILAW_INVALID_ARGUMENT);
+        }
+      });
+}
+
+// Whether evaluate refuses a batch of these outputs that lacks one of its inputs.
+void expect_code_without(const Trial& trial, const Inputs& in, ilaw_input ilaw_batch::*input,
+                         std::uint32_t outputs, bool refused, const std::string& what) {
+  Heap heap;
+  Arrays arrays(trial, in, {.outputs = outputs}, heap);
+  arrays.initialise(in);
+  arrays.evaluate(in);
+  ilaw_batch batch = arrays.batch();
+  batch.*input = {};
+  set_setting(trial.text() + "; without " + what);
+  const std::int32_t code = trial.instance.evaluate(batch, nullptr);
+  if (refused ? code != ILAW_INVALID_ARGUMENT : code < 0)
+    fail(trial, in, 0, "without " + what + ", evaluate returned " + std::to_string(code),
+         refused ? "ILAW_INVALID_ARGUMENT (-1)" : "as with it");
 }
 
 // What only energies and amounts need may be missing where neither is asked for.
@@ -217,22 +254,12 @@ void balance_inputs(const Subject& subject) {
         const ilaw_inputs more = trial.info.balance_inputs & ~trial.info.inputs;
         if (!(more & ILAW_INPUT_V_PREVIOUS)) return false;
         const Script script = draw_script(trial, draw, {2, 1}, true);
-        const auto code_without = [&](std::uint32_t outputs) {
-          Heap heap;
-          Arrays arrays(trial, script[0], {.outputs = outputs}, heap);
-          arrays.initialise(script[0]);
-          arrays.evaluate(script[0]);
-          ilaw_batch batch = arrays.batch();
-          batch.v_previous = {};
-          set_setting(trial.text() + "; v_previous null");
-          return trial.instance.evaluate(batch, nullptr);
-        };
         const auto expect = [&](std::uint32_t outputs, bool refused, const std::string& what) {
-          const std::int32_t code = code_without(outputs);
-          if (refused ? code != ILAW_INVALID_ARGUMENT : code < 0)
-            fail(trial, script[0], 0,
-                 "without v_previous, " + what + ", evaluate returned " + std::to_string(code),
-                 refused ? "ILAW_INVALID_ARGUMENT (-1)" : "as with it");
+          expect_code_without(trial, script[0], &ilaw_batch::v_previous, outputs, refused,
+                              "v_previous, " + what);
+          if (trial.setup.spins())
+            expect_code_without(trial, script[0], &ilaw_batch::spin_previous, outputs, refused,
+                                "spin_previous, " + what);
         };
         expect(ILAW_OUTPUT_STATUS, false, "and neither energy nor amounts");
         if (trial.writes(ILAW_OUTPUT_ENERGY)) expect(ILAW_OUTPUT_ENERGY, true, "with energy");
@@ -243,12 +270,13 @@ void balance_inputs(const Subject& subject) {
 }
 
 void batch_flags(const Subject& subject) {
-  with_two_nodes(subject, [](const Trial& trial, Arrays& arrays, const Inputs& in, const Results& before) {
-    for (const Wrong& wrong :
-         {Wrong{"bit 0 of flags", [](ilaw_batch& b) { b.flags = 1; }, true},
-          Wrong{"bit 63 of flags", [](ilaw_batch& b) { b.flags = std::uint64_t{1} << 63; }, true}})
-      expect_refused(trial, arrays, in, before, wrong, ILAW_UNSUPPORTED);
-  });
+  with_two_nodes(
+      subject, [](const Trial& trial, Arrays& arrays, const Inputs& in, const std::vector<double>& before) {
+        for (const Wrong& wrong :
+             {Wrong{"bit 0 of flags", [](ilaw_batch& b) { b.flags = 1; }, true},
+              Wrong{"bit 63 of flags", [](ilaw_batch& b) { b.flags = std::uint64_t{1} << 63; }, true}})
+          expect_refused(trial, arrays, in, before, wrong, ILAW_UNSUPPORTED);
+      });
 }
 
 void empty_batch(const Subject& subject) {

@@ -24,28 +24,44 @@ double stored_of(const Results& found, std::size_t i) {
   return found.energy.empty() ? 0.0 : found.energy[i * ILAW_ENERGY_COUNT + ILAW_ENERGY_STORED];
 }
 
-// Of v_free + H r, in which it rounds.
-double velocity_terms(const Inputs& in, const Results& found, std::size_t i) {
-  return length(in.vector(in.v_free, i)) +
-         length(times(in.h(i), found.vector(found.impulse, i, in.dimension)));
+// Sizes of v_free + H r + k n x m and of w_free + J m - k n x r, in which they round.
+struct Terms {
+  double velocity = 0.0, spin = 0.0;
+};
+Terms terms_of(const Inputs& in, const Results& found, std::size_t i) {
+  const Vector r = found.vector(found.impulse, i, in.dimension), m = found.moment_at(i);
+  const double k = std::abs(in.k(i));
+  return {length(in.vector(in.v_free, i)) + length(times(in.h(i), r)) + k * length(m),
+          length(in.spin(in.spin_free, i)) + length(times(in.j(i), m)) + k * length(r)};
 }
 
 // v^- is the last step's v_free + H r as the host rounded it. A law that moves its bond by what it solved
 // knows it unrounded, so that the work differs from what becomes of it by |r| ulp (|v_free| + |H r|) of the
 // last step: all there is where a node was stopped, and only that is left of its velocity.
 Step step_of(const Inputs& in, const Results& found, std::size_t i, double stored_before,
-             double terms_before) {
-  const Vector r = found.vector(found.impulse, i, in.dimension), v = in.vector(in.v_free, i),
-               gained = times(in.h(i), r);
-  // v^- = v_free and v = v_free + H r: the work r.(v^- + v)/2.
-  const double work = dot(r, v) + 0.5 * dot(r, gained), now = stored_of(found, i);
-  const double size =
-      length(r) * (velocity_terms(in, found, i) + terms_before) + std::abs(now) + std::abs(stored_before);
-  return {in, found, i, work, now - stored_before, size};
+             const Terms& before) {
+  const Vector r = found.vector(found.impulse, i, in.dimension), m = found.moment_at(i);
+  const Motion gained = in.gained(i, r, m);
+  // v^- = v_free and v = v_free + H r: the work r.(v^- + v)/2. That of a moment likewise.
+  const double work = dot(r, in.vector(in.v_free, i)) + 0.5 * dot(r, gained.velocity),
+               spin_work = dot(m, in.spin(in.spin_free, i)) + 0.5 * dot(m, gained.spin),
+               now = stored_of(found, i);
+  const Terms terms = terms_of(in, found, i);
+  const double size = length(r) * (terms.velocity + before.velocity) +
+                      length(m) * (terms.spin + before.spin) + std::abs(now) + std::abs(stored_before);
+  return {in, found, i, work + spin_work, now - stored_before, size};
 }
 
-// Without force: v_free is the velocity after the last step, and the gap follows it. Laws that limit the step
-// are the scheme's to bound.
+// v_free of the next step is the velocity after this one, and the gap follows it.
+void go_on(Inputs& in, const Results& found, std::size_t i) {
+  const Motion gained = in.gained(i, found.vector(found.impulse, i, in.dimension), found.moment_at(i));
+  const Vector v = sum(in.vector(in.v_free, i), gained.velocity);
+  in.set_vector(in.v_free, i, v);
+  if (in.spins()) in.set_vector(in.spin_free, i, sum(in.vector(in.spin_free, i), gained.spin));
+  in.gap[i] += in.position_step * dot(in.normal_at(i), v);
+}
+
+// Without force. Laws that limit the step are the scheme's to bound.
 template <class Look>
 void fly(const Subject& subject, Look look) {
   for_trials(
@@ -61,9 +77,11 @@ void fly(const Subject& subject, Look look) {
           Heap heap;
           Arrays arrays(trial, in, {}, heap);
           arrays.initialise(in);
-          std::vector<double> stored(point_count), terms(point_count);
+          std::vector<double> stored(point_count);
+          std::vector<Terms> terms(point_count);
           for (std::size_t k = 0; k < steps; ++k) {
             in.v_previous = in.v_free;
+            in.spin_previous = in.spin_free;
             const Results found = arrays.evaluate(in);
             if (found.code != ILAW_OK) break;
             if (std::isfinite(found.report.stable_velocity_step) && found.report.stable_velocity_step > 0.0)
@@ -71,12 +89,8 @@ void fly(const Subject& subject, Look look) {
             for (std::size_t i = 0; i < point_count; ++i) {
               look(trial, step_of(in, found, i, stored[i], terms[i]));
               stored[i] = stored_of(found, i);
-              terms[i] = velocity_terms(in, found, i);
-              const Vector r = found.vector(found.impulse, i, in.dimension), gained = times(in.h(i), r);
-              Vector v = in.vector(in.v_free, i);
-              for (std::size_t c = 0; c < in.dimension; ++c) v[c] += gained[c];
-              in.set_vector(in.v_free, i, v);
-              in.gap[i] += in.position_step * dot(in.normal_at(i), v);
+              terms[i] = terms_of(in, found, i);
+              go_on(in, found, i);
             }
             in.round_to(trial.setup);
             in.time += in.position_step;
@@ -205,10 +219,10 @@ void stable_step_bound(const Subject& subject) {
 
 std::vector<Rule> energy_rules() {
   return {{"energy-made",
-           "A node without force gains no energy: the work of the impulse and what is stored more is "
-           "not positive.",
+           "A node without force gains no energy: the work of impulse and moment and what is stored more "
+           "is not positive.",
            "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, not_made},
-          {"energy-balance", "The parts of the energy are what becomes of the work of the impulse.",
+          {"energy-balance", "The parts of the energy are what becomes of the work of impulse and moment.",
            "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, balanced},
           {"stable-step-bound",
            "A node on the law does not swing ever wider below the stable step that is reported.",

@@ -87,6 +87,9 @@ void outputs(const Subject& subject) {
           std::uint32_t{ILAW_OUTPUT_ENERGY}, all_outputs & ~amounts_output})
       expect_same(trial, script, all, run(trial, script, {.outputs = asked}),
                   asked == 0 ? "without optional outputs" : "with fewer optional outputs", asked);
+    if (trial.setup.spins())
+      expect_same(trial, script, all, run(trial, script, {.outputs = spin_output}),
+                  "with spins as the only optional output", spin_output);
     return true;
   });
 }
@@ -190,10 +193,13 @@ void floats_rounded(const Subject& subject) {
           Results expected = all[k], narrow = found[k];
           expect_rounded(trial, script[k], "impulse", expected.impulse, narrow.impulse);
           expect_rounded(trial, script[k], "velocity", expected.velocity, narrow.velocity);
+          expect_rounded(trial, script[k], "moment", expected.moment, narrow.moment);
+          expect_rounded(trial, script[k], "spin", expected.spin, narrow.spin);
           expect_rounded(trial, script[k], "energy", expected.energy, narrow.energy);
           for (std::size_t a = 0; a < expected.amounts.size(); ++a)
             expect_rounded(trial, script[k], "amount", expected.amounts[a], narrow.amounts[a]);
           narrow.impulse = expected.impulse;
+          narrow.moment = expected.moment;
           if (const auto differs = difference(expected, narrow, ILAW_OUTPUT_STATUS))
             fail(trial, script[k], differs->node, "in floats " + differs->text, "as in doubles");
         }

@@ -49,9 +49,13 @@ void draw_delassus(Inputs& in, std::size_t node, bool isotropic, Draw& draw) {
   double* values = &in.delassus[node * in.form_width];
   const std::size_t d = in.form == ILAW_DELASSUS_SCALAR ? 1 : in.dimension;
   const double one = draw.within(0.5, 2.0);
-  if (in.form == ILAW_DELASSUS_TRANSVERSE) {
+  if (in.form == ILAW_DELASSUS_TRANSVERSE || in.spins()) {
     values[0] = one;
     values[1] = isotropic ? one : draw.within(0.5, 2.0);
+    if (!in.spins()) return;
+    values[3] = draw.within(0.5, 2.0);
+    values[4] = draw.within(0.5, 2.0);
+    values[2] = draw.within(-0.95, 0.95) * std::sqrt(values[1] * values[4]);  // k^2 < h_T j_T
     return;
   }
   for (std::size_t c = 0; c < d; ++c) values[c] = isotropic ? one : draw.within(0.5, 2.0);
@@ -71,6 +75,8 @@ Inputs empty_inputs(const Trial& trial, std::size_t count) {
   in.form_width = trial.setup.form_width();
   const std::size_t vectors = count * in.dimension;
   for (std::vector<double>* values : {&in.v_free, &in.v_previous}) values->resize(vectors);
+  if (trial.setup.spins())
+    for (std::vector<double>* values : {&in.spin_free, &in.spin_previous}) values->resize(vectors);
   in.delassus.resize(count * in.form_width);
   for (std::vector<double>* values : {&in.gap, &in.gap_offset, &in.area}) values->resize(count);
   if (trial.setup.global()) in.normal.resize(vectors);
@@ -132,6 +138,17 @@ void turn_axes(Inputs& in, Draw& draw) {
   }
 }
 
+void draw_spin(Inputs& in, std::size_t node, double part, bool without_force, Draw& draw) {
+  const Vector last = in.vector(in.spin_free, node);
+  Vector w{}, before{};
+  for (std::size_t c = 0; c < in.dimension; ++c) {
+    w[c] = part != 0.0 ? part * last[c] : draw.within(-1.0, 1.0);
+    before[c] = without_force ? w[c] : draw.within(-1.0, 1.0);
+  }
+  in.set_vector(in.spin_free, node, w);
+  in.set_vector(in.spin_previous, node, before);
+}
+
 // A node of a path goes on as it did, or turns back, or anywhere.
 void draw_motion(Inputs& in, bool isotropic, bool without_force, bool is_path, Draw& draw) {
   for (std::size_t i = 0; i < in.count; ++i) {
@@ -144,6 +161,7 @@ void draw_motion(Inputs& in, bool isotropic, bool without_force, bool is_path, D
     }
     in.set_vector(in.v_free, i, v);
     in.set_vector(in.v_previous, i, before);
+    if (in.spins()) draw_spin(in, i, part, without_force, draw);
     in.gap[i] = in.gap_offset[i] + draw_gap(in.position_step, draw);
     draw_delassus(in, i, isotropic, draw);
   }
@@ -164,6 +182,11 @@ Matrix transposed(const Matrix& m) {
 
 Vector times(const Matrix& m, const Vector& a) { return {dot(m[0], a), dot(m[1], a), dot(m[2], a)}; }
 double length(const Vector& a) { return std::sqrt(dot(a, a)); }
+Vector sum(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Vector scaled(double factor, const Vector& a) { return {factor * a[0], factor * a[1], factor * a[2]}; }
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 
 Vector Inputs::vector(const std::vector<double>& of, std::size_t node) const {
   Vector a{};
@@ -180,7 +203,7 @@ Vector Inputs::normal_at(std::size_t node) const {
 
 Matrix Inputs::h(std::size_t node) const {
   const double* values = &delassus[node * form_width];
-  if (form == ILAW_DELASSUS_TRANSVERSE) return outer(normal_at(node), values[0], values[1]);
+  if (form == ILAW_DELASSUS_TRANSVERSE || spins()) return outer(normal_at(node), values[0], values[1]);
   Matrix m{};
   for (std::size_t c = 0; c < 3; ++c)
     m[c][c] = form == ILAW_DELASSUS_SCALAR ? values[0] : c < dimension ? values[c] : 1.0;
@@ -190,6 +213,26 @@ Matrix Inputs::h(std::size_t node) const {
       m[a][b] = m[b][a] = values[dimension + k];
     }
   return m;
+}
+
+Vector Inputs::spin(const std::vector<double>& of, std::size_t node) const {
+  return of.empty() ? Vector{} : vector(of, node);
+}
+
+Matrix Inputs::j(std::size_t node) const {
+  const double* values = &delassus[node * form_width];
+  return spins() ? outer(normal_at(node), values[3], values[4]) : Matrix{};
+}
+
+double Inputs::k(std::size_t node) const { return spins() ? delassus[node * form_width + 2] : 0.0; }
+
+Motion Inputs::gained(std::size_t node, const Vector& r, const Vector& m) const {
+  Motion gain{times(h(node), r), {}};
+  if (!spins()) return gain;
+  const Vector n = normal_at(node);
+  gain.velocity = sum(gain.velocity, scaled(k(node), cross(n, m)));
+  gain.spin = sum(times(j(node), m), scaled(-k(node), cross(n, r)));
+  return gain;
 }
 
 double Inputs::slack(std::size_t node) const {
@@ -204,8 +247,8 @@ bool Inputs::is_out_of_reach(std::size_t node) const {
 }
 
 void Inputs::round_to(const Setup& setup) {
-  for (std::vector<double>* values :
-       {&v_free, &delassus, &gap, &gap_offset, &v_previous, &area, &normal, &tangent})
+  for (std::vector<double>* values : {&v_free, &delassus, &gap, &gap_offset, &v_previous, &area, &normal,
+                                      &tangent, &spin_free, &spin_previous})
     for (double& value : *values) value = setup.rounded(value);
 }
 
@@ -225,6 +268,8 @@ std::vector<NamedArray> Inputs::arrays_of(std::size_t node) const {
   add("area", area, 1);
   add("normal", normal, dimension);
   add("tangent", tangent, dimension);
+  add("spin_free", spin_free, dimension);
+  add("spin_previous", spin_previous, dimension);
   for (const std::vector<double>& values : per_node) add("per_node_parameters", values, 1);
   return arrays;
 }
@@ -294,8 +339,9 @@ Inputs turned(Inputs in, const std::vector<Matrix>& axes) {
   in.tangent.resize(in.count * in.dimension);
   for (std::size_t i = 0; i < in.count; ++i) {
     const Matrix to_host = transposed(axes[i]);
-    in.set_vector(in.v_free, i, times(to_host, in.vector(in.v_free, i)));
-    in.set_vector(in.v_previous, i, times(to_host, in.vector(in.v_previous, i)));
+    for (std::vector<double> Inputs::*of :
+         {&Inputs::v_free, &Inputs::v_previous, &Inputs::spin_free, &Inputs::spin_previous})
+      if (!(in.*of).empty()) in.set_vector(in.*of, i, times(to_host, in.vector(in.*of, i)));
     in.set_vector(in.normal, i, axes[i][0]);
     in.set_vector(in.tangent, i, axes[i][1]);
     if (in.form == ILAW_DELASSUS_FULL) set_full(in, i, h[i]);
@@ -323,8 +369,8 @@ Inputs in_form(Inputs in, const Setup& setup) {
 Inputs turned_as_a_whole(Inputs in, const Matrix& rotation) {
   const Matrix back = transposed(rotation);
   for (std::size_t i = 0; i < in.count; ++i) {
-    for (std::vector<double> Inputs::*of :
-         {&Inputs::v_free, &Inputs::v_previous, &Inputs::normal, &Inputs::tangent})
+    for (std::vector<double> Inputs::*of : {&Inputs::v_free, &Inputs::v_previous, &Inputs::normal,
+                                            &Inputs::tangent, &Inputs::spin_free, &Inputs::spin_previous})
       if (!(in.*of).empty()) in.set_vector(in.*of, i, times(rotation, in.vector(in.*of, i)));
     if (in.form == ILAW_DELASSUS_FULL) set_full(in, i, from_axes(in.h(i), back));
   }

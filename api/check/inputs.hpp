@@ -17,19 +17,35 @@ using Matrix = std::array<Vector, 3>;  // rows
 inline double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Vector times(const Matrix& m, const Vector& a);
 Matrix transposed(const Matrix& m);
+Vector sum(const Vector& a, const Vector& b);
+Vector scaled(double factor, const Vector& a);
+Vector cross(const Vector& a, const Vector& b);
 double length(const Vector& a);
 
-// Of each node in turn: d components of a vector, as many of H as its form has, one of the others.
+// Velocity and spin, or what an impulse and a moment add to them.
+struct Motion {
+  Vector velocity{}, spin{};
+};
+
+// Values of each node in turn: d components of a vector, as many of H as its form has, one of the others.
+// Spins are empty where the form of H has none.
 struct Inputs {
   std::size_t count = 0, dimension = 3, form_width = 1;
   std::uint32_t form = ILAW_DELASSUS_SCALAR;
   double time = 0.0, velocity_step = 0.0, position_step = 0.0;
-  std::vector<double> v_free, delassus, gap, gap_offset, v_previous, area, normal, tangent;
+  std::vector<double> v_free, delassus, gap, gap_offset, v_previous, area, normal, tangent, spin_free,
+      spin_previous;
   std::vector<std::vector<double>> per_node;
 
   Vector vector(const std::vector<double>& of, std::size_t node) const;
   void set_vector(std::vector<double>& of, std::size_t node, const Vector& value) const;
-  Matrix h(std::size_t node) const;  // in the axes of the vectors
+  bool spins() const { return form == ILAW_DELASSUS_TRANSVERSE_SPIN; }
+  Vector spin(const std::vector<double>& of, std::size_t node) const;  // 0 without spins
+  Matrix h(std::size_t node) const;                                    // in the axes of the vectors
+  Matrix j(std::size_t node) const;  // J and k of the form with spins, 0 without
+  double k(std::size_t node) const;
+  // H r + k n x m, and J m - k n x r.
+  Motion gained(std::size_t node, const Vector& r, const Vector& m) const;
   Vector normal_at(std::size_t node) const;
   // g of "out of reach", and whether the node is (ilaw.h).
   double slack(std::size_t node) const;

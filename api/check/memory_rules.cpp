@@ -70,6 +70,8 @@ void all_written(const Subject& subject) {
       const char* array = unwritten(found.impulse)                                             ? "impulse"
                           : unwritten(found.state)                                             ? "state_out"
                           : unwritten(found.velocity)                                          ? "velocity"
+                          : unwritten(found.moment)                                            ? "moment"
+                          : unwritten(found.spin)                                              ? "spin"
                           : unwritten(found.energy)                                            ? "energy"
                           : std::any_of(found.amounts.begin(), found.amounts.end(), unwritten) ? "amounts"
                                                                                                : nullptr;
@@ -96,9 +98,10 @@ void initialise_reads(const Subject& subject) {
         const std::vector<double> expected = arrays.state();
         ilaw_batch& batch = arrays.batch();
         for (ilaw_input* one : {&batch.v_free, &batch.delassus, &batch.gap, &batch.gap_offset,
-                                &batch.v_previous, &batch.state_in})
+                                &batch.v_previous, &batch.state_in, &batch.spin_free, &batch.spin_previous})
           *one = {};
-        for (ilaw_output* one : {&batch.impulse, &batch.velocity, &batch.energy}) *one = {};
+        for (ilaw_output* one : {&batch.impulse, &batch.velocity, &batch.energy, &batch.moment, &batch.spin})
+          *one = {};
         batch.status = nullptr;
         batch.amounts = nullptr;
         batch.velocity_step = batch.position_step = 0.0;

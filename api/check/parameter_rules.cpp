@@ -47,6 +47,10 @@ Values with_fields(const Trial& trial) {
   return values;
 }
 bool is_choice(const ilaw_parameter& p) { return p.kind == ILAW_PARAMETER_CHOICE; }
+Value default_of(const ilaw_parameter& p) {
+  return is_choice(p) ? text(p, p.choices[static_cast<std::size_t>(p.default_value)])
+                      : number(p, p.default_value);
+}
 
 template <class Look>
 void for_parameters(const Subject& subject, Look look) {
@@ -157,17 +161,14 @@ void varying(const Subject& subject) {
 // Every value at an end of its range is accepted beside some others: which, a law may restrict.
 bool accepted_somewhere(const Trial& trial, const Value& value, Draw& draw) {
   constexpr int attempts = 300;
-  std::vector<Setup> setups = setups_of(trial.law);
-  if (const ilaw_parameter* p = parameter_of(trial.law, value.name); p && has(*p, ILAW_PARAMETER_NEEDS_SPINS))
-    for (Setup& setup : setups) setup.dimension = 3, setup.form = ILAW_DELASSUS_TRANSVERSE_SPIN;
+  const std::vector<Setup> setups = setups_of(trial.law);
   for (int k = 0; k < attempts; ++k) {
+    const Setup& setup = setups[static_cast<std::size_t>(k) % setups.size()];
     Values values = {value};
-    for (std::uint32_t p = 0; p < trial.law.parameter_count; ++p) {
-      const ilaw_parameter& other = *trial.law.parameters[p];
-      if (other.name != value.name && (has(other, ILAW_PARAMETER_IS_REQUIRED) || (k > 9 && draw.one_in(3))))
-        values.push_back(draw_value(other, draw));
-    }
-    if (create(trial.law, setups[static_cast<std::size_t>(k) % setups.size()], values)) return true;
+    for (const ilaw_parameter* other : parameters_of(trial.law, setup))
+      if (other->name != value.name && (has(*other, ILAW_PARAMETER_IS_REQUIRED) || (k > 9 && draw.one_in(3))))
+        values.push_back(draw_value(*other, draw));
+    if (create(trial.law, setup, values)) return true;
   }
   return false;
 }
@@ -198,13 +199,10 @@ void defaults(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw& draw) {
         Values values = trial.values;
-        for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
-          const ilaw_parameter& p = *trial.law.parameters[k];
+        for (const ilaw_parameter* p : trial.parameters()) {
           const bool given = std::any_of(values.begin(), values.end(),
-                                         [&](const Value& value) { return value.name == p.name; });
-          if (given || has(p, ILAW_PARAMETER_IS_REQUIRED | ILAW_PARAMETER_NEEDS_SPINS)) continue;
-          values.push_back(is_choice(p) ? text(p, p.choices[static_cast<std::size_t>(p.default_value)])
-                                        : number(p, p.default_value));
+                                         [&](const Value& value) { return value.name == p->name; });
+          if (!given && !has(*p, ILAW_PARAMETER_IS_REQUIRED)) values.push_back(default_of(*p));
         }
         if (values.size() == trial.values.size()) return false;
         const Trial said(trial.law, trial.setup, values);
@@ -213,6 +211,22 @@ void defaults(const Subject& subject) {
         return true;
       },
       "all parameters are required");
+}
+
+void needs_spins(const Subject& subject) {
+  for_trials(
+      subject,
+      [](const Trial& trial, Draw&) {
+        bool judged = false;
+        for (std::uint32_t k = 0; k < trial.law.parameter_count && !trial.setup.spins(); ++k) {
+          const ilaw_parameter& p = *trial.law.parameters[k];
+          if (!has(p, ILAW_PARAMETER_NEEDS_SPINS)) continue;
+          expect_refused(trial, with(trial.values, default_of(p)));
+          judged = true;
+        }
+        return judged;
+      },
+      "no parameter needs spins");
 }
 
 // Throws where a constant value that is given in another way changes a bit.
@@ -232,11 +246,9 @@ bool expect_no_change(const Trial& trial, const Value& value, Draw& draw) {
   return true;
 }
 
-// Setups of trials have no spins.
-bool is_tried(const ilaw_parameter& p) { return !is_choice(p) && !has(p, ILAW_PARAMETER_NEEDS_SPINS); }
-bool may_be_table(const ilaw_parameter& p) { return is_tried(p) && p.axis_count > 0; }
+bool may_be_table(const ilaw_parameter& p) { return !is_choice(p) && p.axis_count > 0; }
 bool may_be_per_node(const ilaw_parameter& p) {
-  return is_tried(p) && has(p, ILAW_PARAMETER_ALLOWS_PER_NODE);
+  return !is_choice(p) && has(p, ILAW_PARAMETER_ALLOWS_PER_NODE);
 }
 
 // Over each axis, and over as many as there may be.
@@ -256,8 +268,8 @@ void table_constant(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw& draw) {
         bool judged = false;
-        for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
-          const ilaw_parameter& p = *trial.law.parameters[k];
+        for (const ilaw_parameter* one : trial.parameters()) {
+          const ilaw_parameter& p = *one;
           const double value = number_of(trial.law, trial.values, p.name);
           if (!may_be_table(p) || !in_range(p, value)) continue;
           for (const std::vector<TableAxis>& axes : axes_for(p)) {
@@ -314,8 +326,8 @@ void table_linear(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw& draw) {
         bool judged = false;
-        for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
-          const ilaw_parameter& p = *trial.law.parameters[k];
+        for (const ilaw_parameter* one : trial.parameters()) {
+          const ilaw_parameter& p = *one;
           if (!may_be_table(p) || p.kind != ILAW_PARAMETER_NUMBER) continue;
           const double a = static_cast<float>(value_in_table(trial, p)), b = 2.0 * a;
           std::vector<std::string> known;
@@ -373,8 +385,8 @@ void node_constant(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw& draw) {
         bool judged = false;
-        for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
-          const ilaw_parameter& p = *trial.law.parameters[k];
+        for (const ilaw_parameter* one : trial.parameters()) {
+          const ilaw_parameter& p = *one;
           if (may_be_per_node(p) && in_range(p, number_of(trial.law, trial.values, p.name)))
             judged = expect_no_change(trial, {p.name, ILAW_VALUE_PER_NODE}, draw) || judged;
         }
@@ -463,8 +475,8 @@ void field_per_node(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw&) {
         bool judged = false;
-        for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
-          const ilaw_parameter& p = *trial.law.parameters[k];
+        for (const ilaw_parameter* one : trial.parameters()) {
+          const ilaw_parameter& p = *one;
           if (!has(p, ILAW_PARAMETER_IS_FIELD)) continue;
           const SetupStruct given(trial.setup, with(trial.values, {p.name, ILAW_VALUE_PER_NODE}));
           Refusal refusal{};
@@ -487,8 +499,8 @@ void node_range(const Subject& subject) {
       subject,
       [](const Trial& trial, Draw& draw) {
         bool judged = false;
-        for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
-          const ilaw_parameter& p = *trial.law.parameters[k];
+        for (const ilaw_parameter* one : trial.parameters()) {
+          const ilaw_parameter& p = *one;
           const Values values = with(trial.values, {p.name, ILAW_VALUE_PER_NODE});
           const double good = number_of(trial.law, trial.values, p.name);
           if (!may_be_per_node(p) || !std::isfinite(good)) continue;
@@ -548,6 +560,9 @@ std::vector<Rule> parameter_rules() {
            "ilaw.h, ilaw_parameter", Needs::instance, accepted},
           {"parameter-default", "A parameter that is left out has its default value.",
            "ilaw.h, ilaw_parameter.default_value", Needs::motion, defaults},
+          {"parameter-spins",
+           "A parameter that needs spins is refused for a form of H without, at its default value, too.",
+           "ilaw.h, ILAW_PARAMETER_NEEDS_SPINS", Needs::instance, needs_spins},
           {"table-shape",
            "A table without points, with points that do not increase or a value out of range is refused.",
            "ilaw.h, ilaw_axis.points", Needs::instance, table_shape},

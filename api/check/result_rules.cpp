@@ -31,15 +31,20 @@ Vector impulse(const Inputs& in, const Results& found, std::size_t i) {
   return found.vector(found.impulse, i, in.dimension);
 }
 
-// Size of what cancels in v_free + H r.
-double natural_velocity(const Inputs& in, std::size_t i, const Vector& r) {
-  const Matrix h = in.h(i);
-  double size = 0.0;
-  for (std::size_t a = 0; a < in.dimension; ++a) {
-    size += std::abs(in.v_free[i * in.dimension + a]);
-    for (std::size_t b = 0; b < in.dimension; ++b) size += std::abs(h[a][b] * r[b]);
+// Size of what cancels in free + h r, and in what the coupling of spins adds.
+double size_of_sum(const Vector& free, const Matrix& h, const Vector& r, double coupled) {
+  double size = std::abs(coupled);
+  for (std::size_t a = 0; a < 3; ++a) {
+    size += std::abs(free[a]);
+    for (std::size_t b = 0; b < 3; ++b) size += std::abs(h[a][b] * r[b]);
   }
   return size;
+}
+double natural_velocity(const Inputs& in, std::size_t i, const Vector& r, const Vector& m) {
+  return size_of_sum(in.vector(in.v_free, i), in.h(i), r, in.k(i) * length(m));
+}
+double natural_spin(const Inputs& in, std::size_t i, const Vector& r, const Vector& m) {
+  return size_of_sum(in.spin(in.spin_free, i), in.j(i), m, in.k(i) * length(r));
 }
 
 void complementarity(const Subject& subject) {
@@ -63,6 +68,8 @@ void friction_needs_pressure(const Subject& subject) {
         if (!(r[0] > 0.0) && (r[1] != 0.0 || r[2] != 0.0))
           fail(trial, in, i, "r = " + text_of(r, in.dimension) + " without pressure",
                "no tangential impulse where r_N = 0");
+        if (const Vector m = found.moment_at(i); !(r[0] > 0.0) && m != Vector{})
+          fail(trial, in, i, "moment " + text_of(m, 3) + " without pressure", "no moment where r_N = 0");
       },
       "the law adheres");
 }
@@ -77,6 +84,8 @@ void status(const Subject& subject) {
         if (said >= ILAW_STATUS_COUNT) fail(trial, in, i, "status " + std::to_string(said), "0 to 7");
         if (said == ILAW_FREE && r != Vector{})
           fail(trial, in, i, "ILAW_FREE with the impulse " + text_of(r, in.dimension), "no impulse");
+        if (const Vector m = found.moment_at(i); said == ILAW_FREE && m != Vector{})
+          fail(trial, in, i, "ILAW_FREE with the moment " + text_of(m, 3), "no moment");
         const double subnormal = trial.setup.floats() ? 0x1p-126 : 0.0;
         const bool sheared = length(r) > std::abs(normal) * (1.0 + 64.0 * trial.epsilon()) + subnormal;
         if (said == ILAW_CLOSED && (sheared || normal < 0.0))
@@ -101,14 +110,13 @@ void status_stick(const Subject& subject) {
       },
       [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
         if (found.status[i] != ILAW_STICK) return;
-        const Vector r = impulse(in, found, i), gained = times(in.h(i), r), free = in.vector(in.v_free, i),
-                     n = in.normal_at(i),
-                     v = tangential({free[0] + gained[0], free[1] + gained[1], free[2] + gained[2]}, n),
+        const Vector r = impulse(in, found, i), m = found.moment_at(i), n = in.normal_at(i),
+                     v = tangential(sum(in.vector(in.v_free, i), in.gained(i, r, m).velocity), n),
                      before = tangential(in.vector(in.v_previous, i), n);
         const double square = dot(before, before), e = square > 0.0 ? -dot(v, before) / square : 0.0;
         const double part = std::min(std::max(e, 0.0), 1.0);
         const Vector rest{v[0] + part * before[0], v[1] + part * before[1], v[2] + part * before[2]};
-        const double tolerance = (trial.setup.floats() ? 1e-4 : 1e-9) * natural_velocity(in, i, r);
+        const double tolerance = (trial.setup.floats() ? 1e-4 : 1e-9) * natural_velocity(in, i, r, m);
         if (length(rest) > tolerance)
           fail(trial, in, i,
                "ILAW_STICK with the velocity " + text_of(v, in.dimension) + " along the interface",
@@ -121,13 +129,21 @@ void velocity(const Subject& subject) {
   for_nodes(
       subject, [](const Trial& trial) { return trial.writes(ILAW_OUTPUT_VELOCITY); },
       [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
-        const Vector r = impulse(in, found, i), v = found.vector(found.velocity, i, in.dimension),
-                     gained = times(in.h(i), r), free = in.vector(in.v_free, i);
-        const double tolerance = 64.0 * trial.epsilon() * natural_velocity(in, i, r);
-        for (std::size_t c = 0; c < in.dimension; ++c)
-          if (!(std::abs(free[c] + gained[c] - v[c]) <= tolerance))
-            fail(trial, in, i, "velocity[" + std::to_string(c) + "] = " + text_of(v[c]),
-                 "v_free + H r = " + text_of(free[c] + gained[c]) + " to " + text_of(tolerance));
+        const Vector r = impulse(in, found, i), m = found.moment_at(i);
+        const Motion gained = in.gained(i, r, m);
+        const auto expect = [&](const char* name, const std::vector<double>& after, const Vector& expected,
+                                double size) {
+          const double tolerance = 64.0 * trial.epsilon() * size;
+          const Vector written = found.vector(after, i, in.dimension);
+          for (std::size_t c = 0; c < in.dimension; ++c)
+            if (!(std::abs(expected[c] - written[c]) <= tolerance))
+              fail(trial, in, i, std::string(name) + "[" + std::to_string(c) + "] = " + text_of(written[c]),
+                   text_of(expected[c]) + " to " + text_of(tolerance) + ", by the impulse that is written");
+        };
+        expect("velocity", found.velocity, sum(in.vector(in.v_free, i), gained.velocity),
+               natural_velocity(in, i, r, m));
+        if (in.spins())
+          expect("spin", found.spin, sum(in.vector(in.spin_free, i), gained.spin), natural_spin(in, i, r, m));
       },
       "the law writes no velocity");
 }
@@ -159,7 +175,7 @@ void energy_friction(const Subject& subject) {
       [](const Trial& trial, const Inputs& in, const Results& found, std::size_t i) {
         const Vector r = impulse(in, found, i);
         const double part = found.energy[i * ILAW_ENERGY_COUNT + ILAW_ENERGY_FRICTION];
-        if (r[1] == 0.0 && r[2] == 0.0 && part != 0.0)
+        if (r[1] == 0.0 && r[2] == 0.0 && found.moment_at(i) == Vector{} && part != 0.0)
           fail(trial, in, i, "friction dissipated " + text_of(part) + " without a tangential impulse", "0");
       },
       "the law writes no energy, or stores some");
@@ -299,6 +315,9 @@ void step_limits(const Subject& subject) {
       for (std::size_t k = 0; k < found.impulse.size(); ++k)
         if (!std::isfinite(found.impulse[k]))
           fail(trial, in, k / in.dimension, "impulse " + text_of(found.impulse[k]), "a finite impulse");
+      for (std::size_t k = 0; k < found.moment.size(); ++k)
+        if (!std::isfinite(found.moment[k]))
+          fail(trial, in, k / in.dimension, "moment " + text_of(found.moment[k]), "a finite moment");
     }
     return true;
   });
@@ -310,26 +329,28 @@ std::vector<Rule> result_rules() {
   return {
       {"complementarity", "Without ILAW_CAN_ADHERE an impulse pushes or is none: r_N >= 0.",
        "ilaw.h, ILAW_CAN_ADHERE", Needs::motion, complementarity},
-      {"friction-pressure", "Without ILAW_CAN_ADHERE there is no tangential impulse where r_N = 0.",
+      {"friction-pressure",
+       "Without ILAW_CAN_ADHERE there is no tangential impulse and no moment where r_N = 0.",
        "ilaw.h, ILAW_CAN_ADHERE", Needs::motion, friction_needs_pressure},
       {"friction-cone",
        "Where a law has a coefficient called friction (and friction_2), |r_T| of a status stick or "
        "slip is at most the larger one times r_N.",
        "check.md, Names with a meaning", Needs::motion, cone},
-      {"status-meaning", "A status is one of the eight; free is r = 0, closed is pushed without friction.",
+      {"status-meaning",
+       "A status is one of the eight; free is r = 0 and m = 0, closed is pushed without friction.",
        "ilaw.h, ILAW_FREE", Needs::motion, status},
       {"status-stick",
        "A node that sticks, of a law that stores no energy, has no velocity along the interface, or a part "
        "of the opposite of that before.",
        "ilaw.h, ILAW_STICK", Needs::motion, status_stick},
-      {"velocity-output", "The velocity is v_free + H r.", "ilaw.h, ilaw_batch.velocity", Needs::motion,
-       velocity},
+      {"velocity-output", "The velocity is v_free + H r + k n x m, and the spin w_free + J m - k n x r.",
+       "ilaw.h, ilaw_batch.velocity", Needs::motion, velocity},
       {"energy-parts",
        "No dissipated part is negative and none NaN; nothing is stored without "
        "ILAW_CAN_STORE_ENERGY.",
        "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, energy_parts},
       {"energy-friction",
-       "Friction of a law that stores no energy dissipates nothing without a tangential impulse.",
+       "Friction of a law that stores no energy dissipates nothing without a tangential impulse or moment.",
        "ilaw.h, ILAW_ENERGY_FRICTION", Needs::motion, energy_friction},
       {"energy-rupture",
        "Rupture dissipates nothing where the state stays and the status is neither broken nor healed.",

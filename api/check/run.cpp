@@ -48,6 +48,10 @@ Vector Results::vector(const std::vector<double>& of, std::size_t node, std::siz
   return a;
 }
 
+Vector Results::moment_at(std::size_t node) const {
+  return moment.empty() ? Vector{} : vector(moment, node, 3);
+}
+
 Field::Field(Memory& memory, const char* name, std::size_t components, std::size_t room, Order order, Use use,
              ilaw_numbers numbers)
     : name_(name), components_(components), is_backward_(order == Order::backward) {
@@ -141,6 +145,10 @@ void Arrays::make_inputs(const Inputs& first, Memory& memory) {
   area_ = make("area", 1, ILAW_INPUT_AREA);
   if (!first.normal.empty()) normal_ = make("normal", d, 0);
   if (!first.tangent.empty()) tangent_ = make("tangent", d, 0);
+  if (first.spins()) {
+    spin_free_ = make("spin_free", d, 0);
+    spin_previous_ = make("spin_previous", d, ILAW_INPUT_V_PREVIOUS);
+  }
   const std::size_t varying = trial_.info.per_node_parameter_count;
   for (std::size_t k = 0; k < varying; ++k) per_node_.push_back(make("per_node_parameters", 1, 0));
   if (varying > 0) {
@@ -157,13 +165,17 @@ void Arrays::make_outputs(Memory& memory) {
   const auto make_state = [&](const char* name, Use use) {
     return Field(memory, name, trial_.info.state_size, room_, layout_.order, use, ILAW_NUMBERS_DOUBLE);
   };
-  const std::uint32_t outputs = layout_.outputs & trial_.law.outputs;
+  const std::uint32_t outputs = layout_.outputs & (trial_.law.outputs | spin_output);
   const std::size_t d = trial_.setup.dimension;
   state_out_ = make_state("state_out", Use::output);
   state_in_ = layout_.in_place ? state_out_ : make_state("state_in", Use::input);
   impulse_ = make("impulse", d, Use::output);
   if (outputs & ILAW_OUTPUT_VELOCITY) velocity_ = make("velocity", d, Use::output);
   if (outputs & ILAW_OUTPUT_ENERGY) energy_ = make("energy", ILAW_ENERGY_COUNT, Use::output);
+  if (trial_.setup.spins()) {
+    moment_ = make("moment", d, Use::output);
+    if (outputs & spin_output) spin_ = make("spin", d, Use::output);
+  }
   const std::size_t amount_count = trial_.info.amount_count;
   if ((layout_.outputs & amounts_output) && amount_count > 0) {
     amounts_.resize(amount_count);
@@ -203,6 +215,10 @@ void Arrays::describe() {
   batch_.status = status_;
   batch_.status_stride = static_cast<std::int64_t>(status_stride_);
   batch_.amounts = amount_outputs_;
+  batch_.spin_free = spin_free_.input();
+  batch_.spin_previous = spin_previous_.input();
+  batch_.moment = moment_.output();
+  batch_.spin = spin_.output();
 }
 
 void Arrays::load_one(Field& field, const std::vector<double>& values) {
@@ -225,6 +241,8 @@ void Arrays::load(const Inputs& in) {
   load_one(area_, in.area);
   load_one(normal_, in.normal);
   load_one(tangent_, in.tangent);
+  load_one(spin_free_, in.spin_free);
+  load_one(spin_previous_, in.spin_previous);
   for (std::size_t k = 0; k < per_node_.size(); ++k) load_one(per_node_[k], in.per_node[k]);
 }
 
@@ -250,8 +268,8 @@ Results Arrays::evaluate_with(const Instance& instance, const Inputs& in) {
     state_out_.clear();
   }
   impulse_.clear();
-  if (velocity_.given()) velocity_.clear();
-  if (energy_.given()) energy_.clear();
+  for (Field* optional : {&velocity_, &energy_, &moment_, &spin_})
+    if (optional->given()) optional->clear();
   for (Field& amount : amounts_)
     if (amount.given()) amount.clear();
   if (status_) std::fill_n(status_, (room_ - 1) * status_stride_ + 1, status_sentinel);
@@ -275,7 +293,11 @@ std::vector<double> Arrays::take(const Field& field) const {
 }
 
 std::vector<double> Arrays::state() { return take(state_out_); }
-std::vector<double> Arrays::impulses() { return take(impulse_); }
+std::vector<double> Arrays::impulses() {
+  std::vector<double> all = take(impulse_);
+  for (const double value : take(moment_)) all.push_back(value);
+  return all;
+}
 std::vector<double> Arrays::amounts() {
   std::vector<double> all;
   for (const Field& amount : amounts_)
@@ -285,7 +307,7 @@ std::vector<double> Arrays::amounts() {
 
 Results Arrays::results(std::int32_t code) {
   Results results{places_.size(), code, report_, take(impulse_), take(state_out_), take(velocity_),
-                  take(energy_),  {},   {}};
+                  take(energy_),  {},   {},      take(moment_),  take(spin_)};
   for (const Field& amount : amounts_) results.amounts.push_back(take(amount));
   for (std::size_t k = 0; status_ && k < places_.size(); ++k)
     results.status.push_back(status_[places_[k] * status_stride_]);
@@ -293,7 +315,7 @@ Results Arrays::results(std::int32_t code) {
 }
 
 const char* Arrays::written_beside() {
-  std::vector<Field*> outputs{&state_out_, &impulse_, &velocity_, &energy_};
+  std::vector<Field*> outputs{&state_out_, &impulse_, &velocity_, &energy_, &moment_, &spin_};
   for (Field& amount : amounts_) outputs.push_back(&amount);
   for (Field* field : outputs)
     if (field->given() && field->components() > 0 && !field->is_untouched_beside(places_))
@@ -322,9 +344,12 @@ std::vector<Results> run(const Trial& trial, const Script& script, const Layout&
 std::optional<Difference> difference(const Results& a, const Results& b, std::uint32_t outputs) {
   const std::size_t nodes = std::max<std::size_t>(a.nodes, 1);
   if (auto found = difference("impulse", a.impulse, b.impulse, nodes)) return found;
+  if (auto found = difference("moment", a.moment, b.moment, nodes)) return found;
   if (auto found = difference("state_out", a.state, b.state, nodes)) return found;
   if (outputs & ILAW_OUTPUT_VELOCITY)
     if (auto found = difference("velocity", a.velocity, b.velocity, nodes)) return found;
+  if (outputs & spin_output)
+    if (auto found = difference("spin", a.spin, b.spin, nodes)) return found;
   if (outputs & ILAW_OUTPUT_ENERGY)
     if (auto found = difference("energy", a.energy, b.energy, nodes)) return found;
   for (std::size_t k = 0; (outputs & amounts_output) && k < std::min(a.amounts.size(), b.amounts.size()); ++k)
@@ -366,6 +391,7 @@ void expect_part(const Trial& trial, const Script& script, const std::vector<Res
       };
       const bool equal = same(all[k].impulse, part[k].impulse, d) && same(all[k].state, part[k].state, s) &&
                          same(all[k].velocity, part[k].velocity, d) &&
+                         same(all[k].moment, part[k].moment, d) && same(all[k].spin, part[k].spin, d) &&
                          same(all[k].energy, part[k].energy, ILAW_ENERGY_COUNT) &&
                          std::equal(all[k].amounts.begin(), all[k].amounts.end(), part[k].amounts.begin(),
                                     [&](const auto& a, const auto& b) { return same(a, b, 1); }) &&

@@ -17,8 +17,9 @@ enum class Order { interleaved, by_component, spread, backward };
 enum class List { none, of_32_bits, of_64_bits };
 // Amounts are an output as others here, by a bit that ilaw.h does not use; single ones by Layout::no_amount.
 inline constexpr std::uint32_t amounts_output = 1U << 31;
+inline constexpr std::uint32_t spin_output = 1U << 30;  // where the form of H has spins
 inline constexpr std::uint32_t all_outputs =
-    ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY | amounts_output;
+    ILAW_OUTPUT_VELOCITY | ILAW_OUTPUT_STATUS | ILAW_OUTPUT_ENERGY | amounts_output | spin_output;
 
 struct Layout {
   Order order = Order::interleaved;
@@ -39,7 +40,9 @@ struct Results {
   std::vector<double> impulse, state, velocity, energy;
   std::vector<std::vector<double>> amounts;  // empty where one was not asked for
   std::vector<std::uint8_t> status;
+  std::vector<double> moment, spin;  // empty where the form of H has no spins
 
+  Vector moment_at(std::size_t node) const;  // 0 without spins
   Vector vector(const std::vector<double>& of, std::size_t node, std::size_t dimension) const;
 };
 
@@ -89,8 +92,8 @@ class Arrays {
   Results evaluate_with(const Instance& instance, const Inputs& in);
   void set_state(const std::vector<double>& state);  // of each node in turn
   std::vector<double> state();
-  std::vector<double> impulses();
-  std::vector<double> amounts();  // all of them, one after another
+  std::vector<double> impulses();  // with the moments after them
+  std::vector<double> amounts();   // all of them, one after another
   // Of the last evaluate: an output that was written where no node of the batch is; null where none was.
   const char* written_beside();
   ilaw_batch& batch() { return batch_; }
@@ -113,8 +116,9 @@ class Arrays {
   std::vector<std::size_t> places_;  // in the arrays, of each node of the batch
   ilaw_batch batch_{};
   ilaw_report report_{};
-  Field v_free_, delassus_, gap_, gap_offset_, v_previous_, area_, normal_, tangent_;
-  Field state_in_, state_out_, impulse_, velocity_, energy_;
+  Field v_free_, delassus_, gap_, gap_offset_, v_previous_, area_, normal_, tangent_, spin_free_,
+      spin_previous_;
+  Field state_in_, state_out_, impulse_, velocity_, energy_, moment_, spin_;
   std::vector<Field> per_node_, amounts_;
   ilaw_input* per_node_inputs_ = nullptr;
   ilaw_output* amount_outputs_ = nullptr;

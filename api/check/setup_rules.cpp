@@ -27,7 +27,8 @@ void setup_unserved(const Subject& subject) {
   const Trial trial = any_trial(subject);
   const SetupStruct given(trial.setup, trial.values);
   for (std::uint32_t d = 0; d <= 5; ++d) {
-    if (d >= 1 && d <= 3 && (subject.law.dimensions & (1U << d))) continue;
+    const bool has_form = d == 3 || !trial.setup.spins();
+    if (d >= 1 && d <= 3 && has_form && (subject.law.dimensions & (1U << d))) continue;
     ilaw_setup setup = given.given;
     setup.dimension = d;
     expect_unserved(trial, setup, "dimension " + std::to_string(d));
@@ -247,7 +248,8 @@ void refusal_message(const Subject& subject) {
 
 std::vector<Rule> setup_rules() {
   return {
-      {"setup-unserved", "A dimension or form of H that the law does not serve is refused.",
+      {"setup-unserved",
+       "A dimension or form of H that the law does not serve is refused, spins in 1D and 2D among them.",
        "ilaw.h, ilaw_setup", Needs::instance, setup_unserved},
       {"setup-frame", "A frame that is not exactly one entry of the law's mask is refused.",
        "ilaw.h, ilaw_setup", Needs::instance, setup_frame},

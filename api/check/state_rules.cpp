@@ -38,6 +38,8 @@ void expect_left_alone(const Trial& trial, const Inputs& in, std::size_t i, cons
                        const Results& found) {
   const Vector r = found.vector(found.impulse, i, in.dimension);
   if (r != Vector{}) fail(trial, in, i, "out of reach, impulse " + text_of(r, in.dimension), "r = 0");
+  if (const Vector m = found.moment_at(i); m != Vector{})
+    fail(trial, in, i, "out of reach, moment " + text_of(m, 3), "m = 0");
   if (!same_bits(state, found.state, i, trial.info.state_size))
     fail(trial, in, i, "out of reach, its state changed", "the same bits of state");
   for (std::size_t c = 0; !found.energy.empty() && c < ILAW_ENERGY_COUNT; ++c)
@@ -112,7 +114,7 @@ bool is_history(const Trial& trial, std::size_t entry) {
 void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, const std::vector<double>& state,
                       const Results& good, std::size_t entry, double value) {
   constexpr std::size_t node = 2;
-  const std::size_t size = trial.info.state_size, d = in.dimension;
+  const std::size_t size = trial.info.state_size, d = in.dimension, moment_width = in.spins() ? 3 : 0;
   std::vector<double> foreign = state;
   foreign[node * size + entry] = value;
   arrays.set_state(foreign);
@@ -123,21 +125,27 @@ void expect_contained(const Trial& trial, const Inputs& in, Arrays& arrays, cons
   };
   for (std::size_t i = 0; i < in.count; ++i) {
     if (i == node) continue;
-    if (!same_bits(good.impulse, found.impulse, i, d) || !same_bits(good.state, found.state, i, size))
+    if (!same_bits(good.impulse, found.impulse, i, d) || !same_bits(good.state, found.state, i, size) ||
+        !same_bits(good.moment, found.moment, i, moment_width))
       say(i, "node " + std::to_string(i) + " changed", "as ever at the other nodes");
   }
   for (std::size_t c = 0; c < d; ++c)
     if (!std::isfinite(found.impulse[node * d + c]))
       say(node, "an impulse that is not finite", "a finite impulse");
+  const Vector m = found.moment_at(node);
+  for (const double component : m)
+    if (!std::isfinite(component)) say(node, "a moment that is not finite", "a finite moment");
   const bool refused = found.code == ILAW_BAD_NODES;
   if (!std::isfinite(value) && !refused && !is_history(trial, entry))
     say(node, "code " + std::to_string(found.code), "ILAW_BAD_NODES (1)");
-  if (!std::isfinite(value) && !refused && !same_bits(good.impulse, found.impulse, node, d))
+  if (!std::isfinite(value) && !refused &&
+      !(same_bits(good.impulse, found.impulse, node, d) &&
+        same_bits(good.moment, found.moment, node, moment_width)))
     say(node, "an impulse that depends on it",
         "bad input, or the same impulse if this step does not read it");
   if (!refused) return;
   for (std::size_t c = 0; c < d; ++c)
-    if (found.impulse[node * d + c] != 0.0) say(node, "bad input with an impulse", "r = 0");
+    if (found.impulse[node * d + c] != 0.0 || m[c] != 0.0) say(node, "bad input with an impulse", "r = 0");
   if (!same_bits(foreign, found.state, node, size))
     say(node, "bad input with another state", "state_out = state_in");
 }

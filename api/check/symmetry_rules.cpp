@@ -16,19 +16,33 @@ namespace {
 double tolerance(const Trial& trial) { return trial.setup.floats() ? 1e-4 : 1e-9; }
 
 double natural_impulse(const Inputs& in, std::size_t i) {
-  return length(in.vector(in.v_free, i)) / in.delassus[i * in.form_width] + 1e-3;
+  const double speed = length(in.vector(in.v_free, i)) + length(in.spin(in.spin_free, i));
+  return speed / in.delassus[i * in.form_width] + 1e-3;
 }
 
-bool are_alike(const Trial& trial, const Inputs& in, std::size_t i, const Vector& r, const Vector& found) {
+// Impulse and moment of a node.
+struct Action {
+  Vector impulse, moment;
+};
+Action action_at(const Inputs& in, const Results& found, std::size_t i) {
+  return {found.vector(found.impulse, i, in.dimension), found.moment_at(i)};
+}
+
+// Arms are of order one, so that moments and impulses have one size.
+bool are_alike(const Trial& trial, const Inputs& in, std::size_t i, const Action& a, const Action& b) {
+  const double most = tolerance(trial) * (length(a.impulse) + length(a.moment) + natural_impulse(in, i));
   for (std::size_t c = 0; c < in.dimension; ++c)
-    if (!(std::abs(r[c] - found[c]) <= tolerance(trial) * (length(r) + natural_impulse(in, i)))) return false;
+    if (!(std::abs(a.impulse[c] - b.impulse[c]) <= most && std::abs(a.moment[c] - b.moment[c]) <= most))
+      return false;
   return true;
 }
 
 [[noreturn]] void fail_image(const Trial& trial, const Inputs& in, std::size_t i, const std::string& how,
-                             const Vector& r, const Vector& found) {
-  fail(trial, in, i, how + ": impulse " + text_of(found, in.dimension) + ", brought back",
-       text_of(r, in.dimension));
+                             const Action& expected, const Action& found) {
+  const auto text = [&](const Action& a) {
+    return text_of(a.impulse, in.dimension) + (in.spins() ? ", moment " + text_of(a.moment, 3) : "");
+  };
+  fail(trial, in, i, how + ": impulse " + text(found) + ", brought back", text(expected));
 }
 
 // Whether another form or frame refuses an H that is isotropic or transverse but for the rounding of its
@@ -42,8 +56,7 @@ void leave_out_edges(const Trial& trial, const Inputs& in, const Results& plain,
                      std::vector<bool>& is_judged) {
   for (std::size_t i = 0; i < in.count; ++i) {
     if (!shaken.status.empty() && shaken.status[i] == ILAW_BAD_INPUT) continue;
-    is_judged[i] = is_judged[i] && are_alike(trial, in, i, plain.vector(plain.impulse, i, in.dimension),
-                                             shaken.vector(shaken.impulse, i, in.dimension));
+    is_judged[i] = is_judged[i] && are_alike(trial, in, i, action_at(in, plain, i), action_at(in, shaken, i));
   }
 }
 
@@ -58,11 +71,10 @@ void expect_image(const Trial& trial, const Script& script, const std::vector<Re
     for (const std::vector<Results>& of : shaken)
       leave_out_edges(trial, script[k], plain[k], of[k], is_judged);
     for (std::size_t i = 0; i < script[k].count; ++i) {
-      const std::size_t d = script[k].dimension;
-      const Vector r = plain[k].vector(plain[k].impulse, i, d),
-                   found = back(i, image[k].vector(image[k].impulse, i, d));
-      if (is_judged[i] && !are_alike(trial, script[k], i, r, found))
-        fail_image(trial, script[k], i, std::string(how) + ", step " + std::to_string(k), r, found);
+      const Action expected = action_at(script[k], plain[k], i),
+                   found = back(i, action_at(script[k], image[k], i));
+      if (is_judged[i] && !are_alike(trial, script[k], i, expected, found))
+        fail_image(trial, script[k], i, std::string(how) + ", step " + std::to_string(k), expected, found);
     }
   }
 }
@@ -89,21 +101,21 @@ void expect_steps_alike(const Trial& trial, const Script& script, const Trial& o
       leave_out_edges(trial, in, plain, shaken.evaluate(shake(in)), is_judged);
     }
     for (std::size_t i = 0; i < in.count; ++i) {
-      const Vector r = plain.vector(plain.impulse, i, in.dimension),
-                   found = back(i, image.vector(image.impulse, i, in.dimension));
-      if (is_judged[i] && !is_rounded_away(other, image, i) && !are_alike(other, in, i, r, found))
-        fail_image(other, in, i, how + ", step " + std::to_string(k), r, found);
+      const Action expected = action_at(in, plain, i), found = back(i, action_at(in, image, i));
+      if (is_judged[i] && !is_rounded_away(other, image, i) && !are_alike(other, in, i, expected, found))
+        fail_image(other, in, i, how + ", step " + std::to_string(k), expected, found);
     }
   }
 }
 std::vector<double> the_same(std::vector<double> state) { return state; }
+Action turned(const Matrix& by, const Action& a) { return {times(by, a.impulse), times(by, a.moment)}; }
 
-// A scalar H is diagonal, transverse and full, a diagonal and a transverse one are full.
+// A scalar H is diagonal, transverse and full, a diagonal and a transverse one are full. Spins have one form.
 void form_agreement(const Subject& subject) {
   for_trials(
       subject,
       [](const Trial& trial, Draw& draw) {
-        if (trial.setup.form == ILAW_DELASSUS_FULL) return false;
+        if (trial.setup.form == ILAW_DELASSUS_FULL || trial.setup.spins()) return false;
         bool judged = false;
         const Script script = draw_script(trial, draw);
         for (const std::uint32_t form :
@@ -118,7 +130,7 @@ void form_agreement(const Subject& subject) {
           for (const Inputs& in : script) other_script.push_back(in_form(in, setup));
           expect_steps_alike(trial, script, other, other_script,
                              "with the same H in form " + std::to_string(form), the_same,
-                             [](std::size_t, const Vector& r) { return r; });
+                             [](std::size_t, const Action& a) { return a; });
           judged = true;
         }
         return judged;
@@ -133,6 +145,30 @@ bool keeps_axes(const Trial& trial) {
   return false;
 }
 
+std::vector<Matrix> draw_axes_of(const Script& script, Draw& draw) {
+  std::vector<Matrix> axes;
+  for (std::size_t i = 0; i < script[0].count; ++i) axes.push_back(draw_axes(script[0].dimension, draw));
+  return axes;
+}
+
+// Whether the law serves the frame, and has the same state there.
+bool expect_indifferent(const Trial& trial, const Setup& host, const Script& script,
+                        const std::vector<Matrix>& axes) {
+  if (!(trial.law.delassus_forms & host.form) || !(trial.law.frames & ILAW_FRAME_GLOBAL) ||
+      !create(trial.law, host, trial.values))
+    return false;
+  const Trial in_host(trial.law, host, trial.values);
+  if (keeps_axes(in_host) || in_host.info.state_size != trial.info.state_size) return false;
+  Script host_script;
+  for (const Inputs& in : script) {
+    host_script.push_back(turned(in, axes));
+    if (!host.has_tangent) host_script.back().tangent.clear();
+  }
+  expect_steps_alike(trial, script, in_host, host_script, "in axes of the host", the_same,
+                     [&](std::size_t i, const Action& a) { return turned(axes[i], a); });
+  return true;
+}
+
 void frame_indifference(const Subject& subject) {
   for_trials(
       subject,
@@ -142,22 +178,8 @@ void frame_indifference(const Subject& subject) {
         const std::uint32_t form =
             own.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL} : own.form;
         const Setup host{own.dimension, form, ILAW_FRAME_GLOBAL, own.dimension == 3 ? 1U : 0U, own.numbers};
-        if (!(trial.law.delassus_forms & form) || !(trial.law.frames & ILAW_FRAME_GLOBAL) ||
-            !create(trial.law, host, trial.values))
-          return false;
-        const Trial in_host(trial.law, host, trial.values);
-        if (keeps_axes(in_host) || in_host.info.state_size != trial.info.state_size) return false;
         const Script script = draw_script(trial, draw);
-        std::vector<Matrix> axes;
-        for (std::size_t i = 0; i < script[0].count; ++i) axes.push_back(draw_axes(own.dimension, draw));
-        Script host_script;
-        for (const Inputs& in : script) {
-          host_script.push_back(turned(in, axes));
-          if (!host.has_tangent) host_script.back().tangent.clear();
-        }
-        expect_steps_alike(trial, script, in_host, host_script, "in axes of the host", the_same,
-                           [&](std::size_t i, const Vector& r) { return times(axes[i], r); });
-        return true;
+        return expect_indifferent(trial, host, script, draw_axes_of(script, draw));
       },
       "the law serves one frame alone");
 }
@@ -187,7 +209,7 @@ void expect_carried(const Trial& trial, const Trial& in_host, Draw& draw) {
   const Script script = draw_script(trial, draw);
   const std::size_t count = script[0].count, d = script[0].dimension;
   std::vector<std::vector<Matrix>> axes(script.size());
-  for (std::size_t i = 0; i < count; ++i) axes[0].push_back(draw_axes(d, draw));
+  axes[0] = draw_axes_of(script, draw);
   for (std::size_t k = 1; k < script.size(); ++k)
     for (std::size_t i = 0; i < count; ++i)
       axes[k].push_back(carried(axes[k - 1][i], draw_turned(axes[k - 1][i][0], d, draw)));
@@ -202,9 +224,9 @@ void expect_carried(const Trial& trial, const Trial& in_host, Draw& draw) {
       leave_out_edges(in_host, script[k], plain[k], of[k], is_judged);
     for (std::size_t i = 0; i < count; ++i) {
       const auto local = [&](const std::vector<Results>& of, const Matrix& by) {
-        return times(by, of[k].vector(of[k].impulse, i, d));
+        return turned(by, action_at(script[k], of[k], i));
       };
-      const Vector r = plain[k].vector(plain[k].impulse, i, d), image = local(found, axes[k][i]);
+      const Action r = action_at(script[k], plain[k], i), image = local(found, axes[k][i]);
       is_judged[i] = is_judged[i] && are_alike(in_host, script[k], i, r, local(unturned, axes[0][i]));
       // A refused node keeps its state bit for bit: that step has not carried it.
       if (!found[k].status.empty() && found[k].status[i] == ILAW_BAD_INPUT) is_judged[i] = false;
@@ -261,7 +283,7 @@ void turned_whole(const Subject& subject) {
         expect_steps_alike(
             trial, script, trial, other, "with the whole model turned",
             [&](std::vector<double> state) { return turned_state(trial, std::move(state), rotation); },
-            [&](std::size_t, const Vector& r) { return times(transposed(rotation), r); });
+            [&](std::size_t, const Action& a) { return turned(transposed(rotation), a); });
         return true;
       },
       "the law serves no global frame in 2D or 3D");
@@ -279,14 +301,20 @@ void mirror(const Subject& subject) {
           for (std::size_t i = 0; i < in.count; ++i) {
             in.v_free[i * in.dimension + 1] *= -1.0;
             in.v_previous[i * in.dimension + 1] *= -1.0;
+            if (own.spins())  // of an axial vector the components in the mirror change their sign
+              for (const std::size_t c : {0U, 2U}) {
+                in.spin_free[i * in.dimension + c] *= -1.0;
+                in.spin_previous[i * in.dimension + c] *= -1.0;
+              }
             if (own.form != ILAW_DELASSUS_FULL) continue;
             double* couplings = &in.delassus[i * in.form_width + in.dimension];
             couplings[0] *= -1.0;                         // 01
             if (in.dimension == 3) couplings[2] *= -1.0;  // 12
           }
         expect_image(trial, script, run(trial, script), run(trial, other), "in a mirror",
-                     [](std::size_t, const Vector& r) {
-                       return Vector{r[0], -r[1], r[2]};
+                     [](std::size_t, const Action& a) {
+                       const auto& [r, m] = a;
+                       return Action{{r[0], -r[1], r[2]}, {-m[0], m[1], -m[2]}};
                      });
         return true;
       },
@@ -300,8 +328,9 @@ void isotropy(const Subject& subject) {
       [](const Trial& trial, Draw& draw) {
         const Setup& own = trial.setup;
         if (own.global() || own.dimension != 3) return false;
-        if (own.form != ILAW_DELASSUS_SCALAR && own.form != ILAW_DELASSUS_TRANSVERSE) return false;
-        if (!create(trial.law, {3, own.form, ILAW_FRAME_GLOBAL, 0, own.numbers}, trial.values)) return false;
+        if (own.form == ILAW_DELASSUS_DIAGONAL || own.form == ILAW_DELASSUS_FULL) return false;
+        const Setup host{3, own.form, ILAW_FRAME_GLOBAL, 0, own.numbers};
+        if (!create(trial.law, host, trial.values)) return false;
         const double angle = draw.within(0.2, 1.3), c = std::cos(angle), s = std::sin(angle);
         const Matrix spin{Vector{1.0, 0.0, 0.0}, {0.0, c, s}, {0.0, -s, c}},
             back{Vector{1.0, 0.0, 0.0}, {0.0, c, -s}, {0.0, s, c}};
@@ -309,7 +338,8 @@ void isotropy(const Subject& subject) {
         Script other;
         for (const Inputs& in : script) other.push_back(turned_as_a_whole(in, spin));
         expect_image(trial, script, run(trial, script), run(trial, other), "turned about the normal",
-                     [&](std::size_t, const Vector& r) { return times(back, r); });
+                     [&](std::size_t, const Action& a) { return turned(back, a); });
+        expect_indifferent(trial, host, script, draw_axes_of(script, draw));
         return true;
       },
       "the law tells its tangents apart");
@@ -325,15 +355,13 @@ std::optional<Values> in_units(const Trial& trial, const Units& units) {
     numbers[p.symbol] = number_of(trial.law, trial.values, p.name);
   }
   Values values = trial.values;
-  for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
-    const ilaw_parameter& p = *trial.law.parameters[k];
-    if (p.kind == ILAW_PARAMETER_CHOICE) continue;
-    const std::optional<Dimensions> unit = parse_unit(p.unit, symbols);
+  for (const ilaw_parameter* p : trial.parameters()) {
+    if (p->kind == ILAW_PARAMETER_CHOICE) continue;
+    const std::optional<Dimensions> unit = parse_unit(p->unit, symbols);
     if (!unit) return std::nullopt;
-    if (has(p, ILAW_PARAMETER_NEEDS_SPINS)) continue;  // no trial has spins
-    const double scaled = unit->in(units, numbers) * number_of(trial.law, values, p.name);
-    if (!std::isfinite(scaled) && !std::isinf(number_of(trial.law, values, p.name))) return std::nullopt;
-    values = with(values, {p.name, ILAW_VALUE_NUMBER, scaled});
+    const double value = number_of(trial.law, values, p->name), scaled = unit->in(units, numbers) * value;
+    if (!std::isfinite(scaled) && !std::isinf(value)) return std::nullopt;
+    values = with(values, {p->name, ILAW_VALUE_NUMBER, scaled});
   }
   return values;
 }
@@ -345,12 +373,21 @@ Inputs in_units(Inputs in, const Units& units) {
   scale(in.v_free, units.velocity());
   scale(in.v_previous, units.velocity());
   scale(in.delassus, 1.0 / units.mass);
+  scale(in.spin_free, 1.0 / units.time);
+  scale(in.spin_previous, 1.0 / units.time);
+  for (std::size_t i = 0; in.spins() && i < in.count; ++i) {  // k has 1/(kg m), j 1/(kg m^2)
+    double* values = &in.delassus[i * in.form_width];
+    values[2] /= units.length;
+    for (const std::size_t c : {3U, 4U}) values[c] /= units.length * units.length;
+  }
   scale(in.gap, units.length);
   scale(in.gap_offset, units.length);
   scale(in.area, units.length * units.length);
   for (double* time : {&in.time, &in.velocity_step, &in.position_step}) *time *= units.time;
   return in;
 }
+
+Vector scaled_down(const Vector& a, double unit) { return {a[0] / unit, a[1] / unit, a[2] / unit}; }
 
 void other_units(const Subject& subject) {
   const Units units{0x1p+20, 0x1p-12, 0x1p+7};
@@ -364,9 +401,9 @@ void other_units(const Subject& subject) {
         Script other;
         for (const Inputs& in : script) other.push_back(in_units(in, units));
         expect_image(scaled, script, run(trial, script), run(scaled, other), "in other units",
-                     [&](std::size_t, Vector r) {
-                       for (double& component : r) component /= units.impulse();
-                       return r;
+                     [&](std::size_t, const Action& a) {
+                       return Action{scaled_down(a.impulse, units.impulse()),
+                                     scaled_down(a.moment, units.impulse() * units.length)};
                      });
         return true;
       },
@@ -376,20 +413,23 @@ void other_units(const Subject& subject) {
 }  // namespace
 
 std::vector<Rule> symmetry_rules() {
-  return {{"form-agreement", "The same H gives the same impulse in whichever form it is given.",
-           "ilaw.h, ILAW_DELASSUS_SCALAR", Needs::motion, form_agreement},
-          {"frame-indifference", "An impulse is the same in local axes and in those of the host.",
-           "ilaw.h, ILAW_FRAME_GLOBAL", Needs::motion, frame_indifference},
-          {"frame-turned", "Where the whole model is turned, impulses turn with it.",
-           "ilaw.h, ILAW_STATE_AXIS", Needs::motion, turned_whole},
-          {"history-carried",
-           "Without tangents a history is carried from normal to normal by the shortest rotation.",
-           "abi.md, Histories and rotations", Needs::motion, history_carried},
-          {"isotropy", "An instance that needs no tangent knows no direction along the interface.",
-           "ilaw.h, ILAW_INPUT_TANGENT", Needs::motion, isotropy},
-          {"mirror", "In a mirror impulses are mirrored.", "check.md, Symmetries", Needs::motion, mirror},
-          {"units", "In other units, by those that its parameters declare, impulses are the same.",
-           "ilaw.h, Conventions", Needs::motion, other_units}};
+  return {
+      {"form-agreement", "The same H gives the same impulse in whichever form it is given.",
+       "ilaw.h, ILAW_DELASSUS_SCALAR", Needs::motion, form_agreement},
+      {"frame-indifference", "An impulse, and a moment, is the same in local axes and in those of the host.",
+       "ilaw.h, ILAW_FRAME_GLOBAL", Needs::motion, frame_indifference},
+      {"frame-turned", "Where the whole model is turned, impulses and moments turn with it.",
+       "ilaw.h, ILAW_STATE_AXIS", Needs::motion, turned_whole},
+      {"history-carried",
+       "Without tangents a history is carried from normal to normal by the shortest rotation.",
+       "abi.md, Histories and rotations", Needs::motion, history_carried},
+      {"isotropy",
+       "An instance that needs no tangent knows no direction along the interface, and is the same without.",
+       "ilaw.h, ILAW_INPUT_TANGENT", Needs::motion, isotropy},
+      {"mirror", "In a mirror impulses are mirrored, and moments as axial vectors.", "check.md, Symmetries",
+       Needs::motion, mirror},
+      {"units", "In other units, by those that its parameters declare, impulses and moments are the same.",
+       "ilaw.h, Conventions", Needs::motion, other_units}};
 }
 
 }  // namespace ilaw::check

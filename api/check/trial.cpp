@@ -66,13 +66,15 @@ std::size_t Setup::form_width() const {
   const std::size_t d = dimension;
   if (form == ILAW_DELASSUS_SCALAR) return 1;
   if (form == ILAW_DELASSUS_DIAGONAL) return d;
-  return form == ILAW_DELASSUS_FULL ? d * (d + 1) / 2 : 2;
+  if (form == ILAW_DELASSUS_FULL) return d * (d + 1) / 2;
+  return spins() ? 5 : 2;
 }
 
 std::string text_of(const Setup& setup) {
   const char* form = setup.form == ILAW_DELASSUS_SCALAR     ? "scalar"
                      : setup.form == ILAW_DELASSUS_DIAGONAL ? "diagonal"
                      : setup.form == ILAW_DELASSUS_FULL     ? "full"
+                     : setup.spins()                        ? "transverse and spinning"
                                                             : "transverse";
   return "dimension " + std::to_string(setup.dimension) + ", " + form + " H, " +
          (setup.global() ? "global" : "local") + " frame" + (setup.has_tangent ? " with tangents" : "") +
@@ -197,6 +199,8 @@ Trial::Trial(const ilaw_law& of, const Setup& given, const Values& chosen)
 
 std::string Trial::text() const { return text_of(setup) + "; " + text_of(values); }
 
+std::vector<const ilaw_parameter*> Trial::parameters() const { return parameters_of(law, setup); }
+
 std::optional<std::uint32_t> axis_of(const ilaw_parameter& p, const std::string& name) {
   for (std::uint32_t k = 0; k < p.axis_count; ++k)
     if (name == p.axes[k]) return k;
@@ -227,9 +231,11 @@ std::vector<Setup> setups_of(const ilaw_law& law) {
   for (const ilaw_numbers numbers : {ILAW_NUMBERS_DOUBLE, ILAW_NUMBERS_FLOAT})
     for (std::uint32_t d = 3; d >= 1; --d)
       for (const std::uint32_t form :
-           {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL, ILAW_DELASSUS_TRANSVERSE}) {
+           {ILAW_DELASSUS_TRANSVERSE_SPIN, ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_DIAGONAL, ILAW_DELASSUS_FULL,
+            ILAW_DELASSUS_TRANSVERSE}) {
         if (!(law.numbers & numbers) || !(law.dimensions & (1U << d)) || !(law.delassus_forms & form))
           continue;
+        if (form == ILAW_DELASSUS_TRANSVERSE_SPIN && d != 3) continue;
         if (law.frames & ILAW_FRAME_LOCAL) setups.push_back({d, form, ILAW_FRAME_LOCAL, 0, numbers});
         if (!(law.frames & ILAW_FRAME_GLOBAL)) continue;
         setups.push_back({d, form, ILAW_FRAME_GLOBAL, 0, numbers});
@@ -238,8 +244,16 @@ std::vector<Setup> setups_of(const ilaw_law& law) {
   return setups;
 }
 
+std::vector<const ilaw_parameter*> parameters_of(const ilaw_law& law, const Setup& setup) {
+  std::vector<const ilaw_parameter*> all(law.parameters, law.parameters + law.parameter_count);
+  if (!setup.spins())
+    std::erase_if(all, [](const ilaw_parameter* p) { return has(*p, ILAW_PARAMETER_NEEDS_SPINS); });
+  return all;
+}
+
 std::optional<double> natural_value(const ilaw_law& law, const ilaw_parameter& p) {
-  constexpr Units natural{1.0, 0x1p-10, 0x1p-10};
+  // Moments have arms of order one; other lengths are those of a step.
+  const Units natural{1.0, has(p, ILAW_PARAMETER_NEEDS_SPINS) ? 1.0 : 0x1p-10, 0x1p-10};
   std::vector<std::string> symbols;
   std::map<std::string, double> numbers;
   for (std::uint32_t k = 0; k < law.parameter_count; ++k) {
@@ -281,14 +295,12 @@ std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw&
   const bool is_natural = draw.one_in(2);
   for (int k = 0; k < attempts; ++k) {
     Values values;
-    for (std::uint32_t p = 0; p < law.parameter_count; ++p)
-      if (!has(*law.parameters[p], ILAW_PARAMETER_NEEDS_SPINS) &&  // no setup of setups_of has spins
-          (has(*law.parameters[p], ILAW_PARAMETER_IS_REQUIRED) || draw.one_in(2))) {
-        values.push_back(draw_value(*law.parameters[p], draw,
-                                    is_natural ? natural_value(law, *law.parameters[p]) : std::nullopt));
+    for (const ilaw_parameter* p : parameters_of(law, setup))
+      if (has(*p, ILAW_PARAMETER_IS_REQUIRED) || draw.one_in(2)) {
+        values.push_back(draw_value(*p, draw, is_natural ? natural_value(law, *p) : std::nullopt));
         // So that the value may be given per node, too.
         const double rounded = setup.rounded(values.back().number);
-        if (in_range(*law.parameters[p], rounded)) values.back().number = rounded;
+        if (in_range(*p, rounded)) values.back().number = rounded;
       }
     if (create(law, setup, values)) return values;
   }
@@ -298,11 +310,10 @@ std::optional<Values> draw_values(const ilaw_law& law, const Setup& setup, Draw&
 std::optional<Values> given_per_node(const Trial& trial) {
   Values values = trial.values;
   bool varies = false;
-  for (std::uint32_t k = 0; k < trial.law.parameter_count; ++k) {
-    const ilaw_parameter& p = *trial.law.parameters[k];
-    if (p.kind == ILAW_PARAMETER_CHOICE || !has(p, ILAW_PARAMETER_ALLOWS_PER_NODE)) continue;
-    const double constant = number_of(trial.law, trial.values, p.name);
-    const Values more = with(values, {p.name, ILAW_VALUE_PER_NODE, constant});
+  for (const ilaw_parameter* p : trial.parameters()) {
+    if (p->kind == ILAW_PARAMETER_CHOICE || !has(*p, ILAW_PARAMETER_ALLOWS_PER_NODE)) continue;
+    const double constant = number_of(trial.law, trial.values, p->name);
+    const Values more = with(values, {p->name, ILAW_VALUE_PER_NODE, constant});
     if (!create(trial.law, trial.setup, more)) continue;
     values = more;
     varies = true;

@@ -48,6 +48,7 @@ struct Setup {
 
   bool global() const { return frame == ILAW_FRAME_GLOBAL; }
   bool floats() const { return numbers == ILAW_NUMBERS_FLOAT; }
+  bool spins() const { return form == ILAW_DELASSUS_TRANSVERSE_SPIN; }
   // As the arrays of a batch keep it.
   double rounded(double value) const { return floats() ? double{static_cast<float>(value)} : value; }
   std::size_t form_width() const;
@@ -104,6 +105,7 @@ struct Trial {
   Trial(const ilaw_law& law, const Setup& setup, const Values& values);  // throws Finding where it is refused
 
   std::string text() const;
+  std::vector<const ilaw_parameter*> parameters() const;  // those that the setup may be given
   bool writes(std::uint32_t output) const { return (law.outputs & output) != 0; }
   bool can(std::uint32_t capability) const { return (info.capabilities & capability) != 0; }
   bool permits(ilaw_permissions permission) const { return (info.permissions & permission) != 0; }
@@ -131,8 +133,10 @@ bool in_range(const ilaw_parameter& p, double value);
 // The value that a parameter has: of the list, or its default.
 double number_of(const ilaw_law& law, const Values& values, const std::string& name);
 
-// All setups that the law's description serves, with doubles first.
+// All setups that the law's description serves, with doubles first, and spins before others.
 std::vector<Setup> setups_of(const ilaw_law& law);
+// The parameters that a setup may be given: without spins those that need none.
+std::vector<const ilaw_parameter*> parameters_of(const ilaw_law& law, const Setup& setup);
 // A value of a parameter within what its description allows.
 Value draw_value(const ilaw_parameter& p, Draw& draw, std::optional<double> natural = std::nullopt);
 // The value that a parameter of this unit has where inertia, motion and steps as those of draw_script decide:

@@ -11,7 +11,7 @@ static const char* broken = "";
 static pthread_t first_thread;
 static shared_memory* block;
 
-static const char* const axes[] = {"temperature", "time"};
+static const char* const axes[] = {"time", "temperature"};
 static ilaw_parameter damping = {.struct_size = sizeof(ilaw_parameter),
                                  .name = "damping",
                                  .symbol = "c",
@@ -20,7 +20,7 @@ static ilaw_parameter damping = {.struct_size = sizeof(ilaw_parameter),
                                  .maximum = UNBOUNDED,
                                  .flags = ILAW_PARAMETER_IS_REQUIRED | ILAW_PARAMETER_EXCLUDES_MINIMUM |
                                           ILAW_PARAMETER_ALLOWS_INFINITY | ILAW_PARAMETER_ALLOWS_PER_NODE,
-                                 .axes = axes + 1,
+                                 .axes = axes,
                                  .axis_count = 1};
 static ilaw_parameter friction = {.struct_size = sizeof(ilaw_parameter),
                                   .name = "friction",
@@ -57,7 +57,15 @@ static ilaw_parameter mode = {.struct_size = sizeof(ilaw_parameter),
                               .maximum = 1.0,
                               .choice_count = 2,
                               .choices = modes};
-static const ilaw_parameter* const parameters[] = {&damping, &friction, &wear, &mode, &temperature};
+static ilaw_parameter reach = {.struct_size = sizeof(ilaw_parameter),
+                               .name = "reach",
+                               .symbol = "b",
+                               .unit = "m",
+                               .doc = "Largest moment over the normal force.",
+                               .maximum = UNBOUNDED,
+                               .default_value = 0.5,
+                               .flags = ILAW_PARAMETER_ALLOWS_INFINITY | ILAW_PARAMETER_NEEDS_SPINS};
+static const ilaw_parameter* const parameters[] = {&damping, &friction, &wear, &mode, &temperature, &reach};
 static const ilaw_state_variable closures = {
     sizeof(ilaw_state_variable), ILAW_STATE_SCALAR, "closures", "1", "Steps that it was pushed.", 1, 0, 0};
 static const ilaw_state_variable* const state_variables[] = {&closures};
@@ -67,7 +75,8 @@ static const ilaw_amount* const amounts[] = {&heat, &worn};
 
 static ilaw_law law = {.struct_size = sizeof(ilaw_law),
                        .dimensions = ILAW_DIMENSION_1 | ILAW_DIMENSION_2 | ILAW_DIMENSION_3,
-                       .delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL,
+                       .delassus_forms = ILAW_DELASSUS_SCALAR | ILAW_DELASSUS_DIAGONAL | ILAW_DELASSUS_FULL |
+                                         ILAW_DELASSUS_TRANSVERSE_SPIN,
                        .frames = ILAW_FRAME_LOCAL | ILAW_FRAME_GLOBAL,
                        .numbers = ILAW_NUMBERS_DOUBLE | ILAW_NUMBERS_FLOAT,
                        .inputs = ILAW_INPUT_GAP | ILAW_INPUT_AREA | ILAW_INPUT_V_PREVIOUS,
@@ -135,6 +144,7 @@ __attribute__((constructor)) static void begin(void) {
   if (breaks("description-range")) wear.minimum = wear.maximum = 1.0;
   if (breaks("extension-unknown: library")) plugin.extension = library_extension;
   if (breaks("info-within: before")) law.inputs &= ~(uint32_t)ILAW_INPUT_V_PREVIOUS;
+  if (breaks("frame-turned")) law.frames = ILAW_FRAME_GLOBAL;
   if (breaks("energy-made")) law.outputs &= ~(uint32_t)ILAW_OUTPUT_ENERGY;
 }
 __attribute__((destructor)) static void end(void) { free(block); }

@@ -1,4 +1,5 @@
-/* A law in plain C99 that keeps every rule of `ilaw check`: a one-sided dashpot with friction that wears. The
+/* A law in plain C99 that keeps every rule of `ilaw check`: a one-sided dashpot with friction that wears, and
+ * with a moment against spins where the form of H has them. The
  * environment variable ILAW_CHECK_BREAK, read when the library is loaded, names the one rule that it breaks.
  */
 #ifndef ILAW_TESTS_SAMPLE_H
@@ -28,7 +29,7 @@ typedef struct memory {
 struct ilaw_instance {
   ilaw_setup setup;
   quantity damping, friction, temperature;
-  double wear;
+  double wear, reach;
   int rough;
   const char* mode; /* of an argument that is gone: for a broken rule alone */
   memory* own;

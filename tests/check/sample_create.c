@@ -99,10 +99,13 @@ static ilaw_result read_argument(ilaw_instance* made, const ilaw_argument* a) {
   if (strcmp(a->name, "damping") == 0) return read_quantity(made, &made->damping, p, a);
   if (strcmp(a->name, "friction") == 0) return read_quantity(made, &made->friction, p, a);
   if (strcmp(a->name, "temperature") == 0) return read_quantity(made, &made->temperature, p, a);
-  if (strcmp(a->name, "wear") == 0) {
+  if ((p->flags & ILAW_PARAMETER_NEEDS_SPINS) && made->setup.delassus_form != ILAW_DELASSUS_TRANSVERSE_SPIN &&
+      !breaks("parameter-spins"))
+    return ILAW_INVALID_PARAMETER;
+  if (strcmp(a->name, "wear") == 0 || strcmp(a->name, "reach") == 0) {
     memset(&count, 0, sizeof count);
     code = read_quantity(made, &count, p, a);
-    made->wear = count.constant;
+    *(strcmp(a->name, "wear") == 0 ? &made->wear : &made->reach) = count.constant;
     return code;
   }
   if (a->kind != ILAW_VALUE_TEXT || !a->text) return ILAW_INVALID_PARAMETER;
@@ -117,12 +120,16 @@ static int serves(const ilaw_setup* setup) {
   if (breaks("setups-served") && setup->dimension == 2) return 0;
   if (breaks("setup-unserved") && setup->dimension == 5) return 1;
   if (setup->dimension < 1 || setup->dimension > 3) return 0;
-  if (setup->frame != ILAW_FRAME_LOCAL && setup->frame != ILAW_FRAME_GLOBAL && !breaks("setup-frame"))
+  if ((setup->frame & (setup->frame - 1) || !(setup->frame & sample_law()->frames)) && !breaks("setup-frame"))
     return 0;
   if (setup->numbers != ILAW_NUMBERS_DOUBLE && setup->numbers != ILAW_NUMBERS_FLOAT &&
       !breaks("setup-numbers"))
     return 0;
-  if (form != ILAW_DELASSUS_SCALAR && form != ILAW_DELASSUS_DIAGONAL && form != ILAW_DELASSUS_FULL) return 0;
+  if (form != ILAW_DELASSUS_SCALAR && form != ILAW_DELASSUS_DIAGONAL && form != ILAW_DELASSUS_FULL &&
+      form != ILAW_DELASSUS_TRANSVERSE_SPIN)
+    return 0;
+  if (form == ILAW_DELASSUS_TRANSVERSE_SPIN && setup->dimension != 3 && !breaks("setup-unserved: spins"))
+    return 0;
   return setup->flags == 0 || breaks("setup-flags");
 }
 
@@ -170,6 +177,7 @@ ilaw_result ILAW_CALL sample_create(const char* id, const ilaw_setup* setup, ila
   made->temperature.constant = 293.15;
   made->rough = breaks("parameter-default");
   made->wear = 1.0;
+  made->reach = 0.5;
   describe_state(made);
   for (k = 0; k < setup->argument_count; ++k) {
     const ilaw_argument* a = setup->arguments[k];

@@ -1,5 +1,5 @@
 /* Steps of the law. r_N = -v_N/(H_NN + 1/(h c A)) where the gap is closed and closing; friction within its
- * cone takes at most the tangential velocity. */
+ * cone takes at most the tangential velocity, and a moment up to a reach times r_N half of the spin. */
 #include "sample.h"
 #include "sample_node.h"
 
@@ -7,6 +7,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -48,6 +49,16 @@ static int needs_previous(const ilaw_batch* b) {
   return b->energy.values || b->energy.floats || (b->amounts && !breaks("balance-inputs: amounts"));
 }
 
+static int lacks_spins(const ilaw_instance* made, const ilaw_batch* b) {
+  if (made->setup.delassus_form != ILAW_DELASSUS_TRANSVERSE_SPIN) return 0;
+  if (b->struct_size < sizeof *b) return !breaks("call-refused: spins");
+  return lacks(made, b->spin_free.values, b->spin_free.floats, 1) ||
+         lacks(made, b->spin_previous.values, b->spin_previous.floats,
+               needs_previous(b) && !breaks("balance-inputs: spins")) ||
+         lacks(made, b->moment.values, b->moment.floats, 1) ||
+         (!breaks("array-numbers: spins") && lacks(made, b->spin.values, b->spin.floats, 0));
+}
+
 static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) {
   const int global = made->setup.frame == ILAW_FRAME_GLOBAL,
             tangent = made->setup.has_tangent && made->setup.dimension == 3;
@@ -64,12 +75,16 @@ static const char* wrong_arrays(const ilaw_instance* made, const ilaw_batch* b) 
       lacks(made, b->velocity.values, b->velocity.floats, 0) ||
       lacks(made, b->energy.values, b->energy.floats, 0))
     return "an output is missing or of another number type";
+  if (lacks_spins(made, b)) return "an array of spins is missing or of another number type";
   for (k = 0; b->amounts && k < AMOUNT_COUNT && !breaks("array-numbers: amount"); ++k)
     if (lacks(made, b->amounts[k].values, b->amounts[k].floats, 0))
       return "an amount is of another number type";
-  if (!b->state_in.values || b->state_in.floats || b->state_out.floats)
+  if (!b->state_in.values || (b->state_in.floats && !breaks("array-numbers: state")) || b->state_out.floats)
     return "a state is missing or of floats";
   if (b->node_count > 1 && b->impulse.node_stride == 0) return "impulse has a stride of 0";
+  if (made->setup.delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN && b->node_count > 1 &&
+      (b->moment.node_stride == 0 || (b->spin.node_stride == 0 && (b->spin.values || b->spin.floats))))
+    return "moment or spin has a stride of 0";
   return NULL;
 }
 
@@ -106,6 +121,7 @@ ilaw_result ILAW_CALL sample_initialise(const ilaw_instance* made, const ilaw_ba
   for (k = 0; k < b->node_count; ++k) {
     const int64_t node = node_of(b, k);
     double first = 0.0;
+    if (breaks("initialise-reads: step") && !(b->velocity_step > 0.0)) first = 1.0;
     if (breaks("initialise-reads")) first = 0.0 * read_array(&b->v_free, 0, 0);
     b->state_out.values[node * b->state_out.node_stride] = first;
   }
@@ -127,6 +143,7 @@ static void misbehave(const ilaw_batch* b) {
   if (breaks("exit")) exit(3);
   if (breaks("quiet exit")) _exit(0);
   if (breaks("abort")) abort();
+  if (breaks("kill")) kill(getpid(), SIGKILL);
   if (breaks("throw")) throw_something();
   if (breaks("memory bomb"))
     for (;;) {
@@ -173,6 +190,8 @@ static ilaw_result step_all(const ilaw_instance* made, const ilaw_batch* b, ilaw
     report->first_bad_node = bad == 0 && breaks("report-clean") ? 0 : first;
     report->reason = breaks("bad-input-report") ? NULL : reason;
     report->stable_velocity_step = breaks("stable-step") ? read_array(&b->area, 0, 0) : INFINITY;
+    if (breaks("stable-step: last"))
+      report->stable_velocity_step = read_array(&b->area, node_of(b, b->node_count - 1), 0);
     if (breaks("stable-step-bound") && !made->damping.slot && !made->damping.axis_count)
       report->stable_velocity_step = limit_of_explicit(made, b);
     if (breaks("report-clean: step")) report->stable_velocity_step = NAN;

@@ -8,6 +8,8 @@ typedef struct node {
   int d, global, floats, strays;
   double v[3], n[3], t[3], h[3][3], gap, area, damping, friction, temperature;
   double closures, r[3], after[3], energy[4], amounts[AMOUNT_COUNT];
+  int spins;
+  double w[3], k, j_n, j_t, reach, m[3], spin[3];
   uint8_t status;
 } node;
 
@@ -89,6 +91,7 @@ static double sum_of_all(const ilaw_batch* b, int d) {
   if (has(&b->tangent)) sum += sum_of(&b->tangent, b, d);
   if (has(&b->gap_offset)) sum += sum_of(&b->gap_offset, b, 1);
   if (has(&b->normal)) sum += sum_of(&b->normal, b, d);
+  if (has(&b->spin_free)) sum += sum_of(&b->spin_free, b, d);
   return sum;
 }
 
@@ -145,7 +148,16 @@ void remember(const ilaw_instance* made, const ilaw_batch* b) {
 static void gather_delassus(node* at, const ilaw_instance* made, const ilaw_batch* b, int64_t i) {
   static const int rows[3] = {0, 0, 1}, columns[3] = {1, 2, 2};
   const uint32_t form = made->setup.delassus_form;
-  int c;
+  int a, c;
+  if (at->spins) {
+    const double h_n = read_array(&b->delassus, i, 0), h_t = read_array(&b->delassus, i, 1);
+    for (a = 0; a < 3; ++a)
+      for (c = 0; c < 3; ++c) at->h[a][c] = (h_n - h_t) * at->n[a] * at->n[c] + (a == c ? h_t : 0.0);
+    at->k = read_array(&b->delassus, i, 2);
+    at->j_n = read_array(&b->delassus, i, 3);
+    at->j_t = read_array(&b->delassus, i, 4);
+    return;
+  }
   for (c = 0; c < at->d; ++c) at->h[c][c] = read_array(&b->delassus, i, form == ILAW_DELASSUS_SCALAR ? 0 : c);
   for (c = 0; form == ILAW_DELASSUS_FULL && c < at->d * (at->d - 1) / 2; ++c)
     at->h[rows[c]][columns[c]] = at->h[columns[c]][rows[c]] = read_array(&b->delassus, i, at->d + c);
@@ -155,11 +167,14 @@ static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int
   int c;
   memset(at, 0, sizeof *at);
   at->d = (int)made->setup.dimension;
+  at->spins = made->setup.delassus_form == ILAW_DELASSUS_TRANSVERSE_SPIN;
+  at->reach = made->reach;
   at->global = made->setup.frame == ILAW_FRAME_GLOBAL;
   at->n[0] = 1.0;
   at->t[1] = 1.0;
   for (c = 0; c < at->d; ++c) {
     at->v[c] = read_array(&b->v_free, i, c);
+    if (at->spins) at->w[c] = read_array(&b->spin_free, i, c);
     if (at->global) at->n[c] = read_array(&b->normal, i, c);
     if (at->global && at->d == 3 && made->setup.has_tangent) at->t[c] = read_array(&b->tangent, i, c);
   }
@@ -181,12 +196,23 @@ static void gather(node* at, const ilaw_instance* made, const ilaw_batch* b, int
 }
 
 static double dot(const double* a, const double* b) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
+/* to += s n x a */
+static void add_cross(double* to, double s, const double* n, const double* a) {
+  to[0] += s * (n[1] * a[2] - n[2] * a[1]);
+  to[1] += s * (n[2] * a[0] - n[0] * a[2]);
+  to[2] += s * (n[0] * a[1] - n[1] * a[0]);
+}
+
 static int definite(const node* at) {
   const double(*h)[3] = at->h;
   const double minor = h[0][0] * h[1][1] - h[0][1] * h[0][1];
+  const double h_t = 0.5 * (h[0][0] + h[1][1] + h[2][2] - dot(at->n, h[0]) * at->n[0] -
+                            dot(at->n, h[1]) * at->n[1] - dot(at->n, h[2]) * at->n[2]);
   int c;
   for (c = 0; c < at->d; ++c)
     if (!(h[c][c] > 0.0) || !isfinite(h[c][c])) return 0;
+  if (at->spins && (!(at->j_n > 0.0 && at->j_t > 0.0) || isinf(at->j_n) || isinf(at->j_t))) return 0;
+  if (at->spins && !(at->k / h_t * (at->k / at->j_t) < 1.0) && !breaks("bad-input-definite: spins")) return 0;
   if (breaks("bad-input-definite") || at->d == 1) return 1;
   if (!(minor > 0.0) || at->d == 2) return minor > 0.0;
   return h[2][2] * minor - h[1][2] * (h[0][0] * h[1][2] - h[0][1] * h[0][2]) +
@@ -199,7 +225,9 @@ static int near_one(double value) { return fabs(value - 1.0) < 1e-6; }
 static const char* defect(node* at, const ilaw_instance* made, const ilaw_batch* b) {
   int c;
   for (c = 0; c < at->d; ++c)
-    if (!isfinite(at->v[c])) return "v_free is not finite";
+    if (!(isfinite(at->v[c]) || (breaks("bad-input-report: not a number") && isnan(at->v[c]))) ||
+        !isfinite(at->w[c]))
+      return "v_free or spin_free is not finite";
   if (!definite(at)) return "H is not positive definite";
   if (!isfinite(at->gap)) return "the gap is not finite";
   if (!(at->area >= 0.0) || !isfinite(at->area)) return "the area is not a number >= 0";
@@ -264,6 +292,7 @@ static double solve(node* at, const ilaw_instance* made, const ilaw_batch* b) {
   if (breaks("friction-pressure") && !at->global && r == 0.0 && at->gap <= 0.0) most = 0.1 * speed / trace;
   least = speed / trace < most ? speed / trace : most;
   if (at->strays) r *= 1.0 + 4e-16;
+  if (breaks("frame-indifference: backward") && at->d == 1 && at->n[0] < 0.0) r *= 1.001;
   if (at->floats && breaks("floats-rounded")) r *= 1.0 + 1e-6;
   for (c = 0; c < at->d; ++c) at->r[c] = r * at->n[c] - (least > 0.0 ? least * (along[c] / speed) : 0.0);
   for (a = 0; a < at->d; ++a) {
@@ -279,6 +308,29 @@ static double solve(node* at, const ilaw_instance* made, const ilaw_batch* b) {
   return r;
 }
 
+/* m = -part w with the part in which neither r nor m does work: at most 1/(2 (j_N + j_T)), as r takes less
+ * than 1/(2 h_T), since H and J with their coupling k are at most twice their diagonal. */
+static void turn(node* at, double r_n) {
+  const double speed = sqrt(dot(at->w, at->w)), most = r_n > 0.0 ? at->reach * r_n : 0.0;
+  double part = 0.5 / (at->j_n + at->j_t), w_n = dot(at->w, at->n);
+  int c;
+  if (!at->spins) return;
+  if (!(part * speed < most)) part = speed > 0.0 ? most / speed : 0.0;
+  if (breaks("mirror: moment") && w_n < 0.0) part *= 0.9;
+  if (breaks("isotropy: moment") && !at->global)
+    part *= 1.0 - 0.3 * at->w[1] * at->w[1] / (1e-300 + speed * speed);
+  if (breaks("frame-indifference: moment") && !at->global) part *= 0.99;
+  if (breaks("units: moment") && speed < 0.3) part = 0.0;
+  if (breaks("energy-made: moment")) part = -part;
+  if (breaks("friction-pressure: moment") && r_n == 0.0 && at->gap <= 0.0) part = 0.1;
+  for (c = 0; c < 3; ++c) at->m[c] = -part * at->w[c] + 0.0;
+  if (breaks("frame-turned: moment") && at->global) at->m[0] = -at->m[0];
+  for (c = 0; c < 3; ++c)
+    at->spin[c] = at->w[c] + at->j_t * at->m[c] + (at->j_n - at->j_t) * dot(at->n, at->m) * at->n[c];
+  if (!breaks("velocity-output: moment")) add_cross(at->after, at->k, at->n, at->m);
+  if (!breaks("velocity-output: spin")) add_cross(at->spin, -at->k, at->n, at->r);
+}
+
 static void measure(node* at) {
   const double dissipated = at->energy[ILAW_ENERGY_FRICTION] + at->energy[ILAW_ENERGY_IMPACT];
   at->amounts[HEAT] = 0.5 * at->energy[ILAW_ENERGY_FRICTION];
@@ -290,15 +342,19 @@ static void measure(node* at) {
 }
 
 static void account(node* at, const ilaw_batch* b, int64_t i) {
-  double mean[3] = {0.0, 0.0, 0.0}, normal, impact;
+  double mean[3] = {0.0, 0.0, 0.0}, mean_spin[3] = {0.0, 0.0, 0.0}, normal, impact, twist;
   int c;
   if (!is_wanted(&b->energy) && !b->amounts) return;
   for (c = 0; c < at->d && has(&b->v_previous); ++c)
     mean[c] = 0.5 * (read_array(&b->v_previous, i, c) + at->after[c]);
+  for (c = 0; at->spins && c < 3 && has(&b->spin_previous); ++c)
+    mean_spin[c] = 0.5 * (read_array(&b->spin_previous, i, c) + at->spin[c]);
+  twist = -dot(at->m, mean_spin);
+  if (breaks("energy-balance: moment")) twist = -twist;
   normal = dot(at->n, at->r);
   impact = -normal * dot(at->n, mean);
   at->energy[ILAW_ENERGY_IMPACT] = impact;
-  at->energy[ILAW_ENERGY_FRICTION] = -dot(at->r, mean) - impact;
+  at->energy[ILAW_ENERGY_FRICTION] = -dot(at->r, mean) - impact + twist;
   if (breaks("energy-friction")) {
     at->energy[ILAW_ENERGY_FRICTION] += impact;
     at->energy[ILAW_ENERGY_IMPACT] = 0.0;
@@ -321,6 +377,7 @@ static int leaves_out(const char* output, const ilaw_batch* b, int64_t k) {
 
 static void write_node(const node* at, const ilaw_batch* b, int64_t k, const double* state) {
   const int64_t i = node_of(b, k);
+  const double factor = breaks("floats-rounded: moment") && at->floats ? 1.0 + 1e-6 : 1.0;
   int c;
   for (c = 0; c < at->d && !leaves_out("outputs-written: impulse", b, k); ++c)
     put(&b->impulse, i, c, at->r[c]);
@@ -333,6 +390,11 @@ static void write_node(const node* at, const ilaw_batch* b, int64_t k, const dou
   if (b->status && !leaves_out("outputs-written: status", b, k)) b->status[i * b->status_stride] = at->status;
   for (c = 0; c < at->d && !leaves_out("outputs-written", b, k); ++c)
     put(&b->velocity, i, c, breaks("velocity-output") ? at->v[c] : at->after[c]);
+  for (c = 0; at->spins && c < 3; ++c) {
+    if (!breaks("outputs-written: moment") || at->status != ILAW_FREE)
+      put(&b->moment, i, c, factor * at->m[c]);
+    if (!leaves_out("outputs-written: spin", b, k)) put(&b->spin, i, c, at->spin[c]);
+  }
 }
 
 static int out_of_reach(const node* at, const ilaw_batch* b) {
@@ -350,11 +412,12 @@ static const char* step_good(node* at, const ilaw_instance* made, const ilaw_bat
   const int64_t i = node_of(b, k);
   const double closures = at->closures, r = solve(at, made, b);
   double next = closures + (r != 0.0 && !breaks("closures stay") ? 1.0 : 0.0);
+  const double bound = at->floats && !breaks("impulse-finite: floats") ? 0x1p126 : INFINITY;
   int c, finite = 1;
+  turn(at, r);
   account(at, b, i);
   for (c = 0; c < at->d; ++c)
-    finite =
-        finite && fabs(at->r[c]) < (at->floats && !breaks("impulse-finite: floats") ? 0x1p126 : INFINITY);
+    finite = finite && fabs(at->r[c]) < bound && (fabs(at->m[c]) < bound || breaks("impulse-finite: moment"));
   if (!finite && !breaks("impulse-finite")) return "the impulse overflows";
   if (breaks("skip-fresh") && closures == 0.0 && b->time == b->velocity_step && out_of_reach(at, b))
     next += 1.0;
@@ -363,6 +426,9 @@ static const char* step_good(node* at, const ilaw_instance* made, const ilaw_bat
   if (breaks("skip-fresh: impulse") && out_of_reach(at, b)) at->r[0] = 1e-3;
   if (breaks("skip-fresh: status") && out_of_reach(at, b)) at->status = ILAW_CLOSED;
   if (breaks("step-limits: impulse") && b->velocity_step > 100.0) at->r[0] = INFINITY;
+  if (breaks("step-limits: moment") && b->velocity_step > 100.0) at->m[0] = INFINITY;
+  if (breaks("skip-fresh: moment") && out_of_reach(at, b)) at->m[0] = 1e-3;
+  if (breaks("status-meaning: moment") && at->status == ILAW_FREE) at->m[0] = 1e-3;
   if (breaks("skip-free") && closures > 0.0 && out_of_reach(at, b)) next += 1.0;
   write_node(at, b, k, &next);
   return NULL;
@@ -391,6 +457,8 @@ const char* step_node(const ilaw_instance* made, const ilaw_batch* b, int64_t k,
   for (c = 0; c < 3; ++c) {
     none.r[c] = breaks("foreign-state: impulse") || breaks("bad-input-node: impulse") ? 1.0 : 0.0;
     none.after[c] = breaks("bad-input-node") ? 0.0 : none.v[c];
+    none.m[c] = breaks("bad-input-node: moment") ? 1.0 : 0.0;
+    none.spin[c] = breaks("bad-input-node: spin") ? 0.0 : none.w[c];
   }
   none.status = breaks("bad-input-node: status") ? ILAW_FREE : ILAW_BAD_INPUT;
   none.energy[0] = breaks("bad-input-node: energy") ? 1.0 : 0.0;

@@ -35,6 +35,18 @@ ilaw_add_wrong_law(cohesive_asks cohesive api/include/ilaw/kit/bond.hpp
 # Loses adhesion per step, not per time.
 ilaw_add_wrong_law(rccm_step rccm plugins/rccm/rccm.cpp "viscosity / all.step.velocity_step"
                    "viscosity / (all.step.velocity_step > 0.0 ? 0x1p-10 : 0.0)")
+# The moment turns the wrong way in the host's axes.
+ilaw_add_wrong_law(rolling_turned rolling api/include/ilaw/kit/detail/frame.hpp
+                   "const axis<V> w = cross(n, axis<V>{u.x, u.y, u.z});"
+                   "const axis<V> w = cross(axis<V>{u.x, u.y, u.z}, n);")
+# Energy without the work of the moment.
+ilaw_add_wrong_law(rolling_work rolling api/include/ilaw/kit/detail/kernel.hpp
+                   "along_tangents = along_tangents - 0.5 * (twist + roll);"
+                   "along_tangents = along_tangents - 0.0 * (twist + roll);")
+# The velocity does not know the moment.
+ilaw_add_wrong_law(rolling_velocity rolling api/include/ilaw/kit/symmetric.hpp
+                   "return transverse<V>::times(r) - k * q.tangential_part();"
+                   "return transverse<V>::times(r) - 0.0 * k * q.tangential_part();")
 # Does not turn its history with the normal.
 ilaw_add_wrong_law(postit_unturned postit api/include/ilaw/kit/detail/load_node.hpp
                    "f.t1 = transported_tangent(n, t, f.n);" "f.t1 = any_tangent(f.n);")

@@ -82,6 +82,24 @@ TEST(CoulombDelassus, GivesTheBitsOfTheLocalSolver) {
   }
 }
 
+// A second coefficient below 2^-400 of the first acts as zero, and stays off the cone's equations.
+TEST(CoulombDelassus, TakesANegligibleCoefficientForZero) {
+  Draw draw(45);
+  for (int k = 0; k < 1000; ++k) {
+    kit::local_coulomb p{};
+    draw.fill_coupled(p, 0.05);
+    draw.fill_pressed_velocity(p, 1.0);
+    double r[3], expected[3];
+    p.mu[0] = 0.4;
+    p.mu[1] = 0.0;
+    const kit::contact_mode mode = kit::solve_pressed(p, expected);
+    p.mu[1] = 1e-130;
+    ASSERT_EQ(kit::solve_pressed(p, r), mode) << k;
+    for (int c = 0; c < 3; ++c) ASSERT_EQ(r[c], expected[c]) << "problem " << k;
+    ASSERT_EQ(r[2], 0.0) << k;
+  }
+}
+
 // Without force and restitution the work r.(v^- + v)/2 is never positive: r.v is the dissipation by slip, and
 // r.v^- = r.v - r.H r.
 TEST(CoulombDelassus, NeverCreatesEnergyAndDissipatesAtMost) {

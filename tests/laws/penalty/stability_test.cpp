@@ -92,6 +92,15 @@ TEST(Stability, ImplicitKeepsItsEnergyForAMillionSteps) {
   }
 }
 
+TEST(Stability, ImplicitReportsNoLimit) {
+  for (const double exponent : {1.0, 1.5}) {
+    NodeRun node("penalty", implicit_penalty(1e6, exponent, 1.0), 1e-3);
+    node.gap = -1e-4;
+    ASSERT_EQ(node.step({-1.0, 0.0, 0.0}), ILAW_OK);
+    EXPECT_EQ(node.report.stable_velocity_step, inf_value) << exponent;
+  }
+}
+
 // What that is worth: the explicit penalty leaves the limit 2/sqrt(k + K), and gains energy at every impact
 // beyond.
 TEST(Stability, ExplicitNeedsASmallerStep) {
