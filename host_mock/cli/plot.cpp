@@ -5,10 +5,9 @@
 #include "base/exit_code.hpp"
 #include "base/words.hpp"
 #include "cli/terminal.hpp"
-#include "results/comparison.hpp"
-#include "results/gnuplot.hpp"
-#include "results/history_file.hpp"
-#include "results/picture.hpp"
+#include "plot/comparison.hpp"
+#include "plot/history_file.hpp"
+#include "plot/picture.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -97,10 +96,7 @@ int plot_history(const PlotOptions& options) {
   }
   const std::filesystem::path drawn = options.out.empty() ? results : std::filesystem::path(options.out);
   const std::filesystem::path pictures = std::filesystem::absolute(drawn).lexically_normal();
-  if (!draw_by_gnuplot(pictures / "history.gnuplot", [&](std::ostream& script) {
-        write_picture(script, folder, pictures, columns, caption);
-      }))
-    return exit_failed;
+  if (!draw_picture(folder, pictures, columns, caption)) return exit_failed;
   std::printf("%s\n%s\n", (drawn / "history.png").c_str(), (drawn / "history.svg").c_str());
   return exit_done;
 }
@@ -147,9 +143,7 @@ int plot_columns(const PlotOptions& options) {
                                        : runs.size() > 1    ? first.parent_path()
                                                             : first;
   const std::string picture = (folder / picture_name(options)).string();
-  if (!draw_by_gnuplot(picture + ".gnuplot",
-                       [&](std::ostream& script) { write_comparison(script, picture, runs, setup); }))
-    return exit_failed;
+  if (!draw_comparison(picture, runs, setup)) return exit_failed;
   std::printf("%s.png\n%s.svg\n", picture.c_str(), picture.c_str());
   return exit_done;
 }

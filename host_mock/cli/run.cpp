@@ -15,7 +15,7 @@
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
 #include "results/fields.hpp"
-#include "results/gnuplot.hpp"
+#include "plot/gnuplot.hpp"
 #include "results/history.hpp"
 #include "results/summary.hpp"
 #include "scene/read_meshes.hpp"

@@ -7,8 +7,8 @@
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
 #include "cli/terminal.hpp"
-#include "results/gnuplot.hpp"
-#include "results/run_table.hpp"
+#include "plot/gnuplot.hpp"
+#include "plot/run_table.hpp"
 #include "scene/validation.hpp"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 #include "base/exit_code.hpp"
 #include "cli/terminal.hpp"
-#include "results/run_table.hpp"
+#include "plot/run_table.hpp"
 
 #include <cstdio>
 #include <iostream>

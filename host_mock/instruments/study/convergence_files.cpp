@@ -3,7 +3,7 @@
 
 #include "base/csv.hpp"
 #include "base/files.hpp"
-#include "results/gnuplot.hpp"
+#include "plot/gnuplot.hpp"
 
 #include <ostream>
 
@@ -78,7 +78,9 @@ bool draw_convergence(const ErrorTable& table, const std::string& title,
   // Run times of machines differ: over that of the finest run that is compared.
   const double finest = table.runs[table.errors.size() - 1].seconds;
   const std::string csv = in_quotes((folder / "converge.csv").string());
-  return draw_log_sheet(folder, "converge", {"1000,460", "layout 1,2", "", title}, [&](std::ostream& script) {
+  const Sheet sheet{folder / "converge", 1000, 460, "layout 1,2 title " + in_quotes(title) + " noenhanced"};
+  return draw_sheet(sheet, [&](std::ostream& script) {
+    script << log_axes;
     write_panel(table, csv, {1, 1.0, "time step", "right"}, script);
     write_panel(table, csv, {3, finest, "run time / that of the finest run", "left"}, script);
   });

@@ -3,7 +3,7 @@
 
 #include "base/csv.hpp"
 #include "base/files.hpp"
-#include "results/gnuplot.hpp"
+#include "plot/gnuplot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -132,7 +132,9 @@ bool draw_study(const Study& study, const std::string& title, const std::filesys
       {norm_impulse, "error of the impulse history", steps_column, 1.0, steps},
       {norm_energy, "error of the interfaces' work", steps_column, 1.0, steps}};
   const std::string csv = in_quotes((folder / "study.csv").string());
-  return draw_log_sheet(folder, "study", {"1200,840", "", "font ',14'", title}, [&](std::ostream& script) {
+  const Sheet sheet{folder / "study", 1200, 840, "title " + in_quotes(title) + " font ',14' noenhanced"};
+  return draw_sheet(sheet, [&](std::ostream& script) {
+    script << log_axes;
     for (std::size_t k = 0; k < std::size(panels); ++k) {
       if (!has_points(study, panels[k].norm)) continue;
       script << "set origin " << (k % 2 ? 0.38 : 0.0) << ',' << (k < 2 ? 0.47 : 0.0)

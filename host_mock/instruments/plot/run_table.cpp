@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "results/run_table.hpp"
+#include "plot/run_table.hpp"
 
 #include "base/csv.hpp"
 #include "base/words.hpp"
-#include "results/history_file.hpp"
+#include "plot/history_file.hpp"
 
 #include <algorithm>
 #include <cmath>

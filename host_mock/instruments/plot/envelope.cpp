@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "results/envelope.hpp"
+#include "plot/envelope.hpp"
 
 #include "base/csv.hpp"
 

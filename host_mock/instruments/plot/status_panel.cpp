@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "results/status_panel.hpp"
+#include "plot/status_panel.hpp"
 
 #include "base/csv.hpp"
-#include "results/gnuplot.hpp"
+#include "plot/gnuplot.hpp"
 
 #include <ilaw/ilaw.h>
 
