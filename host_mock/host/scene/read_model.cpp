@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_model.hpp"
+#include "scene/readers.hpp"
 
 #include "model/bars.hpp"
 #include "model/blocks.hpp"
+#include "model/model.hpp"
 #include "model/points.hpp"
 #include "model/rotating_spring.hpp"
 #include "scene/json_text.hpp"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_time.hpp"
+#include "scene/readers.hpp"
 
 #include "scene/json_text.hpp"
+#include "scene/scene.hpp"
 
 #include <cmath>
 #include <string>
