@@ -3,26 +3,24 @@
 #include "cli/run.hpp"
 #include "cli/commands.hpp"
 
+#include "base/clock.hpp"
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/large_pages.hpp"
-#include "base/scene_error.hpp"
 #include "cli/guard.hpp"
 #include "cli/progress.hpp"
-#include "cli/sweep.hpp"
 #include "cli/terminal.hpp"
 #include "model/elements.hpp"
+#include "plot/gnuplot.hpp"
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
 #include "results/fields.hpp"
-#include "plot/gnuplot.hpp"
 #include "results/history.hpp"
 #include "results/summary.hpp"
 #include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
 
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -39,11 +37,7 @@
 namespace ilaw::host {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+double seconds_since(double start) { return clock_seconds(CLOCK_MONOTONIC) - start; }
 
 // Beginning of the name of rows that an earlier part of the run wrote with other columns.
 constexpr const char* earlier_history = "history.until_step_";
@@ -220,7 +214,7 @@ class Run {
     const bool field = scene_.output.fields > 0 && (last || step % scene_.output.fields == 0);
     const bool checkpoint = options_.checkpoint_every > 0 && step % options_.checkpoint_every == 0;
     if (!row && !field && !checkpoint) return;
-    const Clock::time_point start = Clock::now();
+    const double start = clock_seconds(CLOCK_MONOTONIC);
     if (row || field) check_motion();
     if (row) history_->add_row(integrator_);
     if (field) fields_.write(integrator_);
@@ -262,15 +256,6 @@ class Run {
   std::optional<Events> events_;
 };
 
-std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
-  try {
-    return read_scene(file);
-  } catch (const SceneError& error) {
-    complain(file.string() + ": " + error.what());
-  }
-  return std::nullopt;
-}
-
 std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
   try {
     return std::make_unique<Run>(scene, options);
@@ -309,17 +294,16 @@ int run(const RunOptions& options) {
   set_threads(options.threads);
   guard_against_laws();
   warn_of_search_path();
-  std::optional<Scene> scene = read_or_explain(options.scene);
-  if (!scene) return exit_bad_input;
-  for (const nlohmann::json& mesh : scene->meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
+  Scene scene = in_scene(options.scene, [&] { return read_scene(options.scene); });
+  for (const nlohmann::json& mesh : scene.meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
   std::fflush(stdout);  // before what goes to stderr
-  return run_scene(*scene, options);
+  return run_scene(scene, options);
 }
 
 }  // namespace
 
 int run_scene(Scene& scene, const RunOptions& options) {
-  const Clock::time_point start = Clock::now();
+  const double start = clock_seconds(CLOCK_MONOTONIC);
   // What a run resumes from stands in its folder already.
   std::optional<HeldFolder> held;
   if (!options.resume || std::filesystem::is_directory(options.folder)) held.emplace(options.folder);
@@ -337,7 +321,7 @@ int run_scene(Scene& scene, const RunOptions& options) {
   return report(scene, run->integrator(), run->record, options);
 }
 
-void add_run(CLI::App& app, Action& chosen) {
+void add_run(CLI::App& app, int& code) {
   const auto options = std::make_shared<RunOptions>();
   const auto settings = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
@@ -358,9 +342,7 @@ void add_run(CLI::App& app, Action& chosen) {
       ->expected(1)
       ->take_all();
   command->footer("Example: ilaw run plugins/contact/bouncing_ball.json --out results");
-  command->callback([=, &chosen] {
-    chosen = [=] { return settings->empty() ? run(*options) : sweep(*options, *settings); };
-  });
+  command->callback([=, &code] { code = settings->empty() ? run(*options) : sweep(*options, *settings); });
 }
 
 }  // namespace ilaw::host

@@ -1,5 +1,6 @@
+// `ilaw run --set`: a scene with several values of its keys.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/sweep.hpp"
+#include "cli/run.hpp"
 
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
@@ -189,9 +190,8 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
       scene_of(variant, settings, source, options.scene);
     }
   } catch (const std::exception& error) {
-    complain(options.scene.string() + ": " + (name.empty() ? name : name + ": ") + error.what() +
-             "; nothing was run");
-    return exit_bad_input;
+    throw InputError(options.scene.string() + ": " + (name.empty() ? name : name + ": ") + error.what() +
+                     "; nothing was run");
   }
   const HeldFolder held(options.folder);
   remove_pictures(options.folder, "comparison|.*_over_.*");  // of an earlier sweep

@@ -7,17 +7,14 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 #include <streambuf>
 #include <string>
+#include <string_view>
 
 namespace ilaw::host {
-
-// A folder that cannot hold results: found before anything ran.
-class FolderError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // A file that cannot be written, and why.
 class WriteError : public std::runtime_error {
@@ -25,7 +22,7 @@ class WriteError : public std::runtime_error {
 };
 
 // The folder that --out names: made if it does not exist, and held by this process alone. Throws
-// FolderError where that cannot be, and names the process that holds it.
+// InputError where that cannot be, and names the process that holds it.
 class HeldFolder {
  public:
   explicit HeldFolder(const std::filesystem::path& folder);
@@ -77,9 +74,8 @@ class FileBuffer : public std::streambuf {
 // then renamed.
 class AtomicFile {
  public:
-  explicit AtomicFile(std::filesystem::path file);
-  // Goes on after what an earlier run had written, complete or not.
-  AtomicFile(std::filesystem::path file, const FileMark& written);
+  // written: by an earlier run, complete or not, which this one continues.
+  explicit AtomicFile(std::filesystem::path file, const std::optional<FileMark>& written = {});
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -96,11 +92,16 @@ class AtomicFile {
 
  private:
   [[noreturn]] void fail(int error) const;
+  // Opens the partial file, with what was written or empty.
+  int open_partial(const std::optional<FileMark>& written) const;
 
   std::filesystem::path file_, partial_;
   FileBuffer buffer_;
   std::ostream stream_{&buffer_};
   bool is_kept_ = false;
 };
+
+// A file with a text. Throws WriteError.
+FileMark write_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace ilaw::host

@@ -6,7 +6,6 @@
 
 #include <ilaw/arrays.hpp>
 
-#include <algorithm>
 
 namespace ilaw::host {
 

@@ -225,9 +225,7 @@ std::filesystem::path Fields::write_diverged(const Integrator& integrator) const
       inverted->SetValue(element, 1.0);
   }
   std::filesystem::path path = folder_ / "diverged.vtu";
-  AtomicFile file(path);
-  file.stream() << text_of(*grid);
-  file.commit();
+  write_file(path, text_of(*grid));
   return path;
 }
 
@@ -243,9 +241,7 @@ void Fields::add_body(vtkUnstructuredGrid& grid, const Integrator& integrator) c
 void Fields::write_next(const std::string& kind, vtkUnstructuredGrid& grid, double time) {
   std::array<char, 40> name{};
   std::snprintf(name.data(), name.size(), "%s_%06zu.vtu", kind.c_str(), names_of(kind).size());
-  AtomicFile file(folder_ / name.data());
-  file.stream() << text_of(grid);
-  const FileMark mark = file.commit();
+  const FileMark mark = write_file(folder_ / name.data(), text_of(grid));
   written_.push_back(
       {{"name", name.data()}, {"time", time}, {"size", mark.size}, {"checksum", mark.checksum}});
 }
@@ -263,9 +259,8 @@ void Fields::write_series() const {
   for (const char* kind : {"fields", "obstacles"}) {
     const nlohmann::json files = names_of(kind);
     if (files.empty()) continue;
-    AtomicFile series(folder_ / (std::string(kind) + ".vtu.series"));
-    series.stream() << nlohmann::json{{"file-series-version", "1.0"}, {"files", files}}.dump(1) << '\n';
-    series.commit();
+    const nlohmann::json series = {{"file-series-version", "1.0"}, {"files", files}};
+    write_file(folder_ / (std::string(kind) + ".vtu.series"), series.dump(1) + "\n");
   }
 }
 

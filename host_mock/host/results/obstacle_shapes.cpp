@@ -17,7 +17,6 @@
 #include <initializer_list>
 #include <numbers>
 #include <string>
-#include <vector>
 
 namespace ilaw::host {
 namespace {

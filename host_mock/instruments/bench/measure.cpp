@@ -33,12 +33,6 @@ double seconds_of(Work&& work) {
   }
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // As many bytes as the case moves, so that both come from the same cache.
 std::size_t triad_elements(double bytes) {
   return static_cast<std::size_t>(std::clamp(bytes / 24.0, 64.0, most_triad_elements));
@@ -81,9 +75,9 @@ void check_bench(const ilaw::library& library, const BenchCase& bench_case, std:
                         24.0 * static_cast<double>(triad_elements(bytes));
   const double available = available_memory();
   if (needed > available)
-    throw BenchRefusal("--nodes: found " + std::to_string(nodes) + ", whose arrays take " +
-                       gigabytes(needed) + " for law '" + bench_case.law + "', expected at most the " +
-                       gigabytes(available) + " that this machine has left");
+    throw InputError("--nodes: found " + std::to_string(nodes) + ", whose arrays take " + gigabytes(needed) +
+                     " for law '" + bench_case.law + "', expected at most the " + gigabytes(available) +
+                     " that this machine has left");
 }
 
 BenchResult run_bench(const ilaw::library& library, const BenchCase& bench_case, std::int64_t nodes,

@@ -3,9 +3,9 @@
 
 #include <ilaw/arrays.hpp>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace ilaw::host {
 namespace {
@@ -69,24 +69,14 @@ double numbers_per_node(const BenchLaw& law, const BenchCase& bench_case) {
   return static_cast<double>(numbers);
 }
 
-using Vector3 = std::array<double, 3>;
-
-// Normal and tangents of a node.
-std::array<Vector3, 3> frame_of(const std::vector<double>& normal) {
-  std::array<Vector3, 3> axes{};
-  std::copy(normal.begin(), normal.end(), axes[0].begin());
-  const Vector3& n = axes[0];
-  if (normal.size() < 3) {
-    axes[1] = {-n[1], n[0], 0.0};
-    return axes;
-  }
-  const double length = std::hypot(n[0], n[1]);
-  axes[1] = length > 0.5 ? Vector3{-n[1] / length, n[0] / length, 0.0} : Vector3{0.0, n[2], -n[1]};
-  Vector3& t = axes[1];
-  const double scale = std::sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
-  for (double& component : t) component /= scale;
-  axes[2] = {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
-  return axes;
+// Normal and tangents of a node in its columns.
+Eigen::Matrix3d frame_of(const std::vector<double>& normal) {
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();
+  std::copy(normal.begin(), normal.end(), n.begin());
+  const Eigen::Vector3d t = normal.size() < 3 ? Eigen::Vector3d(-n[1], n[0], 0.0) : n.unitOrthogonal();
+  Eigen::Matrix3d frame;
+  frame << n, t, n.cross(t);
+  return frame;
 }
 
 }  // namespace
@@ -141,26 +131,23 @@ double* NodeArrays::place(ilaw_input ilaw_batch::*input, std::int64_t i, std::in
 void NodeArrays::draw_node(Draw& draw, const BenchCase& bench_case, std::int64_t i) {
   const bool touches = draw.chance(bench_case.touching), approaches = draw.chance(bench_case.pressed);
   const double speed = draw.uniform(0.0, 1.0);
-  const Vector3 v = {approaches ? -speed : speed, draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0)};
-  const Vector3 before = {touches ? 0.0 : v[0], v[1], v[2]};
+  Eigen::Vector3d v{approaches ? -speed : speed, draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0)};
   const double gap = touches ? draw.uniform(-0.1 * time_step, 0.0) : draw.uniform(0.01, 0.1);
-  std::array<Vector3, 3> axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  if (is_global_) axes = frame_of(draw.direction(static_cast<int>(dimension_)));
-  const auto set = [&](ilaw_input ilaw_batch::*input, std::int64_t c, double value) {
+  const Eigen::Matrix3d axes = is_global_ ? frame_of(draw.direction(static_cast<int>(dimension_)))
+                                          : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  const auto d = static_cast<Eigen::Index>(dimension_);
+  const Eigen::Vector3d after = axes.leftCols(d) * v.head(d);
+  if (touches) v[0] = 0.0;
+  const Eigen::Vector3d before = axes.leftCols(d) * v.head(d);
+  const auto set = [&](ilaw_input ilaw_batch::*input, Eigen::Index c, double value) {
     if (double* const number = place(input, i, c)) *number = value;
   };
   set(&ilaw_batch::gap, 0, gap);
-  for (std::int64_t c = 0; c < dimension_; ++c) {
-    const auto k = static_cast<std::size_t>(c);
-    double after = 0.0, previous = 0.0;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension_); ++a) {
-      after += v[a] * axes[a][k];
-      previous += before[a] * axes[a][k];
-    }
-    set(&ilaw_batch::v_free, c, after);
-    set(&ilaw_batch::v_previous, c, previous);
-    set(&ilaw_batch::normal, c, axes[0][k]);
-    set(&ilaw_batch::tangent, c, axes[1][k]);
+  for (Eigen::Index c = 0; c < d; ++c) {
+    set(&ilaw_batch::v_free, c, after[c]);
+    set(&ilaw_batch::v_previous, c, before[c]);
+    set(&ilaw_batch::normal, c, axes(c, 0));
+    set(&ilaw_batch::tangent, c, axes(c, 1));
   }
 }
 

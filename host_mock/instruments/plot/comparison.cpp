@@ -5,11 +5,9 @@
 #include "plot/history_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <iterator>
 #include <set>
-#include <utility>
 
 namespace ilaw::host {
 namespace {

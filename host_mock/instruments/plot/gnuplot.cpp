@@ -47,9 +47,7 @@ void complete(const std::filesystem::path& picture) {
   const std::string_view end = picture.extension() == ".png" ? "IEND\xAE\x42\x60\x82" : "</svg>\n";
   if (bytes.size() < end.size() || bytes.find(end, bytes.size() - end.size() - 8) == std::string::npos)
     throw WriteError(picture.string() + ": gnuplot could not write it whole; is the disk full?");
-  AtomicFile file(picture);
-  file.stream() << bytes;
-  file.commit();
+  write_file(picture, bytes);
 }
 
 bool run(const std::filesystem::path& script) {

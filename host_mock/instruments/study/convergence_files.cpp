@@ -33,15 +33,12 @@ void write_orders(const ErrorTable& table, const Sweep& sweep, const std::string
   json orders;
   for (std::size_t n = 0; n < norm_names.size(); ++n)
     orders[norm_names[n]] = table.order(n);  // NaN is written as null
-  AtomicFile file(folder / "converge.json");
-  file.stream() << json{{"title", title},
-                        {"reference", table.exact ? "exact solution" : "finest run"},
-                        {"refined", sweep.with_mesh ? "mesh and time step" : "time step"},
-                        {"levels", sweep.levels},
-                        {"orders", orders}}
-                       .dump(2)
-                << '\n';
-  file.commit();
+  const json found = {{"title", title},
+                      {"reference", table.exact ? "exact solution" : "finest run"},
+                      {"refined", sweep.with_mesh ? "mesh and time step" : "time step"},
+                      {"levels", sweep.levels},
+                      {"orders", orders}};
+  write_file(folder / "converge.json", found.dump(2) + "\n");
 }
 
 // Errors over one column of the table, in the given unit.

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <iterator>
 #include <ostream>
-#include <utility>
 
 namespace ilaw::host {
 namespace {
@@ -67,13 +66,10 @@ void write_laws(const Study& study, const std::string& title, const std::filesys
                     {"largest_stable_step", law.stable},
                     {"failures", failures}});
   }
-  AtomicFile file(folder / "study.json");
-  file.stream() << json{{"title", title},
-                        {"reference", study.exact ? "exact solution" : "finest run of the first law"},
-                        {"laws", laws}}
-                       .dump(2)
-                << '\n';
-  file.commit();
+  const json found = {{"title", title},
+                      {"reference", study.exact ? "exact solution" : "finest run of the first law"},
+                      {"laws", laws}};
+  write_file(folder / "study.json", found.dump(2) + "\n");
 }
 
 // An error over a column of study.csv, both counted from 1.
