@@ -17,7 +17,6 @@
 #include <exception>
 #include <optional>
 #include <sstream>
-#include <vector>
 
 namespace ilaw::host {
 namespace {

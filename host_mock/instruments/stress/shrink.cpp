@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <initializer_list>
 #include <iterator>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
