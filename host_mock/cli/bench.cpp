@@ -52,7 +52,7 @@ json parameters_of(const BenchOptions& options) {
                    R"(', expected an object in JSON, as {"friction": 0.3})");
 }
 
-// What is refused of a case of a file names the entry.
+// Runs work; a refusal of a case of a file names its entry.
 template <class Work>
 auto naming_entry(const BenchCase& bench_case, Work&& work) {
   try {

@@ -36,7 +36,7 @@ CLI::Validator number_from(double least, double most);
 void add_threads(CLI::App& command, int& threads);
 void set_threads(int threads);
 
-// What a scene says of a sweep, unless given on the command line.
+// Options that replace the keys of a sweep in a scene.
 struct SweepOptions {
   std::optional<int> levels;
   std::optional<double> factor;
@@ -48,7 +48,7 @@ struct SweepOptions {
 void add_sweep(CLI::App& command, SweepOptions& options, const std::string& levels,
                const CLI::Range& allowed);
 
-// What work returns. A mistake in a scene names its file.
+// Runs work; a mistake in a scene names its file.
 template <class Work>
 auto in_scene(const std::filesystem::path& file, Work work) {
   try {

@@ -39,7 +39,7 @@ Columns read_columns(const std::filesystem::path& file) {
   return columns;
 }
 
-// What the summary tells about the history; a folder without a summary is drawn all the same.
+// Reads the caption from the summary; a folder without one is drawn all the same.
 Caption read_caption(const std::filesystem::path& folder) {
   std::ifstream stream(folder / "summary.json");
   const nlohmann::json summary = nlohmann::json::parse(stream, nullptr, false);
@@ -102,7 +102,7 @@ void check_columns(const std::vector<RunFolder>& runs, const std::vector<std::st
   }
 }
 
-// What the picture is called: comparison, or its columns.
+// The name of the picture: comparison, or its columns.
 std::string picture_name(const PlotOptions& options) {
   if (options.y.empty()) return "comparison";
   std::string name;

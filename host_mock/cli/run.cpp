@@ -106,7 +106,7 @@ class Run {
   RunRecord record;
 
  private:
-  // What an earlier run left in the folder, and pictures of it, would be taken for this one's.
+  // Results that an earlier run left in the folder, and pictures of them, would be taken for this one's.
   void clear() const {
     clear_checkpoints(options_.folder);
     for (const char* name : {"summary.json", "history.csv", "events.csv", "history.png", "history.svg"})
@@ -149,7 +149,7 @@ class Run {
     history_->load(state);
   }
 
-  // Those of before stay, whether more are asked for or not.
+  // Events written before the resume are kept.
   void resume_events(const Checkpoint& checkpoint) {
     const bool had_events = checkpoint.events.size > 0;
     if (had_events && scene_.output.events) {
@@ -304,7 +304,7 @@ int run(const RunOptions& options) {
 
 int run_scene(Scene& scene, const RunOptions& options) {
   const double start = clock_seconds(CLOCK_MONOTONIC);
-  // What a run resumes from stands in its folder already.
+  // The folder of a run to resume is there already.
   std::optional<HeldFolder> held;
   if (!options.resume || std::filesystem::is_directory(options.folder)) held.emplace(options.folder);
   catch_interrupts();

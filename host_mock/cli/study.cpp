@@ -56,7 +56,7 @@ void print_runs(const Study& study) {
   print_rows(rows, "");
 }
 
-// What u_L2 costs: steps, and over those of the first law steps and run time.
+// The cost of an error u_L2: steps, and over those of the first law steps and run time.
 void print_costs(const Study& study) {
   std::printf("\nsteps for an error u_L2 (over the first law's steps, run time over the first law's)\n");
   std::vector<Row> rows{{"law"}};

@@ -81,7 +81,7 @@ std::vector<Setting> parse_settings(const std::vector<std::string>& texts) {
   return settings;
 }
 
-// What the last key belongs to may itself be left out in the scene, if it is an object.
+// The owner of the last key may itself be left out in the scene, if it is an object.
 void set(json& source, const json::json_pointer& pointer, const json& value) {
   json::json_pointer owner = pointer.parent_pointer();
   while (!source.contains(owner)) owner = owner.parent_pointer();

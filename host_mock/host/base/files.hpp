@@ -35,7 +35,7 @@ class HeldFolder {
   int descriptor_ = -1;
 };
 
-// What tells bytes from others: their number and their CRC-32.
+// The number of bytes and their CRC-32, which tell them from others.
 struct FileMark {
   std::uintmax_t size = 0;
   std::uint32_t checksum = 0;
@@ -49,13 +49,13 @@ std::string read_whole(const std::filesystem::path& file);
 // Throws std::runtime_error where the file, complete or not, does not begin with what was marked.
 void check_begins_with(const std::filesystem::path& file, const FileMark& mark);
 
-// What goes to a descriptor, every write checked. The first error stays.
+// Writes to a descriptor, every write checked. The first error stays.
 class FileBuffer : public std::streambuf {
  public:
   void open(int descriptor, const FileMark& written);
   int close();  // 0 or the first error
   int error() const { return error_; }
-  // Of all that was written, once the stream was flushed.
+  // The mark of all that was written, once the stream was flushed.
   const FileMark& mark() const { return mark_; }
   // All that was written is on the disk when this returns; 0 or the first error.
   int keep();
@@ -81,7 +81,7 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   std::ostream& stream() { return stream_; }
-  // Of what was written so far, all of it on the disk.
+  // Puts all that was written on the disk; returns its mark.
   FileMark flush();
   // Throws WriteError when the disk did not take all so far, as far as is known.
   void check() const;

@@ -37,7 +37,7 @@ struct BenchWords {
 const std::vector<BenchWords>& bench_words();
 
 std::uint32_t form_of(const BenchCase& bench_case);
-// What distinguishes a case from others of its law.
+// The words that distinguish a case from others of its law.
 std::string text_of(const BenchCase& bench_case);
 
 // One case per combination of words, each of which may be a list; throws InputError.

@@ -11,7 +11,7 @@
 
 namespace ilaw::host {
 
-// Of curves; the first seven are colours that colour-blind readers tell apart (Okabe and Ito 2008).
+// Colours of curves; the first seven are colours that colour-blind readers tell apart (Okabe and Ito 2008).
 inline constexpr const char* curve_colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00",
                                                 "#56B4E9", "#000000", "#999999", "#8B5A2B", "#7A5FD0"};
 

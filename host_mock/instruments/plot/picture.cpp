@@ -47,7 +47,7 @@ bool is_node(std::string_view name) {
   return name.size() > 1 && name[0] == 'n' && std::isdigit(static_cast<unsigned char>(name[1]));
 }
 
-// Of a resultant, "floor.F2": its force and its moment.
+// A component of a force or a moment, "floor.F2".
 bool is_resultant(std::string_view owner, std::string_view name) {
   return !is_node(owner) && name.size() == 2 && (name[0] == 'F' || name[0] == 'M') &&
          std::isdigit(static_cast<unsigned char>(name[1]));
@@ -117,7 +117,7 @@ std::vector<Panel> panels_of(const Columns& columns, int every) {
   return panels;
 }
 
-// Those of these names, in their order; all where there are none.
+// The panels of these names, in their order; all where there are none.
 std::vector<Panel> chosen(std::vector<Panel> panels, const std::vector<std::string>& names) {
   if (names.empty()) return panels;
   std::vector<Panel> found;
@@ -127,7 +127,7 @@ std::vector<Panel> chosen(std::vector<Panel> panels, const std::vector<std::stri
   return found;
 }
 
-// What differs between the curves of a panel.
+// The different values of a part of the curves of a panel.
 std::set<std::string> all_of(const Panel& panel, std::string Curve::*part) {
   std::set<std::string> names;
   for (const Curve& curve : panel.curves) names.insert(curve.*part);

@@ -15,7 +15,7 @@ struct Caption {
   std::vector<std::string> panels = {};  // to draw, by name and in this order; empty: all
 };
 
-// What history.csv holds.
+// The columns of history.csv.
 struct Columns {
   std::vector<std::string> names;
   std::vector<bool> all_zero;   // per column

@@ -25,7 +25,7 @@ std::string cell_text(const json& value) {
   return text;
 }
 
-// Of a summary, by names as "energy.kinetic".
+// The numbers of a summary, by names as "energy.kinetic".
 std::map<std::string, json> numbers_of(const json& summary) {
   std::map<std::string, json> numbers;
   for (const char* part : {"steps", "dt", "time", "failure", "interrupted", "penetration_max", "stable_step",
@@ -42,7 +42,7 @@ std::map<std::string, json> numbers_of(const json& summary) {
   return numbers;
 }
 
-// Of a column of the history; nothing where there is none.
+// One number of a column of the history; nothing where there is no such column.
 std::optional<double> reduced(const RunFolder& run, const std::string& column, const std::string& kind) {
   HistoryFile history(run.folder / "history.csv");
   const auto index = history.index_of(column);

@@ -17,13 +17,14 @@ struct RunFolder {
   nlohmann::json summary;
 
   std::string name() const;
-  // What the scene has at a JSON pointer, in words.
+  // The value that the scene has at a JSON pointer, in words.
   std::string said(const std::string& pointer) const;
 };
 
 // Throws InputError where the folder has no summary.
 RunFolder open_run(const std::filesystem::path& folder);
-// Those of all folders. Files among them, as a sweep and its pictures leave beside its runs, are passed over.
+// The runs of all folders. Files among them, as a sweep and its pictures leave beside its runs, are passed
+// over.
 std::vector<RunFolder> open_runs(const std::vector<std::string>& folders);
 
 // JSON pointers of the scenes' numbers and words that are not the same in all runs.

@@ -29,7 +29,7 @@ constexpr std::int64_t most_unsolved = 20;
 
 constexpr const char* scene_name = "stress.json";
 
-// What must be the same to the bit. Energies are sums over active contacts, in their order: they are
+// Results that must be the same to the bit. Energies are sums over active contacts, in their order: they are
 // left out where other contacts are active.
 struct Bits {
   Dofs u, v;

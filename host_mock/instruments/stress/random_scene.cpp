@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-// Of the models a scene may have; step: near the one that the scene will take, where it is known.
+// A model that a scene may have; step: near the one that the scene will take, where it is known.
 struct Body {
   json model;
   json interface_nodes;  // one entry per set of nodes that an interface may have

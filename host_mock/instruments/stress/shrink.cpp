@@ -79,7 +79,7 @@ json without_points(json scene, const std::set<int>& removed) {
   return scene;
 }
 
-// Of an interface between points, parts of the list, with the partners of their nodes.
+// Keeps parts of the list of an interface between points, with the partners of their nodes.
 void add_with_fewer_pairs(const json& scene, std::vector<json>& made) {
   const json::json_pointer partners("/interfaces/0/against/nodes");
   if (scene["model"]["type"] != "points" || !scene.contains(partners)) return;
