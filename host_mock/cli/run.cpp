@@ -7,6 +7,7 @@
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/large_pages.hpp"
+#include "base/words.hpp"
 #include "cli/guard.hpp"
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
@@ -20,7 +21,6 @@
 #include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -199,12 +199,10 @@ class Run {
     constexpr double max_penetration_fraction = 0.05;
     const double depth = integrator_.tally().penetration_max, part = depth / shortest_edge(*scene_.model);
     if (!(part > max_penetration_fraction)) return;
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(),
-                  "nodes penetrate by up to %.2g, %.3g %% of the shortest element edge: they start there, a "
+    record.warnings.push_back(
+        formatted("nodes penetrate by up to %.2g, %.3g %% of the shortest element edge: they start there, a "
                   "penalty is too soft, or the step is too large",
-                  depth, 100.0 * part);
-    record.warnings.emplace_back(text.data());
+                  depth, 100.0 * part));
   }
 
   void write_outputs() {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stress/shrink.hpp"
 
+#include "base/words.hpp"
+
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <initializer_list>
 #include <iterator>
@@ -20,9 +20,7 @@ using nlohmann::json;
 constexpr double shortest = 1e-9;
 
 double rounded(double value, int digits) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.*e", digits - 1, value);
-  return std::strtod(text.data(), nullptr);
+  return std::strtod(formatted("%.*e", digits - 1, value).c_str(), nullptr);
 }
 
 void add_without_each(const json& scene, const json::json_pointer& list, std::vector<json>& made) {
