@@ -160,15 +160,13 @@ int bench(const BenchOptions& options) {
 }
 
 void add_words(CLI::App& command, BenchOptions& options) {
-  const char* docs[] = {"Form of H", "Axes of vectors and H", "Components of a vector side by side, or apart",
-                        "Optional outputs: none, motion (velocity and status) or all (energies, too)"};
   for (std::size_t k = 0; k < bench_words().size(); ++k) {
     const BenchWords& option = bench_words()[k];
     std::string words;
     for (const std::string& word : option.words) words += (words.empty() ? "" : "|") + word;
     command
         .add_option(std::string("--") + option.key, options.words[k],
-                    std::string(docs[k]) + "; several with commas between them")
+                    std::string(option.doc) + "; several with commas between them")
         ->delimiter(',')
         ->take_all()
         ->allow_extra_args(false)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/exit_code.hpp"
 #include "base/scene_error.hpp"
+#include "base/words.hpp"
 #include "check/check.hpp"
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
@@ -24,17 +25,14 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
   const CLI::App* command = app->get_subcommands().empty() ? app : app->get_subcommands().front();
   const std::string name = app->get_name() + (command == app ? "" : " " + command->get_name());
   const std::vector<std::string> unknown = app->remaining(true);
-  std::string text = "ilaw: ";
-  if (unknown.empty()) {
-    text += error.what();
-  } else {
-    text += "found '" + unknown.front() + "', expected ";
-    std::string known;
-    for (const CLI::App* one : command->get_subcommands({}))
-      known += (known.empty() ? "one of " : ", ") + one->get_name();
+  std::string text = std::string("ilaw: ") + error.what();
+  if (!unknown.empty()) {
+    std::vector<std::string> known;
+    for (const CLI::App* one : command->get_subcommands({})) known.push_back(one->get_name());
     for (const CLI::Option* one : command->get_options())
-      if (!one->get_positional()) known += (known.empty() ? "one of " : ", ") + one->get_name();
-    text += known;
+      if (!one->get_positional()) known.push_back(one->get_name());
+    text = "ilaw: found '" + unknown.front() + "', expected " + (known.empty() ? "" : "one of ") +
+           ilaw::host::joined(known);
   }
   return text + "\nRun `" + name + " --help` for more.\n";
 }

@@ -79,10 +79,16 @@ std::vector<BenchCase> cases_of_entry(const json& entry, const std::string& law_
 
 const std::vector<BenchWords>& bench_words() {
   static const std::vector<BenchWords> words = {
-      {"delassus", &BenchCase::delassus, {"scalar", "diagonal", "transverse", "full", "transverse_spin"}},
-      {"frame", &BenchCase::frame, {"local", "global"}},
-      {"layout", &BenchCase::layout, {"aos", "soa"}},
-      {"outputs", &BenchCase::outputs, {"none", "motion", "all"}}};
+      {"delassus",
+       &BenchCase::delassus,
+       {"scalar", "diagonal", "transverse", "full", "transverse_spin"},
+       "Form of H"},
+      {"frame", &BenchCase::frame, {"local", "global"}, "Axes of vectors and H"},
+      {"layout", &BenchCase::layout, {"aos", "soa"}, "Components of a vector side by side, or apart"},
+      {"outputs",
+       &BenchCase::outputs,
+       {"none", "motion", "all"},
+       "Optional outputs: none, motion (velocity and status) or all (energies, too)"}};
   return words;
 }
 

@@ -33,6 +33,7 @@ struct BenchWords {
   const char* key;
   std::string BenchCase::*member;
   std::vector<std::string> words;
+  const char* doc;
 };
 const std::vector<BenchWords>& bench_words();
 
