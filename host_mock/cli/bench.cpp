@@ -24,7 +24,8 @@ using nlohmann::json;
 
 struct BenchOptions {
   std::vector<std::string> laws, case_files;
-  std::string parameters = "{}", folder;
+  std::string parameters = "{}";
+  std::filesystem::path folder;
   std::vector<std::int64_t> nodes = {1000, 10000000};
   std::vector<std::vector<std::string>> words{bench_words().size()};  // of bench_words, in their order
   BenchCase base;
@@ -47,26 +48,17 @@ class Libraries {
 json parameters_of(const BenchOptions& options) {
   json parameters = json::parse(options.parameters, nullptr, false);
   if (parameters.is_object()) return parameters;
-  throw BenchRefusal("--parameters: found '" + options.parameters +
-                     R"(', expected an object in JSON, as {"friction": 0.3})");
+  throw InputError("--parameters: found '" + options.parameters +
+                   R"(', expected an object in JSON, as {"friction": 0.3})");
 }
 
-// Of a library or of the one law in it that is asked for.
-std::vector<std::string> laws_asked_for(const ilaw::library& library, const std::string& wanted) {
-  if (wanted.empty()) return laws_of(library);
-  if (library.law(wanted)) return {wanted};
-  throw BenchRefusal("--law: found '" + wanted + "', which is not in " + library.path());
-}
-
-// What is refused of a case of a file names the entry.
+// Runs work; a refusal of a case of a file names its entry.
 template <class Work>
 auto naming_entry(const BenchCase& bench_case, Work&& work) {
   try {
     return work();
-  } catch (const BenchRefusal& refusal) {
-    throw BenchRefusal(bench_case.entry + refusal.what());
-  } catch (const ilaw::error& refusal) {
-    throw BenchRefusal(bench_case.entry + refusal.what());
+  } catch (const std::runtime_error& refusal) {
+    throw InputError(bench_case.entry + refusal.what());
   }
 }
 
@@ -96,9 +88,10 @@ std::vector<BenchCase> cases_of(const BenchOptions& options, Libraries& librarie
   base.parameters = parameters_of(options);
   for (const std::string& name : options.laws) {
     base.library = name;
-    for (const std::string& law : laws_asked_for(libraries.open(name), options.base.law)) {
-      base.law = law;
-      const std::vector<BenchCase> more = combinations(base, options.words);
+    if (!base.law.empty() && !libraries.open(name).law(base.law))
+      throw InputError("--law: found '" + base.law + "', which is not in " + libraries.open(name).path());
+    for (const BenchCase& one : with_laws(base, libraries)) {
+      const std::vector<BenchCase> more = combinations(one, options.words);
       cases.insert(cases.end(), more.begin(), more.end());
     }
   }
@@ -106,7 +99,7 @@ std::vector<BenchCase> cases_of(const BenchOptions& options, Libraries& librarie
     const std::vector<BenchCase> more = cases_of_file(file, options.base.law, libraries);
     cases.insert(cases.end(), more.begin(), more.end());
   }
-  if (cases.empty()) throw BenchRefusal("found nothing to measure, expected a law, a library or --cases");
+  if (cases.empty()) throw InputError("found nothing to measure, expected a law, a library or --cases");
   for (BenchCase& one : cases)
     naming_entry(one, [&] {
       if (const ilaw_law* law = libraries.open(one.library).law(one.law))
@@ -145,21 +138,12 @@ int bench(const BenchOptions& options) {
   warn_of_search_path();
   guard_against_laws();
   Libraries libraries;
-  std::vector<BenchCase> cases;
+  const std::vector<BenchCase> cases = cases_of(options, libraries);
+  for (const BenchCase& one : cases)
+    for (const std::int64_t nodes : options.nodes)
+      naming_entry(one, [&] { check_bench(libraries.open(one.library), one, nodes); });
   std::optional<HeldFolder> held;
   std::filesystem::path folder;
-  try {
-    cases = cases_of(options, libraries);
-    for (const BenchCase& one : cases)
-      for (const std::int64_t nodes : options.nodes)
-        naming_entry(one, [&] { check_bench(libraries.open(one.library), one, nodes); });
-  } catch (const BenchRefusal& refusal) {
-    complain(refusal.what());
-    return exit_bad_input;
-  } catch (const ilaw::error& refusal) {
-    complain(refusal.what());
-    return exit_bad_input;
-  }
   if (!options.folder.empty()) {
     folder = std::filesystem::absolute(options.folder).lexically_normal();
     held.emplace(folder);
@@ -176,15 +160,13 @@ int bench(const BenchOptions& options) {
 }
 
 void add_words(CLI::App& command, BenchOptions& options) {
-  const char* docs[] = {"Form of H", "Axes of vectors and H", "Components of a vector side by side, or apart",
-                        "Optional outputs: none, motion (velocity and status) or all (energies, too)"};
   for (std::size_t k = 0; k < bench_words().size(); ++k) {
     const BenchWords& option = bench_words()[k];
     std::string words;
     for (const std::string& word : option.words) words += (words.empty() ? "" : "|") + word;
     command
         .add_option(std::string("--") + option.key, options.words[k],
-                    std::string(docs[k]) + "; several with commas between them")
+                    std::string(option.doc) + "; several with commas between them")
         ->delimiter(',')
         ->take_all()
         ->allow_extra_args(false)
@@ -194,7 +176,7 @@ void add_words(CLI::App& command, BenchOptions& options) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, Action& chosen) {
+void add_bench(CLI::App& app, int& code) {
   const auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand(
       "bench", "Measure the time of a law per node, beside a triad of arrays in the same run");
@@ -229,7 +211,7 @@ void add_bench(CLI::App& app, Action& chosen) {
       "Exit codes: 0 done; 1 the law refused a node, or failed; 2 bad usage, or a case that it does not "
       "serve.\n"
       "Example: ilaw bench coulomb --parameters '{\"friction\": 0.3}' --delassus scalar,full --nodes 1000");
-  command->callback([options, &chosen] { chosen = [options] { return bench(*options); }; });
+  command->callback([options, &code] { code = bench(*options); });
 }
 
 }  // namespace ilaw::host

@@ -1,4 +1,4 @@
-// What several commands use.
+// Parts that several commands use.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.hpp"
 

@@ -1,13 +1,15 @@
-// commands.hpp - the commands of the program, one file each: its options, and what it does. They
-// say on stderr what goes wrong, and return an ExitCode.
+// commands.hpp - the commands of the program, one file each: its options, and its actions. They throw
+// InputError or ilaw::error for bad input and any other exception where they fail, or say themselves on
+// stderr what goes wrong, and give an ExitCode.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/scene_error.hpp"
 #include "study/sweep.hpp"
 
 #include <CLI/CLI.hpp>
 
-#include <functional>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,18 +17,17 @@
 
 namespace ilaw::host {
 
-using Action = std::function<int()>;
-
-// Each adds a command; chosen becomes what it does where it is the one that the user gave.
-void add_run(CLI::App& app, Action& chosen);
-void add_plot(CLI::App& app, Action& chosen);
-void add_converge(CLI::App& app, Action& chosen);
-void add_study(CLI::App& app, Action& chosen);
-void add_list(CLI::App& app, Action& chosen);
-void add_describe(CLI::App& app, Action& chosen);
-void add_check(CLI::App& app, Action& chosen);
-void add_stress(CLI::App& app, Action& chosen);
-void add_bench(CLI::App& app, Action& chosen);
+// Each adds a command, which runs while the command line is parsed, where the user gave it.
+void add_run(CLI::App& app, int& code);
+void add_plot(CLI::App& app, int& code);
+void add_table(CLI::App& app, int& code);
+void add_converge(CLI::App& app, int& code);
+void add_study(CLI::App& app, int& code);
+void add_list(CLI::App& app, int& code);
+void add_describe(CLI::App& app, int& code);
+void add_check(CLI::App& app, int& code);
+void add_stress(CLI::App& app, int& code);
+void add_bench(CLI::App& app, int& code);
 
 // A finite number of a range, both ends included; CLI::Range lets nan pass.
 CLI::Validator number_from(double least, double most);
@@ -35,7 +36,7 @@ CLI::Validator number_from(double least, double most);
 void add_threads(CLI::App& command, int& threads);
 void set_threads(int threads);
 
-// What a scene says of a sweep, unless given on the command line.
+// Options that replace the keys of a sweep in a scene.
 struct SweepOptions {
   std::optional<int> levels;
   std::optional<double> factor;
@@ -46,6 +47,16 @@ struct SweepOptions {
 // The options --levels, --factor and --refine.
 void add_sweep(CLI::App& command, SweepOptions& options, const std::string& levels,
                const CLI::Range& allowed);
+
+// Runs work; a mistake in a scene names its file.
+template <class Work>
+auto in_scene(const std::filesystem::path& file, Work work) {
+  try {
+    return work();
+  } catch (const SceneError& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+}
 
 // "-" where there is no number.
 std::string text_of(const char* format, double value);

@@ -4,15 +4,12 @@
 
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
-#include "base/scene_error.hpp"
 #include "cli/guard.hpp"
-#include "cli/terminal.hpp"
 #include "study/convergence.hpp"
 #include "study/convergence_files.hpp"
 
 #include <cstdio>
 #include <filesystem>
-#include <optional>
 #include <string>
 
 namespace ilaw::host {
@@ -49,29 +46,21 @@ void print_table(const ErrorTable& table) {
 int converge(const ConvergeOptions& options) {
   set_threads(options.threads);
   guard_against_laws();
-  ErrorTable table;
-  std::string title;
-  std::optional<HeldFolder> held;
   const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
-  try {
-    const json source = read_scene_source(options.scene);
-    const Sweep sweep = options.sweep.over(read_sweep(source.value("converge", json::object())));
-    title = source.value("title", options.scene.stem().string());
-    check_sweep(source, sweep, options.scene);  // before anything is written
-    held.emplace(folder);
-    table = run_levels(source, sweep, options.scene);
-    write_convergence(table, sweep, title, folder);
-  } catch (const SceneError& error) {
-    complain(options.scene.string() + ": " + error.what());
-    return exit_bad_input;
-  }
+  const json source = read_scene_source(options.scene);
+  const Sweep sweep = options.sweep.over(read_sweep(source.value("converge", json::object())));
+  const std::string title = source.value("title", options.scene.stem().string());
+  check_sweep(source, sweep, options.scene);  // before anything is written
+  const HeldFolder held(folder);
+  const ErrorTable table = run_levels(source, sweep, options.scene);
+  write_convergence(table, sweep, title, folder);
   print_table(table);
   return draw_convergence(table, title, folder) ? exit_done : exit_failed;
 }
 
 }  // namespace
 
-void add_converge(CLI::App& app, Action& chosen) {
+void add_converge(CLI::App& app, int& code) {
   const auto options = std::make_shared<ConvergeOptions>();
   CLI::App* command = app.add_subcommand(
       "converge", "Run a scene at smaller and smaller steps (and meshes) and measure errors and their order");
@@ -80,7 +69,8 @@ void add_converge(CLI::App& app, Action& chosen) {
   add_sweep(*command, options->sweep, "Number of runs, the scene's own included", CLI::Range(2, 12));
   add_threads(*command, options->threads);
   command->footer("Example: ilaw converge host_mock/scenes/bar_on_wall.json --out results");
-  command->callback([options, &chosen] { chosen = [options] { return converge(*options); }; });
+  command->callback(
+      [options, &code] { code = in_scene(options->scene, [&] { return converge(*options); }); });
 }
 
 }  // namespace ilaw::host

@@ -103,18 +103,16 @@ int describe(const std::string& law_or_file, bool as_json) {
                 description["abi"][1].dump().c_str(), printable(text("file")).c_str());
     for (const json& law : description["laws"]) print_law(law);
     return exit_done;
-  } catch (const ilaw::error& error) {
-    complain(error.what());
-    return exit_bad_input;
+  } catch (const ilaw::error&) {
+    throw;
   } catch (const std::runtime_error& error) {
-    complain("library '" + law_or_file + "': " + error.what());
-    return exit_failed;
+    throw std::runtime_error("library '" + law_or_file + "': " + error.what());
   }
 }
 
 }  // namespace
 
-void add_describe(CLI::App& app, Action& chosen) {
+void add_describe(CLI::App& app, int& code) {
   struct Options {
     std::string law;
     bool as_json = false;
@@ -124,8 +122,7 @@ void add_describe(CLI::App& app, Action& chosen) {
   command->add_option("law", options->law, "Name of a law, or path of a library")->required();
   command->add_flag("--json", options->as_json, "Print JSON");
   command->footer("Example: ilaw describe coulomb --json");
-  command->callback(
-      [options, &chosen] { chosen = [options] { return describe(options->law, options->as_json); }; });
+  command->callback([options, &code] { code = describe(options->law, options->as_json); });
 }
 
 }  // namespace ilaw::host

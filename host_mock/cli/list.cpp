@@ -44,10 +44,10 @@ int list_laws() {
 
 }  // namespace
 
-void add_list(CLI::App& app, Action& chosen) {
+void add_list(CLI::App& app, int& code) {
   CLI::App* command = app.add_subcommand("list", "List the laws on the search path");
   command->footer("Example: ILAW_PATH=$HOME/my_laws ilaw list");
-  command->callback([&chosen] { chosen = list_laws; });
+  command->callback([&code] { code = list_laws(); });
 }
 
 }  // namespace ilaw::host

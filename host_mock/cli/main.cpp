@@ -1,16 +1,20 @@
 // The `ilaw` program.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/exit_code.hpp"
-#include "base/files.hpp"
+#include "base/scene_error.hpp"
+#include "base/words.hpp"
+#include "check/check.hpp"
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
-#include "cli/table.hpp"
 #include "cli/terminal.hpp"
+
+#include <ilaw/loader.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -21,19 +25,21 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
   const CLI::App* command = app->get_subcommands().empty() ? app : app->get_subcommands().front();
   const std::string name = app->get_name() + (command == app ? "" : " " + command->get_name());
   const std::vector<std::string> unknown = app->remaining(true);
-  std::string text = "ilaw: ";
-  if (unknown.empty()) {
-    text += error.what();
-  } else {
-    text += "found '" + unknown.front() + "', expected ";
-    std::string known;
-    for (const CLI::App* one : command->get_subcommands({}))
-      known += (known.empty() ? "one of " : ", ") + one->get_name();
+  std::string text = std::string("ilaw: ") + error.what();
+  if (!unknown.empty()) {
+    std::vector<std::string> known;
+    for (const CLI::App* one : command->get_subcommands({})) known.push_back(one->get_name());
     for (const CLI::Option* one : command->get_options())
-      if (!one->get_positional()) known += (known.empty() ? "one of " : ", ") + one->get_name();
-    text += known;
+      if (!one->get_positional()) known.push_back(one->get_name());
+    text = "ilaw: found '" + unknown.front() + "', expected " + (known.empty() ? "" : "one of ") +
+           ilaw::host::joined(known);
   }
   return text + "\nRun `" + name + " --help` for more.\n";
+}
+
+int complain_of(const std::exception& error, ilaw::host::ExitCode code) {
+  ilaw::host::complain(error.what());
+  return code;
 }
 
 int run_command(int argc, char** argv) {
@@ -48,26 +54,26 @@ int run_command(int argc, char** argv) {
       "before\n"
       "anything ran.\nExample: ilaw run scene.json --out results && ilaw plot results");
 
-  Action chosen;
+  int code = exit_done;
   for (const auto add : {add_run, add_plot, add_table, add_converge, add_study, add_stress, add_list,
                          add_describe, add_check, add_bench})
-    add(app, chosen);
+    add(app, code);
   try {
     app.parse(argc, argv);
+    return code;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_done : exit_bad_input;
-  }
-  try {
-    return chosen();
-  } catch (const FolderError& error) {
-    complain(error.what());
-    return exit_bad_input;
+  } catch (const InputError& error) {
+    return complain_of(error, exit_bad_input);
+  } catch (const ilaw::error& error) {
+    return complain_of(error, exit_bad_input);
+  } catch (const ilaw::check::UsageError& error) {
+    return complain_of(error, exit_bad_input);
   } catch (const std::bad_alloc&) {
-    complain("out of memory");
+    return complain_of(std::runtime_error("out of memory"), exit_failed);
   } catch (const std::exception& error) {
-    complain(error.what());
+    return complain_of(error, exit_failed);
   }
-  return exit_failed;
 }
 
 }  // namespace

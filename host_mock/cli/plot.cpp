@@ -5,10 +5,9 @@
 #include "base/exit_code.hpp"
 #include "base/words.hpp"
 #include "cli/terminal.hpp"
-#include "results/comparison.hpp"
-#include "results/gnuplot.hpp"
-#include "results/history_file.hpp"
-#include "results/picture.hpp"
+#include "plot/comparison.hpp"
+#include "plot/history_file.hpp"
+#include "plot/picture.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -16,7 +15,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -41,7 +39,7 @@ Columns read_columns(const std::filesystem::path& file) {
   return columns;
 }
 
-// What the summary tells about the history; a folder without a summary is drawn all the same.
+// Reads the caption from the summary; a folder without one is drawn all the same.
 Caption read_caption(const std::filesystem::path& folder) {
   std::ifstream stream(folder / "summary.json");
   const nlohmann::json summary = nlohmann::json::parse(stream, nullptr, false);
@@ -52,25 +50,20 @@ Caption read_caption(const std::filesystem::path& folder) {
   return {value("/scene/title", folder.filename().string()), value("/scene/source/output/every", 1)};
 }
 
-// The first of the wanted panels that the history does not have, with those that it has; empty:
-// none.
-std::string unknown_panel(const std::vector<std::string>& wanted, const std::vector<std::string>& names) {
+void check_panels(const std::vector<std::string>& wanted, const std::vector<std::string>& names) {
   for (const std::string& panel : wanted)
     if (std::find(names.begin(), names.end(), panel) == names.end())
-      return "--panels: found '" + panel + "', expected some of " + joined(names) + suggestion(panel, names);
-  return "";
+      throw InputError("--panels: found '" + panel + "', expected some of " + joined(names) +
+                       suggestion(panel, names));
 }
 
-int refuse(const std::filesystem::path& history, const char* found) {
-  const std::filesystem::path folder = history.parent_path();
-  if (std::filesystem::is_regular_file(folder)) {
-    complain(folder.string() + ": found a file, expected a folder that `ilaw run SCENE --out FOLDER` wrote");
-    return exit_bad_input;
-  }
-  complain(history.string() + ": found " + found +
-           ", expected the history of watched nodes that `ilaw run SCENE --out " + folder.string() +
-           "` writes");
-  return exit_bad_input;
+[[noreturn]] void refuse(const std::filesystem::path& history, const std::string& found) {
+  const std::string folder = history.parent_path().string();
+  if (std::filesystem::is_regular_file(folder))
+    throw InputError(folder + ": found a file, expected a folder that `ilaw run SCENE --out FOLDER` wrote");
+  throw InputError(history.string() + ": found " + found +
+                   ", expected the history of watched nodes that `ilaw run SCENE --out " + folder +
+                   "` writes");
 }
 
 // Reads history.csv and summary.json of a run's folder and writes history.png and history.svg,
@@ -82,25 +75,18 @@ int plot_history(const PlotOptions& options) {
   const std::filesystem::path history = folder / "history.csv";
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(history, error);
-  if (status.type() == std::filesystem::file_type::not_found) return refuse(history, "no such file");
+  if (status.type() == std::filesystem::file_type::not_found) refuse(history, "no such file");
   if (!std::filesystem::is_regular_file(status))
-    return refuse(history, error ? error.message().c_str() : "something that is no file");
+    refuse(history, error ? error.message() : "something that is no file");
   const Columns columns = read_columns(history);
-  if (columns.names.size() < 2) return refuse(history, "no column besides time");
+  if (columns.names.size() < 2) refuse(history, "no column besides time");
 
   Caption caption = read_caption(folder);
   caption.panels = options.panels;
-  if (const std::string mistake = unknown_panel(caption.panels, panel_names(columns, caption.every));
-      !mistake.empty()) {
-    complain(mistake);
-    return exit_bad_input;
-  }
+  check_panels(caption.panels, panel_names(columns, caption.every));
   const std::filesystem::path drawn = options.out.empty() ? results : std::filesystem::path(options.out);
   const std::filesystem::path pictures = std::filesystem::absolute(drawn).lexically_normal();
-  if (!draw_by_gnuplot(pictures / "history.gnuplot", [&](std::ostream& script) {
-        write_picture(script, folder, pictures, columns, caption);
-      }))
-    return exit_failed;
+  if (!draw_picture(folder, pictures, columns, caption)) return exit_failed;
   std::printf("%s\n%s\n", (drawn / "history.png").c_str(), (drawn / "history.svg").c_str());
   return exit_done;
 }
@@ -110,13 +96,13 @@ void check_columns(const std::vector<RunFolder>& runs, const std::vector<std::st
     const HistoryFile history(run.folder / "history.csv");
     for (const std::string& column : columns)
       if (!history.index_of(column))
-        throw std::runtime_error((run.folder / "history.csv").string() + ": found no column '" + column +
-                                 "', expected one of " + last_of(history.names()) +
-                                 suggestion(column, history.names()));
+        throw InputError((run.folder / "history.csv").string() + ": found no column '" + column +
+                         "', expected one of " + last_of(history.names()) +
+                         suggestion(column, history.names()));
   }
 }
 
-// What the picture is called: comparison, or its columns.
+// The name of the picture: comparison, or its columns.
 std::string picture_name(const PlotOptions& options) {
   if (options.y.empty()) return "comparison";
   std::string name;
@@ -125,19 +111,12 @@ std::string picture_name(const PlotOptions& options) {
 }
 
 int plot_columns(const PlotOptions& options) {
-  std::vector<RunFolder> runs;
+  const std::vector<RunFolder> runs = open_runs(options.folders);
   ComparisonSetup setup{options.x, options.y};
-  try {
-    runs = open_runs(options.folders);
-    if (setup.y.empty()) setup.y = comparable_columns(runs);
-    if (setup.y.empty()) throw std::runtime_error("found no columns that all runs have");
-    std::vector<std::string> needed = setup.y;
-    needed.push_back(setup.x);
-    check_columns(runs, needed);
-  } catch (const std::runtime_error& error) {
-    complain(error.what());
-    return exit_bad_input;
-  }
+  if (setup.y.empty()) setup.y = comparable_columns(runs);
+  if (setup.y.empty()) throw InputError("found no columns that all runs have");
+  check_columns(runs, setup.y);
+  check_columns(runs, {setup.x});
   if (options.y.empty() && setup.y.size() > most_panels) {
     complain(std::to_string(setup.y.size() - most_panels) + " columns are left out; --y chooses");
     setup.y.resize(most_panels);
@@ -147,29 +126,25 @@ int plot_columns(const PlotOptions& options) {
                                        : runs.size() > 1    ? first.parent_path()
                                                             : first;
   const std::string picture = (folder / picture_name(options)).string();
-  if (!draw_by_gnuplot(picture + ".gnuplot",
-                       [&](std::ostream& script) { write_comparison(script, picture, runs, setup); }))
-    return exit_failed;
+  if (!draw_comparison(picture, runs, setup)) return exit_failed;
   std::printf("%s.png\n%s.svg\n", picture.c_str(), picture.c_str());
   return exit_done;
 }
 
 int plot(const PlotOptions& options) {
   std::error_code ignored;
-  if (!options.out.empty() && !std::filesystem::is_directory(options.out, ignored)) {
-    complain("--out " + options.out + ": found no such folder, expected one that exists");
-    return exit_bad_input;
-  }
+  if (!options.out.empty() && !std::filesystem::is_directory(options.out, ignored))
+    throw InputError("--out " + options.out + ": found no such folder, expected one that exists");
   const bool history = options.folders.size() == 1 && options.y.empty() && options.x == "time";
   if (history) return plot_history(options);
   if (options.panels.empty()) return plot_columns(options);
-  complain("--panels: found with several folders or --x, expected one folder; --y chooses columns there");
-  return exit_bad_input;
+  throw InputError(
+      "--panels: found with several folders or --x, expected one folder; --y chooses columns there");
 }
 
 }  // namespace
 
-void add_plot(CLI::App& app, Action& chosen) {
+void add_plot(CLI::App& app, int& code) {
   const auto options = std::make_shared<PlotOptions>();
   CLI::App* command =
       app.add_subcommand("plot", "Draw the history of a run, or several runs over each other: .png and .svg");
@@ -183,7 +158,7 @@ void add_plot(CLI::App& app, Action& chosen) {
   command->add_option("--out", options->out,
                       "Existing folder for the picture (default: that of the run, or the one above several)");
   command->footer("Example: ilaw plot results\n         ilaw plot results/* --y glue.F2,n50.u2");
-  command->callback([options, &chosen] { chosen = [options] { return plot(*options); }; });
+  command->callback([options, &code] { code = plot(*options); });
 }
 
 }  // namespace ilaw::host

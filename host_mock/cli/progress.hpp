@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 
 namespace ilaw::host {
@@ -19,10 +18,9 @@ class Progress {
   void show(std::int64_t done);
 
  private:
-  using Clock = std::chrono::steady_clock;
   std::int64_t first_, steps_;
   bool terminal_, drawn_ = false;
-  Clock::time_point start_, last_;
+  double start_, last_;  // seconds
 };
 
 }  // namespace ilaw::host

@@ -3,26 +3,24 @@
 #include "cli/run.hpp"
 #include "cli/commands.hpp"
 
+#include "base/clock.hpp"
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
 #include "base/large_pages.hpp"
-#include "base/scene_error.hpp"
+#include "base/words.hpp"
 #include "cli/guard.hpp"
 #include "cli/progress.hpp"
-#include "cli/sweep.hpp"
 #include "cli/terminal.hpp"
 #include "model/elements.hpp"
+#include "plot/gnuplot.hpp"
 #include "results/checkpoint.hpp"
 #include "results/events.hpp"
 #include "results/fields.hpp"
-#include "results/gnuplot.hpp"
 #include "results/history.hpp"
 #include "results/summary.hpp"
 #include "scene/read_meshes.hpp"
 #include "scene/scene.hpp"
 
-#include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -39,11 +37,7 @@
 namespace ilaw::host {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+double seconds_since(double start) { return clock_seconds(CLOCK_MONOTONIC) - start; }
 
 // Beginning of the name of rows that an earlier part of the run wrote with other columns.
 constexpr const char* earlier_history = "history.until_step_";
@@ -112,7 +106,7 @@ class Run {
   RunRecord record;
 
  private:
-  // What an earlier run left in the folder, and pictures of it, would be taken for this one's.
+  // Results that an earlier run left in the folder, and pictures of them, would be taken for this one's.
   void clear() const {
     clear_checkpoints(options_.folder);
     for (const char* name : {"summary.json", "history.csv", "events.csv", "history.png", "history.svg"})
@@ -155,7 +149,7 @@ class Run {
     history_->load(state);
   }
 
-  // Those of before stay, whether more are asked for or not.
+  // Events written before the resume are kept.
   void resume_events(const Checkpoint& checkpoint) {
     const bool had_events = checkpoint.events.size > 0;
     if (had_events && scene_.output.events) {
@@ -205,12 +199,10 @@ class Run {
     constexpr double max_penetration_fraction = 0.05;
     const double depth = integrator_.tally().penetration_max, part = depth / shortest_edge(*scene_.model);
     if (!(part > max_penetration_fraction)) return;
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(),
-                  "nodes penetrate by up to %.2g, %.3g %% of the shortest element edge: they start there, a "
+    record.warnings.push_back(
+        formatted("nodes penetrate by up to %.2g, %.3g %% of the shortest element edge: they start there, a "
                   "penalty is too soft, or the step is too large",
-                  depth, 100.0 * part);
-    record.warnings.emplace_back(text.data());
+                  depth, 100.0 * part));
   }
 
   void write_outputs() {
@@ -220,7 +212,7 @@ class Run {
     const bool field = scene_.output.fields > 0 && (last || step % scene_.output.fields == 0);
     const bool checkpoint = options_.checkpoint_every > 0 && step % options_.checkpoint_every == 0;
     if (!row && !field && !checkpoint) return;
-    const Clock::time_point start = Clock::now();
+    const double start = clock_seconds(CLOCK_MONOTONIC);
     if (row || field) check_motion();
     if (row) history_->add_row(integrator_);
     if (field) fields_.write(integrator_);
@@ -262,15 +254,6 @@ class Run {
   std::optional<Events> events_;
 };
 
-std::optional<Scene> read_or_explain(const std::filesystem::path& file) {
-  try {
-    return read_scene(file);
-  } catch (const SceneError& error) {
-    complain(file.string() + ": " + error.what());
-  }
-  return std::nullopt;
-}
-
 std::unique_ptr<Run> start_or_explain(Scene& scene, const RunOptions& options) {
   try {
     return std::make_unique<Run>(scene, options);
@@ -309,18 +292,17 @@ int run(const RunOptions& options) {
   set_threads(options.threads);
   guard_against_laws();
   warn_of_search_path();
-  std::optional<Scene> scene = read_or_explain(options.scene);
-  if (!scene) return exit_bad_input;
-  for (const nlohmann::json& mesh : scene->meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
+  Scene scene = in_scene(options.scene, [&] { return read_scene(options.scene); });
+  for (const nlohmann::json& mesh : scene.meshes) std::printf("%s\n", printable(line_of_mesh(mesh)).c_str());
   std::fflush(stdout);  // before what goes to stderr
-  return run_scene(*scene, options);
+  return run_scene(scene, options);
 }
 
 }  // namespace
 
 int run_scene(Scene& scene, const RunOptions& options) {
-  const Clock::time_point start = Clock::now();
-  // What a run resumes from stands in its folder already.
+  const double start = clock_seconds(CLOCK_MONOTONIC);
+  // The folder of a run to resume is there already.
   std::optional<HeldFolder> held;
   if (!options.resume || std::filesystem::is_directory(options.folder)) held.emplace(options.folder);
   catch_interrupts();
@@ -337,7 +319,7 @@ int run_scene(Scene& scene, const RunOptions& options) {
   return report(scene, run->integrator(), run->record, options);
 }
 
-void add_run(CLI::App& app, Action& chosen) {
+void add_run(CLI::App& app, int& code) {
   const auto options = std::make_shared<RunOptions>();
   const auto settings = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("run", "Run a scene and write history.csv and summary.json");
@@ -358,9 +340,7 @@ void add_run(CLI::App& app, Action& chosen) {
       ->expected(1)
       ->take_all();
   command->footer("Example: ilaw run plugins/contact/bouncing_ball.json --out results");
-  command->callback([=, &chosen] {
-    chosen = [=] { return settings->empty() ? run(*options) : sweep(*options, *settings); };
-  });
+  command->callback([=, &code] { code = settings->empty() ? run(*options) : sweep(*options, *settings); });
 }
 
 }  // namespace ilaw::host

@@ -1,4 +1,4 @@
-// run.hpp - one run of a scene into its folder, alone or as part of a sweep.
+// run.hpp - one run of a scene into its folder, and runs with several values of its keys: `ilaw run`.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace ilaw::host {
 
@@ -21,5 +23,10 @@ struct RunOptions {
 // Runs a scene that was read into options.folder, which it makes and holds; says on stderr what goes wrong.
 // Returns an ExitCode.
 int run_scene(Scene& scene, const RunOptions& options);
+
+// settings: "/pointer=value,value,...". Every combination runs into a folder of its own in
+// options.folder, options.threads at a time; sweep.csv there has a row for each. Nothing runs if
+// one of them is refused. Returns an ExitCode.
+int sweep(const RunOptions& options, const std::vector<std::string>& settings);
 
 }  // namespace ilaw::host

@@ -7,11 +7,8 @@
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
 #include "cli/progress.hpp"
-#include "cli/terminal.hpp"
 
-#include <array>
 #include <cstdio>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,18 +41,11 @@ int run_stress(const StressSetup& setup) {
   if (!setup.keep.empty()) kept.emplace(setup.keep);
   if (!setup.write.empty()) written.emplace(setup.write);
   guard_against_laws();
-  StressReport report;
-  try {
+  const StressReport report = [&] {
     Progress progress(0, setup.scenes);
-    report = stress(setup, [&](std::int64_t done) { progress.show(done); });
-  } catch (const ilaw::error& error) {
-    complain(error.what());
-    return exit_bad_input;
-  }
-  if (report.rows.empty()) {
-    complain("found no law on the search path, " + ilaw::search_path());
-    return exit_bad_input;
-  }
+    return stress(setup, [&](std::int64_t done) { progress.show(done); });
+  }();
+  if (report.rows.empty()) throw InputError("found no law on the search path, " + ilaw::search_path());
   print_table(report);
   for (const StressFinding& stop : report.stops) print_finding("stopped", stop);
   for (const StressFinding& failure : report.failures) print_finding("failed", failure);
@@ -64,7 +54,7 @@ int run_stress(const StressSetup& setup) {
 
 }  // namespace
 
-void add_stress(CLI::App& app, Action& chosen) {
+void add_stress(CLI::App& app, int& code) {
   const auto setup = std::make_shared<StressSetup>();
   CLI::App* command = app.add_subcommand(
       "stress", "Run random scenes of all laws and hold them to rules on energy, penetration and bits");
@@ -89,7 +79,7 @@ void add_stress(CLI::App& app, Action& chosen) {
       "Exit codes: 0 all scenes kept the rules, were refused, or stopped with a reason; 1 a scene broke one;\n"
       "2 bad usage, or a library that cannot be opened.\n"
       "Example: ilaw stress --law build/my_law.so --scenes 200 --keep failures");
-  command->callback([setup, &chosen] { chosen = [setup] { return run_stress(*setup); }; });
+  command->callback([setup, &code] { code = run_stress(*setup); });
 }
 
 }  // namespace ilaw::host

@@ -4,7 +4,6 @@
 
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
-#include "base/scene_error.hpp"
 #include "cli/guard.hpp"
 #include "cli/terminal.hpp"
 #include "scene/scene.hpp"
@@ -57,7 +56,7 @@ void print_runs(const Study& study) {
   print_rows(rows, "");
 }
 
-// What u_L2 costs: steps, and over those of the first law steps and run time.
+// The cost of an error u_L2: steps, and over those of the first law steps and run time.
 void print_costs(const Study& study) {
   std::printf("\nsteps for an error u_L2 (over the first law's steps, run time over the first law's)\n");
   std::vector<Row> rows{{"law"}};
@@ -79,21 +78,13 @@ void print_costs(const Study& study) {
 
 int study_scene(const std::filesystem::path& file, const std::filesystem::path& folder,
                 const StudyOptions& options) {
-  Study study;
-  std::string title;
-  std::optional<HeldFolder> held;
-  try {
-    json source = read_scene_source(file);
-    const StudySetup setup = setup_of(source, options);
-    title = source.value("title", file.stem().string());
-    check_study(source, setup, file);  // before anything is written
-    held.emplace(folder);
-    study = run_study(source, setup, file);
-    write_study(study, title, folder);
-  } catch (const SceneError& error) {
-    complain(file.string() + ": " + error.what());
-    return exit_bad_input;
-  }
+  json source = read_scene_source(file);
+  const StudySetup setup = setup_of(source, options);
+  const std::string title = source.value("title", file.stem().string());
+  check_study(source, setup, file);  // before anything is written
+  const HeldFolder held(folder);
+  const Study study = run_study(source, setup, file);
+  write_study(study, title, folder);
   std::printf("%s, against the %s\n", printable(title).c_str(),
               study.exact ? "exact solution" : "finest run of the first law");
   print_runs(study);
@@ -105,23 +96,25 @@ int study(const StudyOptions& options) {
   set_threads(options.threads);
   guard_against_laws();
   const std::filesystem::path folder = std::filesystem::absolute(options.folder).lexically_normal();
-  if (options.scenes.size() == 1) return study_scene(options.scenes[0], folder, options);
+  const auto study_in = [&](const std::filesystem::path& scene, const std::filesystem::path& own) {
+    return in_scene(scene, [&] { return study_scene(scene, own, options); });
+  };
+  if (options.scenes.size() == 1) return study_in(options.scenes[0], folder);
   // A folder for each.
   std::set<std::string> names;
   for (const std::filesystem::path& scene : options.scenes)
-    if (!names.insert(scene.stem()).second) {
-      complain("found two scenes called '" + scene.stem().string() + "', expected a different name for each");
-      return exit_bad_input;
-    }
+    if (!names.insert(scene.stem()).second)
+      throw InputError("found two scenes called '" + scene.stem().string() +
+                       "', expected a different name for each");
   const HeldFolder held(folder);
   for (const std::filesystem::path& scene : options.scenes)
-    if (const int code = study_scene(scene, folder / scene.stem(), options); code != exit_done) return code;
+    if (const int code = study_in(scene, folder / scene.stem()); code != exit_done) return code;
   return exit_done;
 }
 
 }  // namespace
 
-void add_study(CLI::App& app, Action& chosen) {
+void add_study(CLI::App& app, int& code) {
   const auto options = std::make_shared<StudyOptions>();
   CLI::App* command = app.add_subcommand("study", "Compare laws in a scene: errors over steps and run time");
   command->add_option("scenes", options->scenes, "Scene files (JSON)")->required();
@@ -147,7 +140,7 @@ void add_study(CLI::App& app, Action& chosen) {
   command->footer(
       "Example: ilaw study host_mock/scenes/bar_on_wall.json --out results\n"
       "         ilaw study scene.json --out results --law contact --law 'penalty:{\"stiffness\": 1e6}'");
-  command->callback([options, &chosen] { chosen = [options] { return study(*options); }; });
+  command->callback([options, &code] { code = study(*options); });
 }
 
 }  // namespace ilaw::host

@@ -1,5 +1,6 @@
+// `ilaw run --set`: a scene with several values of its keys.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/sweep.hpp"
+#include "cli/run.hpp"
 
 #include "base/exit_code.hpp"
 #include "base/files.hpp"
@@ -7,8 +8,8 @@
 #include "cli/commands.hpp"
 #include "cli/guard.hpp"
 #include "cli/terminal.hpp"
-#include "results/gnuplot.hpp"
-#include "results/run_table.hpp"
+#include "plot/gnuplot.hpp"
+#include "plot/run_table.hpp"
 #include "scene/validation.hpp"
 
 #include <algorithm>
@@ -80,7 +81,7 @@ std::vector<Setting> parse_settings(const std::vector<std::string>& texts) {
   return settings;
 }
 
-// What the last key belongs to may itself be left out in the scene, if it is an object.
+// The owner of the last key may itself be left out in the scene, if it is an object.
 void set(json& source, const json::json_pointer& pointer, const json& value) {
   json::json_pointer owner = pointer.parent_pointer();
   while (!source.contains(owner)) owner = owner.parent_pointer();
@@ -189,9 +190,8 @@ int sweep(const RunOptions& options, const std::vector<std::string>& texts) {
       scene_of(variant, settings, source, options.scene);
     }
   } catch (const std::exception& error) {
-    complain(options.scene.string() + ": " + (name.empty() ? name : name + ": ") + error.what() +
-             "; nothing was run");
-    return exit_bad_input;
+    throw InputError(options.scene.string() + ": " + (name.empty() ? name : name + ": ") + error.what() +
+                     "; nothing was run");
   }
   const HeldFolder held(options.folder);
   remove_pictures(options.folder, "comparison|.*_over_.*");  // of an earlier sweep

@@ -1,14 +1,11 @@
 // `ilaw table`: several runs side by side, in numbers.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/table.hpp"
+#include "cli/commands.hpp"
 
 #include "base/exit_code.hpp"
-#include "cli/terminal.hpp"
-#include "results/run_table.hpp"
+#include "plot/run_table.hpp"
 
-#include <cstdio>
 #include <iostream>
-#include <stdexcept>
 
 namespace ilaw::host {
 namespace {
@@ -27,23 +24,18 @@ Rows transposed(const Rows& rows) {
 }
 
 int table(const TableOptions& options) {
-  try {
-    const std::vector<RunFolder> runs = open_runs(options.folders);
-    const Rows rows = table_of(runs, options.columns);
-    if (options.csv)
-      write_csv(std::cout, rows);
-    else
-      print_rows(options.columns.empty() ? transposed(rows) : rows, "");
-  } catch (const std::runtime_error& error) {
-    complain(error.what());
-    return exit_bad_input;
-  }
+  const std::vector<RunFolder> runs = open_runs(options.folders);
+  const Rows rows = table_of(runs, options.columns);
+  if (options.csv)
+    write_csv(std::cout, rows);
+  else
+    print_rows(options.columns.empty() ? transposed(rows) : rows, "");
   return exit_done;
 }
 
 }  // namespace
 
-void add_table(CLI::App& app, Action& chosen) {
+void add_table(CLI::App& app, int& code) {
   const auto options = std::make_shared<TableOptions>();
   CLI::App* command = app.add_subcommand("table", "Compare runs: a row each, with the keys that differ");
   command->add_option("folders", options->folders, "Folders that `ilaw run` wrote")->required();
@@ -54,7 +46,7 @@ void add_table(CLI::App& app, Action& chosen) {
       ->delimiter(',');
   command->add_flag("--csv", options->csv, "As comma-separated values");
   command->footer("Example: ilaw table results/* --columns steps,n0.u0:max");
-  command->callback([options, &chosen] { chosen = [options] { return table(*options); }; });
+  command->callback([options, &code] { code = table(*options); });
 }
 
 }  // namespace ilaw::host

@@ -2,13 +2,13 @@
 #include "cli/terminal.hpp"
 
 #include "base/exit_code.hpp"
+#include "base/words.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -35,9 +35,7 @@ std::string printable(std::string_view text) {
       shown += text[k];
       continue;
     }
-    std::array<char, 8> code{};
-    std::snprintf(code.data(), code.size(), "\\x%02x", of_two ? static_cast<unsigned char>(text[++k]) : byte);
-    shown += code.data();
+    shown += formatted("\\x%02x", of_two ? static_cast<unsigned char>(text[++k]) : byte);
   }
   return shown;
 }

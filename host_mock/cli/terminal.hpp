@@ -18,7 +18,7 @@ std::string printable(std::string_view text);
 // On stderr, after the program's name; the lines after the first are indented.
 void complain(std::string_view text);
 
-// Of folders in ILAW_PATH that the loader leaves out.
+// Complains of folders in ILAW_PATH that the loader leaves out.
 void warn_of_search_path();
 
 // Complains of an instruction set in ILAW_ISA that no law knows: a law would take another one in silence.

@@ -47,6 +47,7 @@ row 'authoring kit' code api/include/ilaw/kit
 row 'rest of api' rest_of_api
 row plugins code plugins
 row host_mock code host_mock
+for room in host instruments cli; do row "- $room" code "host_mock/$room"; done
 row tests code tests
 echo
 head lines words

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/files.hpp"
 
+#include "base/scene_error.hpp"
+
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -126,13 +128,13 @@ HeldFolder::HeldFolder(const std::filesystem::path& folder) : lock_(folder / "il
     Descriptor lock(lock_, O_RDWR | O_CREAT);
     if (lock.number() < 0) {
       const std::string why = unmade ? unmade.message() : lock_.string() + ": " + reason_of(errno);
-      throw FolderError("--out " + folder.string() +
-                        ": found a file or a place that cannot be written, expected a folder (" + why + ")");
+      throw InputError("--out " + folder.string() +
+                       ": found a file or a place that cannot be written, expected a folder (" + why + ")");
     }
     // A file system without locks holds nobody back.
     if (flock(lock.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-      throw FolderError("--out " + folder.string() + ": in use by " + holder_of(lock.number()) +
-                        ", expected a folder of its own for each run");
+      throw InputError("--out " + folder.string() + ": in use by " + holder_of(lock.number()) +
+                       ", expected a folder of its own for each run");
     if (!is_still(lock.number(), lock_)) continue;  // its holder ended in between
     const std::string name = process_name() + "\n";
     // Only what is said to others depends on it.
@@ -226,23 +228,21 @@ int FileBuffer::close() {
   return error_;
 }
 
-AtomicFile::AtomicFile(std::filesystem::path file) : file_(std::move(file)), partial_(partial_of(file_)) {
-  unlink(partial_.c_str());
-  Descriptor descriptor(partial_, O_WRONLY | O_CREAT | O_EXCL);
-  if (descriptor.number() < 0) fail(errno);
-  buffer_.open(descriptor.release(), {});
+AtomicFile::AtomicFile(std::filesystem::path file, const std::optional<FileMark>& written)
+    : file_(std::move(file)), partial_(partial_of(file_)), is_kept_(written.has_value()) {
+  buffer_.open(open_partial(written), written.value_or(FileMark{}));
 }
 
-AtomicFile::AtomicFile(std::filesystem::path file, const FileMark& written)
-    : file_(std::move(file)), partial_(partial_of(file_)), is_kept_(true) {
-  check_begins_with(file_, written);
-  const std::filesystem::path found = found_of(file_);
-  Descriptor descriptor(found, O_WRONLY | O_APPEND);
-  if (descriptor.number() < 0 ||
-      retried([&] { return ftruncate(descriptor.number(), static_cast<off_t>(written.size)); }) != 0 ||
+int AtomicFile::open_partial(const std::optional<FileMark>& written) const {
+  if (written) check_begins_with(file_, *written);
+  const std::filesystem::path found = written ? found_of(file_) : partial_;
+  if (!written) unlink(partial_.c_str());
+  Descriptor descriptor(found, O_WRONLY | (written ? O_APPEND : O_CREAT | O_EXCL));
+  const off_t size = static_cast<off_t>(written.value_or(FileMark{}).size);
+  if (descriptor.number() < 0 || retried([&] { return ftruncate(descriptor.number(), size); }) != 0 ||
       (found != partial_ && retried([&] { return std::rename(found.c_str(), partial_.c_str()); }) != 0))
     fail(errno);
-  buffer_.open(descriptor.release(), written);
+  return descriptor.release();
 }
 
 AtomicFile::~AtomicFile() {
@@ -281,6 +281,12 @@ void AtomicFile::keep_lines() {
     unlink(partial_.c_str());
   else
     std::filesystem::rename(partial_, file_, ignored);
+}
+
+FileMark write_file(const std::filesystem::path& file, std::string_view text) {
+  AtomicFile made(file);
+  made.stream() << text;
+  return made.commit();
 }
 
 }  // namespace ilaw::host

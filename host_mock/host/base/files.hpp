@@ -7,17 +7,14 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 #include <streambuf>
 #include <string>
+#include <string_view>
 
 namespace ilaw::host {
-
-// A folder that cannot hold results: found before anything ran.
-class FolderError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // A file that cannot be written, and why.
 class WriteError : public std::runtime_error {
@@ -25,7 +22,7 @@ class WriteError : public std::runtime_error {
 };
 
 // The folder that --out names: made if it does not exist, and held by this process alone. Throws
-// FolderError where that cannot be, and names the process that holds it.
+// InputError where that cannot be, and names the process that holds it.
 class HeldFolder {
  public:
   explicit HeldFolder(const std::filesystem::path& folder);
@@ -38,7 +35,7 @@ class HeldFolder {
   int descriptor_ = -1;
 };
 
-// What tells bytes from others: their number and their CRC-32.
+// The number of bytes and their CRC-32, which tell them from others.
 struct FileMark {
   std::uintmax_t size = 0;
   std::uint32_t checksum = 0;
@@ -52,13 +49,13 @@ std::string read_whole(const std::filesystem::path& file);
 // Throws std::runtime_error where the file, complete or not, does not begin with what was marked.
 void check_begins_with(const std::filesystem::path& file, const FileMark& mark);
 
-// What goes to a descriptor, every write checked. The first error stays.
+// Writes to a descriptor, every write checked. The first error stays.
 class FileBuffer : public std::streambuf {
  public:
   void open(int descriptor, const FileMark& written);
   int close();  // 0 or the first error
   int error() const { return error_; }
-  // Of all that was written, once the stream was flushed.
+  // The mark of all that was written, once the stream was flushed.
   const FileMark& mark() const { return mark_; }
   // All that was written is on the disk when this returns; 0 or the first error.
   int keep();
@@ -77,15 +74,14 @@ class FileBuffer : public std::streambuf {
 // then renamed.
 class AtomicFile {
  public:
-  explicit AtomicFile(std::filesystem::path file);
-  // Goes on after what an earlier run had written, complete or not.
-  AtomicFile(std::filesystem::path file, const FileMark& written);
+  // written: by an earlier run, complete or not, which this one continues.
+  explicit AtomicFile(std::filesystem::path file, const std::optional<FileMark>& written = {});
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   std::ostream& stream() { return stream_; }
-  // Of what was written so far, all of it on the disk.
+  // Puts all that was written on the disk; returns its mark.
   FileMark flush();
   // Throws WriteError when the disk did not take all so far, as far as is known.
   void check() const;
@@ -96,11 +92,16 @@ class AtomicFile {
 
  private:
   [[noreturn]] void fail(int error) const;
+  // Opens the partial file, with what was written or empty.
+  int open_partial(const std::optional<FileMark>& written) const;
 
   std::filesystem::path file_, partial_;
   FileBuffer buffer_;
   std::ostream stream_{&buffer_};
   bool is_kept_ = false;
 };
+
+// A file with a text. Throws WriteError.
+FileMark write_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace ilaw::host

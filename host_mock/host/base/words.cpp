@@ -2,7 +2,7 @@
 #include "base/words.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cstdarg>
 #include <cstdio>
 
 namespace ilaw::host {
@@ -25,11 +25,18 @@ std::size_t edits(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string in_digits(double value, int digits) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
-  return text.data();
+std::string formatted(const char* format, ...) {
+  std::va_list values, again;
+  va_start(values, format);
+  va_copy(again, values);
+  std::string text(static_cast<std::size_t>(std::vsnprintf(nullptr, 0, format, values)), '\0');
+  std::vsnprintf(text.data(), text.size() + 1, format, again);
+  va_end(again);
+  va_end(values);
+  return text;
 }
+
+std::string in_digits(double value, int digits) { return formatted("%.*g", digits, value); }
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;

@@ -7,6 +7,9 @@
 
 namespace ilaw::host {
 
+// A text as of printf, however long.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+
 // A number in so many digits at most.
 std::string in_digits(double value, int digits);
 

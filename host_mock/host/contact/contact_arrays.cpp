@@ -6,8 +6,6 @@
 
 #include <ilaw/arrays.hpp>
 
-#include <algorithm>
-
 namespace ilaw::host {
 
 ilaw_batch empty_batch(const Vector& tangent, double time, double velocity_step, double position_step) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "contact/law_setup.hpp"
+#include "contact/law_arguments.hpp"
 
 #include "base/words.hpp"
 

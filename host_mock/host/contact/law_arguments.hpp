@@ -61,4 +61,8 @@ ilaw::interface create_law(const std::string& law, const Arguments& given, const
                            const ilaw::library& library, int dimension,
                            std::uint32_t delassus_form = ILAW_DELASSUS_SCALAR);
 
+// The same for a setup of any form of H, in any axes, that has no arguments yet.
+ilaw::interface create_law(const std::string& law, const Arguments& given, ilaw_setup setup,
+                           const ilaw::library& library);
+
 }  // namespace ilaw::host

@@ -8,26 +8,18 @@
 
 namespace ilaw::host {
 
-Events::Events(const Scene& scene, const std::filesystem::path& folder)
-    : scene_(scene),
-      file_(folder / "events.csv"),
-      table_(file_.stream()),
-      touching_(scene.interfaces.size()),
-      still_touching_(touching_) {
-  table_ << "time"
-         << "node"
-         << "interface"
-         << "event";
-  for (int c = 0; c < scene.model->dimension(); ++c) table_ << "r" + std::to_string(c);
-  table_.end_row();
-}
-
-Events::Events(const Scene& scene, const std::filesystem::path& folder, const FileMark& written)
+Events::Events(const Scene& scene, const std::filesystem::path& folder,
+               const std::optional<FileMark>& written)
     : scene_(scene),
       file_(folder / "events.csv", written),
       table_(file_.stream()),
       touching_(scene.interfaces.size()),
-      still_touching_(touching_) {}
+      still_touching_(touching_) {
+  if (written) return;
+  for (const char* column : {"time", "node", "interface", "event"}) table_ << column;
+  for (int c = 0; c < scene.model->dimension(); ++c) table_ << "r" + std::to_string(c);
+  table_.end_row();
+}
 
 void Events::add_step(const Integrator& integrator) {
   for (std::size_t i = 0; i < scene_.interfaces.size(); ++i) add_interface(i, integrator);

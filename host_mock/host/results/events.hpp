@@ -10,15 +10,16 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <vector>
 
 namespace ilaw::host {
 
 class Events {
  public:
-  Events(const Scene& scene, const std::filesystem::path& folder);
-  // Goes on after what an earlier run had written.
-  Events(const Scene& scene, const std::filesystem::path& folder, const FileMark& written);
+  // written: by an earlier run, which this one continues.
+  Events(const Scene& scene, const std::filesystem::path& folder,
+         const std::optional<FileMark>& written = {});
 
   // After every step.
   void add_step(const Integrator& integrator);

@@ -2,11 +2,13 @@
 #include "results/fields.hpp"
 
 #include "base/files.hpp"
+#include "base/words.hpp"
 #include "model/elements.hpp"
 #include "results/obstacle_shapes.hpp"
 
 #include <vtkCellData.h>
 #include <vtkCellType.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkDoubleArray.h>
 #include <vtkIdList.h>
 #include <vtkIntArray.h>
@@ -16,9 +18,7 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <regex>
 #include <stdexcept>
@@ -30,28 +30,27 @@ namespace {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
-// VTK is 3D: missing components are zero.
-void add_vectors(vtkUnstructuredGrid& grid, const char* name, const Dofs& values, int dimension) {
+vtkDoubleArray* add_to(vtkDataSetAttributes& arrays, const std::string& name, int components, vtkIdType count,
+                       double value) {
   vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(3);
-  for (Eigen::Index i = 0; i < values.size(); i += dimension) {
-    double vector[3] = {0.0, 0.0, 0.0};
-    for (int c = 0; c < dimension; ++c) vector[c] = values[i + c];
-    array->InsertNextTuple(vector);
-  }
-  grid.GetPointData()->AddArray(array);
+  array->SetName(name.c_str());
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(count);
+  array->Fill(value);
+  arrays.AddArray(array);
+  return array;  // kept alive by the grid
 }
 
 vtkDoubleArray* add_array(vtkUnstructuredGrid& grid, const std::string& name, int nodes, int components,
                           double value) {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name.c_str());
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(nodes);
-  array->Fill(value);
-  grid.GetPointData()->AddArray(array);
-  return array;  // kept alive by the grid
+  return add_to(*grid.GetPointData(), name, components, nodes, value);
+}
+
+// VTK is 3D: missing components are zero.
+void add_vectors(vtkUnstructuredGrid& grid, const char* name, const Dofs& values, int dimension) {
+  vtkDoubleArray* array = add_array(grid, name, static_cast<int>(values.size()) / dimension, 3, 0.0);
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    array->SetComponent(i / dimension, static_cast<int>(i % dimension), values[i]);
 }
 
 void add_geometry(vtkUnstructuredGrid& grid, const Model& model) {
@@ -78,22 +77,16 @@ void add_geometry(vtkUnstructuredGrid& grid, const Model& model) {
   for (std::size_t k = 0; k < mesh.tetrahedra.size(); k += 4) add_cell(VTK_TETRA, &mesh.tetrahedra[k], 4);
 }
 
-vtkDoubleArray* add_cell_array(vtkUnstructuredGrid& grid, const char* name, int components,
-                               std::size_t cells) {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(cells));
-  grid.GetCellData()->AddArray(array);
-  return array;
+vtkDoubleArray* add_cell_array(vtkUnstructuredGrid& grid, const char* name, int components) {
+  return add_to(*grid.GetCellData(), name, components, grid.GetNumberOfCells(), 0.0);
 }
 
 // In ParaView's order of a symmetric tensor.
 void add_stresses(vtkUnstructuredGrid& grid, const Model& model, const Dofs& u) {
   const std::vector<Eigen::Matrix3d> stresses = model.stresses(u);
   if (stresses.empty()) return;
-  vtkDoubleArray* tensor = add_cell_array(grid, "stress", 6, stresses.size());
-  vtkDoubleArray* mises = add_cell_array(grid, "von_mises", 1, stresses.size());
+  vtkDoubleArray* tensor = add_cell_array(grid, "stress", 6);
+  vtkDoubleArray* mises = add_cell_array(grid, "von_mises", 1);
   const char* const names[] = {"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
   for (int c = 0; c < 6; ++c) tensor->SetComponentName(c, names[c]);
   for (std::size_t k = 0; k < stresses.size(); ++k) {
@@ -219,15 +212,12 @@ std::filesystem::path Fields::write_diverged(const Integrator& integrator) const
   vtkNew<vtkUnstructuredGrid> grid;
   add_body(*grid, integrator);
   if (grid->GetCellData()->GetArray("stress")) {
-    vtkDoubleArray* inverted = add_cell_array(*grid, "inverted", 1, grid->GetNumberOfCells());
-    inverted->Fill(0.0);
+    vtkDoubleArray* inverted = add_cell_array(*grid, "inverted", 1);
     for (const int element : inverted_elements(*scene_.model, integrator.displacement()))
       inverted->SetValue(element, 1.0);
   }
   std::filesystem::path path = folder_ / "diverged.vtu";
-  AtomicFile file(path);
-  file.stream() << text_of(*grid);
-  file.commit();
+  write_file(path, text_of(*grid));
   return path;
 }
 
@@ -246,13 +236,9 @@ void Fields::add_body(vtkUnstructuredGrid& grid, const Integrator& integrator) c
 
 // Files with a number, and what is in them.
 void Fields::write_next(const std::string& kind, vtkUnstructuredGrid& grid, double time) {
-  std::array<char, 40> name{};
-  std::snprintf(name.data(), name.size(), "%s_%06zu.vtu", kind.c_str(), names_of(kind).size());
-  AtomicFile file(folder_ / name.data());
-  file.stream() << text_of(grid);
-  const FileMark mark = file.commit();
-  written_.push_back(
-      {{"name", name.data()}, {"time", time}, {"size", mark.size}, {"checksum", mark.checksum}});
+  const std::string name = formatted("%s_%06zu.vtu", kind.c_str(), names_of(kind).size());
+  const FileMark mark = write_file(folder_ / name, text_of(grid));
+  written_.push_back({{"name", name}, {"time", time}, {"size", mark.size}, {"checksum", mark.checksum}});
 }
 
 // With their times, as ParaView's series has them.
@@ -268,9 +254,8 @@ void Fields::write_series() const {
   for (const char* kind : {"fields", "obstacles"}) {
     const nlohmann::json files = names_of(kind);
     if (files.empty()) continue;
-    AtomicFile series(folder_ / (std::string(kind) + ".vtu.series"));
-    series.stream() << nlohmann::json{{"file-series-version", "1.0"}, {"files", files}}.dump(1) << '\n';
-    series.commit();
+    const nlohmann::json series = {{"file-series-version", "1.0"}, {"files", files}};
+    write_file(folder_ / (std::string(kind) + ".vtu.series"), series.dump(1) + "\n");
   }
 }
 

@@ -3,7 +3,6 @@
 
 #include "base/bytes.hpp"
 
-#include <algorithm>
 #include <array>
 #include <string>
 

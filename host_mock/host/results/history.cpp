@@ -30,21 +30,15 @@ bool same_columns(const nlohmann::json& one, const nlohmann::json& other) {
   return true;
 }
 
-History::History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder)
-    : scene_(scene), file_(folder / "history.csv"), table_(file_.stream()), forces_(scene, integrator) {
-  find_contacts();
-  find_motions(integrator);
-  write_header();
-}
-
 History::History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
-                 const FileMark& written)
+                 const std::optional<FileMark>& written)
     : scene_(scene),
       file_(folder / "history.csv", written),
       table_(file_.stream()),
       forces_(scene, integrator) {
   find_contacts();
   find_motions(integrator);
+  if (!written) write_header();
 }
 
 // The impulse of a driven node that is in no interface is the reaction of its holder.

@@ -9,6 +9,7 @@
 #include "step/integrator.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,9 @@ bool same_columns(const nlohmann::json& one, const nlohmann::json& other);
 // axes.
 class History {
  public:
-  History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder);
-  // Goes on after what an earlier run had written.
+  // written: by an earlier run, which this one continues.
   History(const Scene& scene, Integrator& integrator, const std::filesystem::path& folder,
-          const FileMark& written);
+          const std::optional<FileMark>& written = {});
   // After the start, before any step.
   void add_start(const Integrator& integrator) { forces_.add_start(integrator); }
   // After every step, before its row.

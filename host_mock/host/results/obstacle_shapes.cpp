@@ -17,7 +17,6 @@
 #include <initializer_list>
 #include <numbers>
 #include <string>
-#include <vector>
 
 namespace ilaw::host {
 namespace {
@@ -175,35 +174,29 @@ class Shapes {
   int number_ = 0;
 };
 
-template <class Visit>
-void for_each_obstacle(const Scene& scene, Visit visit) {
-  const json& interfaces = scene.source["interfaces"];
-  for (std::size_t i = 0; i < interfaces.size(); ++i)
-    if (interfaces[i].contains("obstacle")) visit(interfaces[i]["obstacle"], i);
-}
-
 }  // namespace
 
 bool has_obstacles(const Scene& scene) {
-  bool found = false;
-  for_each_obstacle(scene, [&](const json& /*obstacle*/, std::size_t /*number*/) { found = true; });
-  return found;
+  const json& interfaces = scene.source["interfaces"];
+  return std::any_of(interfaces.begin(), interfaces.end(),
+                     [](const json& interface) { return interface.contains("obstacle"); });
 }
 
 bool has_moving_obstacles(const Scene& scene) {
-  bool found = false;
-  for_each_obstacle(scene, [&](const json& obstacle, std::size_t /*number*/) {
-    found = found || obstacle.contains("velocity") || obstacle.contains("path") || obstacle.contains("tilt");
+  const json& interfaces = scene.source["interfaces"];
+  return std::any_of(interfaces.begin(), interfaces.end(), [](const json& interface) {
+    const json obstacle = interface.value("obstacle", json::object());
+    return obstacle.contains("velocity") || obstacle.contains("path") || obstacle.contains("tilt");
   });
-  return found;
 }
 
 void add_obstacles(vtkUnstructuredGrid& grid, const Scene& scene, double time) {
   const Bodies bodies(*scene.model);
   Shapes shapes(grid, scene.model->dimension(), bodies);
-  for_each_obstacle(scene, [&](const json& obstacle, std::size_t number) {
-    shapes.add(obstacle, static_cast<int>(number), at("/interfaces", number) + "/obstacle", time);
-  });
+  const json& interfaces = scene.source["interfaces"];
+  for (std::size_t i = 0; i < interfaces.size(); ++i)
+    if (interfaces[i].contains("obstacle"))
+      shapes.add(interfaces[i]["obstacle"], static_cast<int>(i), at("/interfaces", i) + "/obstacle", time);
   shapes.finish();
 }
 

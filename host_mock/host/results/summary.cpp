@@ -128,10 +128,8 @@ void write_summary(const Scene& scene, const Integrator& integrator, const RunRe
   if (const auto& found = integrator.prestressed())
     summary["prestress"] = {{"steps", found->steps}, {"residual", found->residual}};
   if (!scene.meshes.empty()) summary["meshes"] = scene.meshes;
-  AtomicFile file(folder / "summary.json");
   // Names of files need not be UTF-8.
-  file.stream() << summary.dump(2, ' ', false, json::error_handler_t::replace) << '\n';
-  file.commit();
+  write_file(folder / "summary.json", summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace ilaw::host

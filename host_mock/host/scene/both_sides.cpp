@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/both_sides.hpp"
+#include "scene/readers.hpp"
 
 #include "base/scene_error.hpp"
 #include "scene/json_text.hpp"

@@ -31,7 +31,6 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace ilaw::host {
@@ -235,23 +234,12 @@ MeshData read_by_vtk(const std::filesystem::path& file) {
 void write_mesh(std::ostream& out, const MeshData& mesh) {
   write_value(out, std::uint64_t{mesh.nodes.size()});
   for (const Eigen::Vector3d& node : mesh.nodes) write_array(out, node.data(), 3);
-  write_value(out, std::uint64_t{mesh.cells.size()});
-  for (const MeshCell& cell : mesh.cells) {
-    write_value(out, static_cast<int>(cell.kind));
-    write_array(out, cell.nodes.data(), cell.nodes.size());
-  }
+  write_sized(out, mesh.cells);
   for (const auto& [name, group] : mesh.groups) {
     write_sized(out, std::vector<char>(name.begin(), name.end()));
     write_sized(out, group.nodes);
     write_sized(out, group.cells);
   }
-}
-
-std::uint64_t read_count(std::istream& in, std::size_t max_bytes, std::size_t bytes_each) {
-  std::uint64_t count = 0;
-  read_value(in, count);
-  if (count > max_bytes / bytes_each) refuse_damaged();
-  return count;
 }
 
 void check_range(const std::vector<int>& numbers, std::size_t count) {
@@ -263,15 +251,14 @@ void check_range(const std::vector<int>& numbers, std::size_t count) {
 MeshData mesh_of(const std::string& bytes) {
   std::istringstream in(bytes);
   MeshData mesh;
-  mesh.nodes.resize(read_count(in, bytes.size(), 3 * sizeof(double)));
+  std::uint64_t count = 0;
+  read_value(in, count);
+  if (count > bytes.size() / sizeof(Eigen::Vector3d)) refuse_damaged();
+  mesh.nodes.resize(count);
   for (Eigen::Vector3d& node : mesh.nodes) read_array(in, node.data(), 3);
-  mesh.cells.resize(read_count(in, bytes.size(), 9 * sizeof(int)));
-  for (MeshCell& cell : mesh.cells) {
-    int kind = 0;
-    read_value(in, kind);
-    if (kind < 0 || kind > static_cast<int>(CellKind::hexahedron)) refuse_damaged();
-    cell.kind = static_cast<CellKind>(kind);
-    read_array(in, cell.nodes.data(), cell.nodes.size());
+  mesh.cells = read_sized<MeshCell>(in, bytes.size() / sizeof(MeshCell));
+  for (const MeshCell& cell : mesh.cells) {
+    if (cell.kind < CellKind::vertex || cell.kind > CellKind::hexahedron) refuse_damaged();
     check_range({cell.nodes.begin(), cell.nodes.begin() + corners_of(cell.kind)}, mesh.nodes.size());
   }
   while (in.peek() != std::istringstream::traits_type::eof()) {

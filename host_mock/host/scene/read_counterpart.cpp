@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_counterpart.hpp"
+#include "scene/readers.hpp"
 
+#include "contact/counterpart.hpp"
 #include "contact/mesh_surface.hpp"
 #include "scene/json_text.hpp"
 #include "scene/selection.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_forces.hpp"
+#include "scene/readers.hpp"
 
 #include "base/words.hpp"
 #include "scene/json_text.hpp"
-#include "scene/read_springs.hpp"
+#include "scene/scene.hpp"
 #include "scene/values.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_initial.hpp"
+#include "scene/readers.hpp"
 
 #include "model/elements.hpp"
 #include "scene/json_text.hpp"

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_interface.hpp"
+#include "scene/readers.hpp"
 
 #include "base/words.hpp"
 #include "scene/arguments.hpp"
 #include "scene/json_text.hpp"
-#include "scene/read_counterpart.hpp"
-#include "scene/read_pairs.hpp"
-#include "scene/read_thermal.hpp"
+#include "scene/scene.hpp"
 #include "scene/selection.hpp"
 #include "scene/values.hpp"
 

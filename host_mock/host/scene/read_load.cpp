@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_load.hpp"
+#include "scene/readers.hpp"
 
+#include "model/load.hpp"
 #include "model/pressure.hpp"
 #include "scene/json_text.hpp"
-#include "scene/read_thermal.hpp"
 #include "scene/selection.hpp"
 #include "scene/values.hpp"
 

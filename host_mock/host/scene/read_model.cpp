@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_model.hpp"
+#include "scene/readers.hpp"
 
+#include "base/words.hpp"
 #include "model/bars.hpp"
 #include "model/blocks.hpp"
+#include "model/model.hpp"
 #include "model/points.hpp"
 #include "model/rotating_spring.hpp"
 #include "scene/json_text.hpp"
@@ -15,7 +17,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <set>
 #include <string>
 #include <vector>
@@ -92,19 +93,15 @@ double bytes_of_memory() {
 void check_memory(double nodes, int dimension, const std::string& pointer) {
   const double needed = nodes * bytes_per_node(dimension), there = bytes_of_memory();
   if (!(needed > there)) return;
-  std::array<char, 96> found{}, expected{};
-  std::snprintf(found.data(), found.size(), "%.4g nodes, which take %.3g GB of memory or more", nodes,
-                needed * 1e-9);
-  std::snprintf(expected.data(), expected.size(), "at most the %.3g GB that there are", there * 1e-9);
-  throw mistake(pointer, found.data(), expected.data());
+  throw mistake(pointer, formatted("%.4g nodes, which take %.3g GB of memory or more", nodes, needed * 1e-9),
+                formatted("at most the %.3g GB that there are", there * 1e-9));
 }
 
 // Nodes of all bodies read so far: three degrees of freedom each must fit a 32-bit number.
 void check_nodes(double nodes, const json& body, const std::string& pointer) {
   if (!(nodes > 5e8)) return;
-  std::array<char, 48> count{};
-  std::snprintf(count.data(), count.size(), ", which makes %.10g nodes", nodes);
-  throw mistake(pointer + "/elements", body["elements"].dump() + count.data(), "at most 5e8");
+  throw mistake(pointer + "/elements",
+                body["elements"].dump() + formatted(", which makes %.10g nodes", nodes), "at most 5e8");
 }
 
 // Of the ends of a bar, which must stay where they are to each other.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_pairs.hpp"
+#include "scene/readers.hpp"
 
 #include "base/words.hpp"
+#include "contact/interface.hpp"
 #include "scene/arguments.hpp"
 #include "scene/json_text.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_springs.hpp"
+#include "scene/readers.hpp"
 
+#include "model/springs.hpp"
 #include "scene/json_text.hpp"
 #include "scene/selection.hpp"
 #include "scene/values.hpp"

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_thermal.hpp"
+#include "scene/readers.hpp"
 
+#include "model/thermal_model.hpp"
 #include "scene/json_text.hpp"
 #include "scene/packed_points.hpp"
+#include "scene/scene.hpp"
 #include "scene/values.hpp"
 
 #include <algorithm>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/read_time.hpp"
+#include "scene/readers.hpp"
 
 #include "model/thermal_model.hpp"
 #include "scene/json_text.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>

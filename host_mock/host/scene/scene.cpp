@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/scene.hpp"
 
-#include "scene/both_sides.hpp"
 #include "scene/json_text.hpp"
-#include "scene/read_forces.hpp"
-#include "scene/read_initial.hpp"
-#include "scene/read_interface.hpp"
-#include "scene/read_load.hpp"
-#include "scene/read_model.hpp"
-#include "scene/read_sets.hpp"
-#include "scene/read_springs.hpp"
-#include "scene/read_thermal.hpp"
-#include "scene/read_time.hpp"
+#include "scene/readers.hpp"
 #include "scene/selection.hpp"
 #include "scene/validation.hpp"
 #include "scene/warnings.hpp"

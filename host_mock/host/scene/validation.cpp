@@ -13,7 +13,6 @@
 #include <valijson/validator.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/warnings.hpp"
 
+#include "base/words.hpp"
 #include "model/elements.hpp"
 #include "scene/json_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <set>
 #include <string>
@@ -28,10 +26,8 @@ void warn_of_duration(Scene& scene) {
   const double seconds =
       static_cast<double>(scene.steps) * (seconds_per_step + seconds_per_node * scene.model->node_count());
   if (seconds < day) return;
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "/time: found %.3g steps, which take some %.2g days or more",
-                static_cast<double>(scene.steps), seconds / day);
-  scene.warnings.emplace_back(text.data());
+  scene.warnings.push_back(formatted("/time: found %.3g steps, which take some %.2g days or more",
+                                     static_cast<double>(scene.steps), seconds / day));
 }
 
 }  // namespace

@@ -2,14 +2,13 @@
 #include "step/coupled_step.hpp"
 
 #include "base/bytes.hpp"
+#include "base/words.hpp"
 #include "step/dof_loops.hpp"
 
 #include <ilaw/arrays.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace ilaw::host {
@@ -140,15 +139,12 @@ std::string CoupledStep::explain() const {
                         report_.island_contacts <= most_named;
   if (!report_.other_law && !is_stuck) return "";
   const CoupledInterface& worst = interfaces_[static_cast<std::size_t>(report_.worst_group)];
-  std::array<char, 768> text{};
-  std::snprintf(
-      text.data(), text.size(),
+  return formatted(
       "contacts that share node %d of interface '%s' have no common solution%s; the energy is wrong by "
       "%.3g: %s",
       worst.interface().node_of(worst.group().contact(static_cast<std::size_t>(report_.worst_contact))),
       worst.interface().name().c_str(), report_.other_law ? "" : ", or it is not found", report_.energy_error,
       report_.message);
-  return text.data();
 }
 
 void CoupledStep::check_driven(const StepView& step, const Dofs& v) const {

@@ -7,10 +7,9 @@
 #include "step/integrator.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
+#include "base/words.hpp"
 
 namespace ilaw::host {
 
@@ -83,11 +82,9 @@ void Integrator::settle() {
     energy_before = at_rest ? 0.0 : energy;
     if (at_rest) stop();
   }
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                "no static equilibrium after %lld steps of 'prestress': residual %.3g, expected at most %g",
-                static_cast<long long>(found.steps), found.residual, prestress_->tolerance);
-  throw std::runtime_error(text.data());
+  throw std::runtime_error(
+      formatted("no static equilibrium after %lld steps of 'prestress': residual %.3g, expected at most %g",
+                static_cast<long long>(found.steps), found.residual, prestress_->tolerance));
 }
 
 void Integrator::stop() {

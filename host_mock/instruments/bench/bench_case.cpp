@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/bench_case.hpp"
 
+#include "base/words.hpp"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <fstream>
-#include <iterator>
 
 namespace ilaw::host {
 namespace {
@@ -33,9 +34,8 @@ std::string text_of_parameters(const json& parameters) {
 
 void check_word(const BenchWords& option, const std::string& word) {
   if (std::find(option.words.begin(), option.words.end(), word) != option.words.end()) return;
-  std::string known;
-  for (const std::string& one : option.words) known += (known.empty() ? "" : ", ") + one;
-  throw BenchRefusal(std::string(option.key) + ": found '" + word + "', expected one of " + known);
+  throw InputError(std::string(option.key) + ": found '" + word + "', expected one of " +
+                   joined(option.words));
 }
 
 std::vector<std::string> words_in(const json& entry, const char* key) {
@@ -50,7 +50,7 @@ std::vector<std::string> words_in(const json& entry, const char* key) {
 double share_in(const json& entry, const char* key, double usual) {
   const double share = entry.value(key, usual);
   if (share >= 0.0 && share <= 1.0) return share;
-  throw BenchRefusal(std::string(key) + ": found " + short_text(share) + ", expected a number from 0 to 1");
+  throw InputError(std::string(key) + ": found " + short_text(share) + ", expected a number from 0 to 1");
 }
 
 // A law with a '/' is the path of a library, as on the command line.
@@ -59,7 +59,7 @@ void read_law(const json& entry, const std::string& law_of_folder, BenchCase& be
   bench_case.library = entry.value("library", bench_case.law);
   if (bench_case.law.find('/') == std::string::npos) return;
   if (entry.contains("library"))
-    throw BenchRefusal("law: found '" + bench_case.law + "', expected the name of a law of 'library'");
+    throw InputError("law: found '" + bench_case.law + "', expected the name of a law of 'library'");
   bench_case.law.clear();
 }
 
@@ -79,10 +79,16 @@ std::vector<BenchCase> cases_of_entry(const json& entry, const std::string& law_
 
 const std::vector<BenchWords>& bench_words() {
   static const std::vector<BenchWords> words = {
-      {"delassus", &BenchCase::delassus, {"scalar", "diagonal", "transverse", "full", "transverse_spin"}},
-      {"frame", &BenchCase::frame, {"local", "global"}},
-      {"layout", &BenchCase::layout, {"aos", "soa"}},
-      {"outputs", &BenchCase::outputs, {"none", "motion", "all"}}};
+      {"delassus",
+       &BenchCase::delassus,
+       {"scalar", "diagonal", "transverse", "full", "transverse_spin"},
+       "Form of H"},
+      {"frame", &BenchCase::frame, {"local", "global"}, "Axes of vectors and H"},
+      {"layout", &BenchCase::layout, {"aos", "soa"}, "Components of a vector side by side, or apart"},
+      {"outputs",
+       &BenchCase::outputs,
+       {"none", "motion", "all"},
+       "Optional outputs: none, motion (velocity and status) or all (energies, too)"}};
   return words;
 }
 
@@ -125,7 +131,7 @@ std::vector<BenchCase> combinations(const BenchCase& base,
 
 std::vector<BenchCase> read_bench_cases(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw BenchRefusal(file.string() + ": no such file, expected one of cases (JSON)");
+  if (!stream) throw InputError(file.string() + ": no such file, expected one of cases (JSON)");
   std::string where = file.string() + ": ";
   try {
     const std::string law = std::filesystem::absolute(file).parent_path().filename();
@@ -141,9 +147,9 @@ std::vector<BenchCase> read_bench_cases(const std::filesystem::path& file) {
     }
     return cases;
   } catch (const json::exception& error) {
-    throw BenchRefusal(where + error.what());
-  } catch (const BenchRefusal& refusal) {
-    throw BenchRefusal(where + refusal.what());
+    throw InputError(where + error.what());
+  } catch (const InputError& refusal) {
+    throw InputError(where + refusal.what());
   }
 }
 

@@ -2,22 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/scene_error.hpp"
+
 #include <ilaw/ilaw.h>
 
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace ilaw::host {
-
-// What cannot be measured as it was asked for, found before anything is timed.
-class BenchRefusal : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 struct BenchCase {
   std::string library, law;  // library: name or path; law empty: every law of the library
@@ -37,19 +33,20 @@ struct BenchWords {
   const char* key;
   std::string BenchCase::*member;
   std::vector<std::string> words;
+  const char* doc;
 };
 const std::vector<BenchWords>& bench_words();
 
 std::uint32_t form_of(const BenchCase& bench_case);
-// What distinguishes a case from others of its law.
+// The words that distinguish a case from others of its law.
 std::string text_of(const BenchCase& bench_case);
 
-// One case per combination of words, each of which may be a list; throws BenchRefusal.
+// One case per combination of words, each of which may be a list; throws InputError.
 std::vector<BenchCase> combinations(const BenchCase& base,
                                     const std::vector<std::vector<std::string>>& words_of_options);
 // The section "benchmarks" of a JSON file. An entry whose "law" is a path, or that has a "library" alone, is
 // of all laws of that library; one with neither of the law that the file's folder is named after. Throws
-// BenchRefusal.
+// InputError.
 std::vector<BenchCase> read_bench_cases(const std::filesystem::path& file);
 
 }  // namespace ilaw::host

@@ -2,9 +2,8 @@
 #include "bench/bench_law.hpp"
 
 #include "base/running_law.hpp"
-#include "base/scene_error.hpp"
 #include "base/words.hpp"
-#include "contact/law_setup.hpp"
+#include "contact/law_arguments.hpp"
 #include "scene/arguments.hpp"
 
 #include <algorithm>
@@ -29,11 +28,7 @@ Arguments arguments_of(const BenchCase& bench_case) {
   for (auto& [name, value] : parameters.items())
     if (value.is_object() && value.contains("per_node") && !value["per_node"].is_array())
       value["per_node"] = json::array({value["per_node"]});
-  try {
-    return read_arguments(parameters, 1, "parameters");
-  } catch (const SceneError& error) {
-    throw BenchRefusal(error.what());
-  }
+  return read_arguments(parameters, 1, "parameters");
 }
 
 int dimension_of(const ilaw_law& law) {
@@ -44,14 +39,14 @@ int dimension_of(const ilaw_law& law) {
 
 void check_form(const ilaw_law& law, const BenchCase& bench_case) {
   if (law.delassus_forms & form_of(bench_case)) return;
-  std::string served;
-  for (const std::string& word : bench_words().front().words) {
+  std::vector<std::string> served = bench_words().front().words;
+  std::erase_if(served, [&](const std::string& word) {
     BenchCase other;
     other.delassus = word;
-    if (law.delassus_forms & form_of(other)) served += (served.empty() ? "" : ", ") + word;
-  }
-  throw BenchRefusal("law '" + std::string(law.id) + "': found H " + bench_case.delassus +
-                     ", which it does not serve; expected one of " + served);
+    return !(law.delassus_forms & form_of(other));
+  });
+  throw InputError("law '" + std::string(law.id) + "': found H " + bench_case.delassus +
+                   ", which it does not serve; expected one of " + joined(served));
 }
 
 }  // namespace
@@ -76,11 +71,11 @@ BenchLaw::BenchLaw(const ilaw::library& library, const BenchCase& bench_case)
     : name_(bench_case.law), path_(library.path()) {
   const ilaw_law* law = library.law(bench_case.law);
   if (!law)
-    throw BenchRefusal("found no law '" + bench_case.law + "' in " + path_ + ", expected one of " +
-                       joined(laws_of(library)));
+    throw InputError("found no law '" + bench_case.law + "' in " + path_ + ", expected one of " +
+                     joined(laws_of(library)));
   check_form(*law, bench_case);
   if (bench_case.floats && !(law->numbers & ILAW_NUMBERS_FLOAT))
-    throw BenchRefusal("law '" + name_ + "': --float: it does not serve arrays of float; expected double");
+    throw InputError("law '" + name_ + "': --float: it does not serve arrays of float; expected double");
   dimension_ = dimension_of(*law);
   const Arguments arguments = arguments_of(bench_case);
   ilaw_setup setup{};

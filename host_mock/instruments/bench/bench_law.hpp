@@ -21,7 +21,7 @@ BenchCase with_required_parameters(BenchCase bench_case, const ilaw_law& law);
 
 class BenchLaw {
  public:
-  // Throws BenchRefusal or ilaw::error where the law does not serve the case.
+  // Throws InputError or ilaw::error where the law does not serve the case.
   BenchLaw(const ilaw::library& library, const BenchCase& bench_case);
 
   const ilaw_instance_info& info() const { return info_; }

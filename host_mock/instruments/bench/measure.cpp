@@ -3,14 +3,13 @@
 
 #include "base/clock.hpp"
 #include "base/large_pages.hpp"
+#include "base/words.hpp"
 #include "bench/bench_law.hpp"
 #include "bench/node_arrays.hpp"
 #include "bench/triad.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -33,12 +32,6 @@ double seconds_of(Work&& work) {
   }
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // As many bytes as the case moves, so that both come from the same cache.
 std::size_t triad_elements(double bytes) {
   return static_cast<std::size_t>(std::clamp(bytes / 24.0, 64.0, most_triad_elements));
@@ -54,12 +47,6 @@ double available_memory() {
     if (words >> key >> kilobytes && key == "MemAvailable:") return 1024.0 * kilobytes;
   }
   return std::numeric_limits<double>::infinity();
-}
-
-std::string gigabytes(double bytes) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g GB", 1e-9 * bytes);
-  return text.data();
 }
 
 // A state is put back before every call, and what that takes is taken off.
@@ -81,9 +68,10 @@ void check_bench(const ilaw::library& library, const BenchCase& bench_case, std:
                         24.0 * static_cast<double>(triad_elements(bytes));
   const double available = available_memory();
   if (needed > available)
-    throw BenchRefusal("--nodes: found " + std::to_string(nodes) + ", whose arrays take " +
-                       gigabytes(needed) + " for law '" + bench_case.law + "', expected at most the " +
-                       gigabytes(available) + " that this machine has left");
+    throw InputError(formatted(
+        "--nodes: found %lld, whose arrays take %.3g GB for law '%s', expected at most the %.3g GB that this "
+        "machine has left",
+        static_cast<long long>(nodes), 1e-9 * needed, bench_case.law.c_str(), 1e-9 * available));
 }
 
 BenchResult run_bench(const ilaw::library& library, const BenchCase& bench_case, std::int64_t nodes,

@@ -21,7 +21,7 @@ struct BenchResult {
   std::optional<double> scalar_share;
 };
 
-// Throws BenchRefusal or ilaw::error where the law does not serve the case, or so many nodes do not fit into
+// Throws InputError or ilaw::error where the law does not serve the case, or so many nodes do not fit into
 // the memory.
 void check_bench(const ilaw::library& library, const BenchCase& bench_case, std::int64_t nodes);
 

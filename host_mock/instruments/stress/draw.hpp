@@ -27,6 +27,11 @@ class Draw {
   const Value& one_of(const std::vector<Value>& values) {
     return values[static_cast<std::size_t>(whole(0, static_cast<int>(values.size()) - 1))];
   }
+  std::vector<double> vector(int dimension, double size) {
+    std::vector<double> made(static_cast<std::size_t>(dimension));
+    for (double& component : made) component = size * uniform(-1.0, 1.0);
+    return made;
+  }
   std::vector<double> direction(int dimension) {
     std::vector<double> made;
     double square = 0.0;
@@ -45,5 +50,11 @@ class Draw {
  private:
   std::mt19937_64 bits_;
 };
+
+inline std::vector<double> along_last_axis(int dimension, double value) {
+  std::vector<double> made(static_cast<std::size_t>(dimension), 0.0);
+  made.back() = value;
+  return made;
+}
 
 }  // namespace ilaw::host

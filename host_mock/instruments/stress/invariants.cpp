@@ -2,6 +2,7 @@
 #include "stress/invariants.hpp"
 
 #include "base/scene_error.hpp"
+#include "base/words.hpp"
 #include "scene/validation.hpp"
 #include "stress/ledger.hpp"
 
@@ -12,12 +13,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <optional>
 #include <sstream>
-#include <vector>
 
 namespace ilaw::host {
 namespace {
@@ -30,7 +29,7 @@ constexpr std::int64_t most_unsolved = 20;
 
 constexpr const char* scene_name = "stress.json";
 
-// What must be the same to the bit. Energies are sums over active contacts, in their order: they are
+// Results that must be the same to the bit. Energies are sums over active contacts, in their order: they are
 // left out where other contacts are active.
 struct Bits {
   Dofs u, v;
@@ -156,10 +155,8 @@ class Judge {
   void hold(const char* invariant, double figure, double bound) {
     const double part = figure > 0.0 ? figure / bound : 0.0;
     if (part <= 1.0 || verdict_.ending == StressEnding::failed) return;
-    std::array<char, 128> text{};
-    std::snprintf(text.data(), text.size(), "%s: found %.3g, expected at most %.3g", invariant, figure,
-                  bound);
-    end(StressEnding::failed, invariant, text.data());
+    end(StressEnding::failed, invariant,
+        formatted("%s: found %.3g, expected at most %.3g", invariant, figure, bound));
   }
 
   void compare(const Ledger& ledger) {

@@ -2,6 +2,7 @@
 #include "stress/ledger.hpp"
 
 #include "step/dof_loops.hpp"
+#include "stress/draw.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +13,9 @@ namespace {
 // Whether a law stops a node at once that approaches where the gap is closed. Its node alone, with
 // the parameters of the scene's first.
 bool stops(const nlohmann::json& interface, int dimension) {
-  std::vector<double> normal(static_cast<std::size_t>(dimension), 0.0), velocity = normal;
-  normal.back() = 1.0;
-  velocity.back() = -1.0;
-  const std::vector<double> origin(static_cast<std::size_t>(dimension), 0.0);
+  const std::vector<double> origin = along_last_axis(dimension, 0.0),
+                            normal = along_last_axis(dimension, 1.0),
+                            velocity = along_last_axis(dimension, -1.0);
   const nlohmann::json point = {{"mass", 1.0}, {"position", origin}, {"velocity", velocity}};
   nlohmann::json alone = interface;
   alone.erase("against");

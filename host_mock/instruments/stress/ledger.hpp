@@ -34,7 +34,7 @@ class Ledger {
   double penetration() const { return penetration_; }  // beyond that at the start
   double penetration_bound() const;
   double fastest() const { return fastest_; }
-  // Of a linear model below its critical step: K (1 - cfl^2) <= K + I, as U_n.K U_{n+1}/2 is that of
+  // Holds for a linear model below its critical step: K (1 - cfl^2) <= K + I, as U_n.K U_{n+1}/2 is that of
   // the mean of both minus h^2 V.K V/8.
   double worst_velocity() const { return worst_velocity_; }
 

@@ -12,23 +12,17 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<double> vector_of(int dimension, double size, Draw& draw) {
-  std::vector<double> made(static_cast<std::size_t>(dimension));
-  for (double& component : made) component = size * draw.uniform(-1.0, 1.0);
-  return made;
-}
-
 double speed_of(Draw& draw) { return draw.uniform(-1.0, 1.0) * draw.magnitude(0.1, 3.0); }
 
 // Rows of time and values: to and fro along one direction, or from place to place.
 json random_table(int width, double reach, double end, Draw& draw) {
   const int pieces = draw.whole(2, 12);
   const bool to_and_fro = draw.chance(0.5);
-  const std::vector<double> amplitude = vector_of(width, reach, draw);
+  const std::vector<double> amplitude = draw.vector(width, reach);
   json rows = json::array();
   for (int k = 0; k <= pieces; ++k) {
     const double time = end * (k - (k > 0 ? draw.uniform(0.0, 0.5) : 0.0)) / pieces;
-    std::vector<double> value = k == 0 || to_and_fro ? amplitude : vector_of(width, reach, draw);
+    std::vector<double> value = k == 0 || to_and_fro ? amplitude : draw.vector(width, reach);
     for (double& component : value) component *= k == 0 ? 0.0 : (k % 2 == 1 ? 1.0 : -1.0);
     json row = json::array({time});
     for (const double component : value) row.push_back(component);
@@ -67,10 +61,7 @@ json numbers(int first, int count) {
 double gap_of(double size, Draw& draw) { return draw.chance(0.5) ? 0.0 : size * draw.uniform(-0.02, 0.3); }
 
 json normal_of(int dimension, Draw& draw) {
-  if (draw.chance(0.4)) return draw.direction(dimension);
-  std::vector<double> normal(static_cast<std::size_t>(dimension), 0.0);
-  normal.back() = 1.0;
-  return normal;
+  return draw.chance(0.4) ? draw.direction(dimension) : along_last_axis(dimension, 1.0);
 }
 
 json below(const json& place, const json& normal, double gap) {

@@ -9,7 +9,7 @@
 
 namespace ilaw::host {
 
-// What a scene of one body was drawn for.
+// The figures that a scene of one body was drawn for.
 struct DrawnScene {
   int dimension;
   double step;  // near the one that it will take

@@ -15,7 +15,7 @@ struct Range {
   double low, high;
 };
 
-// Of a parameter without an upper bound, by its unit.
+// The range of a parameter without an upper bound, by its unit.
 Range usual_range(const std::string& unit, double dt) {
   if (unit == "s") return {0.1 * dt, 1e4 * dt};
   if (unit == "1" || unit.empty()) return {1e-3, 1e6};

@@ -10,14 +10,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <utility>
 
 namespace ilaw::host {
 namespace {
 
 using nlohmann::json;
 
-// Of the models a scene may have; step: near the one that the scene will take, where it is known.
+// A model that a scene may have; step: near the one that the scene will take, where it is known.
 struct Body {
   json model;
   json interface_nodes;  // one entry per set of nodes that an interface may have
@@ -43,12 +42,6 @@ class Scenery {
 
  private:
   double speed() { return draw_.chance(0.1) ? 0.0 : draw_.uniform(-1.0, 1.0) * draw_.magnitude(0.1, 3.0); }
-  std::vector<double> vector(int dimension, double size) {
-    std::vector<double> made(static_cast<std::size_t>(dimension));
-    for (double& component : made) component = size * draw_.uniform(-1.0, 1.0);
-    return made;
-  }
-
   bool serves(int dimension) const {
     return ((law_.law->dimensions >> static_cast<unsigned>(dimension)) & 1U) != 0;
   }
@@ -75,7 +68,7 @@ class Scenery {
     double mass = 1.0, stiffest = 0.0;
     for (int i = 0; i < count; ++i) {
       mass = draw_.magnitude(1e-4, 1e4);
-      json point = {{"mass", mass}, {"position", vector(d, 1.0)}, {"area", draw_.magnitude(1e-3, 1e3)}};
+      json point = {{"mass", mass}, {"position", draw_.vector(d, 1.0)}, {"area", draw_.magnitude(1e-3, 1e3)}};
       if (draw_.chance(0.5)) point["position"][static_cast<std::size_t>(d - 1)] = 0.0;
       for (int c = 0; c < d; ++c) point["velocity"].push_back(speed());
       for (int c = 0; is_sprung && c < d; ++c) {
@@ -153,9 +146,8 @@ class Scenery {
     json loads = json::array();
     const std::vector<double> axis = draw_.direction(body.dimension);
     if (draw_.chance(0.5)) {
-      std::vector<double> acceleration(static_cast<std::size_t>(body.dimension), 0.0);
-      acceleration.back() = -draw_.magnitude(1e-3, 10.0) / std::max(1.0, end);
-      loads.push_back({{"type", "gravity"}, {"acceleration", acceleration}});
+      const double gravity = draw_.magnitude(1e-3, 10.0) / std::max(1.0, end);
+      loads.push_back({{"type", "gravity"}, {"acceleration", along_last_axis(body.dimension, -gravity)}});
     }
     if (draw_.chance(0.3)) {
       json history = json::array();
@@ -167,7 +159,7 @@ class Scenery {
       loads.push_back({{"type", "shock"},
                        {"nodes", {0}},
                        {"time", draw_.uniform(0.01, 0.99) * end},
-                       {"impulse", vector(body.dimension, body.mass * draw_.magnitude(1e-4, 10.0))}});
+                       {"impulse", draw_.vector(body.dimension, body.mass * draw_.magnitude(1e-4, 10.0))}});
     if (draw_.chance(0.15))
       loads.push_back({{"type", "damping"}, {"rate", draw_.magnitude(1e-3, 10.0) / end}});
     return loads;
@@ -175,18 +167,16 @@ class Scenery {
 
   json random_obstacle(const Body& body) {
     const int d = body.dimension;
-    json normal = json::array();  // along the last axis
-    for (int c = 0; c < d; ++c) normal.push_back(c + 1 < d ? 0.0 : 1.0);
-    if (d > 1 && draw_.chance(0.3)) normal = draw_.direction(d);
-    json obstacle = {{"type", "plane"}, {"point", vector(d, 0.0)}, {"normal", normal}};
+    const bool is_oblique = d > 1 && draw_.chance(0.3);
+    const std::vector<double> normal = is_oblique ? draw_.direction(d) : along_last_axis(d, 1.0);
+    json obstacle = {{"type", "plane"}, {"point", draw_.vector(d, 0.0)}, {"normal", normal}};
     if (d > 1 && draw_.chance(0.25)) {
-      std::vector<double> center(static_cast<std::size_t>(d), 0.0);
-      center.back() = -5.0;
+      const std::vector<double> center = along_last_axis(d, -5.0);
       obstacle = {{"type", "sphere"}, {"center", center}, {"radius", 5.0}};
       if (d == 3 && draw_.chance(0.5))
         obstacle = {{"type", "cylinder"}, {"point", center}, {"axis", {0.0, 1.0, 0.0}}, {"radius", 5.0}};
     }
-    if (draw_.chance(0.15)) obstacle["velocity"] = vector(d, 1.0);
+    if (draw_.chance(0.15)) obstacle["velocity"] = draw_.vector(d, 1.0);
     return obstacle;
   }
 

@@ -22,7 +22,7 @@ class LawBook {
     const ilaw::library* library;
     const ilaw_law* law;
   };
-  // Those that serve a dimension.
+  // The laws that serve a dimension.
   std::vector<Entry> serving(int dimension) const;
   const std::vector<Entry>& all() const { return all_; }
 

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stress/shrink.hpp"
 
+#include "base/words.hpp"
+
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <initializer_list>
 #include <iterator>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,9 +20,7 @@ using nlohmann::json;
 constexpr double shortest = 1e-9;
 
 double rounded(double value, int digits) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.*e", digits - 1, value);
-  return std::strtod(text.data(), nullptr);
+  return std::strtod(formatted("%.*e", digits - 1, value).c_str(), nullptr);
 }
 
 void add_without_each(const json& scene, const json::json_pointer& list, std::vector<json>& made) {
@@ -81,7 +77,7 @@ json without_points(json scene, const std::set<int>& removed) {
   return scene;
 }
 
-// Of an interface between points, parts of the list, with the partners of their nodes.
+// Keeps parts of the list of an interface between points, with the partners of their nodes.
 void add_with_fewer_pairs(const json& scene, std::vector<json>& made) {
   const json::json_pointer partners("/interfaces/0/against/nodes");
   if (scene["model"]["type"] != "points" || !scene.contains(partners)) return;

@@ -31,9 +31,7 @@ void add(StressRow& row, const StressVerdict& verdict) {
 
 std::filesystem::path write(const json& scene, const std::string& name, const std::filesystem::path& folder) {
   std::filesystem::path path = folder / (name + ".json");
-  AtomicFile file(path);
-  file.stream() << scene.dump(1) << '\n';
-  file.commit();
+  write_file(path, scene.dump(1) + "\n");
   return path;
 }
 

@@ -22,7 +22,7 @@ struct StressSetup {
   std::filesystem::path write;  // where every scene is written before it is run; empty: nowhere
 };
 
-// Of one law, that of the first interface.
+// The results of one law, that of the first interface.
 struct StressRow {
   std::string law;
   std::int64_t scenes = 0, refused = 0, stopped = 0, failed = 0;

@@ -3,7 +3,7 @@
 
 #include "base/csv.hpp"
 #include "base/files.hpp"
-#include "results/gnuplot.hpp"
+#include "plot/gnuplot.hpp"
 
 #include <ostream>
 
@@ -33,15 +33,12 @@ void write_orders(const ErrorTable& table, const Sweep& sweep, const std::string
   json orders;
   for (std::size_t n = 0; n < norm_names.size(); ++n)
     orders[norm_names[n]] = table.order(n);  // NaN is written as null
-  AtomicFile file(folder / "converge.json");
-  file.stream() << json{{"title", title},
-                        {"reference", table.exact ? "exact solution" : "finest run"},
-                        {"refined", sweep.with_mesh ? "mesh and time step" : "time step"},
-                        {"levels", sweep.levels},
-                        {"orders", orders}}
-                       .dump(2)
-                << '\n';
-  file.commit();
+  const json found = {{"title", title},
+                      {"reference", table.exact ? "exact solution" : "finest run"},
+                      {"refined", sweep.with_mesh ? "mesh and time step" : "time step"},
+                      {"levels", sweep.levels},
+                      {"orders", orders}};
+  write_file(folder / "converge.json", found.dump(2) + "\n");
 }
 
 // Errors over one column of the table, in the given unit.
@@ -78,7 +75,9 @@ bool draw_convergence(const ErrorTable& table, const std::string& title,
   // Run times of machines differ: over that of the finest run that is compared.
   const double finest = table.runs[table.errors.size() - 1].seconds;
   const std::string csv = in_quotes((folder / "converge.csv").string());
-  return draw_log_sheet(folder, "converge", {"1000,460", "layout 1,2", "", title}, [&](std::ostream& script) {
+  const Sheet sheet{folder / "converge", 1000, 460, "layout 1,2 title " + in_quotes(title) + " noenhanced"};
+  return draw_sheet(sheet, [&](std::ostream& script) {
+    script << log_axes;
     write_panel(table, csv, {1, 1.0, "time step", "right"}, script);
     write_panel(table, csv, {3, finest, "run time / that of the finest run", "left"}, script);
   });

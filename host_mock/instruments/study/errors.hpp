@@ -21,14 +21,14 @@
 
 namespace ilaw::host {
 
-// What a run of a scene did at its watched nodes.
+// The motion and the contacts of the watched nodes in a run.
 struct Trace {
   double dt = 0.0, seconds = 0.0;
   std::int64_t steps = 0;
   int dimension = 1;
   std::vector<Dofs> displacement, velocity;  // per step: at t_{n+1}, and at the half step after it
   std::vector<ContactInstants> instants;     // per watched node
-  // Of the interfaces, up to the half step after t_{n+1}: summed impulse, per interface and
+  // Given by the interfaces up to the half step after t_{n+1}: summed impulse, per interface and
   // component, and work.
   std::vector<Dofs> impulse;
   std::vector<double> work;

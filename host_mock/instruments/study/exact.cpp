@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "study/exact.hpp"
 
-#include "study/exact_bars.hpp"
 #include "study/exact_parts.hpp"
 #include "study/exact_postit.hpp"
 
@@ -17,22 +16,17 @@ using nlohmann::json;
 
 // First fall t1 = sqrt(2 h0/g); flights of 2 e^k t1, which start with e^k g t1 (Moreau 1988).
 ExactNode bouncing_ball(const Scene& scene) {
-  const json& model = scene.source["model"];
   const std::string wanted = "one point at rest in 1D under gravity, above a plane, with law 'contact'";
-  require(model["type"] == "points" && model["points"].size() == 1 && model["dimension"] == 1, wanted);
-  const json loads = scene.source.value("loads", json::array());
-  require(loads.size() == 1 && loads[0]["type"] == "gravity" && !model["points"][0].contains("velocity"),
-          wanted);
-  const json& interface = scene.source["interfaces"][0];
-  require(scene.source["interfaces"].size() == 1 && interface["law"] == "contact" &&
-              interface.contains("obstacle"),
+  const auto [model, point, interface, loads, parameters] = one_body(scene, "points", wanted);
+  require(model["dimension"] == 1 && loads.size() == 1 && loads[0]["type"] == "gravity" &&
+              !point.contains("velocity") && scene.source["interfaces"].size() == 1 &&
+              interface["law"] == "contact" && interface.contains("obstacle"),
           wanted);
   const double g = -loads[0]["acceleration"][0].get<double>();
-  const double height =
-      model["points"][0]["position"][0].get<double>() - interface["obstacle"]["point"][0].get<double>();
+  const double height = point["position"][0].get<double>() - interface["obstacle"]["point"][0].get<double>();
   require(g > 0.0 && height > 0.0, wanted);
-  const double e = interface.value("parameters", json::object()).value("restitution", 0.0);
-  const double fall = std::sqrt(2.0 * height / g), mass = model["points"][0]["mass"].get<double>();
+  const double e = parameters.value("restitution", 0.0);
+  const double fall = std::sqrt(2.0 * height / g), mass = point["mass"].get<double>();
 
   // Start and speed of the flight that is under way.
   const auto flight = [=](double time) {
@@ -45,17 +39,11 @@ ExactNode bouncing_ball(const Scene& scene) {
     }
     return std::pair{start, speed};
   };
-  ExactNode node;
-  node.displacement = [=](double time) {
-    if (time < fall) return -0.5 * g * time * time;
+  ExactNode node = node_of([=](double time) -> Motion1D {
+    if (time < fall) return {-0.5 * g * time * time, -g * time};
     const auto [start, speed] = flight(time);
-    return -height + (time - start) * (speed - 0.5 * g * (time - start));
-  };
-  node.velocity = [=](double time) {
-    if (time < fall) return -g * time;
-    const auto [start, speed] = flight(time);
-    return speed - g * (time - start);
-  };
+    return {-height + (time - start) * (speed - 0.5 * g * (time - start)), speed - g * (time - start)};
+  });
   node.instants.first_impulse = fall;
   // The momentum that gravity alone does not explain; what is missing of the speed of the first fall.
   node.impulse = [=, velocity = node.velocity](double time) { return mass * (velocity(time) + g * time); };
@@ -98,27 +86,24 @@ struct StoppedSwing {
 };
 
 ExactNode impact_oscillator(const Scene& scene) {
-  const json& model = scene.source["model"];
-  const json& interface = scene.source["interfaces"][0];
   const std::string wanted =
       "one point in 1D on a spring, thrown above a plane, without loads, with law 'contact'";
-  require(model["type"] == "points" && model["points"].size() == 1 && model["dimension"] == 1 &&
-              model["points"][0].contains("stiffness") && scene.loads.empty() &&
+  const auto [model, point, interface, loads, parameters] = one_body(scene, "points", wanted);
+  require(model["dimension"] == 1 && point.contains("stiffness") && scene.loads.empty() &&
               scene.source["interfaces"].size() == 1 && interface["law"] == "contact" &&
               interface.contains("obstacle") && interface["obstacle"]["type"] == "plane" &&
               interface["obstacle"]["normal"][0].get<double>() > 0.0,
           wanted);
-  const json& point = model["points"][0];
   const double mass = point["mass"].get<double>(), stiffness = point["stiffness"][0].get<double>();
   const StoppedSwing swing{
       mass, std::sqrt(stiffness / mass),
       point["position"][0].get<double>() - interface["obstacle"]["point"][0].get<double>(),
-      point.value("velocity", json{0.0})[0].get<double>(),
-      interface.value("parameters", json::object()).value("restitution", 0.0)};
+      point.value("velocity", json{0.0})[0].get<double>(), parameters.value("restitution", 0.0)};
   require(stiffness > 0.0 && swing.gap > 0.0 && swing.speed != 0.0, wanted);
-  ExactNode node;
-  node.displacement = [=](double time) { return swing.at(time).u; };
-  node.velocity = [=](double time) { return swing.at(time).v; };
+  ExactNode node = node_of([=](double time) {
+    const auto now = swing.at(time);
+    return Motion1D{now.u, now.v};
+  });
   node.impulse = [=](double time) { return swing.at(time).impulse; };
   node.work = [=](double time) { return swing.at(time).work; };
   const double size = std::fabs(swing.speed) / swing.frequency;
@@ -162,18 +147,13 @@ struct ThrownPoint {
 };
 
 ThrownPoint thrown_point_of(const Scene& scene) {
-  const json& model = scene.source["model"];
-  const json& interface = scene.source["interfaces"][0];
-  const json parameters = interface.value("parameters", json::object());
-  const json loads = scene.source.value("loads", json::array());
   const std::string wanted =
       "one point in 2D that is thrown along a plane with normal [0, 1], under gravity, with law 'coulomb', "
       "friction and a restitution below 1";
-  require(model["type"] == "points" && model["dimension"] == 2 && model["points"].size() == 1 &&
-              interface["law"] == "coulomb" && interface.contains("obstacle") && loads.size() == 1 &&
-              loads[0]["type"] == "gravity" && parameters.value("friction", 0.0) > 0.0,
+  const auto [model, point, interface, loads, parameters] = one_body(scene, "points", wanted);
+  require(model["dimension"] == 2 && interface["law"] == "coulomb" && interface.contains("obstacle") &&
+              loads.size() == 1 && loads[0]["type"] == "gravity" && parameters.value("friction", 0.0) > 0.0,
           wanted);
-  const json& point = model["points"][0];
   const json& obstacle = interface["obstacle"];
   const json velocity = point.value("velocity", json{0.0, 0.0});
   require(obstacle["type"] == "plane" && obstacle["normal"][0] == 0.0 && velocity[1] == 0.0, wanted);
@@ -189,9 +169,14 @@ ThrownPoint thrown_point_of(const Scene& scene) {
 
 std::vector<ExactNode> oblique_impact(const Scene& scene) {
   const ThrownPoint thrown = thrown_point_of(scene);
-  ExactNode along, across;
-  along.displacement = [=](double time) { return thrown.at(time).x; };
-  along.velocity = [=](double time) { return thrown.at(time).vx; };
+  ExactNode along = node_of([=](double time) {
+    const auto now = thrown.at(time);
+    return Motion1D{now.x, now.vx};
+  });
+  ExactNode across = node_of([=](double time) {
+    const auto now = thrown.at(time);
+    return Motion1D{now.y, now.vy};
+  });
   along.impulse = [=](double time) { return thrown.mass * (thrown.at(time).vx - thrown.speed); };
   along.energy = thrown.energy();
   along.work = [=](double time) {
@@ -199,8 +184,6 @@ std::vector<ExactNode> oblique_impact(const Scene& scene) {
     return thrown.mass * (0.5 * (vx * vx + vy * vy) + thrown.gravity * (thrown.height + y)) - thrown.energy();
   };
   along.instants.first_impulse = thrown.fall();
-  across.displacement = [=](double time) { return thrown.at(time).y; };
-  across.velocity = [=](double time) { return thrown.at(time).vy; };
   across.impulse = [=](double time) { return thrown.mass * (thrown.at(time).vy + thrown.gravity * time); };
   return {along, across};
 }
@@ -222,26 +205,24 @@ std::vector<PostitPoint::Knot> pull_of(const Scene& scene, const json& loads) {
 
 // A point that rests on a plane, with shocks of any sign and forces that pull.
 ExactNode postit_point(const Scene& scene) {
-  const json& model = scene.source["model"];
-  const json& interface = scene.source["interfaces"][0];
-  const json loads = scene.source.value("loads", json::array());
   const std::string wanted =
       "one point at rest in 1D on a plane, with law 'postit', brittle rupture, shocks, and forces that pull";
-  require(model["type"] == "points" && model["points"].size() == 1 && model["dimension"] == 1, wanted);
-  const json& body = model["points"][0];
-  require(!body.contains("stiffness") && scene.model->initial_velocity()[0] == 0.0, wanted);
+  const OneBody one = one_body(scene, "points", wanted);
+  const json &body = one.body, &interface = one.interface, &loads = one.loads;
+  require(
+      one.model["dimension"] == 1 && !body.contains("stiffness") && scene.model->initial_velocity()[0] == 0.0,
+      wanted);
   require(scene.source["interfaces"].size() == 1 && interface["law"] == "postit" &&
               interface.contains("obstacle") && interface["obstacle"]["type"] == "plane" &&
               interface["obstacle"]["point"] == body["position"] &&
               interface["obstacle"]["normal"][0].get<double>() > 0.0,
           wanted);
-  const json parameters = interface.value("parameters", json::object());
   const auto value = [&](const char* name, double otherwise) {
-    const json given = parameters.value(name, json(otherwise));
+    const json given = one.parameters.value(name, json(otherwise));
     require(given.is_number() || given == "inf", std::string("a number for '") + name + "'");
     return given.is_number() ? given.get<double>() : INFINITY;
   };
-  require(parameters.value("rupture", "brittle") == "brittle", wanted);
+  require(one.parameters.value("rupture", "brittle") == "brittle", wanted);
   const double area = body.value("area", 1.0);
   PostitPoint point{scene.model->mass()[0],
                     pull_of(scene, loads),

@@ -7,7 +7,6 @@
 
 #include <functional>
 #include <limits>
-#include <memory>
 #include <vector>
 
 namespace ilaw::host {
@@ -18,11 +17,11 @@ struct ContactInstants {
   double first_impulse = none, last_impulse = none, last_rupture = none;
 };
 
-// Of one degree of freedom of a watched node: displacement and velocity in time.
+// One degree of freedom of a watched node: displacement and velocity in time.
 struct ExactNode {
   std::function<double(double)> displacement, velocity;
-  ContactInstants instants;
-  // What the interface has given so far, where it is the node of an interface: its impulse, and the
+  ContactInstants instants{};
+  // The impulse that the interface has given so far, where it is the node of an interface, and the
   // work that it did, which of a vector the first component tells with the largest energy of the
   // motion. Empty where that is not known.
   std::function<double(double)> impulse{}, work{};

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "study/exact_bars.hpp"
-
 #include "study/exact_parts.hpp"
 
 #include <algorithm>
@@ -18,8 +16,7 @@ struct Bar {
   double mass() const { return density * section * length; }
 };
 
-Bar bar_of(const Scene& scene, std::size_t k) {
-  const json& bar = scene.source["model"]["bars"][k];
+Bar bar_of(const json& bar) {
   return {bar.value("start", 0.0),      bar["length"].get<double>(), bar["young"].get<double>(),
           bar["density"].get<double>(), bar.value("section", 1.0),   bar.value("velocity", 0.0)};
 }
@@ -29,12 +26,11 @@ Bar bar_of(const Scene& scene, std::size_t k) {
 // Contact for the return time 2L/c of a wave, at rest, then rebound at the speed of impact (Doyen
 // et al. 2011).
 ExactNode bar_on_wall(const Scene& scene) {
-  require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 1 &&
-              scene.source.value("loads", json::array()).empty() &&
-              scene.source["interfaces"][0].contains("obstacle"),
-          "one bar that flies against a plane, no loads");
-  const Bar bar = bar_of(scene, 0);
-  const double gap = bar.start - scene.source["interfaces"][0]["obstacle"]["point"][0].get<double>();
+  const std::string wanted = "one bar that flies against a plane, no loads";
+  const OneBody one = one_body(scene, "bars", wanted);
+  require(one.loads.empty() && one.interface.contains("obstacle"), wanted);
+  const Bar bar = bar_of(one.body);
+  const double gap = bar.start - one.interface["obstacle"]["point"][0].get<double>();
   require(gap >= 0.0 && bar.velocity < 0.0, "a bar that flies towards the plane");
   const double meets = -gap / bar.velocity, leaves = meets + 2.0 * bar.length / bar.wave_speed();
   ExactNode node = piecewise({meets, leaves}, {bar.velocity, 0.0, -bar.velocity});
@@ -54,7 +50,8 @@ std::vector<ExactNode> two_bars(const Scene& scene) {
   require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 2 &&
               scene.source.value("loads", json::array()).empty() && scene.output.watch.size() == 2,
           "two bars, no loads, and both ends watched, that of the right bar first");
-  const Bar a = bar_of(scene, 0), b = bar_of(scene, 1);
+  const json& bars = scene.source["model"]["bars"];
+  const Bar a = bar_of(bars[0]), b = bar_of(bars[1]);
   const double gap = b.start - (a.start + a.length);
   require(gap >= 0.0 && a.velocity > b.velocity, "a left bar that catches up with the right one");
   const double meets = gap / (a.velocity - b.velocity);
@@ -84,18 +81,16 @@ std::vector<ExactNode> two_bars(const Scene& scene) {
 // The glue feels 2F from L/c on; it breaks R_Y/(2F) later if its window is longer, and the end then
 // moves at 2F/Z until the next reflection at 3L/c.
 ExactNode glued_bar(const Scene& scene) {
-  const json loads = scene.source.value("loads", json::array());
-  const json& interface = scene.source["interfaces"][0];
   const std::string wanted =
       "one bar, glued on the left by law 'postit' with initial_adhesion and memory, pulled at "
       "its right end by a constant force";
-  require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 1, wanted);
-  require(loads.size() == 1 && loads[0]["type"] == "force" && loads[0]["history"].size() == 1, wanted);
-  require(interface["law"] == "postit" && interface.contains("parameters"), wanted);
-  const json& parameters = interface["parameters"];
+  const auto [model, body, interface, loads, parameters] = one_body(scene, "bars", wanted);
+  require(loads.size() == 1 && loads[0]["type"] == "force" && loads[0]["history"].size() == 1 &&
+              interface["law"] == "postit",
+          wanted);
   require(parameters.contains("initial_adhesion") && parameters.value("memory", json(0.0)).is_number(),
           wanted);
-  const Bar bar = bar_of(scene, 0);
+  const Bar bar = bar_of(body);
   const double force = loads[0]["history"][0][1].get<double>() * loads[0]["direction"][0].get<double>();
   const double adhesion = parameters["initial_adhesion"].get<double>() * bar.section;
   const double arrives = bar.length / bar.wave_speed(), breaks = arrives + adhesion / (2.0 * force);
@@ -114,13 +109,11 @@ ExactNode glued_bar(const Scene& scene) {
 // compressed by twice its weight after it, and undeformed again after the second if the flight between
 // took a whole number of its vibrations, which then bring its end back (docs/theory/shipped_scenes.md).
 ExactNode bouncing_bar(const Scene& scene) {
-  const json loads = scene.source.value("loads", json::array());
-  const json& interface = scene.source["interfaces"][0];
   const std::string wanted = "one bar at rest, undeformed and under gravity, above a plane";
-  require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 1, wanted);
+  const auto [model, body, interface, loads, parameters] = one_body(scene, "bars", wanted);
   require(loads.size() == 1 && loads[0]["type"] == "gravity" && !loads[0].contains("nodes"), wanted);
   require(interface.contains("obstacle") && scene.model->initial_displacement().isZero(0.0), wanted);
-  const Bar bar = bar_of(scene, 0);
+  const Bar bar = bar_of(body);
   const double g = -loads[0]["acceleration"][0].get<double>(),
                height = bar.start - interface["obstacle"]["point"][0].get<double>();
   require(g > 0.0 && height > 0.0 && bar.velocity == 0.0, wanted);
@@ -130,22 +123,23 @@ ExactNode bouncing_bar(const Scene& scene) {
           "a flight of 2 sqrt(2 h/g) that is a multiple of the vibration's period 2L/c, by 2 at least");
 
   // Position above the plane and velocity, s after a start upwards at the speed of the fall.
-  const auto thrown = [=](double s) { return std::pair{g * s * (fall - 0.5 * s), g * (fall - s)}; };
-  const auto motion = [=](double time) {
+  const auto thrown = [=](double s) { return Motion1D{g * s * (fall - 0.5 * s), g * (fall - s)}; };
+  const auto position = [=](double time) -> Motion1D {
     double s = std::fmod(time, 4.0 * fall + 2.0 * stay);
     if (s < fall) return thrown(s + fall);
-    if ((s -= fall) < stay) return std::pair{0.0, 0.0};
+    if ((s -= fall) < stay) return {0.0, 0.0};
     if ((s -= stay) < 2.0 * fall) {
       const double r = std::fmod(s, stay);  // of the vibration
-      const auto [position, velocity] = thrown(s);
-      return std::pair{position - g * r * (stay - r), velocity - g * (stay - 2.0 * r)};
+      const auto [height_above, velocity] = thrown(s);
+      return {height_above - g * r * (stay - r), velocity - g * (stay - 2.0 * r)};
     }
-    if ((s -= 2.0 * fall) < stay) return std::pair{0.0, 0.0};
+    if ((s -= 2.0 * fall) < stay) return {0.0, 0.0};
     return thrown(s - stay);
   };
-  ExactNode node;
-  node.displacement = [=](double time) { return motion(time).first - height; };
-  node.velocity = [=](double time) { return motion(time).second; };
+  ExactNode node = node_of([=](double time) {
+    const Motion1D now = position(time);
+    return Motion1D{now.displacement - height, now.velocity};
+  });
   node.instants.first_impulse = fall;
   return node;
 }
@@ -153,16 +147,14 @@ ExactNode bouncing_bar(const Scene& scene) {
 // A rod stretched by a over its length, let go, its far end held: it falls at c a/L, rests on the plane
 // while the waves cross, and is thrown back to where it was, each for L/c.
 ExactNode held_rod(const Scene& scene) {
-  const json loads = scene.source.value("loads", json::array());
-  const json& interface = scene.source["interfaces"][0];
   const std::string wanted =
       "one bar at rest, stretched away from a plane at its left end, its right end held, no other load";
-  require(scene.source["model"]["type"] == "bars" && scene.source["model"]["bars"].size() == 1, wanted);
+  const auto [model, body, interface, loads, parameters] = one_body(scene, "bars", wanted);
   require(loads.size() == 1 && loads[0]["type"] == "motion" &&
               scene.loads[0]->prescribed_nodes().size() == 1 && !loads[0].contains("velocity") &&
               !loads[0].contains("path"),
           wanted);
-  const Bar bar = bar_of(scene, 0);
+  const Bar bar = bar_of(body);
   const Dofs& start = scene.model->initial_displacement();
   const Eigen::Index right = start.size() - 1;
   const double a = start[0];

@@ -7,10 +7,24 @@
 
 namespace ilaw::host {
 
-void refuse(const std::string& expected) { throw SceneError("/exact", "expected " + expected); }
+using nlohmann::json;
 
 void require(bool good, const std::string& expected) {
-  if (!good) refuse(expected);
+  if (!good) throw SceneError("/exact", "expected " + expected);
+}
+
+OneBody one_body(const Scene& scene, const char* kind, const std::string& wanted) {
+  const json& model = scene.source["model"];
+  require(model["type"] == kind && model[kind].size() == 1, wanted);
+  const json& interface = scene.source["interfaces"][0];
+  return {model, model[kind][0], interface, scene.source.value("loads", json::array()),
+          interface.value("parameters", json::object())};
+}
+
+ExactNode node_of(const std::function<Motion1D(double)>& motion) {
+  return {[=](double time) { return motion(time).displacement; },
+          [=](double time) { return motion(time).velocity; },
+          {}};
 }
 
 ExactNode piecewise(const std::vector<double>& instants, const std::vector<double>& velocities) {

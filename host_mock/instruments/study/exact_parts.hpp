@@ -1,8 +1,11 @@
-// exact_parts.hpp - what exact solutions are made of.
+// exact_parts.hpp - parts of exact solutions, and the solutions of elastic bars on walls, on planes, on each
+// other, glued. Derivations: docs/theory/shipped_scenes.md.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "study/exact.hpp"
+
+#include <nlohmann/json.hpp>
 
 #include <string>
 #include <vector>
@@ -10,10 +13,28 @@
 namespace ilaw::host {
 
 // Throws SceneError where a solution does not cover the scene.
-[[noreturn]] void refuse(const std::string& expected);
 void require(bool good, const std::string& expected);
+
+// A scene of one body: that, and what its solution depends on.
+struct OneBody {
+  const nlohmann::json &model, &body, &interface;  // interface: the first one
+  nlohmann::json loads, parameters;
+};
+// kind: "points" or "bars".
+OneBody one_body(const Scene& scene, const char* kind, const std::string& wanted);
+
+struct Motion1D {
+  double displacement, velocity;
+};
+ExactNode node_of(const std::function<Motion1D(double)>& motion);
 
 // Velocity that is constant between instants; displacement is its integral from 0.
 ExactNode piecewise(const std::vector<double>& instants, const std::vector<double>& velocities);
+
+ExactNode bar_on_wall(const Scene& scene);
+ExactNode bouncing_bar(const Scene& scene);
+ExactNode held_rod(const Scene& scene);
+ExactNode glued_bar(const Scene& scene);
+std::vector<ExactNode> two_bars(const Scene& scene);
 
 }  // namespace ilaw::host

@@ -111,7 +111,8 @@ class Story {
     return next;
   }
 
-  // What pulled at the bond within its memory, without what pressed it; of the force since it holds. A
+  // The impulse that pulled at the bond within its memory, without the one that pressed it; that of the force
+  // since it holds. A
   // shock counts at its own instant, even without memory.
   double pulled(double time) const {
     double sum = pull_.impulse(std::max(holds_since_, time - point_.memory), time);

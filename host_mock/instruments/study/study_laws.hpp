@@ -7,7 +7,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace ilaw::host {
 
@@ -19,7 +18,7 @@ nlohmann::json read_law_option(const std::string& text);
 // penalties.
 nlohmann::json usual_laws(const nlohmann::json& source);
 
-// What the tables call an entry.
+// The name of an entry in tables.
 std::string name_of(const nlohmann::json& entry);
 
 // The scene with the law of an entry at all its interfaces. An entry that names no law changes

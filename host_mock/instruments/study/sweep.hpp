@@ -19,7 +19,7 @@ struct Sweep {
   double refinement(int level) const { return std::pow(factor, level) / first; }
 };
 
-// What "converge" or "study" says in a scene.
+// The keys of "converge" or "study" in a scene.
 Sweep read_sweep(const nlohmann::json& given);
 
 // The scene with smaller steps, and elements where the mesh goes with them.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "study/work_precision.hpp"
 
+#include "base/clock.hpp"
 #include "scene/json_text.hpp"
 #include "scene/validation.hpp"
 #include "study/stable_step.hpp"
@@ -68,12 +69,6 @@ void attempt(MeasuredRun& measured, Run run) {
     const double none = ContactInstants::none;
     measured.errors = {none, none, none, none, none, none};
   }
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 class Measurement {

@@ -23,7 +23,7 @@ struct StudySetup {
   nlohmann::json laws;
 };
 
-// What the scene says under "study", with the laws of the command line instead where there are any.
+// The "study" of a scene, with the laws of the command line instead where there are any.
 // Throws SceneError.
 StudySetup read_study(nlohmann::json& source, const std::vector<std::string>& laws);
 
@@ -54,7 +54,7 @@ void check_study(const nlohmann::json& source, const StudySetup& setup, const st
 // Runs everything; says on stderr how far it is. Throws SceneError where a law has no stable step.
 Study run_study(const nlohmann::json& source, const StudySetup& setup, const std::filesystem::path& file);
 
-// What it takes a law to come below an error and stay there with all smaller steps: between runs along
+// The cost of a law to come below an error and stay there with all smaller steps: between runs along
 // straight lines in logarithms; NaN where it never does. Instants are relative to the end of the run.
 struct Cost {
   double steps = ContactInstants::none, seconds = ContactInstants::none;

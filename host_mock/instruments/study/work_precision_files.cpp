@@ -3,13 +3,12 @@
 
 #include "base/csv.hpp"
 #include "base/files.hpp"
-#include "results/gnuplot.hpp"
+#include "plot/gnuplot.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <ostream>
-#include <utility>
 
 namespace ilaw::host {
 namespace {
@@ -67,13 +66,10 @@ void write_laws(const Study& study, const std::string& title, const std::filesys
                     {"largest_stable_step", law.stable},
                     {"failures", failures}});
   }
-  AtomicFile file(folder / "study.json");
-  file.stream() << json{{"title", title},
-                        {"reference", study.exact ? "exact solution" : "finest run of the first law"},
-                        {"laws", laws}}
-                       .dump(2)
-                << '\n';
-  file.commit();
+  const json found = {{"title", title},
+                      {"reference", study.exact ? "exact solution" : "finest run of the first law"},
+                      {"laws", laws}};
+  write_file(folder / "study.json", found.dump(2) + "\n");
 }
 
 // An error over a column of study.csv, both counted from 1.
@@ -132,7 +128,9 @@ bool draw_study(const Study& study, const std::string& title, const std::filesys
       {norm_impulse, "error of the impulse history", steps_column, 1.0, steps},
       {norm_energy, "error of the interfaces' work", steps_column, 1.0, steps}};
   const std::string csv = in_quotes((folder / "study.csv").string());
-  return draw_log_sheet(folder, "study", {"1200,840", "", "font ',14'", title}, [&](std::ostream& script) {
+  const Sheet sheet{folder / "study", 1200, 840, "title " + in_quotes(title) + " font ',14' noenhanced"};
+  return draw_sheet(sheet, [&](std::ostream& script) {
+    script << log_axes;
     for (std::size_t k = 0; k < std::size(panels); ++k) {
       if (!has_points(study, panels[k].norm)) continue;
       script << "set origin " << (k % 2 ? 0.38 : 0.0) << ',' << (k < 2 ? 0.47 : 0.0)

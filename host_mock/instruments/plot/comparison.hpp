@@ -1,12 +1,11 @@
 // comparison.hpp - columns of one or several histories in one picture, over time or over another
-// column, as a script for gnuplot.
+// column, drawn by gnuplot.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "results/run_table.hpp"
+#include "plot/run_table.hpp"
 
 #include <filesystem>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -27,9 +26,9 @@ std::vector<std::string> comparable_columns(const std::vector<RunFolder>& runs);
 // A legend per run: what differs between their scenes, or its name.
 std::vector<std::string> legends_of(const std::vector<RunFolder>& runs);
 
-// A script that draws picture.png and .svg; picture: an absolute path without extension. Every run
-// has all columns.
-void write_comparison(std::ostream& script, const std::filesystem::path& picture,
-                      const std::vector<RunFolder>& runs, const ComparisonSetup& setup);
+// Draws picture.png and .svg; picture: an absolute path without extension. Every run has all columns.
+// Says on stderr why it failed.
+bool draw_comparison(const std::filesystem::path& picture, const std::vector<RunFolder>& runs,
+                     const ComparisonSetup& setup);
 
 }  // namespace ilaw::host

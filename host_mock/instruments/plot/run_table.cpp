@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "results/run_table.hpp"
+#include "plot/run_table.hpp"
 
 #include "base/csv.hpp"
+#include "base/scene_error.hpp"
 #include "base/words.hpp"
-#include "results/history_file.hpp"
+#include "plot/history_file.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <optional>
-#include <stdexcept>
 
 namespace ilaw::host {
 namespace {
@@ -25,7 +25,7 @@ std::string cell_text(const json& value) {
   return text;
 }
 
-// Of a summary, by names as "energy.kinetic".
+// The numbers of a summary, by names as "energy.kinetic".
 std::map<std::string, json> numbers_of(const json& summary) {
   std::map<std::string, json> numbers;
   for (const char* part : {"steps", "dt", "time", "failure", "interrupted", "penetration_max", "stable_step",
@@ -42,7 +42,7 @@ std::map<std::string, json> numbers_of(const json& summary) {
   return numbers;
 }
 
-// Of a column of the history; nothing where there is none.
+// One number of a column of the history; nothing where there is no such column.
 std::optional<double> reduced(const RunFolder& run, const std::string& column, const std::string& kind) {
   HistoryFile history(run.folder / "history.csv");
   const auto index = history.index_of(column);
@@ -67,7 +67,7 @@ std::optional<std::string> cell(const RunFolder& run, const std::string& column)
   const std::size_t colon = column.rfind(':');
   const std::string kind = colon == std::string::npos ? "last" : column.substr(colon + 1);
   if (kind != "last" && kind != "min" && kind != "max" && kind != "mean")
-    throw std::runtime_error(column + ": found '" + kind + "', expected one of last, min, max, mean");
+    throw InputError(column + ": found '" + kind + "', expected one of last, min, max, mean");
   const std::optional<double> value = reduced(run, column.substr(0, colon), kind);
   if (!value) return std::nullopt;
   return cell_text(json(*value));
@@ -86,9 +86,9 @@ std::vector<std::string> all_columns(const std::vector<RunFolder>& runs) {
   std::vector<std::string> all = all_columns(runs);
   const std::string numbers = joined(all);
   all.insert(all.end(), of_history.begin(), of_history.end());
-  throw std::runtime_error(column + ": found in no run, expected a number of summary.json, one of " +
-                           numbers + "; or a column of history.csv, one of " + last_of(of_history) +
-                           suggestion(column.substr(0, column.rfind(':')), all));
+  throw InputError(column + ": found in no run, expected a number of summary.json, one of " + numbers +
+                   "; or a column of history.csv, one of " + last_of(of_history) +
+                   suggestion(column.substr(0, column.rfind(':')), all));
 }
 
 }  // namespace
@@ -106,10 +106,9 @@ RunFolder open_run(const std::filesystem::path& folder) {
   std::ifstream stream(path / "summary.json");
   json summary = json::parse(stream, nullptr, false);
   if (!summary.is_object() || !summary.contains("/scene/source"_json_pointer))
-    throw std::runtime_error(
-        (path / "summary.json").string() +
-        ": found no summary, expected that of a run in this folder: `ilaw run SCENE --out " +
-        folder.string() + "` writes it");
+    throw InputError((path / "summary.json").string() +
+                     ": found no summary, expected that of a run in this folder: `ilaw run SCENE --out " +
+                     folder.string() + "` writes it");
   return {path, std::move(summary)};
 }
 
@@ -117,7 +116,7 @@ std::vector<RunFolder> open_runs(const std::vector<std::string>& folders) {
   std::vector<RunFolder> runs;
   for (const std::string& folder : folders)
     if (folders.size() == 1 || !std::filesystem::is_regular_file(folder)) runs.push_back(open_run(folder));
-  if (runs.empty()) throw std::runtime_error("found files alone, expected folders that `ilaw run` wrote");
+  if (runs.empty()) throw InputError("found files alone, expected folders that `ilaw run` wrote");
   return runs;
 }
 

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "results/comparison.hpp"
+#include "plot/comparison.hpp"
 
-#include "results/gnuplot.hpp"
-#include "results/history_file.hpp"
+#include "plot/gnuplot.hpp"
+#include "plot/history_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <iterator>
 #include <set>
-#include <utility>
 
 namespace ilaw::host {
 namespace {
@@ -36,6 +34,21 @@ int rank(const std::string& column) {
 }
 
 std::string last_key(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
+
+// A curve of each run; legends: one each, or none.
+void draw_curves(std::ostream& script, const std::vector<RunFolder>& runs, const std::string& x,
+                 const std::string& y, const std::vector<std::string>& legends) {
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const std::filesystem::path file = runs[k].folder / "history.csv";
+    const HistoryFile history(file);
+    script << (k == 0 ? "plot " : ", ") << in_quotes(file.string()) << " using " << *history.index_of(x) + 1
+           << ":" << *history.index_of(y) + 1 << " with lines linewidth 1.4 dashtype "
+           << 1 + k / std::size(curve_colours) << " linecolor rgb "
+           << in_quotes(curve_colours[k % std::size(curve_colours)]) << " title "
+           << in_quotes(legends.empty() ? "" : legends[k]);
+  }
+  script << "\n";
+}
 
 }  // namespace
 
@@ -68,8 +81,8 @@ std::vector<std::string> legends_of(const std::vector<RunFolder>& runs) {
   return legends;
 }
 
-void write_comparison(std::ostream& script, const std::filesystem::path& picture,
-                      const std::vector<RunFolder>& runs, const ComparisonSetup& setup) {
+bool draw_comparison(const std::filesystem::path& picture, const std::vector<RunFolder>& runs,
+                     const ComparisonSetup& setup) {
   const std::vector<std::string> legends = legends_of(runs);
   std::size_t longest = 0;
   for (const std::string& legend : legends) longest = std::max(longest, legend.size());
@@ -77,44 +90,29 @@ void write_comparison(std::ostream& script, const std::filesystem::path& picture
   const double key_height = runs.size() > 1 ? legend_line * static_cast<double>(runs.size()) : 0.0;
   const auto panels = static_cast<double>(setup.y.size());
   const double tall = setup.y.size() == 1 ? 2.0 * panel_height : panel_height;
-  const double width = margin_left + plot_width + right;
+  Sheet sheet{picture, margin_left + plot_width + right, 0.0};
   double title_lines = 1.0;
   const std::string title = in_lines(runs.front().summary["scene"].value("title", runs.front().name()),
-                                     static_cast<std::size_t>(width / letter_of_title), title_lines);
+                                     static_cast<std::size_t>(sheet.width / letter_of_title), title_lines);
   const double above = margin_above + 22.0 * (title_lines - 1.0);
-  const double height = above + margin_below + std::max(panels * (tall + panel_gap) - panel_gap, key_height);
-  for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
-    script << "reset\nset datafile separator comma\nset terminal " << terminal << " size " << width << ","
-           << height << " font 'sans,11' rounded background rgb 'white'\nset output "
-           << drawn_name(picture.string() + kind) << "\nset multiplot title " << title
-           << " font ',14' noenhanced\nset lmargin at screen " << margin_left / width
-           << "\nset rmargin at screen " << 1.0 - right / width << "\nset border 3 linecolor rgb '#808080'\n"
-           << "set tics nomirror textcolor rgb 'black'\nset grid linewidth 1 linecolor rgb '#d0d0d0'\n"
-           << "set xrange [*:*] noextend\nset format x ''\nset format y '%.4g'\nset ytics font ',10'\n";
-    double top = height - above;
+  sheet.height = above + margin_below + std::max(panels * (tall + panel_gap) - panel_gap, key_height);
+  sheet.multiplot = "title " + title + " font ',14' noenhanced";
+  sheet.terminal = "rounded";
+  return draw_sheet(sheet, [&](std::ostream& script) {
+    script << "set lmargin at screen " << margin_left / sheet.width << "\nset rmargin at screen "
+           << 1.0 - right / sheet.width << "\n"
+           << grey_axes << "set xrange [*:*] noextend\nset ytics font ',10'\n";
+    double top = sheet.height - above;
     for (std::size_t p = 0; p < setup.y.size(); ++p) {
-      const double bottom = top - tall;
-      script << "set tmargin at screen " << top / height << "\nset bmargin at screen " << bottom / height
-             << "\nset key at screen " << 1.0 - (right - 10.0) / width << "," << top / height
-             << " left top vertical maxcols 1 noenhanced samplen 2 Left reverse\nset label 1 "
-             << in_quotes(setup.y[p].substr(setup.y[p].starts_with("balance.") ? 8 : 0))
-             << " font ',9' noenhanced at screen 0.015," << 0.5 * (top + bottom) / height
-             << " center rotate by 90\n";
+      const std::string label = in_quotes(setup.y[p].substr(setup.y[p].starts_with("balance.") ? 8 : 0));
+      place_panel(script, sheet, {top, top - tall, right, 0.015 * sheet.width}, label + " font ',9'");
       if (p + 1 == setup.y.size())
         script << "set xlabel " << in_quotes(setup.x) << " noenhanced\nset format x '%g'\n";
-      for (std::size_t k = 0; k < runs.size(); ++k) {
-        const HistoryFile history(runs[k].folder / "history.csv");
-        script << (k == 0 ? "plot " : ", ") << in_quotes((runs[k].folder / "history.csv").string())
-               << " using " << *history.index_of(setup.x) + 1 << ":" << *history.index_of(setup.y[p]) + 1
-               << " with lines linewidth 1.4 dashtype " << 1 + k / std::size(curve_colours)
-               << " linecolor rgb " << in_quotes(curve_colours[k % std::size(curve_colours)]) << " title "
-               << in_quotes(p == 0 && runs.size() > 1 ? legends[k] : "");
-      }
-      script << "\n";
-      top = bottom - panel_gap;
+      draw_curves(script, runs, setup.x, setup.y[p],
+                  p == 0 && runs.size() > 1 ? legends : std::vector<std::string>());
+      top -= tall + panel_gap;
     }
-    script << "unset multiplot\nunset output\n";
-  }
+  });
 }
 
 }  // namespace ilaw::host

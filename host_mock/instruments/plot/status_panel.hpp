@@ -17,7 +17,7 @@ struct StatusRow {
 };
 using StatusRows = std::vector<StatusRow>;
 
-// Of each status that occurs, in how many rows and columns.
+// The number of rows and columns in which each status occurs.
 using StatusCounts = std::map<int, int>;
 
 // The data block of the ruptures that events.csv has of these nodes, which may lie between rows of

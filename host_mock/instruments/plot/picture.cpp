@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "results/picture.hpp"
+#include "plot/picture.hpp"
 
-#include "results/envelope.hpp"
-#include "results/gnuplot.hpp"
-#include "results/history_file.hpp"
-#include "results/status_panel.hpp"
+#include "plot/envelope.hpp"
+#include "plot/gnuplot.hpp"
+#include "plot/history_file.hpp"
+#include "plot/status_panel.hpp"
 
 #include <ilaw/ilaw.h>
 
@@ -13,6 +13,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 namespace ilaw::host {
@@ -46,7 +47,7 @@ bool is_node(std::string_view name) {
   return name.size() > 1 && name[0] == 'n' && std::isdigit(static_cast<unsigned char>(name[1]));
 }
 
-// Of a resultant, "floor.F2": its force and its moment.
+// A component of a force or a moment, "floor.F2".
 bool is_resultant(std::string_view owner, std::string_view name) {
   return !is_node(owner) && name.size() == 2 && (name[0] == 'F' || name[0] == 'M') &&
          std::isdigit(static_cast<unsigned char>(name[1]));
@@ -129,7 +130,7 @@ std::vector<Panel> panels_of(const Columns& columns, int every) {
   return panels;
 }
 
-// Those of these names, in their order; all where there are none.
+// The panels of these names, in their order; all where there are none.
 std::vector<Panel> chosen(std::vector<Panel> panels, const std::vector<std::string>& names) {
   if (names.empty()) return panels;
   std::vector<Panel> found;
@@ -139,17 +140,16 @@ std::vector<Panel> chosen(std::vector<Panel> panels, const std::vector<std::stri
   return found;
 }
 
-std::size_t node_count(const Panel& panel) {
-  std::set<std::string> nodes;
-  for (const Curve& curve : panel.curves) nodes.insert(curve.node);
-  return nodes.size();
+// The different values of a part of the curves of a panel.
+std::set<std::string> all_of(const Panel& panel, std::string Curve::*part) {
+  std::set<std::string> names;
+  for (const Curve& curve : panel.curves) names.insert(curve.*part);
+  return names;
 }
 
-std::size_t component_count(const Panel& panel) {
-  std::set<std::string> components;
-  for (const Curve& curve : panel.curves) components.insert(curve.component);
-  return components.size();
-}
+std::size_t node_count(const Panel& panel) { return all_of(panel, &Curve::node).size(); }
+
+std::size_t component_count(const Panel& panel) { return all_of(panel, &Curve::component).size(); }
 
 // More nodes than a key can tell apart are drawn as an envelope.
 bool is_crowded(const Panel& panel) {
@@ -232,10 +232,8 @@ std::string block_of(const Panel& panel, const std::string& component) {
 // A band per component from the least to the largest of all nodes, and the median.
 void draw_envelope(std::ostream& script, const Panel& panel) {
   script << range_of(panel);
-  std::set<std::string> components;
-  for (const Curve& curve : panel.curves) components.insert(curve.component);
   std::size_t k = 0;
-  for (const std::string& component : components) {
+  for (const std::string& component : all_of(panel, &Curve::component)) {
     const std::string block = block_of(panel, component), colour = in_quotes(curve_colours[k]);
     script << (k == 0 ? "plot " : ", ") << block << " using 1:2:4 with filledcurves fillcolor rgb " << colour
            << " fillstyle transparent solid 0.2 noborder title '', " << block
@@ -299,31 +297,14 @@ Margins margins_of(const std::vector<Panel>& panels) {
   return margins;
 }
 
-void draw(std::ostream& script, const std::string& terminal, const std::filesystem::path& file,
-          const std::vector<Panel>& panels, const Columns& columns, const std::string& title) {
-  const auto [left, right] = margins_of(panels);
-  const double width = left + panel_width + right;
-  double title_lines = 1.0;
-  const std::string title_text = in_lines(title, static_cast<std::size_t>(width / title_letter), title_lines);
-  const double above = 23.0 + title_line * title_lines;
-  double height = above + below - between;
-  for (const Panel& panel : panels) height += height_of(panel, columns) + between;
-  script << "set terminal " << terminal << " size " << width << "," << height
-         << " font 'sans,11' rounded background rgb 'white'\nset output " << drawn_name(file)
-         << "\nset multiplot title " << title_text << " font ',14' noenhanced\n"
-         << "set lmargin at screen " << left / width << "\nset rmargin at screen " << 1.0 - right / width
-         << "\n";
-  double top = height - above;
+void draw_panels(std::ostream& script, const Sheet& sheet, const Margins& margins, double top,
+                 const std::vector<Panel>& panels, const Columns& columns) {
   for (const Panel& panel : panels) {
     const double bottom = top - height_of(panel, columns);
     double label_lines = 1.0;
     const std::string label = in_lines(panel.label, longest_label, label_lines);
-    script << "set tmargin at screen " << top / height << "\nset bmargin at screen " << bottom / height
-           << "\nset key at screen " << 1.0 - (right - 10.0) / width << "," << top / height
-           << " left top vertical maxcols 1 noenhanced samplen 2 Left reverse\nset label 1 " << label
-           << (label_lines > 1.0 ? " font ',10'" : "") << " noenhanced at screen "
-           << (7.0 + 8.0 * label_lines) / width << "," << 0.5 * (top + bottom) / height
-           << " center rotate by 90\n";
+    place_panel(script, sheet, {top, bottom, margins.right, 7.0 + 8.0 * label_lines},
+                label + (label_lines > 1.0 ? " font ',10'" : ""));
     if (&panel == &panels.back()) script << "set xlabel 'time'\nset format x '%g'\n";
     const bool crowded = is_crowded(panel);
     if (panel.quantity == "status")
@@ -333,7 +314,6 @@ void draw(std::ostream& script, const std::string& terminal, const std::filesyst
       crowded ? draw_envelope(script, panel) : draw_curves(script, panel);
     top = bottom - between;
   }
-  script << "unset multiplot\nunset output\n";
 }
 
 }  // namespace
@@ -344,21 +324,32 @@ std::vector<std::string> panel_names(const Columns& columns, int every) {
   return names;
 }
 
-void write_picture(std::ostream& script, const std::filesystem::path& folder,
-                   const std::filesystem::path& pictures, const Columns& found, const Caption& caption) {
+bool draw_picture(const std::filesystem::path& folder, const std::filesystem::path& pictures,
+                  const Columns& found, const Caption& caption) {
   Columns columns = found;
   const std::vector<Panel> panels = chosen(panels_of(columns, caption.every), caption.panels);
+  std::ostringstream blocks;
   // Ruptures between rows belong into the key, too.
-  if (write_blocks(script, folder, panels)) columns.statuses.try_emplace(ILAW_BROKEN, 0);
-  for (const auto& [terminal, kind] : {std::pair{"pngcairo", "png"}, std::pair{"svg", "svg"}}) {
-    script << "reset\nset datafile separator comma\nhistory = "
-           << in_quotes((folder / "history.csv").string())
-           << "\nset border 3 linecolor rgb '#808080'\nset tics nomirror textcolor rgb 'black'\n"
-           << "set grid linewidth 1 linecolor rgb '#d0d0d0'\nset xrange [*<0:*] noextend\n"
-           << "set offsets graph 0, graph 0, graph 0.06, graph 0.06\nset format x ''\nset format y '%.4g'\n"
-           << "set ytics noenhanced font ',10'\n";
-    draw(script, terminal, pictures / ("history." + std::string(kind)), panels, columns, caption.title);
-  }
+  if (write_blocks(blocks, folder, panels)) columns.statuses.try_emplace(ILAW_BROKEN, 0);
+  const Margins margins = margins_of(panels);
+  Sheet sheet{pictures / "history", margins.left + panel_width + margins.right, 0.0};
+  double title_lines = 1.0;
+  const std::string title =
+      in_lines(caption.title, static_cast<std::size_t>(sheet.width / title_letter), title_lines);
+  const double above = 23.0 + title_line * title_lines;
+  sheet.height = above + below - between;
+  for (const Panel& panel : panels) sheet.height += height_of(panel, columns) + between;
+  sheet.multiplot = "title " + title + " font ',14' noenhanced";
+  sheet.terminal = "rounded";
+  sheet.data = blocks.str();
+  return draw_sheet(sheet, [&](std::ostream& script) {
+    script << "history = " << in_quotes((folder / "history.csv").string()) << "\n"
+           << grey_axes << "set xrange [*<0:*] noextend\n"
+           << "set offsets graph 0, graph 0, graph 0.06, graph 0.06\nset ytics noenhanced font ',10'\n"
+           << "set lmargin at screen " << margins.left / sheet.width << "\nset rmargin at screen "
+           << 1.0 - margins.right / sheet.width << "\n";
+    draw_panels(script, sheet, margins, sheet.height - above, panels, columns);
+  });
 }
 
 }  // namespace ilaw::host

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "results/envelope.hpp"
+#include "plot/envelope.hpp"
 
 #include "base/csv.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 namespace ilaw::host {
 

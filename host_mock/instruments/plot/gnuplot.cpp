@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "results/gnuplot.hpp"
+#include "plot/gnuplot.hpp"
 
 #include "base/files.hpp"
 
@@ -47,9 +47,7 @@ void complete(const std::filesystem::path& picture) {
   const std::string_view end = picture.extension() == ".png" ? "IEND\xAE\x42\x60\x82" : "</svg>\n";
   if (bytes.size() < end.size() || bytes.find(end, bytes.size() - end.size() - 8) == std::string::npos)
     throw WriteError(picture.string() + ": gnuplot could not write it whole; is the disk full?");
-  AtomicFile file(picture);
-  file.stream() << bytes;
-  file.commit();
+  write_file(picture, bytes);
 }
 
 bool run(const std::filesystem::path& script) {
@@ -93,12 +91,30 @@ std::string in_lines(const std::string& words, std::size_t most, double& line_co
   return text + in_quotes(rest);
 }
 
-bool draw_by_gnuplot(const std::filesystem::path& script, const std::function<void(std::ostream&)>& write) {
+bool draw_sheet(const Sheet& sheet, const std::function<void(std::ostream&)>& panels) {
+  const std::filesystem::path script = sheet.picture.string() + ".gnuplot";
   AtomicFile file(script);
-  file.stream() << first_line << '\n';
-  write(file.stream());
+  file.stream() << first_line << '\n' << sheet.data;
+  for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
+    file.stream() << "reset\nset datafile separator comma\nset terminal " << terminal << " size "
+                  << sheet.width << ',' << sheet.height << " font 'sans,11' " << sheet.terminal
+                  << " background rgb 'white'\nset output " << in_quotes(sheet.picture.string() + kind)
+                  << ".suffix\nset multiplot " << sheet.multiplot << '\n';
+    panels(file.stream());
+    file.stream() << "unset multiplot\nunset output\n";
+  }
   file.commit();
   return run(script);
+}
+
+void place_panel(std::ostream& script, const Sheet& sheet, const PanelPlace& place,
+                 const std::string& label) {
+  const double top = place.top / sheet.height, bottom = place.bottom / sheet.height;
+  script << "set tmargin at screen " << top << "\nset bmargin at screen " << bottom << "\nset key at screen "
+         << 1.0 - (place.right - 10.0) / sheet.width << "," << top
+         << " left top vertical maxcols 1 noenhanced samplen 2 Left reverse\nset label 1 " << label
+         << " noenhanced at screen " << place.label_x / sheet.width << "," << 0.5 * (top + bottom)
+         << " center rotate by 90\n";
 }
 
 void remove_pictures(const std::filesystem::path& folder, const std::string& names) {
@@ -115,27 +131,6 @@ void remove_pictures(const std::filesystem::path& folder, const std::string& nam
   for (std::filesystem::path file : scripts)
     for (const char* ending : {".png", ".svg", ".gnuplot"})
       std::filesystem::remove(file.replace_extension(ending));
-}
-
-std::string drawn_name(const std::filesystem::path& picture) {
-  return in_quotes(picture.string()) + ".suffix";
-}
-
-bool draw_log_sheet(const std::filesystem::path& folder, const std::string& name, const LogSheet& sheet,
-                    const std::function<void(std::ostream&)>& panels) {
-  return draw_by_gnuplot(folder / (name + ".gnuplot"), [&](std::ostream& script) {
-    for (const auto& [terminal, kind] : {std::pair{"pngcairo", ".png"}, std::pair{"svg", ".svg"}}) {
-      script << "reset\nset datafile separator comma\nset datafile missing ''\nset terminal " << terminal
-             << " size " << sheet.size << " font 'sans,11' background rgb 'white'\nset output "
-             << drawn_name(folder / (name + kind))
-             << "\nset logscale xy\nset format xy '10^{%T}'\nset grid\nset border 3\nset tics nomirror\n"
-                "set ylabel 'relative error'\nset multiplot "
-             << sheet.layout << " title " << in_quotes(sheet.title) << ' ' << sheet.title_font
-             << " noenhanced\n";
-      panels(script);
-      script << "unset multiplot\nunset output\n";
-    }
-  });
 }
 
 }  // namespace ilaw::host

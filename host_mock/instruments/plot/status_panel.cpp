@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "results/status_panel.hpp"
+#include "plot/status_panel.hpp"
 
 #include "base/csv.hpp"
-#include "results/gnuplot.hpp"
+#include "plot/gnuplot.hpp"
 
 #include <ilaw/ilaw.h>
 
@@ -62,7 +62,7 @@ bool write_ruptures(std::ostream& script, const std::filesystem::path& folder, c
   return any;
 }
 
-// What lasts one step is a dot, thanks to round caps; the rarest lies on top.
+// A status of one step is a dot, thanks to round caps; the rarest lies on top.
 void draw_status(std::ostream& script, const StatusRows& rows, const StatusCounts& counts) {
   script << "set yrange [" << static_cast<double>(rows.size()) + 0.5 << ":0.5]\nset ytics (";
   for (std::size_t row = 0; row < rows.size(); ++row)
