@@ -80,8 +80,9 @@ class Walls {
     batch.time = batch.velocity_step = batch.position_step = h;
     batch.gap = ilaw::input(&gap, 0, 0);
     batch.normal = ilaw::input(normals.data(), 3, 1);
-    batch.state_in = ilaw::input(state.data(), 1, 1);
-    batch.state_out = ilaw::output(state.data(), 1, 1);
+    const auto state_size = static_cast<std::int64_t>(interface.info().state_size);
+    batch.state_in = ilaw::input(state.data(), state_size, 1);
+    batch.state_out = ilaw::output(state.data(), state_size, 1);
     batch.impulse = ilaw::output(impulses.data(), 3, 1);
     std::vector<std::int32_t> body, other;
     std::vector<double> weight, other_weight;
@@ -277,6 +278,21 @@ TEST(CoupledWalls, TurnSpheresByTheirOwnVelocities) {
     }
     EXPECT_GT(stuck, 40);
   }
+}
+
+// With H of the contact itself, its law solves a single one in the first iteration, and the second sees that.
+TEST(CoupledWalls, SolveOneContactByItsOwnInertia) {
+  for (const Kind kind : kinds)
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      Walls walls(kind, seed);
+      walls.v = walls.v_before, walls.w = walls.w_before;
+      walls.add(1, 0, {0.0, 0.6, 0.8});
+      walls.has_wall_before = false;
+      const ilaw_coupled_report report = walls.solve("tie", {});
+      EXPECT_LE(report.sweeps, 2U) << "kind " << static_cast<int>(kind) << ", seed " << seed;
+      const Vector left = walls.velocity(walls.contacts[0]);
+      EXPECT_LE(dot(left, left), 1e-26) << "kind " << static_cast<int>(kind) << ", seed " << seed;
+    }
 }
 
 // From a distance of h, a wall with a speed of 3 passes 2 of it on; those that go away or come too slowly
