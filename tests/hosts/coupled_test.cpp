@@ -93,7 +93,7 @@ Scene tangle(ilaw::interface law) {
   for (std::int32_t a = 0; a < 27; ++a)
     for (std::int32_t b = 0; b < a; ++b) {
       const double angle = 3.0 * uniform(random);
-      if (uniform(random) > 0.8) scene.add(a, b, 0.0, {0.6 * std::cos(angle), 0.6 * std::sin(angle), 0.8});
+      if (uniform(random) > 0.5) scene.add(a, b, 0.0, {0.6 * std::cos(angle), 0.6 * std::sin(angle), 0.8});
     }
   for (double& x : scene.v) x = uniform(random);
   for (double& x : scene.w) x = uniform(random);
@@ -126,14 +126,14 @@ TEST(Coupled, OrderOfContactsDoesNotMatter) {
 
 // A solver keeps its memory, and none of the numbers in it.
 TEST(Coupled, GivesTheSameBitsAfterAnotherProblem) {
-  Scene fresh = cube(friction(0.4), 7), again = cube(friction(0.4), 7), other = cube(tie(), 3);
+  Scene fresh = cube(friction(0.4), 7), again = cube(friction(0.4), 7), other = tangle(tie());
   for (double& x : other.v) x *= 1e3;
   for (int n = 0; n < 3; ++n) other.step(g, 1e-12);
   std::swap(other.solver, again.solver);
   const ilaw_coupled_report first = fresh.step(g, 1e-10), second = again.step(g, 1e-10);
   EXPECT_EQ(first.sweeps, second.sweeps);
   EXPECT_EQ(first.residual, second.residual);
-  EXPECT_EQ(first.speed, second.speed);
+  EXPECT_EQ(first.first_speed, second.first_speed);
   EXPECT_EQ(fresh.v, again.v);
 }
 
