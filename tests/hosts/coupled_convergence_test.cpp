@@ -210,6 +210,18 @@ TEST(CoupledConvergence, TiesMassesOfOneToTenMillion) {
     EXPECT_NEAR(chain.velocity[i], momentum / mass, 1e-6) << "body " << i / 3;
 }
 
+// A light body that stops two heavy ones has impulses of their mass ratio: no sign of incompatible laws.
+TEST(CoupledConvergence, BlamesNoLawForAMassRatio) {
+  Assembly chain(create("tie", ILAW_DELASSUS_SCALAR), false);
+  for (const double speed : {1.0, 0.0, -1.0})
+    chain.add_body(speed == 0.0 ? 1.0 : 1e12, 0.0, {speed, 0.0, 0.0});
+  chain.add(1, 0);
+  chain.add(2, 1);
+  const ilaw_coupled_report report = chain.solve(1e-12, 1000);
+  EXPECT_GT(report.speed, 1e9 * report.first_speed);
+  EXPECT_EQ(report.law, nullptr) << report.law;
+}
+
 // Bricks in running bond, four corners at each bed joint; the top course weighs ten thousand times the
 // others.
 TEST(CoupledConvergence, HoldsAWallUnderAHeavyCourse) {
