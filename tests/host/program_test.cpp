@@ -91,6 +91,8 @@ TEST(Program, WritesTheReportOfACheck) {
   EXPECT_EQ(device.code, 2);
   EXPECT_EQ(device.output.find("ilaw: /dev/full: not a regular file"), 0U) << device.output;
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+  // Written at once: what is left in the buffer at the end is not refused any more.
+  EXPECT_EQ(run_command(ILAW_PROGRAM " check --rules >/dev/full").code, 1);
 }
 
 TEST(Program, SaysWhyASceneCannotBeRead) {
@@ -236,6 +238,17 @@ TEST(Program, TellsWarningsAndRuns) {
 }
 
 // What an earlier run left and this one does not replace would be taken for its own.
+// A pipe whose reader has gone is an output that cannot be written, no end by a signal.
+TEST(Program, SaysThatItsReaderHasLeft) {
+  const std::string folder = fresh_folder().string(),
+                    scene = scene_files::named("impact_oscillator.json").string();
+  const Outcome outcome = run_command("(exec 3>&1; (sleep 0.3; " ILAW_PROGRAM " run " + scene + " --out " +
+                                      folder + " 2>&3; echo code $? >&3) | true)");
+  EXPECT_NE(outcome.output.find("ilaw: standard output: cannot be written"), std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("code 1\n"), std::string::npos) << outcome.output;
+}
+
 TEST(Program, RemovesTheFieldsOfAnEarlierRun) {
   const auto folder = fresh_folder();
   nlohmann::json scene = nlohmann::json::parse(text_of(ball));

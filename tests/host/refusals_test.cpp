@@ -348,6 +348,10 @@ TEST(Warnings, TellWhatCanHardlyBeMeant) {
   EXPECT_EQ(
       warnings_of("/interfaces/0/obstacle", R"({"type": "sphere", "center": [0.5, 1], "radius": 0.75})"),
       Warnings{"/interfaces/0: 2 node(s) start inside the obstacle, node 0 by 0.25"});
+  const Warnings deep = warnings_of("/interfaces/0/obstacle",
+                                    R"({"type": "plane", "point": [0, 1.00000001], "normal": [0, 1]})");
+  ASSERT_EQ(deep.size(), 1U) << "beyond rounding, though small beside the bodies";
+  EXPECT_EQ(deep[0].find("/interfaces/0: 2 node(s) start inside the obstacle"), 0U) << deep[0];
 }
 
 // For blocks the critical step is a bound from below.

@@ -239,6 +239,8 @@ TEST(Springs, AreRefusedWithPointerFoundAndAllowed) {
             "/springs/0/to: found node 0 at both ends, expected another node");
   EXPECT_EQ(with(R"({"nodes": [0, 1], "to": [0], "stiffness": 1})"),
             "/springs/0/to: found 1 nodes, expected one for each of the 2 nodes of 'nodes'");
+  EXPECT_EQ(with(R"({"nodes": [0], "to": [1, 0], "stiffness": 1})"),
+            "/springs/0/to: found 2 nodes, expected one for each of the 1 nodes of 'nodes'");
   EXPECT_EQ(with(R"({"nodes": [0], "stiffness": 1})").find("/springs/0: found neither, expected one of 'to'"),
             0U)
       << with(R"({"nodes": [0], "stiffness": 1})");

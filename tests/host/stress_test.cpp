@@ -40,6 +40,7 @@ TEST_P(SceneThatFailed, IsSolved) {
   EXPECT_GT(verdict.figures.node_steps, 200);
   // The tolerance of coupled contacts, times the largest mass ratio.
   EXPECT_LT(verdict.figures.added, 1e5 * CoupledStep::tolerance);
+  EXPECT_LE(verdict.figures.worst_bound, 1.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -344,6 +345,35 @@ TEST(RandomScene, MovesAndMeetsInAllWaysThatThereAre) {
   EXPECT_EQ(found, wanted);
 }
 
+// A drawn scene is stable: springs are far below the stiffness of a step, elements as large as waves are
+// fast.
+TEST(RandomScene, HasSpringsAndElementsWithinItsStep) {
+  setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
+  const LawBook laws({"contact"});
+  int springs = 0, pairs = 0;
+  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    const json scene = random_scene(laws, laws.all().front(), seed, {});
+    const json& model = scene["model"];
+    if (scene.contains("springs") && scene["time"].contains("dt") && model.contains("points")) {
+      const double step = scene["time"]["dt"].get<double>(),
+                   mass = model["points"].back()["mass"].get<double>(),
+                   part = scene["springs"][0]["stiffness"].get<double>() * step * step / mass;
+      EXPECT_GE(part, 0.99e-6) << "seed " << seed;
+      EXPECT_LE(part, 0.2) << "seed " << seed;
+      ++springs;
+    }
+    if (model["type"] != "blocks" || model["blocks"].size() < 2) continue;
+    const auto edge_over_wave = [&](const json& block) {
+      return block["size"][0].get<double>() / block["elements"][0].get<double>() /
+             std::sqrt(block["material"]["young"].get<double>());
+    };
+    EXPECT_GE(edge_over_wave(model["blocks"][1]), (1.0 - 1e-12) * edge_over_wave(model["blocks"][0])) << seed;
+    ++pairs;
+  }
+  EXPECT_GT(springs, 5);
+  EXPECT_GT(pairs, 5);
+}
+
 // Two shocks between those steps in which other figures are taken, each far larger than what was before.
 TEST(Stress, HoldsTheBalanceToTheSizeOfEveryStep) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
@@ -474,13 +504,16 @@ TEST_P(RandomScenes, FulfilTheInvariants) {
   setup.scenes = 84;
   setup.size = {4000, 1000, GetParam()};
   const StressReport report = stress(setup, [](std::int64_t) {});
-  std::int64_t node_steps = 0, ran = 0;
+  std::int64_t node_steps = 0, ran = 0, stopped = 0;
   for (const StressRow& row : report.rows) {
     node_steps += row.worst.node_steps;
     ran += row.scenes - row.refused;
+    stopped += row.stopped;
+    EXPECT_LE(row.worst.worst_bound, 1.0) << row.law;
   }
   EXPECT_GT(node_steps, 10'000'000);
   EXPECT_GT(ran, 60);
+  EXPECT_LE(stopped, 3);
   for (const StressFinding& failure : report.failures)
     ADD_FAILURE() << failure.law << ", seed " << failure.seed << ": " << failure.reason;
 }

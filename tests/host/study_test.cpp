@@ -182,6 +182,7 @@ TEST(Study, OfTheBallTellsOrderAndCost) {
     steps[row["law"]].push_back(std::stod(row["dt"]));
     errors[row["law"]].push_back(std::stod(row["u_L2"]));
     for (const char* norm : norm_names) EXPECT_FALSE(row[norm].empty()) << norm << " of " << row["law"];
+    EXPECT_FALSE(row["seconds"].empty()) << row["law"] << ", " << row["steps"] << " steps";
     EXPECT_NEAR(std::stod(row["dt"]) * std::stod(row["steps"]), 5.0, std::stod(row["dt"]));
   }
   ASSERT_EQ(steps.size(), 3U);
@@ -271,6 +272,20 @@ TEST(Study, TakesTheUsualLawsWhereTheSceneListsNone) {
   EXPECT_EQ(found["laws"][0]["name"], "contact predictive");
   EXPECT_EQ(found["laws"][2]["name"], "explicit k=0.1");
   EXPECT_NE(study.outcome.output.find("implicit k=100.0"), std::string::npos) << study.outcome.output;
+}
+
+// The same run has other errors beside a reference that is finer by 1.5 and by 8.
+TEST(Study, ComparesWithARunAsFineAsAsked) {
+  std::vector<double> errors;
+  for (const double finer : {1.5, 8.0}) {
+    json scene = ball();
+    scene.erase("exact");
+    scene["study"] = {{"reference", finer}};
+    const Result study = study_of(scene, "--law contact --levels 2");
+    ASSERT_EQ(study.outcome.code, 0) << study.outcome.output;
+    errors.push_back(std::stod(rows_of(study.folder / "study.csv").back()["u_L2"]));
+  }
+  EXPECT_NE(errors[0], errors[1]);
 }
 
 // Of a scene with friction they have it, too; one with another law is compared with itself.

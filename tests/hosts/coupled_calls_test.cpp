@@ -189,6 +189,43 @@ TEST(Coupled, WritesNothingWhereOneGroupIsRefused) {
   EXPECT_EQ(scene.state, state);
 }
 
+// A history of four variables, read by component and written by contact with places left between.
+TEST(Coupled, ReadsAndWritesStatesOfTwoLayouts) {
+  const auto pressed = [] {
+    Scene scene = cube(create("penalty", ILAW_DELASSUS_FULL,
+                              {{"stiffness", 1e4}, {"tangential_stiffness", 3e3}, {"friction", 0.3}}),
+                       1);
+    for (int n = 0; n < 3; ++n) {
+      scene.step(g, 1e-10);
+      for (double& gap : scene.gap) gap -= 1e-3;
+    }
+    return scene;
+  };
+  Scene same = pressed(), other = pressed();
+  const std::size_t size = same.law.info().state_size, count = same.body.size(), width = 2 * size + 1;
+  ASSERT_GE(size, 3U);
+  std::vector<double> by_component(size * count), apart(width * count, 7.0);
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t c = 0; c < size; ++c) by_component[c * count + k] = other.state[k * size + c];
+  same.step(g, 1e-10);
+  other.time = same.time;
+  for (std::size_t i = 2; i < other.v.size(); i += 3) other.v[i] -= h * g;
+  ilaw_batch batch = other.batch();
+  batch.state_in = ilaw::input(by_component.data(), 1, static_cast<std::int64_t>(count));
+  batch.state_out = ilaw::output(apart.data() + width - 1, static_cast<std::int64_t>(width), -2);
+  ilaw_bodies bodies = other.bodies();
+  bodies.v_previous = ilaw::input(same.v_before.data(), 3, 1);
+  bodies.spin_previous = ilaw::input(same.w_before.data(), 3, 1);
+  other.solver.solve(bodies, other.contacts(batch));
+  EXPECT_EQ(other.v, same.v);
+  EXPECT_EQ(other.impulse, same.impulse);
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t c = 0; c < width; ++c) {
+      const bool is_written = c % 2 == 0 && c > 0;
+      EXPECT_EQ(apart[k * width + c], is_written ? same.state[k * size + (width - 1 - c) / 2] : 7.0);
+    }
+}
+
 // A velocity that is no number is bad input at its contact, no agreement of all.
 TEST(Coupled, CountsNoNumberAsNoSolution) {
   Scene scene = cube(tie(), 1);

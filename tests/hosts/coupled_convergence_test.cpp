@@ -21,7 +21,8 @@ using Point = std::array<double, 3>;
 
 // Bodies of any mass, and contacts of one law between them.
 struct Assembly {
-  explicit Assembly(ilaw::interface law_of_all, bool turns) : law(std::move(law_of_all)), rotate(turns) {}
+  explicit Assembly(ilaw::interface law_of_all, bool turns)
+      : law(std::move(law_of_all)), rotate(turns), form(turns ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR) {}
 
   void add_body(double mass, double inertia, const Point& v_free) {
     inverse_mass.push_back(1.0 / mass);
@@ -50,6 +51,7 @@ struct Assembly {
   ilaw_coupled_report solve(double tolerance, std::uint32_t most, bool weighted = false) {
     const double gap = 0.0, area = 1.0;
     impulse.resize(normal.size());
+    status.assign(count, ILAW_BROKEN);
     velocity = v;
     std::vector<double> spin(v.size()), state(law.info().state_size * count + 1), still(v.size());
     const auto size = static_cast<std::int64_t>(law.info().state_size);
@@ -63,6 +65,8 @@ struct Assembly {
     batch.state_in = ilaw::input(state.data(), size, 1);
     batch.state_out = ilaw::output(state.data(), size, 1);
     batch.impulse = ilaw::output(impulse.data(), 3, 1);
+    batch.status = status.data();
+    batch.status_stride = 1;
     law.initialise(batch);
     ilaw_bodies bodies{};
     bodies.struct_size = sizeof bodies;
@@ -77,15 +81,16 @@ struct Assembly {
       bodies.spin_free = bodies.spin_previous = ilaw::input(still.data(), 3, 1);
       bodies.spin = ilaw::output(spin.data(), 3, 1);
     }
-    ilaw_contacts contacts = ilaw::contacts_of(law, rotate ? ILAW_DELASSUS_FULL : ILAW_DELASSUS_SCALAR, batch,
-                                               body.data(), counterpart.data());
+    ilaw_contacts contacts = ilaw::contacts_of(law, form, batch, body.data(), counterpart.data());
     contacts.arm = ilaw::input(arms.data(), 3, 1);
     contacts.counterpart_arm = ilaw::input(other_arms.data(), 3, 1);
     if (weighted) {
       contacts.body_count = body_count;
       contacts.counterpart_count = counterpart_count;
-      contacts.body_weight = ilaw::input(weight.data(), body_count, 1);
-      contacts.counterpart_weight = ilaw::input(other_weight.data(), counterpart_count, 1);
+      const std::int64_t numbers = weight_size;
+      contacts.weight_size = weight_size;
+      contacts.body_weight = ilaw::input(weight.data(), body_count * numbers, 1);
+      contacts.counterpart_weight = ilaw::input(other_weight.data(), counterpart_count * numbers, 1);
     }
     ilaw_coupled_options options{};
     options.tolerance = tolerance;
@@ -101,10 +106,12 @@ struct Assembly {
 
   ilaw::interface law;
   bool rotate;
+  ilaw_delassus_forms form;
   double speed = 0.0;
   std::size_t count = 0;
-  std::uint32_t body_count = 1, counterpart_count = 1;
+  std::uint32_t body_count = 1, counterpart_count = 1, weight_size = 1;
   std::vector<std::int32_t> body, counterpart;
+  std::vector<std::uint8_t> status;
   std::vector<double> weight, other_weight, normal, arms, other_arms, impulse, v, velocity, inverse_mass,
       inverse_inertia;
 };
@@ -203,6 +210,18 @@ TEST(CoupledConvergence, TiesMassesOfOneToTenMillion) {
     EXPECT_NEAR(chain.velocity[i], momentum / mass, 1e-6) << "body " << i / 3;
 }
 
+// A light body that stops two heavy ones has impulses of their mass ratio: no sign of incompatible laws.
+TEST(CoupledConvergence, BlamesNoLawForAMassRatio) {
+  Assembly chain(create("tie", ILAW_DELASSUS_SCALAR), false);
+  for (const double speed : {1.0, 0.0, -1.0})
+    chain.add_body(speed == 0.0 ? 1.0 : 1e12, 0.0, {speed, 0.0, 0.0});
+  chain.add(1, 0);
+  chain.add(2, 1);
+  const ilaw_coupled_report report = chain.solve(1e-12, 1000);
+  EXPECT_GT(report.speed, 1e9 * report.first_speed);
+  EXPECT_EQ(report.law, nullptr) << report.law;
+}
+
 // Bricks in running bond, four corners at each bed joint; the top course weighs ten thousand times the
 // others.
 TEST(CoupledConvergence, HoldsAWallUnderAHeavyCourse) {
@@ -280,6 +299,62 @@ TEST(CoupledConvergence, FacetsOfOneNodeArePairs) {
     EXPECT_NEAR(pairs.impulse[i], facets.impulse[i], 1e-10) << i;
 }
 
+// Nodes with axes of their own: the matrices of a node that a side names twice add up, here to the identity.
+TEST(CoupledConvergence, AddsTheMatricesOfANodeNamedTwice) {
+  const std::vector<double> identity{1, 0, 0, 0, 1, 0, 0, 0, 1}, none(9, 0.0);
+  const std::vector<double> part{0.3, -0.2, 0.5, 0.1, 0.6, -0.4, 0.7, 0.2, 0.9};
+  std::vector<double> both = part, once = identity;
+  for (std::size_t c = 0; c < 9; ++c) both.push_back(identity[c] - part[c]);
+  once.insert(once.end(), none.begin(), none.end());
+  Assembly pairs(friction(true, 0.3), true), facets(friction(true, 0.3), true);
+  pairs.rotate = facets.rotate = false;
+  facets.weight_size = 9;
+  for (int i = 0; i < 4; ++i) {
+    const Point v{0.01 * i, -0.02, -1e-2};
+    pairs.add_body(1.0 + i, 0.0, v);
+    facets.add_body(1.0 + i, 0.0, v);
+    pairs.add(i, i - 1);
+    facets.add({i, i}, both, {i - 1, -1}, once);
+  }
+  pairs.solve(1e-13, 1000);
+  facets.solve(1e-13, 1000, true);
+  for (std::size_t i = 0; i < pairs.impulse.size(); ++i)
+    EXPECT_NEAR(pairs.impulse[i], facets.impulse[i], 1e-10) << i;
+}
+
+// Balls high up are reached last: each column is an island, and its contacts stick at the end.
+TEST(CoupledConvergence, GivesTheLastStatusOfEachIsland) {
+  Assembly columns(friction(false, 0.3), false);
+  for (int column = 0; column < 2; ++column)
+    for (int i = 0; i < 250; ++i) {
+      const auto number = static_cast<std::int32_t>(columns.inverse_mass.size());
+      columns.add_body(1.0, 0.0, {0.0, 0.0, -1e-2});
+      columns.add(number, i > 0 ? number - 1 : -1);
+    }
+  EXPECT_LE(columns.solve(1e-12, 2000).residual, 1e-12);
+  for (std::size_t k = 0; k < columns.count; ++k) EXPECT_EQ(columns.status[k], ILAW_STICK) << k;
+}
+
+// Two columns of which one takes longer, in either order.
+TEST(CoupledConvergence, NamesTheMethodOfTheSlowestIsland) {
+  const auto columns = [](const std::vector<int>& heights) {
+    Assembly made(friction(false, 0.3), false);
+    for (const int height : heights)
+      for (int i = 0; i < height; ++i) {
+        const auto number = static_cast<std::int32_t>(made.inverse_mass.size());
+        made.add_body(1.0, 0.0, {0.0, 0.0, -1e-2});
+        made.add(number, i > 0 ? number - 1 : -1);
+      }
+    return made.solve(1e-12, 2000);
+  };
+  const ilaw_coupled_report low = columns({50}), high = columns({400});
+  ASSERT_NE(low.method, high.method);
+  ASSERT_NE(low.sweeps, high.sweeps);
+  const std::uint32_t slowest = low.sweeps > high.sweeps ? low.method : high.method;
+  EXPECT_EQ(columns({50, 400}).method, slowest);
+  EXPECT_EQ(columns({400, 50}).method, slowest);
+}
+
 // By the lever: a node on the middle of a beam of two nodes feels half of their masses.
 TEST(CoupledConvergence, AFacetSharesTheImpulseByWeights) {
   Assembly facet(create("contact", ILAW_DELASSUS_SCALAR), false);
@@ -322,6 +397,51 @@ TEST(CoupledConvergence, NamesTheWorstContactWhereNoneIsSolved) {
   EXPECT_EQ(report.worst_group, 0);
   EXPECT_GE(report.worst_contact, 0);
   EXPECT_EQ(report.method, static_cast<std::uint32_t>(ILAW_METHOD_CONJUGATE));
+}
+
+// A body between two walls that approach each other, beside a heavy one on a wall of its own: the walls' law
+// is named, not that of the largest impulse.
+TEST(CoupledConvergence, NamesIncompatibleLawsAtOneBody) {
+  Assembly pinched(create("tie", ILAW_DELASSUS_SCALAR), false),
+      heavy(create("contact", ILAW_DELASSUS_SCALAR), false);
+  const std::vector<double> walls{0.0, 0.0, 1.0, 0.0, 0.0, -1.0}, inverse_mass{1.0, 1e-18};
+  std::vector<double> v{0.0, 0.0, 0.0, 0.0, 0.0, -1.0}, impulse(6), heavy_impulse(3), state(64),
+      normal{0, 0, 1, 0, 0, 1};
+  const double gap = 0.0, area = 1.0;
+  const std::vector<std::int32_t> body{0, 0, 1}, wall{-1, -1, -1};
+  const auto batch_of = [&](std::int64_t count, double* r) {
+    ilaw_batch batch{};
+    batch.struct_size = sizeof batch;
+    batch.node_count = count;
+    batch.time = batch.velocity_step = batch.position_step = 1e-3;
+    batch.gap = ilaw::input(&gap, 0, 0);
+    batch.area = ilaw::input(&area, 0, 0);
+    batch.normal = ilaw::input(normal.data(), 3, 1);
+    batch.state_in = ilaw::input(state.data(), 8, 1);
+    batch.state_out = ilaw::output(state.data(), 8, 1);
+    batch.impulse = ilaw::output(r, 3, 1);
+    return batch;
+  };
+  const ilaw_batch ties = batch_of(2, impulse.data()), contact = batch_of(1, heavy_impulse.data());
+  ASSERT_EQ(pinched.law.initialise(ties), ILAW_OK);
+  ilaw_contacts first = ilaw::contacts_of(pinched.law, ILAW_DELASSUS_SCALAR, ties, body.data(), wall.data());
+  first.wall_velocity = ilaw::input(walls.data(), 3, 1);
+  const ilaw_contacts second =
+      ilaw::contacts_of(heavy.law, ILAW_DELASSUS_SCALAR, contact, body.data() + 2, wall.data());
+  ilaw_bodies bodies{};
+  bodies.struct_size = sizeof bodies;
+  bodies.dimension = 3;
+  bodies.count = bodies.owned_count = 2;
+  bodies.inverse_mass = ilaw::input(inverse_mass.data(), 1, 0);
+  const std::vector<double> v_free = v;
+  bodies.v_free = bodies.v_previous = ilaw::input(v_free.data(), 3, 1);
+  bodies.velocity = ilaw::output(v.data(), 3, 1);
+  const ilaw_contacts* groups[] = {&first, &second};
+  ilaw::coupled solver;
+  const ilaw_coupled_report report = solver.solve(bodies, groups, {});
+  ASSERT_NE(report.law, nullptr) << report.speed / report.first_speed;
+  EXPECT_STREQ(report.law, "tie");
+  EXPECT_STREQ(report.other_law, "tie");
 }
 
 }  // namespace

@@ -8,26 +8,25 @@ already carry a mutant are left out.
 """
 import argparse
 import json
-import pathlib
 import random
 import re
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-MUTANTS = pathlib.Path(__file__).with_name("mutants.json")
-AREAS = {"plugins": ["plugins"], "kit": ["api/include/ilaw/kit"], "loader": ["api/loader"], "coupled": ["api/coupled"],
-         "check": ["api/check"], "host": ["host_mock/host"]}
+from run import AREAS, MUTANTS, SOURCE, area_of
+
 FAULTY = re.compile(r" [-+*/<>] | [<>=!]= | && | \|\| |(?<![\w.])\d+(\.\d+)?|\breturn !|smaller\(|larger\(")
 NO_CODE = re.compile(r"^\s*(//|#|namespace|template|static_assert|\})")
 
 
 def lines_of(area):
     """Every line of an area that computes or decides, as (file, number, text)."""
-    for folder in AREAS[area]:
-        for path in sorted((SOURCE / folder).rglob("*.[ch]pp")):
-            for number, line in enumerate(path.read_text().splitlines(), 1):
-                code = re.sub(r'"[^"]*"|//.*', "", line)
-                if FAULTY.search(code) and not NO_CODE.match(code):
-                    yield path.relative_to(SOURCE).as_posix(), number, line.strip()
+    for path in sorted((SOURCE / AREAS[area].folder).rglob("*.[ch]pp")):
+        file = path.relative_to(SOURCE).as_posix()
+        if area_of(file) != area:
+            continue
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            code = re.sub(r'"[^"]*"|//.*', "", line)
+            if FAULTY.search(code) and not NO_CODE.match(code):
+                yield file, number, line.strip()
 
 
 def main():

@@ -7,11 +7,12 @@
     tests/mutants/run.py --last 24         the last ones of mutants.json
     tests/mutants/run.py --near            by the nearest tests of each alone: survivors may be caught by others
     tests/mutants/run.py --check           only whether each still fits the sources, exactly once
-    tests/mutants/run.py --table           and writes the score into docs/reliability.md
+    tests/mutants/run.py --table           and writes the score of these areas into docs/reliability.md
 
 The copy is build/mutants; the environment variable ILAW_MUTANT is the number of the mutant that its programs have,
-0 for none. The nearest tests come first ("program", or "program:filter"), then all of the mutant's area, until one
-fails, crashes or hangs: that has caught it. Exit codes: 0 at least 90 % are caught in every area, 1 otherwise.
+0 for none. The nearest tests come first ("program", or "program:filter"), then the programs of the mutant's area,
+the quickest first, until one fails, crashes or hangs: that has caught it. A line per mutant names the tests that ran
+and their seconds. Exit codes: 0 at least 90 % are caught in every area, 1 otherwise.
 """
 import argparse
 import collections
@@ -24,6 +25,7 @@ import shutil
 import subprocess
 import sys
 import time
+import typing
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "tests" / "support"))
@@ -32,21 +34,31 @@ import marked_part  # noqa: E402
 MUTANTS = pathlib.Path(__file__).with_name("mutants.json")
 PAGE = SOURCE / "docs" / "reliability.md"
 TREE = SOURCE / "build" / "mutants"
-BUILD = TREE / "build" / "dev"
+BUILD = TREE / "build" / "release"
 GOAL = 0.9
-HANGS = 300  # seconds
-# Every program that runs through the sources of an area.
-AREAS = {"plugins": ["laws_test"],
-         "kit": ["kit_test", "laws_test"],
-         "loader": ["loader_test", "loader_memory_test", "unusual_hosts_test"],
-         "coupled": ["coupled_test", "host_test", "closed_forms_test", "prestress_test"],
-         "check": ["check_test"],
-         "study": ["converge_test", "study_test"],
-         "stress": ["stress_test"],
-         "results": ["forces_test", "fields_test", "summary_test", "runs_test", "checkpoint_test", "resume_test"],
-         "cli": ["program_test", "runs_test", "resume_test", "keys_test", "study_test", "question_page_test"],
-         "host": ["host_test", "bars_test", "blocks_test", "bodies_test", "scene_keys_test", "closed_forms_test",
-                  "prestress_test", "mesh_test", "proximity_filter_test", "keys_test", "checkpoint_test"]}
+HANGS = 600  # seconds, without a mutant
+
+
+class Area(typing.NamedTuple):
+    folder: str  # sources below it, but those of an area further down
+    programs: list  # all that run through them
+
+
+AREAS = {
+    "plugins": Area("plugins", ["laws_test"]),
+    "kit": Area("api/include/ilaw/kit", ["kit_test", "laws_test"]),
+    "loader": Area("api/loader", ["loader_test", "loader_memory_test", "unusual_hosts_test"]),
+    "coupled": Area("api/coupled", ["coupled_test", "host_test", "closed_forms_test", "prestress_test"]),
+    "check": Area("api/check", ["check_test"]),
+    "host": Area("host_mock/host", ["host_test", "bars_test", "blocks_test", "bodies_test", "scene_keys_test",
+                                    "closed_forms_test", "prestress_test", "mesh_test", "proximity_filter_test",
+                                    "keys_test", "checkpoint_test"]),
+    "results": Area("host_mock/host/results", ["forces_test", "fields_test", "summary_test", "runs_test",
+                                               "checkpoint_test", "resume_test"]),
+    "study": Area("host_mock/instruments/study", ["converge_test", "study_test"]),
+    "stress": Area("host_mock/instruments/stress", ["stress_test"]),
+    "cli": Area("host_mock/cli", ["program_test", "runs_test", "resume_test", "keys_test", "study_test", "bench_test",
+                                  "question_page_test"])}
 SWITCH = """#pragma once
 #include <cstdlib>
 // Read when a program or law is loaded, so that evaluate stays pure.
@@ -67,6 +79,10 @@ def arguments():
     parser.add_argument("--table", action="store_true", help="write the score into docs/reliability.md")
     parser.add_argument("--jobs", default=os.cpu_count(), type=int, help="processes of the build and of the tests")
     return parser.parse_args()
+
+
+def area_of(file):
+    return max((len(area.folder), name) for name, area in AREAS.items() if file.startswith(area.folder + "/"))[1]
 
 
 def place_of(mutant, text):
@@ -125,56 +141,77 @@ def copy_tree(by_file):
 
 
 def build(programs, jobs):
-    configure = ["cmake", "-S", TREE, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DILAW_TESTS=ON",
-                 "-DILAW_UNITY=ON", "-DILAW_LAMMPS=OFF", "-DILAW_SOLVERS=OFF", "-DCMAKE_CXX_FLAGS_DEBUG=-O1",
-                 "-DCMAKE_C_FLAGS_DEBUG=-O1"]
+    """With the options of the tests, so that ccache has what no mutant changes."""
+    configure = ["cmake", "-S", TREE, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DILAW_TESTS=ON",
+                 "-DILAW_WERROR=ON", "-DILAW_UNITY=ON"]
     if shutil.which("ccache"):
         configure += ["-DCMAKE_C_COMPILER_LAUNCHER=ccache", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"]
     subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", BUILD, "-j", str(jobs), "--target", *sorted(programs), "--", "--quiet"],
+    subprocess.run(["cmake", "--build", BUILD, "-j", str(jobs), "--target", *sorted(programs), "--", "--quiet", "-k", "0"],
                    check=True)
 
 
-def passes(test, number):
-    """Whether a program's tests pass with a mutant, in time."""
+def passes(test, number, limit):
+    """Whether a program's tests pass with a mutant within a limit of seconds, and how long they took."""
     program, _, chosen = test.partition(":")
-    command = [BUILD / "bin" / program, "--gtest_brief=1", "--gtest_fail_fast"]
-    if chosen:
-        command.append(f"--gtest_filter={chosen}")
-    try:
-        return subprocess.run(command, capture_output=True, timeout=HANGS,
-                              env={**os.environ, "ILAW_MUTANT": str(number)}).returncode == 0
-    except subprocess.TimeoutExpired:
-        return False
-
-
-def tests_of(mutant, near):
-    return list(dict.fromkeys(mutant["tests"] + ([] if near else AREAS[mutant["area"]])))
-
-
-def caught_by(mutant, near):
-    """The first tests that fail with it; none where it survives."""
+    command = [BUILD / "bin" / program, "--gtest_brief=1", "--gtest_fail_fast", f"--gtest_filter={chosen or '*'}"]
     begin = time.monotonic()
-    found = next((test for test in tests_of(mutant, near) if not passes(test, mutant["number"])), "")
-    return found, time.monotonic() - begin
+    try:
+        code = subprocess.run(command, capture_output=True, timeout=limit,
+                              env=os.environ | {"ILAW_MUTANT": str(number), "OMP_WAIT_POLICY": "passive"}).returncode
+    except subprocess.TimeoutExpired:
+        code = 1
+    return code == 0, time.monotonic() - begin
 
 
-def table(score):
-    rows = ["| area | mutants | caught |", "| --- | --- | --- |"]
-    rows += [f"| {area} | {len(caught)} | {sum(caught)} |" for area, caught in sorted(score.items())]
-    everything = [one for caught in score.values() for one in caught]
-    return "\n".join(rows + [f"| all | {len(everything)} | {sum(everything)} |"])
+def tests_of(mutant, near, usual):
+    """The nearest tests, then those of the area by their usual seconds."""
+    others = [] if near else sorted(AREAS[mutant["area"]].programs, key=lambda test: usual.get(test, 0.0))
+    return list(dict.fromkeys(mutant["tests"] + others))
+
+
+def caught(mutant, near, usual):
+    """Whether a test fails with it, and the tests that ran, with their seconds."""
+    ran = []
+    for test in tests_of(mutant, near, usual):
+        passed, seconds = passes(test, mutant["number"], 60 + 5 * usual[test])
+        ran.append(f"{test} {seconds:.1f} s")
+        if not passed:
+            return True, ran
+    return False, ran
+
+
+def table(counts):
+    """Of the mutants and the caught ones of each area."""
+    whole = [sum(column) for column in zip(*counts.values())]
+    rows = [f"| {area} | {mutants} | {found} |" for area, (mutants, found) in [*sorted(counts.items()), ("all", whole)]]
+    return "\n".join(["| area | mutants | caught |", "| --- | --- | --- |", *rows])
+
+
+def counts_on_page():
+    rows = re.findall(r"^\| (\w+) \| (\d+) \| (\d+) \|$", PAGE.read_text(), re.MULTILINE)
+    return {area: (int(mutants), int(found)) for area, mutants, found in rows if area in AREAS}
+
+
+def read_mutants():
+    mutants = json.loads(MUTANTS.read_text())
+    for number, mutant in enumerate(mutants, 1):
+        mutant.update(number=number, area=area_of(mutant["file"]))
+    return mutants
+
+
+def by_file(mutants):
+    found = collections.defaultdict(list)
+    for mutant in mutants:
+        found[mutant["file"]].append(mutant)
+    return found
 
 
 def main():
     options = arguments()
-    everything = json.loads(MUTANTS.read_text())
-    by_file = collections.defaultdict(list)
-    for number, mutant in enumerate(everything, 1):
-        mutant["number"] = number
-        by_file[mutant["file"]].append(mutant)
+    everything = read_mutants()
     try:
-        for file, mutants in by_file.items():
+        for file, mutants in by_file(everything).items():
             with_mutants(file, mutants)
     except ValueError as misfit:
         print(misfit)
@@ -185,24 +222,26 @@ def main():
 
     chosen = [mutant for mutant in everything[-options.last:]
               if options.only in mutant["name"] and mutant["area"] in (options.area or AREAS)]
-    copy_tree({file: with_mutants(file, [one for one in mutants if one in chosen]) for file, mutants in by_file.items()
-               if any(one in chosen for one in mutants)})
-    tests = {test for mutant in chosen for test in tests_of(mutant, options.near)}
+    tests = sorted({test for mutant in chosen for test in tests_of(mutant, options.near, {})})
+    copy_tree({file: with_mutants(file, mutants) for file, mutants in by_file(chosen).items()})
     build({test.partition(":")[0] for test in tests}, options.jobs)
-    score, survivors = collections.defaultdict(list), []
+    score = collections.defaultdict(list)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        broken = [test for test, good in zip(tests, pool.map(lambda test: passes(test, 0), tests)) if not good]
-        if broken:
-            print("fail without any mutant: " + ", ".join(sorted(broken)))
+        sound = dict(zip(tests, pool.map(lambda test: passes(test, 0, HANGS), tests)))
+        if broken := [test for test, (passed, _) in sound.items() if not passed]:
+            print("fail without any mutant: " + ", ".join(broken))
             return 1
-        for mutant, (test, seconds) in zip(chosen, pool.map(lambda one: caught_by(one, options.near), chosen)):
-            score[mutant["area"]].append(bool(test))
-            print(f"{'caught' if test else 'SURVIVED':8} {seconds:6.1f} s  {mutant['area']:8} {mutant['name']}"
-                  + (f"  ({test})" if test else ""), flush=True)
-    print(table(score))
+        usual = {test: seconds for test, (_, seconds) in sound.items()}
+        for mutant, (found, ran) in zip(chosen, pool.map(lambda one: caught(one, options.near, usual), chosen)):
+            score[mutant["area"]].append(found)
+            print(f"{'caught' if found else 'SURVIVED':8}  {mutant['area']:7}  {mutant['name']}: {', '.join(ran)}",
+                  flush=True)
+    counts = {area: (len(found), sum(found)) for area, found in score.items()}
+    print(table(counts))
     if options.table:
-        marked_part.write(PAGE, "<!-- score of the mutants -->", "<!-- end of the score -->", table(score))
-    return 0 if all(sum(caught) >= GOAL * len(caught) for caught in score.values()) else 1
+        whole = table(counts_on_page() | counts)
+        marked_part.write(PAGE, "<!-- score of the mutants -->", "<!-- end of the score -->", whole)
+    return 0 if all(found >= GOAL * mutants for mutants, found in counts.values()) else 1
 
 
 if __name__ == "__main__":

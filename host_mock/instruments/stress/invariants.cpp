@@ -172,7 +172,7 @@ class Judge {
     if (is_beyond && run_->scene.warnings.empty())
       return end(StressEnding::failed, "warning", "nothing says that the step is beyond the critical one");
     const double open = energy.balance_error * energy.scale;
-    figures.worst_bound = open / ledger.balance_bound();
+    figures.worst_bound = open > 0.0 ? open / ledger.balance_bound() : 0.0;
     hold("energy balance", open, ledger.balance_bound());
     if (is_explicit) return hold_explicit(energy, ledger.added_bound(tally));
     figures.added = energy.scale > 0.0 ? std::abs(energy.reaction_work) / energy.scale : 0.0;
