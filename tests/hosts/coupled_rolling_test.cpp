@@ -49,7 +49,7 @@ TEST(CoupledRolling, OneContactIsOneNodeOfTheLaw) {
     ASSERT_EQ(all.body.size(), 1U);
 
     Spheres node(parameters, 1);
-    node.step = all.h;
+    node.velocity_step = node.position_step = all.h;
     const double by_b = at_wall ? 0.0 : 1.0, m = 1.0 / a.mass + by_b / b.mass;
     const double j_a = 1.0 / a.inertia(), j_b = by_b / b.inertia();
     node.h[0] = {m, m + a.radius * a.radius * j_a + b.radius * b.radius * j_b,
@@ -77,7 +77,7 @@ TEST(CoupledRolling, FirstIterationHasTheBitsOfEvaluate) {
     one.options.most_sweeps = 1;
     Spheres node(parameters, 1);
     const Vector arm{0.0, 0.0, -radius};
-    node.step = h;
+    node.velocity_step = node.position_step = h;
     node.h[0] = {1.0 / mass, 1.0 / mass + (1.0 / inertia) * radius * radius, radius * (1.0 / inertia),
                  1.0 / inertia, 1.0 / inertia};
     node.v_previous[0] = one.grains[0].v + cross(one.grains[0].w, arm);

@@ -3,7 +3,6 @@
 #include "kit_probe.hpp"
 
 #include "support/law_cases.hpp"
-#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
 
 #include <functional>

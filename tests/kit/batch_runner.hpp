@@ -4,7 +4,6 @@
 #include "support/law_runner.hpp"
 
 #include <cstring>
-#include <random>
 
 namespace ilaw::testing {
 

@@ -5,9 +5,6 @@
 #include "support/law_cases.hpp"
 #include "support/small_batch.hpp"
 
-#include <algorithm>
-#include <cstdlib>
-#include <limits>
 #include <numeric>
 
 namespace ilaw::testing {
@@ -249,12 +246,11 @@ TEST_P(Contract, InstructionSetsGiveTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, Contract, ::testing::ValuesIn(law_cases("contract")), name_of_case);
-INSTANTIATE_TEST_SUITE_P(Kit, Contract,
-                         ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}},
-                                           LawCase{"pack_probe", "pack_probe", probe_parameters, {}},
-                                           LawCase{"solver_probe", "solver_probe", {}, {}},
-                                           LawCase{"tie", "tie_that_cannot_break", {}, {}}),
-                         name_of_case);
+const LawCase laws_of_contract[] = {{"kit_probe", "kit_probe", probe_parameters, {}},
+                                    {"pack_probe", "pack_probe", probe_parameters, {}},
+                                    {"solver_probe", "solver_probe", {}, {}},
+                                    {"tie", "tie_that_cannot_break", {}, {}}};
+INSTANTIATE_TEST_SUITE_P(Kit, Contract, ::testing::ValuesIn(laws_of_contract), name_of_case);
 
 // A contact is closed where the gap is at most its offset, alone and in packs.
 TEST(GapOffset, IsSubtractedFromTheGap) {

@@ -1,6 +1,5 @@
 // What create refuses, and in which words: the parameter, its value, what is allowed.
 #include "support/law_runner.hpp"
-#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
 
 #include <ilaw/ext/draft/profile.h>
@@ -72,7 +71,7 @@ TEST(Create, RefusesTablesWhoseTimesDoNotIncrease) {
   for (const double second : {1.0, 0.5, inf_value, nan_value}) {
     const std::string said =
         refusal_of("coulomb", tables_of({{"friction", {1.0, 0.1, second, 0.2, 3.0, 0.3}}}));
-    EXPECT_NE(said.find(": expected finite, increasing points"), std::string::npos) << second << ": " << said;
+    EXPECT_THAT(said, HasSubstr(": expected finite, increasing points")) << second;
   }
 }
 

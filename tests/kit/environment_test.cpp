@@ -1,6 +1,7 @@
 // The floating-point environment of the host: left as it was found, and of no influence on the result.
 #include "batch_runner.hpp"
 
+#include "support/law_batch.hpp"
 #include "support/law_cases.hpp"
 
 #include <cfenv>
@@ -28,43 +29,20 @@ Nodes hostile_nodes(std::int64_t count, int components) {
   return nodes;
 }
 
-struct Outcome {
-  std::vector<double> numbers;
-  std::vector<std::uint8_t> status;
-};
-
 // initialise and two steps, with nothing but calls of the law in between.
-Outcome outcome_of(const ilaw::interface& law, const Nodes& nodes) {
-  const auto n = static_cast<std::size_t>(nodes.count);
-  const std::size_t s = law.info().state_size;
-  Outcome out{std::vector<double>(n * (3 + 3 + 4 + s) + 1), std::vector<std::uint8_t>(n)};
-  double *r = out.numbers.data(), *v = r + 3 * n, *energy = v + 3 * n, *state = energy + 4 * n;
-  ilaw_batch b{};
-  b.struct_size = sizeof b;
-  b.node_count = nodes.count;
-  b.velocity_step = b.position_step = 1e-3;
+LawBatch outcome_of(const ilaw::interface& law, const Nodes& nodes) {
+  LawBatch out(law, static_cast<std::size_t>(nodes.count));
+  ilaw_batch b = out.batch();
   b.v_free = ilaw::input(nodes.v_free.data(), 3, 1);
   b.v_previous = ilaw::input(nodes.v_previous.data(), 3, 1);
   b.delassus = ilaw::input(nodes.delassus.data(), nodes.hc, 1);
   b.gap = ilaw::input(nodes.gap.data(), 1, 1);
   b.area = ilaw::input(nodes.area.data(), 1, 1);
-  b.state_in = ilaw::input(state, static_cast<std::int64_t>(s), 1);
-  b.state_out = ilaw::output(state, static_cast<std::int64_t>(s), 1);
-  b.impulse = ilaw::output(r, 3, 1);
-  b.velocity = ilaw::output(v, 3, 1);
-  b.energy = ilaw::output(energy, 4, 1);
-  b.status = out.status.data();
-  b.status_stride = 1;
   law.initialise(b);
   law.evaluate(b);
   b.time = 1e-3;
   law.evaluate(b);
   return out;
-}
-
-bool same(const Outcome& a, const Outcome& b) {
-  return a.status == b.status &&
-         std::memcmp(a.numbers.data(), b.numbers.data(), a.numbers.size() * sizeof(double)) == 0;
 }
 
 void for_all_laws(const std::function<void(const ilaw::interface&, const Nodes&)>& check) {
@@ -93,14 +71,14 @@ TEST(FloatEnvironment, FlagsAreLeftAsTheyWere) {
 
 TEST(FloatEnvironment, RoundingModeDoesNotMatterAndStays) {
   for_all_laws([](const ilaw::interface& law, const Nodes& nodes) {
-    const Outcome nearest = outcome_of(law, nodes);
+    const LawBatch nearest = outcome_of(law, nodes);
     for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
       std::fesetround(mode);
-      const Outcome found = outcome_of(law, nodes);
+      const LawBatch found = outcome_of(law, nodes);
       const int after = std::fegetround();
       std::fesetround(FE_TONEAREST);
       EXPECT_EQ(after, mode) << "mode " << mode;
-      EXPECT_TRUE(same(found, nearest)) << mode;
+      EXPECT_TRUE(found == nearest) << mode;
     }
   });
 }
@@ -109,14 +87,14 @@ TEST(FloatEnvironment, RoundingModeDoesNotMatterAndStays) {
 TEST(FloatEnvironment, FlushingToZeroDoesNotMatterAndStays) {
   constexpr unsigned flush_to_zero = 0x8000, subnormals_are_zero = 0x0040;
   for_all_laws([](const ilaw::interface& law, const Nodes& nodes) {
-    const Outcome expected = outcome_of(law, nodes);
+    const LawBatch expected = outcome_of(law, nodes);
     const unsigned host = _mm_getcsr(), flushing = host | flush_to_zero | subnormals_are_zero;
     _mm_setcsr(flushing);
-    const Outcome found = outcome_of(law, nodes);
+    const LawBatch found = outcome_of(law, nodes);
     const unsigned after = _mm_getcsr();
     _mm_setcsr(host);
     EXPECT_EQ(after, flushing);
-    EXPECT_TRUE(same(found, expected));
+    EXPECT_TRUE(found == expected);
   });
 }
 #endif
@@ -125,13 +103,13 @@ TEST(FloatEnvironment, FlushingToZeroDoesNotMatterAndStays) {
 // As gfortran -ffpe-trap=invalid,zero,overflow,underflow: an exception inside a law would end the program.
 TEST(FloatEnvironment, HostsThatTrapLive) {
   for_all_laws([](const ilaw::interface& law, const Nodes& nodes) {
-    const Outcome expected = outcome_of(law, nodes);
+    const LawBatch expected = outcome_of(law, nodes);
     std::feclearexcept(FE_ALL_EXCEPT);
     feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW | FE_UNDERFLOW);
-    const Outcome found = outcome_of(law, nodes);
+    const LawBatch found = outcome_of(law, nodes);
     const int trapping = fedisableexcept(FE_ALL_EXCEPT);
     EXPECT_EQ(trapping, FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW | FE_UNDERFLOW);
-    EXPECT_TRUE(same(found, expected));
+    EXPECT_TRUE(found == expected);
   });
 }
 #endif

@@ -3,9 +3,7 @@
 #include "kit_probe.hpp"
 
 #include "support/law_cases.hpp"
-#include "support/numbers.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 namespace ilaw::testing {
@@ -183,12 +181,11 @@ TEST_P(Floats, ThatStayWhereTheyAreAreTheDoublesRounded) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, Floats, ::testing::ValuesIn(law_cases("contract")), name_of_case);
-INSTANTIATE_TEST_SUITE_P(Kit, Floats,
-                         ::testing::Values(LawCase{"kit_probe", "kit_probe", probe_parameters, {}},
-                                           LawCase{"pack_probe", "pack_probe", probe_parameters, {}},
-                                           LawCase{"solver_probe", "solver_probe", {}, {}},
-                                           LawCase{"tie", "tie_unbreakable", {}, {}}),
-                         name_of_case);
+const LawCase laws_with_floats[] = {{"kit_probe", "kit_probe", probe_parameters, {}},
+                                    {"pack_probe", "pack_probe", probe_parameters, {}},
+                                    {"solver_probe", "solver_probe", {}, {}},
+                                    {"tie", "tie_unbreakable", {}, {}}};
+INSTANTIATE_TEST_SUITE_P(Kit, Floats, ::testing::ValuesIn(laws_with_floats), name_of_case);
 
 // One closed node of coulomb, friction per node.
 struct FloatNode {

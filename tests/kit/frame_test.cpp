@@ -8,21 +8,6 @@
 namespace ilaw::testing {
 namespace {
 
-using Matrix = std::array<Vector, 3>;  // rows
-
-Vector times(const Matrix& q, const Vector& a) {
-  Vector out{};
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) out[i] += q[i][j] * a[j];
-  return out;
-}
-Matrix product(const Matrix& p, const Matrix& q) {
-  Matrix out{};
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j)
-      for (std::size_t k = 0; k < 3; ++k) out[i][j] += p[i][k] * q[k][j];
-  return out;
-}
 // Rotation by an angle about a coordinate axis.
 Matrix turn(std::size_t about, double angle) {
   Matrix q{};
@@ -76,8 +61,7 @@ void expect_frame_indifference(const std::string& law, const Parameters& paramet
   Matrix q = start;
   for (int step = 0; step < 50; ++step) {
     const Vector expected = still.step(start, velocity_of(step)), found = turning.step(q, velocity_of(step));
-    for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(found[c], expected[c], rounding) << law << ", step " << step;
+    EXPECT_THAT(found, VectorNear(expected, rounding)) << law << ", step " << step;
     q = product(q, each_step);
   }
 }
@@ -132,7 +116,7 @@ TEST(Frame, MemoryFollowsTheNormalByAnyAngle) {
                     dot(t1, across) * (std::cos(angle) * across[c] - std::sin(angle) * n[c]);
     // The axis is known to an ulp of n over the sine of the angle.
     const double tolerance = 1e-15 + 4e-16 / std::max(pi - angle, 1e-1 * (angle == pi ? 1.0 : 0.0) + 1e-9);
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(t2[c], expected[c], tolerance) << "angle " << angle;
+    EXPECT_THAT(t2, VectorNear(expected, tolerance)) << "angle " << angle;
     EXPECT_NEAR(dot(t2, turned), 0.0, 1e-15) << "angle " << angle;
   }
 }

@@ -1,12 +1,11 @@
 #include <ilaw/kit/math.hpp>
 #include <ilaw/kit/pack.hpp>
 
-#include <gtest/gtest.h>
+#include "support/matchers.hpp"
+#include "support/random.hpp"
 
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <random>
 
 namespace {
 
@@ -17,13 +16,13 @@ using ilaw::kit::length;
 using ilaw::kit::log;
 using ilaw::kit::log_one_plus;
 using ilaw::kit::power;
+using ilaw::testing::Random;
 
 // The long double function of libm, rounded, is the reference.
 TEST(Exp, IsWithinOneUlp) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-745.0, 709.7);
+  Random random(3);
   for (int i = 0; i < 200000; ++i) {
-    const double x = i % 2 ? uniform(random) : uniform(random) * 1e-3;
+    const double x = i % 2 ? random(-745.0, 709.7) : random(-745.0, 709.7) * 1e-3;
     const auto expected = static_cast<double>(std::exp(static_cast<long double>(x)));
     const double ulp = std::nextafter(expected, infinity) - expected;
     EXPECT_LE(std::abs(exp(x) - expected), ulp) << x;
@@ -39,10 +38,9 @@ TEST(Exp, HasItsLimits) {
 }
 
 TEST(Log, IsWithinOneUlp) {
-  std::mt19937_64 random(4);
-  std::uniform_real_distribution<double> exponent(-1074.0, 1024.0), near_one(0.5, 2.0);
+  Random random(4);
   for (int i = 0; i < 200000; ++i) {
-    const double x = i % 2 ? std::exp2(exponent(random)) : near_one(random);
+    const double x = i % 2 ? std::exp2(random(-1074.0, 1024.0)) : random(0.5, 2.0);
     const auto expected = static_cast<double>(std::log(static_cast<long double>(x)));
     const double ulp = std::nextafter(std::abs(expected), infinity) - std::abs(expected);
     EXPECT_LE(std::abs(log(x) - expected), ulp) << x;
@@ -59,10 +57,9 @@ TEST(Log, HasItsLimits) {
 
 // Relatively, however small they are.
 TEST(ExpMinusOne, IsWithinTwoUlpBelowZero) {
-  std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> exponent(-300.0, 9.6), near_half(0.3, 1.5);
+  Random random(7);
   for (int i = 0; i < 200000; ++i) {
-    const double x = i % 2 ? -std::exp2(exponent(random)) : -near_half(random);
+    const double x = i % 2 ? -std::exp2(random(-300.0, 9.6)) : -random(0.3, 1.5);
     const auto expected = static_cast<double>(std::expm1(static_cast<long double>(x)));
     const double ulp = std::nextafter(std::abs(expected), infinity) - std::abs(expected);
     EXPECT_LE(std::abs(exp_minus_one(x) - expected), 2.0 * ulp) << x;
@@ -72,10 +69,9 @@ TEST(ExpMinusOne, IsWithinTwoUlpBelowZero) {
 }
 
 TEST(LogOnePlus, IsWithinTwoUlp) {
-  std::mt19937_64 random(8);
-  std::uniform_real_distribution<double> exponent(-300.0, 0.0);
+  Random random(8);
   for (int i = 0; i < 200000; ++i) {
-    const double size = std::exp2(exponent(random)), x = i % 2 ? -0.5 * size : size;
+    const double size = std::exp2(random(-300.0, 0.0)), x = i % 2 ? -0.5 * size : size;
     const auto expected = static_cast<double>(std::log1p(static_cast<long double>(x)));
     const double ulp = std::nextafter(std::abs(expected), infinity) - std::abs(expected);
     EXPECT_LE(std::abs(log_one_plus(x) - expected), 2.0 * ulp) << x;
@@ -85,14 +81,14 @@ TEST(LogOnePlus, IsWithinTwoUlp) {
 
 TEST(Packs, GiveTheBitsOfADouble) {
   using ilaw::kit::pack;
-  std::mt19937_64 random(6);
-  std::uniform_real_distribution<double> uniform(-760.0, 720.0);
+  Random random(6);
   const double special[] = {0.0, -0.0, infinity, -infinity, std::nan(""), 1e-310, 5e-324, -1.0};
   // One NaN is like another: its sign is the compiler's choice.
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(std::isnan(x) ? std::nan("") : x); };
   for (int i = 0; i < 20000; ++i) {
     double x[pack::size];
-    for (double& one : x) one = i < 8 ? special[i] : i % 2 ? uniform(random) : exp(uniform(random));
+    for (double& one : x)
+      one = i < 8 ? special[i] : i % 2 ? random(-760.0, 720.0) : exp(random(-760.0, 720.0));
     pack all;
     std::memcpy(&all, x, sizeof x);
     const pack exps = exp(all), logs = log(all), minus_one = exp_minus_one(all), one_plus = log_one_plus(all);
@@ -107,10 +103,9 @@ TEST(Packs, GiveTheBitsOfADouble) {
 
 // The relative error of exp is the absolute one of y ln x, of which half an ulp is lost.
 TEST(Power, IsAsAccurateAsItSays) {
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> exponent(-200.0, 200.0), powers(0.1, 4.0);
+  Random random(5);
   for (int i = 0; i < 200000; ++i) {
-    const double x = std::exp2(exponent(random)), y = i % 4 ? powers(random) : 0.5 * (i % 16 / 4 + 1);
+    const double x = std::exp2(random(-200.0, 200.0)), y = i % 4 ? random(0.1, 4.0) : 0.5 * (i % 16 / 4 + 1);
     const auto expected =
         static_cast<double>(std::pow(static_cast<long double>(x), static_cast<long double>(y)));
     EXPECT_LE(std::abs(power(x, y) / expected - 1.0), 2.3e-16 * (1.0 + std::abs(y * std::log(x))))

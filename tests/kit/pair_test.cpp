@@ -1,8 +1,7 @@
 // What laws remember of a pair of bodies: it goes on where the two change roles, as the page on the ABI says
 // ("Pairs of bodies"), and where the normal turns, by any angle.
-#include <support/law_cases.hpp>
-
-#include <algorithm>
+#include "support/law_batch.hpp"
+#include "support/law_cases.hpp"
 
 namespace ilaw::testing {
 namespace {
@@ -11,12 +10,8 @@ struct Axes {
   Vector n, t1, t2;
 };
 
-Vector sum(double a, const Vector& x, double b, const Vector& y) {
-  return {a * x[0] + b * y[0], a * x[1] + b * y[1], a * x[2] + b * y[2]};
-}
-Vector minus(const Vector& a) { return {-a[0], -a[1], -a[2]}; }
 Vector global(const Axes& axes, const Vector& local) {
-  return sum(1.0, sum(local[0], axes.n, local[1], axes.t1), local[2], axes.t2);
+  return local[0] * axes.n + local[1] * axes.t1 + local[2] * axes.t2;
 }
 Vector local(const Axes& axes, const Vector& a) { return {dot(axes.n, a), dot(axes.t1, a), dot(axes.t2, a)}; }
 
@@ -33,58 +28,39 @@ Axes turned(const Axes& axes, double angle, const Vector& across) {
   const double c = std::cos(angle), s = std::sin(angle);
   const auto turn = [&](const Vector& a) {
     const double normal = dot(a, axes.n), along = dot(a, across);
-    return sum(1.0, a, 1.0,
-               sum(normal * (c - 1.0) - along * s, axes.n, normal * s + along * (c - 1.0), across));
+    return a + (normal * (c - 1.0) - along * s) * axes.n + (normal * s + along * (c - 1.0)) * across;
   };
   return {turn(axes.n), turn(axes.t1), turn(axes.t2)};
 }
 
 // A contact in global axes, driven on a path that is given in the axes of the pair.
-class Contact {
+class Contact : public LawBatch {
  public:
-  Contact(const LawCase& law, int dimension, bool tangent)
-      : law_(make_law(law.law, SetupBuilder(law.parameters, static_cast<std::uint32_t>(dimension),
-                                            ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, tangent))),
-        state(law_.info().state_size) {}
+  Contact(const LawCase& given, int dimension, bool has_tangent)
+      : LawBatch(make_law(given.law, SetupBuilder(given.parameters, static_cast<std::uint32_t>(dimension),
+                                                  ILAW_DELASSUS_SCALAR, ILAW_FRAME_GLOBAL, has_tangent))) {}
 
   bool remembers() const { return !state.empty(); }
   bool remembers_direction() const { return state.size() >= 3; }  // its last three numbers
   void forget() { steps_ = 0; }
-  ilaw_instance_info info() const { return law_.info(); }
 
   // Impulse, in global axes.
-  Vector step(const Axes& axes, const Vector& v) {
+  Vector step(const Axes& axes, const Vector& velocity) {
     // Closed, and open for a while before it is closed again.
-    const double one = 1.0, gap = time_ % 16 < 13 ? -1e-4 : 1e-4;
-    Vector r{};
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = 1;
-    b.velocity_step = b.position_step = 1e-3;
-    b.time = 1e-3 * ++time_;
-    b.v_free = b.v_previous = ilaw::input(v.data(), 0, 1);
-    b.delassus = b.area = ilaw::input(&one, 0, 1);
-    b.gap = ilaw::input(&gap, 0, 1);
-    b.normal = ilaw::input(axes.n.data(), 0, 1);
-    b.tangent = ilaw::input(axes.t1.data(), 0, 1);
-    b.state_in = ilaw::input(state.data(), 0, 1);
-    b.state_out = ilaw::output(state.data(), 0, 1);
-    b.impulse = ilaw::output(r.data(), 0, 1);
+    gap[0] = time_ % 16 < 13 ? -1e-4 : 1e-4;
+    time = 1e-3 * ++time_;
+    v_free[0] = v_previous[0] = velocity;
+    normal[0] = axes.n;
+    tangent[0] = axes.t1;
     if (steps_++ == 0) {
-      EXPECT_EQ(law_.initialise(b), ILAW_OK);
+      EXPECT_EQ(initialise(), ILAW_OK);
     }
-    ilaw_report report{};
-    report.struct_size = sizeof report;
-    EXPECT_EQ(law_.evaluate(b, &report), ILAW_OK) << report.reason;
-    return r;
+    EXPECT_EQ(evaluate(), ILAW_OK) << report.reason;
+    return r[0];
   }
 
  private:
-  ilaw::interface law_;
   int steps_ = 0, time_ = 0;
-
- public:
-  std::vector<double> state;
 };
 
 // Pressed, dragged in both tangents, and pulled at in the end: nothing breaks at once, all comes into play.
@@ -133,12 +109,12 @@ class Pair : public ::testing::TestWithParam<LawCase> {};
 // instead; notes how far each is from the second. False where the state cannot be swapped.
 bool run_swapped(const LawCase& law, int dimension, bool tangent, double speed, Worst& swapped, Worst& lost) {
   Contact keeps(law, dimension, tangent), swaps(law, dimension, tangent), forgets(law, dimension, tangent);
-  const Axes axes = first_axes(dimension), other{minus(axes.n), minus(axes.t1), axes.t2};
+  const Axes axes = first_axes(dimension), other{-axes.n, -axes.t1, axes.t2};
   for (int n = 0; n < all_steps; ++n) {
-    if (n == swap_step && !swap_roles(swaps.info(), dimension, swaps.state)) return false;
+    if (n == swap_step && !swap_roles(swaps.law->info(), dimension, swaps.state)) return false;
     if (n == swap_step) forgets.forget();
     const Vector v = global(axes, velocity_of(n, dimension, speed)), expected = keeps.step(axes, v);
-    swapped.note(n, n < swap_step ? swaps.step(axes, v) : minus(swaps.step(other, minus(v))), expected);
+    swapped.note(n, n < swap_step ? swaps.step(axes, v) : -swaps.step(other, -v), expected);
     lost.note(n, forgets.step(axes, v), expected);
   }
   return true;
@@ -173,7 +149,7 @@ TEST_P(Pair, GoesOnWhereTheNormalTurnsByAnyAngle) {
   const std::size_t s = probe.state.size();
   for (int degrees = 0; degrees <= 180; degrees += 5) {
     const double angle = degrees * pi / 180.0, about = 0.3 + 0.7 * degrees;
-    Vector across = sum(std::cos(about), axes.t1, std::sin(about), axes.t2);
+    Vector across = std::cos(about) * axes.t1 + std::sin(about) * axes.t2;
     Axes after = turned(axes, angle, across);
     Contact still(GetParam(), 3, false), turning(GetParam(), 3, false);
     Worst worst;
@@ -181,9 +157,9 @@ TEST_P(Pair, GoesOnWhereTheNormalTurnsByAnyAngle) {
       if (n == swap_step && degrees == 180 &&
           turning.remembers_direction()) {  // about the stored tangent: across is square to it
         const Vector t{turning.state[s - 3], turning.state[s - 2], turning.state[s - 1]};
-        across = sum(-dot(t, axes.t2), axes.t1, dot(t, axes.t1), axes.t2);
+        across = dot(t, axes.t1) * axes.t2 - dot(t, axes.t2) * axes.t1;
         after = turned(axes, angle, across);
-        after.n = minus(axes.n);
+        after.n = -axes.n;
       }
       const Axes& now = n < swap_step ? axes : after;
       const Vector v = velocity_of(n, 3, 0.05);

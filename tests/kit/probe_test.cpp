@@ -2,10 +2,7 @@
 // refusals, a solver with a scalar fallback, stable steps. kit_probe.cpp has the equations.
 #include "kit_probe.hpp"
 
-#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
-
-#include <gmock/gmock.h>
 
 #include <memory>
 

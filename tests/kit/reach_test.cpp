@@ -3,7 +3,6 @@
 #include "support/small_batch.hpp"
 
 #include <cstring>
-#include <random>
 
 namespace ilaw::testing {
 namespace {

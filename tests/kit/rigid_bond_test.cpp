@@ -1,14 +1,13 @@
 // A bond that broke, and the contact that is left of it: their work together.
 #include <ilaw/kit/rigid_bond.hpp>
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
+#include "support/matchers.hpp"
+#include "support/random.hpp"
 
 namespace {
 
 using ilaw::kit::full;
+using ilaw::testing::Random;
 using Vector = ilaw::kit::vector<double>;
 
 struct Node {
@@ -23,16 +22,13 @@ double work(const Node& node, Vector r) {
 }
 
 TEST(RigidBond, DoesNoPositiveWorkTogetherWithContact) {
-  std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto drawn = [&] { return Vector{uniform(random), uniform(random), uniform(random)}; };
+  Random random(7);
+  const auto drawn = [&] { return Vector{random(), random(), random()}; };
   int scaled = 0;
   for (int k = 0; k < 20000; ++k) {
     // Diagonally dominant: positive definite.
-    const Node node{{1.0, 0.8, 1.2, 0.3 * uniform(random), 0.3 * uniform(random), 0.3 * uniform(random)},
-                    drawn(),
-                    drawn()};
-    const Vector held = drawn(), contact{std::abs(uniform(random)), uniform(random), uniform(random)};
+    const Node node{{1.0, 0.8, 1.2, 0.3 * random(), 0.3 * random(), 0.3 * random()}, drawn(), drawn()};
+    const Vector held = drawn(), contact{std::abs(random()), random(), random()};
     const double of_held = work(node, held);
     if (of_held > 0.0) continue;
     const Vector both = ilaw::kit::joined(node, held, contact);

@@ -115,20 +115,20 @@ TEST(Sized, SizesThatNoVersionHasAreRefused) {
   ilaw_setup other = setup.setup;
   ilaw_instance* instance = nullptr;
   for (const std::uint32_t size : {4097U, 0xFFFFFFFFU}) {
+    GIVEN(size);
     report.struct_size = sizeof report;
     batch.struct_size = size;
-    EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report), ILAW_INVALID_ARGUMENT) << "size " << size;
-    EXPECT_STREQ(report.reason, "struct_size of the batch is none of any version") << "size " << size;
+    EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report), ILAW_INVALID_ARGUMENT);
+    EXPECT_STREQ(report.reason, "struct_size of the batch is none of any version");
     batch.struct_size = sizeof batch;
     report = {};
     report.struct_size = size;
-    EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report), ILAW_INVALID_ARGUMENT) << "size " << size;
-    EXPECT_EQ(report.reason, nullptr) << "size " << size;
+    EXPECT_EQ(law.law().evaluate(law.instance(), &batch, &report), ILAW_INVALID_ARGUMENT);
+    EXPECT_EQ(report.reason, nullptr);
     info.struct_size = size;
-    EXPECT_EQ(law.law().info(law.instance(), &info), ILAW_INVALID_ARGUMENT) << "size " << size;
+    EXPECT_EQ(law.law().info(law.instance(), &info), ILAW_INVALID_ARGUMENT);
     other.struct_size = size;
-    EXPECT_EQ(law.law().create("coulomb", &other, &instance, nullptr, 0), ILAW_INVALID_ARGUMENT)
-        << "size " << size;
+    EXPECT_EQ(law.law().create("coulomb", &other, &instance, nullptr, 0), ILAW_INVALID_ARGUMENT);
   }
 }
 

@@ -1,7 +1,6 @@
 // The largest stable step that the report gives: infinity where a law needs none, else the limit of its
 // spring.
 #include "support/law_runner.hpp"
-#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
 
 namespace ilaw::testing {

@@ -1,11 +1,8 @@
 // A state comes back from the host, and is never trusted: what the law cannot have written is bad input.
 #include "kit_probe.hpp"
 
-#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <utility>
 

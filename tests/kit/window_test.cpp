@@ -1,15 +1,13 @@
 // The window of impulses against the exact integral of the force over the last tau.
 #include "window_in_test.hpp"
 
-#include <gtest/gtest.h>
+#include "support/matchers.hpp"
+#include "support/random.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -19,6 +17,7 @@ using ilaw::kit::infinity;
 using ilaw::kit::refusal;
 using ilaw::kit::step_interval;
 using ilaw::kit::window;
+using ilaw::testing::Random;
 
 constexpr double ratios[] = {1.5, 8.5, 33.7, 100.5, 1000.3};  // tau/h
 constexpr double bucket_counts[] = {4, 8, 16, 64};
@@ -190,12 +189,11 @@ TEST(Window, OfAForceSwitchedOnNeverExceedsForceTimesDuration) {
 
 // A shock counts whole until tau - w after its step, and is gone tau + w after it.
 TEST(Window, KeepsAShockWholeAndLosesItWhole) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Random random(3);
   for (const double ratio : {8.5, 33.7, 100.5, 1000.3})
     for (const double buckets : bucket_counts)
       for (int draw = 0; draw < 20; ++draw) {
-        Window w(1.0, buckets, 100.0 * uniform(random) - 50.0);
+        Window w(1.0, buckets, 100.0 * random(0.0, 1.0) - 50.0);
         const double h = 1.0 / ratio, begin = w.end;
         w.step(h, {0.6, 0, -0.3});
         while (w.end < begin + 3.0) {
@@ -231,12 +229,11 @@ TEST(Window, DoesNotDriftInTenMillionSteps) {
 
 // After millions of random impulses it is, bit for bit, a window that saw the last ones alone.
 TEST(Window, ForgetsWhatIsOlderThanItsDuration) {
-  std::mt19937_64 random(4);
-  std::uniform_real_distribution<double> uniform(-1e6, 1e6);
+  Random random(4);
   Window old(8.3e-3, 8, 0.0), young(8.3e-3, 8, 0.0);
   constexpr int count = 1000000;
   for (int k = 1; k <= count; ++k) {
-    const vector impulse{uniform(random), uniform(random), uniform(random)};
+    const vector impulse{random(-1e6, 1e6), random(-1e6, 1e6), random(-1e6, 1e6)};
     const vector sum = old.step_to(k * 1e-3, 1e-3, impulse);
     if (k <= count - 50) continue;
     const vector fresh = young.step_to(k * 1e-3, 1e-3, impulse);
@@ -249,15 +246,14 @@ TEST(Window, ForgetsWhatIsOlderThanItsDuration) {
 
 // Steps without impulse may be left out: the state stays as it was, and later sums have the same bits.
 TEST(Window, NeedNotBeToldOfStepsWithoutImpulse) {
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(5);
   for (const double ratio : ratios) {
     Window told(1.0, 8, -2.0), skipped(1.0, 8, -2.0);
     const double h = 1.0 / ratio;
     bool acts = true;
     for (int k = 0; k < 5000; ++k) {
-      if (random() % 20 == 0) acts = !acts;
-      const vector impulse = acts ? vector{uniform(random), uniform(random), 0} : vector{};
+      if (random.below(20) == 0) acts = !acts;
+      const vector impulse = acts ? vector{random(), random(), 0} : vector{};
       const std::vector<double> before = told.history;
       const vector sum = told.step(h, impulse);
       if (!acts) {
@@ -367,12 +363,11 @@ TEST(Window, RefusesASumThatIsNotFinite) {
 
 // The tangential part turns with the impulses: no axis is preferred.
 TEST(Window, IsIsotropicInTheTangentPlane) {
-  std::mt19937_64 random(6);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(6);
   const double c = std::cos(0.7), s = std::sin(0.7);
   Window plain(1.0, 4, 0.0), turned(1.0, 4, 0.0);
   for (int k = 0; k < 20000; ++k) {
-    const vector r{uniform(random), uniform(random), uniform(random)};
+    const vector r{random(), random(), random()};
     const vector a = plain.step(0.0137, r);
     const vector b = turned.step(0.0137, {r.n, c * r.t1 - s * r.t2, s * r.t1 + c * r.t2});
     ASSERT_EQ(a.n, b.n) << k;

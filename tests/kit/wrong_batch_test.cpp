@@ -1,10 +1,7 @@
 // A batch that makes no sense is refused as a whole, with the reason and with nothing written.
 #include "kit_probe.hpp"
 
-#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
-
-#include <algorithm>
 
 namespace ilaw::testing {
 namespace {

@@ -19,10 +19,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <filesystem>
 #include <fstream>
-#include <limits>
 
 namespace ilaw::testing {
 

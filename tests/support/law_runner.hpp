@@ -1,28 +1,29 @@
 // law_runner.hpp - drives a shipped law through the loader and the ABI, a few nodes at a time, in the local
-// frame.
+// frame. It brings containers, strings, vectors, random numbers and matchers.
 #pragma once
+
+#include "matchers.hpp"
+#include "numbers.hpp"
+#include "random.hpp"
+#include "vectors.hpp"
 
 #include <ilaw/arrays.hpp>
 #include <ilaw/loader.hpp>
 
-#include <gtest/gtest.h>
-
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <deque>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace ilaw::testing {
-
-using Vector = std::array<double, 3>;
-
-inline double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Of this build, or of the build of a copy of the tree that is tested (see law_cases.hpp).
 inline std::string plugin_file(const std::string& law) {

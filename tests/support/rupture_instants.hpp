@@ -5,10 +5,8 @@
 #include "support/law_runner.hpp"
 #include "support/sizes.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <functional>
-#include <random>
 
 namespace ilaw::testing {
 

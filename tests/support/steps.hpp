@@ -4,8 +4,6 @@
 
 #include "support/law_runner.hpp"
 
-#include <algorithm>
-
 namespace ilaw::testing {
 
 // Where the node is after `end`.
@@ -20,22 +18,19 @@ inline Vector moved(NodeRun node, Vector v, double end) {
       break;
     }
     v = node.v;
-    for (std::size_t c = 0; c < 3; ++c) u[c] += node.dt * v[c];
+    u = u + node.dt * v;
   }
   return u;
 }
 
-inline double distance(const Vector& a, const Vector& b) {
-  const Vector way{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-  return std::sqrt(dot(way, way));
-}
+inline double distance(const Vector& a, const Vector& b) { return length(a - b); }
 
 // make(step, alone): the node, in packs or solved alone. Of the first order: the velocity that is given
 // counts half a step early. spread: by how much the errors over the step differ.
 template <class Make>
 void expect_first_order(Make make, const Vector& v, double spread) {
   constexpr double end = 0.091;  // a multiple of all steps
-  const double scale = std::sqrt(dot(v, v)) * end;
+  const double scale = length(v) * end;
   const Vector fine = moved(make(1e-5, false), v, end);
   double least = INFINITY, most = 0.0;
   for (const double step : {1e-3, 7e-4, 1.3e-3}) {
@@ -44,7 +39,7 @@ void expect_first_order(Make make, const Vector& v, double spread) {
     least = std::min(least, distance(in_packs, fine) / step);
     most = std::max(most, distance(in_packs, fine) / step);
   }
-  EXPECT_LE(most, 4.0 * std::sqrt(dot(v, v)));
+  EXPECT_LE(most, 4.0 * length(v));
   EXPECT_LE(most, spread * least);
 }
 

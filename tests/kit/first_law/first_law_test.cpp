@@ -4,7 +4,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <fstream>
 #include <regex>
 #include <sstream>
@@ -109,8 +108,7 @@ TEST_F(FirstLaw, IsTheSameAgainstTheBuildTree) {
               text_of(other / file, (folder / "ilaw" / "include").string(), ILAW_SOURCE "/api/include"))
         << file;
   run("diff -r " ILAW_SOURCE "/api/include " + (folder / "ilaw" / "include").string(), folder / "log");
-  EXPECT_NE(text_of(build / "CTestTestfile.cmake", ILAW_BUILD, "BUILD").find("BUILD/bin/ilaw"),
-            std::string::npos);
+  EXPECT_THAT(text_of(build / "CTestTestfile.cmake", ILAW_BUILD, "BUILD"), HasSubstr("BUILD/bin/ilaw"));
 }
 
 // Every name that law_names.hpp knows, on the page and at the top of law.hpp.
@@ -125,7 +123,7 @@ TEST(FirstLawPage, ListsAllNames) {
   const std::regex name("ILAW_KIT_NAME\\((?!wrong)(\\w+)\\);");
   int names = 0;
   for (std::sregex_iterator it(checks.begin(), checks.end(), name), end; it != end; ++it, ++names) {
-    EXPECT_NE(page.find("`" + (*it)[1].str() + "`"), std::string::npos) << (*it)[1];
+    EXPECT_THAT(page, HasSubstr("`" + (*it)[1].str() + "`")) << (*it)[1];
     EXPECT_TRUE(std::regex_search(law.substr(0, law.find("#pragma once")),
                                   std::regex("\\b" + (*it)[1].str() + "\\b")))
         << (*it)[1];
@@ -144,11 +142,11 @@ TEST(ViscousLaw, InPlainCGivesTheSame) {
     }
     return std::string("not refused");
   };
-  EXPECT_NE(refusal(SetupBuilder({})).find("parameter 'viscosity' is missing"), std::string::npos);
-  EXPECT_NE(refusal(SetupBuilder({{{"viscosity", -1.0}}, {}})).find("found -1, expected 0 to 1e+300"),
-            std::string::npos);
-  EXPECT_NE(refusal(SetupBuilder({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_FULL)).find("form of H"),
-            std::string::npos);
+  EXPECT_THAT(refusal(SetupBuilder({})), HasSubstr("parameter 'viscosity' is missing"));
+  EXPECT_THAT(refusal(SetupBuilder({{{"viscosity", -1.0}}, {}})),
+              HasSubstr("found -1, expected 0 to 1e+300"));
+  EXPECT_THAT(refusal(SetupBuilder({{{"viscosity", 1.0}}, {}}, 3, ILAW_DELASSUS_FULL)),
+              HasSubstr("form of H"));
 }
 
 TEST(ViscousLaw, InPlainCKeepsEveryRule) {

@@ -63,7 +63,7 @@ long double energy(const local_coulomb& p, const Exact& r) {
 // A coupling that strong needs a nearly singular H and a large coefficient.
 local_coulomb strongly_coupled(Draw& draw) {
   local_coulomb p = draw.pressed_coupled(1e-3);
-  p.mu[0] = p.mu[1] = draw.decade(-0.5, 1.0);
+  p.mu[0] = p.mu[1] = draw.decades(-0.5, 1.0);
   return p;
 }
 
@@ -71,10 +71,10 @@ local_coulomb strongly_coupled(Draw& draw) {
 // strongly. In tangential axes that diagonalise the condensed block S: T = S + w w^T, q_T = c - w n for h_N
 // = 1.
 local_coulomb stiff_and_soft(Draw& draw) {
-  const double s1 = draw.decade(-4.0, -1.0), s2 = draw.decade(-1.0, 1.0), n = draw.decade(-2.0, 0.0);
-  const double w1 = draw.normal(), w2 = draw.normal(), c1 = draw.normal() * draw.decade(-2.0, 0.0),
+  const double s1 = draw.decades(-4.0, -1.0), s2 = draw.decades(-1.0, 1.0), n = draw.decades(-2.0, 0.0);
+  const double w1 = draw.normal(), w2 = draw.normal(), c1 = draw.normal() * draw.decades(-2.0, 0.0),
                c2 = draw.normal();
-  const double mu = draw.decade(-0.5, 0.5);
+  const double mu = draw.decades(-0.5, 0.5);
   return {{1.0, s1 + w1 * w1, s2 + w2 * w2, w1, w2, w1 * w2}, {-n, c1 - w1 * n, c2 - w2 * n}, {mu, mu}};
 }
 
@@ -122,7 +122,7 @@ TEST(LocalCoulombChoice, FollowsQContinuouslyWhereTheSolutionIsAlone) {
   for (int path = 0; path < 50; ++path) {
     local_coulomb p = draw.pressed_coupled(0.5);
     p.mu[0] = p.mu[1] = 0.3;
-    const double from[] = {p.q[0], p.q[1], p.q[2]}, angle = draw.uniform(0.0, 6.28);
+    const double from[] = {p.q[0], p.q[1], p.q[2]}, angle = draw(0.0, 6.28);
     double before[3];
     kit::solve(p, before);
     constexpr int steps = 2000;

@@ -1,21 +1,18 @@
 // draw.hpp - random local problems of any scale, condition and friction; the same for every run.
 #pragma once
 
+#include "support/random.hpp"
+
 #include <ilaw/kit/exact_coulomb.hpp>
 
-#include <array>
-#include <cmath>
-#include <random>
+#include <algorithm>
 
 namespace ilaw::testing {
 
-class Draw {
- public:
-  explicit Draw(unsigned seed) : random_(seed) {}
+struct Draw : Random {
+  using Random::Random;
 
-  double normal() { return normal_(random_); }
-  double uniform(double low, double high) { return low + (high - low) * uniform_(random_); }
-  double decade(double low, double high) { return std::pow(10.0, uniform(low, high)); }
+  double normal() { return normal_(engine); }
 
   // A A^T + floor I with A of normal entries: full, positive definite.
   void fill_coupled(kit::local_coulomb& p, double floor) {
@@ -32,7 +29,7 @@ class Draw {
 
   // L L^T with pivots over twelve decades: conditions up to 1e12 and beyond.
   void fill_ill_conditioned(kit::local_coulomb& p) {
-    const double d[] = {decade(-3, 3), decade(-3, 3), decade(-3, 3)};
+    const double d[] = {decades(-3, 3), decades(-3, 3), decades(-3, 3)};
     const double l10 = normal() * d[1], l20 = normal() * d[2], l21 = normal() * d[2];
     const double h[] = {d[0] * d[0], l10 * l10 + d[1] * d[1], l20 * l20 + l21 * l21 + d[2] * d[2], d[0] * l10,
                         d[0] * l20,  l10 * l20 + d[1] * l21};
@@ -54,9 +51,7 @@ class Draw {
   }
 
  private:
-  std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
-  std::uniform_real_distribution<double> uniform_{0.0, 1.0};
 };
 
 }  // namespace ilaw::testing

@@ -59,7 +59,7 @@ TEST(LocalCoulomb, HoldsItsConditionsForAnyFullH) {
   int slips = 0, sticks = 0;
   for (int k = 0; k < 500000; ++k) {
     local_coulomb p = draw.pressed_coupled(1e-3);
-    p.mu[0] = p.mu[1] = draw.decade(-2.0, 1.0);
+    p.mu[0] = p.mu[1] = draw.decades(-2.0, 1.0);
     const Solved s = solved(p);
     (s.mode == contact_mode::slip ? slips : sticks) += 1;
     worst = std::max(worst, violation(p, s));
@@ -77,7 +77,7 @@ TEST(LocalCoulomb, IsRoundedOnceWhereHAmplifies) {
   int amplified = 0;
   for (int k = 0; k < 300000; ++k) {
     local_coulomb p = draw.pressed_coupled(1e-3);
-    p.mu[0] = p.mu[1] = draw.decade(-1.0, 0.5);
+    p.mu[0] = p.mu[1] = draw.decades(-1.0, 0.5);
     const Solved s = solved(p);
     if (s.natural < 50.0L * largest({p.q[0], p.q[1], p.q[2]})) continue;
     ++amplified;
@@ -94,12 +94,12 @@ TEST(LocalCoulomb, HoldsThemForIllConditionedHEllipsesAndAllScales) {
   for (int k = 0; k < 500000; ++k) {
     local_coulomb p{};
     draw.fill_ill_conditioned(p);
-    const double speed_decade = draw.uniform(-300.0, 150.0);
+    const double speed_decade = draw(-300.0, 150.0);
     draw.fill_pressed_velocity(p, std::pow(10.0, speed_decade));
-    const double mass = draw.decade(-60.0, std::min(60.0, speed_decade + 270.0));  // r stays a normal number
+    const double mass = draw.decades(-60.0, std::min(60.0, speed_decade + 270.0));  // r stays a normal number
     for (double& h : p.h) h *= mass;
-    p.mu[0] = draw.decade(-6.0, 6.0);
-    p.mu[1] = p.mu[0] * draw.decade(-2.0, 0.0);
+    p.mu[0] = draw.decades(-6.0, 6.0);
+    p.mu[1] = p.mu[0] * draw.decades(-2.0, 0.0);
     const Solved s = solved(p);
     worst = std::max(worst, violation(p, s));
     ASSERT_LE(worst, 16.0L) << "draw " << k;
@@ -130,9 +130,9 @@ TEST(LocalCoulomb, IsTheEnumerationInTwoDimensions) {
   int slips = 0;
   for (int k = 0; k < 100000; ++k) {
     local_coulomb p{};
-    const double nn = draw.decade(-1.0, 1.0), tt = draw.decade(-1.0, 1.0);
-    const double nt = draw.uniform(-0.99, 0.99) * std::sqrt(nn * tt), mu = draw.decade(-2.0, 1.0);
-    p = {{nn, tt, tt, nt, 0.0, 0.0}, {-draw.uniform(0.01, 1.0), draw.uniform(-1.0, 1.0), 0.0}, {mu, mu}};
+    const double nn = draw.decades(-1.0, 1.0), tt = draw.decades(-1.0, 1.0);
+    const double nt = draw(-0.99, 0.99) * std::sqrt(nn * tt), mu = draw.decades(-2.0, 1.0);
+    p = {{nn, tt, tt, nt, 0.0, 0.0}, {-draw(0.01, 1.0), draw(-1.0, 1.0), 0.0}, {mu, mu}};
     const Solved s = solved(p);
     EXPECT_EQ(s.r[2], 0.0) << "k " << k;
     const double n = -p.q[0] / nn, w = nt / nn, c = p.q[1] + nt * n, side = c > 0.0 ? 1.0 : -1.0;
@@ -153,7 +153,7 @@ TEST(LocalCoulomb, IsTheEnumerationInTwoDimensions) {
 TEST(LocalCoulomb, IsTheClosedFormWithoutCouplingAndAnisotropy) {
   Draw draw(4);
   for (int k = 0; k < 100000; ++k) {
-    const double nn = draw.decade(-3.0, 3.0), tt = draw.decade(-3.0, 3.0), mu = draw.decade(-4.0, 2.0);
+    const double nn = draw.decades(-3.0, 3.0), tt = draw.decades(-3.0, 3.0), mu = draw.decades(-4.0, 2.0);
     local_coulomb p{{nn, tt, tt, 0.0, 0.0, 0.0}, {}, {mu, mu}};
     draw.fill_pressed_velocity(p, 1.0);
     const Solved s = solved(p);
@@ -182,7 +182,7 @@ TEST(LocalCoulomb, IsFreeWhereTheNormalVelocityOpens) {
   for (int k = 0; k < 10000; ++k) {
     local_coulomb p = draw.pressed_coupled(0.1);
     p.q[0] = k % 2 ? -p.q[0] : 0.0;
-    p.mu[0] = p.mu[1] = draw.decade(-3.0, 3.0);
+    p.mu[0] = p.mu[1] = draw.decades(-3.0, 3.0);
     const Solved s = solved(p);
     ASSERT_EQ(s.mode, contact_mode::free) << "k " << k;
     ASSERT_EQ(s.r[0], 0.0) << "k " << k;
@@ -248,8 +248,8 @@ TEST(LocalCoulomb, IsTheSameInOtherUnitsAndAxes) {
   Draw draw(9);
   for (int k = 0; k < 100000; ++k) {
     local_coulomb p = draw.pressed_coupled(0.3);
-    p.mu[0] = draw.decade(-1.0, 0.0);
-    p.mu[1] = draw.decade(-1.0, 0.0);
+    p.mu[0] = draw.decades(-1.0, 0.0);
+    p.mu[1] = draw.decades(-1.0, 0.0);
     double r[3], other[3], exchanged[3];
     const contact_mode mode = kit::solve(p, r);
     local_coulomb scaled = p;

@@ -34,9 +34,9 @@ std::vector<local_coulomb> mixed_problems(unsigned seed, int count) {
       draw.fill_ill_conditioned(p);
     else
       draw.fill_coupled(p, k % 5 == 3 ? 1e-3 : 0.5);
-    draw.fill_pressed_velocity(p, k % 7 == 6 ? draw.decade(-300.0, 200.0) : 1.0);
-    p.mu[0] = p.mu[1] = draw.decade(-2.0, 1.0);
-    if (k % 3 == 2) p.mu[1] = draw.decade(-2.0, 1.0);
+    draw.fill_pressed_velocity(p, k % 7 == 6 ? draw.decades(-300.0, 200.0) : 1.0);
+    p.mu[0] = p.mu[1] = draw.decades(-2.0, 1.0);
+    if (k % 3 == 2) p.mu[1] = draw.decades(-2.0, 1.0);
     if (k % 11 == 10) p.mu[k % 2] = k % 4 < 2 ? 0.0 : kit::infinity;
     if (k % 6 == 5) p.h[3] = p.h[4] = p.h[5] = k % 4 < 2 ? 0.0 : -0.0;
     if (k % 17 == 16) p.q[1 + k % 2] = k % 4 < 2 ? 0.0 : -0.0;

@@ -2,14 +2,10 @@
 // how fast.
 #include "draw.hpp"
 #include "natural_map.hpp"
-#include "support/law_runner.hpp"
-
-#include <gtest/gtest.h>
+#include "support/law_batch.hpp"
 
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
-#include <vector>
 
 extern "C" {
 #include <FrictionContactProblem.h>
@@ -118,48 +114,31 @@ TEST(Siconos, FindsTheSameSolutionsLessExactly) {
 }
 
 // All problems as one batch of the law coulomb: contacts that touch, and move as their velocity says.
-class CoulombBatch {
- public:
-  CoulombBatch(const std::vector<local_coulomb>& problems, double friction)
-      : law_(make_law("coulomb", SetupBuilder({{{"friction", friction}}, {}}, 3, ILAW_DELASSUS_FULL))),
-        impulses_(problems.size()) {
-    for (const local_coulomb& p : problems) {
-      velocities_.push_back({p.q[0], p.q[1], p.q[2]});
-      delassus_.push_back({p.h[0], p.h[1], p.h[2], p.h[3], p.h[4], p.h[5]});
-    }
+LawBatch batch_of(const std::vector<local_coulomb>& problems, double friction) {
+  LawBatch batch(make_law("coulomb", SetupBuilder({{{"friction", friction}}, {}}, 3, ILAW_DELASSUS_FULL)),
+                 problems.size());
+  batch.velocity_step = batch.position_step = 1.0;
+  batch.gap.assign(problems.size(), -1.0);
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    std::copy_n(problems[i].q, 3, batch.v_free[i].begin());
+    std::copy_n(problems[i].h, 6, batch.h[i].begin());
   }
-  std::int32_t solve() {
-    static constexpr double touching = -1.0;
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = static_cast<std::int64_t>(impulses_.size());
-    b.velocity_step = b.position_step = 1.0;
-    b.v_free = b.v_previous = ilaw::input(velocities_[0].data(), 3, 1);
-    b.delassus = ilaw::input(delassus_[0].data(), 6, 1);
-    b.gap = ilaw::input(&touching, 0, 1);
-    b.impulse = ilaw::output(impulses_[0].data(), 3, 1);
-    return law_.evaluate(b);
-  }
-  const std::vector<Vector>& impulses() const { return impulses_; }
-
- private:
-  ilaw::interface law_;
-  std::vector<Vector> velocities_, impulses_;
-  std::vector<std::array<double, 6>> delassus_;
-};
+  batch.v_previous = batch.v_free;
+  return batch;
+}
 
 TEST(Siconos, SolversBesideTheLaw) {
   const std::vector<local_coulomb> problems = random_problems(100000, 0.3);
   const auto count = static_cast<double>(problems.size());
-  CoulombBatch batch(problems, 0.3);
-  ASSERT_EQ(batch.solve(), ILAW_OK);  // and the arrays are in reach
+  LawBatch batch = batch_of(problems, 0.3);
+  ASSERT_EQ(batch.evaluate(), ILAW_OK);  // and the arrays are in reach
   constexpr int repetitions = 10;
   const Stopwatch own_watch;
-  for (int k = 0; k < repetitions; ++k) batch.solve();
+  for (int k = 0; k < repetitions; ++k) batch.evaluate();
   const double own_time = own_watch.nanoseconds() / count / repetitions;
   double worst = 0.0;
   for (std::size_t k = 0; k < problems.size(); ++k)
-    worst = std::max(worst, relative_residual(problems[k], batch.impulses()[k].data()));
+    worst = std::max(worst, relative_residual(problems[k], batch.r[k].data()));
   EXPECT_LE(worst, 1e-14);
   std::printf("coulomb: %.0f ns per contact, residual over |q| at most %.2g\n", own_time, worst);
 

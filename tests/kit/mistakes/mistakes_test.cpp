@@ -1,5 +1,5 @@
 // Mistakes of law authors, each a law of its own: the compiler names it, and says in one line what to write.
-#include <gtest/gtest.h>
+#include "support/program.hpp"
 
 #include <cstdio>
 #include <fstream>
@@ -44,20 +44,10 @@ std::vector<std::string> compiler_says(const std::string& file) {
   const std::string command =
       "LC_ALL=C " ILAW_CXX
       " -std=c++20 -Wall -Wextra -Wno-psabi -ftemplate-backtrace-limit=0 -I " ILAW_INCLUDE " " +
-      std::string(file.ends_with("wrong_status.cpp") ? "-c -o /dev/null " : "-fsyntax-only ") + file +
-      " 2>&1";
+      std::string(file.ends_with("wrong_status.cpp") ? "-c -o /dev/null " : "-fsyntax-only ") + file;
+  std::istringstream answer(ilaw::testing::programs::run_command(command).output);
   std::vector<std::string> lines;
-  std::FILE* answer = popen(command.c_str(), "r");
-  std::string line;
-  for (int c = std::fgetc(answer); c != EOF; c = std::fgetc(answer)) {
-    if (c != '\n') {
-      line += static_cast<char>(c);
-      continue;
-    }
-    lines.push_back(line);
-    line.clear();
-  }
-  pclose(answer);
+  for (std::string line; std::getline(answer, line);) lines.push_back(line);
   return lines;
 }
 

@@ -116,7 +116,7 @@ TEST(RollingGrain, AddsNoEnergyAndTellsWhereItWent) {
                            {}};
   for (const double step : {1e-3, 1.7e-4, 2.3e-5}) {
     Spheres nodes(parameters, count, ILAW_FRAME_GLOBAL, "grain");
-    nodes.step = step;
+    nodes.velocity_step = nodes.position_step = step;
     std::vector<double> stored(count, 0.0);
     int resisted = 0, turned = 0;
     for (unsigned seed = 1; seed < 9; ++seed) {
