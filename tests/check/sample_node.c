@@ -256,7 +256,8 @@ static double spoilt_friction(const node* at, const ilaw_instance* made, const i
     return at->friction * (1.0 - 1e-6 * (b->time - made->own->first_time) / b->velocity_step);
   if (breaks("form-agreement") && made->setup.delassus_form != ILAW_DELASSUS_SCALAR)
     return 0.99 * at->friction;
-  if (breaks("frame-indifference") && !at->global) return 0.99 * at->friction;
+  if (breaks("frame-indifference") && at->global && (at->d == 2 || made->setup.has_tangent))
+    return 0.99 * at->friction;
   if (breaks("frame-turned") && at->d == 3 && at->global && !made->setup.has_tangent)
     return at->friction * (1.0 - 0.1 * fabs(at->n[0]));
   if (breaks("history-carried") && made->own->started) return 0.9 * at->friction;
