@@ -1,11 +1,7 @@
 // A state that the law cannot have written, and a clock that was set back: refused at their node with the
 // reason, nothing touched but that node's results. For the laws with a window.
 #include "support/law_runner.hpp"
-#include "support/numbers.hpp"
 
-#include <ilaw/arrays.hpp>
-
-#include <cmath>
 #include <cstring>
 #include <functional>
 #include <ostream>
@@ -171,7 +167,7 @@ TEST(ImpossibleState, IsRefusedWithItsReason) {
     trio.of(1)[entry] = value;
     EXPECT_EQ(trio.evaluate(), ILAW_BAD_NODES) << law << " " << entry << " " << value;
     EXPECT_EQ(trio.report.bad_count, 1) << law << " " << entry << " " << value;
-    EXPECT_NE(std::string(trio.report.reason).find("have written"), std::string::npos)
+    EXPECT_THAT(std::string(trio.report.reason), HasSubstr("have written"))
         << law << " " << entry << " " << value << ": " << trio.report.reason;
   }
 }

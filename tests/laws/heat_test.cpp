@@ -1,8 +1,6 @@
 // Heat and wear of every law with friction: shares of what friction dissipates, and Archard's depth.
 #include "random_nodes.hpp"
 
-#include "support/numbers.hpp"
-
 #include <set>
 
 namespace ilaw::testing {

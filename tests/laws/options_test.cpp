@@ -2,8 +2,6 @@
 #include "laws/random_nodes.hpp"
 #include "support/law_cases.hpp"
 
-#include <algorithm>
-
 namespace ilaw::testing {
 namespace {
 

@@ -11,12 +11,9 @@
 //   sees_past_motion       its energy belongs to a path, of which v^- is the end; false
 #include "laws/random_nodes.hpp"
 
-#include "support/numbers.hpp"
 #include "support/sizes.hpp"
 
-#include <map>
 #include <set>
-#include <string>
 #include <tuple>
 
 namespace ilaw::testing {
@@ -55,8 +52,6 @@ int status_of(const std::string& name) {
       {"bonded", ILAW_BONDED}, {"broken", ILAW_BROKEN}, {"healed", ILAW_HEALED}};
   return statuses.at(name);
 }
-
-double length(const Vector& a) { return std::sqrt(dot(a, a)); }
 
 // Signorini, the cone, and maximum dissipation in it: no impulse of the cone takes more from the slip u_T
 // than r_N |(mu_1 u_1, mu_2 u_2)|.
@@ -207,7 +202,7 @@ TEST_P(AnyLaw, IsIndifferentToTheFrame) {
     for (std::size_t i = 0; i < nodes.count; ++i) {
       const Vector r = turned.local(i, turned.r[i], 1.0);
       const double tolerance = 1e-11 * (0.01 + length(run.r[i]));
-      for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(r[c], run.r[i][c], tolerance) << "node " << i;
+      ASSERT_THAT(r, VectorNear(run.r[i], tolerance)) << "node " << i;
     }
   });
 }

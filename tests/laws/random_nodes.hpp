@@ -2,13 +2,10 @@
 // other axes, or in a mirror.
 #pragma once
 
+#include "support/law_batch.hpp"
 #include "support/law_cases.hpp"
 
-#include <ilaw/arrays.hpp>
-
 #include <cstring>
-#include <limits>
-#include <random>
 #include <regex>
 #include <sstream>
 #include <tuple>
@@ -71,25 +68,6 @@ inline Parameters in_units(const std::string& law, Parameters parameters, const 
   return parameters;
 }
 
-// Fast and the same everywhere.
-class Uniform {
- public:
-  explicit Uniform(unsigned seed) : random_(seed) {}
-  double operator()(double low = -1.0, double high = 1.0) {
-    return low + (high - low) * (static_cast<double>(random_() >> 11) * 0x1p-53);
-  }
-
- private:
-  std::mt19937_64 random_;
-};
-
-using Matrix = std::array<Vector, 3>;  // rows
-
-inline Vector times(const Matrix& m, const Vector& a) { return {dot(m[0], a), dot(m[1], a), dot(m[2], a)}; }
-inline Matrix transposed(const Matrix& m) {
-  return {Vector{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
-}
-
 // Which H a law is given: any of its form, or one without coupling and with equal tangential entries, written
 // in that form.
 enum class Inertia { any, isotropic };
@@ -143,7 +121,7 @@ class RandomNodes {
     }
   }
 
-  Uniform uniform;
+  Random uniform;
   std::size_t count;
   std::uint32_t dimension, form;
   Inertia inertia;
@@ -198,42 +176,24 @@ class RandomNodes {
 enum class Axes { local, host, normals, mirrored };
 
 // An instance that evaluates RandomNodes, with states of its own.
-class Runner {
+class Runner : public LawBatch {
  public:
-  Runner(const std::string& law, const Parameters& parameters, const RandomNodes& nodes,
+  Runner(const std::string& id, const Parameters& parameters, const RandomNodes& nodes,
          Axes axes = Axes::local, const Units& units = {})
-      : nodes_(nodes),
+      : LawBatch(instance(id, in_units(id, parameters, units), nodes, axes), nodes.count),
+        before(state),
+        nodes_(nodes),
         units_(units),
-        global_(axes == Axes::host || axes == Axes::normals),
+        global_(is_global(axes)),
         mirrored_(axes == Axes::mirrored),
-        form_(global_ && nodes.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL}
-                                                              : nodes.form),
-        interface_(
-            make_law(law, SetupBuilder(in_units(law, parameters, units), nodes.dimension, form_,
-                                       global_ ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL, axes == Axes::host))),
-        size_(interface_.info().state_size),
-        r(nodes.count),
-        v(nodes.count),
-        energy(nodes.count),
-        status(nodes.count),
-        state(size_ * nodes.count + 1),
-        before(size_ * nodes.count + 1),
-        v_free_(nodes.count),
-        v_previous_(nodes.count),
-        normal_(nodes.count),
-        tangent_(nodes.count),
-        gap_(nodes.count),
-        area_(nodes.count),
-        h_(nodes.count),
-        amounts_(interface_.info().amount_count, std::vector<double>(nodes.count)) {
+        amounts_(law->info().amount_count, std::vector<double>(nodes.count)) {
+    velocity_step = position_step = RandomNodes::step;
     for (std::vector<double>& values : amounts_) amount_outputs_.push_back(ilaw::output(values.data(), 1, 0));
-    report.struct_size = sizeof report;
   }
 
   void initialise() {
     write_inputs();
-    ilaw_batch b = batch();
-    ASSERT_EQ(interface_.initialise(b), ILAW_OK);
+    ASSERT_EQ(law->initialise(scaled_batch()), ILAW_OK);
   }
 
   // From the state as it stands; before keeps that.
@@ -243,22 +203,22 @@ class Runner {
   }
   std::int32_t evaluate_from(const std::vector<double>& state_in) {
     write_inputs();
-    ilaw_batch b = batch();
-    b.state_in = ilaw::input(state_in.data(), static_cast<std::int64_t>(size_), 1);
-    return interface_.evaluate(b, &report);
+    ilaw_batch b = scaled_batch();
+    b.state_in = ilaw::input(state_in.data(), static_cast<std::int64_t>(state_size()), 1);
+    return law->evaluate(b, &report);
   }
 
   // The named state variable of node i; NaN where there is none.
   double named(const char* name, std::size_t i) const {
     const std::size_t at = place_of(name, i);
-    return at < state.size() ? state[at] : std::numeric_limits<double>::quiet_NaN();
+    return at < state.size() ? state[at] : nan_value;
   }
   // The named amount of node i.
   double amount(const char* name, std::size_t i) const {
-    const ilaw_instance_info info = interface_.info();
+    const ilaw_instance_info info = law->info();
     for (std::uint32_t k = 0; k < info.amount_count; ++k)
       if (std::strcmp(info.amounts[k]->name, name) == 0) return amounts_[k][i];
-    return std::numeric_limits<double>::quiet_NaN();
+    return nan_value;
   }
   void set(const char* name, std::size_t i, double value) { state.at(place_of(name, i)) = value; }
 
@@ -268,74 +228,60 @@ class Runner {
     return {turned[0] / unit, (mirrored_ ? -turned[1] : turned[1]) / unit, turned[2] / unit};
   }
 
+  std::vector<double> before;
+
  private:
+  static bool is_global(Axes axes) { return axes == Axes::host || axes == Axes::normals; }
+  static ilaw::interface instance(const std::string& id, const Parameters& parameters,
+                                  const RandomNodes& nodes, Axes axes) {
+    const bool global = is_global(axes);
+    const auto form =
+        global && nodes.form == ILAW_DELASSUS_DIAGONAL ? std::uint32_t{ILAW_DELASSUS_FULL} : nodes.form;
+    return make_law(id, SetupBuilder(parameters, nodes.dimension, form,
+                                     global ? ILAW_FRAME_GLOBAL : ILAW_FRAME_LOCAL, axes == Axes::host));
+  }
   std::size_t place_of(const char* name, std::size_t i) const {
-    const ilaw_instance_info info = interface_.info();
-    std::size_t at = i * size_;
+    const ilaw_instance_info info = law->info();
+    std::size_t at = i * state_size();
     for (std::uint32_t k = 0; k < info.state_variable_count; at += info.state_variables[k++]->count)
       if (std::strcmp(info.state_variables[k]->name, name) == 0) return at;
     return state.size();
   }
   void write_inputs() {
     for (std::size_t i = 0; i < nodes_.count; ++i) {
-      v_free_[i] = outward(i, nodes_.v_free[i]);
-      v_previous_[i] = outward(i, nodes_.v_previous[i]);
-      gap_[i] = nodes_.gap[i] * units_.length;
-      area_[i] = nodes_.area[i] * units_.length * units_.length;
-      normal_[i] = nodes_.axes[i][0];
-      tangent_[i] = nodes_.axes[i][1];
+      v_free[i] = outward(i, nodes_.v_free[i]);
+      v_previous[i] = outward(i, nodes_.v_previous[i]);
+      gap[i] = nodes_.gap[i] * units_.length;
+      area[i] = nodes_.area[i] * units_.length * units_.length;
+      normal[i] = nodes_.axes[i][0];
+      tangent[i] = nodes_.axes[i][1];
       write_delassus(i);
     }
   }
   Vector outward(std::size_t i, Vector a) const {
     if (global_) a = times(transposed(nodes_.axes[i]), a);
     if (mirrored_) a[1] = -a[1];
-    for (double& component : a) component *= units_.velocity();
-    return a;
+    return units_.velocity() * a;
   }
   void write_delassus(std::size_t i) {
     Matrix m = nodes_.h[i];
-    if (global_ && form_ == ILAW_DELASSUS_FULL) {
-      // Q^T H Q with the rows of Q as axes: rows of Q^T H first, H being symmetric.
-      const Matrix to_host = transposed(nodes_.axes[i]);
-      Matrix half;
-      for (std::size_t k = 0; k < 3; ++k) half[k] = times(to_host, m[k]);
-      half = transposed(half);
-      for (std::size_t k = 0; k < 3; ++k) m[k] = times(to_host, half[k]);
-    }
+    const bool full = nodes_.form == ILAW_DELASSUS_FULL || (global_ && nodes_.form == ILAW_DELASSUS_DIAGONAL);
+    const Matrix& q = nodes_.axes[i];
+    if (global_ && full) m = product(product(transposed(q), m), q);  // Q^T H Q
     if (mirrored_)
       for (const std::size_t k : {0, 2}) m[1][k] = m[k][1] = -m[k][1];
-    if (nodes_.dimension == 1)
-      h_[i] = {m[0][0]};
+    if (nodes_.dimension == 2 && full)
+      h[i] = {m[0][0], m[1][1], m[0][1]};
     else
-      h_[i] = nodes_.dimension == 2 && form_ == ILAW_DELASSUS_FULL
-                  ? std::array<double, 6>{m[0][0], m[1][1], m[0][1]}
-                  : std::array<double, 6>{m[0][0], m[1][1], m[2][2], m[0][1], m[0][2], m[1][2]};
-    for (double& entry : h_[i]) entry /= units_.mass;
+      h[i] = {m[0][0], m[1][1], m[2][2], m[0][1], m[0][2], m[1][2]};
+    for (double& entry : h[i]) entry /= units_.mass;
   }
 
-  ilaw_batch batch() {
-    const auto size = static_cast<std::int64_t>(size_);
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = static_cast<std::int64_t>(nodes_.count);
-    b.time = time * units_.time;
-    b.velocity_step = velocity_step * units_.time;
-    b.position_step = position_step * units_.time;
-    b.v_free = ilaw::input(v_free_[0].data(), 3, 1);
-    b.v_previous = ilaw::input(v_previous_[0].data(), 3, 1);
-    b.delassus = ilaw::input(h_[0].data(), 6, 1);
-    b.gap = ilaw::input(gap_.data(), 1, 1);
-    b.area = ilaw::input(area_.data(), 1, 1);
-    if (global_) b.normal = ilaw::input(normal_[0].data(), 3, 1);
-    if (global_) b.tangent = ilaw::input(tangent_[0].data(), 3, 1);
-    b.state_out = ilaw::output(state.data(), size, 1);
-    b.impulse = ilaw::output(r[0].data(), 3, 1);
-    b.velocity = ilaw::output(v[0].data(), 3, 1);
-    b.energy = ilaw::output(energy[0].data(), 4, 1);
-    b.status = status.data();
-    b.status_stride = 1;
-    b.per_node_parameters = per_node.data();
+  ilaw_batch scaled_batch() {
+    ilaw_batch b = batch();
+    b.time *= units_.time;
+    b.velocity_step *= units_.time;
+    b.position_step *= units_.time;
     b.amounts = amount_outputs_.data();
     return b;
   }
@@ -343,23 +289,6 @@ class Runner {
   const RandomNodes& nodes_;
   Units units_;
   bool global_, mirrored_;
-  std::uint32_t form_;
-  ilaw::interface interface_;
-  std::size_t size_;
-
- public:
-  double time = 0.0, velocity_step = RandomNodes::step, position_step = RandomNodes::step;
-  std::vector<ilaw_input> per_node;  // in the order of the instance
-  std::vector<Vector> r, v;
-  std::vector<std::array<double, 4>> energy;
-  std::vector<std::uint8_t> status;
-  std::vector<double> state, before;
-  ilaw_report report{};
-
- private:
-  std::vector<Vector> v_free_, v_previous_, normal_, tangent_;
-  std::vector<double> gap_, area_;
-  std::vector<std::array<double, 6>> h_;
   std::vector<std::vector<double>> amounts_;
   std::vector<ilaw_output> amount_outputs_;
 };

@@ -2,11 +2,6 @@
 // it in the local frame, and nearly so in the host's axes.
 #include "laws/random_nodes.hpp"
 
-#include "support/numbers.hpp"
-
-#include <ilaw/arrays.hpp>
-
-#include <optional>
 #include <tuple>
 
 namespace ilaw::testing {
@@ -146,19 +141,10 @@ TEST(TransverseInertia, IsAcceptedWhereItIsPositiveDefinite) {
   const Parameters parameters{{{"friction", 0.3}}, {}};
   const double least = std::numeric_limits<double>::min();
   const auto code = [&](std::uint32_t form, std::uint32_t dimension, std::vector<double> h) {
-    const ilaw::interface law = make_law("coulomb", SetupBuilder(parameters, dimension, form));
-    const Vector v{-1.0, 0.5, 0.0};
-    Vector r{};
-    const double gap = 0.0;
-    ilaw_batch b{};
-    b.struct_size = sizeof b;
-    b.node_count = 1;
-    b.velocity_step = b.position_step = 1.0;
-    b.v_free = b.v_previous = ilaw::input(v.data(), 3, 1);
-    b.delassus = ilaw::input(h.data(), 6, 1);
-    b.gap = ilaw::input(&gap, 1, 1);
-    b.impulse = ilaw::output(r.data(), 3, 1);
-    return law.evaluate(b, nullptr);
+    LawBatch node(make_law("coulomb", SetupBuilder(parameters, dimension, form)));
+    node.v_free[0] = node.v_previous[0] = {-1.0, 0.5, 0.0};
+    std::copy(h.begin(), h.end(), node.h[0].begin());
+    return node.evaluate();
   };
   for (const auto& [n, t] : {std::pair{1.0, 1.0},
                              {2.0, 7.0},

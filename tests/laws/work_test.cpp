@@ -4,9 +4,6 @@
 // cannot make such a body diverge.
 #include "random_nodes.hpp"
 
-#include "support/numbers.hpp"
-
-#include <optional>
 #include <ostream>
 #include <tuple>
 

@@ -4,21 +4,8 @@
 
 #include "bond.hpp"
 
-#include <algorithm>
-#include <cstdlib>
-#include <optional>
-#include <string>
-
 namespace ilaw::testing {
 
-using Matrix = std::array<Vector, 3>;
-
-inline Vector times(const Matrix& m, const Vector& a) {
-  Vector product{};
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) product[i] += m[i][j] * a[j];
-  return product;
-}
 inline double norm(const Vector& a) { return std::hypot(a[0], a[1], a[2]); }
 
 // Q diag Q^T with a condition of up to 10^decades, then scaled by axis; and what that makes of the condition.
@@ -39,8 +26,8 @@ struct Inertia {
         for (double& component : q[i]) component /= size;
       }
     const double part = draw.between(0.0, 0.7);
-    const Vector value{1.0, draw.power_of_ten(-part * decades, 0.0), draw.power_of_ten(-part * decades, 0.0)};
-    const double across = draw.power_of_ten(-0.15 * decades, 0.15 * decades);
+    const Vector value{1.0, draw.decades(-part * decades, 0.0), draw.decades(-part * decades, 0.0)};
+    const double across = draw.decades(-0.15 * decades, 0.15 * decades);
     const Vector scale{1.0, across, across};
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
@@ -176,7 +163,7 @@ struct Curve {
 // A bond that has been opened before, and an inertia.
 struct Problem {
   Problem(Draw& draw, const Curve& of, double decades)
-      : inertia(draw, decades), curve(of), step(draw.power_of_ten(-3.0, -1.0)) {
+      : inertia(draw, decades), curve(of), step(draw.decades(-3.0, -1.0)) {
     const double last = draw.between(0.0, 1.0) < 0.3 ? draw.between(0.7, 1.4) * step : step;
     velocity_step = 0.5 * (last + step);
     damage = curve.spent(draw.between(0.05, 0.95));
@@ -190,7 +177,7 @@ struct Problem {
     for (std::size_t c = opening[0] > 0.0 ? 0 : 1; c < 3; ++c) position[c] += moved[c];
     position[0] = std::clamp(position[0], 0.0, 2.0 * opening[0]);  // so that the one before was not negative
     for (std::size_t c = 0; c < 3; ++c) v_previous[c] = 2.0 * (position[c] - opening[c]) / last;
-    const Vector kick = draw.vector(draw.power_of_ten(-1.0, 0.5) * reach / step);
+    const Vector kick = draw.vector(draw.decades(-1.0, 0.5) * reach / step);
     for (std::size_t c = 0; c < 3; ++c) v_free[c] = v_previous[c] + kick[c];
   }
 

@@ -2,8 +2,6 @@
 // the law's, energies and invariances.
 #include "any_inertia.hpp"
 
-#include <optional>
-
 namespace ilaw::testing {
 namespace {
 
@@ -15,9 +13,9 @@ TEST(CohesiveAnyInertia, SolvesThemWhereItTurnsToShear) {
   for (int k = 0; k < 300; ++k) {
     const double strength = draw.between(0.5, 2.0), toughness = draw.between(0.5, 2.0);
     const Parameters parameters{{{"strength", strength},
-                                 {"strength_2", strength * draw.power_of_ten(-3.0, -0.5)},
+                                 {"strength_2", strength * draw.decades(-3.0, -0.5)},
                                  {"toughness", toughness},
-                                 {"mixing_exponent", draw.power_of_ten(-0.5, 0.5)}},
+                                 {"mixing_exponent", draw.decades(-0.5, 0.5)}},
                                 {{"shape", k % 2 ? "bilinear" : "exponential"}}};
     const Curve curve(parameters);
     Problem p(draw, curve, 0.0);
@@ -27,7 +25,7 @@ TEST(CohesiveAnyInertia, SolvesThemWhereItTurnsToShear) {
     p.v_previous = {2.0 * (p.position[0] - opened) / p.step, 0.0, 0.0};
     p.v_free = {-0.5 * toward, draw.between(0.2, 0.9) * toward, 0.0};
     const double c = 0.25 * p.step * p.velocity_step * p.inertia.h[0][0];
-    const double times = draw.power_of_ten(-3.0, -1.0) / (c * curve.secant(p.damage));
+    const double times = draw.decades(-3.0, -1.0) / (c * curve.secant(p.damage));
     for (Vector& row : p.inertia.h)
       for (double& entry : row) entry *= times;
     NodeRun node("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);
@@ -50,11 +48,11 @@ Problem sheared_problem(Draw& draw, const Curve& curve, bool in_packs) {
   p.position = {0.0, draw.between(0.5, 1.5) * sheared, 0.0};
   p.v_free = draw.vector(toward);
   if (in_packs) {
-    const double across = draw.power_of_ten(-3.0, 3.0);
+    const double across = draw.decades(-3.0, 3.0);
     p.inertia.h = {Vector{1.0, 0.0, 0.0}, {0.0, across, 0.0}, {0.0, 0.0, across}};
   }
   const double c = 0.25 * p.step * p.velocity_step * p.inertia.h[0][0];
-  const double times = draw.power_of_ten(-3.0, 1.0) / (c * curve.secant(p.damage));
+  const double times = draw.decades(-3.0, 1.0) / (c * curve.secant(p.damage));
   for (Vector& row : p.inertia.h)
     for (double& entry : row) entry *= times;
   return p;
@@ -68,10 +66,10 @@ TEST(CohesiveAnyInertia, NeverHealsWhereTheModeChanges) {
   for (int bond = 0; bond < 20; ++bond) {
     const double strength = draw.between(0.5, 2.0), toughness = draw.between(0.5, 2.0);
     const Parameters parameters{{{"strength", strength},
-                                 {"strength_2", strength * draw.power_of_ten(-2.0, 0.0)},
+                                 {"strength_2", strength * draw.decades(-2.0, 0.0)},
                                  {"toughness", toughness},
-                                 {"toughness_2", toughness * draw.power_of_ten(-0.7, 0.7)},
-                                 {"mixing_exponent", draw.power_of_ten(-0.5, 0.5)}},
+                                 {"toughness_2", toughness * draw.decades(-0.7, 0.7)},
+                                 {"mixing_exponent", draw.decades(-0.5, 0.5)}},
                                 {{"shape", bond % 2 ? "bilinear" : "exponential"}}};
     const Curve curve(parameters);
     NodeRun node("cohesive", parameters, 1.0, ILAW_DELASSUS_FULL);

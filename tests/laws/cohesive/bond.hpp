@@ -3,13 +3,7 @@
 
 #include "support/law_runner.hpp"
 
-#include <limits>
-#include <random>
-
 namespace ilaw::testing {
-
-inline constexpr double inf_value = std::numeric_limits<double>::infinity();
-inline constexpr double ulp = std::numeric_limits<double>::epsilon();
 
 inline constexpr const char* several_solutions =
     "the law's equations have several solutions for this H and step: a smaller step is needed";
@@ -40,15 +34,9 @@ struct Bond : NodeRun {
   std::array<double, 3> parts{};  // dissipated by friction, impact, rupture
 };
 
-// Bonds and vectors at random.
-class Draw {
- public:
-  explicit Draw(unsigned seed) : random_(seed) {}
-  double between(double low, double high) { return low + (high - low) * uniform_(random_); }
-  double power_of_ten(double low, double high) { return std::pow(10.0, between(low, high)); }
-  Vector vector(double scale) {
-    return {scale * between(-1.0, 1.0), scale * between(-1.0, 1.0), scale * between(-1.0, 1.0)};
-  }
+// Bonds at random.
+struct Draw : Random {
+  using Random::Random;
 
   // Any bond: of any shape, rigid or not, with its mixed mode, friction and delay.
   Parameters bond() {
@@ -62,17 +50,12 @@ class Draw {
     if (shape != "camacho_ortiz") {
       p.numbers["toughness_2"] = between(0.5, 4.0);
       p.numbers["mixing_exponent"] = between(0.3, 3.0);
-      if (is_delayed || between(0.0, 1.0) < 0.7) p.numbers["stiffness"] = power_of_ten(1.5, 9.0);
+      if (is_delayed || between(0.0, 1.0) < 0.7) p.numbers["stiffness"] = decades(1.5, 9.0);
     }
     if (is_delayed)
-      p.numbers.insert(
-          {{"delay_time", power_of_ten(-2.0, 1.0)}, {"delay_exponent", power_of_ten(-1.0, 2.0)}});
+      p.numbers.insert({{"delay_time", decades(-2.0, 1.0)}, {"delay_exponent", decades(-1.0, 2.0)}});
     return p;
   }
-
- private:
-  std::mt19937_64 random_;
-  std::uniform_real_distribution<double> uniform_{0.0, 1.0};
 };
 
 // Its node moves as it is told: a mass too large for the bond to slow it.

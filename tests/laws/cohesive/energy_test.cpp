@@ -3,11 +3,7 @@
 // and where the steps of velocity and position differ.
 #include "laws/random_nodes.hpp"
 
-#include "support/numbers.hpp"
 #include "support/sizes.hpp"
-
-#include <algorithm>
-#include <optional>
 
 namespace ilaw::testing {
 namespace {
@@ -16,18 +12,17 @@ constexpr int draws = 400000;  // a quarter of them by default
 constexpr std::size_t count = 200;
 constexpr double allowed = 8.0;  // ulp of the terms of the balance
 
-double power_of_ten(Uniform& draw, double low, double high) { return std::pow(10.0, draw(low, high)); }
+double decades(Random& draw, double low, double high) { return std::pow(10.0, draw(low, high)); }
 
 // Of all shapes, from soft to rigid, with a toughness that mostly leaves one solution.
-Parameters any_bond(Uniform& draw) {
+Parameters any_bond(Random& draw) {
   const char* shapes[] = {"bilinear", "exponential", "camacho_ortiz"};
   const std::string shape = shapes[static_cast<int>(draw(0.0, 3.0))];
-  const double strength = power_of_ten(draw, -1.0, 6.0),
-               strength_2 = strength * power_of_ten(draw, -1.0, 1.0);
+  const double strength = decades(draw, -1.0, 6.0), strength_2 = strength * decades(draw, -1.0, 1.0);
   const bool rigid = shape == "camacho_ortiz" || draw(0.0, 1.0) < 0.3;
-  const double stiffness = rigid ? inf_value : power_of_ten(draw, -2.0, 12.0);
+  const double stiffness = rigid ? inf_value : decades(draw, -2.0, 12.0);
   const auto toughness = [&](double peak) {
-    const double stretched = power_of_ten(draw, -1.0, 4.0) * RandomNodes::step * RandomNodes::step;
+    const double stretched = decades(draw, -1.0, 4.0) * RandomNodes::step * RandomNodes::step;
     return peak * peak * (0.5 / stiffness * draw(1.01, 2.0) + stretched);
   };
   Parameters p{{{"strength", strength}, {"strength_2", strength_2}, {"toughness", toughness(strength)}},
@@ -38,13 +33,13 @@ Parameters any_bond(Uniform& draw) {
                     {"toughness_2", toughness(strength_2)},
                     {"mixing_exponent", draw(0.3, 3.0)}});
   if (!rigid && draw(0.0, 1.0) < 0.2)
-    p.numbers.insert({{"delay_time", power_of_ten(draw, -1.0, 2.0) * RandomNodes::step},
-                      {"delay_exponent", power_of_ten(draw, -1.0, 2.0)}});
+    p.numbers.insert({{"delay_time", decades(draw, -1.0, 2.0) * RandomNodes::step},
+                      {"delay_exponent", decades(draw, -1.0, 2.0)}});
   return p;
 }
 
 // Each entry beside the diagonal up to 0.9 of what it may be.
-void couple(Matrix& m, std::size_t dimension, Uniform& draw) {
+void couple(Matrix& m, std::size_t dimension, Random& draw) {
   double c[3] = {}, determinant = 0.0;
   while (determinant < 0.01) {
     for (double& each : c) each = draw(-0.9, 0.9);
@@ -56,11 +51,11 @@ void couple(Matrix& m, std::size_t dimension, Uniform& draw) {
 }
 
 void draw_nodes(RandomNodes& nodes, Runner& run) {
-  Uniform& draw = nodes.uniform;
+  Random& draw = nodes.uniform;
   nodes.draw();
   run.initialise();
   for (std::size_t i = 0; i < count; ++i) {
-    const double before = power_of_ten(draw, -2.0, 1.0);
+    const double before = decades(draw, -2.0, 1.0);
     for (std::size_t c = 0; c < 3; ++c) {
       nodes.v_free[i][c] = c < nodes.dimension ? draw() : 0.0;
       nodes.v_previous[i][c] = c < nodes.dimension ? before * draw() : 0.0;
@@ -146,9 +141,9 @@ std::optional<std::string> follow(RandomNodes& nodes, Runner& run, int steps, Se
       last[i] = {run.energy[i][ILAW_ENERGY_STORED], natural_velocity(nodes, run, i)};
     }
     const double position_step = run.position_step;
-    if (nodes.uniform() < 0.5) run.position_step *= power_of_ten(nodes.uniform, -1.0, 1.0);
+    if (nodes.uniform() < 0.5) run.position_step *= decades(nodes.uniform, -1.0, 1.0);
     run.velocity_step = 0.5 * (position_step + run.position_step);
-    const double kick = power_of_ten(nodes.uniform, -2.0, 0.5);
+    const double kick = decades(nodes.uniform, -2.0, 0.5);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t c = 0; c < nodes.dimension; ++c) {
         nodes.v_previous[i][c] = run.v[i][c];
@@ -170,7 +165,7 @@ Seen expect_no_energy(int steps) {
       for (std::uint32_t dimension = 1; dimension <= 3 && !wrong; ++dimension) {
         RandomNodes nodes(count, dimension, form, Inertia::any, 1000 * seed + 10 * form + dimension);
         Runner run("cohesive", any_bond(nodes.uniform), nodes);
-        if (seed % 3 > 0) run.velocity_step *= power_of_ten(nodes.uniform, -1.0, 1.0);
+        if (seed % 3 > 0) run.velocity_step *= decades(nodes.uniform, -1.0, 1.0);
         draw_nodes(nodes, run);
         wrong = follow(nodes, run, steps, seen);
         if (wrong)
@@ -198,7 +193,7 @@ TEST(CohesiveEnergy, IsLeftAsItIsByTheLeastChange) {
   int whole = 0, part = 0, none = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     RandomNodes nodes(count, 3, ILAW_DELASSUS_FULL, Inertia::any, seed);
-    const double step = RandomNodes::step, stiffness = power_of_ten(nodes.uniform, 4.0, 9.0);
+    const double step = RandomNodes::step, stiffness = decades(nodes.uniform, 4.0, 9.0);
     Runner run("cohesive", {{{"strength", inf_value}, {"toughness", 1.0}, {"stiffness", stiffness}}, {}},
                nodes);
     draw_nodes(nodes, run);

@@ -2,8 +2,6 @@
 // Kenane's curve in long double, in packs and one by one.
 #include "bond.hpp"
 
-#include <cmath>
-
 namespace ilaw::testing {
 namespace {
 
@@ -26,14 +24,14 @@ long double mean_traction(const Parameters& p, const Vector& opening) {
 // not.
 struct Pulled {
   explicit Pulled(Draw& draw) {
-    const double exponents[] = {1.0, 1.5, 2.0, draw.power_of_ten(-1.0, 5.0), draw.power_of_ten(-1.0, 5.0)};
-    parameters.numbers = {{"strength", draw.power_of_ten(-4.0, 4.0)},
-                          {"strength_2", draw.power_of_ten(-4.0, 4.0)},
-                          {"toughness", draw.power_of_ten(-4.0, 4.0)},
-                          {"toughness_2", draw.power_of_ten(-4.0, 4.0)},
+    const double exponents[] = {1.0, 1.5, 2.0, draw.decades(-1.0, 5.0), draw.decades(-1.0, 5.0)};
+    parameters.numbers = {{"strength", draw.decades(-4.0, 4.0)},
+                          {"strength_2", draw.decades(-4.0, 4.0)},
+                          {"toughness", draw.decades(-4.0, 4.0)},
+                          {"toughness_2", draw.decades(-4.0, 4.0)},
                           {"mixing_exponent", exponents[static_cast<int>(draw.between(0.0, 5.0))]}};
-    const double turn = draw.between(0.0, 6.28), normal = draw.power_of_ten(-8.0, 0.0),
-                 across = std::sqrt(1.0 - normal * normal), size = draw.power_of_ten(-4.0, 4.0);
+    const double turn = draw.between(0.0, 6.28), normal = draw.decades(-8.0, 0.0),
+                 across = std::sqrt(1.0 - normal * normal), size = draw.decades(-4.0, 4.0);
     velocity = {size * normal, size * across * std::cos(turn), size * across * std::sin(turn)};
   }
 

@@ -1,8 +1,6 @@
 // Cohesive zones through the ABI: what holds for any motion, invariances, limits, refusals.
 #include "bond.hpp"
 
-#include <ilaw/arrays.hpp>
-
 namespace ilaw::testing {
 namespace {
 
@@ -12,9 +10,9 @@ TEST(CohesiveProperties, HoldForAnyMotion) {
   Draw draw(11);
   int broken = 0, rubbed = 0, partly = 0, several = 0;
   for (int bond = 0; bond < 1000; ++bond) {
-    Hung node(draw.bond(), draw.power_of_ten(-3.0, 0.0));
+    Hung node(draw.bond(), draw.decades(-3.0, 0.0));
     node.area = draw.between(0.1, 2.0);
-    const double force = draw.power_of_ten(-0.5, 1.0);
+    const double force = draw.decades(-0.5, 1.0);
     Vector bias = draw.vector(force);
     for (int k = 0; k < 250; ++k) {
       if (k % 50 == 0) bias = draw.vector(force);
@@ -59,8 +57,7 @@ TEST(CohesiveProperties, ABondMadeOnAMovingNodeAddsNoEnergy) {
   Draw draw(13);
   int turned = 0;
   for (int k = 0; k < 2000; ++k) {
-    Bond node(draw.bond(), draw.power_of_ten(-3.0, 1.0), draw.between(0.1, 2.0),
-              draw.power_of_ten(-2.0, 2.0));
+    Bond node(draw.bond(), draw.decades(-3.0, 1.0), draw.between(0.1, 2.0), draw.decades(-2.0, 2.0));
     const Vector before = draw.vector(1.0), free = draw.vector(3.0);
     node.v_previous = before;
     if (node.step(free) != ILAW_OK) continue;  // several solutions
@@ -149,8 +146,8 @@ TEST(CohesiveProperties, LimitsAreTieAndCoulomb) {
   broken.state[0] = 1.0;
   EXPECT_EQ(tough.named("damage"), 1.0);
   for (int k = 0; k < 50000; ++k) {
-    const Vector v = draw.vector(draw.power_of_ten(-100.0, 100.0));
-    const double delassus = draw.power_of_ten(-3.0, 3.0), gap = draw.between(-1e-3, 1e-3);
+    const Vector v = draw.vector(draw.decades(-100.0, 100.0));
+    const double delassus = draw.decades(-3.0, 3.0), gap = draw.between(-1e-3, 1e-3);
     for (NodeRun* each : {&tie, &tough, &weak, &broken, &contact}) {
       each->h[0] = delassus;
       each->gap = gap;

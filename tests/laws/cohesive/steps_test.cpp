@@ -31,10 +31,10 @@ void expect_limit_at_rest(const std::string& law, const Parameters& parameters, 
   if (draw.between(0.0, 1.0) < 0.5) node.h[3] = draw.between(-0.3, 0.3);
   shifted.h = node.h;
   for (std::size_t c = 1; c < shifted.state.size(); ++c) shifted.state[c] = 1e-20;
-  const Vector v = draw.vector(draw.power_of_ten(-3.0, 3.0));
+  const Vector v = draw.vector(draw.decades(-3.0, 3.0));
   const std::int32_t code = node.step(v);
   ASSERT_EQ(shifted.step(v), code);
-  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(node.r[c], shifted.r[c], 1e-12 * std::sqrt(dot(v, v)));
+  EXPECT_THAT(node.r, VectorNear(shifted.r, 1e-12 * std::sqrt(dot(v, v))));
 }
 
 TEST(BondAtZero, HasTheImpulseOfItsLimit) {
@@ -42,8 +42,8 @@ TEST(BondAtZero, HasTheImpulseOfItsLimit) {
   for (int k = 0; k < 60; ++k)
     for (const double step : {1e-3, 7e-4, 1.3e-3}) {
       expect_limit_at_rest("cohesive", draw.bond(), step, draw);
-      const Parameters adhesion{{{"normal_stiffness", draw.power_of_ten(0.0, 9.0)},
-                                 {"tangential_stiffness", draw.power_of_ten(0.0, 9.0)},
+      const Parameters adhesion{{{"normal_stiffness", draw.decades(0.0, 9.0)},
+                                 {"tangential_stiffness", draw.decades(0.0, 9.0)},
                                  {"adhesion_energy", draw.between(0.0, 2.0)},
                                  {"friction", draw.between(0.0, 1.0)}},
                                 {}};

@@ -2,8 +2,6 @@
 // search.
 #include "any_inertia.hpp"
 
-#include <optional>
-
 namespace ilaw::testing {
 namespace {
 
@@ -49,8 +47,8 @@ struct OneDirection {
 struct BilinearBond {
   BilinearBond(Draw& draw, bool is_rigid)
       : strength(draw.between(0.5, 2.0)),
-        width(draw.power_of_ten(-1.0, 1.0)),
-        onset(is_rigid ? 0.0 : draw.power_of_ten(-0.5, 1.0)) {}
+        width(draw.decades(-1.0, 1.0)),
+        onset(is_rigid ? 0.0 : draw.decades(-0.5, 1.0)) {}
 
   Parameters parameters() const {
     return {{{"strength", strength},
@@ -67,8 +65,8 @@ struct BilinearBond {
     d.secant = softness > 0.0 ? (1.0 - damage) / softness : inf_value;
     d.z = softness > 0.0 ? strength * d.end() / (strength + width * d.secant) : 0.0;
     d.f = draw.between(0.0, 1.0) < 0.3 ? 0.0 : draw.between(0.0, 0.95) * d.z;
-    d.c = draw.power_of_ten(-0.5, 1.5) * width / strength;
-    const double beyond = draw.between(0.0, 1.0) < 0.2 ? -0.05 : draw.power_of_ten(-3.0, -0.3);
+    d.c = draw.decades(-0.5, 1.5) * width / strength;
+    const double beyond = draw.between(0.0, 1.0) < 0.2 ? -0.05 : draw.decades(-3.0, -0.3);
     d.drive = d.f + (d.z + 2.0 * d.c * d.mean_traction(d.z)) * (1.0 + beyond);
     return d;
   }
@@ -202,9 +200,8 @@ Problem pulled(Draw& draw, const Curve& curve, Compliance compliance) {
 }
 // With c h_N |T'| from 0.1 to 30.
 Problem steep(Draw& draw, const Curve& curve) {
-  return pulled(draw, curve, [&](const Matrix&) {
-    return draw.power_of_ten(-1.0, 1.5) * curve.mode(0.0).width / curve.s1;
-  });
+  return pulled(draw, curve,
+                [&](const Matrix&) { return draw.decades(-1.0, 1.5) * curve.mode(0.0).width / curve.s1; });
 }
 
 // The same in three directions, with mixed modes and delay: what a dense search finds, the node says, and

@@ -1,19 +1,15 @@
 // Heat through contact: the two conductances, the exchange of two capacities, none without contact.
 #include "support/law_runner.hpp"
 
-#include <cmath>
-#include <random>
-
 namespace ilaw::testing {
 namespace {
 
 // h_c A (T_c - T) h with h_c = h_0 + h_p p and p = r_N/(h A), of both signs.
 TEST(Conductance, ConductsByAreaAndPressure) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Random random(1);
   for (int k = 0; k < 200; ++k) {
-    const double constant = 300.0 * uniform(random), slope = 0.2 * uniform(random), h = 0.01;
-    const double cold = 250.0 + 100.0 * uniform(random), warm = 250.0 + 100.0 * uniform(random);
+    const double constant = 300.0 * random(0.0, 1.0), slope = 0.2 * random(0.0, 1.0), h = 0.01;
+    const double cold = 250.0 + 100.0 * random(0.0, 1.0), warm = 250.0 + 100.0 * random(0.0, 1.0);
     NodeRun node("conductance",
                  {{{"conductance", constant},
                    {"conductance_per_pressure", slope},
@@ -21,8 +17,8 @@ TEST(Conductance, ConductsByAreaAndPressure) {
                    {"counterpart_temperature", warm}},
                   {{"activation", "moreau"}}},
                  h);
-    node.area = 0.2 + uniform(random);
-    const double normal = 5.0 * uniform(random), pressure = normal / (h * node.area);
+    node.area = 0.2 + random(0.0, 1.0);
+    const double normal = 5.0 * random(0.0, 1.0), pressure = normal / (h * node.area);
     ASSERT_EQ(node.step({-normal, 1.0, 0.0}), ILAW_OK);
     ASSERT_EQ(node.r, (Vector{normal, 0.0, 0.0}));
     const double heat = (constant + slope * pressure) * node.area * (warm - cold) * h;

@@ -1,23 +1,19 @@
 // Contact through the ABI: Moreau's and the predictive condition.
 #include "support/law_runner.hpp"
-#include "support/numbers.hpp"
-
-#include <random>
 
 namespace ilaw::testing {
 namespace {
 
 // A node that was leaving is not stopped: that would put energy in. It turns round at most at its speed.
 TEST(Contact, KeepsMoreausComplementarity) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-300.0, 150.0);
+  Random random(1);
   for (const double restitution : {0.0, 0.5, 1.0}) {
     NodeRun node("contact", {{{"restitution", restitution}}, {{"activation", "moreau"}}});
     for (int k = 0; k < 100000; ++k) {
-      const double scale = std::pow(10.0, exponent(random));
-      const double v = scale * uniform(random), before = scale * uniform(random);
-      node.gap = k % 10 == 0 ? 0.0 : uniform(random);  // zero is closed
-      node.h[0] = 1.0 + 0.9 * uniform(random);
+      const double scale = random.decades(-300.0, 150.0);
+      const double v = scale * random(), before = scale * random();
+      node.gap = k % 10 == 0 ? 0.0 : random();  // zero is closed
+      node.h[0] = 1.0 + 0.9 * random();
       node.v_previous = {before, 0.3 * scale, 0.0};
       ASSERT_EQ(node.step({v, 0.7 * scale, -0.2 * scale}), ILAW_OK)
           << "restitution " << restitution << ", k " << k;
@@ -42,14 +38,14 @@ TEST(Contact, KeepsMoreausComplementarity) {
 // An impact under no force loses (1 - e^2) of the energy of the normal motion.
 TEST(Contact, LosesTheEnergyOfItsRestitution) {
   for (const double restitution : {0.0, 0.25, 0.8, 1.0}) {
+    GIVEN(restitution);
     NodeRun node("contact", {{{"restitution", restitution}}, {}});
     node.h[0] = 0.5;  // mass 2
     node.gap = -1e-9;
     node.v_previous = {-3.0, 1.0, 0.0};
-    ASSERT_EQ(node.step({-3.0, 1.0, 0.0}), ILAW_OK) << "restitution " << restitution;
-    EXPECT_NEAR(node.v[0], 3.0 * restitution, 1e-15) << "restitution " << restitution;
-    EXPECT_NEAR(node.energy[ILAW_ENERGY_IMPACT], 9.0 * (1.0 - restitution * restitution), 1e-14)
-        << "restitution " << restitution;
+    ASSERT_EQ(node.step({-3.0, 1.0, 0.0}), ILAW_OK);
+    EXPECT_NEAR(node.v[0], 3.0 * restitution, 1e-15);
+    EXPECT_NEAR(node.energy[ILAW_ENERGY_IMPACT], 9.0 * (1.0 - restitution * restitution), 1e-14);
   }
 }
 

@@ -3,11 +3,8 @@
 #include "laws/changing_steps.hpp"
 
 #include "support/law_runner.hpp"
-#include "support/numbers.hpp"
 
-#include <algorithm>
 #include <functional>
-#include <random>
 
 namespace ilaw::testing {
 namespace {
@@ -95,10 +92,9 @@ TEST(Resolved, HasOrderTwoAtChangingSteps) {
   for (const double restitution : {1.0, 0.8, 0.5})
     for (const auto& set : step_sets)
       for (const double h : set) {
-        EXPECT_LE(error_of(restitution, varying(h), 5.0, falls, ball(restitution)), 8.0 * h * h)
-            << "ball, e " << restitution << ", h " << h;
-        EXPECT_LE(error_of(restitution, varying(h), 3.0, swings, oscillator(restitution)), 250.0 * h * h)
-            << "oscillator, e " << restitution << ", h " << h;
+        GIVEN(restitution, h);
+        EXPECT_LE(error_of(restitution, varying(h), 5.0, falls, ball(restitution)), 8.0 * h * h);
+        EXPECT_LE(error_of(restitution, varying(h), 3.0, swings, oscillator(restitution)), 250.0 * h * h);
       }
 }
 
@@ -162,18 +158,17 @@ TEST(Resolved, KeepsTheEnergyOfAMillionSteps) {
 
 // Whatever the velocities, forces, steps and inverse masses: the parts are the work, and none is negative.
 TEST(Resolved, MakesNoEnergyWhateverMovesIt) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(3);
   int waiting = 0, again = 0;
   for (const double restitution : {0.05, 0.4, 0.9, 1.0}) {
     NodeRun node("contact", resolved(restitution), 1e-3);
     double stored = 0.0;
     for (int k = 0; k < 100000; ++k) {
-      const double before = k % 3 == 0 ? node.v[0] : uniform(random), free = before + 0.5 * uniform(random),
+      const double before = k % 3 == 0 ? node.v[0] : random(), free = before + 0.5 * random(),
                    waited = node.state[0];
-      node.h[0] = std::pow(10.0, uniform(random));
-      node.position_dt = 1e-3 * (1.0 + 0.5 * uniform(random));
-      node.gap = k % 5 == 0 ? 0.0 : 1e-3 * uniform(random);
+      node.h[0] = random.decades(-1.0, 1.0);
+      node.position_dt = 1e-3 * (1.0 + 0.5 * random());
+      node.gap = k % 5 == 0 ? 0.0 : 1e-3 * random();
       node.v_previous = {before, 0.0, 0.0};
       ASSERT_EQ(node.step({free, 0.0, 0.0}), ILAW_OK) << node.report.reason;
       const double work = 0.5 * node.r[0] * (before + node.v[0]), now = node.energy[ILAW_ENERGY_STORED];
@@ -282,15 +277,14 @@ TEST(Resolved, NeverPassesAtAnyPositionStep) {
 // ---- its limits, its state
 
 TEST(Resolved, IsPredictiveWithoutRestitution) {
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-300.0, 300.0);
+  Random random(5);
   NodeRun node("contact", resolved(0.0)), other("contact", {{}, {{"activation", "predictive"}}});
   for (int k = 0; k < 100000; ++k) {
-    const double scale = std::pow(10.0, k % 2 ? exponent(random) : 0.0);
-    node.gap = k % 10 == 0 ? 0.0 : 1e-3 * scale * uniform(random);
-    node.h[0] = 1.0 + 0.9 * uniform(random);
-    node.v_previous = other.v_previous = {scale * uniform(random), 0.0, 0.0};
-    ASSERT_TRUE(step_alike(node, other, {scale * uniform(random), 0.0, 0.0})) << "k " << k;
+    const double scale = std::pow(10.0, k % 2 ? random(-300.0, 300.0) : 0.0);
+    node.gap = k % 10 == 0 ? 0.0 : 1e-3 * scale * random();
+    node.h[0] = 1.0 + 0.9 * random();
+    node.v_previous = other.v_previous = {scale * random(), 0.0, 0.0};
+    ASSERT_TRUE(step_alike(node, other, {scale * random(), 0.0, 0.0})) << "k " << k;
     ASSERT_EQ(node.state[0], 0.0) << "k " << k;
   }
 }

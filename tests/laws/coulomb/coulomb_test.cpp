@@ -1,30 +1,11 @@
 // Contact with friction through the ABI: closed forms, cone, complementarity, dissipation, limits.
 #include "support/law_runner.hpp"
-#include "support/numbers.hpp"
 #include "support/small_batch.hpp"
-
-#include <random>
 
 namespace ilaw::testing {
 namespace {
 
 double tangential(const Vector& a) { return std::hypot(a[1], a[2]); }
-
-// Random vectors of any scale; the same draw for all tests of a seed.
-class Draw {
- public:
-  explicit Draw(unsigned seed, double smallest = -300.0, double largest = 150.0)
-      : random_(seed), exponent_(smallest, largest) {}
-  Vector velocity() {
-    const double scale = std::pow(10.0, exponent_(random_));
-    return {scale * uniform_(random_), scale * uniform_(random_), scale * uniform_(random_)};
-  }
-  double between(double low, double high) { return low + (high - low) * 0.5 * (1.0 + uniform_(random_)); }
-
- private:
-  std::mt19937_64 random_;
-  std::uniform_real_distribution<double> uniform_{-1.0, 1.0}, exponent_;
-};
 
 // Oblique impact of a point, no force (v_free = v^-): sticks or slides throughout, leaves with e v_z and
 // v_x - mu (1+e) v_z where that is positive. Energy never grows at any angle.
@@ -50,14 +31,14 @@ TEST(Coulomb, ObliqueImpactFollowsItsClosedForm) {
 }
 
 TEST(Coulomb, KeepsComplementarityConeAndDirectionAtAnyScale) {
-  Draw draw(1);
+  Random draw(1);
   int sticks = 0, slips = 0;
   for (const double friction : {0.0, 1e-6, 0.3, 1.0, 1e6}) {
     NodeRun node("coulomb", {{{"friction", friction}}, {{"activation", "moreau"}}});
     for (int k = 0; k < 100000; ++k) {
-      const Vector q = draw.velocity();
-      node.h[0] = std::pow(10.0, draw.between(-6.0, 6.0));
-      node.gap = draw.between(-1.0, 0.3);
+      const Vector q = draw.vector(draw.decades(-300.0, 150.0));
+      node.h[0] = std::pow(10.0, draw(-6.0, 6.0));
+      node.gap = draw(-1.0, 0.3);
       node.v_previous = {};
       ASSERT_EQ(node.step(q), ILAW_OK) << "friction " << friction << ", k " << k;
       const double scale = std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2])});
@@ -94,14 +75,14 @@ TEST(Coulomb, KeepsComplementarityConeAndDirectionAtAnyScale) {
 
 // Among all impulses of the cone, the one chosen takes most from the slip (maximum dissipation).
 TEST(Coulomb, DissipatesAtMost) {
-  Draw draw(2, -1.0, 1.0);
+  Random draw(2);
   NodeRun node("coulomb", {{{"friction", 0.4}}, {}});
   for (int k = 0; k < 20000; ++k) {
-    node.h[0] = draw.between(0.1, 3.0);
+    node.h[0] = draw(0.1, 3.0);
     node.gap = 0.0;
     node.v_previous = {};
-    ASSERT_EQ(node.step(draw.velocity()), ILAW_OK) << "k " << k;
-    const double angle = draw.between(0.0, 2.0 * M_PI), size = draw.between(0.0, 0.4 * node.r[0]);
+    ASSERT_EQ(node.step(draw.vector(draw.decades(-1.0, 1.0))), ILAW_OK) << "k " << k;
+    const double angle = draw(0.0, 2.0 * M_PI), size = draw(0.0, 0.4 * node.r[0]);
     const double other = size * (std::cos(angle) * node.v[1] + std::sin(angle) * node.v[2]);
     ASSERT_LE(node.r[1] * node.v[1] + node.r[2] * node.v[2], other + 1e-14) << "k " << k;
   }
@@ -110,13 +91,13 @@ TEST(Coulomb, DissipatesAtMost) {
 // The outputs split the work r.(v^- + v)/2 exactly. Friction may give back what the impact takes: its part is
 // then zero, and the impact's the rest.
 TEST(Coulomb, EnergyOutputsAreTheWork) {
-  Draw draw(3, -1.0, 1.0);
+  Random draw(3);
   NodeRun node("coulomb", {{{"friction", 0.4}, {"restitution", 0.5}}, {}});
   for (int k = 0; k < 20000; ++k) {
-    const Vector before = draw.velocity();
+    const Vector before = draw.vector(draw.decades(-1.0, 1.0));
     node.gap = 0.0;
     node.v_previous = before;
-    ASSERT_EQ(node.step(draw.velocity()), ILAW_OK) << "k " << k;
+    ASSERT_EQ(node.step(draw.vector(draw.decades(-1.0, 1.0))), ILAW_OK) << "k " << k;
     const double normal = -0.5 * node.r[0] * (before[0] + node.v[0]);
     const double sliding = -0.5 * (node.r[1] * (before[1] + node.v[1]) + node.r[2] * (before[2] + node.v[2]));
     ASSERT_NEAR(node.energy[ILAW_ENERGY_IMPACT], std::max(0.0, normal + std::min(0.0, sliding)), 1e-13)
@@ -128,14 +109,15 @@ TEST(Coulomb, EnergyOutputsAreTheWork) {
 }
 
 TEST(Coulomb, WithoutFrictionIsContactAndWithInfiniteFrictionSticks) {
-  Draw draw(4);
+  Random draw(4);
   NodeRun smooth("coulomb", {{{"friction", 0.0}, {"restitution", 0.3}}, {}});
   NodeRun contact("contact", {{{"restitution", 0.3}}, {}});
   NodeRun rough("coulomb", {{{"friction", inf_value}}, {}});
   for (int k = 0; k < 100000; ++k) {
-    const Vector q = draw.velocity(), before = draw.velocity();
-    smooth.h[0] = contact.h[0] = rough.h[0] = draw.between(0.1, 3.0);
-    smooth.gap = contact.gap = rough.gap = draw.between(-1.0, 0.3);
+    const Vector q = draw.vector(draw.decades(-300.0, 150.0)),
+                 before = draw.vector(draw.decades(-300.0, 150.0));
+    smooth.h[0] = contact.h[0] = rough.h[0] = draw(0.1, 3.0);
+    smooth.gap = contact.gap = rough.gap = draw(-1.0, 0.3);
     smooth.v_previous = contact.v_previous = before;
     ASSERT_EQ(smooth.step(q), ILAW_OK) << "k " << k;
     ASSERT_EQ(contact.step(q), ILAW_OK) << "k " << k;
@@ -173,7 +155,7 @@ TEST(Coulomb, NeedsATangentWhereTheCoefficientsMayDiffer) {
       other{{{"friction", 0.3}, {"friction_2", 0.4}}, {}}, same{{{"friction", 0.3}, {"friction_2", 0.3}}, {}},
       one{{}, {}, {}, {"friction"}};
   for (const Parameters* apart : {&table, &per_node, &other}) {
-    EXPECT_NE(refusal(*apart, false).find("expected a tangent per node"), std::string::npos);
+    EXPECT_THAT(refusal(*apart, false), HasSubstr("expected a tangent per node"));
     EXPECT_EQ(refusal(*apart, true), "not refused");
   }
   for (const Parameters* alike : {&same, &one}) EXPECT_EQ(refusal(*alike, false), "not refused");

@@ -2,9 +2,6 @@
 // docs/theory/resolved_impact.md.
 #include "resolved_friction.hpp"
 
-#include <algorithm>
-#include <random>
-
 namespace ilaw::testing {
 namespace {
 
@@ -57,21 +54,20 @@ TEST(ResolvedFriction, NeverGainsInAMillionSteps) {
 // Whatever the velocities, forces, steps and inverse masses: the impulse is in the cone, the parts are the
 // work, and none is negative.
 TEST(ResolvedFriction, MakesNoEnergyWhateverMovesIt) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(3);
   int waiting = 0, sticks = 0;
   for (const double friction : {0.1, 1.0, inf_value})
     for (const double restitution : {0.05, 0.4, 0.9, 1.0}) {
       NodeRun node("coulomb", resolved(friction, restitution), 1e-3, ILAW_DELASSUS_TRANSVERSE);
       double stored = 0.0;
       for (int k = 0; k < 50000; ++k) {
-        const Vector before = k % 3 == 0 ? node.v : Vector{uniform(random), uniform(random), uniform(random)};
+        const Vector before = k % 3 == 0 ? node.v : random.vector();
         Vector free = before;
-        for (double& v : free) v += 0.5 * uniform(random);
-        node.h[0] = std::pow(10.0, uniform(random));
-        node.h[1] = node.h[0] * std::pow(10.0, uniform(random));
-        node.position_dt = 1e-3 * (1.0 + 0.5 * uniform(random));
-        node.gap = k % 5 == 0 ? 0.0 : 1e-3 * uniform(random);
+        for (double& v : free) v += 0.5 * random();
+        node.h[0] = random.decades(-1.0, 1.0);
+        node.h[1] = node.h[0] * random.decades(-1.0, 1.0);
+        node.position_dt = 1e-3 * (1.0 + 0.5 * random());
+        node.gap = k % 5 == 0 ? 0.0 : 1e-3 * random();
         node.v_previous = before;
         ASSERT_EQ(node.step(free), ILAW_OK) << node.report.reason;
         const double now = node.energy[ILAW_ENERGY_STORED],
@@ -99,19 +95,16 @@ TEST(ResolvedFriction, MakesNoEnergyWhateverMovesIt) {
 // ---- its limits, its state
 
 TEST(ResolvedFriction, IsPredictiveWithoutRestitution) {
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-100.0, 100.0);
+  Random random(5);
   for (const double friction : {0.3, inf_value}) {
     NodeRun node("coulomb", resolved(friction, 0.0)), other("coulomb", {{{"friction", friction}}, {}});
     for (int k = 0; k < 50000; ++k) {
-      const double scale = std::pow(10.0, k % 2 ? exponent(random) : 0.0);
-      node.gap = k % 10 == 0 ? 0.0 : 1e-3 * scale * uniform(random);
-      node.h[0] = 1.0 + 0.9 * uniform(random);
-      node.v_previous = {scale * uniform(random), scale * uniform(random), scale * uniform(random)};
+      const double scale = std::pow(10.0, k % 2 ? random(-100.0, 100.0) : 0.0);
+      node.gap = k % 10 == 0 ? 0.0 : 1e-3 * scale * random();
+      node.h[0] = 1.0 + 0.9 * random();
+      node.v_previous = random.vector(scale);
       other.v_previous = node.v_previous;
-      ASSERT_TRUE(step_alike(node, other,
-                             {scale * uniform(random), scale * uniform(random), scale * uniform(random)}))
-          << "k " << k;
+      ASSERT_TRUE(step_alike(node, other, random.vector(scale))) << "k " << k;
       ASSERT_EQ(node.state[0], 0.0) << "k " << k;
     }
   }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "support/law_runner.hpp"
-#include "support/numbers.hpp"
 
 namespace ilaw::testing {
 

@@ -4,8 +4,6 @@
 
 #include "laws/changing_steps.hpp"
 
-#include <algorithm>
-
 namespace ilaw::testing {
 namespace {
 
@@ -121,11 +119,11 @@ TEST(ResolvedFriction, SharesTheImpulseOfTheImpact) {
           ASSERT_EQ(node.step(node.v_previous), ILAW_OK);
           const Vector whole{(after[0] + w) / inverse_mass, 0.5 * (after[1] - 1.5) / inverse_mass,
                              0.5 * (after[2] + 2.0) / inverse_mass};
-          for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(node.r[c], share * whole[c], 1e-13) << part;
+          EXPECT_THAT(node.r, VectorNear(share * whole, 1e-13)) << part;
           EXPECT_EQ(node.status, friction == 2.0 ? ILAW_STICK : ILAW_SLIP);
           node.gap += h * node.v[0];
         }
-        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(node.v[c], after[c], 1e-13) << part;
+        EXPECT_THAT(node.v, VectorNear(after, 1e-13)) << part;
       }
 }
 

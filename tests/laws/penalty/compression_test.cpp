@@ -1,10 +1,7 @@
 // The normal equation of the implicit penalty, through the ABI, against its defining equation in long double.
 #include "spring.hpp"
 #include "support/law_runner.hpp"
-#include "support/numbers.hpp"
 #include "support/sizes.hpp"
-
-#include <random>
 
 namespace ilaw::testing {
 namespace {
@@ -76,26 +73,25 @@ double damper_of(double restitution, double stiffness, double delassus, double h
 
 // Closes, holds and opens; stiffness, mass and speed over 100 decades.
 TEST(Compression, LinearSolvesItsEquation) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0), decades(-50.0, 50.0), few(-3.0, 3.0);
+  Random random(1);
   const int instances = part_of(1000);
   int closed = 0, opening = 0, returned = 0, spent = 0;
   for (int instance = 0; instance < instances && !::testing::Test::HasFatalFailure(); ++instance) {
-    const double h = 1e-3, delassus = std::pow(10.0, decades(random));
-    const double stiffness = std::pow(10.0, few(random)) / (h * h * delassus);
-    const double given = instance % 3 ? 0.0 : std::pow(10.0, few(random)) / (h * delassus);
-    const double e = instance % 3 ? 0.5 + 0.5 * uniform(random) : 1.0;
+    const double h = 1e-3, delassus = random.decades(50.0);
+    const double stiffness = random.decades(3.0) / (h * h * delassus);
+    const double given = instance % 3 ? 0.0 : random.decades(3.0) / (h * delassus);
+    const double e = instance % 3 ? 0.5 + 0.5 * random() : 1.0;
     NodeRun node("penalty", implicit({{"stiffness", stiffness}, {"damping", given}, {"restitution", e}}), h);
     node.h[0] = delassus;
     node.gap = -1e300;
     const double damping =
         given / (1.0 + 0.5 * h * given * delassus) + (e < 1.0 ? damper_of(e, stiffness, delassus, h) : 0.0);
     for (int k = 0; k < 1000 && !::testing::Test::HasFatalFailure(); ++k) {
-      const double scale = std::pow(10.0, decades(random)), v = scale * uniform(random);
-      node.v_previous = {scale * uniform(random), 0.0, 0.0};
+      const double scale = random.decades(50.0), v = scale * random();
+      node.v_previous = {scale * random(), 0.0, 0.0};
       const double previous = node.v_previous[0];
-      const double x = k % 3 ? h * scale * std::pow(10.0, few(random)) : 0.0;
-      const double withheld = e < 1.0 && k % 2 ? 0.5 * stiffness * x * x * std::pow(10.0, few(random)) : 0.0;
+      const double x = k % 3 ? h * scale * random.decades(3.0) : 0.0;
+      const double withheld = e < 1.0 && k % 2 ? 0.5 * stiffness * x * x * random.decades(3.0) : 0.0;
       node.state = {x, 0.0, 0.0, 0.0, withheld};
       ASSERT_EQ(node.step({v, 0.3 * scale, 0.0}), ILAW_OK) << node.report.reason;
       expect_solution(
@@ -115,27 +111,24 @@ TEST(Compression, LinearSolvesItsEquation) {
 }
 
 TEST(Compression, PowerLawSolvesItsEquation) {
-  std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0), decades(-12.0, 12.0), exponents(1.0, 8.0),
-      few(-3.0, 3.0);
+  Random random(2);
   const int instances = part_of(300);
   int closed = 0;
   for (int instance = 0; instance < instances && !::testing::Test::HasFatalFailure(); ++instance) {
-    const double h = 1e-3, delassus = std::pow(10.0, decades(random));
-    const double exponent = instance % 2 ? 1.5 : exponents(random);
-    const double given = instance % 3 ? 0.0 : std::pow(10.0, few(random)) / (h * delassus);
-    const double length = std::pow(10.0, few(random));
-    const double stiffness =
-        std::pow(10.0, few(random)) / (h * h * delassus) / std::pow(length, exponent - 1.0);
+    const double h = 1e-3, delassus = random.decades(12.0);
+    const double exponent = instance % 2 ? 1.5 : random(1.0, 8.0);
+    const double given = instance % 3 ? 0.0 : random.decades(3.0) / (h * delassus);
+    const double length = random.decades(3.0);
+    const double stiffness = random.decades(3.0) / (h * h * delassus) / std::pow(length, exponent - 1.0);
     NodeRun node("penalty", implicit({{"stiffness", stiffness}, {"damping", given}, {"exponent", exponent}}),
                  h);
     node.h[0] = delassus;
     node.gap = -1e300;
     const double damping = given / (1.0 + 0.5 * h * given * delassus);
     for (int k = 0; k < 300 && !::testing::Test::HasFatalFailure(); ++k) {
-      const double scale = length / h, v = scale * uniform(random), previous = scale * uniform(random);
+      const double scale = length / h, v = scale * random(), previous = scale * random();
       node.v_previous = {previous, 0.0, 0.0};
-      const double x = k % 3 ? length * std::pow(10.0, 0.5 * few(random)) : 0.0;
+      const double x = k % 3 ? length * random.decades(1.5) : 0.0;
       node.state = {x, 0.0, 0.0, 0.0};
       ASSERT_EQ(node.step({v, 0.0, 0.0}), ILAW_OK) << node.report.reason;
       SCOPED_TRACE("exponent " + std::to_string(exponent) + ", k " + std::to_string(k));
@@ -166,20 +159,19 @@ TEST(Compression, PowerLawTendsToLinear) {
 // k -> inf: v = -e v^- of a node that arrives; one that leaves but is pulled back may turn round, at most at
 // the speed with which it left. At k = inf to the last bits, and at the rate 1/(1 + h^2 k H/4) before.
 TEST(Compression, TendsToNewtonsImpact) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(3);
   for (const double stiffness : {1e12, 1e15, 1e18, inf_value})
     for (const double e : {0.0, 0.4, 1.0}) {
       NodeRun node("penalty", implicit({{"stiffness", stiffness}, {"restitution", e}}));
       for (int k = 0; k < 20000; ++k) {
-        const double v = uniform(random), previous = uniform(random);
-        node.h[0] = 1.0 + 0.9 * uniform(random);
+        const double v = random(), previous = random();
+        node.h[0] = 1.0 + 0.9 * random();
         node.state = {0.0, 0.0, 0.0, 0.0};
-        node.gap = 2e-3 * uniform(random);
+        node.gap = 2e-3 * random();
         node.v_previous = {previous, 0, 0};
         const bool in_reach = node.gap <= 0.0 || node.gap + node.dt * v <= 0.0;
         const bool closed = in_reach && node.gap + 0.5 * node.dt * previous <= 0.0;
-        ASSERT_EQ(node.step({v, uniform(random), 0.0}), ILAW_OK);
+        ASSERT_EQ(node.step({v, random(), 0.0}), ILAW_OK);
         const double returned = (previous < 0.0 ? e : 1.0) * previous;
         const double rigid = closed ? std::max(-(v + returned) / node.h[0], 0.0) : 0.0;
         const double gain = 0.25 * 1e-6 * stiffness * node.h[0];

@@ -1,12 +1,8 @@
 // What the penalty's springs take and give back, step by step, on random draws: any state, any velocity
 // before (any external force, then), any H, two steps that have nothing to do with each other.
 #include "support/law_runner.hpp"
-#include "support/numbers.hpp"
 #include "support/sizes.hpp"
 
-#include <algorithm>
-#include <map>
-#include <random>
 #include <tuple>
 #include <utility>
 
@@ -27,18 +23,14 @@ struct Springs {
   }
 };
 
-struct Random {
-  std::mt19937_64 engine{11};
-  std::uniform_real_distribution<double> unit{-1.0, 1.0};
+struct Draw : Random {
+  Draw() : Random(11) {}
 
-  double uniform() { return unit(engine); }
-  double decades(double most) { return std::pow(10.0, most * uniform()); }
-  Vector vector(std::size_t dimension) {
+  Vector in_dimension(std::size_t dimension) {
     Vector v{};
-    for (std::size_t k = 0; k < dimension; ++k) v[k] = uniform();
+    for (std::size_t k = 0; k < dimension; ++k) v[k] = (*this)();
     return v;
   }
-
   // A positive definite H of the form; with correlations of at most `most` where it is full.
   std::array<double, 6> inertia(std::uint32_t form, std::size_t dimension, double most) {
     const double size = decades(1.0);
@@ -46,15 +38,15 @@ struct Random {
     for (std::size_t k = 0; k < dimension; ++k)
       h[k] = size * (form == ILAW_DELASSUS_SCALAR ? 1.0 : decades(0.5));
     if (form != ILAW_DELASSUS_FULL) return h;
-    double n1 = most * uniform(), n2 = 0.0, t12 = 0.0;
+    double n1 = most * (*this)(), n2 = 0.0, t12 = 0.0;
     if (dimension == 2) {
       h[2] = n1 * std::sqrt(h[0] * h[1]);
       return h;
     }
     do {
-      n1 = most * uniform();
-      n2 = most * uniform();
-      t12 = most * uniform();
+      n1 = most * (*this)();
+      n2 = most * (*this)();
+      t12 = most * (*this)();
     } while (1.0 + 2.0 * n1 * n2 * t12 - n1 * n1 - n2 * n2 - t12 * t12 < 0.01);
     h[3] = n1 * std::sqrt(h[0] * h[1]);
     h[4] = n2 * std::sqrt(h[0] * h[2]);
@@ -63,9 +55,9 @@ struct Random {
   }
   // Of any direction, or turned round within the step, in part or more than that.
   Vector before(const Vector& v_free, std::size_t dimension) {
-    Vector v = vector(dimension);
-    if (uniform() < 0.0) return v;
-    const double part = decades(1.0), aside = 0.3 * uniform();
+    Vector v = in_dimension(dimension);
+    if ((*this)() < 0.0) return v;
+    const double part = decades(1.0), aside = 0.3 * (*this)();
     for (std::size_t k = 1; k < dimension; ++k) v[k] = -part * (v_free[k] + aside * v[k]);
     return v;
   }
@@ -89,7 +81,7 @@ class ImplicitEnergy : public ::testing::TestWithParam<std::tuple<std::uint32_t,
   void check(NodeRun& node, const Springs& springs, int seed) {
     const std::vector<double> before = node.state;
     const double held = springs.normal(before[0]) + before.back(), stored = held + springs.tangent(before);
-    const Vector v_free = random_.vector(dimension()), previous = random_.before(v_free, dimension());
+    const Vector v_free = random_.in_dimension(dimension()), previous = random_.before(v_free, dimension());
     node.v_previous = previous;
     if (node.step(v_free) != ILAW_OK) {  // strong coupling: no impulse holds the node
       ASSERT_EQ(springs.friction, inf_value) << node.report.reason;
@@ -117,7 +109,7 @@ class ImplicitEnergy : public ::testing::TestWithParam<std::tuple<std::uint32_t,
     }
   }
 
-  Random random_;
+  Draw random_;
   std::map<int, int> seen_;
   int refused_ = 0;
 };
@@ -125,12 +117,11 @@ class ImplicitEnergy : public ::testing::TestWithParam<std::tuple<std::uint32_t,
 // A soft spring that presses little, and a velocity that was turned round in part: what rounding leaves of
 // the tangential velocity is large beside the normal impulse, and may do no work.
 TEST(PenaltyStick, OfWhatTurnedRoundDoesNoWork) {
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Random random(5);
   NodeRun node("penalty", {{{"stiffness", 1e-6}, {"friction", 1.0}}, {{"integration", "implicit"}}});
   for (int draw = 0; draw < 100000 && !::testing::Test::HasFatalFailure(); ++draw) {
-    const double part = 1.2 * uniform(random);
-    const Vector previous{-1.0, uniform(random) - 0.5, uniform(random) - 0.5};
+    const double part = 1.2 * random(0.0, 1.0);
+    const Vector previous{-1.0, random(0.0, 1.0) - 0.5, random(0.0, 1.0) - 0.5};
     node.state.assign(node.state.size(), 0.0);
     node.gap = 0.0;
     node.v_previous = previous;
@@ -142,7 +133,7 @@ TEST(PenaltyStick, OfWhatTurnedRoundDoesNoWork) {
 }
 
 TEST_P(ImplicitEnergy, GivesBackWhatItDoesNotDissipate) {
-  Random& random = random_;
+  Draw& random = random_;
   for (int instance = 0; instance < 500 && !HasFatalFailure(); ++instance) {
     const bool rigid_tangent = instance % 5 < 2, rigid = instance % 17 == 0;
     const double scale = random.decades(1.0), h = random.decades(1.0);
@@ -155,16 +146,15 @@ TEST_P(ImplicitEnergy, GivesBackWhatItDoesNotDissipate) {
                                           {"friction", springs.friction},
                                           {"tangential_stiffness", springs.tangential}};
     if (instance % 3 == 1) numbers["damping"] = random.decades(2.0) / h;
-    if (instance % 3 == 2 && springs.exponent == 1.0) numbers["restitution"] = 0.5 + 0.5 * random.uniform();
+    if (instance % 3 == 2 && springs.exponent == 1.0) numbers["restitution"] = 0.5 + 0.5 * random();
     NodeRun node = run_of({numbers, {{"integration", "implicit"}}}, h, form(), dimension());
     node.position_dt = random.decades(1.0);
     for (int k = 0; k < 100 && !HasFatalFailure(); ++k) {
       node.h = random.inertia(form(), dimension(), 0.95);
-      node.gap = scale * random.uniform();
+      node.gap = scale * random();
       node.state.assign(node.state.size(), 0.0);
-      if (!rigid && k % 4 != 0) node.state[0] = h * std::abs(random.uniform()) * random.decades(1.0);
-      for (std::size_t t = 2; t + 1 < node.state.size() && !rigid_tangent; ++t)
-        node.state[t] = h * random.uniform();
+      if (!rigid && k % 4 != 0) node.state[0] = h * std::abs(random()) * random.decades(1.0);
+      for (std::size_t t = 2; t + 1 < node.state.size() && !rigid_tangent; ++t) node.state[t] = h * random();
       if (numbers.contains("restitution") && k % 2 == 1)
         node.state.back() = springs.normal(node.state[0]) * random.decades(2.0);
       check(node, springs, 100 * instance + k);
@@ -185,8 +175,8 @@ class StickOfAnyInertia {
  public:
   explicit StickOfAnyInertia(double friction) : friction_(friction) {}
 
-  void check(NodeRun& node, Random& random) {
-    const Vector v_free = random.vector(3), before = random.before(v_free, 3);
+  void check(NodeRun& node, Draw& random) {
+    const Vector v_free = random.vector(), before = random.before(v_free, 3);
     node.h = random.inertia(ILAW_DELASSUS_FULL, 3, 0.95);
     node.v_previous = before;
     node.state.assign(node.state.size(), 0.0);
@@ -219,7 +209,7 @@ class StickOfAnyInertia {
 };
 
 TEST(PenaltyStick, GivesBackNoMoreThanItMust) {
-  Random random;
+  Draw random;
   int stopped = 0, between = 0, reversed = 0;
   for (int instance = 0; instance < part_of(10000) && !HasFatalFailure(); ++instance) {
     const double friction = instance % 5 ? random.decades(0.7) : inf_value;
@@ -245,13 +235,13 @@ TEST(PenaltyStick, GivesBackNoMoreThanItMust) {
 TEST(PenaltyStick, IsContinuousInWhatTurnedRound) {
   constexpr int steps = 2000, parts = 64;
   constexpr double angle = 6.283185307179586 / steps;
-  Random random;
+  Draw random;
   for (int draw = 0; draw < 100 && !HasFatalFailure(); ++draw) {
     NodeRun node =
         run_of({{{"stiffness", 100.0}, {"friction", random.decades(0.5)}}, {{"integration", "implicit"}}},
                1.0, ILAW_DELASSUS_FULL, 3);
     node.h = random.inertia(ILAW_DELASSUS_FULL, 3, 0.3);
-    const Vector v_free{-1.0, random.uniform(), random.uniform()};
+    const Vector v_free{-1.0, random(), random()};
     const double speed = random.decades(1.0);
     const auto velocity_after = [&](double at) {
       node.v_previous = {-1.0, speed * std::cos(at), speed * std::sin(at)};

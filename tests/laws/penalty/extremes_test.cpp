@@ -1,8 +1,6 @@
 // What the springs do where a number is zero, or as small or large as numbers are: no spring, no step, rest.
 #include "support/law_runner.hpp"
 
-#include <cstdlib>
-#include <limits>
 #include <sstream>
 
 namespace ilaw::testing {

@@ -50,33 +50,29 @@ struct Spring {
   }
 };
 
-struct Random {
-  std::mt19937_64 generator{5};
-  std::uniform_real_distribution<double> unit{-1.0, 1.0};
-
-  double uniform() { return unit(generator); }
-  double decades(double most) { return std::pow(10.0, most * uniform()); }
+struct Draw : Random {
+  Draw() : Random(5) {}
 
   // Time, mass and length have sizes of their own, so that nothing depends on one of them being near 1.
   Spring spring(double exponent, bool loses) {
-    const double step = decades(2.0), e = loses && exponent == 1.0 ? 0.5 + 0.5 * uniform() : 1.0;
+    const double step = decades(2.0), e = loses && exponent == 1.0 ? 0.5 + 0.5 * (*this)() : 1.0;
     const double damping = loses ? decades(1.0) / step : 0.0;
     return {step, decades(3.0) / (step * step), exponent, damping, 1.0 / (1.0 + e) - 0.5};
   }
   // Weakly coupled; a tangential spring, too, in every second one.
   problem<double> problem_of(double step) {
-    const double soft = uniform() > 0.0 ? decades(1.0) : 0.0;
-    return {.free = uniform(),
-            .previous = uniform(),
-            .delassus = 2.0 + uniform(),
-            .indentation = std::max(uniform(), 0.0) * step * decades(1.0),
-            .c1 = 0.7 * uniform(),
-            .c2 = 0.7 * uniform(),
-            .a11 = 1.0 + 0.5 * uniform() + soft,
-            .a22 = 1.0 + 0.5 * uniform() + soft,
-            .a12 = 0.3 * uniform(),
-            .q1 = uniform(),
-            .q2 = uniform(),
+    const double soft = (*this)() > 0.0 ? decades(1.0) : 0.0;
+    return {.free = (*this)(),
+            .previous = (*this)(),
+            .delassus = 2.0 + (*this)(),
+            .indentation = std::max((*this)(), 0.0) * step * decades(1.0),
+            .c1 = 0.7 * (*this)(),
+            .c2 = 0.7 * (*this)(),
+            .a11 = 1.0 + 0.5 * (*this)() + soft,
+            .a22 = 1.0 + 0.5 * (*this)() + soft,
+            .a12 = 0.3 * (*this)(),
+            .q1 = (*this)(),
+            .q2 = (*this)(),
             .before1 = 0.0,
             .before2 = 0.0};
   }
@@ -139,7 +135,7 @@ struct Packs {
 using Bits = std::array<std::uint64_t, answer_size>;
 
 void expect_solved(double exponent, bool loses) {
-  Random random;
+  Draw random;
   int left = 0, sticking = 0, sliding = 0, opening = 0, total = 0;
   for (int trial = 0; trial < part_of(4000) && !::testing::Test::HasFailure(); ++trial) {
     const Spring spring = random.spring(exponent, loses);
@@ -184,14 +180,13 @@ TEST(PenaltyFriction, SolvesItsEquationsWithTheBitsOfANodeAlone) {
 // Where the step closes the spring, and friction and couplings are as large as they may be: on the way to the
 // solution Newton's method passes motions that would let go.
 TEST(PenaltyFriction, GivesWhatItsSpringGivesWhereItCloses) {
-  Random random;
+  Draw random;
   int solved = 0;
   for (int trial = 0; trial < part_of(2000000) && !::testing::Test::HasFailure(); ++trial) {
     const Spring spring = random.spring(1.0, false);
     problem<double> p = random.problem_of(spring.step);
     p.indentation = 0.0;
-    const double mu = random.decades(0.7), n1 = 0.95 * random.uniform(), n2 = 0.95 * random.uniform(),
-                 t12 = 0.95 * random.uniform();
+    const double mu = random.decades(0.7), n1 = 0.95 * random(), n2 = 0.95 * random(), t12 = 0.95 * random();
     if (1.0 + 2.0 * n1 * n2 * t12 - n1 * n1 - n2 * n2 - t12 * t12 < 0.01) continue;
     p.c1 = n1 * std::sqrt(2.0 * p.delassus * p.a11);
     p.c2 = n2 * std::sqrt(2.0 * p.delassus * p.a22);
@@ -209,7 +204,7 @@ TEST(PenaltyFriction, GivesWhatItsSpringGivesWhereItCloses) {
 
 // Sticking nodes, sliding ones and such that let go, by brackets and by Newton's method.
 TEST(PenaltyFriction, AgreesWithTheScalarFallback) {
-  Random random;
+  Draw random;
   for (int trial = 0; trial < part_of(4000); ++trial) {
     const Spring spring = random.spring(trial % 2 == 0 ? 1.0 : 1.5, trial % 3 == 0);
     const problem<double> p = random.problem_of(spring.step);

@@ -1,9 +1,6 @@
 // A mass against a penalised obstacle, step by step, against the closed forms of continuous time.
 #include "support/law_runner.hpp"
 
-#include <limits>
-#include <random>
-
 namespace ilaw::testing {
 namespace {
 
@@ -79,8 +76,7 @@ TEST(Impact, ImplicitReachesItsRestitution) {
 // Steps that change, as adaptive codes have them: h = (dt_1 + dt_2)/2 in the velocity, l = dt_2 in the
 // position, each up to half as long again or half as short as the one before. The speed still is exact.
 TEST(Impact, ImplicitReturnsTheMassWhateverTheSteps) {
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> uniform(0.5, 1.5);
+  Random random(5);
   for (const double exponent : {1.0, 1.5})
     for (const double stiffness : {1e2, 1e4, 1e6, 1e9})
       for (int run = 0; run < 20; ++run) {
@@ -88,7 +84,7 @@ TEST(Impact, ImplicitReturnsTheMassWhateverTheSteps) {
         node.v = node.v_previous = {-1.0, 0, 0};
         double position = 0.017, last = 1e-2;
         for (int k = 0; k < 1000 && (k < 4 || node.state[0] > 0.0 || node.v[0] < 0.0); ++k) {
-          const double next = 1e-2 * uniform(random);
+          const double next = 1e-2 * random(0.5, 1.5);
           node.dt = 0.5 * (last + next);
           node.position_dt = last = next;
           node.gap = position;

@@ -1,12 +1,6 @@
 // Regularised friction, limits, and bad parameters of the penalty law.
-#include "support/law_runner.hpp"
-#include "support/numbers.hpp"
+#include "support/law_batch.hpp"
 #include "support/sizes.hpp"
-
-#include <ilaw/arrays.hpp>
-
-#include <limits>
-#include <random>
 
 namespace ilaw::testing {
 namespace {
@@ -69,8 +63,7 @@ TEST(PenaltyFriction, LiftedContactForgets) {
 // Both stiffnesses infinite: Newton's impact with Coulomb friction, also for mu = inf, of a node that arrives
 // without slip before; half a step decides about the gap.
 TEST(PenaltyFriction, RigidSpringsAreCoulomb) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0), exponent(-100.0, 100.0);
+  Random random(1);
   for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_FULL})
     for (const double friction : {0.0, 0.4, inf_value})
       for (const double e : {0.0, 0.6, 1.0}) {
@@ -82,19 +75,19 @@ TEST(PenaltyFriction, RigidSpringsAreCoulomb) {
         const double coupling = friction < inf_value ? 0.3 : 0.0;
         int closed = 0;
         for (int k = 0; k < 20000; ++k) {
-          const double scale = std::pow(10.0, exponent(random));
-          const Vector v{scale * uniform(random), scale * uniform(random), scale * uniform(random)};
-          node.v_previous = coulomb.v_previous = {-scale * std::abs(uniform(random)), 0.0, 0.0};
-          node.gap = 1e-3 * scale * uniform(random);
+          const double scale = random.decades(-100.0, 100.0);
+          const Vector v = random.vector(scale);
+          node.v_previous = coulomb.v_previous = {-scale * std::abs(random()), 0.0, 0.0};
+          node.gap = 1e-3 * scale * random();
           const bool in_reach = node.gap <= 0.0 || node.gap + node.dt * v[0] <= 0.0;
           coulomb.gap = in_reach ? node.gap + 0.5 * node.dt * node.v_previous[0] : node.gap;
-          const double size = 1.0 + 0.9 * uniform(random), couples = size * coupling * uniform(random);
+          const double size = 1.0 + 0.9 * random(), couples = size * coupling * random();
           node.h = coulomb.h = {size, size, 0.7 * size, couples, -0.5 * couples, 0.3 * couples};
           ASSERT_EQ(node.step(v), ILAW_OK);
           ASSERT_EQ(coulomb.step(v), ILAW_OK);
           const double rounding = 32 * ulp * scale / size;
-          for (std::size_t c = 0; c < 3; ++c)
-            ASSERT_NEAR(node.r[c], coulomb.r[c], rounding) << "mu " << friction << ", e " << e << ", k " << k;
+          ASSERT_THAT(node.r, VectorNear(coulomb.r, rounding))
+              << "mu " << friction << ", e " << e << ", k " << k;
           for (const double entry : node.state) ASSERT_EQ(entry, 0.0);
           closed += node.r[0] > 0.0;
         }
@@ -105,15 +98,14 @@ TEST(PenaltyFriction, RigidSpringsAreCoulomb) {
 // A rigid tangential spring that meets a node whose slip turned round within the step stops it without
 // giving it energy; Coulomb's stick would, by what the free velocity lost.
 TEST(PenaltyFriction, RigidStickDoesNoWork) {
-  std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(7);
   NodeRun node("penalty", with("implicit", {{"stiffness", 1e5}, {"friction", 0.4}}));
   int turned = 0;
   for (int k = 0; k < 100000; ++k) {
-    const Vector before{uniform(random), uniform(random), uniform(random)};
+    const Vector before = random.vector();
     node.v_previous = before;
-    node.state = {std::abs(uniform(random)) * 1e-2, 0.0, 0.0, 0.0};
-    ASSERT_EQ(node.step({uniform(random), uniform(random), uniform(random)}), ILAW_OK);
+    node.state = {std::abs(random()) * 1e-2, 0.0, 0.0, 0.0};
+    ASSERT_EQ(node.step(random.vector()), ILAW_OK);
     const double work = 0.5 * (node.r[1] * (before[1] + node.v[1]) + node.r[2] * (before[2] + node.v[2]));
     ASSERT_LE(work, 4 * ulp) << k;
     turned += before[1] * node.v_free[1] + before[2] * node.v_free[2] < 0.0 && node.status == ILAW_STICK;
@@ -137,8 +129,7 @@ TEST(Penalty, WithoutFrictionServesAnyH) {
 // with mu r_N the way its mean would be strained. Whatever the normal spring, coupling and all.
 TEST(Penalty, WithFrictionServesAnyH) {
   constexpr double h = 1e-2, k = 1e3, tangential = 600.0, mu = 0.3;
-  std::mt19937_64 random(6);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(6);
   for (const std::map<std::string, double>& more : {std::map<std::string, double>{},
                                                     {{"damping", 5.0}},
                                                     {{"restitution", 0.3}},
@@ -149,12 +140,12 @@ TEST(Penalty, WithFrictionServesAnyH) {
     NodeRun node("penalty", with("implicit", numbers), h, ILAW_DELASSUS_FULL);
     int sticking = 0, slipping = 0;
     for (int trial = 0; trial < 10000; ++trial) {
-      node.h = {4.0, 3.0, 2.0, uniform(random), uniform(random), uniform(random)};
-      node.gap = 0.05 * uniform(random);
-      const Vector previous = {uniform(random), 0.2 * uniform(random), 0.2 * uniform(random)};
+      node.h = {4.0, 3.0, 2.0, random(), random(), random()};
+      node.gap = 0.05 * random();
+      const Vector previous = {random(), 0.2 * random(), 0.2 * random()};
       node.v_previous = previous;
       const std::vector<double> before = node.state;
-      ASSERT_EQ(node.step({uniform(random), 0.2 * uniform(random), 0.2 * uniform(random)}), ILAW_OK);
+      ASSERT_EQ(node.step({random(), 0.2 * random(), 0.2 * random()}), ILAW_OK);
       if (plain && node.state[0] > 0.0) {
         ASSERT_NEAR(node.r[0], 0.5 * h * k * (before[0] + node.state[0]), 1e-13);
         ASSERT_NEAR(node.state[0], before[0] - 0.5 * h * (previous[0] + node.v[0]), 1e-15);
@@ -222,7 +213,7 @@ TEST(Penalty, RefusesStateThatItCannotHaveWritten) {
     node.gap = -0.01;
     node.state[0] = x;
     ASSERT_EQ(node.step({-1.0, 0.0, 0.0}), ILAW_BAD_NODES) << integration << " " << x;
-    EXPECT_NE(std::string(node.report.reason).find(reason), std::string::npos) << node.report.reason;
+    EXPECT_THAT(node.report.reason, HasSubstr(reason));
     EXPECT_EQ(node.r[0], 0.0);
     EXPECT_EQ(node.status, ILAW_BAD_INPUT);
     EXPECT_TRUE(node.state[0] == x || (std::isnan(x) && std::isnan(node.state[0])));
@@ -247,43 +238,27 @@ TEST(Penalty, ExplicitReadsWhatIsKnownBefore) {
 
 // A stiffness given per node takes another way through the kit: the same bits.
 TEST(Penalty, PerNodeStiffnessGivesTheSameBits) {
-  std::mt19937_64 random(4);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(4);
   for (const char* integration : {"explicit", "implicit"})
     for (const double exponent : {1.0, 1.5}) {
       const Parameters constant = with(
           integration,
           {{"stiffness", 3e3}, {"exponent", exponent}, {"friction", 0.3}, {"tangential_stiffness", 1e3}});
+      Parameters per_node = constant;
+      per_node.numbers.erase("stiffness");
+      per_node.per_node = {"stiffness"};
       NodeRun node("penalty", constant);
-      SetupBuilder setup(constant);
-      std::vector<ilaw_argument> arguments;
-      for (std::uint32_t k = 0; k < setup.setup.argument_count; ++k)
-        arguments.push_back(*setup.setup.arguments[k]);
-      std::vector<const ilaw_argument*> pointers;
-      for (ilaw_argument& a : arguments) {
-        if (std::string(a.name) == "stiffness") a.kind = ILAW_VALUE_PER_NODE;
-        pointers.push_back(&a);
-      }
-      setup.setup.arguments = pointers.data();
-      const ilaw::interface varying = make_law("penalty", setup);
+      LawBatch varying(make_law("penalty", SetupBuilder(per_node)));
       const double stiffness = 3e3;
-      const ilaw_input per_node = ilaw::input(&stiffness, 0, 0);
-      std::vector<double> state(node.state.size());
-      Vector r{};
+      varying.per_node = {ilaw::input(&stiffness, 0, 0)};
       for (int k = 0; k < 1000; ++k) {
-        const Vector v{uniform(random), uniform(random), uniform(random)};
-        node.gap = 1e-3 * uniform(random) - 5e-4;
-        const Vector previous = node.v_previous;
-        ASSERT_EQ(node.step(v), ILAW_OK);
-        ilaw_batch b = node.batch();
-        b.v_previous = ilaw::input(previous.data(), 0, 1);
-        b.state_in = ilaw::input(state.data(), 0, 1);
-        b.state_out = ilaw::output(state.data(), 0, 1);
-        b.impulse = ilaw::output(r.data(), 0, 1);
-        b.per_node_parameters = &per_node;
-        ASSERT_EQ(varying.evaluate(b), ILAW_OK);
-        ASSERT_EQ(r, node.r);
-        ASSERT_EQ(state, node.state);
+        varying.v_free[0] = random.vector();
+        varying.v_previous[0] = node.v_previous;
+        varying.gap[0] = node.gap = 1e-3 * random() - 5e-4;
+        ASSERT_EQ(node.step(varying.v_free[0]), ILAW_OK);
+        ASSERT_EQ(varying.evaluate(), ILAW_OK);
+        ASSERT_EQ(varying.r[0], node.r);
+        ASSERT_EQ(varying.state, node.state);
       }
     }
 }
@@ -291,15 +266,14 @@ TEST(Penalty, PerNodeStiffnessGivesTheSameBits) {
 // Up to a million random steps of nodes with memory: r_N pushes, |r_T| <= mu r_N, a power of ten in stiffness
 // at a time; no energy counts as negative.
 TEST(Penalty, RandomHistoriesKeepTheCone) {
-  std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0), decades(-4.0, 8.0), stable(-4.0, 3.0);
+  Random random(2);
   const int histories = part_of(1000);
   int slipping = 0, sticking = 0;
   for (int history = 0; history < histories && !::testing::Test::HasFailure(); ++history) {
     const bool implicit = history % 2 == 0;
     const double h = 1e-2, friction = history % 7 == 0 ? inf_value : 0.3;
-    const double stiffness = std::pow(10.0, implicit ? decades(random) : stable(random));
-    const double tangential = std::pow(10.0, implicit ? decades(random) : stable(random));
+    const double stiffness = std::pow(10.0, implicit ? random(-4.0, 8.0) : random(-4.0, 3.0));
+    const double tangential = std::pow(10.0, implicit ? random(-4.0, 8.0) : random(-4.0, 3.0));
     NodeRun node("penalty",
                  with(implicit ? "implicit" : "explicit", {{"stiffness", stiffness},
                                                            {"tangential_stiffness", tangential},
@@ -308,10 +282,10 @@ TEST(Penalty, RandomHistoriesKeepTheCone) {
                                                            {"exponent", history % 5 ? 1.0 : 1.5}}),
                  h);
     for (int k = 0; k < 1000; ++k) {
-      node.h[0] = 1.0 + 0.9 * uniform(random);
+      node.h[0] = 1.0 + 0.9 * random();
       // The gap is its own from step to step for a while, so that springs strain.
-      node.gap = k % 20 == 0 ? 0.02 * uniform(random) : node.gap + h * node.v[0];
-      const Vector v{uniform(random) - 0.3, uniform(random), uniform(random)};
+      node.gap = k % 20 == 0 ? 0.02 * random() : node.gap + h * node.v[0];
+      const Vector v{random() - 0.3, random(), random()};
       node.v_previous = v;
       ASSERT_EQ(node.step(v), ILAW_OK) << node.report.reason;
       ASSERT_GE(node.r[0], 0.0);
@@ -346,7 +320,7 @@ TEST(Penalty, RefusesBadParameters) {
         {"explicit", {{"stiffness", 1.0}, {"restitution", 0.5}}, "restitution = 0.5"},
         {"backwards", {{"stiffness", 1.0}}, "'integration' = \"backwards\""}}) {
     const std::string refusal = refusal_of("penalty", with(integration, numbers));
-    EXPECT_NE(refusal.find(named), std::string::npos) << refusal;
+    EXPECT_THAT(refusal, HasSubstr(named));
   }
 }
 

@@ -1,9 +1,6 @@
 // Rate and state: its equation over twelve decades of speed, its state in closed form, its order, its limits.
 #include "support/law_runner.hpp"
 
-#include <cmath>
-#include <random>
-
 namespace ilaw::testing {
 namespace {
 
@@ -31,8 +28,7 @@ struct Surface {
 
 // Nodes that are driven so that they slip at a speed drawn over twelve decades: it comes out.
 TEST(RateAndState, SolvesItsEquationAtAnySpeed) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Random random(1);
   for (const char* evolution : {"aging", "slip"}) {
     Surface law;
     law.evolution = evolution;
@@ -40,8 +36,8 @@ TEST(RateAndState, SolvesItsEquationAtAnySpeed) {
     NodeRun node("rate_and_state", law.parameters(), h, ILAW_DELASSUS_TRANSVERSE);
     node.h = {1.0, drag};
     for (int k = 0; k < 5000; ++k) {
-      const double v = std::pow(10.0, -11.0 + 12.0 * uniform(random)), was = v * (0.5 + uniform(random));
-      const double theta = law.d / v * std::pow(10.0, 2.0 * uniform(random) - 1.0);
+      const double v = std::pow(10.0, -11.0 + 12.0 * random(0.0, 1.0)), was = v * (0.5 + random(0.0, 1.0));
+      const double theta = law.d / v * std::pow(10.0, 2.0 * random(0.0, 1.0) - 1.0);
       const double middle = law.aged(theta, was, 0.5 * h), friction = law.at(v, middle);
       node.state = {theta};
       node.v_previous = {0.0, was, 0.0};
@@ -56,32 +52,30 @@ TEST(RateAndState, SolvesItsEquationAtAnySpeed) {
 
 // A full H without coupling: the same motion by the solver of any H.
 TEST(RateAndState, IsTheSameForAFullInertia) {
-  std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(2);
   const Surface law{.v0 = 1e-3, .d = 0.01};
   NodeRun node("rate_and_state", law.parameters(), 0.01, ILAW_DELASSUS_TRANSVERSE),
       other("rate_and_state", law.parameters(), 0.01, ILAW_DELASSUS_FULL);
   node.h = {1.0, 0.7};
   other.h = {1.0, 0.7, 0.7, 0.0, 0.0, 0.0};
   for (int k = 0; k < 2000; ++k) {
-    const Vector free{-1.0, 2.0 * uniform(random), 2.0 * uniform(random)};
+    const Vector free{-1.0, 2.0 * random(), 2.0 * random()};
     node.v_previous = other.v_previous = free;
     ASSERT_EQ(node.step(free), ILAW_OK);
     ASSERT_EQ(other.step(free), ILAW_OK);
-    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(node.r[c], other.r[c], 1e-12);
+    ASSERT_THAT(node.r, VectorNear(other.r, 1e-12));
     ASSERT_NEAR(node.state[0], other.state[0], 1e-9 * node.state[0]);
   }
 }
 
 // A coupled H: on the cone of the coefficient at the speed after the step, which is opposite to the impulse.
 TEST(RateAndState, SolvesItsEquationForACoupledInertia) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(3);
   const Surface law{.v0 = 1e-3, .d = 0.01};
   NodeRun node("rate_and_state", law.parameters(), 0.01, ILAW_DELASSUS_FULL);
   node.h = {1.0, 1.4, 0.8, 0.3, -0.2, 0.1};
   for (int k = 0; k < 2000; ++k) {
-    const Vector free{-1.0, 3.0 * uniform(random), 3.0 * uniform(random)};
+    const Vector free{-1.0, 3.0 * random(), 3.0 * random()};
     node.state = {law.d / law.v0};
     node.v_previous = {0.0, free[1], free[2]};
     const double middle = law.aged(node.state[0], std::hypot(free[1], free[2]), 0.005);

@@ -15,7 +15,7 @@ class Ball {
   // slope: angle of the plane, downwards along x.
   Ball(const Parameters& parameters, double h, double slope = 0.0)
       : contact_(parameters, 1), pull_{gravity * std::sin(slope), 0.0, -gravity * std::cos(slope)} {
-    contact_.step = h;
+    contact_.velocity_step = contact_.position_step = h;
     contact_.h[0] = {1.0 / mass, 1.0 / mass + radius * radius / inertia, radius / inertia, 1.0 / inertia,
                      1.0 / inertia};
   }
@@ -24,7 +24,7 @@ class Ball {
     const Vector n = contact_.normal[0], arm = -radius * n;
     contact_.v_previous[0] = v + cross(w, arm);
     contact_.spin_previous[0] = w;
-    v = v + contact_.step * pull_;
+    v = v + contact_.velocity_step * pull_;
     contact_.v_free[0] = v + cross(w, arm);
     contact_.spin_free[0] = w;
     ASSERT_EQ(contact_.evaluate(), ILAW_OK) << contact_.report.reason;
@@ -33,11 +33,11 @@ class Ball {
     // Masses and arms say what the five numbers of H say.
     ASSERT_LE(length(v + cross(w, arm) - contact_.v[0]), 1e-12);
     ASSERT_LE(length(w - contact_.w[0]), 1e-10);
-    x = x + contact_.step * v;
+    x = x + contact_.velocity_step * v;
     dissipated += contact_.energy[0][ILAW_ENERGY_FRICTION] + contact_.energy[0][ILAW_ENERGY_IMPACT];
   }
   void run(double time) {
-    for (int k = 0; k < std::lround(time / contact_.step); ++k) step();
+    for (int k = 0; k < std::lround(time / contact_.velocity_step); ++k) step();
   }
   double kinetic_energy() const { return 0.5 * (mass * dot(v, v) + inertia * dot(w, w)); }
   std::uint8_t status() const { return contact_.status[0]; }

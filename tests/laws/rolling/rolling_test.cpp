@@ -1,8 +1,6 @@
 // rolling at nodes with spins: its conditions against an independent solver, its work, symmetries, refusals.
 #include "laws/rolling/spheres.hpp"
 
-#include "support/numbers.hpp"
-
 namespace ilaw::testing {
 namespace {
 
@@ -115,10 +113,11 @@ TEST(Rolling, IsTheSameInEveryFrame) {
       vectors[i] = {dot(a, n), dot(a, t), dot(a, cross(n, t))};
     }
   };
-  for (auto of : {&Spheres::v_free, &Spheres::v_previous, &Spheres::spin_free, &Spheres::spin_previous})
+  for (const auto of :
+       VectorsOfSpheres{&Spheres::v_free, &Spheres::v_previous, &Spheres::spin_free, &Spheres::spin_previous})
     turn(local.*of);
   for (Spheres* one : {&host, &tangents, &local}) ASSERT_EQ(one->evaluate(), ILAW_OK) << one->report.reason;
-  for (auto of : {&Spheres::r, &Spheres::m, &Spheres::v, &Spheres::w}) {
+  for (const auto of : VectorsOfSpheres{&Spheres::r, &Spheres::m, &Spheres::v, &Spheres::w}) {
     for (std::size_t i = 0; i < node_count; ++i)
       ASSERT_LE(length((host.*of)[i] - (tangents.*of)[i]), 1e-13) << "node " << i;
     turn(host.*of);
@@ -135,12 +134,14 @@ TEST(Rolling, IsTheSameInAMirror) {
     for (Vector& a : vectors) a = {sign * a[0], sign * a[1], -sign * a[2]};
   };
   for (Spheres* one : {&nodes, &mirrored}) one->draw(5);
-  for (auto of : {&Spheres::v_free, &Spheres::v_previous, &Spheres::normal}) mirror(mirrored.*of, 1.0);
-  for (auto of : {&Spheres::spin_free, &Spheres::spin_previous}) mirror(mirrored.*of, -1.0);
+  for (const auto of : VectorsOfSpheres{&Spheres::v_free, &Spheres::v_previous, &Spheres::normal})
+    mirror(mirrored.*of, 1.0);
+  for (const auto of : VectorsOfSpheres{&Spheres::spin_free, &Spheres::spin_previous})
+    mirror(mirrored.*of, -1.0);
   for (Spheres* one : {&nodes, &mirrored}) ASSERT_EQ(one->evaluate(), ILAW_OK) << one->report.reason;
-  for (auto of : {&Spheres::r, &Spheres::v}) mirror(mirrored.*of, 1.0);
-  for (auto of : {&Spheres::m, &Spheres::w}) mirror(mirrored.*of, -1.0);
-  for (auto of : {&Spheres::r, &Spheres::v, &Spheres::m, &Spheres::w})
+  for (const auto of : VectorsOfSpheres{&Spheres::r, &Spheres::v}) mirror(mirrored.*of, 1.0);
+  for (const auto of : VectorsOfSpheres{&Spheres::m, &Spheres::w}) mirror(mirrored.*of, -1.0);
+  for (const auto of : VectorsOfSpheres{&Spheres::r, &Spheres::v, &Spheres::m, &Spheres::w})
     for (std::size_t i = 0; i < node_count; ++i)
       ASSERT_LE(length((nodes.*of)[i] - (mirrored.*of)[i]), 1e-13) << "node " << i;
 }
@@ -150,12 +151,12 @@ TEST(Rolling, IsTheSameWithRolesSwapped) {
   const Parameters parameters = resistance(friction, rolling, twisting, 0.5);
   Spheres nodes(parameters, node_count), swapped(parameters, node_count);
   for (Spheres* one : {&nodes, &swapped}) one->draw(6);
-  for (auto of : {&Spheres::v_free, &Spheres::v_previous, &Spheres::spin_free, &Spheres::spin_previous,
-                  &Spheres::normal})
+  for (const auto of : VectorsOfSpheres{&Spheres::v_free, &Spheres::v_previous, &Spheres::spin_free,
+                                        &Spheres::spin_previous, &Spheres::normal})
     for (Vector& a : swapped.*of) a = -1.0 * a;
   for (SpinInertia& h : swapped.h) h[2] = -h[2];
   for (Spheres* one : {&nodes, &swapped}) ASSERT_EQ(one->evaluate(), ILAW_OK) << one->report.reason;
-  for (auto of : {&Spheres::r, &Spheres::v, &Spheres::m, &Spheres::w})
+  for (const auto of : VectorsOfSpheres{&Spheres::r, &Spheres::v, &Spheres::m, &Spheres::w})
     for (std::size_t i = 0; i < node_count; ++i)
       ASSERT_LE(length((nodes.*of)[i] + (swapped.*of)[i]), 1e-13) << "node " << i;
 }
@@ -267,7 +268,7 @@ TEST(Rolling, AgreesWithALawInC) {
       one->spin_previous = one->spin_free;
       ASSERT_EQ(one->evaluate(), ILAW_OK) << one->report.reason;
     }
-    for (auto of : {&Spheres::r, &Spheres::m, &Spheres::v, &Spheres::w})
+    for (const auto of : VectorsOfSpheres{&Spheres::r, &Spheres::m, &Spheres::v, &Spheres::w})
       for (std::size_t i = 0; i < count; ++i)
         ASSERT_LE(length((nodes.*of)[i] - (in_c.*of)[i]), 1e-13) << "node " << i;
   }
@@ -279,22 +280,20 @@ TEST(Rolling, RefusesParametersThatNeedSpins) {
   for (const char* name : {"rolling_friction", "twisting_friction"}) {
     const Parameters given{{{"friction", 0.3}, {name, 0.0}}, {}};
     for (const std::uint32_t form : {ILAW_DELASSUS_SCALAR, ILAW_DELASSUS_TRANSVERSE, ILAW_DELASSUS_FULL})
-      EXPECT_NE(
-          refusal_of("rolling", SetupBuilder(given, 3, form)).find(std::string("'") + name + "' needs spins"),
-          std::string::npos);
+      EXPECT_THAT(refusal_of("rolling", SetupBuilder(given, 3, form)),
+                  HasSubstr(std::string("'") + name + "' needs spins"));
     EXPECT_EQ(refusal_of("rolling", SetupBuilder(given, 3, ILAW_DELASSUS_TRANSVERSE_SPIN)), "not refused");
   }
   const Parameters in_c{{{"rolling", 0.1}}, {}};
-  EXPECT_NE(refusal_of("rolling_in_c", in_c).find("'rolling' needs spins"), std::string::npos);
+  EXPECT_THAT(refusal_of("rolling_in_c", in_c), HasSubstr("'rolling' needs spins"));
 }
 
 TEST(Rolling, RefusesSpinsInThePlane) {
   const Parameters given{{{"friction", 0.3}}, {}};
   for (const std::uint32_t dimension : {1U, 2U})
-    EXPECT_NE(
-        refusal_of("rolling", SetupBuilder(given, dimension, ILAW_DELASSUS_TRANSVERSE_SPIN), ILAW_UNSUPPORTED)
-            .find("has no spins"),
-        std::string::npos);
+    EXPECT_THAT(refusal_of("rolling", SetupBuilder(given, dimension, ILAW_DELASSUS_TRANSVERSE_SPIN),
+                           ILAW_UNSUPPORTED),
+                HasSubstr("has no spins"));
 }
 
 TEST(Rolling, RefusesBatchesWithoutSpins) {

@@ -1,10 +1,6 @@
 // Friction of rubber: its curve over speed, temperature and pressure, the slip that is taken, its order.
 #include "support/law_runner.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-
 namespace ilaw::testing {
 namespace {
 
@@ -29,12 +25,11 @@ struct Tread {
 };
 
 TEST(Rubber, FollowsItsCurveOverTemperature) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Random random(1);
   for (int k = 0; k < 500; ++k) {
-    Tread tread{.speed = 0.1, .width = 0.3 + uniform(random)};
-    tread.temperature = 223.0 + 150.0 * uniform(random);
-    const double v = std::pow(10.0, 8.0 * uniform(random) - 6.0), push = 1e-6 * v;  // one slip alone
+    Tread tread{.speed = 0.1, .width = 0.3 + random(0.0, 1.0)};
+    tread.temperature = 223.0 + 150.0 * random(0.0, 1.0);
+    const double v = std::pow(10.0, 8.0 * random(0.0, 1.0) - 6.0), push = 1e-6 * v;  // one slip alone
     NodeRun node("rubber", tread.parameters(), 0.01);
     node.v_previous = {0.0, v, 0.0};
     ASSERT_EQ(node.step({-push, v + push * tread.at(v), 0.0}), ILAW_OK) << node.report.reason;
@@ -110,12 +105,12 @@ double reached(const Tread& tread, double most, double drag, double before) {
 
 TEST(Rubber, TakesTheSlipReachedFromTheOneBefore) {
   const Tread tread;
-  std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Random random(2);
   NodeRun node("rubber", tread.parameters(), 0.01, ILAW_DELASSUS_TRANSVERSE);
   int sticks = 0, slow = 0, fast = 0;
   for (int k = 0; k < 3000; ++k) {
-    const double drag = 4.0 * uniform(random), most = 5.0 * uniform(random), before = 3.0 * uniform(random);
+    const double drag = 4.0 * random(0.0, 1.0), most = 5.0 * random(0.0, 1.0),
+                 before = 3.0 * random(0.0, 1.0);
     node.h = {1.0, drag};
     node.v_previous = {0.0, before, 0.0};
     ASSERT_EQ(node.step({-1.0, most, 0.0}), ILAW_OK);
@@ -131,14 +126,13 @@ TEST(Rubber, TakesTheSlipReachedFromTheOneBefore) {
 // Any H: on the cone of the coefficient at the speed after the step, and against the slip.
 TEST(Rubber, SolvesItsCurveForAnyInertia) {
   const Tread tread;
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(3);
   NodeRun node("rubber", tread.parameters(), 0.01, ILAW_DELASSUS_FULL);
   node.h = {1.0, 1.4, 0.8, 0.3, -0.2, 0.1};
   int slips = 0;
   for (int k = 0; k < 3000; ++k) {
-    const Vector before{0.0, 2.0 * uniform(random), 2.0 * uniform(random)};
-    const Vector free{-1.0, before[1] + uniform(random), before[2] + uniform(random)};
+    const Vector before{0.0, 2.0 * random(), 2.0 * random()};
+    const Vector free{-1.0, before[1] + random(), before[2] + random()};
     node.v_previous = before;
     ASSERT_EQ(node.step(free), ILAW_OK);
     const double speed = std::hypot(node.v[1], node.v[2]);

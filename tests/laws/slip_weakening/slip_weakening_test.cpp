@@ -1,10 +1,6 @@
 // Slip weakening: its equation, the slip that is taken, its fracture energy, its order against the ODE.
 #include "support/law_runner.hpp"
 
-#include <array>
-#include <cmath>
-#include <random>
-
 namespace ilaw::testing {
 namespace {
 
@@ -21,8 +17,7 @@ struct Weakening {
 // Random nodes of any H: the node sticks where it can stick with the coefficient at no slip in the step, and
 // else slips with that at the mean slip of the step.
 TEST(SlipWeakening, SolvesItsEquationForAnyInertia) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(1);
   int sticks = 0, weakens = 0, weakened = 0;
   for (const std::uint32_t form :
        {std::uint32_t{ILAW_DELASSUS_TRANSVERSE}, std::uint32_t{ILAW_DELASSUS_FULL}}) {
@@ -31,13 +26,13 @@ TEST(SlipWeakening, SolvesItsEquationForAnyInertia) {
     node.h = form == ILAW_DELASSUS_FULL ? std::array<double, 6>{1.0, 1.4, 0.8, 0.2, -0.1, 0.1}
                                         : std::array<double, 6>{1.0, 0.6};
     for (int k = 0; k < 5000; ++k) {
-      const double before = 0.03 * (1.0 + uniform(random));
-      const double push = std::pow(10.0, 1.5 * uniform(random));
+      const double before = 0.03 * (1.0 + random());
+      const double push = std::pow(10.0, 1.5 * random());
       node.state = {before};
-      node.v_previous = {0.0, uniform(random), uniform(random)};
+      node.v_previous = {0.0, random(), random()};
       const double was = std::hypot(node.v_previous[1], node.v_previous[2]);
       const Vector free_before = node.v_previous;
-      const Vector free{-push, node.v_previous[1] + uniform(random), node.v_previous[2] + uniform(random)};
+      const Vector free{-push, node.v_previous[1] + random(), node.v_previous[2] + random()};
       ASSERT_EQ(node.step(free), ILAW_OK) << node.report.reason;
       const Vector v = node.v;
       const double speed = std::hypot(v[1], v[2]), shear = std::hypot(node.r[1], node.r[2]);
@@ -79,21 +74,20 @@ TEST(SlipWeakening, SticksUntilTheLoadBreaksItAway) {
 
 // A weak coupling changes little, also where the motion turns round within the step.
 TEST(SlipWeakening, IsContinuousInTheCoupling) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(3);
   const Weakening law{0.7, 0.2, 0.05};
   NodeRun node("slip_weakening", law.parameters(), 0.01, ILAW_DELASSUS_FULL),
       plain("slip_weakening", law.parameters(), 0.01, ILAW_DELASSUS_TRANSVERSE);
   node.h = {1.0, 1.3, 1.3, 1e-9, 0.0, 0.0};
   plain.h = {1.0, 1.3};
   for (int k = 0; k < 1000; ++k) {
-    const Vector before{0.0, uniform(random), uniform(random)};
-    const Vector free{-1.0, 2.0 * uniform(random), 2.0 * uniform(random)};
+    const Vector before{0.0, random(), random()};
+    const Vector free{-1.0, 2.0 * random(), 2.0 * random()};
     node.v_previous = plain.v_previous = before;
     node.state = plain.state = {0.02};
     ASSERT_EQ(node.step(free), ILAW_OK);
     ASSERT_EQ(plain.step(free), ILAW_OK);
-    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(node.r[c], plain.r[c], 1e-7) << k;
+    ASSERT_THAT(node.r, VectorNear(plain.r, 1e-7)) << k;
     ASSERT_NEAR(node.state[0], plain.state[0], 1e-9) << k;
   }
 }

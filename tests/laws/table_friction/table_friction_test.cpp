@@ -1,10 +1,7 @@
 // Friction from a table: its values, the slip that is taken where there are several, its order, its refusals.
-#include "support/law_runner.hpp"
+#include "support/law_batch.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
-#include <random>
 
 namespace ilaw::testing {
 namespace {
@@ -49,14 +46,14 @@ double reached(double most, double drag, double before) {
 }
 
 TEST(TableFriction, TakesTheSlipReachedFromTheOneBefore) {
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Random random(1);
   NodeRun node("table_friction", table_of({{"slip_speed", speeds}}, coefficients), 0.01,
                ILAW_DELASSUS_TRANSVERSE);
   int sticks = 0, slips = 0;
   for (int k = 0; k < 3000; ++k) {
-    const double drag = 2.0 * uniform(random), most = 4.0 * uniform(random), before = 3.0 * uniform(random);
-    const double angle = 6.28 * uniform(random), c = std::cos(angle), s = std::sin(angle);
+    const double drag = 2.0 * random(0.0, 1.0), most = 4.0 * random(0.0, 1.0),
+                 before = 3.0 * random(0.0, 1.0);
+    const double angle = 6.28 * random(0.0, 1.0), c = std::cos(angle), s = std::sin(angle);
     node.h = {1.0, drag};
     node.v_previous = {0.0, before * c, before * s};
     ASSERT_EQ(node.step({-1.0, most * c, most * s}), ILAW_OK);
@@ -93,13 +90,12 @@ TEST(TableFriction, IsLinearInSpeedPressureAndTemperature) {
     for (const double y : v)
       for (const double z : p) values.push_back((0.2 + 0.1 * y) * (1.0 - 0.1 * z) * (2.0 - x / 300.0));
   Parameters given = table_of({{"temperature", t}, {"slip_speed", v}, {"pressure", p}}, values);
-  std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Random random(2);
   for (int k = 0; k < 300; ++k) {
-    const double temperature = 150.0 + 200.0 * uniform(random), h = 0.01, area = 0.5 + uniform(random);
+    const double temperature = 150.0 + 200.0 * random(0.0, 1.0), h = 0.01, area = 0.5 + random(0.0, 1.0);
     given.numbers["temperature"] = temperature;
     NodeRun node("table_friction", given, h, ILAW_DELASSUS_TRANSVERSE);
-    const double normal = 0.08 * uniform(random), slip = 6.0 * uniform(random);
+    const double normal = 0.08 * random(0.0, 1.0), slip = 6.0 * random(0.0, 1.0);
     const double factor = (1.0 - 0.1 * std::min(normal / (h * area), 5.0)) *
                           (2.0 - std::clamp(temperature, 200.0, 300.0) / 300.0);
     const double mu = (0.2 + 0.1 * std::min(slip, 4.0)) * factor;
@@ -133,8 +129,7 @@ TEST(TableFriction, ConvergesToItsEquationAtFirstOrder) {
 // Any H: the impulse is on the cone of the coefficient at the speed after the step, and against the slip. An
 // uncoupled one gives the motion of the closed form, with the same choice of slip.
 TEST(TableFriction, SolvesItsTableForAnyInertia) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(3);
   const Parameters given = table_of({{"slip_speed", speeds}}, coefficients);
   NodeRun node("table_friction", given, 0.01, ILAW_DELASSUS_FULL),
       same("table_friction", given, 0.01, ILAW_DELASSUS_FULL),
@@ -144,12 +139,12 @@ TEST(TableFriction, SolvesItsTableForAnyInertia) {
   node.h = {1.0, 1.4, 0.8, 0.3, -0.2, 0.1};
   int slips = 0;
   for (int k = 0; k < 3000; ++k) {
-    const Vector before{0.0, 2.0 * uniform(random), 2.0 * uniform(random)};
-    const Vector free{-1.0, before[1] + uniform(random), before[2] + uniform(random)};
+    const Vector before{0.0, 2.0 * random(), 2.0 * random()};
+    const Vector free{-1.0, before[1] + random(), before[2] + random()};
     same.v_previous = plain.v_previous = node.v_previous = before;
     ASSERT_EQ(plain.step(free), ILAW_OK);
     ASSERT_EQ(same.step(free), ILAW_OK);
-    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(same.r[c], plain.r[c], 1e-13);
+    ASSERT_THAT(same.r, VectorNear(plain.r, 1e-13));
     ASSERT_EQ(node.step(free), ILAW_OK);
     const double speed = std::hypot(node.v[1], node.v[2]);
     const double work = node.r[1] * (before[1] + node.v[1]) + node.r[2] * (before[2] + node.v[2]);
@@ -172,29 +167,15 @@ TEST(TableFriction, ReadsTheAreaForPressureAlone) {
 // A table over time, and over a field that comes per node, as the node's.
 TEST(TableFriction, ReadsTimeAndFieldsOfNodes) {
   Parameters given = table_of({{"time", {0.0, 1.0}}, {"temperature", {200.0, 400.0}}}, {0.1, 0.3, 0.5, 0.7});
-  EXPECT_NE(refusal_of("table_friction", given).find("is a table over 'temperature'"), std::string::npos);
+  EXPECT_THAT(refusal_of("table_friction", given), HasSubstr("is a table over 'temperature'"));
   given.per_node = {"temperature"};
-  const ilaw::interface law = make_law("table_friction", SetupBuilder(given));
-  const std::vector<double> fields{200.0, 250.0, 400.0, 500.0, 100.0}, v{-1.0, 4.0, 0.0};
-  std::vector<double> r(15);
-  const double h = 1.0, gap = 0.0, area = 1.0;
-  const ilaw_input field = ilaw::input(fields.data(), 1, 1);
-  ilaw_batch b{};
-  b.struct_size = sizeof b;
-  b.node_count = 5;
-  b.time = 0.25;
-  b.velocity_step = b.position_step = 0.01;
-  b.v_free = b.v_previous = ilaw::input(v.data(), 0, 1);
-  b.delassus = ilaw::input(&h, 0, 1);
-  b.gap = ilaw::input(&gap, 0, 1);
-  b.area = ilaw::input(&area, 0, 1);
-  b.per_node_parameters = &field;
-  b.impulse = ilaw::output(r.data(), 3, 1);
-  ilaw_report report{};
-  report.struct_size = sizeof report;
-  ASSERT_EQ(law.evaluate(b, &report), ILAW_OK) << report.reason;
-  const double expected[] = {0.2, 0.25, 0.4, 0.4, 0.2};
-  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(r[3 * k + 1], -expected[k], 1e-15) << k;
+  const double fields[] = {200.0, 250.0, 400.0, 500.0, 100.0}, expected[] = {0.2, 0.25, 0.4, 0.4, 0.2};
+  LawBatch nodes(make_law("table_friction", SetupBuilder(given)), 5);
+  nodes.time = 0.25;
+  nodes.per_node = {ilaw::input(fields, 1, 1)};
+  for (std::size_t k = 0; k < 5; ++k) nodes.v_free[k] = nodes.v_previous[k] = {-1.0, 4.0, 0.0};
+  ASSERT_EQ(nodes.evaluate(), ILAW_OK) << nodes.report.reason;
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(nodes.r[k][1], -expected[k], 1e-15) << k;
 }
 
 }  // namespace

@@ -87,16 +87,15 @@ TEST(template_c, SolvesTheSlipWithinTheStep) {
   Brake given;
   given.add("temperature", ILAW_VALUE_PER_NODE);
   const ilaw::interface law = given.law();
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> any(0.0, 1.0);
+  Random random(1);
   int sticks = 0;
   for (int k = 0; k < 20000; ++k) {
     Node node;
-    for (int c = 0; c < 2; ++c) node.v_previous[c] = node.v_free[c] = 8.0 * any(random) - 4.0;
-    node.v_free[2] = -8.0 * any(random);
-    node.h[0] = 0.5 + any(random);
-    node.h[1] = 0.5 + any(random);
-    node.temperature = 250.0 + 500.0 * any(random);
+    for (int c = 0; c < 2; ++c) node.v_previous[c] = node.v_free[c] = 8.0 * random(0.0, 1.0) - 4.0;
+    node.v_free[2] = -8.0 * random(0.0, 1.0);
+    node.h[0] = 0.5 + random(0.0, 1.0);
+    node.h[1] = 0.5 + random(0.0, 1.0);
+    node.temperature = 250.0 + 500.0 * random(0.0, 1.0);
     node.step(law);
     const double v_free = std::hypot(node.v_free[0], node.v_free[1]), r_N = -node.v_free[2] / node.h[0];
     const double v = slip_after(brake, node.temperature, node.h[1], r_N, v_free);
@@ -116,14 +115,13 @@ TEST(template_c, DividesItsWork) {
   given.add("temperature", ILAW_VALUE_NUMBER, 400.0);
   given.add("partition", ILAW_VALUE_NUMBER, 0.7);
   const ilaw::interface law = given.law();
-  std::mt19937 random(2);
-  std::uniform_real_distribution<double> any(-2.0, 2.0);
+  Random random(2);
   int turned = 0;
   for (int k = 0; k < 20000; ++k) {
     Node node;
     for (int c = 0; c < 3; ++c) {
-      node.v_previous[c] = any(random);
-      node.v_free[c] = any(random);
+      node.v_previous[c] = random(-2.0, 2.0);
+      node.v_free[c] = random(-2.0, 2.0);
     }
     node.step(law);
     double work = 0.0, along = 0.0;
@@ -166,9 +164,8 @@ TEST(template_c, RefusesATableOverAFieldThatIsNotGiven) {
     Brake().law();
     FAIL() << "accepted";
   } catch (const ilaw::error& error) {
-    EXPECT_NE(
-        std::string(error.what()).find("parameter 'friction' is a table over a field that is not given"),
-        std::string::npos)
+    EXPECT_THAT(std::string(error.what()),
+                HasSubstr("parameter 'friction' is a table over a field that is not given"))
         << error.what();
   }
 }

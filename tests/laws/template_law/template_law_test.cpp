@@ -1,8 +1,6 @@
 // template_law through the ABI: its equation, its motion in time, and its limits.
 #include "laws/random_nodes.hpp"
 
-#include "support/numbers.hpp"
-
 namespace ilaw::testing {
 namespace {
 
@@ -83,8 +81,7 @@ TEST(template_law, IsIndifferentToTheFrame) {
   ASSERT_EQ(turned.evaluate(), ILAW_OK) << turned.report.reason;
   for (std::size_t i = 0; i < nodes.count; ++i) {
     const Vector r = turned.local(i, turned.r[i], 1.0);
-    for (std::size_t c = 0; c < 3; ++c)
-      ASSERT_NEAR(r[c], local.r[i][c], 1e-13 * (1.0 + local.r[i][0])) << "node " << i << ", seed 2";
+    ASSERT_THAT(r, VectorNear(local.r[i], 1e-13 * (1.0 + local.r[i][0]))) << "node " << i << ", seed 2";
   }
 }
 
