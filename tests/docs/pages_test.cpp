@@ -1,6 +1,6 @@
 // Every page of the tree can be read and followed: lines of prose are short, and links lead somewhere.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
+#include "support/matchers.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -14,6 +14,7 @@
 
 namespace {
 
+using namespace ilaw::testing::matchers;
 using std::filesystem::path;
 
 const path root = ILAW_SOURCE;
@@ -186,7 +187,7 @@ TEST(Pages, ContributingNamesEveryBuildMode) {
   int modes = 0;
   for (std::sregex_iterator found(presets.begin(), presets.end(), preset), end; found != end;
        ++found, ++modes)
-    EXPECT_NE(page.find("| `" + (*found)[1].str() + "` |"), std::string::npos)
+    EXPECT_THAT(page, HasSubstr("| `" + (*found)[1].str() + "` |"))
         << "the build modes of docs/contributing.md leave out " << (*found)[1];
   EXPECT_GT(modes, 4);
 }

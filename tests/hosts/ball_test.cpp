@@ -1,6 +1,6 @@
 // The host in C that hands spins to a law, against closed forms.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
+#include "support/program.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -10,6 +10,8 @@
 
 namespace {
 
+using namespace ilaw::testing::programs;
+
 struct end {
   double x = NAN, v = NAN, rolling_speed = NAN, spin = NAN, balance = NAN;
 };
@@ -18,12 +20,11 @@ end run(double slope, double speed, double spin, double seconds) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
   char arguments[160];
   std::snprintf(arguments, sizeof arguments, " rolling %.17g %g %g %g", slope, speed, spin, seconds);
-  FILE* pipe = popen((ILAW_ball_c + std::string(arguments) + " 2>&1").c_str(), "r");
-  std::string text;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
-  EXPECT_EQ(pclose(pipe), 0) << text;
+  const Outcome outcome = run_command(ILAW_ball_c + std::string(arguments));
+  EXPECT_EQ(outcome.code, 0) << outcome.output;
   end found;
-  std::istringstream(text) >> found.x >> found.v >> found.rolling_speed >> found.spin >> found.balance;
+  std::istringstream(outcome.output) >> found.x >> found.v >> found.rolling_speed >> found.spin >>
+      found.balance;
   return found;
 }
 

@@ -1,6 +1,6 @@
 // Fields, amounts and tables over axes from Fortran, against the table worked out here.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
+#include "support/matchers.hpp"
 
 #include <ilaw/ilaw.h>
 
@@ -19,6 +19,7 @@ std::int32_t fortran_floats(int count, const float* v, const float* temperature,
 
 namespace {
 
+using namespace ilaw::testing::matchers;
 constexpr int count = 6;
 constexpr double mass = 2.0, partition = 0.5;
 enum way { right, no_field, no_amount, wrong_shape, wrong_pairs, by_number, other_kind, wrong_axis };
@@ -103,7 +104,7 @@ TEST(FortranFields, SaysWhatIsMissingOrWrong) {
         refusal{other_kind, ILAW_INVALID_ARGUMENT, ""}}) {
     const nodes<double> found = in_doubles(wanted.way);
     EXPECT_EQ(found.code, wanted.code) << "way " << wanted.way << ": " << found.message;
-    EXPECT_NE(found.message.find(wanted.message), std::string::npos) << found.message;
+    EXPECT_THAT(found.message, HasSubstr(wanted.message));
     EXPECT_EQ(found.r, (nodes<double>{}.r)) << "way " << wanted.way;
   }
 }

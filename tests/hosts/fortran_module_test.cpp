@@ -1,7 +1,8 @@
 // The Fortran module: arrays without a copy, lists of nodes, parameters. Layouts are in
 // python/test_bindings.py.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
+#include "support/matchers.hpp"
+
 #include <ilaw/ilaw.h>
 
 #include <cstddef>
@@ -21,6 +22,7 @@ std::int32_t fortran_create(const char* library, int way, std::int32_t* per_node
 
 namespace {
 
+using namespace ilaw::testing::matchers;
 TEST(FortranModule, DeclaredBatchIsEmptyAndCountsFromOne) {
   const ilaw_batch batch = fortran_default_batch();
   EXPECT_EQ(batch.index_base, 1);
@@ -146,18 +148,18 @@ TEST(FortranModule, PassesEveryKindOfParameterValue) {
 TEST(FortranModule, HandsOverWhyAParameterIsRefused) {
   const creation negative = create(1);
   EXPECT_EQ(negative.code, ILAW_INVALID_PARAMETER);
-  EXPECT_NE(negative.message.find("friction"), std::string::npos) << negative.message;
-  EXPECT_NE(negative.message.find("-2"), std::string::npos) << negative.message;
+  EXPECT_THAT(negative.message, HasSubstr("friction"));
+  EXPECT_THAT(negative.message, HasSubstr("-2"));
   const creation choice = create(2);
   EXPECT_EQ(choice.code, ILAW_INVALID_PARAMETER);
-  EXPECT_NE(choice.message.find("sometimes"), std::string::npos) << choice.message;
-  EXPECT_NE(choice.message.find("predictive"), std::string::npos) << choice.message;
+  EXPECT_THAT(choice.message, HasSubstr("sometimes"));
+  EXPECT_THAT(choice.message, HasSubstr("predictive"));
   const creation none = create(7);
   EXPECT_EQ(none.code, ILAW_INVALID_PARAMETER);
-  EXPECT_NE(none.message.find("friction"), std::string::npos) << none.message;
+  EXPECT_THAT(none.message, HasSubstr("friction"));
   const creation table = create(4);
   EXPECT_EQ(table.code, ILAW_INVALID_PARAMETER);
-  EXPECT_NE(table.message.find("friction"), std::string::npos) << table.message;
+  EXPECT_THAT(table.message, HasSubstr("friction"));
 }
 
 TEST(FortranModule, RefusesAForgottenFrame) { EXPECT_EQ(create(8).code, ILAW_UNSUPPORTED); }
@@ -165,11 +167,11 @@ TEST(FortranModule, RefusesAForgottenFrame) { EXPECT_EQ(create(8).code, ILAW_UNS
 TEST(FortranModule, HandsOverWhyALibraryOrLawIsNotFound) {
   const creation law = create(6);
   EXPECT_EQ(law.code, ILAW_NOT_FOUND);
-  EXPECT_NE(law.message.find("absent"), std::string::npos) << law.message;
-  EXPECT_NE(law.message.find("coulomb"), std::string::npos) << law.message;
+  EXPECT_THAT(law.message, HasSubstr("absent"));
+  EXPECT_THAT(law.message, HasSubstr("coulomb"));
   const creation library = create(0, "/no/such/library.so");
   EXPECT_EQ(library.code, ILAW_NOT_FOUND);
-  EXPECT_NE(library.message.find("/no/such/library.so"), std::string::npos) << library.message;
+  EXPECT_THAT(library.message, HasSubstr("/no/such/library.so"));
 }
 
 }  // namespace

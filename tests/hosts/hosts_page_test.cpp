@@ -1,7 +1,7 @@
 // The pages for hosts against what they quote: the code of docs/hosts stands in the example hosts, and
 // docs/abi.md names everything that the headers do.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
+#include "support/matchers.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -15,6 +15,7 @@
 
 namespace {
 
+using namespace ilaw::testing::matchers;
 std::string read(const std::string& path) {
   std::ifstream file(path);
   EXPECT_TRUE(file) << path;
@@ -59,7 +60,7 @@ TEST(HostsPage, QuotesCodeThatIsBuiltAndRun) {
     languages.insert(block.language);
     const std::string& source = sources.at(block.language);
     const auto stripped = [&block](const std::string& t) { return without_indentation(t, block.language); };
-    EXPECT_NE(stripped(source).find(stripped(block.text)), std::string::npos)
+    EXPECT_THAT(stripped(source), HasSubstr(stripped(block.text)))
         << "not in the hosts in " << block.language << ":\n"
         << block.text;
   }
@@ -81,7 +82,7 @@ TEST(HostsPage, QuotesEveryMandatoryCall) {
   for (const code_block& block : code_blocks(pages_of_hosts())) quoted[block.language] += block.text;
   for (const auto& [language, wanted] : calls)
     for (const std::string& call : wanted)
-      EXPECT_NE(quoted[language].find(call), std::string::npos)
+      EXPECT_THAT(quoted[language], HasSubstr(call))
           << "docs/hosts does not show " << call << ") in " << language;
 }
 

@@ -2,9 +2,9 @@
 // against each other. Their problem: blocks on springs on a floor, friction 0.3, gravity 10, h = 1e-3, three
 // seconds.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
+#include "support/program.hpp"
+
 #include <ilaw/ilaw.h>
-#include <sys/wait.h>
 
 #include <array>
 #include <cmath>
@@ -16,21 +16,14 @@
 
 namespace {
 
+using namespace ilaw::testing::matchers;
+using namespace ilaw::testing::programs;
 constexpr double h = 1e-3, g = 10.0, mu = 0.3, end = 3.0;
 constexpr double rounding = 1e-12;  // of three thousand additions of numbers around 1
 
-struct output {
-  int exit_code;
-  std::string text;
-};
-
-output run(const std::string& program, const std::string& arguments) {
+Outcome run(const std::string& program, const std::string& arguments) {
   setenv("ILAW_PATH", ILAW_PLUGIN_FOLDER, 1);
-  FILE* pipe = popen(("'" + program + "' " + arguments + " 2>&1").c_str(), "r");
-  std::string text;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
-  const int status = pclose(pipe);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text};
+  return run_command("'" + program + "' " + arguments);
 }
 
 struct block {
@@ -54,7 +47,7 @@ class Host : public testing::TestWithParam<const char*> {
     static std::vector<block> blocks;
     if (program != GetParam()) {
       program = GetParam();
-      blocks = blocks_of(run(program, "coulomb").text);
+      blocks = blocks_of(run(program, "coulomb").output);
     }
     if (blocks.size() != 7) throw std::runtime_error(program + " did not print seven blocks");
     return blocks[number];
@@ -173,26 +166,17 @@ TEST_P(Host, BlockOutsideTheIndexListIsLeftAlone) {
 
 // 17 significant digits: equal text is equal bits.
 TEST_P(Host, PrintsTheSameBitsAsTheHostInC) {
-  const output c = run(ILAW_blocks_c, "coulomb");
-  EXPECT_EQ(c.exit_code, 0);
-  EXPECT_EQ(run(GetParam(), "coulomb").text, c.text);
+  const Outcome c = run(ILAW_blocks_c, "coulomb");
+  EXPECT_EQ(c.code, 0);
+  EXPECT_EQ(run(GetParam(), "coulomb").output, c.output);
 }
 
 TEST_P(Host, PassesOnWhyALawIsRefused) {
-  const output missing = run(GetParam(), "no_such_law");
-  EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_NE(missing.text.find("no_such_law"), std::string::npos) << missing.text;
-  const output frictionless = run(GetParam(), "contact");
-  EXPECT_EQ(frictionless.exit_code, 1);
-  EXPECT_NE(frictionless.text.find("friction"), std::string::npos) << frictionless.text;
-  EXPECT_NE(frictionless.text.find("restitution"), std::string::npos) << frictionless.text;
+  EXPECT_THAT(run(GetParam(), "no_such_law"), Exits(1, HasSubstr("no_such_law")));
+  EXPECT_THAT(run(GetParam(), "contact"), Exits(1, AllOf(HasSubstr("friction"), HasSubstr("restitution"))));
 }
 
-TEST_P(Host, AsksForALibrary) {
-  const output nothing = run(GetParam(), "");
-  EXPECT_EQ(nothing.exit_code, 1);
-  EXPECT_NE(nothing.text.find("LIBRARY"), std::string::npos) << nothing.text;
-}
+TEST_P(Host, AsksForALibrary) { EXPECT_THAT(run(GetParam(), ""), Exits(1, HasSubstr("LIBRARY"))); }
 
 INSTANTIATE_TEST_SUITE_P(C, Host, testing::Values(ILAW_blocks_c));
 INSTANTIATE_TEST_SUITE_P(Cpp, Host, testing::Values(ILAW_blocks_cpp));

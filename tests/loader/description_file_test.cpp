@@ -3,7 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ilaw/loader.hpp>
 
-#include <gtest/gtest.h>
+#include "support/matchers.hpp"
+
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +17,7 @@
 
 namespace {
 
+using namespace ilaw::testing::matchers;
 namespace fs = std::filesystem;
 using nlohmann::json;
 
@@ -155,8 +157,7 @@ TEST_F(DescriptionFile, MustSayWhatTheLibrarySays) {
 TEST_F(DescriptionFile, MayTellMoreOfANewerLibrary) {
   take("newer_minor");
   EXPECT_EQ(describe(), 1);
-  EXPECT_NE(said().find("ABI 1.5, expected at most 1.1: use a newer ilaw-describe"), std::string::npos)
-      << said();
+  EXPECT_THAT(said(), HasSubstr("ABI 1.5, expected at most 1.1: use a newer ilaw-describe"));
   json newer = json::parse(ilaw::library(library()).describe());
   newer["laws"][0]["spins"] = true;
   newer["laws"][0]["dimensions"].push_back("4");
@@ -165,7 +166,7 @@ TEST_F(DescriptionFile, MayTellMoreOfANewerLibrary) {
   EXPECT_EQ(reading(), "");
   newer["laws"][0]["dimensions"][0] = "2";
   write(newer.dump());
-  EXPECT_NE(opening().find("/laws/0/dimensions is"), std::string::npos) << opening();
+  EXPECT_THAT(opening(), HasSubstr("/laws/0/dimensions is"));
 }
 
 TEST_F(DescriptionFile, IsRefusedWhenDamaged) {
@@ -237,7 +238,7 @@ TEST_F(DescriptionFile, IsNotWrittenForABrokenLibrary) {
 TEST_F(DescriptionFile, OfALibraryThatIsNoneIsNotRead) {
   written();
   std::ofstream(library()) << "no library";
-  EXPECT_NE(reading().find("not an ELF file"), std::string::npos) << reading();
+  EXPECT_THAT(reading(), HasSubstr("not an ELF file"));
 }
 
 TEST_F(DescriptionFile, IsCutAtTheBuffersSize) {

@@ -3,7 +3,8 @@
 #include <ilaw/loader.hpp>
 
 #include <elf.h>
-#include <gtest/gtest.h>
+#include "support/program.hpp"
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +17,8 @@
 
 namespace {
 
+using namespace ilaw::testing::matchers;
+using namespace ilaw::testing::programs;
 using Bytes = std::vector<char>;
 
 Bytes whole_library() {
@@ -51,10 +54,7 @@ Elf64_Phdr& last_loaded(Bytes& bytes) {
 std::string answer_to(const Bytes& bytes) {
   const std::string path = testing::TempDir() + "ilaw_elf_" + std::to_string(getpid()) + ".so";
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  FILE* pipe = popen((ILAW_HOSTS "/search_host " + path + " 2>&1; echo status $?").c_str(), "r");
-  std::string text;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
-  pclose(pipe);
+  const std::string text = run_command(ILAW_HOSTS "/search_host " + path + "; echo status $?").output;
   unlink(path.c_str());
   return text;
 }
@@ -80,7 +80,7 @@ TEST(ElfFile, IsRefusedByTheLoaderItself) {
   Bytes bytes = whole_library();
   header(bytes).e_machine = header(bytes).e_machine == EM_AARCH64 ? EM_X86_64 : EM_AARCH64;
   const std::string machine = "ELF file for machine " + std::to_string(header(bytes).e_machine);
-  EXPECT_NE(refusal_of(bytes).find(machine), std::string::npos) << refusal_of(bytes);
+  EXPECT_THAT(refusal_of(bytes), HasSubstr(machine));
 }
 
 TEST(ElfFile, IsRefusedInItsOwnWords) {
@@ -107,8 +107,8 @@ TEST(ElfFile, IsRefusedInItsOwnWords) {
     Bytes bytes = whole_library();
     one.done(bytes);
     const std::string said = refusal_of(bytes);
-    EXPECT_NE(said.find(std::string(": ") + one.said), std::string::npos)
-        << "case " << number << ": " << said << ", expected " << one.said;
+    EXPECT_THAT(said, HasSubstr(std::string(": ") + one.said)) << "case " << number << ": "
+                                                               << ", expected " << one.said;
     ++number;
   }
 }

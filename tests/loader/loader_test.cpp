@@ -1,8 +1,7 @@
 // What the loader finds, refuses and keeps loaded.
 #include <ilaw/loader.hpp>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/matchers.hpp"
 
 #include <dlfcn.h>
 #include <sys/stat.h>
@@ -18,6 +17,7 @@
 
 namespace {
 
+using namespace ilaw::testing::matchers;
 namespace fs = std::filesystem;
 
 fs::path fresh_folder() {
@@ -65,29 +65,27 @@ TEST_P(RefusedLibrary, IsNamedWithWhatWasFoundAndExpected) {
   EXPECT_EQ(message, fs::canonical(file).string() + ": " + GetParam().found_and_expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Loader, RefusedLibrary,
-    ::testing::Values(
-        Refused{"null_function", "law 'zero': function 'evaluate' is null, expected a function"},
-        Refused{"small_law", "law 0: law has struct_size 120, expected at least 160 and at most 4096"},
-        Refused{"small_plugin", "the description has struct_size 8, expected at least 64 and at most 4096"},
-        Refused{"other_major_symbol", "a library for ABI major version 2, expected major version 1"},
-        Refused{"other_major_field", "ABI version 2.0, expected major version 1"},
-        Refused{"duplicate_law", "law 'zero' is declared twice"},
-        Refused{"bad_name", "law 0: id is 'Zero Law', expected lower-case letters, digits and '_'"},
-        Refused{"wild_pointer", "law 'zero': title is no readable text of at most 64 KiB"},
-        Refused{"null_title", "law 'zero': title is null, expected a text"},
-        Refused{"no_entry", "not a law library: the symbol ilaw_plugin_v1 is missing"},
-        Refused{"no_laws", "law_count is 0, expected at least 1"},
-        Refused{"bad_default",
-                "law 'zero': parameter 'strength': default 2.000000 lies outside its own range"},
-        Refused{"long_count", "law 'zero': parameters has 4000000000 entries, expected at most 10000"},
-        Refused{"unknown_bits", "law 'zero': delassus_forms is 65, expected only the bits of 31"},
-        Refused{"unknown_frame", "law 'zero': frames is 7, expected only the bits of 3"},
-        Refused{"control_text", "law 'zero': title has bytes that are no UTF-8 or control characters"},
-        Refused{"no_utf8", "law 'zero': title has bytes that are no UTF-8 or control characters"},
-        Refused{"overlong_utf8", "law 'zero': title has bytes that are no UTF-8 or control characters"}),
-    [](const auto& drawn) { return drawn.param.name; });
+const Refused refused_libraries[] = {
+    {"null_function", "law 'zero': function 'evaluate' is null, expected a function"},
+    {"small_law", "law 0: law has struct_size 120, expected at least 160 and at most 4096"},
+    {"small_plugin", "the description has struct_size 8, expected at least 64 and at most 4096"},
+    {"other_major_symbol", "a library for ABI major version 2, expected major version 1"},
+    {"other_major_field", "ABI version 2.0, expected major version 1"},
+    {"duplicate_law", "law 'zero' is declared twice"},
+    {"bad_name", "law 0: id is 'Zero Law', expected lower-case letters, digits and '_'"},
+    {"wild_pointer", "law 'zero': title is no readable text of at most 64 KiB"},
+    {"null_title", "law 'zero': title is null, expected a text"},
+    {"no_entry", "not a law library: the symbol ilaw_plugin_v1 is missing"},
+    {"no_laws", "law_count is 0, expected at least 1"},
+    {"bad_default", "law 'zero': parameter 'strength': default 2.000000 lies outside its own range"},
+    {"long_count", "law 'zero': parameters has 4000000000 entries, expected at most 10000"},
+    {"unknown_bits", "law 'zero': delassus_forms is 65, expected only the bits of 31"},
+    {"unknown_frame", "law 'zero': frames is 7, expected only the bits of 3"},
+    {"control_text", "law 'zero': title has bytes that are no UTF-8 or control characters"},
+    {"no_utf8", "law 'zero': title has bytes that are no UTF-8 or control characters"},
+    {"overlong_utf8", "law 'zero': title has bytes that are no UTF-8 or control characters"}};
+INSTANTIATE_TEST_SUITE_P(Loader, RefusedLibrary, ::testing::ValuesIn(refused_libraries),
+                         [](const auto& drawn) { return drawn.param.name; });
 
 TEST(Loader, RefusesFilesThatAreNoLibraries) {
   const fs::path folder = fresh_folder();
@@ -95,15 +93,15 @@ TEST(Loader, RefusesFilesThatAreNoLibraries) {
   std::ofstream(text) << "hello, this is a text and quite long enough to hold an ELF header of 64 bytes";
   EXPECT_EQ(refusal_of(text).second,
             text + ": not an ELF file, expected a whole ELF shared library for this machine");
-  EXPECT_NE(refusal_of(folder.string()).second.find(": a folder, expected"), std::string::npos);
+  EXPECT_THAT(refusal_of(folder.string()).second, HasSubstr(": a folder, expected"));
   EXPECT_EQ(refusal_of((folder / "none.so").string()).first, ILAW_NOT_FOUND);
   const std::string pipe = (folder / "pipe.so").string(), huge = (folder / "huge.so").string();
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_NE(refusal_of(pipe).second.find(": not a regular file, expected"), std::string::npos);
+  EXPECT_THAT(refusal_of(pipe).second, HasSubstr(": not a regular file, expected"));
   std::ofstream(huge) << "\x7f"
                          "ELF";
   fs::resize_file(huge, (std::uintmax_t{1} << 30) + 1);  // without room on the disk
-  EXPECT_NE(refusal_of(huge).second.find(": larger than 1 GiB, expected"), std::string::npos);
+  EXPECT_THAT(refusal_of(huge).second, HasSubstr(": larger than 1 GiB, expected"));
   fs::remove_all(folder);
 }
 
@@ -118,10 +116,8 @@ TEST(Loader, RefusesTruncatedLibraries) {
     fs::resize_file(cut, bytes);
     const auto [code, message] = refusal_of(cut.string());
     EXPECT_EQ(code, ILAW_BAD_LIBRARY) << bytes;
-    EXPECT_NE(
-        message.find(bytes < 4 ? "not an ELF file" : "truncated at " + std::to_string(bytes) + " bytes"),
-        std::string::npos)
-        << message;
+    EXPECT_THAT(message, HasSubstr(bytes < 4 ? "not an ELF file"
+                                             : "truncated at " + std::to_string(bytes) + " bytes"));
   }
 }
 
@@ -158,44 +154,37 @@ TEST_P(RefusedInstance, IsNamedAndEnded) {
     FAIL() << "not refused";
   } catch (const ilaw::error& error) {
     EXPECT_EQ(error.code(), GetParam().code);
-    EXPECT_NE(std::string(error.what()).find(GetParam().found_and_expected), std::string::npos)
-        << error.what();
+    EXPECT_THAT(std::string(error.what()), HasSubstr(GetParam().found_and_expected)) << error.what();
   }
   EXPECT_EQ(*alive, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Loader, RefusedInstance,
-    ::testing::Values(
-        RefusedInfo{"wrong_state_size", ILAW_BAD_LIBRARY,
-                    "state_size is 3, expected the sum of the counts, 0"},
-        RefusedInfo{"wrapping_state", ILAW_BAD_LIBRARY,
-                    "state variable 'first': count is 18446744073709551614"},
-        RefusedInfo{"huge_state", ILAW_BAD_LIBRARY, "expected at most 1048576"},
-        RefusedInfo{"wrong_count", ILAW_BAD_LIBRARY, "state variable 'first': count is 2, expected 1"},
-        RefusedInfo{"wrong_kind", ILAW_BAD_LIBRARY, "state variable 'first': kind is 77, expected at most 4"},
-        RefusedInfo{"wrong_flags", ILAW_BAD_LIBRARY, "flags is 256, expected only the bits of 1"},
-        RefusedInfo{"wrong_per_node", ILAW_BAD_LIBRARY,
-                    "per-node parameter 'strength' was not given per node"},
-        RefusedInfo{"unknown_input", ILAW_UNSUPPORTED, "reads inputs 1048576, expected only the bits of 31"},
-        RefusedInfo{"unknown_capability", ILAW_BAD_LIBRARY,
-                    "capabilities is 1048576, expected only the bits of 3"},
-        RefusedInfo{"no_permissions", ILAW_BAD_LIBRARY, "permissions is 0, expected at least the law's, 1"},
-        RefusedInfo{"unknown_permission", ILAW_BAD_LIBRARY,
-                    "permissions is 1048577, expected only the bits of 3"},
-        RefusedInfo{"foreign_amount", ILAW_BAD_LIBRARY, "amount 'wear' is none of the law's"},
-        RefusedInfo{"refused_info", ILAW_BAD_LIBRARY, "info refuses its own instance"},
-        RefusedInfo{"rounds_in_create", ILAW_BAD_LIBRARY, "create changed how the processor rounds"},
-        RefusedInfo{"odd_code", ILAW_BAD_LIBRARY, "create gave no instance, code 57"},
-        RefusedInfo{"throws_number", ILAW_BAD_LIBRARY, "an exception of a library"},
-        RefusedInfo{"throws_error", ILAW_BAD_LIBRARY, "a table is missing"},
-        RefusedInfo{"odd_message", ILAW_INVALID_PARAMETER, "wrong ?[2J?"}),
-    [](const auto& drawn) { return drawn.param.name; });
+const RefusedInfo refused_instances[] = {
+    {"wrong_state_size", ILAW_BAD_LIBRARY, "state_size is 3, expected the sum of the counts, 0"},
+    {"wrapping_state", ILAW_BAD_LIBRARY, "state variable 'first': count is 18446744073709551614"},
+    {"huge_state", ILAW_BAD_LIBRARY, "expected at most 1048576"},
+    {"wrong_count", ILAW_BAD_LIBRARY, "state variable 'first': count is 2, expected 1"},
+    {"wrong_kind", ILAW_BAD_LIBRARY, "state variable 'first': kind is 77, expected at most 4"},
+    {"wrong_flags", ILAW_BAD_LIBRARY, "flags is 256, expected only the bits of 1"},
+    {"wrong_per_node", ILAW_BAD_LIBRARY, "per-node parameter 'strength' was not given per node"},
+    {"unknown_input", ILAW_UNSUPPORTED, "reads inputs 1048576, expected only the bits of 31"},
+    {"unknown_capability", ILAW_BAD_LIBRARY, "capabilities is 1048576, expected only the bits of 3"},
+    {"no_permissions", ILAW_BAD_LIBRARY, "permissions is 0, expected at least the law's, 1"},
+    {"unknown_permission", ILAW_BAD_LIBRARY, "permissions is 1048577, expected only the bits of 3"},
+    {"foreign_amount", ILAW_BAD_LIBRARY, "amount 'wear' is none of the law's"},
+    {"refused_info", ILAW_BAD_LIBRARY, "info refuses its own instance"},
+    {"rounds_in_create", ILAW_BAD_LIBRARY, "create changed how the processor rounds"},
+    {"odd_code", ILAW_BAD_LIBRARY, "create gave no instance, code 57"},
+    {"throws_number", ILAW_BAD_LIBRARY, "an exception of a library"},
+    {"throws_error", ILAW_BAD_LIBRARY, "a table is missing"},
+    {"odd_message", ILAW_INVALID_PARAMETER, "wrong ?[2J?"}};
+INSTANTIATE_TEST_SUITE_P(Loader, RefusedInstance, ::testing::ValuesIn(refused_instances),
+                         [](const auto& drawn) { return drawn.param.name; });
 
 TEST(Loader, RefusesALibraryThatRoundsOtherwise) {
   const auto [code, text] = refusal_of(variant("rounds_at_load"));
   EXPECT_EQ(code, ILAW_BAD_LIBRARY);
-  EXPECT_THAT(text, ::testing::HasSubstr("loading it changed how the processor rounds"));
+  EXPECT_THAT(text, HasSubstr("loading it changed how the processor rounds"));
   EXPECT_EQ(std::fegetround(), FE_TONEAREST);
 }
 
@@ -208,7 +197,7 @@ TEST(Loader, RefusesToChooseAmongSeveralLaws) {
   ilaw_interface_destroy(law);
   EXPECT_EQ(ilaw_interface_create(several.get(), nullptr, &setup, &law, message, sizeof message),
             ILAW_NOT_FOUND);
-  EXPECT_NE(std::string(message).find("expected one of: zero, one"), std::string::npos) << message;
+  EXPECT_THAT(std::string(message), HasSubstr("expected one of: zero, one")) << message;
 }
 
 // A host of another minor version than the loader: its structs are longer, or as short as 1.0 had them.
@@ -318,7 +307,7 @@ TEST(Loader, NamesTheLawsOfALibrary) {
     FAIL() << "not refused";
   } catch (const ilaw::error& error) {
     EXPECT_EQ(error.code(), ILAW_NOT_FOUND);
-    EXPECT_NE(std::string(error.what()).find("no law 'one', expected one of: zero"), std::string::npos);
+    EXPECT_THAT(std::string(error.what()), HasSubstr("no law 'one', expected one of: zero"));
   }
 }
 
@@ -371,9 +360,9 @@ TEST(Search, GoesOnUntilTheVisitorHasSeenEnough) {
 TEST(Search, NamesTheVariableWhereItIsNotSet) {
   const std::string hint = "; ILAW_PATH adds folders by their absolute paths";
   unsetenv("ILAW_PATH");
-  EXPECT_NE(refusal_of("nowhere").second.find(hint), std::string::npos);
+  EXPECT_THAT(refusal_of("nowhere").second, HasSubstr(hint));
   setenv("ILAW_PATH", "/nowhere", 1);
-  EXPECT_EQ(refusal_of("nowhere").second.find(hint), std::string::npos);
+  EXPECT_THAT(refusal_of("nowhere").second, Not(HasSubstr(hint)));
 }
 
 TEST(Search, NeverLooksInTheCurrentFolder) {
@@ -383,11 +372,11 @@ TEST(Search, NeverLooksInTheCurrentFolder) {
     setenv("ILAW_PATH", path, 1);
     const auto [code, message] = refusal_of("local");
     EXPECT_EQ(code, ILAW_NOT_FOUND) << "ILAW_PATH=" << path;
-    EXPECT_EQ(message.find("'local': no local.so found, expected it in one of: /"), 0U) << message;
+    EXPECT_THAT(message, StartsWith("'local': no local.so found, expected it in one of: /"));
   }
   const std::string as_file = refusal_of("local.so").second,
                     hint = "; the path of a file has a '/', as ./local.so";
-  EXPECT_NE(as_file.find(hint), std::string::npos) << as_file;
+  EXPECT_THAT(as_file, HasSubstr(hint));
   EXPECT_EQ(refusal_of("./local.so").first, ILAW_OK);  // an explicit path is the user's word
   fs::current_path(before);
   unsetenv("ILAW_PATH");
@@ -397,9 +386,9 @@ TEST(Search, SuggestsTheNearestLibrary) {
   const fs::path folder = folder_with("spring");
   setenv("ILAW_PATH", folder.c_str(), 1);
   for (const char* name : {"sprin", "springs", "srping.so", "Spring"})
-    EXPECT_NE(refusal_of(name).second.find(" (did you mean 'spring'?)"), std::string::npos) << name;
+    EXPECT_THAT(refusal_of(name).second, HasSubstr(" (did you mean 'spring'?)")) << name;
   for (const char* name : {"spr", "string_of", "ring_s"})
-    EXPECT_EQ(refusal_of(name).second.find("did you mean"), std::string::npos) << name;
+    EXPECT_THAT(refusal_of(name).second, Not(HasSubstr("did you mean"))) << name;
   unsetenv("ILAW_PATH");
 }
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ilaw/loader.hpp>
 
-#include <gtest/gtest.h>
+#include "support/program.hpp"
+
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
@@ -15,6 +16,8 @@
 
 namespace {
 
+using namespace ilaw::testing::matchers;
+using namespace ilaw::testing::programs;
 namespace fs = std::filesystem;
 
 class Searched : public testing::Test {
@@ -53,25 +56,23 @@ TEST_F(Searched, NameOfAnInputFileIsNeverAPath) {
   for (const std::string& name : {std::string("../evil"), std::string("../evil.so"), std::string("./here"),
                                   (folder / "evil.so").string(), std::string("in/../here"), std::string(".."),
                                   std::string(".here"), std::string("he\nre"), std::string("here\x1b[2J")})
-    EXPECT_NE(refusal_of(name).find("is no name of a library"), std::string::npos) << name;
+    EXPECT_THAT(refusal_of(name), HasSubstr("is no name of a library")) << name;
 }
 
 TEST_F(Searched, RelativeEntriesOfThePathAreLeftOut) {
   setenv("ILAW_PATH", ("relative_entry:./dotted_entry::" + (folder / "in").string()).c_str(), 1);
   const std::string path = ilaw::search_path();
-  EXPECT_EQ(path.find((folder / "in").string()), 0U) << path;
-  EXPECT_EQ(path.find("entry"), std::string::npos) << path;
-  EXPECT_NE(
-      refusal_of("none").find("not searched, since it is no absolute path: relative_entry:./dotted_entry"),
-      std::string::npos)
-      << refusal_of("none");
+  EXPECT_THAT(path, StartsWith((folder / "in").string()));
+  EXPECT_THAT(path, Not(HasSubstr("entry")));
+  EXPECT_THAT(refusal_of("none"),
+              HasSubstr("not searched, since it is no absolute path: relative_entry:./dotted_entry"));
 }
 
 // Laws of a package serve a host that links the loader of another installation.
 TEST_F(Searched, FoldersOfTheSystemAreSearched) {
   const std::string path = ilaw::search_path() + ":";
   for (const char* wanted : {":/usr/local/lib/ilaw:", ":/usr/lib/ilaw:"})
-    EXPECT_NE(path.find(wanted), std::string::npos) << path;
+    EXPECT_THAT(path, HasSubstr(wanted));
 }
 
 TEST_F(Searched, NamesWithOddLettersAreRefusedInEveryWay) {
@@ -81,27 +82,18 @@ TEST_F(Searched, NamesWithOddLettersAreRefusedInEveryWay) {
 
 TEST_F(Searched, FolderThatEverybodyMayWriteToIsLeftOutAndNamed) {
   fs::permissions(folder / "in", fs::perms(0777));
-  EXPECT_NE(
-      refusal_of("here").find("not searched, since every user may write there: " + (folder / "in").string()),
-      std::string::npos)
-      << refusal_of("here");
-  EXPECT_EQ(ilaw::search_path().find(folder.string()), std::string::npos);
-  for (const std::string& file : ilaw::search())
-    EXPECT_EQ(file.find(folder.string()), std::string::npos) << file;
+  EXPECT_THAT(refusal_of("here"),
+              HasSubstr("not searched, since every user may write there: " + (folder / "in").string()));
+  EXPECT_THAT(ilaw::search_path(), Not(HasSubstr(folder.string())));
+  for (const std::string& file : ilaw::search()) EXPECT_THAT(file, Not(HasSubstr(folder.string())));
   EXPECT_NO_THROW(
       ilaw::library((folder / "in" / "here.so").string()));  // an explicit path is the user's word
 }
 
-std::string output_of(const std::string& command) {
-  FILE* pipe = popen(command.c_str(), "r");
-  std::string text;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
-  pclose(pipe);
-  return text;
-}
+std::string output_of(const std::string& command) { return run_command(command).output; }
 
 TEST_F(Searched, SetUidProgramReadsNoEnvironmentAndLooksNotBesideItself) {
-  EXPECT_NE(output_of(ILAW_HOSTS "/search_host").find(folder.string()), std::string::npos);
+  EXPECT_THAT(output_of(ILAW_HOSTS "/search_host"), HasSubstr(folder.string()));
   if (geteuid() != 0) GTEST_SKIP() << "only root can give a program away";
   if (prctl(PR_GET_NO_NEW_PRIVS, 0, 0, 0, 0) == 1) GTEST_SKIP() << "set-uid has no effect in this process";
   struct statvfs mount;
@@ -112,10 +104,9 @@ TEST_F(Searched, SetUidProgramReadsNoEnvironmentAndLooksNotBesideItself) {
   fs::copy_file(ILAW_HOSTS "/search_host", program);
   constexpr uid_t somebody = 12345;
   ASSERT_EQ(chown(program.c_str(), somebody, somebody), 0);
-  EXPECT_NE(output_of(program.string()).find((folder / "lib" / "ilaw").string()), std::string::npos);
+  EXPECT_THAT(output_of(program.string()), HasSubstr((folder / "lib" / "ilaw").string()));
   ASSERT_EQ(chmod(program.c_str(), 04755), 0);
-  EXPECT_EQ(output_of(program.string()).find(folder.string()), std::string::npos)
-      << output_of(program.string());
+  EXPECT_THAT(output_of(program.string()), Not(HasSubstr(folder.string())));
 }
 
 TEST_F(Searched, SharedLoaderSearchesTheSame) {
@@ -129,9 +120,8 @@ TEST_F(Searched, SharedLoaderLooksBesideItself) {
   fs::copy_file(ILAW_HOSTS "/../lib/libilaw_loader.so.1", folder / "lib" / "libilaw_loader.so.1");
   const std::string preload = "LD_PRELOAD=" + (folder / "lib" / "libilaw_loader.so.1").string();
   const std::string wanted = (folder / "lib" / "ilaw").string();
-  EXPECT_NE(output_of(preload + " " ILAW_HOSTS "/search_host_shared").find(wanted), std::string::npos)
-      << output_of(preload + " " ILAW_HOSTS "/search_host_shared");
-  EXPECT_EQ(output_of(ILAW_HOSTS "/search_host_shared").find(wanted), std::string::npos);
+  EXPECT_THAT(output_of(preload + " " ILAW_HOSTS "/search_host_shared"), HasSubstr(wanted));
+  EXPECT_THAT(output_of(ILAW_HOSTS "/search_host_shared"), Not(HasSubstr(wanted)));
 }
 
 // Its interface outlives main, and with it whatever the loader has. Freed memory reads as rubbish.

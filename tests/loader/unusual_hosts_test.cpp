@@ -1,29 +1,21 @@
 // Laws give the same bits in hosts of every sort: compiled with -ffast-math, trapping floating-point
 // exceptions, with another rounding mode, threaded, with libraries loaded twice, globally, or again.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
+#include "support/program.hpp"
 
-#include <sys/wait.h>
-#include <array>
-#include <cstdio>
 #include <sstream>
 #include <string>
 
 namespace {
+
+using namespace ilaw::testing::programs;
 
 // What the host prints, and how it ended where not well.
 std::string digest_of(const std::string& host, const std::string& mode) {
   std::string command = std::string(ILAW_HOSTS) + "/" + host + " " + mode;
   std::istringstream laws(ILAW_ALL_LAWS);
   for (std::string law; laws >> law;) command += " " ILAW_PLUGIN_FOLDER "/" + law + ".so";
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  std::string text;
-  std::array<char, 256> line;
-  while (std::fgets(line.data(), line.size(), pipe)) text += line.data();
-  const int status = pclose(pipe);
-  if (status != 0)
-    text += "(status " + std::to_string(WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status)) + ")";
-  return text;
+  return run_command(command + " || echo status $?").output;
 }
 
 class UnusualHost : public testing::TestWithParam<const char*> {

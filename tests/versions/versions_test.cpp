@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <ilaw/loader.hpp>
 
-#include <gtest/gtest.h>
+#include "support/program.hpp"
 
 #include <cstdio>
 #include <sstream>
@@ -12,6 +12,8 @@
 
 namespace {
 
+using namespace ilaw::testing::matchers;
+using namespace ilaw::testing::programs;
 const std::vector<std::string> versions{"", "grown_"}, versions_of_hosts{"", "grown_", "past_"};
 
 std::string library(const std::string& version, const std::string& law) {
@@ -26,16 +28,12 @@ std::string all_libraries(const std::string& version) {
 }
 
 std::string output_of(const std::string& program, const std::string& arguments) {
-  FILE* pipe = popen((ILAW_HOSTS "/" + program + " " + arguments + " 2>&1; echo status $?").c_str(), "r");
-  std::string text;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
-  pclose(pipe);
-  return text;
+  return run_command(ILAW_HOSTS "/" + program + " " + arguments + "; echo status $?").output;
 }
 
 TEST(Versions, AllLawsGiveTheSameInHostsOfBoth) {
   const std::string expected = output_of("unusual_host", "plain" + all_libraries(""));
-  ASSERT_NE(expected.find("\nstatus 0\n"), std::string::npos) << expected;
+  ASSERT_THAT(expected, HasSubstr("\nstatus 0\n"));
   for (const std::string& host : versions_of_hosts)
     for (const std::string& laws : versions)
       EXPECT_EQ(output_of(host + "unusual_host", "plain" + all_libraries(laws)), expected)
@@ -46,7 +44,7 @@ TEST(Versions, ExampleHostsPrintTheSameInEveryLanguage) {
   std::istringstream names(ILAW_BLOCKS);
   for (std::string name; names >> name;) {
     const std::string expected = output_of(name, library("", "coulomb"));
-    ASSERT_NE(expected.find("\nstatus 0\n"), std::string::npos) << expected;
+    ASSERT_THAT(expected, HasSubstr("\nstatus 0\n"));
     for (const std::string& host : versions_of_hosts)
       for (const std::string& laws : versions)
         EXPECT_EQ(output_of(host + name, library(laws, "coulomb")), expected)
@@ -58,7 +56,7 @@ TEST(Versions, ExampleHostsPrintTheSameInEveryLanguage) {
 TEST(Versions, LawsOfTheFirstVersionServeTodaysHosts) {
   const std::string past = ILAW_SAMPLES "/past/sample.so", today = ILAW_SAMPLES "/today/sample.so";
   const std::string expected = output_of("unusual_host", "plain " + today);
-  ASSERT_NE(expected.find("\nstatus 0\n"), std::string::npos) << expected;
+  ASSERT_THAT(expected, HasSubstr("\nstatus 0\n"));
   EXPECT_EQ(output_of("unusual_host", "plain " + past), expected);
   const ilaw::library library(past);
   EXPECT_EQ(library.plugin().abi_minor, 0);

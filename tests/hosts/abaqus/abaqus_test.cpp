@@ -1,6 +1,6 @@
 // vfric.f of api/abaqus, called by a stub of Abaqus/Explicit as its manual says, against closed forms.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
+#include "support/matchers.hpp"
 
 #include <array>
 #include <cmath>
@@ -18,6 +18,7 @@ void stub_error(char* text);
 
 namespace {
 
+using namespace ilaw::testing::matchers;
 constexpr double rounding = ILAW_ABAQUS_ROUNDING;  // of the numbers of Abaqus
 // The block of the manual's verification of VFRIC [in, lbf, s]: of it a column of section 1 over 1 node.
 constexpr double mass = 7.3e-4, pressure = 2000.0, speed = 200.0, mu = 0.15;
@@ -181,7 +182,7 @@ TEST_F(Vfric, SaysWhyItStops) {
   Points negative;
   negative.interaction = "OTHER";
   negative.constants = {-0.1};
-  EXPECT_NE(negative.begin({speed, 0, 0}, {0, 0, 0}).step().find("'friction'"), std::string::npos);
+  EXPECT_THAT(negative.begin({speed, 0, 0}, {0, 0, 0}).step(), HasSubstr("'friction'"));
 }
 
 }  // namespace
