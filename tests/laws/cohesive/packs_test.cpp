@@ -68,8 +68,9 @@ struct Nodes : LawBatch {
 };
 
 // Bonds that hold, soften and are broken, of one kind; with an H that couples at so many of them.
-Nodes drawn_nodes(const ilaw::interface& law, Draw& draw, const Curve& curve, double coupled) {
-  Nodes nodes(law, node_count);
+Nodes drawn_nodes(const Parameters& parameters, Draw& draw, double coupled) {
+  const Curve curve(parameters);
+  Nodes nodes(bond_of(parameters), node_count);
   for (std::size_t i = 0; i < node_count; ++i) {
     Problem p(draw, curve, 0.0);
     if (i == 0) nodes.velocity_step = p.step;
@@ -117,7 +118,7 @@ TEST(CohesivePacks, AreTheSameOnAllInstructionSets) {
   Draw draw(43);
   for (int k = 0; k < 40 && !HasFailure(); ++k) {
     const Parameters parameters = any_bond(draw);
-    const Nodes given = drawn_nodes(bond_of(parameters), draw, Curve(parameters), 0.5);
+    const Nodes given = drawn_nodes(parameters, draw, 0.5);
     std::vector<Nodes> all;
     for (const char* level : {"baseline", "v3", "v4"}) {
       setenv("ILAW_ISA", level, 1);
@@ -139,7 +140,7 @@ double give_their_bits_in_any_company(double coupled) {
     Parameters varied = parameters;
     varied.numbers.erase("strength");
     varied.per_node = {"strength"};
-    const Nodes first = drawn_nodes(bond_of(parameters), draw, Curve(parameters), coupled);
+    const Nodes first = drawn_nodes(parameters, draw, coupled);
     Nodes together = first, apart = first;
     alone += one_by_one(together);
     all += static_cast<std::int64_t>(node_count);
